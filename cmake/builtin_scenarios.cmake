@@ -1,0 +1,24 @@
+# Puts the files of scenarios/ into the program, so that `plica run drosophila` needs no files beside it.
+file(GLOB scenario_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scenarios/*.toml)
+set(builtin_scenarios_cpp ${CMAKE_BINARY_DIR}/generated/builtin_scenarios.cpp)
+set(entries "")
+foreach(file ${scenario_files})
+  get_filename_component(name ${file} NAME_WE)
+  file(READ ${file} text)
+  string(APPEND entries "    {\"${name}\", R\"TOML(${text})TOML\"},\n")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+endforeach()
+file(CONFIGURE OUTPUT ${builtin_scenarios_cpp} CONTENT [[
+// Generated from scenarios/*.toml by cmake/builtin_scenarios.cmake.
+#include "scenario/builtin.hpp"
+
+namespace plica {
+
+const std::vector<BuiltinScenario>& builtin_scenarios() {
+  static const std::vector<BuiltinScenario> scenarios = {
+@entries@  };
+  return scenarios;
+}
+
+}  // namespace plica
+]] @ONLY)

@@ -1,0 +1,26 @@
+// The subcommands of plica, a file each. Each adds itself to the command line; when chosen, its callback does the work and
+// sets the exit status.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace plica {
+
+/// Exit statuses of the contract.
+enum ExitStatus : int {
+  exit_done = 0,
+  exit_missed = 1,       // an [expect] was missed
+  exit_usage = 2,        // bad usage or scenario
+  exit_gave_up = 3,      // the numerics gave up; state saved
+  exit_files = 4,
+  exit_interrupted = 130,
+  exit_terminated = 143,
+};
+
+void add_run_command(CLI::App& app, int& status);
+void add_check_command(CLI::App& app, int& status);
+void add_mesh_command(CLI::App& app, int& status);
+void add_scenarios_command(CLI::App& app, int& status);
+void add_reference_command(CLI::App& app, int& status);
+
+}  // namespace plica

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/scenario_options.hpp"
+#include "core/errors.hpp"
+#include "output/mesh_writer.hpp"
+#include "scenario/setup.hpp"
+#include "tissue/mesh_quality.hpp"
+
+namespace plica {
+namespace {
+
+void print_quality(const Tissue& tissue) {
+  const MeshQuality quality = mesh_quality(tissue, tissue.rest_positions);
+  fmt::print("{} cells, {} elements, {} nodes\n{:<24}{:>10}{:>10}{:>10}\n", tissue.cells.size(),
+             tissue.elements.size(), tissue.node_count(), "", "min", "mean", "max");
+  const auto row = [](const char* name, const Spread& s) {
+    fmt::print("{:<24}{:>10.1f}{:>10.1f}{:>10.1f}\n", name, s.min, s.mean, s.max);
+  };
+  row("cell volume, um3", quality.volume_um3);
+  row("apical area, um2", quality.apical_area_um2);
+  row("edge along, um", quality.along_um);
+  row("edge across, um", quality.across_um);
+  row("cell height, um", quality.height_um);
+  fmt::print("{:<24}{:>10.3f}\n", "worst scaled Jacobian", quality.min_scaled_jacobian);
+}
+
+}  // namespace
+
+void add_mesh_command(CLI::App& app, int&) {
+  CLI::App* command = app.add_subcommand("mesh", "write the mesh at rest with its regions; print how even its cells are");
+  auto options = std::make_shared<ScenarioOptions>();
+  auto out = std::make_shared<std::string>();
+  auto overwrite = std::make_shared<bool>(false);
+  options->add_to(*command);
+  command->add_option("--out", *out, "FILE.vtu to write")->required();
+  command->add_flag("--overwrite", *overwrite, "replace FILE.vtu where it is there");
+  command->footer("Example: plica mesh drosophila --out rest.vtu");
+  command->callback([options, out, overwrite] {
+    if (!out->ends_with(".vtu")) throw UsageError("--out " + *out + ": the file's name must end in .vtu");
+    if (std::filesystem::exists(*out) && !*overwrite)
+      throw FileError(*out + ": is there already; give another --out, or --overwrite to replace it");
+    const Tissue tissue = make_tissue(options->load());
+    MeshArrays arrays;
+    std::vector<int> ids;
+    for (std::size_t c = 0; c < tissue.cells.size(); ++c) ids.push_back(static_cast<int>(c));
+    arrays.cell_integers.push_back({"cell_id", ids});
+    for (const auto& [name, cells] : tissue.regions)
+      arrays.cell_integers.push_back({"region_" + name, std::vector<int>(cells.begin(), cells.end())});
+    write_mesh(*out, tissue, tissue.rest_positions, arrays);
+    print_quality(tissue);
+  });
+}
+
+}  // namespace plica

@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <chrono>
+#include <csignal>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/progress.hpp"
+#include "app/scenario_options.hpp"
+#include "core/errors.hpp"
+#include "core/units.hpp"
+#include "output/recorder.hpp"
+#include "scenario/setup.hpp"
+
+namespace plica {
+namespace {
+
+volatile std::sig_atomic_t caught_signal = 0;
+
+struct RunOptions {
+  ScenarioOptions scenario;
+  std::string out;
+  int threads = 0;
+  bool quiet = false, overwrite = false;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void print_result(const nlohmann::ordered_json& summary, const std::string& out) {
+  const auto value = [&](const char* key, const char* unit) {
+    return summary.at(key).is_number() ? fmt::format("{:.2f}{}", summary.at(key).get<double>(), unit) : "none";
+  };
+  fmt::print("{}: {} at {:.2f} min after {} steps in {:.1f} s\n", summary.at("scenario").get<std::string>(),
+             summary.at("status").get<std::string>(), summary.at("time_s").get<double>() / units::minute,
+             summary.at("steps").get<int>(), summary.at("wall_s").get<double>());
+  fmt::print("  furrow depth {}, apical area ratio {} (VML), peak speed ratio {}\n", value("furrow_depth_um", " um"),
+             value("vml_apical_area_ratio", ""), value("peak_speed_ratio", ""));
+  fmt::print("  results in {}\n", out);
+}
+
+int exit_status(const RunResult& result, bool missed) {
+  if (result.status == RunStatus::failed) return exit_gave_up;
+  if (result.status == RunStatus::interrupted) return caught_signal == SIGTERM ? exit_terminated : exit_interrupted;
+  return missed ? exit_missed : exit_done;
+}
+
+int run_scenario(const RunOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+  const ScenarioSource source = find_scenario(options.scenario.name_or_path);
+  const Scenario scenario = load_scenario(source, options.scenario.overrides);
+  const auto model = make_model(scenario);
+  const RunControls controls = make_controls(scenario);
+  const Observer observer(*model, make_furrow_sites(scenario, model->tissue));
+
+  prepare_directory(options.out, options.overwrite);
+  const State rest = rest_state(*model);
+  Recorder recorder(options.out, scenario, source.text, *model, observer, rest);
+  Progress progress(controls, options.quiet);
+  std::signal(SIGINT, [](int signal) { caught_signal = signal; });
+  std::signal(SIGTERM, [](int signal) { caught_signal = signal; });
+
+  double recording_s = 0;
+  const auto run_start = std::chrono::steady_clock::now();
+  const RunResult result = run(*model, rest, controls, [&](const AcceptedStep& step) {
+    const auto recording_start = std::chrono::steady_clock::now();
+    progress.show(recorder.record(step));
+    recording_s += seconds_since(recording_start);
+    return caught_signal == 0;
+  });
+  const double solver_s = seconds_since(run_start) - recording_s;
+  progress.finish();
+  const auto summary = recorder.finish(result, {seconds_since(start), solver_s});
+
+  const std::vector<std::string> missed =
+      result.status == RunStatus::failed || result.status == RunStatus::interrupted
+          ? std::vector<std::string>{}
+          : missed_expectations(scenario, summary);
+  for (const std::string& line : missed) fmt::print(stderr, "{}: {}\n", source.file, line);
+  if (!result.failure.empty())
+    fmt::print(stderr, "plica: gave up: {}; the last good state is in {}\n", result.failure, options.out);
+  if (!options.quiet) print_result(summary, options.out);
+  return exit_status(result, !missed.empty());
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("run", "run a scenario");
+  auto options = std::make_shared<RunOptions>();
+  options->scenario.add_to(*command);
+  command->add_option("--out", options->out, "directory for the results")->required();
+  command->add_option("--threads", options->threads, "threads to use; results do not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--quiet", options->quiet, "no progress and no result on the terminal");
+  command->add_flag("--overwrite", options->overwrite, "replace the results in DIR");
+  command->footer("Example: plica run drosophila --out results --set contraction.apical.across_ratio=1");
+  command->callback([options, &status] { status = run_scenario(*options); });
+}
+
+}  // namespace plica

@@ -1,0 +1,30 @@
+// Indices that cannot be mixed up: a NodeId is not a CellId, and neither is an int by accident.
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+
+namespace plica {
+
+/// The place of something in its flat array. `index()` is for subscripts.
+template <class Tag>
+class Id {
+ public:
+  constexpr Id() = default;
+  constexpr explicit Id(std::size_t index) : value_(static_cast<std::int32_t>(index)) {}
+  constexpr explicit Id(int index) : value_(index) {}
+  [[nodiscard]] constexpr std::size_t index() const { return static_cast<std::size_t>(value_); }
+  [[nodiscard]] constexpr int number() const { return value_; }
+  [[nodiscard]] constexpr bool valid() const { return value_ >= 0; }
+  constexpr auto operator<=>(const Id&) const = default;
+
+ private:
+  std::int32_t value_ = -1;
+};
+
+using NodeId = Id<struct NodeTag>;
+using ElementId = Id<struct ElementTag>;
+using CellId = Id<struct CellTag>;
+
+}  // namespace plica

@@ -1,0 +1,91 @@
+#include "measure/cells.hpp"
+
+#include <algorithm>
+
+namespace plica {
+namespace {
+
+std::array<Vec3, 4> corners(const Facet& facet, std::span<const Vec3> positions) {
+  std::array<Vec3, 4> points;
+  for (int i = 0; i < 4; ++i) points[i] = positions[facet.nodes[i].index()];
+  return points;
+}
+
+std::vector<double> areas(const std::vector<Facet>& facets, std::size_t cells, std::span<const Vec3> positions) {
+  std::vector<double> result(cells, 0.0);
+  for (const Facet& facet : facets) result[facet.cell.index()] += facet_area(corners(facet, positions));
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> apical_areas(const Tissue& tissue, std::span<const Vec3> positions) {
+  return areas(tissue.apical_facets, tissue.cells.size(), positions);
+}
+
+std::vector<double> basal_areas(const Tissue& tissue, std::span<const Vec3> positions) {
+  return areas(tissue.basal_facets, tissue.cells.size(), positions);
+}
+
+double cell_height(const Cell& cell, std::span<const Vec3> positions) {
+  double sum = 0;
+  for (int i = 0; i < 4; ++i)
+    sum += (positions[cell.corners[i + 4].index()] - positions[cell.corners[i].index()]).norm() / 4;
+  return sum;
+}
+
+double mean_speed(const Tissue& tissue, const MonitoredCells& cells, const Vectors& positions, const Vectors& before,
+                  double duration_s) {
+  double sum = 0;
+  for (const CellId id : cells) {
+    const Cell& cell = tissue.cells[id.index()];
+    sum += (cell_centre(cell, positions) - cell_centre(cell, before)).norm() / duration_s;
+  }
+  return sum / static_cast<double>(cells.size());
+}
+
+double mean_node_displacement(const Tissue& tissue, const MonitoredCells& cells, const Vectors& positions) {
+  double sum = 0;
+  for (const CellId id : cells)
+    for (const NodeId node : tissue.cells[id.index()].corners)
+      sum += (positions[node.index()] - tissue.rest_positions[node.index()]).norm() / 8;
+  return sum / static_cast<double>(cells.size());
+}
+
+double mean_over(const MonitoredCells& cells, const std::vector<double>& values) {
+  double sum = 0;
+  for (const CellId id : cells) sum += values[id.index()];
+  return sum / static_cast<double>(cells.size());
+}
+
+std::vector<double> activities(const Model& model, double time_s) {
+  std::vector<double> result(model.tissue.cells.size(), 0.0);
+  for (std::size_t k = model.contractions.size(); k-- > 0;)
+    for (std::size_t c = 0; c < result.size(); ++c)
+      if (model.contraction_cells[k][c]) result[c] = model.contractions[k]->program().at(time_s);
+  return result;
+}
+
+std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> positions) {
+  Vec3 area_vector = Vec3::Zero();
+  double volume = 0, area = 0;
+  for (const Facet& facet : tissue.basal_facets) {
+    const auto [a, b, c, d] = corners(facet, positions);
+    // The cone from the origin, as in hex_volume; basal facets look into the lumen.
+    volume -= (a.dot(b.cross(c)) + a.dot(c.cross(d)) + a.dot(b.cross(d)) + b.dot(c.cross(d))) / 12;
+    area_vector += facet_area_vector({a, b, c, d});
+    area += area_vector.norm();
+  }
+  if (tissue.basal_facets.empty() || area_vector.norm() > 1e-9 * area) return std::nullopt;
+  return volume;
+}
+
+double shell_penetration(const Model& model, std::span<const Vec3> positions) {
+  double deepest = 0;
+  if (model.vitelline)
+    for (const NodeId node : model.vitelline->nodes())
+      deepest = std::max(deepest, -model.vitelline->gap(positions[node.index()]).value);
+  return deepest;
+}
+
+}  // namespace plica

@@ -1,0 +1,39 @@
+// What is measured of single cells and of the whole sheet.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "measure/furrow.hpp"
+#include "mechanics/model.hpp"
+
+namespace plica {
+
+/// Area of each cell's apical facets, um^2; 0 for a cell without. Bilinear facets, 2 x 2 Gauss points.
+std::vector<double> apical_areas(const Tissue& tissue, std::span<const Vec3> positions);
+std::vector<double> basal_areas(const Tissue& tissue, std::span<const Vec3> positions);
+
+/// Mean length of the four apico-basal edges, um.
+double cell_height(const Cell& cell, std::span<const Vec3> positions);
+
+/// Mean speed of the cells' barycentres between two moments, um/s.
+double mean_speed(const Tissue& tissue, const MonitoredCells& cells, const Vectors& positions, const Vectors& before,
+                  double duration_s);
+
+/// Mean displacement from rest of the cells' corner nodes, um: "the displacement of the nodes" of the paper.
+double mean_node_displacement(const Tissue& tissue, const MonitoredCells& cells, const Vectors& positions);
+
+/// Mean of a value of cells.
+double mean_over(const MonitoredCells& cells, const std::vector<double>& values);
+
+/// Activity of each cell: of the first contraction that it belongs to, at the given time; 0 outside.
+std::vector<double> activities(const Model& model, double time_s);
+
+/// Volume enclosed by the basal surface, um^3; empty when that surface is not closed.
+std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> positions);
+
+/// Deepest place of a node outside the shell, um; 0 where none is.
+double shell_penetration(const Model& model, std::span<const Vec3> positions);
+
+}  // namespace plica

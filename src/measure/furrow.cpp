@@ -1,0 +1,145 @@
+#include "measure/furrow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace plica {
+namespace {
+
+constexpr int axis_x = 0, axis_y = 1;
+constexpr double same_place_um = 1e-6;  // closer than this, two places at rest are mirror images of one
+
+// Facets of the given cells.
+std::vector<bool> facets_of(const Tissue& tissue, const CellSet& cells) {
+  std::vector<bool> wanted;
+  for (const Facet& facet : tissue.apical_facets) wanted.push_back(cells[facet.cell.index()]);
+  return wanted;
+}
+
+// Ventral facets, by their middle at rest.
+std::vector<bool> ventral_facets(const Tissue& tissue) {
+  std::vector<bool> wanted;
+  for (const Facet& facet : tissue.apical_facets) {
+    double z = 0;
+    for (const NodeId node : facet.nodes) z += tissue.rest_positions[node.index()].z();
+    wanted.push_back(z < 0);
+  }
+  return wanted;
+}
+
+// How far a material point lies inside the ventral shell along z, less the same at rest. Without a shell: how far it has
+// risen.
+double depth_of(const Tissue& tissue, const MaterialPoint& point, std::span<const Vec3> positions) {
+  const Vec3 now = point.at(tissue, positions), rest = point.at(tissue, tissue.rest_positions);
+  if (!tissue.outer_shape) return now.z() - rest.z();
+  return (now.z() - ventral_height(*tissue.outer_shape, now.x())) -
+         (rest.z() - ventral_height(*tissue.outer_shape, rest.x()));
+}
+
+// Cells with an apical facet that meets y = 0 at rest.
+std::vector<CellId> cells_on_midline(const Tissue& tissue, const std::vector<bool>& facets) {
+  std::set<CellId> cells;
+  for (const MaterialPoint& point : cut_apical_surface(tissue, tissue.rest_positions, axis_y, facets))
+    cells.insert(tissue.apical_facets[point.facet].cell);
+  return {cells.begin(), cells.end()};
+}
+
+// The two points where the plane x = 0 leaves the contractile cells at rest: left (y < 0) and right.
+bool find_lips(const Tissue& tissue, FurrowSites& sites) {
+  // Edges of contractile facets that no other contractile facet has.
+  std::map<std::pair<NodeId, NodeId>, int> uses;
+  const auto edge = [&](const Facet& facet, int i) {
+    return std::minmax(facet.nodes[i], facet.nodes[(i + 1) % 4]);
+  };
+  for (const Facet& facet : tissue.apical_facets)
+    if (sites.contractile[facet.cell.index()])
+      for (int i = 0; i < 4; ++i) ++uses[edge(facet, i)];
+  double left = 0, right = 0;
+  for (const MaterialPoint& point :
+       cut_apical_surface(tissue, tissue.rest_positions, axis_x, facets_of(tissue, sites.contractile))) {
+    const Facet& facet = tissue.apical_facets[point.facet];
+    for (int i = 0; i < 4; ++i) {
+      const bool on_edge = point.weights[i] + point.weights[(i + 1) % 4] > 1 - 1e-12;
+      if (!on_edge || uses[edge(facet, i)] != 1) continue;
+      const double y = point.at(tissue, tissue.rest_positions).y();
+      if (y < left) left = y, sites.lips[0] = point;
+      if (y > right) right = y, sites.lips[1] = point;
+    }
+  }
+  return left < 0 && right > 0;
+}
+
+}  // namespace
+
+FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile, int vce_from_end) {
+  FurrowSites sites;
+  sites.contractile = contractile;
+  sites.midline = cells_on_midline(tissue, ventral_facets(tissue));
+  const auto rest_x = [&](CellId cell) {
+    return cell_centre(tissue.cells[cell.index()], tissue.rest_positions).x();
+  };
+  std::stable_sort(sites.midline.begin(), sites.midline.end(), [&](CellId a, CellId b) { return rest_x(a) < rest_x(b); });
+
+  // Distances from the middle that contractile midline cells have, each once, with the cells that have it.
+  std::vector<std::pair<double, MonitoredCells>> by_distance;
+  for (const CellId cell : cells_on_midline(tissue, facets_of(tissue, contractile))) {
+    const double distance = std::abs(rest_x(cell));
+    const auto found = std::find_if(by_distance.begin(), by_distance.end(), [&](const auto& entry) {
+      return std::abs(entry.first - distance) < same_place_um;
+    });
+    if (found != by_distance.end())
+      found->second.push_back(cell);
+    else
+      by_distance.push_back({distance, {cell}});
+  }
+  std::sort(by_distance.begin(), by_distance.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (!by_distance.empty()) {
+    sites.vml = by_distance.front().second;
+    const int last = static_cast<int>(by_distance.size()) - 1;
+    sites.vce = by_distance[std::max(0, last - (vce_from_end - 1))].second;
+  }
+  sites.has_lips = find_lips(tissue, sites);
+  return sites;
+}
+
+FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions) {
+  FurrowShape shape;
+  for (const MaterialPoint& point :
+       cut_apical_surface(tissue, positions, axis_y, facets_of(tissue, sites.contractile)))
+    shape.depth_um = std::max(shape.depth_um.value_or(-1e300), depth_of(tissue, point, positions));
+  if (!sites.has_lips) return shape;
+
+  const Vec3 left = sites.lips[0].at(tissue, positions), right = sites.lips[1].at(tissue, positions);
+  shape.lip_distance_um = (right - left).norm();
+  // The floor: the cross-section's height at y = 0, between the nearest points on either side.
+  Vec3 before(0, -1e300, 0), after(0, 1e300, 0), highest_left = Vec3::Zero(), highest_right = Vec3::Zero();
+  for (const MaterialPoint& cut : cut_apical_surface(tissue, positions, axis_x, ventral_facets(tissue))) {
+    const Vec3 p = cut.at(tissue, positions);
+    if (p.y() <= 0 && p.y() > before.y()) before = p;
+    if (p.y() >= 0 && p.y() < after.y()) after = p;
+    if (p.y() <= 0 && p.z() < highest_left.z()) highest_left = p;
+    if (p.y() >= 0 && p.z() < highest_right.z()) highest_right = p;
+  }
+  if (before.y() > -1e300 && after.y() < 1e300) {
+    const double width = after.y() - before.y();
+    const double part = width > 0 ? -before.y() / width : 0;
+    const double floor = (1 - part) * before.z() + part * after.z();
+    shape.depth_below_lips_um = floor - 0.5 * (left.z() + right.z());
+    shape.highest_points_distance_um = (highest_right - highest_left).norm();
+  }
+  return shape;
+}
+
+std::optional<double> cell_depth_um(const Tissue& tissue, CellId cell, std::span<const Vec3> positions) {
+  std::vector<bool> wanted;
+  for (const Facet& facet : tissue.apical_facets) wanted.push_back(facet.cell == cell);
+  const auto points = cut_apical_surface(tissue, positions, axis_y, wanted);
+  if (points.empty()) return std::nullopt;
+  double sum = 0;
+  for (const MaterialPoint& point : points) sum += depth_of(tissue, point, positions);
+  return sum / static_cast<double>(points.size());
+}
+
+}  // namespace plica

@@ -1,0 +1,44 @@
+// The furrow, measured: depth, lips, and the cells at the middle (VML) and near the ends (VCE) of the ventral midline.
+// Pure functions of tissue and positions; what every word means stands in docs/measures.md.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "measure/surface_cut.hpp"
+#include "mechanics/model.hpp"
+
+namespace plica {
+
+/// A monitored cell together with its mirror images: values are their means.
+using MonitoredCells = std::vector<CellId>;
+
+/// What is measured, chosen once from the tissue at rest.
+struct FurrowSites {
+  CellSet contractile;                        // the cells whose furrow is measured
+  MonitoredCells vml;                         // centre of the midline
+  MonitoredCells vce;                         // near its ends
+  std::vector<CellId> midline;                // ventral cells on y = 0, anterior to posterior
+  std::array<MaterialPoint, 2> lips;          // left, right: where the mid cross-section leaves the contractile cells
+  bool has_lips = false;
+};
+
+/// `vce_from_end`: VCE is this cell of the contractile midline counted from its ends, 1 the last.
+FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile, int vce_from_end);
+
+/// Everything about the furrow at one moment. What has no value is empty.
+struct FurrowShape {
+  std::optional<double> depth_um;            // from the shell down to the midline, less what flat facets have at rest
+  std::optional<double> depth_below_lips_um; // from the lips' mean height down to the floor in the mid cross-section
+  std::optional<double> lip_distance_um;     // between the material lips
+  std::optional<double> highest_points_distance_um;  // between the most ventral points left and right of the midline
+};
+
+FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions);
+
+/// Depth along z of one cell's apical midline, mean over its points on y = 0; as furrow_shape's for the whole furrow.
+std::optional<double> cell_depth_um(const Tissue& tissue, CellId cell, std::span<const Vec3> positions);
+
+}  // namespace plica

@@ -1,0 +1,58 @@
+// One row of series.csv, and what the rows of a run add up to.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "measure/furrow.hpp"
+#include "simulation/run.hpp"
+
+namespace plica {
+
+/// The measures of one accepted step. Empty: has no value.
+struct Observation {
+  double time_s = 0;
+  FurrowShape furrow;
+  std::optional<double> vml_speed_um_per_s, vce_speed_um_per_s, speed_ratio;
+  std::optional<double> vml_displacement_um, vce_displacement_um;
+  std::optional<double> vml_apical_area_ratio, vce_apical_area_ratio;
+  double max_node_speed_um_per_s = 0;
+  double max_volume_error = 0;  // over cells
+  std::optional<double> lumen_volume_ratio;
+  double max_shell_penetration_um = 0;
+  double min_scaled_jacobian = 1;
+  double step_s = 0;
+  int newton_iterations = 0;
+  int linear_solves = 0;
+};
+
+/// Measures steps of one model.
+class Observer {
+ public:
+  Observer(const Model& model, FurrowSites sites);
+  [[nodiscard]] Observation observe(const AcceptedStep& step) const;
+  /// The same of the body at rest, before the first step.
+  [[nodiscard]] Observation observe_rest(const State& state) const;
+  [[nodiscard]] const FurrowSites& sites() const { return sites_; }
+  [[nodiscard]] const std::vector<double>& rest_apical_areas() const { return rest_apical_areas_; }
+
+ private:
+  void observe_state(const State& state, Observation& row) const;
+
+  const Model& model_;
+  FurrowSites sites_;
+  std::vector<double> rest_apical_areas_;
+  std::optional<double> rest_lumen_volume_;
+};
+
+/// Who leads, the ends or the middle, over a whole run.
+struct SpeedHistory {
+  std::optional<double> peak_ratio;         // v_c/v_m when v_c - v_m is largest, among steps with v_m over 1 % of its peak
+  std::optional<double> peak_ratio_time_s;
+  std::optional<double> ends_lead_until_s;  // first time after that when v_c <= v_m; linear between steps
+  std::optional<double> vml_displacement_at_equal_speed_um, vce_displacement_at_equal_speed_um;
+};
+
+SpeedHistory speed_history(const std::vector<Observation>& rows);
+
+}  // namespace plica

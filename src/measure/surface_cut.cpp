@@ -1,0 +1,50 @@
+#include "measure/surface_cut.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plica {
+
+Vec3 MaterialPoint::at(const Tissue& tissue, std::span<const Vec3> positions) const {
+  Vec3 point = Vec3::Zero();
+  for (int i = 0; i < 4; ++i) point += weights[i] * positions[tissue.apical_facets[facet].nodes[i].index()];
+  return point;
+}
+
+std::vector<MaterialPoint> cut_apical_surface(const Tissue& tissue, std::span<const Vec3> positions, int axis,
+                                              const std::vector<bool>& wanted) {
+  std::vector<MaterialPoint> points;
+  for (std::size_t f = 0; f < tissue.apical_facets.size(); ++f) {
+    if (!wanted[f]) continue;
+    std::array<double, 4> height;
+    for (int i = 0; i < 4; ++i) height[i] = positions[tissue.apical_facets[f].nodes[i].index()][axis];
+    const auto [low, high] = std::minmax_element(height.begin(), height.end());
+    if (*low > 0 || *high < 0) continue;
+    // The point at height 0 between two points of the facet, given by their weights and heights.
+    const auto cross = [&](const std::array<double, 4>& a, double height_a, const std::array<double, 4>& b,
+                           double height_b) {
+      if (height_a * height_b > 0 || height_a == height_b) return;
+      const double part = height_a / (height_a - height_b);
+      MaterialPoint point{f, {}};
+      for (int i = 0; i < 4; ++i) point.weights[i] = (1 - part) * a[i] + part * b[i];
+      points.push_back(point);
+    };
+    constexpr std::array<double, 4> middle = {0.25, 0.25, 0.25, 0.25};
+    const double height_of_middle = (height[0] + height[1] + height[2] + height[3]) / 4;
+    for (int i = 0; i < 4; ++i) {
+      std::array<double, 4> corner{}, next{};
+      corner[i] = 1;
+      next[(i + 1) % 4] = 1;
+      cross(corner, height[i], next, height[(i + 1) % 4]);
+      cross(corner, height[i], middle, height_of_middle);
+    }
+  }
+  return points;
+}
+
+double ventral_height(const Capsule& shell, double x) {
+  const double beyond = std::max(0.0, std::abs(x) - shell.half_axis_um);
+  return -std::sqrt(std::max(0.0, shell.radius_um * shell.radius_um - beyond * beyond));
+}
+
+}  // namespace plica

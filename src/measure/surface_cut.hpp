@@ -1,0 +1,29 @@
+// The apical surface cut by a plane: how the furrow's geometry is read, never off nearest nodes.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// A point that moves with the tissue: a weighted mean of the corners of one facet.
+struct MaterialPoint {
+  std::size_t facet = 0;  // among the apical facets
+  std::array<double, 4> weights = {0, 0, 0, 0};
+
+  [[nodiscard]] Vec3 at(const Tissue& tissue, std::span<const Vec3> positions) const;
+};
+
+/// Where the plane `axis` = 0 cuts the apical facets for which `wanted` is true: the points on their edges and on the
+/// lines from their corners to their middle, a facet after the other. A point on an edge of two facets comes twice.
+std::vector<MaterialPoint> cut_apical_surface(const Tissue& tissue, std::span<const Vec3> positions, int axis,
+                                              const std::vector<bool>& wanted);
+
+/// Height z along the shell's ventral side at x, um: where a line along z through (x, 0) leaves the capsule below. The
+/// lowest point of the end where x lies beyond it.
+double ventral_height(const Capsule& shell, double x);
+
+}  // namespace plica

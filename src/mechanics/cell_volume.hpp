@@ -1,0 +1,71 @@
+// Volume: exactly held per cell by a multiplier, and resisted per element where it varies within a cell.
+// Theory: docs/theory/cell_volume.md.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mechanics/law.hpp"
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// The constraints V_c(x) = target, one a cell. Their multipliers are the cells' pressures, kPa, positive in compression.
+class CellVolumes {
+ public:
+  /// Targets are the cells' rest volumes.
+  explicit CellVolumes(const Tissue& tissue);
+
+  [[nodiscard]] std::size_t count() const { return targets_.size(); }
+  [[nodiscard]] const std::vector<double>& targets() const { return targets_; }
+
+  /// V_c at the given positions, um^3; cells.
+  [[nodiscard]] std::vector<double> volumes(std::span<const Vec3> positions) const;
+
+  /// V_c / target - 1; cells.
+  [[nodiscard]] std::vector<double> relative_errors(std::span<const Vec3> positions) const;
+
+  /// dV/dx of every element, um^2; elements, in the order of their nodes.
+  [[nodiscard]] std::vector<std::array<Vec3, 8>> element_gradients(std::span<const Vec3> positions) const;
+
+  /// Adds sum_c pressure_c dV_c/dx.
+  void add_forces(std::span<const Vec3> positions, std::span<const double> pressures, std::span<Vec3> forces) const;
+
+  /// Adds -sum_c pressure_c d2V_c/dx2 times `direction`.
+  void add_tangent_product(std::span<const Vec3> positions, std::span<const double> pressures,
+                           std::span<const Vec3> direction, std::span<Vec3> product) const;
+
+  /// Adds -sum_c pressure_c d2V_c/dx2.
+  void add_tangent(std::span<const Vec3> positions, std::span<const double> pressures, TangentSink& tangent) const;
+
+  [[nodiscard]] const std::vector<std::array<NodeId, 8>>& elements() const { return elements_; }
+  [[nodiscard]] CellId cell_of(std::size_t element) const { return element_cell_[element]; }
+
+ private:
+  std::vector<std::array<NodeId, 8>> elements_;
+  std::vector<CellId> element_cell_;
+  std::vector<double> targets_;  // cells; um^3
+};
+
+/// The bulk modulus at work: energy kappa V0 (V/V0 - 1)^2 / 2 an element, with exact volumes. It replaces the mean
+/// volumetric part that Corotational leaves out. Where a cell is one element of exact volume it is zero; within a cell of
+/// several it resists one element growing at another's cost; without the constraint it is the whole volume elasticity.
+class Dilatation final : public Law {
+ public:
+  /// `bulk_modulus` in kPa.
+  Dilatation(const Tissue& tissue, double bulk_modulus);
+
+  [[nodiscard]] std::string_view name() const override { return "dilatation"; }
+  [[nodiscard]] double energy(const Step& step) const override;
+  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] NodeGroups node_groups() const override;
+
+ private:
+  std::vector<std::array<NodeId, 8>> elements_;
+  std::vector<double> rest_volumes_;  // elements; um^3
+  double bulk_modulus_;
+};
+
+}  // namespace plica

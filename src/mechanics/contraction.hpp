@@ -1,0 +1,56 @@
+// Active contraction: Kelvin-Voigt springs along the edges of contractile cells (docs/theory/contraction.md).
+#pragma once
+
+#include <vector>
+
+#include "mechanics/law.hpp"
+#include "mechanics/program.hpp"
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// One spring: a chain of nodes of total length l. Tension a(t) (k max(0, l - U) + P) + c dl/dt, nN.
+struct Spring {
+  std::vector<NodeId> nodes;
+  double stiffness = 0;    // k, nN/um
+  double preload = 0;      // P, nN
+  double damping = 0;      // c, nN s/um
+  double rest_length = 0;  // U, um
+};
+
+/// What a contraction asks of each edge. Lengths and stiffness as in the scenario's [contraction.NAME].
+struct ContractionRule {
+  EdgeSide side = EdgeSide::apical;
+  double stiffness = 0;          // nN/um
+  double along_ratio = 1;        // factor on stiffness and preload of edges along the axis
+  double across_ratio = 1;       // and across it; lateral edges have neither
+  bool diagonals = false;        // also the two diagonals of the face, with the mean of both factors
+  double rest_length_ratio = 0;  // U over the length at rest
+  double preload = 0;            // nN
+  double damping = 0;            // nN s/um
+};
+
+/// The springs of all cells of `cells`. Two contractile cells that share an edge have a spring each.
+std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule);
+
+class Contraction final : public Law {
+ public:
+  Contraction(std::vector<Spring> springs, Program program)
+      : springs_(std::move(springs)), program_(std::move(program)) {}
+
+  [[nodiscard]] std::string_view name() const override { return "contraction"; }
+  [[nodiscard]] double energy(const Step& step) const override;
+  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] NodeGroups node_groups() const override;
+
+  [[nodiscard]] const Program& program() const { return program_; }
+  [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
+
+ private:
+  std::vector<Spring> springs_;
+  Program program_;
+};
+
+}  // namespace plica

@@ -1,0 +1,57 @@
+// What every law of mechanics offers. A law is a term of the step's incremental potential: its forces are the exact
+// negative gradient of its energy and its tangent the exact Hessian, so that Newton's method converges quadratically and the line search
+// has something to descend on.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/ids.hpp"
+#include "core/vector.hpp"
+
+namespace plica {
+
+/// Where a step stands: the unknown positions at its end, and everything that is constant during it.
+struct Step {
+  std::span<const Vec3> positions;            // x at the end of the step, um; nodes
+  std::span<const Vec3> previous_positions;   // x at its beginning, um; nodes
+  std::span<const Vec3> previous_velocities;  // v at its beginning, um/s; nodes
+  double duration_s = 0;                      // h > 0
+  double end_time_s = 0;                      // activity programs are read here
+};
+
+/// Collects 3 x 3 blocks of a symmetric tangent. `add_block(a, b, K)` adds K to the rows of a and columns of b; every
+/// pair of different nodes is given in both orders.
+class TangentSink {
+ public:
+  virtual ~TangentSink() = default;
+  virtual void add_block(NodeId row, NodeId column, const Mat3& block) = 0;
+};
+
+/// Groups of nodes whose tangent blocks may be non-zero: the sparsity pattern of a law.
+using NodeGroups = std::vector<std::vector<NodeId>>;
+
+/// One law. Vectors are a Vec3 a node; forces in nN, tangents in nN/um, energies in nN um.
+class Law {
+ public:
+  virtual ~Law() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+
+  /// The law's part of the incremental potential.
+  [[nodiscard]] virtual double energy(const Step& step) const = 0;
+
+  /// Adds -d(energy)/dx.
+  virtual void add_forces(const Step& step, std::span<Vec3> forces) const = 0;
+
+  /// Adds d2(energy)/dx2 times `direction`, without a matrix.
+  virtual void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const = 0;
+
+  /// Adds d2(energy)/dx2: every block (a, b) and (b, a) of nodes that the law joins.
+  virtual void add_tangent(const Step& step, TangentSink& tangent) const = 0;
+
+  /// The nodes that the law joins. Laws that act on single nodes have none.
+  [[nodiscard]] virtual NodeGroups node_groups() const { return {}; }
+};
+
+}  // namespace plica

@@ -1,0 +1,48 @@
+// The model of a run (constant) and its state (everything that changes).
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "mechanics/cell_volume.hpp"
+#include "mechanics/contraction.hpp"
+#include "mechanics/law.hpp"
+#include "mechanics/vitelline.hpp"
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// Topology and parameters. Nothing here changes during a run; only division makes a new one.
+struct Model {
+  Tissue tissue;
+  std::vector<std::unique_ptr<Law>> laws;
+  CellVolumes volumes;
+  bool volumes_are_held = true;
+  std::optional<Vitelline> vitelline;
+  std::vector<std::array<bool, 3>> held;  // nodes; directions x, y, z in which a node does not move
+  std::vector<const Contraction*> contractions;  // among the laws
+  std::vector<CellSet> contraction_cells;        // contractions
+  double stiffness_scale = 1;  // Young's modulus, kPa: for tolerances that must not depend on the load
+
+  explicit Model(Tissue t) : tissue(std::move(t)), volumes(tissue), held(tissue.node_count(), {false, false, false}) {}
+
+  /// Typical force of the body, nN: modulus times the mean area of an element's face. Residuals are zero against this.
+  [[nodiscard]] double force_scale() const;
+};
+
+/// Where the run is. Enough, with the Model, to go on from here to the same bits.
+struct State {
+  double time_s = 0;
+  Vectors positions;                   // nodes; um
+  Vectors velocities;                  // nodes; um/s, mean over the last step
+  std::vector<double> pressures;       // cells; kPa: the multipliers of the volumes
+  std::vector<double> contact_forces;  // the vitelline's nodes; nN, >= 0
+  std::vector<char> in_contact;        // the vitelline's nodes
+};
+
+/// The model at rest, before the first step.
+State rest_state(const Model& model);
+
+}  // namespace plica

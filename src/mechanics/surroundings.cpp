@@ -1,0 +1,101 @@
+#include "mechanics/surroundings.hpp"
+
+namespace plica {
+
+SurfaceDrag::SurfaceDrag(const Tissue& tissue, double drag) : coefficients_(tissue.node_count(), 0.0) {
+  for (const auto* facets : {&tissue.apical_facets, &tissue.basal_facets})
+    for (const Facet& facet : *facets) {
+      std::array<Vec3, 4> points;
+      for (int i = 0; i < 4; ++i) points[i] = tissue.rest_positions[facet.nodes[i].index()];
+      for (const NodeId node : facet.nodes) coefficients_[node.index()] += drag * facet_area(points) / 4;
+    }
+}
+
+double SurfaceDrag::energy(const Step& step) const {
+  double sum = 0;
+  for (std::size_t n = 0; n < coefficients_.size(); ++n)
+    sum += 0.5 * coefficients_[n] / step.duration_s * (step.positions[n] - step.previous_positions[n]).squaredNorm();
+  return sum;
+}
+
+void SurfaceDrag::add_forces(const Step& step, std::span<Vec3> forces) const {
+  for (std::size_t n = 0; n < coefficients_.size(); ++n)
+    forces[n] -= coefficients_[n] / step.duration_s * (step.positions[n] - step.previous_positions[n]);
+}
+
+void SurfaceDrag::add_tangent_product(const Step& step, std::span<const Vec3> direction,
+                                      std::span<Vec3> product) const {
+  for (std::size_t n = 0; n < coefficients_.size(); ++n)
+    product[n] += coefficients_[n] / step.duration_s * direction[n];
+}
+
+void SurfaceDrag::add_tangent(const Step& step, TangentSink& tangent) const {
+  for (std::size_t n = 0; n < coefficients_.size(); ++n)
+    tangent.add_block(NodeId(n), NodeId(n), coefficients_[n] / step.duration_s * Mat3::Identity());
+}
+
+Inertia::Inertia(const Tissue& tissue, double density) : masses_(tissue.node_count(), 0.0) {
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
+    for (const NodeId node : tissue.elements[e])
+      masses_[node.index()] += density * hex_volume(tissue.element_rest_shape[e]) / 8;
+}
+
+double Inertia::energy(const Step& step) const {
+  const double h = step.duration_s;
+  double sum = 0;
+  for (std::size_t n = 0; n < masses_.size(); ++n)
+    sum += 0.5 * masses_[n] / (h * h) *
+           (step.positions[n] - step.previous_positions[n] - h * step.previous_velocities[n]).squaredNorm();
+  return sum;
+}
+
+void Inertia::add_forces(const Step& step, std::span<Vec3> forces) const {
+  const double h = step.duration_s;
+  for (std::size_t n = 0; n < masses_.size(); ++n)
+    forces[n] -=
+        masses_[n] / (h * h) * (step.positions[n] - step.previous_positions[n] - h * step.previous_velocities[n]);
+}
+
+void Inertia::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
+  for (std::size_t n = 0; n < masses_.size(); ++n)
+    product[n] += masses_[n] / (step.duration_s * step.duration_s) * direction[n];
+}
+
+void Inertia::add_tangent(const Step& step, TangentSink& tangent) const {
+  for (std::size_t n = 0; n < masses_.size(); ++n)
+    tangent.add_block(NodeId(n), NodeId(n), masses_[n] / (step.duration_s * step.duration_s) * Mat3::Identity());
+}
+
+FacePressure::FacePressure(const Tissue& tissue, const std::vector<Facet>& facets, const CellSet& cells,
+                           double pressure, Program program)
+    : loads_(tissue.node_count(), Vec3::Zero()), program_(std::move(program)) {
+  for (const Facet& facet : facets) {
+    if (!cells[facet.cell.index()]) continue;
+    // The consistent load of a uniform pressure on a bilinear facet: integral of N_i n dA, 2 x 2 Gauss points.
+    std::array<Vec3, 4> x;
+    for (int i = 0; i < 4; ++i) x[i] = tissue.rest_positions[facet.nodes[i].index()];
+    const double g = 1 / std::sqrt(3.0);
+    for (const double s : {-g, g})
+      for (const double t : {-g, g}) {
+        const Vec3 by_s = 0.25 * ((1 - t) * (x[1] - x[0]) + (1 + t) * (x[2] - x[3]));
+        const Vec3 by_t = 0.25 * ((1 - s) * (x[3] - x[0]) + (1 + s) * (x[2] - x[1]));
+        const Vec3 push = -pressure * by_s.cross(by_t);
+        const std::array<double, 4> shape = {(1 - s) * (1 - t) / 4, (1 + s) * (1 - t) / 4, (1 + s) * (1 + t) / 4,
+                                             (1 - s) * (1 + t) / 4};
+        for (int i = 0; i < 4; ++i) loads_[facet.nodes[i].index()] += shape[i] * push;
+      }
+  }
+}
+
+double FacePressure::energy(const Step& step) const {
+  double work = 0;
+  for (std::size_t n = 0; n < loads_.size(); ++n) work += loads_[n].dot(step.positions[n]);
+  return -program_.at(step.end_time_s) * work;
+}
+
+void FacePressure::add_forces(const Step& step, std::span<Vec3> forces) const {
+  const double activity = program_.at(step.end_time_s);
+  for (std::size_t n = 0; n < loads_.size(); ++n) forces[n] += activity * loads_[n];
+}
+
+}  // namespace plica

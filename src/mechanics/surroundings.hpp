@@ -1,0 +1,61 @@
+// Laws that act on single nodes: drag of the surroundings, inertia, and pressure on faces as a dead load.
+#pragma once
+
+#include "mechanics/law.hpp"
+#include "mechanics/program.hpp"
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// Drag on the apical and basal faces: force -d v, d from the faces' rest area, a quarter of each facet to each corner.
+class SurfaceDrag final : public Law {
+ public:
+  /// `drag` in nN s/um^3 (1 Pa s/um is 1e-3).
+  SurfaceDrag(const Tissue& tissue, double drag);
+
+  [[nodiscard]] std::string_view name() const override { return "drag"; }
+  [[nodiscard]] double energy(const Step& step) const override;
+  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(const Step& step, TangentSink& tangent) const override;
+
+ private:
+  std::vector<double> coefficients_;  // nodes; nN s/um
+};
+
+/// Mass lumped to the nodes, an eighth of each element's to each corner: backward Euler for M dv/dt.
+class Inertia final : public Law {
+ public:
+  /// `density` in g/um^3.
+  Inertia(const Tissue& tissue, double density);
+
+  [[nodiscard]] std::string_view name() const override { return "inertia"; }
+  [[nodiscard]] double energy(const Step& step) const override;
+  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] const std::vector<double>& masses() const { return masses_; }
+
+ private:
+  std::vector<double> masses_;  // nodes; g
+};
+
+/// A pressure on the apical or basal facets of some cells, pushing into the cell: a dead load on the faces at rest.
+class FacePressure final : public Law {
+ public:
+  /// `pressure` in kPa.
+  FacePressure(const Tissue& tissue, const std::vector<Facet>& facets, const CellSet& cells, double pressure,
+               Program program);
+
+  [[nodiscard]] std::string_view name() const override { return "pressure"; }
+  [[nodiscard]] double energy(const Step& step) const override;
+  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  void add_tangent_product(const Step&, std::span<const Vec3>, std::span<Vec3>) const override {}  // constant force
+  void add_tangent(const Step&, TangentSink&) const override {}
+
+ private:
+  Vectors loads_;  // nodes; nN at activity 1
+  Program program_;
+};
+
+}  // namespace plica

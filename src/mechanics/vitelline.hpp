@@ -1,0 +1,33 @@
+// The vitelline layer: a rigid, frictionless shell around the embryo. Every apical node keeps a gap g(x) >= 0 to it.
+// Inward motion is free; there is no sticking. Theory: docs/theory/vitelline.md.
+#pragma once
+
+#include <vector>
+
+#include "core/ids.hpp"
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+class Vitelline {
+ public:
+  /// A capsule or ball; the nodes are those of the tissue's apical surface.
+  Vitelline(const Tissue& tissue, const Capsule& shell);
+
+  /// A node's gap to the shell (positive inside, um), its gradient (unit inward normal) and Hessian (1/um).
+  struct Gap {
+    double value;
+    Vec3 inward;
+    Mat3 hessian;
+  };
+  [[nodiscard]] Gap gap(const Vec3& position) const;
+
+  [[nodiscard]] const std::vector<NodeId>& nodes() const { return nodes_; }
+  [[nodiscard]] const Capsule& shell() const { return shell_; }
+
+ private:
+  Capsule shell_;
+  std::vector<NodeId> nodes_;
+};
+
+}  // namespace plica

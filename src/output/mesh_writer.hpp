@@ -1,0 +1,34 @@
+// Meshes for ParaView and other readers of VTK's files: `.vtu`, and `.pvd` for a series of them.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// Named data of a mesh. Cell values are one a plica cell; the file repeats them for each element of the cell.
+struct MeshArrays {
+  std::vector<std::pair<std::string, std::span<const Vec3>>> node_vectors;         // nodes
+  std::vector<std::pair<std::string, std::vector<double>>> cell_scalars;           // cells
+  std::vector<std::pair<std::string, std::vector<int>>> cell_integers;             // cells
+};
+
+/// Writes the tissue's elements as VTK hexahedra at `positions` (nodes; um) to a `.vtu` file: VTK's XML format, binary,
+/// compressed by zlib. Whole or not at all. With `time_s` the file carries it as field data `TimeValue`.
+/// FileError when the file cannot be written, or when plica was built without VTK. std::logic_error when an array has
+/// the wrong length or holds what is not finite: a NaN never reaches a file.
+void write_mesh(const std::filesystem::path& file, const Tissue& tissue, std::span<const Vec3> positions,
+                const MeshArrays& arrays, std::optional<double> time_s = {});
+
+/// Writes ParaView's collection file: times in s, and files relative to the collection's folder. Whole or not at all.
+/// FileError when it cannot be written, std::logic_error when a time is not finite.
+void write_collection(const std::filesystem::path& pvd,
+                      const std::vector<std::pair<double, std::string>>& time_and_file);
+
+}  // namespace plica

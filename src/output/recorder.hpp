@@ -1,0 +1,50 @@
+// Everything that a run leaves in its directory, written while it goes on. Files appear whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/files.hpp"
+#include "measure/observation.hpp"
+#include "output/summary.hpp"
+#include "scenario/scenario.hpp"
+
+namespace plica {
+
+/// Makes `directory` ready for results. Throws FileError when it cannot be made or written to, or when it holds results
+/// and `overwrite` is false. With `overwrite`, removes the files that plica writes and nothing else.
+void prepare_directory(const std::filesystem::path& directory, bool overwrite);
+
+class Recorder {
+ public:
+  /// `input_toml` is the scenario as given. Writes both scenario files and the frame at rest.
+  Recorder(std::filesystem::path directory, const Scenario& scenario, const std::string& input_toml, const Model& model,
+           const Observer& observer, const State& rest);
+
+  /// A row of series.csv, and a frame when one is due. Returns the row.
+  const Observation& record(const AcceptedStep& step);
+
+  /// The last frame and summary.json.
+  nlohmann::ordered_json finish(const RunResult& result, const WallTimes& wall);
+
+  [[nodiscard]] const std::vector<Observation>& rows() const { return rows_; }
+
+ private:
+  void append_series(const Observation& row);
+  void write_frame(const State& state, const Vectors& velocities);
+  void append_cells(const State& state);
+  void append_midline(const State& state);
+
+  std::filesystem::path directory_;
+  const Scenario& scenario_;
+  const Model& model_;
+  const Observer& observer_;
+  RowFile series_, midline_;
+  std::optional<RowFile> cells_;
+  std::vector<Observation> rows_;
+  std::vector<std::pair<double, std::string>> frames_;  // time, file
+};
+
+}  // namespace plica

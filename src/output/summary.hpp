@@ -1,0 +1,26 @@
+// summary.json: what a run came to, flat; and whether that was expected.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "measure/observation.hpp"
+#include "scenario/scenario.hpp"
+#include "simulation/run.hpp"
+
+namespace plica {
+
+struct WallTimes {
+  double total_s = 0;
+  double solver_s = 0;
+};
+
+/// The keys of the contract; what never happened is null. Rows are those of the whole run, the one at rest first.
+nlohmann::ordered_json make_summary(const Scenario& scenario, const Model& model, const RunResult& result,
+                                    const std::vector<Observation>& rows, const WallTimes& wall);
+
+/// One line for each of the scenario's [expect] that the summary misses; empty when all are met.
+std::vector<std::string> missed_expectations(const Scenario& scenario, const nlohmann::ordered_json& summary);
+
+}  // namespace plica

@@ -1,0 +1,177 @@
+#include "scenario/load.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "scenario/builtin.hpp"
+#include "scenario/read_layer.hpp"
+#include "scenario/suggest.hpp"
+#include "scenario/validate.hpp"
+
+namespace plica {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Document {
+  ScenarioSource source;
+  toml::table table;
+};
+
+std::vector<std::string> builtin_names() {
+  std::vector<std::string> names;
+  for (const BuiltinScenario& scenario : builtin_scenarios()) names.emplace_back(scenario.name);
+  return names;
+}
+
+/// The scenario that `base` of `document` names. Reports it and returns nothing where there is none.
+std::optional<ScenarioSource> find_base(const Document& document, const std::vector<Document>& chain,
+                                        std::vector<Diagnostic>& diagnostics) {
+  const toml::node* base = document.table.get("base");
+  const auto name = base == nullptr ? std::nullopt : base->value_exact<std::string>();
+  if (!name) return {};  // absent, or of a wrong type, which reading the layer reports
+  const int line = static_cast<int>(base->source().begin.line);
+  const auto report = [&](const std::string& problem, const std::string& remedy) {
+    diagnostics.push_back({document.source.file, line, "base", problem, remedy});
+  };
+  try {
+    const bool is_builtin = std::ranges::count(builtin_names(), *name) > 0;
+    ScenarioSource found =
+        find_scenario(is_builtin ? *name : (fs::path(document.source.file).parent_path() / *name).string());
+    const auto same = [&](const Document& other) {
+      return fs::path(other.source.file).lexically_normal() == fs::path(found.file).lexically_normal() &&
+             other.source.text == found.text;
+    };
+    if (std::ranges::none_of(chain, same)) return found;
+    report(fmt::format("\"{}\" inherits from itself in the end", *name), "remove one base of the circle");
+  } catch (const UsageError& error) {
+    report(error.what(), "give a built-in name, or a path relative to this file");
+  } catch (const FileError& error) {
+    report(error.what(), "give a built-in name, or a path relative to this file");
+  }
+  return {};
+}
+
+/// The scenario and its bases, the deepest first. Incomplete where anything was reported.
+std::vector<Document> read_documents(const ScenarioSource& source, std::vector<Diagnostic>& diagnostics) {
+  std::vector<Document> chain;
+  for (std::optional<ScenarioSource> next = source; next;) {
+    try {
+      chain.push_back({*next, toml::parse(next->text)});
+      next = find_base(chain.back(), chain, diagnostics);
+    } catch (const toml::parse_error& error) {
+      const int line = static_cast<int>(error.source().begin.line);
+      diagnostics.push_back({next->file, line, "", std::string(error.description()), "write it in TOML syntax"});
+      break;
+    }
+  }
+  std::ranges::reverse(chain);
+  return chain;
+}
+
+std::string trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t");
+  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+/// The TOML document that says the same as "dotted.key=value", or nothing where it cannot be understood.
+std::optional<toml::table> parse_override(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return {};
+  const std::string key = trimmed(text.substr(0, equals)), value = trimmed(text.substr(equals + 1));
+  toml::table document;
+  try {
+    document = toml::parse("v = " + value);
+    if (document.size() != 1) return {};
+  } catch (const toml::parse_error&) {
+    const auto in_bare_word = [](char c) { return is_plain_name({&c, 1}) || c == '.' || c == '/'; };
+    if (value.empty() || !std::ranges::all_of(value, in_bare_word)) return {};
+    document.insert_or_assign("v", value);
+  }
+  // The innermost key gets the value; each further key a table around it.
+  const std::size_t last = key.rfind('.');
+  toml::table nested;
+  nested.insert_or_assign(last == std::string::npos ? key : key.substr(last + 1), std::move(*document.get("v")));
+  for (std::size_t end = last; end != std::string::npos;) {
+    const std::size_t dot = end == 0 ? std::string::npos : key.rfind('.', end - 1);
+    const std::size_t begin = dot == std::string::npos ? 0 : dot + 1;
+    nested = toml::table{{key.substr(begin, end - begin), std::move(nested)}};
+    end = dot;
+  }
+  return nested;
+}
+
+void read_overrides(const std::vector<std::string>& overrides, int layer, Scenario& scenario, Input& input) {
+  for (const std::string& text : overrides) {
+    const std::string key = trimmed(text.substr(0, text.find('=')));
+    const auto table = parse_override(text);
+    if (!table) {
+      input.diagnostics.push_back(
+          {"--set", 0, key, "is not understood", "give dotted.key=value, the value as in TOML"});
+    } else if (table->contains("base")) {
+      input.diagnostics.push_back({"--set", 0, "base", "a base cannot be set here", "write it in the scenario's file"});
+    } else {
+      read_layer(*table, {"--set", layer, false}, scenario, input);
+    }
+  }
+}
+
+/// In the order of the sources, and of the lines in each.
+void sort_diagnostics(std::vector<Diagnostic>& diagnostics, const std::vector<Document>& documents) {
+  const auto rank = [&](const Diagnostic& diagnostic) {
+    const auto has_file = [&](const Document& document) { return document.source.file == diagnostic.file; };
+    return std::pair(std::ranges::find_if(documents, has_file) - documents.begin(), diagnostic.line);
+  };
+  std::ranges::stable_sort(diagnostics, {}, rank);
+}
+
+}  // namespace
+
+ScenarioSource find_scenario(const std::string& name_or_path) {
+  for (const BuiltinScenario& scenario : builtin_scenarios()) {
+    if (scenario.name == name_or_path) return {name_or_path, name_or_path, std::string(scenario.toml)};
+  }
+  const fs::path path(name_or_path);
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    throw UsageError(fmt::format("\"{}\" is neither a built-in scenario nor a file; {}", name_or_path,
+                                 did_you_mean(path.stem().string(), builtin_names())));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  if (fs::is_directory(path, error) || !stream) throw FileError(fmt::format("{}: cannot be read", name_or_path));
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (stream.bad()) throw FileError(fmt::format("{}: cannot be read", name_or_path));
+  return {path.stem().string(), name_or_path, std::move(text)};
+}
+
+Scenario load_scenario(const ScenarioSource& source, const std::vector<std::string>& overrides) {
+  Scenario scenario;
+  scenario.name = source.name;
+  scenario.file = source.file;
+  Input input;
+  input.file = source.file;
+  const std::vector<Document> documents = read_documents(source, input.diagnostics);
+  const bool complete = input.diagnostics.empty();
+
+  int layer = 0;
+  for (const Document& document : documents) {
+    read_layer(document.table, {document.source.file, layer++, true}, scenario, input);
+  }
+  read_overrides(overrides, layer, scenario, input);
+  // Without a base, what it gives would be missed everywhere.
+  if (complete) validate(scenario, input);
+
+  if (!input.diagnostics.empty()) {
+    sort_diagnostics(input.diagnostics, documents);
+    throw ScenarioError(std::move(input.diagnostics));
+  }
+  for (const auto& [address, place] : input.places) scenario.given_at[address] = {place.file, place.line};
+  return scenario;
+}
+
+}  // namespace plica

@@ -1,0 +1,16 @@
+// A scenario as TOML again, and the reference page of all keys.
+#pragma once
+
+#include <string>
+
+#include "scenario/scenario.hpp"
+
+namespace plica {
+
+/// Every key with its default filled in; optional keys without a value are left out. Loads back to the same Scenario.
+std::string resolved_toml(const Scenario& scenario);
+
+/// The page docs/scenario.md: for each table its keys, types, defaults, what is allowed, and meaning.
+std::string reference_markdown();
+
+}  // namespace plica

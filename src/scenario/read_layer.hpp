@@ -1,0 +1,25 @@
+// One TOML document into the fields of a Scenario, key by key along the table of schema.cpp.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <string>
+
+#include "scenario/input.hpp"
+#include "scenario/scenario.hpp"
+
+namespace plica {
+
+struct Layer {
+  std::string file;       // as shown in messages
+  int number = 0;         // later layers go before earlier ones
+  bool has_lines = true;  // not on the command line
+};
+
+/// Fills the fields that `table` gives and notes their places; reports unknown keys and values that are not allowed.
+void read_layer(const toml::table& table, const Layer& layer, Scenario& scenario, Input& input);
+
+/// Whether `name` may name a region, a contraction, ...: letters, digits, "_" and "-".
+bool is_plain_name(std::string_view name);
+
+}  // namespace plica

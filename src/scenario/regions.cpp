@@ -1,0 +1,95 @@
+#include "scenario/regions.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <functional>
+
+namespace plica {
+namespace {
+
+bool inside(const std::optional<Range>& range, double value) {
+  return !range || (value >= (*range)[0] && value <= (*range)[1]);
+}
+
+// Whether a place lies in the centred strip of `wanted` out of `count`.
+bool in_strip(int place, int count, const std::optional<int>& wanted) {
+  return !wanted || std::abs(2 * place - (count - 1)) < *wanted;
+}
+
+GridPlace::Face face_named(const std::string& name) {
+  using Face = GridPlace::Face;
+  static const std::map<std::string, Face> faces = {{"ventral", Face::ventral},   {"dorsal", Face::dorsal},
+                                                    {"left", Face::left},         {"right", Face::right},
+                                                    {"anterior", Face::anterior}, {"posterior", Face::posterior}};
+  return faces.at(name);
+}
+
+bool selected(const RegionInput& region, std::size_t id, const Cell& cell, const Tissue& tissue) {
+  if (!region.face.empty()) {
+    const auto& place = cell.grid_place;
+    if (!place || place->face != face_named(region.face) ||
+        !in_strip(place->place[0], place->count[0], region.cells_along) ||
+        !in_strip(place->place[1], place->count[1], region.cells_across))
+      return false;
+  }
+  if (!region.ids.empty() && std::ranges::find(region.ids, static_cast<int>(id)) == region.ids.end()) return false;
+  const Vec3 centre = cell_centre(cell, tissue.rest_positions);
+  return inside(region.x_um, centre.x()) && inside(region.y_um, centre.y()) && inside(region.z_um, centre.z());
+}
+
+}  // namespace
+
+Diagnostic diagnostic_at(const Scenario& scenario, const std::string& key, std::string problem, std::string remedy) {
+  GivenAt place{scenario.file, 0};
+  for (std::string around = key;; around.resize(around.rfind('.'))) {
+    if (const auto found = scenario.given_at.find(around); found != scenario.given_at.end()) {
+      place = found->second;
+      break;
+    }
+    if (around.find('.') == std::string::npos) break;
+  }
+  return {place.file, place.line, key, std::move(problem), std::move(remedy)};
+}
+
+void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnostic>& errors) {
+  const std::size_t cells = tissue.cells.size();
+  const std::function<const CellSet&(const std::string&)> resolve = [&](const std::string& name) -> const CellSet& {
+    if (const auto known = tissue.regions.find(name); known != tissue.regions.end()) return known->second;
+    const RegionInput& region = scenario.regions.at(name);
+    CellSet set(cells, false);
+    for (std::size_t c = 0; c < cells; ++c) set[c] = selected(region, c, tissue.cells[c], tissue);
+    if (!region.array.empty()) {
+      const auto array = tissue.cell_arrays.find(region.array);
+      if (array == tissue.cell_arrays.end()) {
+        std::vector<std::string> names;
+        for (const auto& [other, flags] : tissue.cell_arrays) names.push_back(other);
+        errors.push_back(diagnostic_at(scenario, "region." + name + ".array",
+                                       fmt::format("the mesh has no cell array \"{}\"", region.array),
+                                       names.empty() ? "it has none" : fmt::format("it has {}", fmt::join(names, ", "))));
+      } else {
+        for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] && array->second[c];
+      }
+    }
+    // A region of named others only starts from nothing, one with selectors from what they select.
+    const bool only_others = region.face.empty() && region.ids.empty() && region.array.empty() && !region.x_um &&
+                             !region.y_um && !region.z_um;
+    if (only_others && !region.unite.empty()) set.assign(cells, false);
+    for (const std::string& other : region.unite)
+      for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] || resolve(other)[c];
+    for (const std::string& other : region.intersect)
+      for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] && resolve(other)[c];
+    for (const std::string& other : region.except)
+      for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] && !resolve(other)[c];
+    return tissue.regions[name] = std::move(set);
+  };
+  for (const auto& [name, region] : scenario.regions) {
+    const CellSet& set = resolve(name);
+    if (std::ranges::find(set, true) == set.end())
+      errors.push_back(diagnostic_at(scenario, "region." + name, "no cell of the embryo lies in it",
+                                     "a region needs at least one cell; see `plica mesh` for where cells lie"));
+  }
+}
+
+}  // namespace plica

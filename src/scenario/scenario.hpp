@@ -1,0 +1,149 @@
+// A scenario as plain data, in the units of its keys. `load_scenario` (load.hpp) fills it from TOML; every rule of
+// the input (type, range, default, meaning) stands in the one table of schema.cpp. Nothing here is computed.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace plica {
+
+using Range = std::array<double, 2>;  // low, high
+
+/// Linear between the points, held after the last and before the first. Empty means: always 1.
+struct ProgramInput {
+  std::vector<double> time_s;
+  std::vector<double> activity;
+};
+
+/// A named set of cells. Selectors that are given are intersected; `unite`, `intersect`, `except` name other regions.
+struct RegionInput {
+  std::string face;                          // ventral dorsal left right anterior posterior, or empty
+  std::optional<int> cells_along;            // centred strip of the face
+  std::optional<int> cells_across;
+  std::vector<int> ids;
+  std::string array;                         // cell array of the mesh file; cells where it is not 0
+  std::optional<Range> x_um, y_um, z_um;     // of the cell's centre at rest
+  std::vector<std::string> unite, intersect, except;  // TOML keys: union, intersect, except
+};
+
+struct EmbryoInput {
+  std::string shape = "pill";  // pill | sphere | block | file
+  double length_um = 460;      // pill, block: along x
+  double diameter_um = 280;    // pill, sphere
+  double width_um = 20;        // block: along y
+  double cell_height_um = 40;
+  std::array<int, 3> cells = {18, 9, 8};
+  std::array<int, 3> elements_per_cell = {1, 1, 1};
+  std::string file;            // shape = "file": a hexahedral mesh that VTK reads
+  std::string apical_array;    // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face; empty: the outer surface
+};
+
+struct ElasticityInput {
+  std::string model = "corotational";
+  double young_modulus_Pa = 1000;
+  double poisson_ratio = 0.45;
+};
+
+struct VolumeInput {
+  std::string method = "coupled";  // coupled | none
+};
+
+struct VitellineInput {
+  bool enabled = true;
+  double gap_um = 0;
+};
+
+struct DynamicsInput {
+  double surface_drag_Pa_s_per_um = 140;
+  double shear_viscosity_Pa_s = 0;
+  double density_kg_per_m3 = 0;
+};
+
+struct ContractionInput {
+  std::string region;
+  std::string edges = "apical";  // apical | basal | lateral
+  double stiffness_nN_per_um = 0;
+  double along_ratio = 1;
+  double across_ratio = 1;
+  bool diagonals = false;
+  double rest_length_ratio = 0;
+  double preload_nN = 0;
+  double damping_nN_s_per_um = 0;
+  ProgramInput program;
+};
+
+struct TimeInput {
+  std::optional<double> step_s;  // empty: "adaptive"
+  double first_step_s = 0.05;    // adaptive
+  double max_step_s = 60;        // adaptive
+  double tolerance_um = 0.01;    // adaptive: error of a step, on positions
+  double end_s = 3600;           // TOML: end_s or end_min
+  std::string scheme = "newton";
+};
+
+struct StopInput {
+  double equilibrium_speed_um_per_min = 0.2;
+  bool at_equilibrium = true;
+};
+
+struct FurrowInput {
+  std::string region;   // contractile cells whose furrow is measured; empty: the first contraction's region
+  int vce_cell = 2;     // VCE is this cell of the region's midline, counted from its ends
+};
+
+struct OutputInput {
+  double frame_every_s = 15;  // TOML: frame_every_s or frame_every_min; 0: only the first and the last
+  std::optional<bool> cells_csv;  // empty: up to 2000 cells
+};
+
+struct HoldInput {
+  std::string region;
+  std::vector<std::string> directions = {"x", "y", "z"};
+  std::optional<Range> x_um, y_um, z_um;  // only the region's nodes that lie here at rest
+};
+
+struct PressureInput {
+  std::string region;
+  std::string face = "apical";  // apical | basal
+  double pressure_Pa = 0;       // pushes into the cell; a dead load on the rest face
+  ProgramInput program;
+};
+
+struct ExpectInput {
+  double value = 0;
+  std::optional<double> within;          // absolute
+  std::optional<double> within_percent;  // of value
+};
+
+/// Where a key or table was given, for messages about what only the embryo shows to be wrong.
+struct GivenAt {
+  std::string file;
+  int line = 0;
+};
+
+struct Scenario {
+  std::string name;  // built-in name or file stem
+  std::string file;  // as shown in messages
+  std::map<std::string, GivenAt> given_at;  // by dotted key or table; not part of the experiment
+  int format = 1;
+  std::string title;
+  EmbryoInput embryo;
+  std::map<std::string, RegionInput> regions;
+  ElasticityInput elasticity;
+  VolumeInput volume;
+  VitellineInput vitelline;
+  DynamicsInput dynamics;
+  std::map<std::string, ContractionInput> contractions;
+  TimeInput time;
+  StopInput stop;
+  FurrowInput furrow;
+  OutputInput output;
+  std::map<std::string, HoldInput> holds;
+  std::map<std::string, PressureInput> pressures;
+  std::map<std::string, ExpectInput> expect;  // keys are those of summary.json
+};
+
+}  // namespace plica

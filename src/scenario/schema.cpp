@@ -1,0 +1,349 @@
+#include "scenario/schema.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace plica {
+namespace {
+
+using Field = std::function<Slot(Scenario&, const std::string&)>;
+template <class Table>
+using Named = std::map<std::string, Table> Scenario::*;
+
+template <class T>
+Field at(T Scenario::*field) {
+  return [=](Scenario& scenario, const std::string&) -> Slot { return &(scenario.*field); };
+}
+
+template <class Table, class T>
+Field at(Table Scenario::*table, T Table::*field) {
+  return [=](Scenario& scenario, const std::string&) -> Slot { return &(scenario.*table.*field); };
+}
+
+template <class Table, class T>
+Field at(Named<Table> tables, T Table::*field) {
+  return [=](Scenario& scenario, const std::string& name) -> Slot { return &((scenario.*tables)[name].*field); };
+}
+
+template <class Table>
+Field at(Named<Table> tables, ProgramInput Table::*program, std::vector<double> ProgramInput::*field) {
+  return
+      [=](Scenario& scenario, const std::string& name) -> Slot { return &((scenario.*tables)[name].*program.*field); };
+}
+
+Field no_field() {
+  return [](Scenario&, const std::string&) -> Slot { return std::monostate(); };
+}
+
+const Allowed anything = {};
+const Allowed positive = {.low = 0, .low_included = false};
+const Allowed not_negative = {.low = 0};
+
+Allowed between(double low, double high) { return {.low = low, .high = high}; }
+Allowed words(std::vector<std::string_view> words, std::vector<std::string_view> later = {}) {
+  return {.words = std::move(words), .later_words = std::move(later)};
+}
+
+constexpr double max_count = 100000;
+
+Row row(std::string_view table, std::string_view key, Field field, Allowed allowed, std::string_view meaning,
+        RowOptions options = {}) {
+  return {table, key, std::move(field), std::move(allowed), meaning, std::move(options)};
+}
+
+using S = Scenario;
+
+const std::vector<Row>& rows() {
+  using E = EmbryoInput;
+  using R = RegionInput;
+  using D = DynamicsInput;
+  using C = ContractionInput;
+  using T = TimeInput;
+  using P = PressureInput;
+  using H = HoldInput;
+  using X = ExpectInput;
+  using O = OutputInput;
+  static const std::vector<Row> table = {
+      row("", "format", at(&S::format), between(1, 1), "Version of this format."),
+      row("", "title", at(&S::title), anything, "One line for reports."),
+      row("", "base", no_field(), anything,
+          "Built-in name, or path relative to this file, of the scenario to inherit from key by key."),
+
+      row("embryo", "shape", at(&S::embryo, &E::shape), words({"pill", "sphere", "block", "file"}),
+          "Closed sheets (pill, sphere), a block of cells, or a mesh file."),
+      row("embryo", "length_um", at(&S::embryo, &E::length_um), positive, "Length along x (µm).",
+          {.shapes = {"pill", "block"}}),
+      row("embryo", "diameter_um", at(&S::embryo, &E::diameter_um), positive, "Outer diameter (µm).",
+          {.shapes = {"pill", "sphere"}}),
+      row("embryo", "width_um", at(&S::embryo, &E::width_um), positive, "Width along y (µm).", {.shapes = {"block"}}),
+      row("embryo", "cell_height_um", at(&S::embryo, &E::cell_height_um), positive,
+          "Height of a cell from basal to apical (µm).", {.shapes = {"pill", "sphere", "block"}}),
+      row("embryo", "cells", at(&S::embryo, &E::cells), between(1, max_count),
+          "Number of cells along the axis (x), across the belly (y), belly to back (z).",
+          {.shapes = {"pill", "sphere", "block"}}),
+      row("embryo", "elements_per_cell", at(&S::embryo, &E::elements_per_cell), between(1, 8),
+          "Elements of a cell along, across, basal to apical: refines the elements, not the cells.",
+          {.shapes = {"pill", "sphere", "block"}}),
+      row("embryo", "file", at(&S::embryo, &E::file), anything,
+          "Hexahedral mesh, path relative to the scenario's file.", {.is_path = true, .shapes = {"file"}}),
+      row("embryo", "apical_array", at(&S::embryo, &E::apical_array), anything,
+          "Cell array of the file with the apical face (0 to 5, VTK's order) of each cell; without it the outer "
+          "surface is apical.",
+          {.shapes = {"file"}}),
+
+      row("region.*", "face", at(&S::regions, &R::face),
+          words({"ventral", "dorsal", "left", "right", "anterior", "posterior"}),
+          "Cells of this side of a built embryo."),
+      row("region.*", "cells_along", at(&S::regions, &R::cells_along), between(1, max_count),
+          "Only a centred strip of the face, this many cells along (x; y on the end faces)."),
+      row("region.*", "cells_across", at(&S::regions, &R::cells_across), between(1, max_count),
+          "Only a centred strip of the face, this many cells across (y; z on the side and end faces)."),
+      row("region.*", "ids", at(&S::regions, &R::ids), not_negative, "Cells by number, from 0."),
+      row("region.*", "array", at(&S::regions, &R::array), anything,
+          "Cell array of the mesh file: cells where it is not 0."),
+      row("region.*", "x_um", at(&S::regions, &R::x_um), anything,
+          "Cells whose centre at rest lies in this range of x (µm)."),
+      row("region.*", "y_um", at(&S::regions, &R::y_um), anything, "The same in y (µm)."),
+      row("region.*", "z_um", at(&S::regions, &R::z_um), anything, "The same in z (µm)."),
+      row("region.*", "union", at(&S::regions, &R::unite), anything, "Cells of any of these regions."),
+      row("region.*", "intersect", at(&S::regions, &R::intersect), anything, "Only cells of each of these regions."),
+      row("region.*", "except", at(&S::regions, &R::except), anything, "No cells of these regions."),
+
+      row("elasticity", "model", at(&S::elasticity, &ElasticityInput::model), words({"corotational"}, {"shape-memory"}),
+          "Elastic law of a cell."),
+      row("elasticity", "young_modulus_Pa", at(&S::elasticity, &ElasticityInput::young_modulus_Pa), positive,
+          "Young's modulus (Pa)."),
+      row("elasticity", "poisson_ratio", at(&S::elasticity, &ElasticityInput::poisson_ratio),
+          {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
+          "Poisson's ratio; with coupled volumes it only sets the shear modulus and the dilatation inside a cell."),
+
+      row("volume", "method", at(&S::volume, &VolumeInput::method), words({"coupled", "none"}, {"projection"}),
+          "How cells keep their volume: as constraints of each step, or not."),
+
+      row("vitelline", "enabled", at(&S::vitelline, &VitellineInput::enabled), anything,
+          "A rigid shell around a closed embryo; false by default for a block."),
+      row("vitelline", "gap_um", at(&S::vitelline, &VitellineInput::gap_um), not_negative,
+          "Gap between the apical nodes at rest and the shell (µm)."),
+
+      row("dynamics", "surface_drag_Pa_s_per_um", at(&S::dynamics, &D::surface_drag_Pa_s_per_um), not_negative,
+          "Drag on apical and basal faces (Pa s/µm); sets the clock."),
+      row("dynamics", "shear_viscosity_Pa_s", at(&S::dynamics, &D::shear_viscosity_Pa_s), not_negative,
+          "Kelvin-Voigt viscosity in the cells (Pa s)."),
+      row("dynamics", "density_kg_per_m3", at(&S::dynamics, &D::density_kg_per_m3), not_negative,
+          "Density (kg/m³): inertia, negligible in vivo."),
+
+      row("contraction.*", "region", at(&S::contractions, &C::region), anything, "Region whose cells contract.",
+          {.required = true}),
+      row("contraction.*", "edges", at(&S::contractions, &C::edges), words({"apical", "basal", "lateral"}),
+          "Edges of the cells that contract."),
+      row("contraction.*", "stiffness_nN_per_um", at(&S::contractions, &C::stiffness_nN_per_um), not_negative,
+          "Stiffness of a spring (nN/µm)."),
+      row("contraction.*", "along_ratio", at(&S::contractions, &C::along_ratio), not_negative,
+          "Factor on edges along the axis."),
+      row("contraction.*", "across_ratio", at(&S::contractions, &C::across_ratio), not_negative,
+          "Factor on edges across the axis."),
+      row("contraction.*", "diagonals", at(&S::contractions, &C::diagonals), anything,
+          "Whether the diagonals of the face contract too."),
+      row("contraction.*", "rest_length_ratio", at(&S::contractions, &C::rest_length_ratio), not_negative,
+          "Length at which a spring is slack, over its initial length."),
+      row("contraction.*", "preload_nN", at(&S::contractions, &C::preload_nN), anything,
+          "Tension of a spring that does not depend on its length (nN)."),
+      row("contraction.*", "damping_nN_s_per_um", at(&S::contractions, &C::damping_nN_s_per_um), not_negative,
+          "Damping of a spring (nN s/µm)."),
+      row("contraction.*", "program.time_s", at(&S::contractions, &C::program, &ProgramInput::time_s), anything,
+          "Times of the points of the activity (s), increasing; without a program it is always 1."),
+      row("contraction.*", "program.time_min", at(&S::contractions, &C::program, &ProgramInput::time_s), anything,
+          "The same in minutes.", {.instead_of = "program.time_s", .scale = 60}),
+      row("contraction.*", "program.activity", at(&S::contractions, &C::program, &ProgramInput::activity), not_negative,
+          "Activity at these times: a factor on the tension, linear between them."),
+
+      row("hold.*", "region", at(&S::holds, &H::region), anything, "Region whose nodes are held.", {.required = true}),
+      row("hold.*", "directions", at(&S::holds, &H::directions), words({"x", "y", "z"}),
+          "Directions in which they are held."),
+      row("hold.*", "x_um", at(&S::holds, &H::x_um), anything, "Only nodes that lie at rest in this range of x (µm)."),
+      row("hold.*", "y_um", at(&S::holds, &H::y_um), anything, "The same in y (µm)."),
+      row("hold.*", "z_um", at(&S::holds, &H::z_um), anything, "The same in z (µm)."),
+
+      row("pressure.*", "region", at(&S::pressures, &P::region), anything, "Region whose faces carry the pressure.",
+          {.required = true}),
+      row("pressure.*", "face", at(&S::pressures, &P::face), words({"apical", "basal"}),
+          "Face of the cells that carries it."),
+      row("pressure.*", "pressure_Pa", at(&S::pressures, &P::pressure_Pa), anything,
+          "Pressure into the cell (Pa), a dead load on the face at rest.", {.required = true}),
+      row("pressure.*", "program.time_s", at(&S::pressures, &P::program, &ProgramInput::time_s), anything,
+          "Times of the points of the activity (s), increasing; without a program it is always 1."),
+      row("pressure.*", "program.time_min", at(&S::pressures, &P::program, &ProgramInput::time_s), anything,
+          "The same in minutes.", {.instead_of = "program.time_s", .scale = 60}),
+      row("pressure.*", "program.activity", at(&S::pressures, &P::program, &ProgramInput::activity), not_negative,
+          "Activity at these times: a factor on the pressure, linear between them."),
+
+      row("time", "step_s", at(&S::time, &T::step_s), {.low = 0, .low_included = false, .word_for_none = "adaptive"},
+          "Time step (s), or chosen by its error."),
+      row("time", "first_step_s", at(&S::time, &T::first_step_s), positive, "First adaptive step (s)."),
+      row("time", "max_step_s", at(&S::time, &T::max_step_s), positive, "Longest adaptive step (s)."),
+      row("time", "tolerance_um", at(&S::time, &T::tolerance_um), positive,
+          "Error of an adaptive step, on positions (µm)."),
+      row("time", "end_s", at(&S::time, &T::end_s), positive, "When the run ends (s)."),
+      row("time", "end_min", at(&S::time, &T::end_s), positive, "The same in minutes.",
+          {.instead_of = "end_s", .scale = 60}),
+      row("time", "scheme", at(&S::time, &T::scheme), words({"newton"}, {"linearly-implicit"}),
+          "How a step is solved."),
+
+      row("stop", "equilibrium_speed_um_per_min", at(&S::stop, &StopInput::equilibrium_speed_um_per_min), positive,
+          "Equilibrium is when all nodes are slower (µm/min)."),
+      row("stop", "at_equilibrium", at(&S::stop, &StopInput::at_equilibrium), anything,
+          "Whether to stop there; false notes the time and runs on."),
+
+      row("furrow", "region", at(&S::furrow, &FurrowInput::region), anything,
+          "Contractile cells whose furrow is measured; without it the first contraction's region."),
+      row("furrow", "vce_cell", at(&S::furrow, &FurrowInput::vce_cell), between(1, max_count),
+          "VCE is this cell of the region's midline, counted from its ends."),
+
+      row("output", "frame_every_s", at(&S::output, &O::frame_every_s), not_negative,
+          "Time between frames (s); 0: only the first and the last."),
+      row("output", "frame_every_min", at(&S::output, &O::frame_every_s), not_negative, "The same in minutes.",
+          {.instead_of = "frame_every_s", .scale = 60}),
+      row("output", "cells_csv", at(&S::output, &O::cells_csv), anything,
+          "Whether to write cells.csv; without it, up to 2000 cells."),
+
+      row("expect.*", "value", at(&S::expect, &X::value), anything, "What is expected.", {.required = true}),
+      row("expect.*", "within", at(&S::expect, &X::within), not_negative, "How far off it may be, in its own unit."),
+      row("expect.*", "within_percent", at(&S::expect, &X::within_percent), not_negative,
+          "The same in percent of the value.", {.instead_of = "within"}),
+  };
+  return table;
+}
+
+template <class Table>
+auto names_in(Named<Table> tables) {
+  return [=](const Scenario& scenario) {
+    std::vector<std::string> names;
+    for (const auto& [name, table] : scenario.*tables) names.push_back(name);
+    return names;
+  };
+}
+
+std::string type_of(const Row& row) {
+  Scenario scratch;
+  const Slot slot = row.field(scratch, "name");
+  const bool has_words = !row.allowed.words.empty();
+  if (std::holds_alternative<int*>(slot) || std::holds_alternative<std::optional<int>*>(slot)) return "integer";
+  if (std::holds_alternative<double*>(slot) || std::holds_alternative<std::optional<double>*>(slot)) return "number";
+  if (std::holds_alternative<bool*>(slot) || std::holds_alternative<std::optional<bool>*>(slot)) return "true or false";
+  if (std::holds_alternative<std::optional<Range>*>(slot)) return "[low, high]";
+  if (std::holds_alternative<std::array<int, 3>*>(slot)) return "3 integers";
+  if (std::holds_alternative<std::vector<int>*>(slot)) return "list of integers";
+  if (std::holds_alternative<std::vector<double>*>(slot)) return "list of numbers";
+  if (std::holds_alternative<std::vector<std::string>*>(slot)) return has_words ? "list of words" : "list of texts";
+  return has_words ? "word" : "text";
+}
+
+}  // namespace
+
+bool Allowed::contains(double value) const {
+  return (low_included ? value >= low : value > low) && (high_included ? value <= high : value < high);
+}
+
+std::string Allowed::text() const {
+  if (!words.empty()) return fmt::format("{}", fmt::join(words, " | "));
+  const double infinity = std::numeric_limits<double>::infinity();
+  std::string range;
+  if (low == high) {
+    range = fmt::format("{}", low);
+  } else if (low > -infinity && high < infinity && low_included && high_included) {
+    range = fmt::format("{:.0f} to {:.0f}", low, high);
+  } else {
+    if (low > -infinity) range = fmt::format("{} {}", low_included ? ">=" : ">", low);
+    if (high < infinity)
+      range += fmt::format("{}{} {}", range.empty() ? "" : " and ", high_included ? "<=" : "<", high);
+  }
+  return word_for_none.empty() ? range : fmt::format("{} or \"{}\"", range, word_for_none);
+}
+
+std::string Row::type() const { return type_of(*this); }
+
+std::string Row::expected() const {
+  const std::string type = type_of(*this);
+  const std::string range = allowed.text();
+  if (type == "word") return "one of: " + range;
+  if (type == "list of words") return "a list of: " + range;
+  const bool plain = type == "text" || type == "true or false" || type == "[low, high]" || type == "3 integers";
+  const std::string noun = plain ? type : (type == "integer" ? "an " : "a ") + type;
+  if (range.empty()) return noun;
+  return noun + (range.front() == '>' || range.front() == '<' ? " " : ", ") + range;
+}
+
+bool Row::used_by(std::string_view shape) const {
+  return options.shapes.empty() || std::ranges::find(options.shapes, shape) != options.shapes.end();
+}
+
+std::span<const Row> schema() { return rows(); }
+
+std::span<const TableInfo> schema_tables() {
+  static const std::vector<TableInfo> tables = {
+      {"", "At the top of the file.", {}},
+      {"embryo", "The sheet of cells at rest.", {}},
+      {"region.*",
+       "A named set of cells. Selectors that are given are intersected; `all` always exists and is every cell.",
+       names_in(&S::regions)},
+      {"elasticity", "The elastic law of the cells.", {}},
+      {"volume", "How cells keep their volume.", {}},
+      {"vitelline", "The shell around the embryo.", {}},
+      {"dynamics", "What resists motion; drag and density cannot both be 0.", {}},
+      {"contraction.*", "Springs on edges of the cells of a region.", names_in(&S::contractions)},
+      {"hold.*", "Nodes of a region fixed in given directions.", names_in(&S::holds)},
+      {"pressure.*", "A pressure on faces of a region.", names_in(&S::pressures)},
+      {"time", "Steps and end.", {}},
+      {"stop", "When a run is over before its end.", {}},
+      {"furrow", "What is measured as the furrow.", {}},
+      {"output", "What a run writes.", {}},
+      {"expect.*", "Checked at the end, exit status 1 when missed: `NAME = { value = 28.89, within_percent = 5 }`.",
+       names_in(&S::expect)},
+  };
+  return tables;
+}
+
+std::vector<const Row*> rows_of(std::string_view table) {
+  std::vector<const Row*> found;
+  for (const Row& row : rows()) {
+    if (row.table == table) found.push_back(&row);
+  }
+  return found;
+}
+
+std::span<const std::string_view> expectation_names() {
+  static const std::vector<std::string_view> names = {"furrow_depth_um",
+                                                      "furrow_depth_below_lips_um",
+                                                      "lip_distance_um",
+                                                      "vml_apical_area_ratio",
+                                                      "vce_apical_area_ratio",
+                                                      "vml_displacement_um",
+                                                      "vce_displacement_um",
+                                                      "peak_speed_ratio",
+                                                      "peak_speed_ratio_time_s",
+                                                      "ends_lead_until_s",
+                                                      "vml_displacement_at_equal_speed_um",
+                                                      "vce_displacement_at_equal_speed_um",
+                                                      "equilibrium_time_s",
+                                                      "time_s",
+                                                      "max_volume_error",
+                                                      "max_shell_penetration_um",
+                                                      "cells",
+                                                      "nodes"};
+  return names;
+}
+
+void reset_to_default(const Row& row, Scenario& scenario, const std::string& name) {
+  Scenario defaults;
+  const Slot from = row.field(defaults, name);
+  const Slot to = row.field(scenario, name);
+  std::visit(
+      [&](auto target) {
+        if constexpr (!std::is_same_v<decltype(target), std::monostate>) *target = *std::get<decltype(target)>(from);
+      },
+      to);
+}
+
+}  // namespace plica

@@ -1,0 +1,172 @@
+#include "scenario/setup.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/units.hpp"
+#include "mechanics/corotational.hpp"
+#include "mechanics/surroundings.hpp"
+#include "scenario/regions.hpp"
+#include "tissue/embryo.hpp"
+#include "tissue/mesh_file.hpp"
+
+namespace plica {
+namespace {
+
+Program make_program(const ProgramInput& input) { return {input.time_s, input.activity}; }
+
+Tissue build_tissue(const Scenario& scenario) {
+  const EmbryoInput& embryo = scenario.embryo;
+  if (embryo.shape == "block")
+    return build_block({embryo.length_um, embryo.width_um, embryo.cell_height_um, embryo.cells,
+                        embryo.elements_per_cell});
+  if (embryo.shape == "file") {
+    try {
+      return read_mesh_file(embryo.file, embryo.apical_array, embryo.elements_per_cell);
+    } catch (const MeshError& error) {
+      throw ScenarioError({diagnostic_at(scenario, "embryo.file", error.what(), "")});
+    }
+  }
+  const double length = embryo.shape == "sphere" ? embryo.diameter_um : embryo.length_um;
+  return build_shell({length, embryo.diameter_um, embryo.cell_height_um, embryo.cells, embryo.elements_per_cell});
+}
+
+// A mesh may be so coarse, thick or short that cells turn inside out where it is bent most.
+void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
+    if (!(hex_scaled_jacobian(tissue.element_rest_shape[e]) > 0)) {
+      errors.push_back(diagnostic_at(scenario, "embryo.cells",
+                                     fmt::format("the mesh would be inverted: cell {} is inside out or flat at rest",
+                                                 tissue.element_cell[e].number()),
+                                     "take more cells, or flatter ones"));
+      return;
+    }
+}
+
+EdgeSide side_named(const std::string& name) {
+  return name == "apical" ? EdgeSide::apical : name == "basal" ? EdgeSide::basal : EdgeSide::lateral;
+}
+
+void add_contractions(const Scenario& scenario, Model& model) {
+  for (const auto& [name, input] : scenario.contractions) {
+    const CellSet& cells = model.tissue.regions.at(input.region);
+    ContractionRule rule;
+    rule.side = side_named(input.edges);
+    rule.stiffness = input.stiffness_nN_per_um;
+    rule.along_ratio = input.along_ratio;
+    rule.across_ratio = input.across_ratio;
+    rule.diagonals = input.diagonals;
+    rule.rest_length_ratio = input.rest_length_ratio;
+    rule.preload = input.preload_nN;
+    rule.damping = input.damping_nN_s_per_um;
+    auto law = std::make_unique<Contraction>(contraction_springs(model.tissue, cells, rule),
+                                             make_program(input.program));
+    model.contractions.push_back(law.get());
+    model.contraction_cells.push_back(cells);
+    model.laws.push_back(std::move(law));
+  }
+}
+
+void add_pressures(const Scenario& scenario, Model& model) {
+  for (const auto& [name, input] : scenario.pressures)
+    model.laws.push_back(std::make_unique<FacePressure>(
+        model.tissue, input.face == "apical" ? model.tissue.apical_facets : model.tissue.basal_facets,
+        model.tissue.regions.at(input.region), input.pressure_Pa * units::pascal, make_program(input.program)));
+}
+
+void add_holds(const Scenario& scenario, Model& model, std::vector<Diagnostic>& errors) {
+  const auto inside = [](const std::optional<Range>& range, double value) {
+    // A face given by its place, [a, a], holds the nodes on it despite rounding.
+    return !range || (value >= (*range)[0] - 1e-9 && value <= (*range)[1] + 1e-9);
+  };
+  for (const auto& [name, input] : scenario.holds) {
+    const CellSet& cells = model.tissue.regions.at(input.region);
+    bool any = false;
+    for (std::size_t e = 0; e < model.tissue.elements.size(); ++e) {
+      if (!cells[model.tissue.element_cell[e].index()]) continue;
+      for (const NodeId node : model.tissue.elements[e]) {
+        const Vec3& x = model.tissue.rest_positions[node.index()];
+        if (!inside(input.x_um, x.x()) || !inside(input.y_um, x.y()) || !inside(input.z_um, x.z())) continue;
+        any = true;
+        for (const std::string& direction : input.directions) model.held[node.index()][direction[0] - 'x'] = true;
+      }
+    }
+    if (!any)
+      errors.push_back(diagnostic_at(scenario, "hold." + name, "no node of the region lies in its ranges",
+                                     "widen x_um, y_um or z_um; see `plica mesh` for where nodes lie"));
+  }
+}
+
+}  // namespace
+
+Tissue make_tissue(const Scenario& scenario) {
+  Tissue tissue = build_tissue(scenario);
+  std::vector<Diagnostic> errors;
+  check_rest_shape(scenario, tissue, errors);
+  add_regions(scenario, tissue, errors);
+  if (!errors.empty()) throw ScenarioError(std::move(errors));
+  return tissue;
+}
+
+std::unique_ptr<const Model> make_model(const Scenario& scenario) {
+  auto model = std::make_unique<Model>(make_tissue(scenario));
+  const Tissue& tissue = model->tissue;
+  const double young_modulus = scenario.elasticity.young_modulus_Pa * units::pascal;
+  const ElasticModuli moduli = ElasticModuli::from_young(young_modulus, scenario.elasticity.poisson_ratio);
+  model->stiffness_scale = young_modulus;
+  model->volumes_are_held = scenario.volume.method == "coupled";
+  model->laws.push_back(std::make_unique<Corotational>(
+      tissue, moduli, scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second));
+  model->laws.push_back(std::make_unique<Dilatation>(tissue, moduli.bulk_modulus()));
+  add_contractions(scenario, *model);
+  add_pressures(scenario, *model);
+  if (scenario.dynamics.surface_drag_Pa_s_per_um > 0)
+    model->laws.push_back(std::make_unique<SurfaceDrag>(
+        tissue, scenario.dynamics.surface_drag_Pa_s_per_um * units::pascal_second_per_um));
+  if (scenario.dynamics.density_kg_per_m3 > 0)
+    model->laws.push_back(std::make_unique<Inertia>(
+        tissue, scenario.dynamics.density_kg_per_m3 * units::kilogram_per_cubic_metre));
+
+  std::vector<Diagnostic> errors;
+  add_holds(scenario, *model, errors);
+  if (scenario.vitelline.enabled) {
+    if (tissue.outer_shape) {
+      Capsule shell = *tissue.outer_shape;
+      shell.radius_um += scenario.vitelline.gap_um;
+      model->vitelline.emplace(tissue, shell);
+    } else {
+      errors.push_back(diagnostic_at(scenario, "vitelline.enabled", "there is no shell for a mesh from a file yet",
+                                     "set vitelline.enabled = false"));
+    }
+  }
+  if (!errors.empty()) throw ScenarioError(std::move(errors));
+  return model;
+}
+
+RunControls make_controls(const Scenario& scenario) {
+  RunControls controls;
+  controls.fixed_step_s = scenario.time.step_s;
+  controls.first_step_s = scenario.time.first_step_s;
+  controls.max_step_s = scenario.time.max_step_s;
+  controls.position_tolerance_um = scenario.time.tolerance_um;
+  controls.end_s = scenario.time.end_s;
+  controls.equilibrium_speed_um_per_s = scenario.stop.equilibrium_speed_um_per_min * units::um_per_minute;
+  controls.stop_at_equilibrium = scenario.stop.at_equilibrium;
+  controls.frame_every_s = scenario.output.frame_every_s;
+  const auto add_points = [&](const ProgramInput& program) {
+    controls.program_points_s.insert(controls.program_points_s.end(), program.time_s.begin(), program.time_s.end());
+  };
+  for (const auto& [name, input] : scenario.contractions) add_points(input.program);
+  for (const auto& [name, input] : scenario.pressures) add_points(input.program);
+  return controls;
+}
+
+FurrowSites make_furrow_sites(const Scenario& scenario, const Tissue& tissue) {
+  std::string region = scenario.furrow.region;
+  if (region.empty() && !scenario.contractions.empty()) region = scenario.contractions.begin()->second.region;
+  if (region.empty()) return choose_furrow_sites(tissue, CellSet(tissue.cells.size(), false), 1);
+  return choose_furrow_sites(tissue, tissue.regions.at(region), scenario.furrow.vce_cell);
+}
+
+}  // namespace plica

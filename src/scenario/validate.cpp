@@ -1,0 +1,271 @@
+#include "scenario/validate.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+
+#include "scenario/suggest.hpp"
+
+namespace plica {
+namespace {
+
+constexpr std::int64_t max_elements = 20'000'000;
+
+/// Cells of a built shape. A closed sheet has one layer of cells on each of its six sides.
+std::int64_t cell_count(const EmbryoInput& embryo) {
+  const std::int64_t a = embryo.cells[0], b = embryo.cells[1], c = embryo.cells[2];
+  return embryo.shape == "block" ? a * b * c : 2 * (a * b + b * c + c * a);
+}
+
+/// A key that the shape does not use is an error where it was given along with the shape or after it, and is dropped
+/// where it was inherited from a scenario of another shape.
+void check_unused_keys(Scenario& scenario, Input& input) {
+  const std::string shape = scenario.embryo.shape;
+  const Place* shape_place = input.place("embryo.shape");
+  for (const Row* row : rows_of("embryo")) {
+    if (row->used_by(shape)) continue;
+    const std::string address = fmt::format("embryo.{}", row->key);
+    const Place* place = input.place(address);
+    if (place != nullptr && (shape_place == nullptr || place->layer >= shape_place->layer)) {
+      input.report(address, fmt::format("has no meaning with shape \"{}\"", shape),
+                   fmt::format("remove it, or choose shape {}", fmt::join(row->options.shapes, " or ")));
+    }
+    reset_to_default(*row, scenario, "");
+  }
+  if (shape == "sphere") scenario.embryo.length_um = scenario.embryo.diameter_um;
+}
+
+void check_element_count(const EmbryoInput& embryo, Input& input) {
+  const auto& per_cell = embryo.elements_per_cell;
+  const std::int64_t elements = cell_count(embryo) * per_cell[0] * per_cell[1] * per_cell[2];
+  if (elements > max_elements) {
+    input.report("embryo.cells", fmt::format("asks for {} elements; the limit is {}", elements, max_elements),
+                 "give fewer cells, or fewer elements per cell");
+  }
+}
+
+void check_embryo(Scenario& scenario, Input& input) {
+  if (!input.sound("embryo.shape")) return;
+  check_unused_keys(scenario, input);
+  const EmbryoInput& embryo = scenario.embryo;
+  const auto sound = [&](std::string_view key) { return input.sound(fmt::format("embryo.{}", key)); };
+  if (embryo.shape == "file") {
+    if (embryo.file.empty() && sound("file")) {
+      input.report("embryo.file", "is missing", "name the mesh file for shape \"file\"");
+    }
+    return;
+  }
+  if (embryo.shape == "pill" && sound("length_um") && sound("diameter_um") && embryo.length_um < embryo.diameter_um) {
+    input.report("embryo.length_um",
+                 fmt::format("{} is less than the diameter, {}", embryo.length_um, embryo.diameter_um),
+                 "give a length of at least diameter_um");
+  }
+  if (embryo.shape != "block" && sound("cell_height_um") && sound("diameter_um") &&
+      embryo.cell_height_um >= embryo.diameter_um / 2) {
+    input.report("embryo.cell_height_um", fmt::format("{} leaves no room inside the embryo", embryo.cell_height_um),
+                 fmt::format("give less than half of diameter_um, {}", embryo.diameter_um / 2));
+  }
+  if (sound("cells") && sound("elements_per_cell")) check_element_count(embryo, input);
+}
+
+void check_vitelline(Scenario& scenario, Input& input) {
+  if (scenario.embryo.shape != "block" || !input.sound("vitelline.enabled")) return;
+  if (input.place("vitelline.enabled") == nullptr) scenario.vitelline.enabled = false;
+  if (scenario.vitelline.enabled) {
+    input.report("vitelline.enabled", "a shell needs a closed embryo, and a block is none", "give false");
+  }
+}
+
+void check_dynamics(const DynamicsInput& dynamics, Input& input) {
+  if (!input.sound("dynamics.surface_drag_Pa_s_per_um") || !input.sound("dynamics.density_kg_per_m3")) return;
+  if (dynamics.surface_drag_Pa_s_per_um == 0 && dynamics.density_kg_per_m3 == 0) {
+    input.report("dynamics.surface_drag_Pa_s_per_um", "a body with neither drag nor mass is refused",
+                 "give a drag or a density above 0");
+  }
+}
+
+void check_time(const TimeInput& time, Input& input) {
+  if (!input.sound("time.first_step_s") || !input.sound("time.max_step_s")) return;
+  if (time.first_step_s > time.max_step_s) {
+    input.report("time.first_step_s", fmt::format("{} is above max_step_s, {}", time.first_step_s, time.max_step_s),
+                 "give a first step no longer than the longest");
+  }
+}
+
+void check_required_keys(const Scenario& scenario, Input& input) {
+  for (const TableInfo& info : schema_tables()) {
+    if (!info.named()) continue;
+    for (const std::string& name : info.names(scenario)) {
+      const std::string path = fmt::format("{}.{}", info.stem(), name);
+      for (const Row* row : rows_of(info.path)) {
+        const std::string address = fmt::format("{}.{}", path, row->key);
+        if (row->options.required && input.sound(path) && input.place(address) == nullptr) {
+          input.report(address, "is missing", "give " + row->expected());
+        }
+      }
+    }
+  }
+}
+
+void check_expectations(const Scenario& scenario, Input& input) {
+  for (const auto& [name, expected] : scenario.expect) {
+    const std::string path = "expect." + name;
+    if (!expected.within && !expected.within_percent && input.sound(path) && input.sound(path + ".within")) {
+      input.report(path, "has no tolerance", "give within or within_percent, too");
+    }
+  }
+}
+
+void check_program(const std::string& table, const ProgramInput& program, Input& input) {
+  const std::string time = table + ".program.time_s", activity = table + ".program.activity";
+  if (!input.sound(table) || !input.sound(time) || !input.sound(activity)) return;
+  if (program.time_s.empty() && program.activity.empty()) return;
+  if (program.time_s.empty()) return input.report(time, "is missing", "give time_s or time_min beside activity");
+  if (program.activity.empty()) return input.report(activity, "is missing", "give as many activities as times");
+  if (program.time_s.size() != program.activity.size()) {
+    input.report(activity, fmt::format("{} activities for {} times", program.activity.size(), program.time_s.size()),
+                 "give as many activities as times");
+  }
+  const auto not_later = [](double earlier, double later) { return later <= earlier; };
+  if (std::ranges::adjacent_find(program.time_s, not_later) != program.time_s.end()) {
+    input.report(time, "the times do not increase", "give each time later than the one before");
+  }
+}
+
+/// The rules about regions: selectors that make sense on this embryo, names that exist, no circles.
+class RegionCheck {
+ public:
+  RegionCheck(const Scenario& scenario, Input& input) : scenario_(scenario), input_(input) {
+    names_.emplace_back("all");
+    for (const auto& [name, region] : scenario.regions) names_.push_back(name);
+  }
+
+  void check_reference(const std::string& address, const std::string& region) {
+    if (region.empty() || !input_.sound("region") || !input_.sound(address)) return;
+    if (!input_.sound("region." + region)) return;  // it was not read; that has been reported
+    if (std::ranges::find(names_, region) != names_.end()) return;
+    input_.report(address, fmt::format("there is no region \"{}\"", region), did_you_mean(region, names_));
+  }
+
+  void check_references() {
+    for (const auto& [name, it] : scenario_.contractions) check_reference("contraction." + name + ".region", it.region);
+    for (const auto& [name, it] : scenario_.holds) check_reference("hold." + name + ".region", it.region);
+    for (const auto& [name, it] : scenario_.pressures) check_reference("pressure." + name + ".region", it.region);
+    check_reference("furrow.region", scenario_.furrow.region);
+    for (const auto& [name, region] : scenario_.regions) {
+      for (const std::string& other : region.unite) check_reference("region." + name + ".union", other);
+      for (const std::string& other : region.intersect) check_reference("region." + name + ".intersect", other);
+      for (const std::string& other : region.except) check_reference("region." + name + ".except", other);
+    }
+  }
+
+  void check_selectors(const std::string& name, const RegionInput& region) {
+    const std::string path = "region." + name;
+    const bool has_selector = !region.face.empty() || region.cells_along || region.cells_across ||
+                              !region.ids.empty() || !region.array.empty() || region.x_um || region.y_um ||
+                              region.z_um || !region.unite.empty() || !region.intersect.empty() ||
+                              !region.except.empty();
+    const bool has_doubt = std::ranges::any_of(
+        input_.doubtful, [&](const std::string& it) { return it == path || it.starts_with(path + "."); });
+    if (!has_selector && !has_doubt) {
+      input_.report(path, "selects nothing", "give face, ids, array, x_um, y_um, z_um, union, intersect or except");
+    }
+    if (!input_.sound("embryo.shape")) return;
+    const bool is_file = scenario_.embryo.shape == "file";
+    if (!region.array.empty() && !is_file) {
+      input_.report(path + ".array", "a built embryo has no arrays", "use it with shape \"file\" only");
+    }
+    if (!region.face.empty() && is_file) {
+      input_.report(path + ".face", "a mesh from a file has no named sides", "use ids, array, x_um, y_um or z_um");
+    }
+    if (!is_file && input_.sound("embryo.cells")) check_cell_numbers(path, region);
+  }
+
+  /// Reports every circle of regions once, at its first member in the order of names.
+  void check_circles() {
+    std::set<std::string> done;
+    for (const auto& [name, region] : scenario_.regions) {
+      std::vector<std::string> path;
+      follow(name, path, done);
+    }
+  }
+
+ private:
+  void check_cell_numbers(const std::string& path, const RegionInput& region) {
+    const auto& [a, b, c] = scenario_.embryo.cells;
+    if (region.face == "ventral" || region.face == "dorsal") check_strip(path, region, a, b);
+    if (region.face == "left" || region.face == "right") check_strip(path, region, a, c);
+    if (region.face == "anterior" || region.face == "posterior") check_strip(path, region, b, c);
+    for (const std::string key : {".cells_along", ".cells_across"}) {
+      const bool missing = region.face.empty() && input_.sound(path + ".face") && input_.sound(path + key);
+      if (missing && input_.place(path + key) != nullptr) {
+        input_.report(path + key, "needs a face to lie on", "give face, too");
+      }
+    }
+    const std::int64_t cells = cell_count(scenario_.embryo);
+    if (!region.ids.empty() && *std::ranges::max_element(region.ids) >= cells) {
+      input_.report(path + ".ids", fmt::format("there is no cell {}", *std::ranges::max_element(region.ids)),
+                    fmt::format("give numbers from 0 to {}", cells - 1));
+    }
+  }
+
+  void check_strip(const std::string& path, const RegionInput& region, int along, int across) {
+    if (region.cells_along) check_centred(path + ".cells_along", *region.cells_along, along);
+    if (region.cells_across) check_centred(path + ".cells_across", *region.cells_across, across);
+  }
+
+  void check_centred(const std::string& address, int wanted, int available) {
+    if (wanted > available) {
+      input_.report(address, fmt::format("{} cells on a face that has {} that way", wanted, available),
+                    fmt::format("give at most {}", available));
+    } else if ((available - wanted) % 2 != 0) {
+      const std::string fewer = wanted > 1 ? fmt::format("{} or ", wanted - 1) : "";
+      input_.report(address, fmt::format("{} cells cannot be centred on {}", wanted, available),
+                    fmt::format("{}{} can", fewer, wanted + 1));
+    }
+  }
+
+  void follow(const std::string& name, std::vector<std::string>& path, std::set<std::string>& done) {
+    const auto region = scenario_.regions.find(name);
+    if (region == scenario_.regions.end()) return;
+    if (const auto start = std::ranges::find(path, name); start != path.end()) {
+      const std::vector<std::string> circle(start, path.end());
+      input_.report("region." + *start, fmt::format("is defined by itself: {} > {}", fmt::join(circle, " > "), name),
+                    "remove one of these references");
+      return;
+    }
+    if (done.contains(name)) return;
+    path.push_back(name);
+    for (const auto* others : {&region->second.unite, &region->second.intersect, &region->second.except}) {
+      for (const std::string& other : *others) follow(other, path, done);
+    }
+    path.pop_back();
+    done.insert(name);
+  }
+
+  const Scenario& scenario_;
+  Input& input_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace
+
+void validate(Scenario& scenario, Input& input) {
+  check_embryo(scenario, input);
+  check_vitelline(scenario, input);
+  check_dynamics(scenario.dynamics, input);
+  check_time(scenario.time, input);
+  check_required_keys(scenario, input);
+  check_expectations(scenario, input);
+  for (const auto& [name, it] : scenario.contractions) check_program("contraction." + name, it.program, input);
+  for (const auto& [name, it] : scenario.pressures) check_program("pressure." + name, it.program, input);
+  RegionCheck regions(scenario, input);
+  for (const auto& [name, region] : scenario.regions) regions.check_selectors(name, region);
+  regions.check_references();
+  regions.check_circles();
+}
+
+}  // namespace plica

@@ -1,0 +1,64 @@
+#include "simulation/step_length.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plica {
+namespace {
+
+// The first multiple of `period` after `time`, by more than rounding.
+double next_multiple(double time, double period) {
+  return (std::floor(time / period * (1 + 1e-12) + 1e-9) + 1) * period;
+}
+
+}  // namespace
+
+StepLength::StepLength(const RunControls& controls)
+    : controls_(controls), wanted_s_(controls.fixed_step_s.value_or(controls.first_step_s)) {}
+
+double StepLength::propose(double time_s) const {
+  double stop = controls_.end_s;
+  if (controls_.fixed_step_s) {
+    // On the grid of the given step, also after a step that had to be halved.
+    stop = std::min(stop, next_multiple(time_s, *controls_.fixed_step_s));
+  } else {
+    if (controls_.frame_every_s > 0) stop = std::min(stop, next_multiple(time_s, controls_.frame_every_s));
+    for (const double point : controls_.program_points_s)
+      if (point > time_s * (1 + 1e-12)) stop = std::min(stop, point);
+  }
+  const double left = stop - time_s;
+  if (wanted_s_ >= left * (1 - 1e-9)) return left;
+  // Rather two even steps than a long one and a crumb.
+  return wanted_s_ > 0.5 * left && !controls_.fixed_step_s ? 0.5 * left : wanted_s_;
+}
+
+bool StepLength::accept(const State& before, const State& after, double duration_s) {
+  if (controls_.fixed_step_s) {
+    wanted_s_ = *controls_.fixed_step_s;
+    return true;
+  }
+  if (previous_s_ == 0) {
+    previous_s_ = duration_s;
+    wanted_s_ = duration_s;
+    return true;
+  }
+  double change = 0;
+  for (std::size_t n = 0; n < after.velocities.size(); ++n)
+    change = std::max(change, (after.velocities[n] - before.velocities[n]).norm());
+  const double error_um = duration_s * duration_s / (duration_s + previous_s_) * change;
+  const double factor = 0.9 * std::sqrt(controls_.position_tolerance_um / std::max(error_um, 1e-300));
+  if (factor < 0.6) {
+    wanted_s_ = duration_s * std::max(factor, 0.2);
+    return false;
+  }
+  wanted_s_ = std::min(controls_.max_step_s, std::max(duration_s * std::clamp(factor, 0.5, 2.0), 1e-9));
+  previous_s_ = duration_s;
+  return true;
+}
+
+bool StepLength::halve(double failed_s) {
+  wanted_s_ = 0.5 * failed_s;
+  return wanted_s_ > 1e-7 * std::max(controls_.first_step_s, controls_.fixed_step_s.value_or(0));
+}
+
+}  // namespace plica

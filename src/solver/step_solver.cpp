@@ -1,0 +1,310 @@
+#include "solver/step_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plica {
+
+struct StepSolver::Iterate {
+  Vectors positions;
+  std::vector<double> pressures;       // cells
+  std::vector<double> contact_forces;  // the vitelline's nodes
+  std::vector<char> in_contact;
+};
+
+struct StepSolver::Residual {
+  Vectors forces;                     // unbalanced, all directions; nodes
+  std::vector<double> volume_deficit; // target - V; cells
+  double force = 0;                   // norm over free directions, relative
+  double volume = 0;                  // largest relative error
+  double gap_um = 0;                  // largest distance of a node in contact from the shell
+
+  [[nodiscard]] bool finite() const { return std::isfinite(force) && std::isfinite(volume) && std::isfinite(gap_um); }
+  [[nodiscard]] bool within(const StepTolerances& t) const {
+    return force <= t.force && volume <= t.volume && gap_um <= t.gap_um;
+  }
+  /// One number to descend on; each part in units of what matters.
+  [[nodiscard]] double merit() const { return force + 10 * volume + gap_um; }
+};
+
+struct StepSolver::Direction {
+  Vectors positions;
+  std::vector<double> pressures;
+  std::vector<double> contact_forces;
+};
+
+std::string StepReport::reason() const {
+  const std::string where = cell ? "cell " + std::to_string(cell->number()) : "the sheet";
+  switch (outcome) {
+    case Outcome::converged:
+      return "converged";
+    case Outcome::inverted_element:
+      return where + " turns inside out";
+    case Outcome::no_convergence:
+      return "Newton's method does not converge near " + where;
+    case Outcome::singular_system:
+      return "the linear system is singular";
+    case Outcome::not_finite:
+      return "a force in " + where + " is not a finite number";
+  }
+  return "";
+}
+
+StepSolver::StepSolver(const Model& model, StepTolerances tolerances)
+    : model_(model), tolerances_(tolerances), matrix_(model), linear_solver_(make_direct_solver()) {
+  linear_solver_->analyse(matrix_.pattern());
+}
+
+StepSolver::~StepSolver() = default;
+
+void StepSolver::forget_factor() { factor_frames_.clear(); }
+
+std::vector<NodeFrame> StepSolver::frames(const Iterate& at) const {
+  std::vector<NodeFrame> frames(at.positions.size());
+  // The fixed directions of each node, made orthonormal: held axes first, then the shell's normal.
+  const auto add_fixed = [](NodeFrame& frame, Vec3 direction) {
+    for (int k = 0; k < frame.fixed; ++k) direction -= frame.axes.col(k).dot(direction) * frame.axes.col(k);
+    if (direction.norm() < 1e-6) return;  // held in this direction already
+    frame.axes.col(frame.fixed++) = direction.normalized();
+  };
+  for (std::size_t n = 0; n < frames.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      if (model_.held[n][axis]) add_fixed(frames[n], Vec3::Unit(axis));
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k)
+    if (at.in_contact[k]) {
+      const std::size_t n = model_.vitelline->nodes()[k].index();
+      add_fixed(frames[n], model_.vitelline->gap(at.positions[n]).inward);
+    }
+  for (NodeFrame& frame : frames) {
+    if (frame.fixed == 1) frame.axes.col(1) = frame.axes.col(0).unitOrthogonal();
+    if (frame.fixed == 1 || frame.fixed == 2) frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
+  }
+  return frames;
+}
+
+StepSolver::Residual StepSolver::residual(const Step& step, const Iterate& at) const {
+  Residual r;
+  r.forces.assign(at.positions.size(), Vec3::Zero());
+  Vectors of_law(at.positions.size());
+  double balanced = 0;  // squared norm of the forces that have to balance
+  const auto take = [&] {
+    for (std::size_t n = 0; n < of_law.size(); ++n) {
+      balanced += of_law[n].squaredNorm();
+      r.forces[n] += of_law[n];
+    }
+    std::fill(of_law.begin(), of_law.end(), Vec3::Zero());
+  };
+  std::fill(of_law.begin(), of_law.end(), Vec3::Zero());
+  for (const auto& law : model_.laws) {
+    law->add_forces(step, of_law);
+    take();
+  }
+  if (model_.volumes_are_held) {
+    model_.volumes.add_forces(at.positions, at.pressures, of_law);
+    take();
+    r.volume_deficit = model_.volumes.volumes(at.positions);
+    for (std::size_t c = 0; c < r.volume_deficit.size(); ++c) {
+      r.volume_deficit[c] = model_.volumes.targets()[c] - r.volume_deficit[c];
+      r.volume = std::max(r.volume, std::abs(r.volume_deficit[c] / model_.volumes.targets()[c]));
+    }
+  }
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
+    if (!at.in_contact[k]) continue;
+    const std::size_t n = model_.vitelline->nodes()[k].index();
+    const Vitelline::Gap gap = model_.vitelline->gap(at.positions[n]);
+    of_law[n] = at.contact_forces[k] * gap.inward;
+    r.gap_um = std::max(r.gap_um, std::abs(gap.value));
+  }
+  take();
+
+  const std::vector<NodeFrame> node_frames = frames(at);
+  double free = 0;
+  for (std::size_t n = 0; n < r.forces.size(); ++n) {
+    const Vec3 local = node_frames[n].axes.transpose() * r.forces[n];
+    for (int i = node_frames[n].fixed; i < 3; ++i) free += local[i] * local[i];
+  }
+  r.force = std::sqrt(free) / (std::sqrt(balanced) + 1e-4 * model_.force_scale());
+  return r;
+}
+
+bool StepSolver::refresh_factor(const Step& step, const Iterate& at) {
+  factor_frames_ = frames(at);
+  factor_contacts_ = at.in_contact;
+  factor_duration_s_ = step.duration_s;
+  matrix_.set_zero();
+  for (const auto& law : model_.laws) law->add_tangent(step, matrix_);
+  if (model_.volumes_are_held) {
+    model_.volumes.add_tangent(at.positions, at.pressures, matrix_);
+    matrix_.set_volume_gradients(model_.volumes, at.positions);
+  }
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k)
+    if (at.in_contact[k]) {
+      const NodeId node = model_.vitelline->nodes()[k];
+      matrix_.add_block(node, node, -at.contact_forces[k] * model_.vitelline->gap(at.positions[node.index()]).hessian);
+    }
+  matrix_.write_values(factor_frames_, values_);
+  if (linear_solver_->factorise(values_)) return true;
+  forget_factor();
+  return false;
+}
+
+StepSolver::Direction StepSolver::direction(const Iterate& at, const Residual& r) {
+  const std::size_t nodes = at.positions.size();
+  // What the shell prescribes: every node in contact goes back to it along its normal.
+  Vectors prescribed(nodes, Vec3::Zero());
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
+    if (!at.in_contact[k]) continue;
+    const std::size_t n = model_.vitelline->nodes()[k].index();
+    const NodeFrame& frame = factor_frames_[n];
+    const Vitelline::Gap gap = model_.vitelline->gap(at.positions[n]);
+    const Vec3 normal = frame.axes.col(frame.fixed - 1);
+    prescribed[n] = -gap.value / normal.dot(gap.inward) * normal;
+  }
+  Vectors right(nodes);
+  matrix_.multiply(prescribed, right);
+  for (std::size_t n = 0; n < nodes; ++n) right[n] = r.forces[n] - right[n];
+
+  std::vector<double> unknowns(matrix_.pattern().size, 0.0);
+  for (std::size_t n = 0; n < nodes; ++n) {
+    const Vec3 local = factor_frames_[n].axes.transpose() * right[n];
+    for (int i = factor_frames_[n].fixed; i < 3; ++i) unknowns[3 * n + i] = local[i];
+  }
+  const std::vector<double> rates = matrix_.volume_rates(prescribed);
+  for (std::size_t c = 0; c < rates.size(); ++c) unknowns[3 * nodes + c] = rates[c] - r.volume_deficit[c];
+  linear_solver_->solve(unknowns);
+
+  Direction d{prescribed, std::vector<double>(unknowns.begin() + 3 * nodes, unknowns.end()),
+              std::vector<double>(at.contact_forces.size(), 0.0)};
+  d.pressures.resize(at.pressures.size(), 0.0);
+  for (std::size_t n = 0; n < nodes; ++n)
+    d.positions[n] += factor_frames_[n].axes * Vec3(unknowns[3 * n], unknowns[3 * n + 1], unknowns[3 * n + 2]);
+
+  // The shell's forces take up what is left along the normals: N dmu = A dx - J^T dlambda - forces.
+  if (model_.vitelline) {
+    Vectors left(nodes);
+    matrix_.multiply(d.positions, left);
+    for (double& pressure : d.pressures) pressure = -pressure;
+    matrix_.add_pressure_forces(d.pressures, left);
+    for (double& pressure : d.pressures) pressure = -pressure;
+    for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
+      if (!at.in_contact[k]) continue;
+      const std::size_t n = model_.vitelline->nodes()[k].index();
+      const Vec3 normal = factor_frames_[n].axes.col(factor_frames_[n].fixed - 1);
+      d.contact_forces[k] =
+          normal.dot(left[n] - r.forces[n]) / normal.dot(model_.vitelline->gap(at.positions[n]).inward);
+    }
+  }
+  return d;
+}
+
+bool StepSolver::revise_contacts(Iterate& at) const {
+  bool changed = false;
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
+    if (at.in_contact[k]) {
+      // Pulled inward for real: let go. Forces of rounding's size are none.
+      if (at.contact_forces[k] < -1e-12 * model_.force_scale()) {
+        at.in_contact[k] = 0;
+        changed = true;
+      }
+      if (at.contact_forces[k] < 0) at.contact_forces[k] = 0;
+    } else if (model_.vitelline->gap(at.positions[model_.vitelline->nodes()[k].index()]).value < -tolerances_.gap_um) {
+      at.in_contact[k] = 1;
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+std::optional<CellId> StepSolver::inverted_cell(const Vectors& positions) const {
+  const Tissue& tissue = model_.tissue;
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
+    if (!(hex_scaled_jacobian(gather(positions, tissue.elements[e])) > 0)) return tissue.element_cell[e];
+  return std::nullopt;
+}
+
+// Goes along the direction as far as elements stay upright and the residual falls; if it falls nowhere, where it is
+// least. Returns the cell that blocks when no length keeps every element upright.
+std::optional<CellId> StepSolver::search_line(const Step& step, const Direction& d, Iterate& at, Residual& now) const {
+  std::optional<CellId> blocking;
+  std::optional<std::pair<Iterate, Residual>> best;
+  double part = 1;
+  for (int halving = 0; halving < 8; ++halving, part *= 0.5) {
+    Iterate trial = at;
+    for (std::size_t n = 0; n < trial.positions.size(); ++n) trial.positions[n] += part * d.positions[n];
+    blocking = inverted_cell(trial.positions);
+    if (blocking) continue;
+    for (std::size_t c = 0; c < trial.pressures.size(); ++c) trial.pressures[c] += part * d.pressures[c];
+    for (std::size_t k = 0; k < trial.contact_forces.size(); ++k)
+      trial.contact_forces[k] += part * d.contact_forces[k];
+    Step there = step;
+    there.positions = trial.positions;
+    Residual r = residual(there, trial);
+    if (r.finite() && (!best || r.merit() < best->second.merit())) best.emplace(std::move(trial), std::move(r));
+    if (best && best->second.merit() < (1 - 1e-4 * part) * now.merit()) break;
+  }
+  if (!best) return blocking ? blocking : std::optional<CellId>(CellId(0));
+  at = std::move(best->first);
+  now = std::move(best->second);
+  return std::nullopt;
+}
+
+StepReport StepSolver::advance(const State& state, double duration_s, bool from_rest, State& next) {
+  Iterate at{state.positions, state.pressures, state.contact_forces, state.in_contact};
+  if (!from_rest) {
+    for (std::size_t n = 0; n < at.positions.size(); ++n) at.positions[n] += duration_s * state.velocities[n];
+    if (inverted_cell(at.positions)) at.positions = state.positions;
+  }
+  Step step{at.positions, state.positions, state.velocities, duration_s, state.time_s + duration_s};
+  StepReport report;
+  bool contacts_settled = !revise_contacts(at);
+  Residual now = residual(step, at);
+  bool slow = false;
+  for (;; ++report.newton_iterations) {
+    report.residual = now.force;
+    report.volume_error = now.volume;
+    if (!now.finite()) {
+      report.outcome = StepReport::Outcome::not_finite;
+      return report;
+    }
+    if (contacts_settled && now.within(tolerances_)) break;
+    if (report.newton_iterations >= tolerances_.max_iterations) {
+      report.outcome = StepReport::Outcome::no_convergence;
+      return report;
+    }
+    const bool stale = factor_frames_.empty() || factor_duration_s_ != duration_s || factor_contacts_ != at.in_contact;
+    if (stale || slow) {
+      step.positions = at.positions;
+      ++report.factorisations;
+      if (!refresh_factor(step, at)) {
+        report.outcome = StepReport::Outcome::singular_system;
+        return report;
+      }
+    }
+    const double before = now.merit();
+    ++report.linear_solves;
+    const auto blocking = search_line(step, direction(at, now), at, now);
+    if (blocking) {
+      report.outcome = StepReport::Outcome::inverted_element;
+      report.cell = blocking;
+      return report;
+    }
+    slow = now.merit() > 0.1 * before;
+    contacts_settled = !revise_contacts(at);
+    if (!contacts_settled) {
+      step.positions = at.positions;
+      now = residual(step, at);
+    }
+  }
+  for (std::size_t n = 0; n < at.positions.size(); ++n)
+    next.velocities.resize(at.positions.size()), next.velocities[n] =
+                                                     (at.positions[n] - state.positions[n]) / duration_s;
+  next.time_s = state.time_s + duration_s;
+  next.positions = std::move(at.positions);
+  next.pressures = std::move(at.pressures);
+  next.contact_forces = std::move(at.contact_forces);
+  next.in_contact = std::move(at.in_contact);
+  report.outcome = StepReport::Outcome::converged;
+  return report;
+}
+
+}  // namespace plica

@@ -1,0 +1,80 @@
+// One implicit step: backward Euler, with exact volumes and the shell held together with the forces.
+//
+// The step ends where  -dPhi/dx + J^T lambda + N mu = 0,  V_c = target,  0 <= g _|_ mu >= 0,  Phi being the sum of the laws'
+// energies. Newton's method on all of it at once, with line search; the shell by an active set that is revised after
+// each iteration. A factor is kept while it still converges fast (docs/decisions/0003-newton.md).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mechanics/model.hpp"
+#include "solver/step_matrix.hpp"
+
+namespace plica {
+
+/// When a step counts as solved.
+struct StepTolerances {
+  double force = 1e-8;     // residual over the norm of the forces that balance
+  double volume = 1e-10;   // |V/target - 1|, every cell
+  double gap_um = 1e-8;    // depth of a node outside the shell
+  int max_iterations = 60;
+};
+
+/// How a step went. A value: a step that fails is not an exception, the caller tries a shorter one.
+struct StepReport {
+  enum class Outcome { converged, inverted_element, no_convergence, singular_system, not_finite };
+  Outcome outcome = Outcome::no_convergence;
+  int newton_iterations = 0;
+  int factorisations = 0;
+  int linear_solves = 0;
+  double residual = 0;         // relative, as in StepTolerances
+  double volume_error = 0;
+  std::optional<CellId> cell;  // where it failed, when that is one place
+
+  [[nodiscard]] bool converged() const { return outcome == Outcome::converged; }
+  /// "cell 37 turns inside out" and the like.
+  [[nodiscard]] std::string reason() const;
+};
+
+/// Solves steps of one model; keeps pattern, factor and scratch between them.
+class StepSolver {
+ public:
+  explicit StepSolver(const Model& model, StepTolerances tolerances = {});
+  ~StepSolver();
+
+  /// From `state` over `duration_s` to `next` (left alone when the step fails). Starts from the velocities' forecast
+  /// unless `from_rest`.
+  StepReport advance(const State& state, double duration_s, bool from_rest, State& next);
+
+  /// Forgets the factor, so that the next step does not depend on what was solved before.
+  void forget_factor();
+
+ private:
+  struct Iterate;
+  struct Residual;
+  struct Direction;
+
+  [[nodiscard]] Residual residual(const Step& step, const Iterate& at) const;
+  [[nodiscard]] std::vector<NodeFrame> frames(const Iterate& at) const;
+  bool refresh_factor(const Step& step, const Iterate& at);
+  [[nodiscard]] Direction direction(const Iterate& at, const Residual& residual);
+  bool revise_contacts(Iterate& at) const;
+  [[nodiscard]] std::optional<CellId> inverted_cell(const Vectors& positions) const;
+  std::optional<CellId> search_line(const Step& step, const Direction& direction, Iterate& at, Residual& now) const;
+
+  const Model& model_;
+  StepTolerances tolerances_;
+  StepMatrix matrix_;
+  std::unique_ptr<LinearSolver> linear_solver_;
+  std::vector<double> values_;
+
+  // The factor at hand: for which step length and frames it was made. Empty frames: none.
+  std::vector<NodeFrame> factor_frames_;
+  std::vector<char> factor_contacts_;
+  double factor_duration_s_ = 0;
+};
+
+}  // namespace plica

@@ -1,0 +1,203 @@
+#include "tissue/hexahedral_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "tissue/lattice.hpp"
+#include "tissue/mesh_faces.hpp"
+#include "tissue/mesh_orientation.hpp"
+
+namespace plica {
+namespace {
+
+constexpr double largest_coordinate_um = 1e9;  // a kilometre: beyond it products of lengths lose their meaning
+
+void check_size(const HexahedralMesh& mesh, const std::array<int, 3>& elements) {
+  const auto [along, across, radial] = elements;
+  if (mesh.cells.empty()) throw MeshError("the mesh has no cells");
+  if (along < 1 || across < 1 || radial < 1) throw MeshError("elements_per_cell must be at least 1 in every direction");
+  if (along != across)
+    throw MeshError(fmt::format(
+        "elements_per_cell is [{}, {}, {}]; the cells of a file have no common direction along the axis, so the first "
+        "two must be equal",
+        along, across, radial));
+  const double total = static_cast<double>(mesh.cells.size()) * along * across * radial;
+  if (total > static_cast<double>(largest_mesh_elements))
+    throw MeshError(fmt::format("the mesh would have {:.0f} elements; at most {} are allowed", total,
+                                largest_mesh_elements));
+}
+
+void check_cell_nodes(const HexahedralMesh& mesh, std::size_t cell) {
+  std::array<NodeId, 8> nodes = mesh.cells[cell];
+  for (const NodeId node : nodes) {
+    if (!node.valid() || node.index() >= mesh.points.size())
+      throw MeshError(fmt::format("cell {} uses node {}, and the nodes are 0 to {}", cell, node.number(),
+                                  static_cast<long long>(mesh.points.size()) - 1));
+    const Vec3& point = mesh.points[node.index()];
+    if (!point.allFinite() || point.cwiseAbs().maxCoeff() > largest_coordinate_um)
+      throw MeshError(fmt::format("node {} of cell {} is at ({}, {}, {}); coordinates are finite, in um", node.number(),
+                                  cell, point.x(), point.y(), point.z()));
+  }
+  std::sort(nodes.begin(), nodes.end());
+  const auto twice = std::adjacent_find(nodes.begin(), nodes.end());
+  if (twice != nodes.end()) throw MeshError(fmt::format("cell {} uses node {} twice", cell, twice->number()));
+}
+
+/// What may have gone wrong with a cell whose Jacobian is not positive at each corner.
+const char* inversion_remedy(const HexPoints& p) {
+  if (hex_scaled_jacobian({p[0], p[1], p[3], p[2], p[4], p[5], p[7], p[6]}) > 0)
+    return "its nodes are in the order of a VTK_VOXEL; a VTK_HEXAHEDRON goes round each face";
+  if (hex_scaled_jacobian({p[4], p[5], p[6], p[7], p[0], p[1], p[2], p[3]}) > 0)
+    return "it is inside out; nodes 0-3 must run counter-clockwise seen from nodes 4-7";
+  return "a corner is flat or folded in, or the order of the nodes is not VTK's";
+}
+
+void check_cells(const HexahedralMesh& mesh) {
+  for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell) {
+    check_cell_nodes(mesh, cell);
+    const HexPoints points = gather(mesh.points, mesh.cells[cell]);
+    if (!(hex_scaled_jacobian(points) > 0))
+      throw MeshError(fmt::format("cell {} is inverted (det J <= 0 at a corner): {}", cell, inversion_remedy(points)));
+  }
+}
+
+double mean_edge_length(const HexahedralMesh& mesh) {
+  double sum = 0;
+  for (const auto& cell : mesh.cells)
+    for (const auto& [a, b] : hex_edges) sum += (mesh.points[cell[a].index()] - mesh.points[cell[b].index()]).norm();
+  return sum / (12.0 * static_cast<double>(mesh.cells.size()));
+}
+
+/// Two nodes of the surface at one place: cells that look joined and are not. Nodes are sorted along a direction that no
+/// grid is likely to be square to, so that few are compared.
+void check_welded(const HexahedralMesh& mesh, const MeshFaces& faces) {
+  const Vec3 direction = Vec3(0.5772157, 0.2146018, 0.7878593);
+  const double tolerance = 1e-6 * mean_edge_length(mesh);
+  std::vector<NodeId> nodes;
+  for (const CellFace& side : faces.surface())
+    for (const int i : hex_faces[side.face]) nodes.push_back(mesh.cells[side.cell][i]);
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  std::vector<std::pair<double, NodeId>> sorted;
+  for (const NodeId node : nodes) sorted.emplace_back(direction.dot(mesh.points[node.index()]), node);
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    for (std::size_t j = i + 1; j < sorted.size() && sorted[j].first - sorted[i].first <= tolerance; ++j) {
+      const Vec3& point = mesh.points[sorted[i].second.index()];
+      if ((mesh.points[sorted[j].second.index()] - point).norm() > tolerance) continue;
+      const auto [low, high] = std::minmax(sorted[i].second, sorted[j].second);
+      throw MeshError(fmt::format(
+          "nodes {} and {} lie at the same place ({:g}, {:g}, {:g}) on the surface; cells that touch must share their "
+          "nodes: merge coincident nodes when the mesh is made",
+          low.number(), high.number(), point.x(), point.y(), point.z()));
+    }
+}
+
+/// Gives the nodes of refined cells their numbers: what lies on a face or an edge is one node for all the cells there.
+class LatticeNodes {
+ public:
+  LatticeNodes(Vectors& positions, const std::array<int, 3>& elements) : positions_(positions), elements_(elements) {}
+
+  /// The node at a place of the lattice of a cell with these corners.
+  NodeId node(const std::array<NodeId, 8>& corners, const std::array<int, 3>& place) {
+    // Each corner's weight as a whole number (of along * across * radial). Corners of weight 0 are left out: a place on a
+    // face or an edge has four or two, the same ones seen from each cell.
+    Key key;
+    std::size_t count = 0;
+    for (int i = 0; i < 8; ++i) {
+      int weight = 1;
+      for (int axis = 0; axis < 3; ++axis)
+        weight *= hex_reference_nodes[i][axis] > 0 ? place[axis] : elements_[axis] - place[axis];
+      if (weight > 0) key[count++] = {corners[i].number(), weight};
+    }
+    if (count == 1) return NodeId(key[0].first);
+    if (count == 8) return add(key);
+    std::sort(key.begin(), key.begin() + static_cast<std::ptrdiff_t>(count));
+    const auto [entry, is_new] = shared_.try_emplace(key);
+    if (is_new) entry->second = add(key);
+    return entry->second;
+  }
+
+ private:
+  using Key = std::array<std::pair<int, int>, 8>;  // node and weight; the rest 0
+  struct Hash {
+    std::size_t operator()(const Key& key) const {
+      std::size_t hash = 1469598103934665603U;  // FNV-1a
+      for (const auto& [node, weight] : key)
+        for (const int value : {node, weight}) hash = (hash ^ static_cast<std::size_t>(value)) * 1099511628211U;
+      return hash;
+    }
+  };
+
+  NodeId add(const Key& key) {
+    Vec3 sum = Vec3::Zero();
+    const double total = static_cast<double>(elements_[0]) * elements_[1] * elements_[2];
+    for (const auto& [node, weight] : key)
+      if (weight > 0) sum += weight * positions_[static_cast<std::size_t>(node)];
+    positions_.push_back(sum / total);
+    return NodeId(positions_.size() - 1);
+  }
+
+  Vectors& positions_;
+  std::array<int, 3> elements_;
+  std::unordered_map<Key, NodeId, Hash> shared_;
+};
+
+/// Leaves out the nodes that no cell uses; the others keep their order.
+Vectors drop_unused_nodes(const Vectors& points, std::vector<CellLattice>& cells) {
+  std::vector<NodeId> number(points.size());
+  for (const CellLattice& cell : cells)
+    for (const NodeId node : cell.nodes) number[node.index()] = NodeId(0);
+  Vectors kept;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!number[i].valid()) continue;
+    number[i] = NodeId(kept.size());
+    kept.push_back(points[i]);
+  }
+  for (CellLattice& cell : cells)
+    for (NodeId& node : cell.nodes) node = number[node.index()];
+  return kept;
+}
+
+/// Cells may be too warped to be cut up: det J is positive at their corners but not within.
+void check_elements(const Tissue& tissue) {
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
+    if (!(hex_scaled_jacobian(tissue.element_rest_shape[e]) > 0))
+      throw MeshError(fmt::format("cell {} is so warped that its elements are inverted (det J <= 0 within it)",
+                                  tissue.element_cell[e].number()));
+}
+
+}  // namespace
+
+Tissue tissue_from_mesh(const HexahedralMesh& mesh, const std::array<int, 3>& elements_per_cell) {
+  check_size(mesh, elements_per_cell);
+  check_cells(mesh);
+  const MeshFaces faces(mesh.cells);
+  check_welded(mesh, faces);
+  const std::vector<int> apical = mesh.apical_faces.empty() ? outer_faces(mesh, faces) : mesh.apical_faces;
+  check_apical_faces(mesh, faces, apical);
+
+  Vectors positions = mesh.points;
+  LatticeNodes nodes(positions, elements_per_cell);
+  std::vector<CellLattice> lattices(mesh.cells.size());
+  for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell) {
+    const std::array<NodeId, 8> corners = turned_cell(mesh.cells[cell], apical[cell]);
+    CellLattice& lattice = lattices[cell];
+    lattice.elements = elements_per_cell;
+    lattice.has_apical = faces.on_surface({cell, apical[cell]});
+    lattice.has_basal = faces.on_surface({cell, opposite_face(apical[cell])});
+    for (int w = 0; w <= elements_per_cell[2]; ++w)
+      for (int v = 0; v <= elements_per_cell[1]; ++v)
+        for (int u = 0; u <= elements_per_cell[0]; ++u) lattice.nodes.push_back(nodes.node(corners, {u, v, w}));
+  }
+  positions = drop_unused_nodes(positions, lattices);
+  Tissue tissue = tissue_from_lattices(lattices, std::move(positions));
+  check_elements(tissue);
+  tissue.cell_arrays = mesh.arrays;
+  return tissue;
+}
+
+}  // namespace plica

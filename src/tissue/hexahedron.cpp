@@ -1,0 +1,122 @@
+// The volume is the sum over the six faces of the signed volume between the bilinear face and the origin. For a face
+// with points a b c d, counter-clockwise from outside, that is the mean of its two triangulations,
+//   V_face = (det(a,b,c) + det(a,c,d) + det(a,b,d) + det(b,c,d)) / 12      (docs/theory/cell_volume.md),
+// so dV_face/da = (b x c + c x d + b x d) / 12, and a turns through the cycle. Over the closed surface the same holds with
+// b, c, d taken relative to a, which keeps rounding independent of where the cell lies.
+#include "tissue/hexahedron.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plica {
+
+const std::array<Vec3, 8> hex_reference_nodes = {Vec3{-1, -1, -1}, Vec3{1, -1, -1}, Vec3{1, 1, -1}, Vec3{-1, 1, -1},
+                                                 Vec3{-1, -1, 1},  Vec3{1, -1, 1},  Vec3{1, 1, 1},  Vec3{-1, 1, 1}};
+
+const std::array<std::array<int, 2>, 12> hex_edges = {
+    {{0, 1}, {3, 2}, {4, 5}, {7, 6}, {0, 3}, {1, 2}, {4, 7}, {5, 6}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
+
+const std::array<std::array<int, 4>, 6> hex_faces = {
+    {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
+
+std::array<double, 8> hex_shape(const Vec3& reference) {
+  std::array<double, 8> values;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 s = hex_reference_nodes[i].cwiseProduct(reference) + Vec3::Ones();
+    values[i] = 0.125 * s.x() * s.y() * s.z();
+  }
+  return values;
+}
+
+std::array<Vec3, 8> hex_shape_gradients(const Vec3& reference) {
+  std::array<Vec3, 8> gradients;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3& n = hex_reference_nodes[i];
+    const Vec3 s = n.cwiseProduct(reference) + Vec3::Ones();
+    gradients[i] = 0.125 * Vec3(n.x() * s.y() * s.z(), s.x() * n.y() * s.z(), s.x() * s.y() * n.z());
+  }
+  return gradients;
+}
+
+Mat3 hex_jacobian(const HexPoints& points, const Vec3& reference) {
+  const std::array<Vec3, 8> gradients = hex_shape_gradients(reference);
+  Mat3 jacobian = Mat3::Zero();
+  for (int i = 0; i < 8; ++i) jacobian += points[i] * gradients[i].transpose();
+  return jacobian;
+}
+
+double hex_volume(const HexPoints& points) {
+  const std::array<Vec3, 8> gradient = hex_volume_gradient(points);
+  // Points relative to the first: the volume does not change under translation, its rounding does.
+  double sum = 0;
+  for (int i = 1; i < 8; ++i) sum += gradient[i].dot(points[i] - points[0]);
+  return sum / 3;
+}
+
+std::array<Vec3, 8> hex_volume_gradient(const HexPoints& points) {
+  std::array<Vec3, 8> gradient;
+  gradient.fill(Vec3::Zero());
+  for (const auto& face : hex_faces) {
+    for (int k = 0; k < 4; ++k) {
+      const Vec3& a = points[face[k]];
+      const Vec3 b = points[face[(k + 1) % 4]] - a;
+      const Vec3 c = points[face[(k + 2) % 4]] - a;
+      const Vec3 d = points[face[(k + 3) % 4]] - a;
+      gradient[face[k]] += (b.cross(c) + c.cross(d) + b.cross(d)) / 12;
+    }
+  }
+  return gradient;
+}
+
+std::array<Vec3, 8> hex_volume_hessian_product(const HexPoints& points, const std::array<Vec3, 8>& direction) {
+  std::array<Vec3, 8> product;
+  product.fill(Vec3::Zero());
+  const auto a = hex_volume_hessian(points);
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j) product[i] += a[i][j].cross(direction[j]);
+  return product;
+}
+
+std::array<std::array<Vec3, 8>, 8> hex_volume_hessian(const HexPoints& points) {
+  std::array<std::array<Vec3, 8>, 8> hessian;
+  for (auto& row : hessian) row.fill(Vec3::Zero());
+  // From the gradient: d(b x c)/dc = [b]x and d(b x c)/db = -[c]x. V is linear in each single point: no diagonal blocks.
+  for (const auto& face : hex_faces) {
+    for (int k = 0; k < 4; ++k) {
+      const int ia = face[k], ib = face[(k + 1) % 4], ic = face[(k + 2) % 4], id = face[(k + 3) % 4];
+      const Vec3 b = points[ib] - points[ia], c = points[ic] - points[ia], d = points[id] - points[ia];
+      hessian[ia][ib] -= (c + d) / 12;
+      hessian[ia][ic] += (b - d) / 12;
+      hessian[ia][id] += (b + c) / 12;
+    }
+  }
+  return hessian;
+}
+
+double hex_scaled_jacobian(const HexPoints& points) {
+  double worst = 1;
+  for (const Vec3& corner : hex_reference_nodes) {
+    const Mat3 jacobian = hex_jacobian(points, corner);
+    const double lengths = jacobian.col(0).norm() * jacobian.col(1).norm() * jacobian.col(2).norm();
+    worst = std::min(worst, lengths > 0 ? jacobian.determinant() / lengths : -1.0);
+  }
+  return worst;
+}
+
+double facet_area(const std::array<Vec3, 4>& points) {
+  const double g = 1 / std::sqrt(3.0);
+  double area = 0;
+  for (const double s : {-g, g})
+    for (const double t : {-g, g}) {
+      const Vec3 by_s = 0.25 * ((1 - t) * (points[1] - points[0]) + (1 + t) * (points[2] - points[3]));
+      const Vec3 by_t = 0.25 * ((1 - s) * (points[3] - points[0]) + (1 + s) * (points[2] - points[1]));
+      area += by_s.cross(by_t).norm();
+    }
+  return area;
+}
+
+Vec3 facet_area_vector(const std::array<Vec3, 4>& points) {
+  return 0.5 * (points[2] - points[0]).cross(points[3] - points[1]);
+}
+
+}  // namespace plica

@@ -1,0 +1,90 @@
+#include "tissue/lattice.hpp"
+
+#include <cmath>
+
+namespace plica {
+namespace {
+
+// The chain of lattice nodes from one corner of the cell to another along an edge.
+std::vector<NodeId> edge_chain(const CellLattice& lattice, const std::array<int, 2>& corners) {
+  std::array<int, 3> from{}, step{};
+  int segments = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int a = hex_reference_nodes[corners[0]][axis] > 0 ? lattice.elements[axis] : 0;
+    const int b = hex_reference_nodes[corners[1]][axis] > 0 ? lattice.elements[axis] : 0;
+    from[axis] = a;
+    step[axis] = (b > a) - (b < a);
+    segments += std::abs(b - a);
+  }
+  std::vector<NodeId> chain;
+  for (int s = 0; s <= segments; ++s)
+    chain.push_back(lattice.node(from[0] + s * step[0], from[1] + s * step[1], from[2] + s * step[2]));
+  return chain;
+}
+
+void set_corners_and_edges(const CellLattice& lattice, const Vectors& rest_positions, Cell& cell) {
+  for (int i = 0; i < 8; ++i) {
+    const Vec3& r = hex_reference_nodes[i];
+    cell.corners[i] = lattice.node(r.x() > 0 ? lattice.elements[0] : 0, r.y() > 0 ? lattice.elements[1] : 0,
+                                   r.z() > 0 ? lattice.elements[2] : 0);
+  }
+  // Which of u and v runs along the embryo: the one whose mean edge is turned less from x.
+  std::array<Vec3, 2> mean = {Vec3::Zero(), Vec3::Zero()};
+  for (int e = 0; e < 8; ++e) {
+    const auto [a, b] = hex_edges[e];
+    mean[e / 4] += rest_positions[cell.corners[b].index()] - rest_positions[cell.corners[a].index()];
+  }
+  const bool u_is_along =
+      std::abs(mean[0].x()) * mean[1].norm() >= std::abs(mean[1].x()) * mean[0].norm() * (1 - 1e-9);
+  for (int e = 0; e < 12; ++e) {
+    CellEdge& edge = cell.edges[e];
+    edge.nodes = edge_chain(lattice, hex_edges[e]);
+    if (e >= 8) {
+      edge.direction = EdgeDirection::lateral;
+      edge.side = EdgeSide::lateral;
+    } else {
+      edge.direction = (e < 4) == u_is_along ? EdgeDirection::along : EdgeDirection::across;
+      edge.side = e % 4 < 2 ? EdgeSide::basal : EdgeSide::apical;
+    }
+  }
+}
+
+void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue) {
+  const auto [nu, nv, nw] = lattice.elements;
+  for (int w = 0; w < nw; ++w)
+    for (int v = 0; v < nv; ++v)
+      for (int u = 0; u < nu; ++u) {
+        const std::array<NodeId, 8> element = {lattice.node(u, v, w),         lattice.node(u + 1, v, w),
+                                               lattice.node(u + 1, v + 1, w), lattice.node(u, v + 1, w),
+                                               lattice.node(u, v, w + 1),     lattice.node(u + 1, v, w + 1),
+                                               lattice.node(u + 1, v + 1, w + 1), lattice.node(u, v + 1, w + 1)};
+        tissue.elements.push_back(element);
+        tissue.element_cell.push_back(id);
+        tissue.element_rest_shape.push_back(gather(tissue.rest_positions, element));
+        if (w == 0 && lattice.has_basal)
+          tissue.basal_facets.push_back({{element[0], element[3], element[2], element[1]}, id});
+        if (w == nw - 1 && lattice.has_apical)
+          tissue.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id});
+      }
+}
+
+}  // namespace
+
+Tissue tissue_from_lattices(const std::vector<CellLattice>& cells, Vectors rest_positions) {
+  Tissue tissue;
+  tissue.rest_positions = std::move(rest_positions);
+  tissue.cells.reserve(cells.size());
+  for (const CellLattice& lattice : cells) {
+    Cell cell;
+    cell.first_element = ElementId(tissue.elements.size());
+    cell.element_count = lattice.elements[0] * lattice.elements[1] * lattice.elements[2];
+    cell.grid_place = lattice.grid_place;
+    set_corners_and_edges(lattice, tissue.rest_positions, cell);
+    add_elements_and_facets(lattice, CellId(tissue.cells.size()), tissue);
+    tissue.cells.push_back(std::move(cell));
+  }
+  tissue.regions["all"] = CellSet(tissue.cells.size(), true);
+  return tissue;
+}
+
+}  // namespace plica

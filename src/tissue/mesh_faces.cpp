@@ -1,0 +1,74 @@
+#include "tissue/mesh_faces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tissue/hexahedral_mesh.hpp"
+
+namespace plica {
+namespace {
+
+using FaceNodes = std::array<NodeId, 4>;
+
+struct FaceUse {
+  FaceNodes sorted_nodes;
+  std::int32_t side;  // cell x 6 + face
+
+  auto operator<=>(const FaceUse&) const = default;
+};
+
+FaceNodes face_nodes(const std::array<NodeId, 8>& cell, int face) {
+  FaceNodes nodes;
+  for (int i = 0; i < 4; ++i) nodes[i] = cell[hex_faces[face][i]];
+  return nodes;
+}
+
+/// Two cells on either side of a face run round it in opposite directions.
+bool opposite(FaceNodes a, const FaceNodes& b) {
+  std::reverse(a.begin(), a.end());
+  for (int turn = 0; turn < 4; ++turn) {
+    if (a == b) return true;
+    std::rotate(a.begin(), a.begin() + 1, a.end());
+  }
+  return false;
+}
+
+}  // namespace
+
+MeshFaces::MeshFaces(const std::vector<std::array<NodeId, 8>>& cells) : other_side_(cells.size() * 6, -1) {
+  std::vector<FaceUse> uses(cells.size() * 6);
+  for (std::size_t side = 0; side < uses.size(); ++side) {
+    uses[side] = {face_nodes(cells[side / 6], static_cast<int>(side % 6)), static_cast<std::int32_t>(side)};
+    std::sort(uses[side].sorted_nodes.begin(), uses[side].sorted_nodes.end());
+  }
+  std::sort(uses.begin(), uses.end());
+  for (std::size_t i = 1; i < uses.size(); ++i) {
+    if (uses[i].sorted_nodes != uses[i - 1].sorted_nodes) continue;
+    const std::int32_t a = uses[i - 1].side, b = uses[i].side;
+    if (other_side_[a] >= 0)
+      throw MeshError(
+          fmt::format("cells {}, {} and {} share one face; at most two can", other_side_[a] / 6, a / 6, b / 6));
+    if (!opposite(face_nodes(cells[a / 6], a % 6), face_nodes(cells[b / 6], b % 6)))
+      throw MeshError(fmt::format(
+          "cells {} and {} share four nodes but do not lie on the two sides of one face: one is twisted, or they overlap",
+          a / 6, b / 6));
+    other_side_[a] = b;
+    other_side_[b] = a;
+  }
+}
+
+std::optional<CellFace> MeshFaces::neighbour(const CellFace& side) const {
+  const std::int32_t other = other_side_[side.cell * 6 + side.face];
+  if (other < 0) return {};
+  return CellFace{static_cast<std::size_t>(other / 6), other % 6};
+}
+
+std::vector<CellFace> MeshFaces::surface() const {
+  std::vector<CellFace> sides;
+  for (std::size_t side = 0; side < other_side_.size(); ++side)
+    if (other_side_[side] < 0) sides.push_back({side / 6, static_cast<int>(side % 6)});
+  return sides;
+}
+
+}  // namespace plica
