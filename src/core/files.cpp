@@ -108,7 +108,7 @@ std::string read_file(const fs::path& path) {
   const int descriptor = open_file(path, O_RDONLY);
   if (descriptor < 0) throw_unread(path, reason(errno));
   std::string content, why;
-  struct stat status{};
+  struct stat status {};
   if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0 &&
       static_cast<std::uintmax_t>(status.st_size) <= largest_file_read_bytes)
     content.reserve(static_cast<std::size_t>(status.st_size));
@@ -166,7 +166,7 @@ RowFile::RowFile(fs::path path, std::uint64_t keep_bytes) : path_(std::move(path
   descriptor_ = open_file(path_, O_RDWR | O_CREAT | O_APPEND);
   if (descriptor_ < 0) throw_unwritten(path_, reason(errno));
   std::string why;
-  struct stat status{};
+  struct stat status {};
   char last = '\n';
   if (::fstat(descriptor_, &status) != 0)
     why = reason(errno);

@@ -33,8 +33,8 @@ void replace_file(const std::filesystem::path& temporary, const std::filesystem:
 class RowFile {
  public:
   /// Opens the file (creates it, without its folder) and cuts it back to its first `keep_bytes`: 0 starts anew, the
-  /// `size_bytes()` of a checkpoint goes on from there. FileError also when the file is shorter than that, or when those
-  /// bytes do not end with a whole row.
+  /// `size_bytes()` of a checkpoint goes on from there. FileError also when the file is shorter than that, or when
+  /// those bytes do not end with a whole row.
   explicit RowFile(std::filesystem::path path, std::uint64_t keep_bytes = 0);
   RowFile(RowFile&& other) noexcept;
   RowFile& operator=(RowFile&& other) noexcept;

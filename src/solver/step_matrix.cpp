@@ -104,6 +104,13 @@ void StepMatrix::add_pressure_forces(std::span<const double> pressures, std::spa
       forces[gradients_[k].node.index()] += pressures[cell] * gradients_[k].value;
 }
 
+namespace {
+
+// The diagonal of a fixed unknown: any number will do; one of the block's own size suits the factor's scaling.
+double pivot(double own) { return own != 0 ? own : 1; }
+
+}  // namespace
+
 void StepMatrix::write_values(std::span<const NodeFrame> frames, std::vector<double>& values) const {
   values.clear();
   values.reserve(pattern_.rows.size());
@@ -114,11 +121,10 @@ void StepMatrix::write_values(std::span<const NodeFrame> frames, std::vector<dou
       Mat3 block = blocks_[k];
       if (a.fixed > 0) block = a.axes.transpose() * block;
       if (b.fixed > 0) block = block * b.axes;
-      // A fixed unknown keeps the block's own size on the diagonal, for the sake of the factor's scaling.
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < (column == row ? i + 1 : 3); ++j) {
           const bool fixed = i < a.fixed || j < b.fixed;
-          values.push_back(!fixed || (column == row && i == j) ? block(i, j) : 0.0);
+          values.push_back(!fixed ? block(i, j) : column == row && i == j ? pivot(block(i, i)) : 0.0);
         }
     }
   for (const Gradient& gradient : gradients_) {

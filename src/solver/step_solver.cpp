@@ -51,7 +51,11 @@ std::string StepReport::reason() const {
 }
 
 StepSolver::StepSolver(const Model& model, StepTolerances tolerances)
-    : model_(model), tolerances_(tolerances), matrix_(model), linear_solver_(make_direct_solver()) {
+    : model_(model),
+      tolerances_(tolerances),
+      force_scale_(model.force_scale()),
+      matrix_(model),
+      linear_solver_(make_direct_solver()) {
   linear_solver_->analyse(matrix_.pattern());
 }
 
@@ -59,12 +63,16 @@ StepSolver::~StepSolver() = default;
 
 void StepSolver::forget_factor() { factor_frames_.clear(); }
 
+Vec3 StepSolver::free_part(std::size_t node, Vec3 direction) const {
+  for (int axis = 0; axis < 3; ++axis)
+    if (model_.held[node][axis]) direction[axis] = 0;
+  return direction;
+}
+
 std::vector<NodeFrame> StepSolver::frames(const Iterate& at) const {
   std::vector<NodeFrame> frames(at.positions.size());
   // The fixed directions of each node, made orthonormal: held axes first, then the shell's normal.
-  const auto add_fixed = [](NodeFrame& frame, Vec3 direction) {
-    for (int k = 0; k < frame.fixed; ++k) direction -= frame.axes.col(k).dot(direction) * frame.axes.col(k);
-    if (direction.norm() < 1e-6) return;  // held in this direction already
+  const auto add_fixed = [](NodeFrame& frame, const Vec3& direction) {
     frame.axes.col(frame.fixed++) = direction.normalized();
   };
   for (std::size_t n = 0; n < frames.size(); ++n)
@@ -73,7 +81,7 @@ std::vector<NodeFrame> StepSolver::frames(const Iterate& at) const {
   for (std::size_t k = 0; k < at.in_contact.size(); ++k)
     if (at.in_contact[k]) {
       const std::size_t n = model_.vitelline->nodes()[k].index();
-      add_fixed(frames[n], model_.vitelline->gap(at.positions[n]).inward);
+      add_fixed(frames[n], free_part(n, model_.vitelline->gap(at.positions[n]).inward));
     }
   for (NodeFrame& frame : frames) {
     if (frame.fixed == 1) frame.axes.col(1) = frame.axes.col(0).unitOrthogonal();
@@ -123,7 +131,7 @@ StepSolver::Residual StepSolver::residual(const Step& step, const Iterate& at) c
     const Vec3 local = node_frames[n].axes.transpose() * r.forces[n];
     for (int i = node_frames[n].fixed; i < 3; ++i) free += local[i] * local[i];
   }
-  r.force = std::sqrt(free) / (std::sqrt(balanced) + 1e-4 * model_.force_scale());
+  r.force = std::sqrt(free) / (std::sqrt(balanced) + 1e-4 * force_scale_);
   return r;
 }
 
@@ -200,14 +208,20 @@ StepSolver::Direction StepSolver::direction(const Iterate& at, const Residual& r
 bool StepSolver::revise_contacts(Iterate& at) const {
   bool changed = false;
   for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
-    if (at.in_contact[k]) {
+    const std::size_t n = model_.vitelline->nodes()[k].index();
+    const Vitelline::Gap gap = model_.vitelline->gap(at.positions[n]);
+    // A node that is held where the shell would push it is the hold's business.
+    if (free_part(n, gap.inward).norm() < 1e-6) {
+      at.in_contact[k] = 0;
+      at.contact_forces[k] = 0;
+    } else if (at.in_contact[k]) {
       // Pulled inward for real: let go. Forces of rounding's size are none.
-      if (at.contact_forces[k] < -1e-12 * model_.force_scale()) {
+      if (at.contact_forces[k] < -1e-12 * force_scale_) {
         at.in_contact[k] = 0;
         changed = true;
       }
       if (at.contact_forces[k] < 0) at.contact_forces[k] = 0;
-    } else if (model_.vitelline->gap(at.positions[model_.vitelline->nodes()[k].index()]).value < -tolerances_.gap_um) {
+    } else if (gap.value < -tolerances_.gap_um) {
       at.in_contact[k] = 1;
       changed = true;
     }

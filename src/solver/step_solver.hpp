@@ -58,6 +58,7 @@ class StepSolver {
   struct Direction;
 
   [[nodiscard]] Residual residual(const Step& step, const Iterate& at) const;
+  [[nodiscard]] Vec3 free_part(std::size_t node, Vec3 direction) const;  // without the directions in which it is held
   [[nodiscard]] std::vector<NodeFrame> frames(const Iterate& at) const;
   bool refresh_factor(const Step& step, const Iterate& at);
   [[nodiscard]] Direction direction(const Iterate& at, const Residual& residual);
@@ -67,6 +68,7 @@ class StepSolver {
 
   const Model& model_;
   StepTolerances tolerances_;
+  double force_scale_;  // nN
   StepMatrix matrix_;
   std::unique_ptr<LinearSolver> linear_solver_;
   std::vector<double> values_;

@@ -26,8 +26,19 @@ void check_size(const HexahedralMesh& mesh, const std::array<int, 3>& elements) 
         along, across, radial));
   const double total = static_cast<double>(mesh.cells.size()) * along * across * radial;
   if (total > static_cast<double>(largest_mesh_elements))
-    throw MeshError(fmt::format("the mesh would have {:.0f} elements; at most {} are allowed", total,
-                                largest_mesh_elements));
+    throw MeshError(
+        fmt::format("the mesh would have {:.0f} elements; at most {} are allowed", total, largest_mesh_elements));
+}
+
+void check_arrays(const HexahedralMesh& mesh) {
+  const std::size_t count = mesh.cells.size();
+  if (!mesh.apical_faces.empty() && mesh.apical_faces.size() != count)
+    throw MeshError(fmt::format("{} apical faces are given for {} cells", mesh.apical_faces.size(), count));
+  for (const int face : mesh.apical_faces)
+    if (face < 0 || face > 5) throw MeshError(fmt::format("an apical face is {}; faces are 0 to 5", face));
+  for (const auto& [name, set] : mesh.arrays)
+    if (set.size() != count)
+      throw MeshError(fmt::format("the cell array \"{}\" has {} values for {} cells", name, set.size(), count));
 }
 
 void check_cell_nodes(const HexahedralMesh& mesh, std::size_t cell) {
@@ -71,8 +82,8 @@ double mean_edge_length(const HexahedralMesh& mesh) {
   return sum / (12.0 * static_cast<double>(mesh.cells.size()));
 }
 
-/// Two nodes of the surface at one place: cells that look joined and are not. Nodes are sorted along a direction that no
-/// grid is likely to be square to, so that few are compared.
+/// Two nodes of the surface at one place: cells that look joined and are not. Nodes are sorted along a direction that
+/// no grid is likely to be square to, so that few are compared.
 void check_welded(const HexahedralMesh& mesh, const MeshFaces& faces) {
   const Vec3 direction = Vec3(0.5772157, 0.2146018, 0.7878593);
   const double tolerance = 1e-6 * mean_edge_length(mesh);
@@ -103,8 +114,8 @@ class LatticeNodes {
 
   /// The node at a place of the lattice of a cell with these corners.
   NodeId node(const std::array<NodeId, 8>& corners, const std::array<int, 3>& place) {
-    // Each corner's weight as a whole number (of along * across * radial). Corners of weight 0 are left out: a place on a
-    // face or an edge has four or two, the same ones seen from each cell.
+    // Each corner's weight as a whole number (of along * across * radial). Corners of weight 0 are left out: a place on
+    // a face or an edge has four or two, the same ones seen from each cell.
     Key key;
     std::size_t count = 0;
     for (int i = 0; i < 8; ++i) {
@@ -115,7 +126,7 @@ class LatticeNodes {
     }
     if (count == 1) return NodeId(key[0].first);
     if (count == 8) return add(key);
-    std::sort(key.begin(), key.begin() + static_cast<std::ptrdiff_t>(count));
+    std::sort(key.begin(), key.end());
     const auto [entry, is_new] = shared_.try_emplace(key);
     if (is_new) entry->second = add(key);
     return entry->second;
@@ -174,6 +185,7 @@ void check_elements(const Tissue& tissue) {
 
 Tissue tissue_from_mesh(const HexahedralMesh& mesh, const std::array<int, 3>& elements_per_cell) {
   check_size(mesh, elements_per_cell);
+  check_arrays(mesh);
   check_cells(mesh);
   const MeshFaces faces(mesh.cells);
   check_welded(mesh, faces);

@@ -29,9 +29,9 @@ struct HexahedralMesh {
 inline constexpr long long largest_mesh_elements = 20'000'000;
 
 /// Makes every hexahedron a cell whose nodes 4-7 are apical, subdivided trilinearly into `elements_per_cell` (along,
-/// across, basal to apical) elements; the first two must agree, since a file's cells have no common direction. The volume
-/// does not change. Nodes keep their order, those of refined elements follow. Without `apical_faces` the mesh must be one
-/// closed layer, one cell thick, and apical is outside. MeshError when the mesh cannot be used.
+/// across, basal to apical) elements; the first two must agree, since a file's cells have no common direction. The
+/// volume does not change. Nodes keep their order, those of refined elements follow. Without `apical_faces` the mesh
+/// must be one closed layer, one cell thick, and apical is outside. MeshError when the mesh cannot be used.
 Tissue tissue_from_mesh(const HexahedralMesh& mesh, const std::array<int, 3>& elements_per_cell);
 
 }  // namespace plica

@@ -46,11 +46,15 @@ Mat3 hex_jacobian(const HexPoints& points, const Vec3& reference) {
 }
 
 double hex_volume(const HexPoints& points) {
-  const std::array<Vec3, 8> gradient = hex_volume_gradient(points);
   // Points relative to the first: the volume does not change under translation, its rounding does.
   double sum = 0;
-  for (int i = 1; i < 8; ++i) sum += gradient[i].dot(points[i] - points[0]);
-  return sum / 3;
+  for (const auto& face : hex_faces) {
+    const Vec3 a = points[face[0]] - points[0], b = points[face[1]] - points[0], c = points[face[2]] - points[0],
+               d = points[face[3]] - points[0];
+    // det(a,b,c) + det(a,c,d) + det(a,b,d) + det(b,c,d), with products shared.
+    sum += a.dot((b - d).cross(c) + b.cross(d)) + b.dot(c.cross(d));
+  }
+  return sum / 12;
 }
 
 std::array<Vec3, 8> hex_volume_gradient(const HexPoints& points) {
@@ -62,7 +66,7 @@ std::array<Vec3, 8> hex_volume_gradient(const HexPoints& points) {
       const Vec3 b = points[face[(k + 1) % 4]] - a;
       const Vec3 c = points[face[(k + 2) % 4]] - a;
       const Vec3 d = points[face[(k + 3) % 4]] - a;
-      gradient[face[k]] += (b.cross(c) + c.cross(d) + b.cross(d)) / 12;
+      gradient[face[k]] += ((b - d).cross(c) + b.cross(d)) / 12;
     }
   }
   return gradient;
@@ -94,11 +98,22 @@ std::array<std::array<Vec3, 8>, 8> hex_volume_hessian(const HexPoints& points) {
 }
 
 double hex_scaled_jacobian(const HexPoints& points) {
+  // At a corner the Jacobian's columns are half the edges that meet there, each along its reference direction.
+  static const auto edges_at = [] {
+    std::array<std::array<int, 3>, 8> edges{};
+    for (int e = 0; e < 12; ++e)
+      for (const int corner : hex_edges[e]) edges[corner][e / 4] = e;
+    return edges;
+  }();
   double worst = 1;
-  for (const Vec3& corner : hex_reference_nodes) {
-    const Mat3 jacobian = hex_jacobian(points, corner);
-    const double lengths = jacobian.col(0).norm() * jacobian.col(1).norm() * jacobian.col(2).norm();
-    worst = std::min(worst, lengths > 0 ? jacobian.determinant() / lengths : -1.0);
+  for (int corner = 0; corner < 8; ++corner) {
+    std::array<Vec3, 3> edge;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [from, to] = hex_edges[edges_at[corner][axis]];
+      edge[axis] = points[to] - points[from];
+    }
+    const double lengths = std::sqrt(edge[0].squaredNorm() * edge[1].squaredNorm() * edge[2].squaredNorm());
+    worst = std::min(worst, lengths > 0 ? edge[0].cross(edge[1]).dot(edge[2]) / lengths : -1.0);
   }
   return worst;
 }

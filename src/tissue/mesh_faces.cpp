@@ -50,9 +50,10 @@ MeshFaces::MeshFaces(const std::vector<std::array<NodeId, 8>>& cells) : other_si
       throw MeshError(
           fmt::format("cells {}, {} and {} share one face; at most two can", other_side_[a] / 6, a / 6, b / 6));
     if (!opposite(face_nodes(cells[a / 6], a % 6), face_nodes(cells[b / 6], b % 6)))
-      throw MeshError(fmt::format(
-          "cells {} and {} share four nodes but do not lie on the two sides of one face: one is twisted, or they overlap",
-          a / 6, b / 6));
+      throw MeshError(
+          fmt::format("cells {} and {} share four nodes but do not lie on the two sides of one face: one is twisted, "
+                      "or they overlap",
+                      a / 6, b / 6));
     other_side_[a] = b;
     other_side_[b] = a;
   }

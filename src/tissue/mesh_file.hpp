@@ -10,8 +10,8 @@
 
 namespace plica {
 
-/// Reads a hexahedral mesh: VTK's unstructured grid, XML (`.vtu`) or legacy (`.vtk`), told by its content; coordinates in
-/// um. Every hexahedron is a cell, subdivided into `elements_per_cell` (along, across, basal to apical) elements.
+/// Reads a hexahedral mesh: VTK's unstructured grid, XML (`.vtu`) or legacy (`.vtk`), told by its content; coordinates
+/// in um. Every hexahedron is a cell, subdivided into `elements_per_cell` (along, across, basal to apical) elements.
 ///
 /// Apical is the outer surface of a closed layer, or the face that the cell array `apical_array` names when it is not
 /// empty: 0-5 in the order of hex_faces. Every other cell array of one component becomes one of `Tissue::cell_arrays`.

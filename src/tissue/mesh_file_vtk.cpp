@@ -1,6 +1,7 @@
-// What VTK says of a bad file goes to a window of our own while it reads: its messages take several lines, name sources
-// of VTK and appear on stderr, also from objects inside its readers. Any error counts, since VTK hands out what it has got of
-// a broken file as if it were whole.
+// VTK's readers trust the numbers in a file: a few damaged bytes make them divide by zero or write beyond their memory.
+// So a child process reads the file and hands over what it found as bytes, and plica lives on whatever VTK does. There
+// a window of our own takes what VTK has to say, also from objects within its readers. Any error counts, since VTK
+// hands out what it has got of a broken file as if it were whole.
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -19,28 +20,26 @@
 
 #include <cerrno>
 #include <cmath>
-#include <exception>
 #include <fstream>
 #include <system_error>
 
+#include "core/child_process.hpp"
 #include "core/errors.hpp"
+#include "tissue/mesh_bytes.hpp"
 #include "tissue/mesh_file.hpp"
 
 namespace plica {
 namespace {
 
-/// Keeps the first error and prints nothing.
-class SilentWindow : public vtkOutputWindow {
+/// Keeps the first error.
+class ErrorWindow : public vtkOutputWindow {
  public:
-  static SilentWindow* New();
-  vtkTypeMacro(SilentWindow, vtkOutputWindow);
+  static ErrorWindow* New();
 
   void DisplayText(const char*) override {}
   void DisplayErrorText(const char* text) override {
     if (first_error_.empty()) first_error_ = text;
   }
-  void DisplayWarningText(const char*) override {}
-  void DisplayGenericWarningText(const char*) override {}
   [[nodiscard]] bool has_error() const { return !first_error_.empty(); }
 
   /// One line, without the place in VTK's sources and the address of VTK's object.
@@ -62,23 +61,9 @@ class SilentWindow : public vtkOutputWindow {
  private:
   std::string first_error_;
 };
-vtkStandardNewMacro(SilentWindow);
+vtkStandardNewMacro(ErrorWindow)
 
-/// VTK's output goes to `window` as long as this lives.
-class RedirectedOutput {
- public:
-  explicit RedirectedOutput(SilentWindow& window) : former_(vtkOutputWindow::GetInstance()) {
-    vtkOutputWindow::SetInstance(&window);
-  }
-  RedirectedOutput(const RedirectedOutput&) = delete;
-  RedirectedOutput& operator=(const RedirectedOutput&) = delete;
-  ~RedirectedOutput() { vtkOutputWindow::SetInstance(former_); }
-
- private:
-  vtkSmartPointer<vtkOutputWindow> former_;
-};
-
-[[noreturn]] void throw_unread(const std::filesystem::path& file, const std::string& why) {
+    [[noreturn]] void throw_unread(const std::filesystem::path& file, const std::string& why) {
   throw FileError(fmt::format("{}: cannot be read: {}", file.string(), why));
 }
 
@@ -101,20 +86,26 @@ bool is_xml(const std::filesystem::path& file) {
 }
 
 template <class Reader>
-vtkSmartPointer<vtkUnstructuredGrid> grid_of(const std::filesystem::path& file) {
-  vtkNew<SilentWindow> window;
-  const RedirectedOutput redirected(*window);
-  vtkNew<Reader> reader;
-  reader->SetFileName(file.c_str());
-  try {
-    reader->Update();
-  } catch (const std::exception&) {  // out of memory, when a broken file asks for any number of nodes
-    throw_unread(file, "it is not a mesh that VTK can read");
-  }
+vtkSmartPointer<vtkUnstructuredGrid> grid_of(const std::filesystem::path& file, Reader& reader) {
+  vtkNew<ErrorWindow> window;
+  vtkOutputWindow::SetInstance(window);
+  reader.SetFileName(file.c_str());
+  reader.Update();
   if (window->has_error()) throw_unread(file, fmt::format("VTK says: {}", window->first_error()));
-  vtkSmartPointer<vtkUnstructuredGrid> grid = reader->GetOutput();
+  vtkSmartPointer<vtkUnstructuredGrid> grid = reader.GetOutput();
   if (grid == nullptr) throw_unread(file, "it holds no unstructured grid");
   return grid;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& file) {
+  if (is_xml(file)) {
+    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    return grid_of(file, *reader);
+  }
+  vtkNew<vtkUnstructuredGridReader> reader;
+  reader->ReadAllScalarsOn();  // by default, the first array only
+  reader->ReadAllFieldsOn();
+  return grid_of(file, *reader);
 }
 
 void check_hexahedra(vtkUnstructuredGrid& grid) {
@@ -155,7 +146,19 @@ void copy_geometry(vtkUnstructuredGrid& grid, HexahedralMesh& mesh) {
   }
 }
 
-/// Arrays of one number a cell: as sets where it is not 0, or as the faces that are apical.
+std::vector<int> apical_faces(vtkDataArray& array) {
+  std::vector<int> faces;
+  for (vtkIdType cell = 0; cell < array.GetNumberOfTuples(); ++cell) {
+    const double value = array.GetComponent(cell, 0);
+    if (!(value >= 0 && value <= 5 && value == std::floor(value)))
+      throw MeshError(
+          fmt::format("the apical face of cell {} is {} in \"{}\"; faces are 0 to 5", cell, value, array.GetName()));
+    faces.push_back(static_cast<int>(value));
+  }
+  return faces;
+}
+
+/// Arrays of one number a cell: as sets where it is neither 0 nor NaN, or as the faces that are apical.
 void copy_arrays(vtkUnstructuredGrid& grid, const std::string& apical_array, HexahedralMesh& mesh) {
   std::string names;
   for (int a = 0; a < grid.GetCellData()->GetNumberOfArrays(); ++a) {
@@ -166,33 +169,49 @@ void copy_arrays(vtkUnstructuredGrid& grid, const std::string& apical_array, Hex
       throw MeshError(fmt::format("the cell array \"{}\" has {} values for {} cells", name, array->GetNumberOfTuples(),
                                   grid.GetNumberOfCells()));
     names += names.empty() ? name : ", " + name;
-    CellSet set(mesh.cells.size());
-    for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell) {
+    if (name == apical_array) {
+      mesh.apical_faces = apical_faces(*array);
+      continue;
+    }
+    CellSet& set = mesh.arrays[name];
+    set.resize(mesh.cells.size());
+    for (std::size_t cell = 0; cell < set.size(); ++cell) {
       const double value = array->GetComponent(static_cast<vtkIdType>(cell), 0);
       set[cell] = value != 0 && !std::isnan(value);
-      if (name != apical_array) continue;
-      if (!(value >= 0 && value <= 5 && value == std::floor(value)))
-        throw MeshError(fmt::format("the apical face of cell {} is {} in \"{}\"; faces are 0 to 5", cell, value, name));
-      mesh.apical_faces.push_back(static_cast<int>(value));
     }
-    if (name != apical_array) mesh.arrays[name] = std::move(set);
   }
   if (!apical_array.empty() && mesh.apical_faces.empty())
     throw MeshError(fmt::format("there is no cell array \"{}\" of one number a cell; there {}", apical_array,
                                 names.empty() ? "is none at all" : "are: " + names));
 }
 
+/// What the child process says: a letter for the kind of answer, then the mesh or the error.
+std::string answer(const std::filesystem::path& file, const std::string& apical_array) {
+  try {
+    HexahedralMesh mesh;
+    const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
+    check_hexahedra(*grid);
+    copy_geometry(*grid, mesh);
+    if (!mesh.cells.empty()) copy_arrays(*grid, apical_array, mesh);
+    return 'm' + mesh_to_bytes(mesh);
+  } catch (const FileError& error) {
+    return std::string("f") + error.what();
+  } catch (const MeshError& error) {
+    return std::string("c") + error.what();
+  }
+}
+
 }  // namespace
 
 Tissue read_mesh_file(const std::filesystem::path& file, const std::string& apical_array,
                       const std::array<int, 3>& elements_per_cell) {
-  const auto grid = is_xml(file) ? grid_of<vtkXMLUnstructuredGridReader>(file) : grid_of<vtkUnstructuredGridReader>(file);
+  const std::optional<std::string> bytes = output_of_child([&] { return answer(file, apical_array); });
+  if (!bytes || bytes->empty()) throw_unread(file, "it is damaged: VTK breaks off at it");
+  const std::string_view content = std::string_view(*bytes).substr(1);
+  if (bytes->front() == 'f') throw FileError(std::string(content));
   try {
-    HexahedralMesh mesh;
-    check_hexahedra(*grid);
-    copy_geometry(*grid, mesh);
-    if (!mesh.cells.empty()) copy_arrays(*grid, apical_array, mesh);
-    return tissue_from_mesh(mesh, elements_per_cell);
+    if (bytes->front() == 'c') throw MeshError(std::string(content));
+    return tissue_from_mesh(mesh_from_bytes(content), elements_per_cell);
   } catch (const MeshError& error) {
     throw MeshError(fmt::format("{}: {}", file.string(), error.what()));
   }

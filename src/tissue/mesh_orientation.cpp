@@ -19,8 +19,8 @@ class NodeSets {
   }
   /// The set is named after its first node.
   void join(std::size_t a, std::size_t b) {
-    const auto [low, high] = std::minmax(set_of(a), set_of(b));
-    parent_[high] = low;
+    const std::size_t set_a = set_of(a), set_b = set_of(b);
+    parent_[std::max(set_a, set_b)] = std::min(set_a, set_b);
   }
 
  private:
@@ -43,15 +43,17 @@ double enclosed_volume(const HexahedralMesh& mesh, const CellFace& side, const V
 /// cells, so the outside encloses a positive volume and the inside, seen from the lumen, a negative one.
 std::size_t outer_component(const HexahedralMesh& mesh, const std::vector<CellFace>& surface, NodeSets& components) {
   constexpr const char* remedy = "name the cell array that holds each cell's apical face (0-5) as apical_array";
+  const Vec3 origin = mesh.points[face_node(mesh, surface.front(), 0).index()];
   std::map<std::size_t, double> volume;
   for (const CellFace& side : surface)
-    volume[components.set_of(face_node(mesh, side, 0).index())] += enclosed_volume(mesh, side, mesh.points.front());
+    volume[components.set_of(face_node(mesh, side, 0).index())] += enclosed_volume(mesh, side, origin);
   if (volume.size() == 1)
     throw MeshError(fmt::format(
-        "the mesh has a single surface (a block or an open sheet), so which faces are apical cannot be told; {}", remedy));
+        "the mesh has a single surface (a block or an open sheet), so which faces are apical cannot be told; {}",
+        remedy));
   if (volume.size() > 2)
-    throw MeshError(fmt::format("the mesh has {} separate surfaces where one closed layer has two; {}", volume.size(),
-                                remedy));
+    throw MeshError(
+        fmt::format("the mesh has {} separate surfaces where one closed layer has two; {}", volume.size(), remedy));
   const auto [first, first_volume] = *volume.begin();
   const auto [second, second_volume] = *volume.rbegin();
   if ((first_volume > 0) == (second_volume > 0))
@@ -82,8 +84,8 @@ std::vector<int> outer_faces(const HexahedralMesh& mesh, const MeshFaces& faces)
   for (const CellFace& side : surface) {
     if (components.set_of(face_node(mesh, side, 0).index()) != outer) continue;
     if (apical[side.cell] >= 0)
-      throw MeshError(fmt::format("cell {} has more than one face on the outer surface; a cell has one apical face",
-                                  side.cell));
+      throw MeshError(
+          fmt::format("cell {} has more than one face on the outer surface; a cell has one apical face", side.cell));
     apical[side.cell] = side.face;
   }
   for (std::size_t cell = 0; cell < apical.size(); ++cell)
@@ -93,8 +95,8 @@ std::vector<int> outer_faces(const HexahedralMesh& mesh, const MeshFaces& faces)
 }
 
 std::array<NodeId, 8> turned_cell(const std::array<NodeId, 8>& cell, int apical_face) {
-  // A face runs counter-clockwise seen from outside, as nodes 4-7 do seen from above. Below each node lies the one at the
-  // other end of its edge out of the face.
+  // A face runs counter-clockwise seen from outside, as nodes 4-7 do seen from above. Below each node lies the one at
+  // the other end of its edge out of the face.
   const std::array<int, 4>& top = hex_faces[apical_face];
   const auto in_top = [&](int node) { return std::find(top.begin(), top.end(), node) != top.end(); };
   std::array<NodeId, 8> turned;
@@ -118,8 +120,8 @@ void check_apical_faces(const HexahedralMesh& mesh, const MeshFaces& faces, cons
       // Two of the nodes: a lateral face. Four or none: an apical or basal face, on which cells may be stacked.
       const bool stacked = here.size() != 2 && there.size() != 2;
       if (!stacked && here != there)
-        throw MeshError(fmt::format("the apical faces of the neighbours {} and {} do not fit together", cell,
-                                    beyond->cell));
+        throw MeshError(
+            fmt::format("the apical faces of the neighbours {} and {} do not fit together", cell, beyond->cell));
     }
 }
 

@@ -9,7 +9,8 @@
 
 namespace plica {
 
-/// The face of each cell on the outer surface of a closed layer, one cell thick. MeshError when the mesh is no such layer.
+/// The face of each cell on the outer surface of a closed layer, one cell thick. MeshError when the mesh is no such
+/// layer.
 std::vector<int> outer_faces(const HexahedralMesh& mesh, const MeshFaces& faces);
 
 /// The cell turned (not mirrored) so that the given face becomes nodes 4-7; face 5 leaves it as it is.

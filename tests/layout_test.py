@@ -1,0 +1,137 @@
+#!/usr/bin/python3
+"""Holds the layout of the sources: who includes whom, where VTK may be, headers, file lengths, theory pages, links.
+
+Usage: layout_test.py ROOT [PLICA]; with the program, docs/scenario.md is compared with `plica reference` too.
+Prints what it counted; on a breach, a line each, and exit status 1.
+"""
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+# A folder of src/ includes itself and the folders before it.
+FOLDERS = ("core", "tissue", "mechanics", "solver", "simulation", "measure", "scenario", "output", "study", "app")
+MOST_LINES = 500
+NOT_A_LAW = {"law", "model", "program"}  # the files of src/mechanics that are none
+MARKDOWN_LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+root = Path(sys.argv[1]).resolve()
+program = sys.argv[2] if len(sys.argv) > 2 else None
+breaches, counts = [], {}
+
+
+def breach(path, text, line=None):
+    place = path.relative_to(root) if path.is_absolute() else path
+    breaches.append(f"{place}:{line}: {text}" if line else f"{place}: {text}")
+
+
+def count(what, number=1):
+    counts[what] = counts.get(what, 0) + number
+
+
+def lines_of(path):
+    return path.read_text(encoding="utf-8").splitlines()
+
+
+def files(folder, *suffixes):
+    return sorted(p for p in (root / folder).rglob("*") if p.is_file() and p.suffix in suffixes)
+
+
+def check_includes():
+    """Includes run one way; VTK only where the name says so."""
+    for path in files("src", ".hpp", ".cpp"):
+        folder = path.relative_to(root / "src").parts[0]
+        if folder not in FOLDERS:
+            breach(path, f"is in no known folder of src/; there are {', '.join(FOLDERS)}")
+            continue
+        for number, text in enumerate(lines_of(path), 1):
+            found = INCLUDE.match(text)
+            if not found:
+                continue
+            count("includes")
+            quoted, name = found.group(1) == '"', found.group(2)
+            other = name.split("/")[0]
+            if quoted and not (root / "src" / name).is_file():
+                breach(path, f"includes {name}, which is not in src/; paths are from src/", number)
+            elif quoted and FOLDERS.index(other) > FOLDERS.index(folder):
+                breach(path, f"{folder} may not include {other}: {other} comes after it", number)
+            if other.startswith("vtk") and not path.name.endswith("_vtk.cpp"):
+                breach(path, f"includes {name}: VTK is for files named *_vtk.cpp", number)
+
+
+def check_headers():
+    for folder in ("src", "tests", "bench"):
+        for path in files(folder, ".hpp"):
+            count("headers")
+            text = lines_of(path)
+            if not text or not text[0].startswith("// "):
+                breach(path, "does not begin with a comment that says what it is for", 1)
+            if "#pragma once" not in text:
+                breach(path, "has no #pragma once")
+
+
+def check_lengths():
+    for folder in ("src", "tests", "bench", "tools"):
+        for path in files(folder, ".hpp", ".cpp", ".py", ".sh"):
+            count("source files")
+            length = len(lines_of(path))
+            if length > MOST_LINES:
+                breach(path, f"has {length} lines, over {MOST_LINES}: which two files is it?")
+
+
+def check_laws():
+    """One law: one header, one source, one theory page, one test."""
+    for path in files("src/mechanics", ".hpp"):
+        if path.stem in NOT_A_LAW:
+            continue
+        count("laws")
+        for companion in (f"src/mechanics/{path.stem}.cpp", f"docs/theory/{path.stem}.md",
+                          f"tests/mechanics/{path.stem}_test.cpp"):
+            if not (root / companion).is_file():
+                breach(path, f"has no {companion}")
+
+
+def check_links():
+    for path in sorted(root.glob("*.md")) + files("docs", ".md"):
+        count("pages")
+        in_code = False
+        for number, text in enumerate(lines_of(path), 1):
+            in_code ^= text.lstrip().startswith("```")
+            if in_code:
+                continue
+            for target in MARKDOWN_LINK.findall(text):
+                if re.match(r"[a-z]+:", target) or target.startswith("#"):
+                    continue
+                count("links")
+                if not (path.parent / target.split("#")[0]).exists():
+                    breach(path, f"links to {target}, which is not there", number)
+    if not (root / "README.md").is_file():
+        breach(root / "README.md", "is missing")
+
+
+def check_reference():
+    page = root / "docs/scenario.md"
+    expected = subprocess.run([program, "reference"], capture_output=True, text=True, check=True).stdout
+    count("lines of the scenario reference", len(expected.splitlines()))
+    if not page.is_file() or page.read_text(encoding="utf-8") != expected:
+        breach(page, "is not what the program prints; run: plica reference > docs/scenario.md")
+
+
+check_includes()
+check_headers()
+check_lengths()
+check_laws()
+check_links()
+if program:
+    check_reference()
+
+# A check that looked at nothing is a broken check.
+for what in ("includes", "headers", "source files", "laws", "pages", "links"):
+    if not counts.get(what):
+        breach(root, f"no {what} found: is this the root of plica?")
+print("Checked " + ", ".join(f"{number} {what}" for what, number in counts.items()) + ".")
+for text in breaches:
+    print(text)
+print(f"{len(breaches)} breaches")
+sys.exit(1 if breaches else 0)

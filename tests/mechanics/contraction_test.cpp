@@ -1,0 +1,180 @@
+#include "mechanics/contraction.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/law_checks.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+const BlockShape two_cells{.length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}};
+const BlockShape refined{
+    .length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}, .elements_per_cell = {2, 2, 1}};
+
+Contraction law_of(const Tissue& tissue, const ContractionRule& rule, Program program = {}) {
+  return {contraction_springs(tissue, CellSet(tissue.cells.size(), true), rule), std::move(program)};
+}
+
+/// Two nodes on the x axis, `length_um` apart now and `previous_um` at the beginning of the step.
+Motion pair(double length_um, double previous_um = 0) {
+  Motion motion;
+  motion.positions = {Vec3::Zero(), Vec3(length_um, 0, 0)};
+  motion.previous_positions = {Vec3::Zero(), Vec3(previous_um > 0 ? previous_um : length_um, 0, 0)};
+  motion.previous_velocities.assign(2, Vec3::Zero());
+  return motion;
+}
+
+TEST(Contraction, DerivativesAgreeWithFiniteDifferences) {
+  const Tissue tissue = distorted_block(two_cells, 1, 1);
+  check_derivatives(law_of(tissue, {.stiffness = 7.3, .across_ratio = 0.4}), tissue, 3);
+}
+
+TEST(Contraction, DerivativesAgreeWithFiniteDifferencesWithEverythingOn) {
+  const Tissue tissue = distorted_block(two_cells, 1, 2);
+  check_derivatives(law_of(tissue,
+                           {.stiffness = 7.3,
+                            .across_ratio = 0.4,
+                            .diagonals = true,
+                            .rest_length_ratio = 0.6,
+                            .preload = 5,
+                            .damping = 2},
+                           Program({0, 2}, {0, 1})),
+                    tissue, 3);
+}
+
+TEST(Contraction, DerivativesAgreeWithFiniteDifferencesOnChains) {
+  const Tissue tissue = distorted_block(refined, 1, 3);
+  check_derivatives(law_of(tissue, {.stiffness = 2, .rest_length_ratio = 0.5, .preload = 3, .damping = 1}), tissue, 2,
+                    2);
+}
+
+TEST(Contraction, DerivativesAgreeWithFiniteDifferencesOnLateralEdges) {
+  const Tissue tissue = distorted_block(two_cells, 1, 4);
+  check_derivatives(law_of(tissue, {.side = EdgeSide::lateral, .stiffness = 2, .damping = 1}), tissue, 3);
+}
+
+TEST(Contraction, TensionIsStiffnessTimesStretchPlusPreload) {
+  const Contraction law({Spring{{NodeId(0), NodeId(1)}, 3, 5, 0, 12}}, {});
+  const Motion motion = pair(20);
+  const Vectors forces = forces_of(law, motion.step());
+  EXPECT_DOUBLE_EQ(forces[0].x(), 3 * (20 - 12) + 5);
+  EXPECT_DOUBLE_EQ(forces[1].x(), -(3 * (20 - 12) + 5));
+  EXPECT_EQ(forces[1].y(), 0);
+}
+
+TEST(Contraction, SlackSpringPullsWithItsPreloadOnly) {
+  const Contraction law({Spring{{NodeId(0), NodeId(1)}, 3, 5, 0, 30}}, {});
+  EXPECT_DOUBLE_EQ(forces_of(law, pair(20).step())[0].x(), 5);
+}
+
+TEST(Contraction, DampingResistsTheRateOfLengtheningWhateverTheActivity) {
+  const Contraction law({Spring{{NodeId(0), NodeId(1)}, 3, 5, 4, 0}}, Program({0}, {0}));
+  Motion motion = pair(20, 18);
+  motion.duration_s = 0.5;
+  EXPECT_DOUBLE_EQ(forces_of(law, motion.step())[0].x(), 4 * (20 - 18) / 0.5);
+}
+
+TEST(Contraction, ActivityIsReadAtTheEndOfTheStep) {
+  const Contraction law({Spring{{NodeId(0), NodeId(1)}, 3, 5, 0, 0}}, Program({1, 3}, {0.2, 1.0}));
+  Motion motion = pair(20);
+  int cases = 0;
+  for (const auto& [time, activity] : {std::pair{0.0, 0.2}, {1.0, 0.2}, {2.0, 0.6}, {3.0, 1.0}, {9.0, 1.0}}) {
+    motion.end_time_s = time;
+    EXPECT_NEAR(forces_of(law, motion.step())[0].x(), activity * 65, 1e-12);
+    ++cases;
+  }
+  RecordProperty("cases", cases);
+}
+
+// An edge of two segments is one spring of their total length: at a straight middle node nothing pulls, at a bent one
+// the tension of the whole length pulls both ways.
+TEST(Contraction, ChainHasTheTensionOfItsTotalLength) {
+  const Contraction law({Spring{{NodeId(0), NodeId(1), NodeId(2)}, 2, 0, 0, 10}}, {});
+  Motion motion = pair(3);
+  motion.positions = {Vec3(0, 0, 0), Vec3(6, 0, 0), Vec3(6, 9, 0)};
+  motion.previous_positions = motion.positions;
+  motion.previous_velocities.assign(3, Vec3::Zero());
+  const Vectors forces = forces_of(law, motion.step());
+  const double tension = 2 * (15 - 10);
+  EXPECT_LE((forces[0] - tension * Vec3(1, 0, 0)).norm(), 1e-14);
+  EXPECT_LE((forces[1] - tension * Vec3(-1, 1, 0)).norm(), 1e-14);
+  EXPECT_LE((forces[2] - tension * Vec3(0, -1, 0)).norm(), 1e-14);
+  motion.positions[2] = Vec3(15, 0, 0);
+  EXPECT_LE(forces_of(law, motion.step())[1].norm(), 1e-14);
+}
+
+TEST(Contraction, NeighboursThatShareAnEdgeHaveASpringEach) {
+  const Tissue tissue = build_block(two_cells);
+  const std::vector<Spring> springs =
+      contraction_springs(tissue, CellSet(2, true), {.stiffness = 1, .diagonals = true});
+  EXPECT_EQ(springs.size(), 12u);  // four edges and two diagonals a cell
+  // The shared apical edge runs across at x = 0.
+  int shared = 0;
+  for (const Spring& spring : springs) {
+    const Vec3 a = tissue.rest_positions[spring.nodes.front().index()];
+    const Vec3 b = tissue.rest_positions[spring.nodes.back().index()];
+    shared += a.x() == 0 && b.x() == 0;
+    EXPECT_EQ(a.z(), 20);
+    EXPECT_EQ(b.z(), 20);
+  }
+  EXPECT_EQ(shared, 2);
+}
+
+TEST(Contraction, OnlyChosenCellsContract) {
+  const Tissue tissue = build_block(two_cells);
+  for (const Spring& spring : contraction_springs(tissue, {false, true}, {.stiffness = 1}))
+    for (const NodeId node : spring.nodes) EXPECT_GE(tissue.rest_positions[node.index()].x(), 0);
+}
+
+TEST(Contraction, RatiosScaleStiffnessAndPreloadByDirection) {
+  const Tissue tissue = build_block(two_cells);
+  const ContractionRule rule{.stiffness = 2,
+                             .along_ratio = 1.5,
+                             .across_ratio = 0.4,
+                             .diagonals = true,
+                             .rest_length_ratio = 0.5,
+                             .preload = 3};
+  int along = 0, across = 0, diagonal = 0;
+  for (const Spring& spring : contraction_springs(tissue, CellSet(2, true), rule)) {
+    const Vec3 edge =
+        tissue.rest_positions[spring.nodes.back().index()] - tissue.rest_positions[spring.nodes.front().index()];
+    const bool runs_x = edge.x() != 0, runs_y = edge.y() != 0;
+    const double factor = runs_x && runs_y ? 0.95 : runs_x ? 1.5 : 0.4;
+    (runs_x && runs_y ? diagonal : runs_x ? along : across) += 1;
+    EXPECT_NEAR(spring.stiffness, 2 * factor, 1e-14);
+    EXPECT_NEAR(spring.preload, 3 * factor, 1e-14);
+    EXPECT_NEAR(spring.rest_length, 0.5 * edge.norm(), 1e-13);
+  }
+  EXPECT_EQ(along, 4);
+  EXPECT_EQ(across, 4);
+  EXPECT_EQ(diagonal, 4);
+}
+
+// Refinement changes the error and not the model: unbent chains pull like the edges they refine.
+TEST(Contraction, RefinedElementsKeepTheSpringsOfTheCells) {
+  const ContractionRule rule{.stiffness = 2, .across_ratio = 0.4, .rest_length_ratio = 0.3, .preload = 1, .damping = 1};
+  const auto coarse = contraction_springs(build_block(two_cells), CellSet(2, true), rule);
+  const auto fine = contraction_springs(build_block(refined), CellSet(2, true), rule);
+  ASSERT_EQ(coarse.size(), fine.size());
+  for (std::size_t s = 0; s < coarse.size(); ++s) {
+    EXPECT_EQ(fine[s].nodes.size(), 3u);
+    EXPECT_EQ(coarse[s].stiffness, fine[s].stiffness);
+    EXPECT_NEAR(coarse[s].rest_length, fine[s].rest_length, 1e-13);
+  }
+}
+
+TEST(Contraction, SpringsHaveNoResultantAndNoTorque) {
+  const Tissue tissue = distorted_block(refined, 1, 5);
+  const Contraction law = law_of(tissue, {.stiffness = 2, .diagonals = true, .preload = 1, .damping = 3});
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Motion motion = random_motion(tissue, 3, seed);
+    const Vectors forces = forces_of(law, motion.step());
+    EXPECT_LE(resultant(forces).norm(), 1e-11 * largest(forces));
+    EXPECT_LE(torque(forces, motion.positions).norm(), 1e-9 * largest(forces));
+  }
+}
+
+}  // namespace
+}  // namespace plica

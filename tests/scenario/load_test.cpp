@@ -1,0 +1,414 @@
+#include "scenario/load.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "scenario/builtin.hpp"
+
+namespace plica {
+namespace {
+
+using Overrides = std::vector<std::string>;
+
+Scenario load(const std::string& text, const Overrides& overrides = {}) {
+  return load_scenario({"test", "test.toml", text}, overrides);
+}
+
+/// All messages, a line each; empty where the scenario is right.
+std::string errors_of(const std::string& text, const Overrides& overrides = {}) {
+  try {
+    load(text, overrides);
+    return "";
+  } catch (const ScenarioError& error) {
+    return error.what();
+  }
+}
+
+/// Writes files into a folder of their own and takes them away again.
+class LoadFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("plica_load_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::create_directories(folder_ / "inner");
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  std::string errors_in(const std::string& path) const {
+    try {
+      load_scenario(find_scenario(path));
+      return "";
+    } catch (const ScenarioError& error) {
+      return error.what();
+    }
+  }
+  std::filesystem::path folder_;
+};
+
+TEST(LoadScenario, FillsDefaults) {
+  const Scenario scenario = load("");
+  EXPECT_EQ(scenario.name, "test");
+  EXPECT_EQ(scenario.embryo.shape, "pill");
+  EXPECT_EQ(scenario.embryo.cells, (std::array<int, 3>{18, 9, 8}));
+  EXPECT_FALSE(scenario.time.step_s.has_value());
+  EXPECT_EQ(scenario.time.end_s, 3600);
+  EXPECT_TRUE(scenario.vitelline.enabled);
+  EXPECT_TRUE(scenario.regions.empty());
+}
+
+TEST(LoadScenario, ReadsEveryKindOfValue) {
+  const Scenario scenario = load(R"(
+title = "a \"b\""
+[region.belly]
+x_um = [-10, 20.5]
+except = ["some"]
+[region.some]
+ids = [0, 7]
+[contraction.a]
+region = "belly"
+diagonals = true
+program = { time_min = [0, 1.5], activity = [0, 1] }
+[hold.b]
+region = "all"
+directions = ["x", "z"]
+[pressure.c]
+region = "all"
+pressure_Pa = -3
+[time]
+step_s = 0.5
+end_min = 2
+[output]
+frame_every_min = 0.5
+cells_csv = false
+[expect]
+cells = { value = 756, within = 0 }
+time_s = { value = 120.0, within_percent = 5 }
+)");
+  EXPECT_EQ(scenario.title, "a \"b\"");
+  EXPECT_EQ(scenario.regions.at("belly").x_um, (Range{-10, 20.5}));
+  EXPECT_EQ(scenario.regions.at("belly").except, std::vector<std::string>{"some"});
+  EXPECT_EQ(scenario.regions.at("some").ids, (std::vector<int>{0, 7}));
+  EXPECT_TRUE(scenario.contractions.at("a").diagonals);
+  EXPECT_EQ(scenario.contractions.at("a").program.time_s, (std::vector<double>{0, 90}));
+  EXPECT_EQ(scenario.holds.at("b").directions, (std::vector<std::string>{"x", "z"}));
+  EXPECT_EQ(scenario.pressures.at("c").pressure_Pa, -3);
+  EXPECT_EQ(scenario.time.step_s, 0.5);
+  EXPECT_EQ(scenario.time.end_s, 120);
+  EXPECT_EQ(scenario.output.frame_every_s, 30);
+  EXPECT_EQ(scenario.output.cells_csv, false);
+  EXPECT_EQ(scenario.expect.at("cells").within, 0);
+  EXPECT_EQ(scenario.expect.at("time_s").within_percent, 5);
+}
+
+TEST(LoadScenario, LoadsEveryBuiltin) {
+  int count = 0;
+  for (const BuiltinScenario& builtin : builtin_scenarios()) {
+    const Scenario scenario = load_scenario(find_scenario(std::string(builtin.name)));
+    EXPECT_EQ(scenario.name, builtin.name);
+    ++count;
+  }
+  std::cout << count << " scenarios\n";
+  EXPECT_GT(count, 0);
+}
+
+struct WrongScenario {
+  std::string text;
+  std::string message;
+};
+
+TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
+  const std::string program = "[contraction.a]\nregion = \"all\"\n";
+  const std::string block = "[embryo]\nshape = \"block\"\n";
+  const std::vector<WrongScenario> cases = {
+      // Names.
+      {"[embryo]\ndiametr_um = 3", "test.toml:2: embryo.diametr_um: unknown key; did you mean \"diameter_um\"?"},
+      {"[embryo]\n\nlength_mm = 3",
+       "test.toml:3: embryo.length_mm: unknown key; write \"length_um\", in the unit of that name"},
+      {"[elasticity]\nyoung_modulus_kPa = 1",
+       "test.toml:2: elasticity.young_modulus_kPa: unknown key; write \"young_modulus_Pa\", in the unit of that name"},
+      {"[time]\nend_h = 1",
+       "test.toml:2: time.end_h: unknown key; write \"end_s\" or \"end_min\", in the unit of that name"},
+      {"poisson_ratio = 0.3", "test.toml:1: poisson_ratio: unknown key; it belongs in [elasticity]"},
+      {"[regoin.a]\nface = \"ventral\"", "test.toml:1: regoin: unknown table; did you mean \"region\"?"},
+      {"[output]\nfrobnicate = 1",
+       "test.toml:2: output.frobnicate: unknown key; known are: frame_every_s, frame_every_min, cells_csv"},
+      {program + "program = { time_h = [0], activity = [1] }",
+       "test.toml:3: contraction.a.program.time_h: unknown key; write \"program.time_s\" or \"program.time_min\", in "
+       "the unit of that name"},
+      {program + "progam = { time_s = [0], activity = [1] }",
+       "test.toml:3: contraction.a.progam: unknown key; did you mean \"program\"?"},
+      {"[region.\"a b\"]\nface = \"ventral\"",
+       "test.toml:1: region.a b: is no name; use letters, digits, \"_\" and \"-\""},
+      {"[region.all]\nface = \"ventral\"",
+       "test.toml:1: region.all: \"all\" is every cell already; choose another name"},
+      // Types, ranges and words.
+      {"[embryo]\nlength_um = \"long\"",
+       "test.toml:2: embryo.length_um: \"long\" is of the wrong type; give a number > 0"},
+      {"[embryo]\nlength_um = 0", "test.toml:2: embryo.length_um: 0 is out of range; give a number > 0"},
+      {"[embryo]\nlength_um = nan", "test.toml:2: embryo.length_um: nan is not a finite number; give a number > 0"},
+      {"[dynamics]\ndensity_kg_per_m3 = inf",
+       "test.toml:2: dynamics.density_kg_per_m3: inf is not a finite number; give a number >= 0"},
+      {"[embryo]\nelements_per_cell = [1, 9, 1]",
+       "test.toml:2: embryo.elements_per_cell: 9 is out of range; give 3 integers, 1 to 8"},
+      {"[embryo]\ncells = [1, 2]",
+       "test.toml:2: embryo.cells: 2 values were given, not 3; give 3 integers, 1 to 100000"},
+      {"[embryo]\ncells = [1, 2, 2.5]",
+       "test.toml:2: embryo.cells: 2.5 is not an integer; give 3 integers, 1 to 100000"},
+      {"[elasticity]\npoisson_ratio = 0.5",
+       "test.toml:2: elasticity.poisson_ratio: 0.5 is out of range; give a number > -1 and < 0.5"},
+      {"[embryo]\nshape = \"pil\"",
+       "test.toml:2: embryo.shape: \"pil\" is not known; give one of: pill | sphere | block | file (did you mean "
+       "\"pill\"?)"},
+      {"[elasticity]\nmodel = \"shape-memory\"",
+       "test.toml:2: elasticity.model: \"shape-memory\" is not available yet; give one of: corotational"},
+      {"[time]\nstep_s = \"fast\"",
+       "test.toml:2: time.step_s: \"fast\" is of the wrong type; give a number > 0 or \"adaptive\""},
+      {"[stop]\nat_equilibrium = 1", "test.toml:2: stop.at_equilibrium: 1 is of the wrong type; give true or false"},
+      {"format = 2", "test.toml:1: format: 2 is out of range; give an integer, 1"},
+      {"[region.a]\nx_um = [2, 1]", "test.toml:2: region.a.x_um: low is above high; give [low, high]"},
+      {"[region.a]\nids = []", "test.toml:2: region.a.ids: the list is empty; give a list of integers >= 0"},
+      {"embryo = 3", "test.toml:1: embryo: 3 is not a table; give a table"},
+      {"[hold.a]\nregion = \"\"", "test.toml:2: hold.a.region: the text is empty; give text"},
+      {"[embryo]\nshape = \"file\"\nfile = \"\"", "test.toml:3: embryo.file: the text is empty; give text"},
+      {"embryo.length_um = -1\nregion.a.face = \"top\"",
+       "test.toml:1: embryo.length_um: -1 is out of range; give a number > 0\ntest.toml:2: region.a.face: \"top\" is "
+       "not known; give one of: ventral | dorsal | left | right | anterior | posterior"},
+      {"[[hold]]\nregion = \"all\"", "test.toml:1: hold: a list is not a table; give a table"},
+      {program + "program = 1",
+       "test.toml:3: contraction.a.program: 1 is not a table; give a table of times and activities"},
+      // The embryo as a whole.
+      {"[embryo]\nlength_um = 200",
+       "test.toml:2: embryo.length_um: 200 is less than the diameter, 280; give a length of at least diameter_um"},
+      {"[embryo]\ncell_height_um = 140",
+       "test.toml:2: embryo.cell_height_um: 140 leaves no room inside the embryo; give less than half of diameter_um, "
+       "140"},
+      {"[embryo]\nshape = \"sphere\"\nlength_um = 460",
+       "test.toml:3: embryo.length_um: has no meaning with shape \"sphere\"; remove it, or choose shape pill or block"},
+      {"[embryo]\nwidth_um = 1",
+       "test.toml:2: embryo.width_um: has no meaning with shape \"pill\"; remove it, or choose shape block"},
+      {"[embryo]\nshape = \"file\"", "test.toml:1: embryo.file: is missing; name the mesh file for shape \"file\""},
+      {block + "cells = [100000, 100000, 100000]\nelements_per_cell = [8, 8, 8]",
+       "test.toml:3: embryo.cells: asks for 512000000000000000 elements; the limit is 20000000; give fewer cells, or "
+       "fewer elements per cell"},
+      {"[embryo]\ncells = [2000, 1000, 1000]\nelements_per_cell = [1, 2, 2]",
+       "test.toml:2: embryo.cells: asks for 40000000 elements; the limit is 20000000; give fewer cells, or fewer "
+       "elements per cell"},
+      {block + "[vitelline]\nenabled = true",
+       "test.toml:4: vitelline.enabled: a shell needs a closed embryo, and a block is none; give false"},
+      {"[dynamics]\nsurface_drag_Pa_s_per_um = 0",
+       "test.toml:2: dynamics.surface_drag_Pa_s_per_um: a body with neither drag nor mass is refused; give a drag or a "
+       "density above 0"},
+      // Times and programs.
+      {"[time]\nend_min = 1\nend_s = 60",
+       "test.toml:3: time.end_s: time.end_min is given as well; give one of the two"},
+      {"[output]\nframe_every_min = 1\nframe_every_s = 60",
+       "test.toml:3: output.frame_every_s: output.frame_every_min is given as well; give one of the two"},
+      {"[time]\nfirst_step_s = 61",
+       "test.toml:2: time.first_step_s: 61 is above max_step_s, 30; give a first step no longer than the longest"},
+      {program + "program = { time_s = [0, 1], activity = [1] }",
+       "test.toml:3: contraction.a.program.activity: 1 activities for 2 times; give as many activities as times"},
+      {program + "program = { activity = [1] }",
+       "test.toml:3: contraction.a.program.time_s: is missing; give time_s or time_min beside activity"},
+      {program + "program = { time_s = [1] }",
+       "test.toml:3: contraction.a.program.activity: is missing; give as many activities as times"},
+      {program + "program = { time_min = [0, 1, 1], activity = [1, 1, 1] }",
+       "test.toml:3: contraction.a.program.time_min: the times do not increase; give each time later than the one "
+       "before"},
+      {program + "program = { time_s = [0], activity = [-1] }",
+       "test.toml:3: contraction.a.program.activity: -1 is out of range; give a list of numbers >= 0"},
+      // Regions.
+      {"[contraction.a]\nstiffness_nN_per_um = 1", "test.toml:1: contraction.a.region: is missing; give text"},
+      {"[region.furrow]\nface = \"ventral\"\n[contraction.a]\nregion = \"furow\"",
+       "test.toml:4: contraction.a.region: there is no region \"furow\"; did you mean \"furrow\"?"},
+      {"[hold.a]\nregion = \"b\"", "test.toml:2: hold.a.region: there is no region \"b\"; known are: all"},
+      {"[pressure.a]\npressure_Pa = 1\nregion = \"b\"",
+       "test.toml:3: pressure.a.region: there is no region \"b\"; known are: all"},
+      {"[furrow]\nregion = \"b\"", "test.toml:2: furrow.region: there is no region \"b\"; known are: all"},
+      {"[region.a]\nunion = [\"all\", \"b\"]",
+       "test.toml:2: region.a.union: there is no region \"b\"; known are: all, a"},
+      {"[region.a]\nintersect = [\"b\"]",
+       "test.toml:2: region.a.intersect: there is no region \"b\"; known are: all, a"},
+      {"[region.a]\nexcept = [\"b\"]", "test.toml:2: region.a.except: there is no region \"b\"; known are: all, a"},
+      {"[region.a]\nunion = [\"b\"]\n[region.b]\nexcept = [\"a\"]",
+       "test.toml:1: region.a: is defined by itself: a > b > a; remove one of these references"},
+      {"[region.a]",
+       "test.toml:1: region.a: selects nothing; give face, ids, array, x_um, y_um, z_um, union, intersect or except"},
+      {"[region.a]\nids = [1]\ncells_across = 3",
+       "test.toml:3: region.a.cells_across: needs a face to lie on; give face, too"},
+      {"[region.a]\nface = \"ventral\"\ncells_along = 13",
+       "test.toml:3: region.a.cells_along: 13 cells cannot be centred on 18; 12 or 14 can"},
+      {"[region.a]\nface = \"left\"\ncells_across = 9",
+       "test.toml:3: region.a.cells_across: 9 cells on a face that has 8 that way; give at most 8"},
+      {"[region.a]\nface = \"posterior\"\ncells_along = 18",
+       "test.toml:3: region.a.cells_along: 18 cells on a face that has 9 that way; give at most 9"},
+      {"[region.a]\nids = [756]", "test.toml:2: region.a.ids: there is no cell 756; give numbers from 0 to 755"},
+      {"[region.a]\narray = \"x\"",
+       "test.toml:2: region.a.array: a built embryo has no arrays; use it with shape \"file\" only"},
+      // Expectations.
+      {"[expect]\nfurrow_depth_um = 28.89",
+       "test.toml:2: expect.furrow_depth_um: 28.89 has no tolerance; give { value = ..., within_percent = ... } or { "
+       "value = ..., within = ... }"},
+      {"[expect]\nfurrow_depth_um = { value = 1 }",
+       "test.toml:2: expect.furrow_depth_um: has no tolerance; give within or within_percent, too"},
+      {"[expect]\nfurrow_depth_um = { within = 1 }",
+       "test.toml:2: expect.furrow_depth_um.value: is missing; give a number"},
+      {"[expect]\nfurrow_dept_um = { value = 1, within = 1 }",
+       "test.toml:2: expect.furrow_dept_um: unknown result; did you mean \"furrow_depth_um\"?"},
+      {"[expect]\ncells = { value = 1, within = 1, within_percent = 1 }",
+       "test.toml:2: expect.cells.within_percent: expect.cells.within is given as well; give one of the two"},
+      // Bases.
+      {"base = \"drosophla\"",
+       "test.toml:1: base: \"drosophla\" is neither a built-in scenario nor a file; did you mean \"drosophila\"?; give "
+       "a built-in name, or a path relative to this file"},
+  };
+  int count = 0;
+  for (const WrongScenario& wrong : cases) {
+    EXPECT_EQ(errors_of(wrong.text), wrong.message) << wrong.text;
+    ++count;
+  }
+  std::cout << count << " wrong scenarios\n";
+}
+
+TEST(LoadScenario, ReportsSyntaxErrorsWithTheirLine) {
+  const std::string errors = errors_of("format = 1\n[embryo\nlength_um = 3\n");
+  EXPECT_TRUE(errors.starts_with("test.toml:2: ")) << errors;
+}
+
+TEST(LoadScenario, ReportsAllErrorsAtOnceInOrderOfLines) {
+  const std::string errors =
+      errors_of("[time]\nend_s = -1\n[contraction.a]\nregion = \"nowhere\"\n[embryo]\nlength_um = true\nspeed = 1\n",
+                {"time.max_step_s=0"});
+  EXPECT_EQ(errors,
+            "test.toml:2: time.end_s: -1 is out of range; give a number > 0\n"
+            "test.toml:4: contraction.a.region: there is no region \"nowhere\"; known are: all\n"
+            "test.toml:6: embryo.length_um: true is of the wrong type; give a number > 0\n"
+            "test.toml:7: embryo.speed: unknown key; known are: shape, length_um, diameter_um, width_um, "
+            "cell_height_um, cells, elements_per_cell, file, apical_array\n"
+            "--set: time.max_step_s: 0 is out of range; give a number > 0");
+}
+
+TEST(LoadScenario, OneMistakeIsOneError) {
+  // An unknown key that was to be the region, an unknown table that was to hold it, a region that was not read.
+  EXPECT_EQ(errors_of("[contraction.a]\nregoin = \"all\""),
+            "test.toml:2: contraction.a.regoin: unknown key; did you mean \"region\"?");
+  EXPECT_EQ(errors_of("[regions.a]\nface = \"left\"\n[hold.a]\nregion = \"a\""),
+            "test.toml:1: regions: unknown table; did you mean \"region\"?");
+  EXPECT_EQ(errors_of("[region]\na = 1\n[hold.a]\nregion = \"a\""),
+            "test.toml:2: region.a: 1 is not a table; give a table");
+}
+
+TEST(LoadScenario, AcceptsStripsThatCanBeCentred) {
+  int count = 0;
+  for (const std::string strip :
+       {"face = \"ventral\"\ncells_along = 14\ncells_across = 5", "face = \"right\"\ncells_along = 2\ncells_across = 8",
+        "face = \"anterior\"\ncells_along = 9\ncells_across = 2"}) {
+    EXPECT_EQ(errors_of("[region.a]\n" + strip), "") << strip;
+    ++count;
+  }
+  std::cout << count << " strips\n";
+}
+
+TEST(LoadScenario, SettlesDefaultsThatDependOnTheShape) {
+  EXPECT_FALSE(load("[embryo]\nshape = \"block\"").vitelline.enabled);
+  EXPECT_EQ(load("[embryo]\nshape = \"sphere\"\ndiameter_um = 300").embryo.length_um, 300);
+  const auto here = std::filesystem::current_path();
+  EXPECT_EQ(load_scenario({"a", "in/a.toml", "[embryo]\nshape = \"file\"\nfile = \"../b.vtu\""}).embryo.file,
+            (here / "b.vtu").string());
+}
+
+TEST(LoadScenario, OverridesGoLast) {
+  const std::string text = "[contraction.a]\nregion = \"all\"\n[time]\nend_s = 5\nstep_s = 1\n";
+  const Scenario scenario = load(text, {"time.end_min=2", "time.step_s = adaptive", "contraction.a.edges=basal",
+                                        "contraction.a.program.time_s=[0, 1]", "contraction.a.program.activity=[0, 1]",
+                                        "time.max_step_s=7", "time.max_step_s=8", "title=\"two words\""});
+  EXPECT_EQ(scenario.time.end_s, 120);
+  EXPECT_FALSE(scenario.time.step_s.has_value());
+  EXPECT_EQ(scenario.contractions.at("a").edges, "basal");
+  EXPECT_EQ(scenario.contractions.at("a").program.time_s.size(), 2u);
+  EXPECT_EQ(scenario.time.max_step_s, 8);
+  EXPECT_EQ(scenario.title, "two words");
+}
+
+TEST(LoadScenario, ReportsWrongOverrides) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"time.end_s", "--set: time.end_s: is not understood; give dotted.key=value, the value as in TOML"},
+      {"time.end_s=", "--set: time.end_s: is not understood; give dotted.key=value, the value as in TOML"},
+      {"title=two words", "--set: title: is not understood; give dotted.key=value, the value as in TOML"},
+      {"title=1\nformat=2", "--set: title: is not understood; give dotted.key=value, the value as in TOML"},
+      {"time.ends=3", "--set: time.ends: unknown key; did you mean \"end_s\"?"},
+      {"base=drosophila", "--set: base: a base cannot be set here; write it in the scenario's file"},
+  };
+  int count = 0;
+  for (const auto& [text, message] : cases) {
+    EXPECT_EQ(errors_of("", {text}), message) << text;
+    ++count;
+  }
+  std::cout << count << " wrong overrides\n";
+}
+
+TEST(FindScenario, SaysWhichNameIsNear) {
+  try {
+    find_scenario("drosofila");
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(), "\"drosofila\" is neither a built-in scenario nor a file; did you mean \"drosophila\"?");
+  }
+  EXPECT_THROW(find_scenario("/"), FileError);
+}
+
+TEST_F(LoadFiles, InheritsKeyByKey) {
+  write("base.toml",
+        "[time]\nend_min = 5\nstep_s = 1\n[region.a]\nface = \"left\"\n[expect]\ncells = { value = 1, within = 2 }\n");
+  write("inner/middle.toml", "base = \"../base.toml\"\n[region.b]\nface = \"right\"\n[time]\nend_s = 7\n");
+  const std::string top =
+      write("top.toml",
+            "base = \"inner/middle.toml\"\n[region.a]\ncells_along = 2\n[expect]\ncells = { within_percent = 3 }\n");
+  const Scenario scenario = load_scenario(find_scenario(top));
+  EXPECT_EQ(scenario.name, "top");
+  EXPECT_EQ(scenario.time.end_s, 7);
+  EXPECT_EQ(scenario.time.step_s, 1);
+  EXPECT_EQ(scenario.regions.at("a").face, "left");
+  EXPECT_EQ(scenario.regions.at("a").cells_along, 2);
+  EXPECT_EQ(scenario.regions.at("b").face, "right");
+  EXPECT_EQ(scenario.expect.at("cells").value, 1);
+  EXPECT_FALSE(scenario.expect.at("cells").within.has_value());
+  EXPECT_EQ(scenario.expect.at("cells").within_percent, 3);
+}
+
+TEST_F(LoadFiles, InheritsFromABuiltinAndDropsWhatAnotherShapeDoesNotUse) {
+  const Scenario scenario = load(
+      "base = \"drosophila\"\n[embryo]\nshape = \"sphere\"\ncells = [18, 9, 9]\n[region.furrow]\ncells_across = 3\n");
+  EXPECT_EQ(scenario.embryo.length_um, 280);
+  EXPECT_EQ(scenario.regions.at("furrow").cells_across, 3);
+  EXPECT_EQ(scenario.contractions.at("apical").region, "furrow");
+}
+
+TEST_F(LoadFiles, ReportsErrorsWhereTheyAreWritten) {
+  const std::string base = write("base.toml", "format = 1\n[time]\nend_s = -5\n");
+  const std::string top = write("top.toml", "base = \"base.toml\"\n[time]\nstep_s = -1\n");
+  EXPECT_EQ(errors_in(top), base + ":3: time.end_s: -5 is out of range; give a number > 0\n" + top +
+                                ":3: time.step_s: -1 is out of range; give a number > 0 or \"adaptive\"");
+}
+
+TEST_F(LoadFiles, RefusesCircularBases) {
+  const std::string first = write("first.toml", "base = \"second.toml\"\n");
+  const std::string second = write("second.toml", "format = 1\nbase = \"first.toml\"\n");
+  EXPECT_EQ(errors_in(first),
+            second + ":2: base: \"first.toml\" inherits from itself in the end; remove one base of the circle");
+}
+
+TEST_F(LoadFiles, FindsMeshesBesideTheFileThatNamesThem) {
+  write("inner/base.toml", "[embryo]\nshape = \"file\"\nfile = \"mesh.vtu\"\n");
+  const std::string top = write("top.toml", "base = \"inner/base.toml\"\n");
+  EXPECT_EQ(load_scenario(find_scenario(top)).embryo.file, (folder_ / "inner" / "mesh.vtu").string());
+}
+
+}  // namespace
+}  // namespace plica

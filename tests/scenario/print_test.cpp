@@ -1,0 +1,131 @@
+#include "scenario/print.hpp"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "scenario/builtin.hpp"
+#include "scenario/load.hpp"
+#include "scenario/schema.hpp"
+
+namespace plica {
+namespace {
+
+/// Compares two scenarios field by field; returns the number of fields.
+int expect_same(Scenario a, Scenario b) {
+  int count = 0;
+  for (const TableInfo& info : schema_tables()) {
+    const std::vector<std::string> names = info.named() ? info.names(a) : std::vector<std::string>{""};
+    if (info.named()) {
+      EXPECT_EQ(names, info.names(b));
+    }
+    for (const std::string& name : names) {
+      for (const Row* row : rows_of(info.path)) {
+        const Slot left = row->field(a, name), right = row->field(b, name);
+        std::visit(
+            [&](auto field) {
+              if constexpr (!std::is_same_v<decltype(field), std::monostate>) {
+                EXPECT_EQ(*field, *std::get<decltype(field)>(right)) << row->table << " " << name << " " << row->key;
+              }
+            },
+            left);
+        ++count;
+      }
+    }
+  }
+  return count;
+}
+
+TEST(ResolvedToml, LoadsBackToTheSameScenario) {
+  std::vector<ScenarioSource> sources;
+  for (const BuiltinScenario& builtin : builtin_scenarios()) {
+    sources.push_back(find_scenario(std::string(builtin.name)));
+  }
+  sources.push_back({"sphere", "sphere.toml", "[embryo]\nshape = \"sphere\"\ndiameter_um = 301.7\n"});
+  sources.push_back({"file", "file.toml", "[embryo]\nshape = \"file\"\nfile = \"a \\\\ b.vtu\"\n"});
+  sources.push_back({"rich", "rich.toml", R"(
+title = "quote \" backslash \\ newline \n µ"
+[embryo]
+shape = "block"
+width_um = 0.1
+[region.a]
+ids = [0, 7]
+y_um = [-1e-7, 0.30000000000000004]
+[region.b]
+union = ["a", "all"]
+[contraction.c]
+region = "b"
+program = { time_min = [0, 0.1, 7], activity = [0, 0.3333333333333333, 1] }
+[hold.d]
+region = "a"
+directions = ["y"]
+[pressure.e]
+region = "all"
+pressure_Pa = 1e22
+[time]
+step_s = 0.1
+[output]
+cells_csv = true
+[expect]
+max_volume_error = { value = 0, within = 1e-9 }
+nodes = { value = 100, within_percent = 1 }
+)"});
+  int fields = 0;
+  for (const ScenarioSource& source : sources) {
+    const Scenario scenario = load_scenario(source);
+    const std::string text = resolved_toml(scenario);
+    const Scenario again = load_scenario({source.name, "resolved.toml", text});
+    fields += expect_same(scenario, again);
+    EXPECT_EQ(resolved_toml(again), text);
+  }
+  std::cout << sources.size() << " scenarios, " << fields << " fields\n";
+}
+
+TEST(ResolvedToml, FillsInDefaultsAndLeavesOutWhatHasNoValue) {
+  const std::string text = resolved_toml(load_scenario({"test", "test.toml", "[region.a]\nface = \"left\"\n"}));
+  EXPECT_NE(text.find("\n[region.a]\nface = \"left\"\n\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nstep_s = \"adaptive\"\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nend_s = 3600\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("cells_csv"), std::string::npos) << text;
+  EXPECT_EQ(text.find("width_um"), std::string::npos) << text;
+}
+
+TEST(Reference, HasEveryRowOfTheTable) {
+  const std::string page = reference_markdown();
+  int count = 0;
+  for (const TableInfo& info : schema_tables()) {
+    const std::string heading =
+        info.path.empty() ? "## Top level" : "## `[" + std::string(info.stem()) + (info.named() ? ".NAME]`" : "]`");
+    const std::size_t begin = page.find(heading);
+    ASSERT_NE(begin, std::string::npos) << heading;
+    const std::string section = page.substr(begin, page.find("\n## ", begin + 1) - begin);
+    for (const Row* row : rows_of(info.path)) {
+      EXPECT_NE(section.find("\n| `" + std::string(row->key) + "` | "), std::string::npos)
+          << heading << " " << row->key;
+      EXPECT_NE(section.find(row->meaning), std::string::npos) << heading << " " << row->key;
+      ++count;
+    }
+  }
+  EXPECT_EQ(count, static_cast<int>(schema().size()));  // no row is of a table that does not exist
+  std::cout << count << " rows\n";
+}
+
+TEST(Reference, SaysTypeDefaultAndRange) {
+  const std::string page = reference_markdown();
+  int count = 0;
+  for (const std::string line : {
+           "| `poisson_ratio` | number | `0.45` | > -1 and < 0.5 |",
+           "| `shape` | word | `\"pill\"` | pill \\| sphere \\| block \\| file |",
+           "| `step_s` | number | `\"adaptive\"` | > 0 or \"adaptive\" |",
+           "| `cells` | 3 integers | `[18, 9, 8]` | 1 to 100000; with shape pill, sphere, block |",
+           "| `end_min` | number | see `end_s` | > 0; not with `end_s` |",
+           "| `region` | text | required | any |",
+       }) {
+    EXPECT_NE(page.find(line), std::string::npos) << line;
+    ++count;
+  }
+  std::cout << count << " lines\n";
+}
+
+}  // namespace
+}  // namespace plica

@@ -1,0 +1,172 @@
+#include "simulation/run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "support/loads.hpp"
+#include "support/models.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+const StepObserver go_on = [](const AcceptedStep&) { return true; };
+
+TEST(Run, GoesToEquilibriumWhereForcesBalanceWithoutDrag) {
+  const Model model = dimpling_sheet();
+  RunControls controls;
+  controls.equilibrium_speed_um_per_s = 1e-5;
+  controls.end_s = 1e5;
+  const RunResult result = run(model, rest_state(model), controls, go_on);
+  ASSERT_EQ(result.status, RunStatus::equilibrium) << result.failure;
+  ASSERT_TRUE(result.equilibrium_time_s.has_value());
+  EXPECT_EQ(*result.equilibrium_time_s, result.state.time_s);
+  // A step that stands still has no drag: what is left is d A v, up to 0.14 * 400 * 1e-5 nN a node, times two sides.
+  State still = result.state;
+  still.time_s += 1;
+  EXPECT_LE(largest(unbalanced_forces(model, result.state, still)), 2e-4);
+  // And the middle cell has contracted its apex.
+  const auto& corners = model.tissue.cells[4].corners;
+  const auto length = [&](const Vectors& x) { return (x[corners[5].index()] - x[corners[4].index()]).norm(); };
+  EXPECT_LT(length(result.state.positions), 0.9 * length(model.tissue.rest_positions));
+}
+
+TEST(Run, RestDoesNotDependOnTheStep) {
+  const Model model = dimpling_sheet();
+  std::vector<State> ends;
+  for (const double step : {2.0, 5.0, 20.0, 0.0}) {
+    RunControls controls;
+    if (step > 0) controls.fixed_step_s = step;
+    controls.equilibrium_speed_um_per_s = 1e-7;
+    controls.end_s = 1e5;
+    const RunResult result = run(model, rest_state(model), controls, go_on);
+    ASSERT_EQ(result.status, RunStatus::equilibrium) << result.failure;
+    ends.push_back(result.state);
+  }
+  double worst = 0;
+  for (const State& end : ends)
+    for (std::size_t n = 0; n < end.positions.size(); ++n)
+      worst = std::max(worst, (end.positions[n] - ends[0].positions[n]).norm());
+  std::printf("block at rest: positions differ by %.1e um between steps of 2, 5, 20 s and adaptive ones\n", worst);
+  EXPECT_LE(worst, 1e-3);
+}
+
+TEST(Run, AdaptiveStepsLandOnEveryFrame) {
+  const Model model = dimpling_sheet();
+  RunControls controls;
+  controls.frame_every_s = 7;
+  controls.end_s = 60;
+  controls.stop_at_equilibrium = false;
+  int frames = 0;
+  const RunResult result = run(model, rest_state(model), controls, [&](const AcceptedStep& step) {
+    if (step.frame_is_due) {
+      ++frames;
+      EXPECT_NEAR(step.state.time_s, 7 * frames, 1e-9);
+    }
+    EXPECT_NEAR(step.state.time_s - step.previous.time_s, step.duration_s, 1e-9);
+    return true;
+  });
+  EXPECT_EQ(result.status, RunStatus::end_time);
+  EXPECT_NEAR(result.state.time_s, 60, 1e-9);
+  EXPECT_EQ(frames, 8);
+}
+
+TEST(Run, AdaptiveStepsLandOnTheProgramsPoints) {
+  const Model model = dimpling_sheet();
+  RunControls controls;
+  controls.program_points_s = {0, 3.3, 41.7};
+  controls.end_s = 60;
+  controls.stop_at_equilibrium = false;
+  int met = 0;
+  run(model, rest_state(model), controls, [&](const AcceptedStep& step) {
+    for (const double point : controls.program_points_s) {
+      met += std::abs(step.state.time_s - point) < 1e-9;
+      EXPECT_FALSE(step.previous.time_s < point - 1e-9 && step.state.time_s > point + 1e-9) << "steps over " << point;
+    }
+    return true;
+  });
+  EXPECT_EQ(met, 2);
+}
+
+TEST(Run, FixedStepsFormAGridWhateverTheFrames) {
+  const Model model = dimpling_sheet();
+  RunControls controls;
+  controls.fixed_step_s = 0.7;
+  controls.frame_every_s = 2;
+  controls.end_s = 10;
+  controls.stop_at_equilibrium = false;
+  int steps = 0, frames = 0;
+  const RunResult result = run(model, rest_state(model), controls, [&](const AcceptedStep& step) {
+    ++steps;
+    frames += step.frame_is_due;
+    EXPECT_NEAR(step.state.time_s, std::min(0.7 * steps, 10.0), 1e-9);
+    return true;
+  });
+  EXPECT_EQ(steps, 15);  // fourteen of 0.7 and one of 0.2
+  EXPECT_EQ(result.steps, steps);
+  EXPECT_EQ(frames, 5);  // the first step at or past 2, 4, 6, 8, 10
+}
+
+TEST(Run, EquilibriumCountsOnlyAfterTheProgram) {
+  Model model(build_block({.length_um = 60, .width_um = 60, .cell_height_um = 40, .cells = {3, 3, 1}}));
+  add_elasticity(model);
+  add_contraction(model, CellSet(9, true), {.stiffness = 1}, Program({0, 100, 101}, {0, 0, 1}));
+  add_drag(model);
+  RunControls controls;
+  controls.program_points_s = {0, 100, 101};
+  controls.end_s = 5000;
+  const RunResult result = run(model, rest_state(model), controls, go_on);
+  ASSERT_EQ(result.status, RunStatus::equilibrium) << result.failure;
+  EXPECT_GE(*result.equilibrium_time_s, 101);
+  // What the contraction did was not stepped over.
+  EXPECT_GT(result.steps, 5);
+}
+
+TEST(Run, GoesOnToTheEndWhenAskedAndNotesTheTimeOfEquilibrium) {
+  const Model model = dimpling_sheet();
+  RunControls controls;
+  controls.equilibrium_speed_um_per_s = 0.05;
+  controls.stop_at_equilibrium = false;
+  controls.end_s = 300;
+  const RunResult result = run(model, rest_state(model), controls, go_on);
+  EXPECT_EQ(result.status, RunStatus::end_time);
+  ASSERT_TRUE(result.equilibrium_time_s.has_value());
+  EXPECT_LT(*result.equilibrium_time_s, 300);
+}
+
+TEST(Run, StopsWhenTheObserverSaysSo) {
+  const Model model = dimpling_sheet();
+  int steps = 0;
+  const RunResult result =
+      run(model, rest_state(model), RunControls{}, [&](const AcceptedStep&) { return ++steps < 3; });
+  EXPECT_EQ(result.status, RunStatus::interrupted);
+  EXPECT_EQ(result.steps, 3);
+}
+
+TEST(Run, GivesUpWithTheLastGoodStateAndAReason) {
+  Model model = dimpling_sheet();
+  Vectors loads(model.tissue.node_count(), Vec3::Zero());
+  loads[0].x() = std::numeric_limits<double>::quiet_NaN();
+  model.laws.push_back(std::make_unique<NodalForces>(loads));
+  const RunResult result = run(model, rest_state(model), RunControls{}, go_on);
+  EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_FALSE(result.failure.empty());
+  EXPECT_EQ(result.state.positions, model.tissue.rest_positions);
+}
+
+TEST(Run, TheSameRunGivesTheSameBits) {
+  const Model model = dimpling_sheet();
+  RunControls controls;
+  controls.end_s = 30;
+  const RunResult a = run(model, rest_state(model), controls, go_on);
+  const RunResult b = run(model, rest_state(model), controls, go_on);
+  EXPECT_EQ(a.steps, b.steps);
+  EXPECT_EQ(a.state.positions, b.state.positions);
+}
+
+}  // namespace
+}  // namespace plica

@@ -1,0 +1,127 @@
+// Tissues and motions that tests share.
+#pragma once
+
+#include <numbers>
+#include <random>
+
+#include "mechanics/law.hpp"
+#include "tissue/embryo.hpp"
+#include "tissue/lattice.hpp"
+
+namespace plica::support {
+
+/// Numbers and vectors that are the same in every run.
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  /// Uniform in [-size, size].
+  double number(double size = 1) { return std::uniform_real_distribution<double>(-size, size)(engine_); }
+  Vec3 vector(double size = 1) {
+    const double x = number(size), y = number(size), z = number(size);
+    return {x, y, z};
+  }
+  Vectors vectors(std::size_t count, double size = 1) {
+    Vectors result(count);
+    for (Vec3& v : result) v = vector(size);
+    return result;
+  }
+  Mat3 rotation() {
+    const Vec3 axis = vector().normalized();
+    return Eigen::AngleAxisd(number(std::numbers::pi), axis).toRotationMatrix();
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// The same topology with other rest positions, and rest shapes to match.
+inline Tissue with_rest_positions(Tissue tissue, Vectors positions) {
+  tissue.rest_positions = std::move(positions);
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
+    tissue.element_rest_shape[e] = gather(tissue.rest_positions, tissue.elements[e]);
+  return tissue;
+}
+
+/// A block whose nodes, inner and outer ones, are displaced at random by up to `size_um` in each direction.
+inline Tissue distorted_block(const BlockShape& shape, double size_um, unsigned seed) {
+  Tissue block = build_block(shape);
+  Random random(seed);
+  Vectors positions = block.rest_positions;
+  for (Vec3& x : positions) x += random.vector(size_um);
+  return with_rest_positions(std::move(block), std::move(positions));
+}
+
+/// A tissue of one-element cells from their corners in VTK's order.
+inline Tissue tissue_from_hexahedra(const std::vector<std::array<int, 8>>& hexahedra, Vectors positions) {
+  std::vector<CellLattice> lattices;
+  for (const auto& h : hexahedra) {
+    CellLattice lattice;
+    for (const int corner : {0, 1, 3, 2, 4, 5, 7, 6}) lattice.nodes.emplace_back(h[corner]);
+    lattices.push_back(lattice);
+  }
+  return tissue_from_lattices(lattices, std::move(positions));
+}
+
+/// A regular lattice of nx x ny x nz one-element cells whose nodes are placed by `place(i, j, k)`; node (i, j, k) has
+/// number i + (nx + 1) (j + (ny + 1) k).
+template <class Place>
+Tissue mapped_lattice(int nx, int ny, int nz, const Place& place) {
+  Vectors positions;
+  for (int k = 0; k <= nz; ++k)
+    for (int j = 0; j <= ny; ++j)
+      for (int i = 0; i <= nx; ++i) positions.push_back(place(i, j, k));
+  const auto node = [&](int i, int j, int k) { return i + (nx + 1) * (j + (ny + 1) * k); };
+  std::vector<std::array<int, 8>> hexahedra;
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i)
+        hexahedra.push_back({node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k),
+                             node(i, j, k + 1), node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1),
+                             node(i, j + 1, k + 1)});
+  return tissue_from_hexahedra(hexahedra, std::move(positions));
+}
+
+/// All that a Step looks at.
+struct Motion {
+  Vectors positions, previous_positions, previous_velocities;
+  double duration_s = 0.7;
+  double end_time_s = 1.3;
+
+  [[nodiscard]] Step step() const {
+    return {positions, previous_positions, previous_velocities, duration_s, end_time_s};
+  }
+};
+
+/// At rest since ever.
+inline Motion at_rest(const Tissue& tissue) {
+  return {tissue.rest_positions, tissue.rest_positions, Vectors(tissue.node_count(), Vec3::Zero())};
+}
+
+/// Every node displaced at random by up to `size_um` in each direction at the beginning and at the end of the step, and
+/// the whole turned by two different random rotations.
+inline Motion random_motion(const Tissue& tissue, double size_um, unsigned seed) {
+  Random random(seed);
+  Motion motion = at_rest(tissue);
+  for (Vectors* positions : {&motion.previous_positions, &motion.positions}) {
+    const Mat3 rotation = random.rotation();
+    const Vec3 shift = random.vector(50);
+    for (Vec3& x : *positions) x = rotation * (x + random.vector(size_um)) + shift;
+  }
+  motion.previous_velocities = random.vectors(tissue.node_count(), 5);
+  return motion;
+}
+
+/// Largest length among vectors.
+inline double largest(const Vectors& vectors) {
+  double result = 0;
+  for (const Vec3& v : vectors) result = std::max(result, v.norm());
+  return result;
+}
+
+inline Vectors forces_of(const Law& law, const Step& step) {
+  Vectors forces(step.positions.size(), Vec3::Zero());
+  law.add_forces(step, forces);
+  return forces;
+}
+
+}  // namespace plica::support

@@ -1,0 +1,186 @@
+#include "tissue/hexahedron.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/tissues.hpp"
+
+namespace plica {
+namespace {
+
+using support::Random;
+
+/// A brick of 20 x 20 x 40 um with every corner moved at random: hexahedra with warped faces.
+HexPoints warped(Random& random, double size_um = 6) {
+  HexPoints points;
+  for (int i = 0; i < 8; ++i)
+    points[i] = hex_reference_nodes[i].cwiseProduct(Vec3(10, 10, 20)) + random.vector(size_um);
+  return points;
+}
+
+TEST(Hexahedron, ReferenceNodesAreInVtksOrder) {
+  const std::array<Vec3, 8> expected = {Vec3(-1, -1, -1), {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                                        {-1, -1, 1},      {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(hex_reference_nodes[i], expected[i]);
+}
+
+TEST(Hexahedron, EdgesAndFacesAreThoseOfTheCube) {
+  for (int e = 0; e < 12; ++e) {
+    const Vec3 along = hex_reference_nodes[hex_edges[e][1]] - hex_reference_nodes[hex_edges[e][0]];
+    EXPECT_EQ(along, 2 * Vec3::Unit(e / 4)) << "edge " << e;
+  }
+  for (int f = 0; f < 6; ++f) {
+    std::array<Vec3, 4> points;
+    for (int i = 0; i < 4; ++i) points[i] = hex_reference_nodes[hex_faces[f][i]];
+    const Vec3 outward = (f % 2 == 0 ? -1 : 1) * Vec3::Unit(f / 2);
+    EXPECT_LE((facet_area_vector(points) - 4 * outward).norm(), 1e-14) << "face " << f;
+  }
+}
+
+TEST(Hexahedron, ShapeFunctionsInterpolateAndAddUpToOne) {
+  Random random(1);
+  for (int i = 0; i < 8; ++i) {
+    const auto N = hex_shape(hex_reference_nodes[i]);
+    for (int j = 0; j < 8; ++j) EXPECT_EQ(N[j], i == j ? 1 : 0);
+  }
+  for (int k = 0; k < 10; ++k) {
+    const Vec3 at = random.vector();
+    double sum = 0;
+    Vec3 gradient_sum = Vec3::Zero();
+    const auto N = hex_shape(at);
+    const auto gradients = hex_shape_gradients(at);
+    for (int i = 0; i < 8; ++i) {
+      sum += N[i];
+      gradient_sum += gradients[i];
+      for (int axis = 0; axis < 3; ++axis) {
+        const double d = 1e-5;
+        const Vec3 step = d * Vec3::Unit(axis);
+        EXPECT_NEAR(gradients[i][axis], (hex_shape(at + step)[i] - hex_shape(at - step)[i]) / (2 * d), 1e-10);
+      }
+    }
+    EXPECT_NEAR(sum, 1, 1e-15);
+    EXPECT_LE(gradient_sum.norm(), 1e-15);
+  }
+}
+
+TEST(Hexahedron, VolumeOfABrickIsTheProductOfItsSides) {
+  HexPoints brick;
+  for (int i = 0; i < 8; ++i) brick[i] = hex_reference_nodes[i].cwiseProduct(Vec3(10, 10, 20)) + Vec3(3, 500, -7);
+  EXPECT_NEAR(hex_volume(brick), 16000, 1e-9);
+  for (Vec3& x : brick) x.z() = -x.z();
+  EXPECT_NEAR(hex_volume(brick), -16000, 1e-9);
+}
+
+// Four-point Gauss integration of det J, two orders more than its degree needs.
+TEST(Hexahedron, VolumeIsTheIntegralOfTheJacobian) {
+  const std::array<double, 4> points = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
+                                        0.8611363115940526};
+  const std::array<double, 4> weights = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
+                                         0.3478548451374538};
+  Random random(2);
+  int cases = 0;
+  for (; cases < 50; ++cases) {
+    const HexPoints x = warped(random);
+    double integral = 0;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        for (int k = 0; k < 4; ++k)
+          integral += weights[i] * weights[j] * weights[k] *
+                      hex_jacobian(x, Vec3(points[i], points[j], points[k])).determinant();
+    EXPECT_NEAR(hex_volume(x), integral, 1e-12 * 16000);
+  }
+  RecordProperty("cases", cases);
+}
+
+TEST(Hexahedron, VolumeGradientAgreesWithFiniteDifferencesAndEulersIdentity) {
+  Random random(3);
+  int cases = 0;
+  for (; cases < 20; ++cases) {
+    HexPoints x = warped(random);
+    const auto gradient = hex_volume_gradient(x);
+    double euler = 0;
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < 8; ++i) {
+      euler += x[i].dot(gradient[i]);
+      sum += gradient[i];
+      for (int axis = 0; axis < 3; ++axis) {
+        // V is linear in each coordinate by itself: the difference is exact at any step.
+        const double kept = x[i][axis];
+        x[i][axis] = kept + 1;
+        const double above = hex_volume(x);
+        x[i][axis] = kept - 1;
+        const double below = hex_volume(x);
+        x[i][axis] = kept;
+        EXPECT_NEAR(gradient[i][axis], (above - below) / 2, 1e-9);
+      }
+    }
+    EXPECT_NEAR(euler, 3 * hex_volume(x), 1e-9);
+    EXPECT_LE(sum.norm(), 1e-10);
+  }
+  RecordProperty("cases", cases);
+}
+
+TEST(Hexahedron, VolumeHessianAgreesWithDifferencesOfTheGradient) {
+  Random random(4);
+  int cases = 0;
+  for (; cases < 20; ++cases) {
+    const HexPoints x = warped(random);
+    std::array<Vec3, 8> direction;
+    for (Vec3& d : direction) d = random.vector();
+    HexPoints above = x, below = x;
+    for (int i = 0; i < 8; ++i) {
+      above[i] += direction[i];
+      below[i] -= direction[i];
+    }
+    // The gradient is quadratic, so central differences are exact at any step.
+    const auto g_above = hex_volume_gradient(above), g_below = hex_volume_gradient(below);
+    const auto product = hex_volume_hessian_product(x, direction);
+    const auto hessian = hex_volume_hessian(x);
+    for (int i = 0; i < 8; ++i) {
+      EXPECT_LE((product[i] - (g_above[i] - g_below[i]) / 2).norm(), 1e-10);
+      Vec3 assembled = Vec3::Zero();
+      for (int j = 0; j < 8; ++j) {
+        assembled += hessian[i][j].cross(direction[j]);
+        EXPECT_LE((hessian[i][j] + hessian[j][i]).norm(), 1e-13);
+      }
+      EXPECT_LE((assembled - product[i]).norm(), 1e-11);
+    }
+  }
+  RecordProperty("cases", cases);
+}
+
+TEST(Hexahedron, ScaledJacobianIsOneForBricksAndNotPositiveWhenACornerFolds) {
+  Random random(5);
+  HexPoints brick;
+  const Mat3 R = random.rotation();
+  for (int i = 0; i < 8; ++i) brick[i] = R * hex_reference_nodes[i].cwiseProduct(Vec3(1, 20, 300));
+  EXPECT_NEAR(hex_scaled_jacobian(brick), 1, 1e-13);
+  HexPoints cube = hex_reference_nodes;
+  cube[6] = Vec3(0, 0, -0.5);  // pushed through the diagonal plane of its three neighbours
+  EXPECT_LT(hex_scaled_jacobian(cube), 0);
+  // A parallelepiped leaning by 60 degrees: sin 30 of the right angle is left.
+  HexPoints leaning = hex_reference_nodes;
+  for (Vec3& x : leaning) x.x() += std::tan(std::numbers::pi / 3) * x.z();
+  EXPECT_NEAR(hex_scaled_jacobian(leaning), 0.5, 1e-13);
+}
+
+TEST(Hexahedron, FacetAreaAndItsVector) {
+  const std::array<Vec3, 4> square = {Vec3(0, 0, 5), {3, 0, 5}, {3, 2, 5}, {0, 2, 5}};
+  EXPECT_NEAR(facet_area(square), 6, 1e-14);
+  EXPECT_LE((facet_area_vector(square) - Vec3(0, 0, 6)).norm(), 1e-14);
+  // The hyperbolic paraboloid z = h x y on the unit square: its area is the integral of
+  // sqrt(1 + h^2 (x^2 + y^2)), here by the midpoint rule, and its area vector depends on the boundary only.
+  const double h = 0.5;
+  const std::array<Vec3, 4> saddle = {Vec3(0, 0, 0), {1, 0, 0}, {1, 1, h}, {0, 1, 0}};
+  double fine = 0;
+  const int n = 400;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double x = (i + 0.5) / n, y = (j + 0.5) / n;
+      fine += std::sqrt(1 + h * h * (x * x + y * y)) / (n * n);
+    }
+  EXPECT_NEAR(facet_area(saddle), fine, 5e-4);
+  EXPECT_LE((facet_area_vector(saddle) - Vec3(-h / 2, -h / 2, 1)).norm(), 1e-14);
+}
+
+}  // namespace
+}  // namespace plica

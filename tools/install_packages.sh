@@ -1,0 +1,64 @@
+#!/bin/bash
+# Installs the Debian 12 packages that plica needs: with root or sudo, and only when some are missing.
+# Usage: tools/install_packages.sh [GROUP...], of: build libraries tests checks tidy pictures. Without a group: all of them.
+set -euo pipefail
+
+# The one list of packages. docs/dependencies.md says why each library is here.
+declare -A packages=(
+  [build]="cmake ninja-build g++"
+  # OpenBLAS in its serial variant: one thread, so that results are the same to the bit.
+  [libraries]="libeigen3-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
+               libmumps-seq-dev libopenblas-serial-dev libvtk9-dev"
+  [tests]="libgtest-dev libbenchmark-dev"
+  [checks]="clang-format python3 python3-vtk9 python3-pandas python3-matplotlib"
+  [tidy]="clang-tidy"
+  [pictures]="python3 python3-vtk9 xvfb xauth"
+)
+
+groups=("$@")
+[ ${#groups[@]} -gt 0 ] || groups=(build libraries tests checks tidy pictures)
+
+wanted=()
+for group in "${groups[@]}"; do
+  if [ -z "${packages[$group]:-}" ]; then
+    echo "install_packages.sh: no group '$group'; there are: ${!packages[*]}" >&2
+    exit 2
+  fi
+  for name in ${packages[$group]}; do
+    case " ${wanted[*]:-} " in *" $name "*) ;; *) wanted+=("$name") ;; esac
+  done
+done
+
+missing=()
+for name in "${wanted[@]}"; do
+  status=$(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null) || status=""
+  [ "$status" = installed ] || missing+=("$name")
+done
+
+if [ ${#missing[@]} -eq 0 ]; then
+  echo "All ${#wanted[@]} packages are there (${groups[*]})."
+  exit 0
+fi
+
+echo "Installing: ${missing[*]}"
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "install_packages.sh: needs root or sudo to install: ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+# What apt-get says is shown only when it fails.
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+install() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update &&
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends "${missing[@]}"
+}
+if ! install >"$log" 2>&1; then
+  tail -n 40 "$log" >&2
+  echo "install_packages.sh: apt-get failed (above); needed: ${missing[*]}" >&2
+  exit 1
+fi
+echo "Installed ${#missing[@]} packages and what they need."
