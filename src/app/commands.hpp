@@ -1,5 +1,5 @@
-// The subcommands of plica, a file each. Each adds itself to the command line; when chosen, its callback does the work and
-// sets the exit status.
+// The subcommands of plica, a file each. Each adds itself to the command line; when chosen, its callback does the work
+// and sets the exit status.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,9 +9,9 @@ namespace plica {
 /// Exit statuses of the contract.
 enum ExitStatus : int {
   exit_done = 0,
-  exit_missed = 1,       // an [expect] was missed
-  exit_usage = 2,        // bad usage or scenario
-  exit_gave_up = 3,      // the numerics gave up; state saved
+  exit_missed = 1,   // an [expect] was missed
+  exit_usage = 2,    // bad usage or scenario
+  exit_gave_up = 3,  // the numerics gave up; state saved
   exit_files = 4,
   exit_interrupted = 130,
   exit_terminated = 143,

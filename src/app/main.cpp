@@ -3,6 +3,7 @@
 #include <csignal>
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "app/commands.hpp"
 #include "core/errors.hpp"
@@ -12,6 +13,7 @@ int main(int argc, char** argv) {
   using namespace plica;
   // A reader that goes away (`plica check ... | head`) is an error of writing, not a reason to die.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // likewise a file that reaches its limit
   CLI::App app("plica simulates how a sheet of living cells folds.\nStart with: plica run drosophila --out results");
   app.name("plica");
   app.set_version_flag("--version", fmt::format("plica {} ({}, {})", version(), commit(), compiler()));
@@ -35,12 +37,19 @@ int main(int argc, char** argv) {
   } catch (const FileError& error) {
     fmt::print(stderr, "plica: {}\n", error.what());
     return exit_files;
+  } catch (const std::system_error& error) {  // fmt::print to a full disk or a closed pipe
+    fmt::print(stderr, "plica: standard output cannot be written: {}\n", error.code().message());
+    return exit_files;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "plica: out of memory; take fewer cells or elements_per_cell\n");
     return exit_gave_up;
   } catch (const std::exception& error) {
     fmt::print(stderr, "plica: {}\n", error.what());
     return exit_gave_up;
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    fmt::print(stderr, "plica: standard output cannot be written\n");
+    return exit_files;
   }
   return status;
 }

@@ -15,8 +15,8 @@ namespace {
 
 void print_quality(const Tissue& tissue) {
   const MeshQuality quality = mesh_quality(tissue, tissue.rest_positions);
-  fmt::print("{} cells, {} elements, {} nodes\n{:<24}{:>10}{:>10}{:>10}\n", tissue.cells.size(),
-             tissue.elements.size(), tissue.node_count(), "", "min", "mean", "max");
+  fmt::print("{} cells, {} elements, {} nodes\n{:<24}{:>10}{:>10}{:>10}\n", tissue.cells.size(), tissue.elements.size(),
+             tissue.node_count(), "", "min", "mean", "max");
   const auto row = [](const char* name, const Spread& s) {
     fmt::print("{:<24}{:>10.1f}{:>10.1f}{:>10.1f}\n", name, s.min, s.mean, s.max);
   };
@@ -31,7 +31,8 @@ void print_quality(const Tissue& tissue) {
 }  // namespace
 
 void add_mesh_command(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("mesh", "write the mesh at rest with its regions; print how even its cells are");
+  CLI::App* command =
+      app.add_subcommand("mesh", "write the mesh at rest with its regions; print how even its cells are");
   auto options = std::make_shared<ScenarioOptions>();
   auto out = std::make_shared<std::string>();
   auto overwrite = std::make_shared<bool>(false);

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <memory>
 
 #include "app/commands.hpp"
@@ -11,6 +12,7 @@
 #include "core/errors.hpp"
 #include "core/units.hpp"
 #include "output/recorder.hpp"
+#include "scenario/advice.hpp"
 #include "scenario/setup.hpp"
 
 namespace plica {
@@ -41,6 +43,15 @@ void print_result(const nlohmann::ordered_json& summary, const std::string& out)
   fmt::print("  results in {}\n", out);
 }
 
+// A scenario that lies in DIR under a name that plica writes there would be lost.
+void refuse_to_replace(const std::string& scenario_file, const std::filesystem::path& out) {
+  if (out.empty()) throw UsageError("--out is empty; give the directory for the results");
+  std::error_code error;
+  for (const char* name : {"scenario.toml", "scenario.input.toml"})
+    if (std::filesystem::equivalent(scenario_file, out / name, error))
+      throw UsageError(scenario_file + ": the results would replace it; give another --out, or move the scenario");
+}
+
 int exit_status(const RunResult& result, bool missed) {
   if (result.status == RunStatus::failed) return exit_gave_up;
   if (result.status == RunStatus::interrupted) return caught_signal == SIGTERM ? exit_terminated : exit_interrupted;
@@ -56,6 +67,11 @@ int run_scenario(const RunOptions& options) {
   const RunControls controls = make_controls(scenario);
   const Observer observer(*model, make_furrow_sites(scenario, model->tissue));
 
+  if (!options.quiet)
+    for (const std::string& line : advice(scenario, *model))
+      if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
+
+  refuse_to_replace(source.file, options.out);
   prepare_directory(options.out, options.overwrite);
   const State rest = rest_state(*model);
   Recorder recorder(options.out, scenario, source.text, *model, observer, rest);
@@ -65,21 +81,23 @@ int run_scenario(const RunOptions& options) {
 
   double recording_s = 0;
   const auto run_start = std::chrono::steady_clock::now();
-  const RunResult result = run(*model, rest, controls, [&](const AcceptedStep& step) {
-    const auto recording_start = std::chrono::steady_clock::now();
-    progress.show(recorder.record(step));
-    recording_s += seconds_since(recording_start);
-    return caught_signal == 0;
-  });
+  const RunResult result = run(
+      *model, rest, controls,
+      [&](const AcceptedStep& step) {
+        const auto recording_start = std::chrono::steady_clock::now();
+        progress.show(recorder.record(step));
+        recording_s += seconds_since(recording_start);
+        return caught_signal == 0;
+      },
+      [] { return caught_signal != 0; });
   const double solver_s = seconds_since(run_start) - recording_s;
   progress.finish();
   const auto summary = recorder.finish(result, {seconds_since(start), solver_s});
 
-  const std::vector<std::string> missed =
-      result.status == RunStatus::failed || result.status == RunStatus::interrupted
-          ? std::vector<std::string>{}
-          : missed_expectations(scenario, summary);
-  for (const std::string& line : missed) fmt::print(stderr, "{}: {}\n", source.file, line);
+  const std::vector<std::string> missed = result.status == RunStatus::failed || result.status == RunStatus::interrupted
+                                              ? std::vector<std::string>{}
+                                              : missed_expectations(scenario, summary);
+  for (const std::string& line : missed) fmt::print(stderr, "{}\n", line);
   if (!result.failure.empty())
     fmt::print(stderr, "plica: gave up: {}; the last good state is in {}\n", result.failure, options.out);
   if (!options.quiet) print_result(summary, options.out);

@@ -29,8 +29,8 @@ std::vector<bool> ventral_facets(const Tissue& tissue) {
   return wanted;
 }
 
-// How far a material point lies inside the ventral shell along z, less the same at rest. Without a shell: how far it has
-// risen.
+// How far a material point lies inside the ventral shell along z, less the same at rest. Without a shell: how far it
+// has risen.
 double depth_of(const Tissue& tissue, const MaterialPoint& point, std::span<const Vec3> positions) {
   const Vec3 now = point.at(tissue, positions), rest = point.at(tissue, tissue.rest_positions);
   if (!tissue.outer_shape) return now.z() - rest.z();
@@ -50,9 +50,7 @@ std::vector<CellId> cells_on_midline(const Tissue& tissue, const std::vector<boo
 bool find_lips(const Tissue& tissue, FurrowSites& sites) {
   // Edges of contractile facets that no other contractile facet has.
   std::map<std::pair<NodeId, NodeId>, int> uses;
-  const auto edge = [&](const Facet& facet, int i) {
-    return std::minmax(facet.nodes[i], facet.nodes[(i + 1) % 4]);
-  };
+  const auto edge = [&](const Facet& facet, int i) { return std::minmax(facet.nodes[i], facet.nodes[(i + 1) % 4]); };
   for (const Facet& facet : tissue.apical_facets)
     if (sites.contractile[facet.cell.index()])
       for (int i = 0; i < 4; ++i) ++uses[edge(facet, i)];
@@ -77,10 +75,9 @@ FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile
   FurrowSites sites;
   sites.contractile = contractile;
   sites.midline = cells_on_midline(tissue, ventral_facets(tissue));
-  const auto rest_x = [&](CellId cell) {
-    return cell_centre(tissue.cells[cell.index()], tissue.rest_positions).x();
-  };
-  std::stable_sort(sites.midline.begin(), sites.midline.end(), [&](CellId a, CellId b) { return rest_x(a) < rest_x(b); });
+  const auto rest_x = [&](CellId cell) { return cell_centre(tissue.cells[cell.index()], tissue.rest_positions).x(); };
+  std::stable_sort(sites.midline.begin(), sites.midline.end(),
+                   [&](CellId a, CellId b) { return rest_x(a) < rest_x(b); });
 
   // Distances from the middle that contractile midline cells have, each once, with the cells that have it.
   std::vector<std::pair<double, MonitoredCells>> by_distance;
@@ -95,6 +92,7 @@ FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile
       by_distance.push_back({distance, {cell}});
   }
   std::sort(by_distance.begin(), by_distance.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  sites.midline_pairs = static_cast<int>(by_distance.size());
   if (!by_distance.empty()) {
     sites.vml = by_distance.front().second;
     const int last = static_cast<int>(by_distance.size()) - 1;
@@ -106,8 +104,7 @@ FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile
 
 FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions) {
   FurrowShape shape;
-  for (const MaterialPoint& point :
-       cut_apical_surface(tissue, positions, axis_y, facets_of(tissue, sites.contractile)))
+  for (const MaterialPoint& point : cut_apical_surface(tissue, positions, axis_y, facets_of(tissue, sites.contractile)))
     shape.depth_um = std::max(shape.depth_um.value_or(-1e300), depth_of(tissue, point, positions));
   if (!sites.has_lips) return shape;
 

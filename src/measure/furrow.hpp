@@ -17,11 +17,12 @@ using MonitoredCells = std::vector<CellId>;
 
 /// What is measured, chosen once from the tissue at rest.
 struct FurrowSites {
-  CellSet contractile;                        // the cells whose furrow is measured
-  MonitoredCells vml;                         // centre of the midline
-  MonitoredCells vce;                         // near its ends
-  std::vector<CellId> midline;                // ventral cells on y = 0, anterior to posterior
-  std::array<MaterialPoint, 2> lips;          // left, right: where the mid cross-section leaves the contractile cells
+  CellSet contractile;                // the cells whose furrow is measured
+  MonitoredCells vml;                 // centre of the midline
+  MonitoredCells vce;                 // near its ends
+  int midline_pairs = 0;              // contractile midline cells from an end to the middle
+  std::vector<CellId> midline;        // ventral cells on y = 0, anterior to posterior
+  std::array<MaterialPoint, 2> lips;  // left, right: where the mid cross-section leaves the contractile cells
   bool has_lips = false;
 };
 
@@ -30,9 +31,9 @@ FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile
 
 /// Everything about the furrow at one moment. What has no value is empty.
 struct FurrowShape {
-  std::optional<double> depth_um;            // from the shell down to the midline, less what flat facets have at rest
-  std::optional<double> depth_below_lips_um; // from the lips' mean height down to the floor in the mid cross-section
-  std::optional<double> lip_distance_um;     // between the material lips
+  std::optional<double> depth_um;             // from the shell down to the midline, less what flat facets have at rest
+  std::optional<double> depth_below_lips_um;  // from the lips' mean height down to the floor in the mid cross-section
+  std::optional<double> lip_distance_um;      // between the material lips
   std::optional<double> highest_points_distance_um;  // between the most ventral points left and right of the midline
 };
 

@@ -74,8 +74,10 @@ SpeedHistory speed_history(const std::vector<Observation>& rows) {
     const double part = before > 0 ? before / (before - after) : 0;
     const auto between = [&](double a, double b) { return a + part * (b - a); };
     history.ends_lead_until_s = between(rows[i - 1].time_s, rows[i].time_s);
-    history.vml_displacement_at_equal_speed_um = between(*rows[i - 1].vml_displacement_um, *rows[i].vml_displacement_um);
-    history.vce_displacement_at_equal_speed_um = between(*rows[i - 1].vce_displacement_um, *rows[i].vce_displacement_um);
+    history.vml_displacement_at_equal_speed_um =
+        between(*rows[i - 1].vml_displacement_um, *rows[i].vml_displacement_um);
+    history.vce_displacement_at_equal_speed_um =
+        between(*rows[i - 1].vce_displacement_um, *rows[i].vce_displacement_um);
     break;
   }
   return history;

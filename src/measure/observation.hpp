@@ -47,7 +47,7 @@ class Observer {
 
 /// Who leads, the ends or the middle, over a whole run.
 struct SpeedHistory {
-  std::optional<double> peak_ratio;         // v_c/v_m when v_c - v_m is largest, among steps with v_m over 1 % of its peak
+  std::optional<double> peak_ratio;  // v_c/v_m when v_c - v_m is largest, among steps with v_m over 1 % of its peak
   std::optional<double> peak_ratio_time_s;
   std::optional<double> ends_lead_until_s;  // first time after that when v_c <= v_m; linear between steps
   std::optional<double> vml_displacement_at_equal_speed_um, vce_displacement_at_equal_speed_um;

@@ -100,8 +100,7 @@ void Dilatation::add_forces(const Step& step, std::span<Vec3> forces) const {
   }
 }
 
-void Dilatation::add_tangent_product(const Step& step, std::span<const Vec3> direction,
-                                     std::span<Vec3> product) const {
+void Dilatation::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const auto& nodes = elements_[e];
     const HexPoints points = gather(step.positions, nodes);
@@ -110,8 +109,7 @@ void Dilatation::add_tangent_product(const Step& step, std::span<const Vec3> dir
     const auto gradient = hex_volume_gradient(points);
     double rate = 0;
     for (int i = 0; i < 8; ++i) rate += gradient[i].dot(direction[nodes[i].index()]);
-    for (int i = 0; i < 8; ++i)
-      product[nodes[i].index()] += bulk_modulus_ / rest_volumes_[e] * rate * gradient[i];
+    for (int i = 0; i < 8; ++i) product[nodes[i].index()] += bulk_modulus_ / rest_volumes_[e] * rate * gradient[i];
   }
 }
 
@@ -124,8 +122,7 @@ void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
     const auto gradient = hex_volume_gradient(points);
     for (int i = 0; i < 8; ++i)
       for (int j = 0; j < 8; ++j)
-        tangent.add_block(nodes[i], nodes[j],
-                          bulk_modulus_ / rest_volumes_[e] * gradient[i] * gradient[j].transpose());
+        tangent.add_block(nodes[i], nodes[j], bulk_modulus_ / rest_volumes_[e] * gradient[i] * gradient[j].transpose());
   }
 }
 

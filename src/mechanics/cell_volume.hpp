@@ -10,7 +10,8 @@
 
 namespace plica {
 
-/// The constraints V_c(x) = target, one a cell. Their multipliers are the cells' pressures, kPa, positive in compression.
+/// The constraints V_c(x) = target, one a cell. Their multipliers are the cells' pressures, kPa, positive in
+/// compression.
 class CellVolumes {
  public:
   /// Targets are the cells' rest volumes.
@@ -48,8 +49,9 @@ class CellVolumes {
 };
 
 /// The bulk modulus at work: energy kappa V0 (V/V0 - 1)^2 / 2 an element, with exact volumes. It replaces the mean
-/// volumetric part that Corotational leaves out. Where a cell is one element of exact volume it is zero; within a cell of
-/// several it resists one element growing at another's cost; without the constraint it is the whole volume elasticity.
+/// volumetric part that Corotational leaves out. Where a cell is one element of exact volume it is zero; within a cell
+/// of several it resists one element growing at another's cost; without the constraint it is the whole volume
+/// elasticity.
 class Dilatation final : public Law {
  public:
   /// `bulk_modulus` in kPa.

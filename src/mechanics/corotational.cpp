@@ -1,6 +1,6 @@
-// Letters as in docs/theory/corotational.md: F mean deformation gradient, R its rotation, S = R^T F its stretch, u local
-// displacement, y = R^T (x - c) local position, q = K u local force without the turning of R, t = H (sum y_i x q_i) with
-// H = (tr(S) I - S)^-1, g_i = q_i - t x b_i the gradient in the local frame.
+// Letters as in docs/theory/corotational.md: F mean deformation gradient, R its rotation, S = R^T F its stretch, u
+// local displacement, y = R^T (x - c) local position, q = K u local force without the turning of R, t = H (sum y_i x
+// q_i) with H = (tr(S) I - S)^-1, g_i = q_i - t x b_i the gradient in the local frame.
 #include "mechanics/corotational.hpp"
 
 #include <algorithm>
@@ -242,12 +242,11 @@ void Corotational::add_tangent_product(const Step& step, std::span<const Vec3> d
     const Mat3 dS = stretching - cross_matrix(omega) * f.S;
     Vec3 dtorque = dS * f.t - dS.trace() * f.t;
     for (int i = 0; i < 8; ++i)
-      dtorque += Vec3(du.segment<3>(3 * i)).cross(Vec3(f.q.segment<3>(3 * i))) +
-                 f.y[i].cross(Vec3(dq.segment<3>(3 * i)));
+      dtorque +=
+          Vec3(du.segment<3>(3 * i)).cross(Vec3(f.q.segment<3>(3 * i))) + f.y[i].cross(Vec3(dq.segment<3>(3 * i)));
     const Vec3 dt = f.H * dtorque;
     for (int i = 0; i < 8; ++i)
-      results[e][i] =
-          f.R * (omega.cross(Vec3(f.g.segment<3>(3 * i))) + Vec3(dq.segment<3>(3 * i)) - dt.cross(b[i]));
+      results[e][i] = f.R * (omega.cross(Vec3(f.g.segment<3>(3 * i))) + Vec3(dq.segment<3>(3 * i)) - dt.cross(b[i]));
   });
   for (std::size_t e = 0; e < elements_.size(); ++e)
     for (int i = 0; i < 8; ++i) product[elements_[e].nodes[i].index()] += results[e][i];

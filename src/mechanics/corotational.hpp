@@ -2,9 +2,9 @@
 //
 // Linear elasticity in each element's own rotating frame (docs/theory/corotational.md): with R the rotation of the mean
 // deformation gradient F = sum_i x_i b_i^T, local displacement u_i = R^T (x_i - c) - (X_i - C) and energy u^T K u / 2.
-// K is the 24 x 24 stiffness of the rest shape with nine incompatible modes (Wilson-Taylor) condensed, less its mean volumetric
-// part, which belongs to cell_volume. R is differentiated too: the force is the exact gradient, so angular momentum
-// is exact and the tangent symmetric.
+// K is the 24 x 24 stiffness of the rest shape with nine incompatible modes (Wilson-Taylor) condensed, less its mean
+// volumetric part, which belongs to cell_volume. R is differentiated too: the force is the exact gradient, so angular
+// momentum is exact and the tangent symmetric.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,6 +1,6 @@
 // What every law of mechanics offers. A law is a term of the step's incremental potential: its forces are the exact
-// negative gradient of its energy and its tangent the exact Hessian, so that Newton's method converges quadratically and the line search
-// has something to descend on.
+// negative gradient of its energy and its tangent the exact Hessian, so that Newton's method converges quadratically
+// and the line search has something to descend on.
 #pragma once
 
 #include <span>
@@ -45,7 +45,8 @@ class Law {
   virtual void add_forces(const Step& step, std::span<Vec3> forces) const = 0;
 
   /// Adds d2(energy)/dx2 times `direction`, without a matrix.
-  virtual void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const = 0;
+  virtual void add_tangent_product(const Step& step, std::span<const Vec3> direction,
+                                   std::span<Vec3> product) const = 0;
 
   /// Adds d2(energy)/dx2: every block (a, b) and (b, a) of nodes that the law joins.
   virtual void add_tangent(const Step& step, TangentSink& tangent) const = 0;

@@ -1,6 +1,8 @@
 #include "mechanics/model.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace plica {
 
@@ -9,6 +11,37 @@ double Model::force_scale() const {
   for (const double target : volumes.targets()) volume += target;
   return stiffness_scale * std::pow(volume / static_cast<double>(tissue.elements.size()), 2.0 / 3);
 }
+
+namespace {
+
+// Distance that positions are rounded by, um, with a margin for sums.
+double position_rounding(const Tissue& tissue) {
+  double extent = 0;
+  for (const Vec3& position : tissue.rest_positions) extent = std::max(extent, position.norm());
+  return 16 * std::numeric_limits<double>::epsilon() * extent;
+}
+
+// Largest of an element's faces, um^2, over its volume: how much a shift of a face changes it.
+double thinnest(const Tissue& tissue, bool times_face) {
+  double most = 0;
+  for (const HexPoints& rest : tissue.element_rest_shape) {
+    double face_area = 0;
+    for (const auto& face : hex_faces)
+      face_area = std::max(face_area, facet_area({rest[face[0]], rest[face[1]], rest[face[2]], rest[face[3]]}));
+    most = std::max(most, face_area / hex_volume(rest) * (times_face ? face_area : 1));
+  }
+  return most;
+}
+
+}  // namespace
+
+double Model::force_rounding() const {
+  // Stiffness of a slab, E A / height = E A^2 / V, times the rounding of a position, over all nodes.
+  return stiffness_scale * thinnest(tissue, true) * position_rounding(tissue) *
+         std::sqrt(static_cast<double>(tissue.node_count()));
+}
+
+double Model::volume_rounding() const { return thinnest(tissue, false) * position_rounding(tissue); }
 
 State rest_state(const Model& model) {
   State state;

@@ -21,7 +21,7 @@ struct Model {
   CellVolumes volumes;
   bool volumes_are_held = true;
   std::optional<Vitelline> vitelline;
-  std::vector<std::array<bool, 3>> held;  // nodes; directions x, y, z in which a node does not move
+  std::vector<std::array<bool, 3>> held;         // nodes; directions x, y, z in which a node does not move
   std::vector<const Contraction*> contractions;  // among the laws
   std::vector<CellSet> contraction_cells;        // contractions
   double stiffness_scale = 1;  // Young's modulus, kPa: for tolerances that must not depend on the load
@@ -30,6 +30,11 @@ struct Model {
 
   /// Typical force of the body, nN: modulus times the mean area of an element's face. Residuals are zero against this.
   [[nodiscard]] double force_scale() const;
+
+  /// What rounding of positions makes of forces (nN, norm over nodes) and of relative volumes: nothing solves below
+  /// that. Matters for cells that are very thin beside the embryo.
+  [[nodiscard]] double force_rounding() const;
+  [[nodiscard]] double volume_rounding() const;
 };
 
 /// Where the run is. Enough, with the Model, to go on from here to the same bits.

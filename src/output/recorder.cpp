@@ -15,18 +15,39 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t most_cells_by_default = 2000;  // with a row a cell a frame in cells.csv
-const std::vector<std::string> own_files = {"summary.json", "series.csv",  "cells.csv",          "midline.csv",
+constexpr const char* series_header =
+    "time_s,furrow_depth_um,furrow_depth_below_lips_um,lip_distance_um,vml_speed_um_per_s,vce_speed_um_per_s,"
+    "speed_ratio,vml_displacement_um,vce_displacement_um,vml_apical_area_ratio,vce_apical_area_ratio,"
+    "max_node_speed_um_per_s,max_volume_error,lumen_volume_ratio,cells,step_s,newton_iterations,linear_iterations";
+constexpr const char* midline_header = "time_s,ap_um,depth_um,normal_speed_um_per_s,apical_area_ratio";
+constexpr const char* cells_header =
+    "time_s,cell_id,mother_id,generation,x_um,y_um,z_um,volume_um3,apical_area_um2,basal_area_um2,height_um,"
+    "apical_area_ratio,speed_um_per_s,pressure_Pa,activity";
+const std::vector<std::string> own_files = {"summary.json", "series.csv",    "cells.csv",          "midline.csv",
                                             "frames.pvd",   "scenario.toml", "scenario.input.toml"};
 
 // A number for a CSV file; what has no value, or is not finite, is left empty.
 std::string field(std::optional<double> value) {
-  return value && std::isfinite(*value) ? fmt::format("{:.10g}", *value) : "";
+  return value && std::isfinite(*value) ? fmt::format("{:.10g}", *value + 0.0) : "";  // + 0.0: no "-0"
 }
 
 std::string row_of(const std::vector<std::optional<double>>& values) {
   std::string row;
   for (std::size_t i = 0; i < values.size(); ++i) row += (i > 0 ? "," : "") + field(values[i]);
   return row;
+}
+
+// A table that begins with its header, whole or not at all.
+RowFile table(const fs::path& file, const std::string& header) {
+  write_file(file, header + "\n");
+  return RowFile(file, header.size() + 1);
+}
+
+// frame_00042.vtu and the like: what write_frame names.
+bool is_frame(const fs::path& file) {
+  const std::string name = file.stem().string();
+  return file.extension() == ".vtu" && name.starts_with("frame_") && name.size() >= 11 &&
+         name.find_first_not_of("0123456789", 6) == std::string::npos;
 }
 
 bool holds_results(const fs::path& directory) {
@@ -61,12 +82,12 @@ void prepare_directory(const fs::path& directory, bool overwrite) {
     throw FileError(directory.string() + ": is a file, not a directory; give another --out");
   if (holds_results(directory)) {
     if (!overwrite)
-      throw FileError(directory.string() + ": holds results already; give another --out, or --overwrite to replace them");
+      throw FileError(directory.string() +
+                      ": holds results already; give another --out, or --overwrite to replace them");
     for (const std::string& file : own_files) fs::remove(directory / file, error);
     // Frames only: whatever else lies there is not ours.
     for (const auto& entry : fs::directory_iterator(directory / "frames", error))
-      if (entry.path().filename().string().starts_with("frame_") && entry.path().extension() == ".vtu")
-        fs::remove(entry.path(), error);
+      if (is_frame(entry.path())) fs::remove(entry.path(), error);
   }
   error.clear();
   fs::create_directories(directory / "frames", error);
@@ -79,21 +100,12 @@ Recorder::Recorder(fs::path directory, const Scenario& scenario, const std::stri
       scenario_(scenario),
       model_(model),
       observer_(observer),
-      series_(directory_ / "series.csv"),
-      midline_(directory_ / "midline.csv") {
+      series_(table(directory_ / "series.csv", series_header)),
+      midline_(table(directory_ / "midline.csv", midline_header)) {
   write_file(directory_ / "scenario.input.toml", input_toml);
   write_file(directory_ / "scenario.toml", resolved_toml(scenario));
-  series_.append(
-      "time_s,furrow_depth_um,furrow_depth_below_lips_um,lip_distance_um,vml_speed_um_per_s,vce_speed_um_per_s,"
-      "speed_ratio,vml_displacement_um,vce_displacement_um,vml_apical_area_ratio,vce_apical_area_ratio,"
-      "max_node_speed_um_per_s,max_volume_error,lumen_volume_ratio,cells,step_s,newton_iterations,linear_iterations");
-  midline_.append("time_s,ap_um,depth_um,normal_speed_um_per_s,apical_area_ratio");
-  if (scenario.output.cells_csv.value_or(model.tissue.cells.size() <= most_cells_by_default)) {
-    cells_.emplace(directory_ / "cells.csv");
-    cells_->append(
-        "time_s,cell_id,mother_id,generation,x_um,y_um,z_um,volume_um3,apical_area_um2,basal_area_um2,height_um,"
-        "apical_area_ratio,speed_um_per_s,pressure_Pa,activity");
-  }
+  if (scenario.output.cells_csv.value_or(model.tissue.cells.size() <= most_cells_by_default))
+    cells_ = table(directory_ / "cells.csv", cells_header);
   rows_.push_back(observer.observe_rest(rest));
   append_series(rows_.back());
   write_frame(rest, rest.velocities);
@@ -114,24 +126,12 @@ nlohmann::ordered_json Recorder::finish(const RunResult& result, const WallTimes
 }
 
 void Recorder::append_series(const Observation& row) {
-  series_.append(row_of({row.time_s,
-                         row.furrow.depth_um,
-                         row.furrow.depth_below_lips_um,
-                         row.furrow.lip_distance_um,
-                         row.vml_speed_um_per_s,
-                         row.vce_speed_um_per_s,
-                         row.speed_ratio,
-                         row.vml_displacement_um,
-                         row.vce_displacement_um,
-                         row.vml_apical_area_ratio,
-                         row.vce_apical_area_ratio,
-                         row.max_node_speed_um_per_s,
-                         row.max_volume_error,
-                         row.lumen_volume_ratio,
-                         static_cast<double>(model_.tissue.cells.size()),
-                         row.step_s,
-                         static_cast<double>(row.newton_iterations),
-                         static_cast<double>(row.linear_solves)}));
+  series_.append(row_of({row.time_s, row.furrow.depth_um, row.furrow.depth_below_lips_um, row.furrow.lip_distance_um,
+                         row.vml_speed_um_per_s, row.vce_speed_um_per_s, row.speed_ratio, row.vml_displacement_um,
+                         row.vce_displacement_um, row.vml_apical_area_ratio, row.vce_apical_area_ratio,
+                         row.max_node_speed_um_per_s, row.max_volume_error, row.lumen_volume_ratio,
+                         static_cast<double>(model_.tissue.cells.size()), row.step_s,
+                         static_cast<double>(row.newton_iterations), static_cast<double>(row.linear_solves)}));
 }
 
 void Recorder::write_frame(const State& state, const Vectors& velocities) {
@@ -177,11 +177,11 @@ void Recorder::append_cells(const State& state) {
     const Vec3 centre = cell_centre(cell, state.positions);
     const double rest_area = observer_.rest_apical_areas()[c];
     const std::optional<double> no_mother;
-    cells_->append(row_of({state.time_s, static_cast<double>(c), no_mother, 0.0, centre.x(), centre.y(), centre.z(),
-                           volumes[c], apical[c], basal[c], cell_height(cell, state.positions),
-                           rest_area > 0 ? std::optional(apical[c] / rest_area) : std::nullopt,
-                           cell_centre(cell, state.velocities).norm(), state.pressures[c] / units::pascal,
-                           activity[c]}));
+    cells_->append(
+        row_of({state.time_s, static_cast<double>(c), no_mother, 0.0, centre.x(), centre.y(), centre.z(), volumes[c],
+                apical[c], basal[c], cell_height(cell, state.positions),
+                rest_area > 0 ? std::optional(apical[c] / rest_area) : std::nullopt,
+                cell_centre(cell, state.velocities).norm(), state.pressures[c] / units::pascal, activity[c]}));
   }
 }
 
@@ -190,10 +190,10 @@ void Recorder::append_midline(const State& state) {
   const auto apical = apical_areas(tissue, state.positions);
   for (const CellId id : observer_.sites().midline) {
     const Cell& cell = tissue.cells[id.index()];
-    midline_.append(row_of({state.time_s, cell_centre(cell, tissue.rest_positions).x(),
-                            cell_depth_um(tissue, id, state.positions),
-                            -apical_normal(tissue, id).dot(mean_apical(cell, state.velocities)),
-                            apical[id.index()] / observer_.rest_apical_areas()[id.index()]}));
+    midline_.append(
+        row_of({state.time_s, cell_centre(cell, tissue.rest_positions).x(), cell_depth_um(tissue, id, state.positions),
+                -apical_normal(tissue, id).dot(mean_apical(cell, state.velocities)),
+                apical[id.index()] / observer_.rest_apical_areas()[id.index()]}));
   }
 }
 

@@ -11,15 +11,14 @@
 
 #include "core/version.hpp"
 #include "scenario/print.hpp"
+#include "scenario/regions.hpp"
 
 namespace plica {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(std::optional<double> value) {
-  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
-}
+Json number(std::optional<double> value) { return value && std::isfinite(*value) ? Json(*value) : Json(nullptr); }
 
 std::string cpu_name() {
   std::ifstream info("/proc/cpuinfo");
@@ -108,12 +107,14 @@ Json make_summary(const Scenario& scenario, const Model& model, const RunResult&
 std::vector<std::string> missed_expectations(const Scenario& scenario, const Json& summary) {
   std::vector<std::string> missed;
   for (const auto& [key, expected] : scenario.expect) {
-    const double margin = expected.within ? *expected.within : std::abs(expected.value) * *expected.within_percent / 100;
+    const double margin =
+        expected.within ? *expected.within : std::abs(expected.value) * *expected.within_percent / 100;
     const Json& found = summary.at(key);
     if (found.is_number() && std::abs(found.get<double>() - expected.value) <= margin) continue;
-    missed.push_back(fmt::format("expect.{}: {} is not within {:.4g} of {}", key,
-                                 found.is_number() ? fmt::format("{:.6g}", found.get<double>()) : "no value", margin,
-                                 expected.value));
+    const std::string value = found.is_number() ? fmt::format("{:.6g}", found.get<double>()) : "no value";
+    missed.push_back(diagnostic_at(scenario, "expect." + key, fmt::format("missed: it came to {}", value),
+                                   fmt::format("{} within {:.4g} was expected", expected.value, margin))
+                         .text());
   }
   return missed;
 }

@@ -27,16 +27,18 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   if (scenario.time.step_s && *scenario.time.step_s > scenario.time.end_s)
     warn("time.step_s is longer than the whole run");
   if (scenario.volume.method == "coupled")
-    note("every cell's volume is held exactly, so Poisson's ratio sets only the shear modulus and how far parts of a cell "
-         "may swell at each other's cost");
+    note(
+        "every cell's volume is held exactly, so Poisson's ratio sets only the shear modulus and how far parts of a "
+        "cell "
+        "may swell at each other's cost");
   if (model.vitelline && scenario.vitelline.gap_um > 0)
     note(fmt::format("the embryo starts {} um away from its shell", scenario.vitelline.gap_um));
 
   const MeshQuality quality = mesh_quality(model.tissue, model.tissue.rest_positions);
-  note(fmt::format("{} cells, {} elements, {} nodes; cell volume {:.0f} to {:.0f} um3, apical area {:.0f} to {:.0f} um2",
-                   model.tissue.cells.size(), model.tissue.elements.size(), model.tissue.node_count(),
-                   quality.volume_um3.min, quality.volume_um3.max, quality.apical_area_um2.min,
-                   quality.apical_area_um2.max));
+  note(fmt::format(
+      "{} cells, {} elements, {} nodes; cell volume {:.0f} to {:.0f} um3, apical area {:.0f} to {:.0f} um2",
+      model.tissue.cells.size(), model.tissue.elements.size(), model.tissue.node_count(), quality.volume_um3.min,
+      quality.volume_um3.max, quality.apical_area_um2.min, quality.apical_area_um2.max));
   if (quality.min_scaled_jacobian < 0.2)
     warn(fmt::format("the worst element has a scaled Jacobian of {:.2f} (1 is a brick): results near it are poor",
                      quality.min_scaled_jacobian));

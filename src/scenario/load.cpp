@@ -57,10 +57,27 @@ std::optional<ScenarioSource> find_base(const Document& document, const std::vec
   return {};
 }
 
+/// The line of a key with absurdly many parts, or 0: the TOML library would recurse once a part.
+int line_of_too_deep_key(const std::string& text) {
+  constexpr int most_dots = 64;
+  int line = 1, dots = 0;
+  bool in_key = true;
+  for (const char c : text) {
+    if (c == '\n') ++line, dots = 0, in_key = true;
+    if (c == '=') in_key = false;
+    if (in_key && c == '.' && ++dots > most_dots) return line;
+  }
+  return 0;
+}
+
 /// The scenario and its bases, the deepest first. Incomplete where anything was reported.
 std::vector<Document> read_documents(const ScenarioSource& source, std::vector<Diagnostic>& diagnostics) {
   std::vector<Document> chain;
   for (std::optional<ScenarioSource> next = source; next;) {
+    if (const int line = line_of_too_deep_key(next->text); line > 0) {
+      diagnostics.push_back({next->file, line, "", "a key has too many parts", "a scenario's keys have at most four"});
+      break;
+    }
     try {
       chain.push_back({*next, toml::parse(next->text)});
       next = find_base(chain.back(), chain, diagnostics);

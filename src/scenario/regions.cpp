@@ -65,9 +65,9 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
       if (array == tissue.cell_arrays.end()) {
         std::vector<std::string> names;
         for (const auto& [other, flags] : tissue.cell_arrays) names.push_back(other);
-        errors.push_back(diagnostic_at(scenario, "region." + name + ".array",
-                                       fmt::format("the mesh has no cell array \"{}\"", region.array),
-                                       names.empty() ? "it has none" : fmt::format("it has {}", fmt::join(names, ", "))));
+        errors.push_back(diagnostic_at(
+            scenario, "region." + name + ".array", fmt::format("the mesh has no cell array \"{}\"", region.array),
+            names.empty() ? "it has none" : fmt::format("it has {}", fmt::join(names, ", "))));
       } else {
         for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] && array->second[c];
       }

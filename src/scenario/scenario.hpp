@@ -20,12 +20,12 @@ struct ProgramInput {
 
 /// A named set of cells. Selectors that are given are intersected; `unite`, `intersect`, `except` name other regions.
 struct RegionInput {
-  std::string face;                          // ventral dorsal left right anterior posterior, or empty
-  std::optional<int> cells_along;            // centred strip of the face
+  std::string face;                // ventral dorsal left right anterior posterior, or empty
+  std::optional<int> cells_along;  // centred strip of the face
   std::optional<int> cells_across;
   std::vector<int> ids;
-  std::string array;                         // cell array of the mesh file; cells where it is not 0
-  std::optional<Range> x_um, y_um, z_um;     // of the cell's centre at rest
+  std::string array;                                  // cell array of the mesh file; cells where it is not 0
+  std::optional<Range> x_um, y_um, z_um;              // of the cell's centre at rest
   std::vector<std::string> unite, intersect, except;  // TOML keys: union, intersect, except
 };
 
@@ -37,8 +37,9 @@ struct EmbryoInput {
   double cell_height_um = 40;
   std::array<int, 3> cells = {18, 9, 8};
   std::array<int, 3> elements_per_cell = {1, 1, 1};
-  std::string file;            // shape = "file": a hexahedral mesh that VTK reads
-  std::string apical_array;    // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face; empty: the outer surface
+  std::string file;          // shape = "file": a hexahedral mesh that VTK reads
+  std::string apical_array;  // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;
+                             // empty: the outer surface
 };
 
 struct ElasticityInput {
@@ -90,12 +91,12 @@ struct StopInput {
 };
 
 struct FurrowInput {
-  std::string region;   // contractile cells whose furrow is measured; empty: the first contraction's region
-  int vce_cell = 2;     // VCE is this cell of the region's midline, counted from its ends
+  std::string region;  // contractile cells whose furrow is measured; empty: the first contraction's region
+  int vce_cell = 2;    // VCE is this cell of the region's midline, counted from its ends
 };
 
 struct OutputInput {
-  double frame_every_s = 15;  // TOML: frame_every_s or frame_every_min; 0: only the first and the last
+  double frame_every_s = 15;      // TOML: frame_every_s or frame_every_min; 0: only the first and the last
   std::optional<bool> cells_csv;  // empty: up to 2000 cells
 };
 
@@ -125,8 +126,8 @@ struct GivenAt {
 };
 
 struct Scenario {
-  std::string name;  // built-in name or file stem
-  std::string file;  // as shown in messages
+  std::string name;                         // built-in name or file stem
+  std::string file;                         // as shown in messages
   std::map<std::string, GivenAt> given_at;  // by dotted key or table; not part of the experiment
   int format = 1;
   std::string title;

@@ -19,8 +19,8 @@ Program make_program(const ProgramInput& input) { return {input.time_s, input.ac
 Tissue build_tissue(const Scenario& scenario) {
   const EmbryoInput& embryo = scenario.embryo;
   if (embryo.shape == "block")
-    return build_block({embryo.length_um, embryo.width_um, embryo.cell_height_um, embryo.cells,
-                        embryo.elements_per_cell});
+    return build_block(
+        {embryo.length_um, embryo.width_um, embryo.cell_height_um, embryo.cells, embryo.elements_per_cell});
   if (embryo.shape == "file") {
     try {
       return read_mesh_file(embryo.file, embryo.apical_array, embryo.elements_per_cell);
@@ -60,8 +60,8 @@ void add_contractions(const Scenario& scenario, Model& model) {
     rule.rest_length_ratio = input.rest_length_ratio;
     rule.preload = input.preload_nN;
     rule.damping = input.damping_nN_s_per_um;
-    auto law = std::make_unique<Contraction>(contraction_springs(model.tissue, cells, rule),
-                                             make_program(input.program));
+    auto law =
+        std::make_unique<Contraction>(contraction_springs(model.tissue, cells, rule), make_program(input.program));
     model.contractions.push_back(law.get());
     model.contraction_cells.push_back(cells);
     model.laws.push_back(std::move(law));
@@ -116,8 +116,8 @@ std::unique_ptr<const Model> make_model(const Scenario& scenario) {
   const ElasticModuli moduli = ElasticModuli::from_young(young_modulus, scenario.elasticity.poisson_ratio);
   model->stiffness_scale = young_modulus;
   model->volumes_are_held = scenario.volume.method == "coupled";
-  model->laws.push_back(std::make_unique<Corotational>(
-      tissue, moduli, scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second));
+  model->laws.push_back(
+      std::make_unique<Corotational>(tissue, moduli, scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second));
   model->laws.push_back(std::make_unique<Dilatation>(tissue, moduli.bulk_modulus()));
   add_contractions(scenario, *model);
   add_pressures(scenario, *model);
@@ -125,8 +125,8 @@ std::unique_ptr<const Model> make_model(const Scenario& scenario) {
     model->laws.push_back(std::make_unique<SurfaceDrag>(
         tissue, scenario.dynamics.surface_drag_Pa_s_per_um * units::pascal_second_per_um));
   if (scenario.dynamics.density_kg_per_m3 > 0)
-    model->laws.push_back(std::make_unique<Inertia>(
-        tissue, scenario.dynamics.density_kg_per_m3 * units::kilogram_per_cubic_metre));
+    model->laws.push_back(
+        std::make_unique<Inertia>(tissue, scenario.dynamics.density_kg_per_m3 * units::kilogram_per_cubic_metre));
 
   std::vector<Diagnostic> errors;
   add_holds(scenario, *model, errors);
@@ -166,7 +166,14 @@ FurrowSites make_furrow_sites(const Scenario& scenario, const Tissue& tissue) {
   std::string region = scenario.furrow.region;
   if (region.empty() && !scenario.contractions.empty()) region = scenario.contractions.begin()->second.region;
   if (region.empty()) return choose_furrow_sites(tissue, CellSet(tissue.cells.size(), false), 1);
-  return choose_furrow_sites(tissue, tissue.regions.at(region), scenario.furrow.vce_cell);
+  FurrowSites sites = choose_furrow_sites(tissue, tissue.regions.at(region), scenario.furrow.vce_cell);
+  if (scenario.furrow.vce_cell > sites.midline_pairs && sites.midline_pairs > 0)
+    throw ScenarioError(
+        {diagnostic_at(scenario, "furrow.vce_cell",
+                       fmt::format("the midline of region \"{}\" has only {} cells from an end to the middle", region,
+                                   sites.midline_pairs),
+                       "count from the end, 1 is the last")});
+  return sites;
 }
 
 }  // namespace plica

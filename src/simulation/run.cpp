@@ -1,5 +1,7 @@
 #include "simulation/run.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -20,15 +22,16 @@ bool passes_frame(double from_s, double to_s, double every_s) {
 }
 
 std::string failure_text(const StepReport& report, const State& state, double duration_s) {
-  return report.reason() + " at t = " + std::to_string(state.time_s) + " s, with steps down to " +
-         std::to_string(duration_s) + " s";
+  return fmt::format("{} at t = {:g} s, with steps down to {:g} s", report.reason(), state.time_s, duration_s);
 }
 
 }  // namespace
 
-RunResult run(const Model& model, State state, const RunControls& controls, const StepObserver& observer) {
+RunResult run(const Model& model, State state, const RunControls& controls, const StepObserver& observer,
+              const std::function<bool()>& stop_requested) {
   RunResult result;
   StepSolver solver(model);
+  solver.stop_when(stop_requested);
   StepLength step_length(controls);
   State next;
   double program_end_s = 0;
@@ -37,6 +40,10 @@ RunResult run(const Model& model, State state, const RunControls& controls, cons
   while (state.time_s < controls.end_s * (1 - 1e-12)) {
     const double duration_s = step_length.propose(state.time_s);
     StepReport report = solver.advance(state, duration_s, result.steps == 0, next);
+    if (report.outcome == StepReport::Outcome::interrupted) {
+      result.status = RunStatus::interrupted;
+      break;
+    }
     if (!report.converged()) {
       wasted_iterations += report.newton_iterations;
       wasted_solves += report.linear_solves;

@@ -21,16 +21,16 @@ struct RunControls {
   double end_s = 3600;
   double equilibrium_speed_um_per_s = 0.2 / 60;
   bool stop_at_equilibrium = true;
-  double frame_every_s = 15;            // adaptive steps end on frames; 0: no frames in between
-  std::vector<double> program_points_s; // adaptive steps end on them, too; equilibrium counts only after the last
+  double frame_every_s = 15;             // adaptive steps end on frames; 0: no frames in between
+  std::vector<double> program_points_s;  // adaptive steps end on them, too; equilibrium counts only after the last
 };
 
 /// What the loop tells about an accepted step.
 struct AcceptedStep {
-  const State& state;         // at its end
-  const State& previous;      // at its beginning
+  const State& state;     // at its end
+  const State& previous;  // at its beginning
   double duration_s;
-  const StepReport& report;   // of the accepted attempt, iterations of rejected ones added
+  const StepReport& report;  // of the accepted attempt, iterations of rejected ones added
   double max_node_speed_um_per_s;
   bool frame_is_due;
 };
@@ -39,15 +39,18 @@ enum class RunStatus { equilibrium, end_time, failed, interrupted };
 
 struct RunResult {
   RunStatus status = RunStatus::end_time;
-  State state;                                 // where it ended; the last good one after a failure
+  State state;  // where it ended; the last good one after a failure
   int steps = 0;
-  std::optional<double> equilibrium_time_s;    // first time that every node was slower than the limit
-  std::string failure;                         // what gave up, where and when
+  std::optional<double> equilibrium_time_s;  // first time that every node was slower than the limit
+  std::string failure;                       // what gave up, where and when
 };
 
 /// Called after every accepted step; false interrupts the run.
 using StepObserver = std::function<bool(const AcceptedStep&)>;
 
-RunResult run(const Model& model, State state, const RunControls& controls, const StepObserver& observer);
+/// `stop_requested` is asked often, also within a step; once true, the run ends as interrupted with the last good
+/// state.
+RunResult run(const Model& model, State state, const RunControls& controls, const StepObserver& observer,
+              const std::function<bool()>& stop_requested = {});
 
 }  // namespace plica

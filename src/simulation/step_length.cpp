@@ -58,7 +58,7 @@ bool StepLength::accept(const State& before, const State& after, double duration
 
 bool StepLength::halve(double failed_s) {
   wanted_s_ = 0.5 * failed_s;
-  return wanted_s_ > 1e-7 * std::max(controls_.first_step_s, controls_.fixed_step_s.value_or(0));
+  return wanted_s_ > 1e-4 * std::max(controls_.first_step_s, controls_.fixed_step_s.value_or(0));
 }
 
 }  // namespace plica

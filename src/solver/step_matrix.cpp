@@ -59,9 +59,11 @@ StepMatrix::StepMatrix(const Model& model) {
     for (int k = row_start_[row]; k < row_start_[row + 1]; ++k)
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < (columns_[k] == row ? i + 1 : 3); ++j) entry(3 * row + i, 3 * columns_[k] + j);
-  for (int cell = 0; cell < cells; ++cell)
+  for (int cell = 0; cell < cells; ++cell) {
     for (int k = gradient_start_[cell]; k < gradient_start_[cell + 1]; ++k)
       for (int j = 0; j < 3; ++j) entry(3 * nodes + cell, 3 * gradients_[k].node.number() + j);
+    entry(3 * nodes + cell, 3 * nodes + cell);
+  }
 }
 
 void StepMatrix::set_zero() { std::fill(blocks_.begin(), blocks_.end(), Mat3::Zero()); }
@@ -127,10 +129,18 @@ void StepMatrix::write_values(std::span<const NodeFrame> frames, std::vector<dou
           values.push_back(!fixed ? block(i, j) : column == row && i == j ? pivot(block(i, i)) : 0.0);
         }
     }
-  for (const Gradient& gradient : gradients_) {
-    const NodeFrame& frame = frames[gradient.node.index()];
-    const Vec3 local = frame.axes.transpose() * gradient.value;
-    for (int j = 0; j < 3; ++j) values.push_back(j < frame.fixed ? 0.0 : -local[j]);
+  for (std::size_t cell = 0; cell + 1 < gradient_start_.size(); ++cell) {
+    bool can_change = false;
+    for (int k = gradient_start_[cell]; k < gradient_start_[cell + 1]; ++k) {
+      const NodeFrame& frame = frames[gradients_[k].node.index()];
+      const Vec3 local = frame.axes.transpose() * gradients_[k].value;
+      for (int j = 0; j < 3; ++j) {
+        values.push_back(j < frame.fixed ? 0.0 : -local[j]);
+        can_change = can_change || (j >= frame.fixed && local[j] != 0);
+      }
+    }
+    // A cell all of whose nodes are held needs no pressure; a pivot keeps its row from being empty.
+    values.push_back(can_change ? 0.0 : -1.0);
   }
 }
 

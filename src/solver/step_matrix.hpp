@@ -1,8 +1,8 @@
 // The symmetric system of one Newton iteration:
 //   [ A  -J^T ] [ dx      ]
 //   [ -J   0  ] [ dlambda ]
-// A: tangent of all laws, 3 x 3 blocks a pair of nodes; J: gradients of the cells' volumes. Some nodes have directions in
-// which they are fixed (held, or in contact): their unknowns are turned into a frame whose first axes are those
+// A: tangent of all laws, 3 x 3 blocks a pair of nodes; J: gradients of the cells' volumes. Some nodes have directions
+// in which they are fixed (held, or in contact): their unknowns are turned into a frame whose first axes are those
 // directions, and those rows and columns are taken out.
 #pragma once
 

@@ -13,16 +13,13 @@ struct StepSolver::Iterate {
 };
 
 struct StepSolver::Residual {
-  Vectors forces;                     // unbalanced, all directions; nodes
-  std::vector<double> volume_deficit; // target - V; cells
-  double force = 0;                   // norm over free directions, relative
-  double volume = 0;                  // largest relative error
-  double gap_um = 0;                  // largest distance of a node in contact from the shell
+  Vectors forces;                      // unbalanced, all directions; nodes
+  std::vector<double> volume_deficit;  // target - V; cells
+  double force = 0;                    // norm over free directions, relative
+  double volume = 0;                   // largest relative error
+  double gap_um = 0;                   // largest distance of a node in contact from the shell
 
   [[nodiscard]] bool finite() const { return std::isfinite(force) && std::isfinite(volume) && std::isfinite(gap_um); }
-  [[nodiscard]] bool within(const StepTolerances& t) const {
-    return force <= t.force && volume <= t.volume && gap_um <= t.gap_um;
-  }
   /// One number to descend on; each part in units of what matters.
   [[nodiscard]] double merit() const { return force + 10 * volume + gap_um; }
 };
@@ -34,26 +31,44 @@ struct StepSolver::Direction {
 };
 
 std::string StepReport::reason() const {
-  const std::string where = cell ? "cell " + std::to_string(cell->number()) : "the sheet";
+  const std::string where = cell ? "cell " + std::to_string(cell->number()) : "an unknown cell";
   switch (outcome) {
     case Outcome::converged:
       return "converged";
     case Outcome::inverted_element:
       return where + " turns inside out";
     case Outcome::no_convergence:
-      return "Newton's method does not converge near " + where;
+      return "forces and volumes cannot be balanced (Newton's method does not converge); worst in " + where;
     case Outcome::singular_system:
-      return "the linear system is singular";
+      return "the linear system is singular (something is held twice, or by nothing); largest force in " + where;
     case Outcome::not_finite:
       return "a force in " + where + " is not a finite number";
+    case Outcome::interrupted:
+      return "interrupted";
   }
   return "";
 }
+
+namespace {
+
+// The node with the largest vector; one that is not finite goes before all others.
+std::size_t largest(const Vectors& vectors) {
+  std::size_t found = 0;
+  for (std::size_t n = 0; n < vectors.size(); ++n) {
+    if (!vectors[n].allFinite()) return n;
+    if (vectors[n].squaredNorm() > vectors[found].squaredNorm()) found = n;
+  }
+  return found;
+}
+
+}  // namespace
 
 StepSolver::StepSolver(const Model& model, StepTolerances tolerances)
     : model_(model),
       tolerances_(tolerances),
       force_scale_(model.force_scale()),
+      force_rounding_(model.force_rounding()),
+      volume_rounding_(model.volume_rounding()),
       matrix_(model),
       linear_solver_(make_direct_solver()) {
   linear_solver_->analyse(matrix_.pattern());
@@ -131,7 +146,10 @@ StepSolver::Residual StepSolver::residual(const Step& step, const Iterate& at) c
     const Vec3 local = node_frames[n].axes.transpose() * r.forces[n];
     for (int i = node_frames[n].fixed; i < 3; ++i) free += local[i] * local[i];
   }
-  r.force = std::sqrt(free) / (std::sqrt(balanced) + 1e-4 * force_scale_);
+  // Relative to the forces that balance; but where those are next to none, or as small as what rounding makes, to a
+  // floor.
+  const double floor = std::max(1e-4 * force_scale_, force_rounding_ / tolerances_.force);
+  r.force = std::sqrt(free) / (std::sqrt(balanced) + floor);
   return r;
 }
 
@@ -229,6 +247,13 @@ bool StepSolver::revise_contacts(Iterate& at) const {
   return changed;
 }
 
+std::optional<CellId> StepSolver::cell_at(std::size_t node) const {
+  for (std::size_t e = 0; e < model_.tissue.elements.size(); ++e)
+    for (const NodeId member : model_.tissue.elements[e])
+      if (member.index() == node) return model_.tissue.element_cell[e];
+  return std::nullopt;
+}
+
 std::optional<CellId> StepSolver::inverted_cell(const Vectors& positions) const {
   const Tissue& tissue = model_.tissue;
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
@@ -248,8 +273,7 @@ std::optional<CellId> StepSolver::search_line(const Step& step, const Direction&
     blocking = inverted_cell(trial.positions);
     if (blocking) continue;
     for (std::size_t c = 0; c < trial.pressures.size(); ++c) trial.pressures[c] += part * d.pressures[c];
-    for (std::size_t k = 0; k < trial.contact_forces.size(); ++k)
-      trial.contact_forces[k] += part * d.contact_forces[k];
+    for (std::size_t k = 0; k < trial.contact_forces.size(); ++k) trial.contact_forces[k] += part * d.contact_forces[k];
     Step there = step;
     there.positions = trial.positions;
     Residual r = residual(there, trial);
@@ -272,17 +296,27 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
   StepReport report;
   bool contacts_settled = !revise_contacts(at);
   Residual now = residual(step, at);
+  constexpr int most_slow_iterations = 12;  // in a row, none of which halves the residual
   bool slow = false;
+  int slow_iterations = 0;
   for (;; ++report.newton_iterations) {
     report.residual = now.force;
     report.volume_error = now.volume;
     if (!now.finite()) {
       report.outcome = StepReport::Outcome::not_finite;
+      report.cell = cell_at(largest(now.forces));
       return report;
     }
-    if (contacts_settled && now.within(tolerances_)) break;
-    if (report.newton_iterations >= tolerances_.max_iterations) {
+    const bool solved = now.force <= tolerances_.force && now.gap_um <= tolerances_.gap_um &&
+                        now.volume <= std::max(tolerances_.volume, volume_rounding_);
+    if (contacts_settled && solved) break;
+    if (stop_requested_ && stop_requested_()) {
+      report.outcome = StepReport::Outcome::interrupted;
+      return report;
+    }
+    if (report.newton_iterations >= tolerances_.max_iterations || slow_iterations >= most_slow_iterations) {
       report.outcome = StepReport::Outcome::no_convergence;
+      report.cell = cell_at(largest(now.forces));
       return report;
     }
     const bool stale = factor_frames_.empty() || factor_duration_s_ != duration_s || factor_contacts_ != at.in_contact;
@@ -291,6 +325,7 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
       ++report.factorisations;
       if (!refresh_factor(step, at)) {
         report.outcome = StepReport::Outcome::singular_system;
+        report.cell = cell_at(largest(now.forces));
         return report;
       }
     }
@@ -303,6 +338,7 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
       return report;
     }
     slow = now.merit() > 0.1 * before;
+    slow_iterations = now.merit() > 0.5 * before ? slow_iterations + 1 : 0;
     contacts_settled = !revise_contacts(at);
     if (!contacts_settled) {
       step.positions = at.positions;
@@ -310,8 +346,8 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
     }
   }
   for (std::size_t n = 0; n < at.positions.size(); ++n)
-    next.velocities.resize(at.positions.size()), next.velocities[n] =
-                                                     (at.positions[n] - state.positions[n]) / duration_s;
+    next.velocities.resize(at.positions.size()),
+        next.velocities[n] = (at.positions[n] - state.positions[n]) / duration_s;
   next.time_s = state.time_s + duration_s;
   next.positions = std::move(at.positions);
   next.pressures = std::move(at.pressures);

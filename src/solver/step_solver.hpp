@@ -1,10 +1,11 @@
 // One implicit step: backward Euler, with exact volumes and the shell held together with the forces.
 //
-// The step ends where  -dPhi/dx + J^T lambda + N mu = 0,  V_c = target,  0 <= g _|_ mu >= 0,  Phi being the sum of the laws'
-// energies. Newton's method on all of it at once, with line search; the shell by an active set that is revised after
-// each iteration. A factor is kept while it still converges fast (docs/decisions/0003-newton.md).
+// The step ends where  -dPhi/dx + J^T lambda + N mu = 0,  V_c = target,  0 <= g _|_ mu >= 0,  Phi being the sum of the
+// laws' energies. Newton's method on all of it at once, with line search; the shell by an active set that is revised
+// after each iteration. A factor is kept while it still converges fast (docs/decisions/0003-newton.md).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,20 +18,20 @@ namespace plica {
 
 /// When a step counts as solved.
 struct StepTolerances {
-  double force = 1e-8;     // residual over the norm of the forces that balance
-  double volume = 1e-10;   // |V/target - 1|, every cell
-  double gap_um = 1e-8;    // depth of a node outside the shell
-  int max_iterations = 60;
+  double force = 1e-8;    // residual over the norm of the forces that balance
+  double volume = 1e-10;  // |V/target - 1|, every cell
+  double gap_um = 1e-8;   // depth of a node outside the shell
+  int max_iterations = 40;
 };
 
 /// How a step went. A value: a step that fails is not an exception, the caller tries a shorter one.
 struct StepReport {
-  enum class Outcome { converged, inverted_element, no_convergence, singular_system, not_finite };
+  enum class Outcome { converged, inverted_element, no_convergence, singular_system, not_finite, interrupted };
   Outcome outcome = Outcome::no_convergence;
   int newton_iterations = 0;
   int factorisations = 0;
   int linear_solves = 0;
-  double residual = 0;         // relative, as in StepTolerances
+  double residual = 0;  // relative, as in StepTolerances
   double volume_error = 0;
   std::optional<CellId> cell;  // where it failed, when that is one place
 
@@ -49,6 +50,9 @@ class StepSolver {
   /// unless `from_rest`.
   StepReport advance(const State& state, double duration_s, bool from_rest, State& next);
 
+  /// A step asks this now and then; once true it ends as interrupted.
+  void stop_when(std::function<bool()> stop_requested) { stop_requested_ = std::move(stop_requested); }
+
   /// Forgets the factor, so that the next step does not depend on what was solved before.
   void forget_factor();
 
@@ -63,15 +67,19 @@ class StepSolver {
   bool refresh_factor(const Step& step, const Iterate& at);
   [[nodiscard]] Direction direction(const Iterate& at, const Residual& residual);
   bool revise_contacts(Iterate& at) const;
+  [[nodiscard]] std::optional<CellId> cell_at(std::size_t node) const;
   [[nodiscard]] std::optional<CellId> inverted_cell(const Vectors& positions) const;
   std::optional<CellId> search_line(const Step& step, const Direction& direction, Iterate& at, Residual& now) const;
 
   const Model& model_;
   StepTolerances tolerances_;
-  double force_scale_;  // nN
+  double force_scale_;      // nN
+  double force_rounding_;   // nN: what rounding of positions makes of forces
+  double volume_rounding_;  // the same, of relative volumes
   StepMatrix matrix_;
   std::unique_ptr<LinearSolver> linear_solver_;
   std::vector<double> values_;
+  std::function<bool()> stop_requested_;
 
   // The factor at hand: for which step length and frames it was made. Empty frames: none.
   std::vector<NodeFrame> factor_frames_;

@@ -20,7 +20,8 @@ struct ShellPoint {
 class MidSurface {
  public:
   explicit MidSurface(const ShellShape& shape)
-      : half_axis_((shape.length_um - shape.diameter_um) / 2), radius_((shape.diameter_um - shape.cell_height_um) / 2) {}
+      : half_axis_((shape.length_um - shape.diameter_um) / 2),
+        radius_((shape.diameter_um - shape.cell_height_um) / 2) {}
 
   [[nodiscard]] ShellPoint project(const Vec3& point) const {
     const double foot_x = std::clamp(point.x(), -half_axis_, half_axis_);
@@ -60,10 +61,11 @@ void make_symmetric(const SurfaceGrid& grid, Vectors& positions) {
   }
 }
 
-/// Makes the squares more alike: gradient descent, kept on the surface, in which a square larger than the mean draws its
-/// corners in and a smaller one pushes them out, and every square draws a little (`tension`) so that it stays well shaped.
-/// Drawing alone, the usual Laplacian smoothing, would shrink the eight squares at the box's corners, where three meet.
-/// 300 sweeps settle the meshes of the paper (docs/embryos.md); a larger grid keeps more of the even start it is given.
+/// Makes the squares more alike: gradient descent, kept on the surface, in which a square larger than the mean draws
+/// its corners in and a smaller one pushes them out, and every square draws a little (`tension`) so that it stays well
+/// shaped. Drawing alone, the usual Laplacian smoothing, would shrink the eight squares at the box's corners, where
+/// three meet. 300 sweeps settle the meshes of the paper (docs/embryos.md); a larger grid keeps more of the even start
+/// it is given.
 void smooth(const SurfaceGrid& grid, const MidSurface& surface, Vectors& positions) {
   constexpr int sweeps = 300;
   constexpr double tension = 0.1, rate = 0.2;
@@ -137,7 +139,8 @@ Vectors refine(const SurfaceGrid& coarse, const Vectors& corners, const SurfaceG
   return positions;
 }
 
-std::vector<CellLattice> shell_lattices(const SurfaceGrid& coarse, const SurfaceGrid& fine, std::array<int, 3> elements) {
+std::vector<CellLattice> shell_lattices(const SurfaceGrid& coarse, const SurfaceGrid& fine,
+                                        std::array<int, 3> elements) {
   const std::array<int, 3> ratio = {elements[0], elements[1], elements[1]};  // of the fine grid, an axis
   std::vector<CellLattice> lattices;
   for (const SurfaceGrid::Square& square : coarse.squares()) {

@@ -1,8 +1,8 @@
 // Builders of embryos: the pill (Drosophila), the sphere (Xenopus) and the flat block.
 //
-// Pill and sphere are the surface grid of a box of a x b x c cells (2(ab + bc + ca) cells, that many + 2 nodes a layer),
-// laid on a capsule: first by equal angles (and equal arcs along the axis), then smoothed until the cells are as even as
-// they get. Nodes of refined elements lie on the same smooth surfaces as the cells' corners.
+// Pill and sphere are the surface grid of a box of a x b x c cells (2(ab + bc + ca) cells, that many + 2 nodes a
+// layer), laid on a capsule: first by equal angles (and equal arcs along the axis), then smoothed until the cells are
+// as even as they get. Nodes of refined elements lie on the same smooth surfaces as the cells' corners.
 #pragma once
 
 #include <array>
@@ -12,15 +12,15 @@
 namespace plica {
 
 struct ShellShape {
-  double length_um = 460;       // along x; equal to the diameter for a sphere
+  double length_um = 460;  // along x; equal to the diameter for a sphere
   double diameter_um = 280;
   double cell_height_um = 40;
   std::array<int, 3> cells = {18, 9, 8};             // along x, y, z
   std::array<int, 3> elements_per_cell = {1, 1, 1};  // along, across, basal to apical
 };
 
-/// A closed sheet one cell thick: a pill, or a sphere when length and diameter agree. Apical faces outside. Positions are
-/// symmetric about the three planes to the bit.
+/// A closed sheet one cell thick: a pill, or a sphere when length and diameter agree. Apical faces outside. Positions
+/// are symmetric about the three planes to the bit.
 Tissue build_shell(const ShellShape& shape);
 
 struct BlockShape {

@@ -1,8 +1,8 @@
 // The volume is the sum over the six faces of the signed volume between the bilinear face and the origin. For a face
 // with points a b c d, counter-clockwise from outside, that is the mean of its two triangulations,
 //   V_face = (det(a,b,c) + det(a,c,d) + det(a,b,d) + det(b,c,d)) / 12      (docs/theory/cell_volume.md),
-// so dV_face/da = (b x c + c x d + b x d) / 12, and a turns through the cycle. Over the closed surface the same holds with
-// b, c, d taken relative to a, which keeps rounding independent of where the cell lies.
+// so dV_face/da = (b x c + c x d + b x d) / 12, and a turns through the cycle. Over the closed surface the same holds
+// with b, c, d taken relative to a, which keeps rounding independent of where the cell lies.
 #include "tissue/hexahedron.hpp"
 
 #include <algorithm>
@@ -84,7 +84,8 @@ std::array<Vec3, 8> hex_volume_hessian_product(const HexPoints& points, const st
 std::array<std::array<Vec3, 8>, 8> hex_volume_hessian(const HexPoints& points) {
   std::array<std::array<Vec3, 8>, 8> hessian;
   for (auto& row : hessian) row.fill(Vec3::Zero());
-  // From the gradient: d(b x c)/dc = [b]x and d(b x c)/db = -[c]x. V is linear in each single point: no diagonal blocks.
+  // From the gradient: d(b x c)/dc = [b]x and d(b x c)/db = -[c]x. V is linear in each single point: no diagonal
+  // blocks.
   for (const auto& face : hex_faces) {
     for (int k = 0; k < 4; ++k) {
       const int ia = face[k], ib = face[(k + 1) % 4], ic = face[(k + 2) % 4], id = face[(k + 3) % 4];

@@ -29,8 +29,9 @@ std::array<Vec3, 8> hex_shape_gradients(const Vec3& reference);
 /// dx/d(reference), columns by reference direction.
 Mat3 hex_jacobian(const HexPoints& points, const Vec3& reference);
 
-/// Exact volume of the trilinear hexahedron, um^3; negative when it is inside out. A cubic polynomial of the points, and
-/// the sum of a term per bilinear face that two cells share with opposite sign, so volumes of neighbours add up exactly.
+/// Exact volume of the trilinear hexahedron, um^3; negative when it is inside out. A cubic polynomial of the points,
+/// and the sum of a term per bilinear face that two cells share with opposite sign, so volumes of neighbours add up
+/// exactly.
 double hex_volume(const HexPoints& points);
 
 /// dV/dx_i, um^2 (eight vectors). Satisfies sum_i x_i . dV/dx_i = 3 V.

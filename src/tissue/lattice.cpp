@@ -34,8 +34,7 @@ void set_corners_and_edges(const CellLattice& lattice, const Vectors& rest_posit
     const auto [a, b] = hex_edges[e];
     mean[e / 4] += rest_positions[cell.corners[b].index()] - rest_positions[cell.corners[a].index()];
   }
-  const bool u_is_along =
-      std::abs(mean[0].x()) * mean[1].norm() >= std::abs(mean[1].x()) * mean[0].norm() * (1 - 1e-9);
+  const bool u_is_along = std::abs(mean[0].x()) * mean[1].norm() >= std::abs(mean[1].x()) * mean[0].norm() * (1 - 1e-9);
   for (int e = 0; e < 12; ++e) {
     CellEdge& edge = cell.edges[e];
     edge.nodes = edge_chain(lattice, hex_edges[e]);
@@ -54,10 +53,14 @@ void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tiss
   for (int w = 0; w < nw; ++w)
     for (int v = 0; v < nv; ++v)
       for (int u = 0; u < nu; ++u) {
-        const std::array<NodeId, 8> element = {lattice.node(u, v, w),         lattice.node(u + 1, v, w),
-                                               lattice.node(u + 1, v + 1, w), lattice.node(u, v + 1, w),
-                                               lattice.node(u, v, w + 1),     lattice.node(u + 1, v, w + 1),
-                                               lattice.node(u + 1, v + 1, w + 1), lattice.node(u, v + 1, w + 1)};
+        const std::array<NodeId, 8> element = {lattice.node(u, v, w),
+                                               lattice.node(u + 1, v, w),
+                                               lattice.node(u + 1, v + 1, w),
+                                               lattice.node(u, v + 1, w),
+                                               lattice.node(u, v, w + 1),
+                                               lattice.node(u + 1, v, w + 1),
+                                               lattice.node(u + 1, v + 1, w + 1),
+                                               lattice.node(u, v + 1, w + 1)};
         tissue.elements.push_back(element);
         tissue.element_cell.push_back(id);
         tissue.element_rest_shape.push_back(gather(tissue.rest_positions, element));

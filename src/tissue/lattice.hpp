@@ -1,5 +1,5 @@
-// From cells to a tissue: each cell is a lattice of nodes, n_u x n_v x n_w elements, and everything else (elements, facets,
-// edges) is read off that lattice in the same way for every kind of embryo.
+// From cells to a tissue: each cell is a lattice of nodes, n_u x n_v x n_w elements, and everything else (elements,
+// facets, edges) is read off that lattice in the same way for every kind of embryo.
 #pragma once
 
 #include <array>

@@ -43,7 +43,8 @@ MeshQuality mesh_quality(const Tissue& tissue, const Vectors& positions) {
 
   MeshQuality quality{spread(volumes), spread(apical), spread(along), spread(across), spread(heights), 1};
   for (const auto& element : tissue.elements)
-    quality.min_scaled_jacobian = std::min(quality.min_scaled_jacobian, hex_scaled_jacobian(gather(positions, element)));
+    quality.min_scaled_jacobian =
+        std::min(quality.min_scaled_jacobian, hex_scaled_jacobian(gather(positions, element)));
   return quality;
 }
 

@@ -14,7 +14,7 @@ struct MeshQuality {
   Spread apical_area_um2;  // of cells
   Spread along_um;         // lengths of apical and basal edges along the axis, each cell's own
   Spread across_um;
-  Spread height_um;        // lateral edges
+  Spread height_um;                // lateral edges
   double min_scaled_jacobian = 1;  // of elements
 };
 

@@ -6,11 +6,11 @@ namespace {
 // A face of the box: the directions u and v of its squares (as axes, with sign) and the axis and side it lies on.
 struct BoxFace {
   GridPlace::Face face;
-  int axis;      // normal
-  bool at_end;   // on the high side of that axis
+  int axis;     // normal
+  bool at_end;  // on the high side of that axis
   int u_axis;
   int v_axis;
-  int v_sign;    // u always runs upward; v as u x v outward wants it
+  int v_sign;  // u always runs upward; v as u x v outward wants it
 };
 
 constexpr std::array<BoxFace, 6> box_faces = {{{GridPlace::Face::ventral, 2, false, 0, 1, -1},

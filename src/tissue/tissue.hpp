@@ -59,16 +59,16 @@ struct Capsule {
 using CellSet = std::vector<bool>;
 
 struct Tissue {
-  Vectors rest_positions;                        // nodes; um
-  std::vector<std::array<NodeId, 8>> elements;   // VTK's order
-  std::vector<CellId> element_cell;              // elements
-  std::vector<HexPoints> element_rest_shape;     // elements; um. A daughter's is her mother's, not where her nodes are
+  Vectors rest_positions;                       // nodes; um
+  std::vector<std::array<NodeId, 8>> elements;  // VTK's order
+  std::vector<CellId> element_cell;             // elements
+  std::vector<HexPoints> element_rest_shape;    // elements; um. A daughter's is her mother's, not where her nodes are
   std::vector<Cell> cells;
-  std::vector<Facet> apical_facets;              // of elements; those of a cell are contiguous
+  std::vector<Facet> apical_facets;  // of elements; those of a cell are contiguous
   std::vector<Facet> basal_facets;
-  std::optional<Capsule> outer_shape;            // of the apical surface at rest; empty for blocks and files
-  std::map<std::string, CellSet> cell_arrays;    // of a mesh file: cells where the array is not 0
-  std::map<std::string, CellSet> regions;        // named; "all" is always there
+  std::optional<Capsule> outer_shape;          // of the apical surface at rest; empty for blocks and files
+  std::map<std::string, CellSet> cell_arrays;  // of a mesh file: cells where the array is not 0
+  std::map<std::string, CellSet> regions;      // named; "all" is always there
 
   [[nodiscard]] std::size_t node_count() const { return rest_positions.size(); }
 };

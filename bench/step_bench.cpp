@@ -1,0 +1,81 @@
+// Where the time of a step goes, on the pill of 756 cells with the first step of the Drosophila contraction ahead.
+#include <benchmark/benchmark.h>
+
+#include "mechanics/corotational.hpp"
+#include "scenario/load.hpp"
+#include "scenario/setup.hpp"
+#include "solver/step_matrix.hpp"
+#include "solver/step_solver.hpp"
+
+namespace plica {
+namespace {
+
+// Cells stay as they are; `refinement` elements a cell in each direction.
+std::unique_ptr<const Model> drosophila(int refinement) {
+  const std::string n = std::to_string(refinement);
+  return make_model(
+      load_scenario(find_scenario("drosophila"), {"embryo.elements_per_cell=[" + n + "," + n + "," + n + "]"}));
+}
+
+struct Setting {
+  explicit Setting(int refinement)
+      : model(drosophila(refinement)),
+        state(rest_state(*model)),
+        step{state.positions, state.positions, state.velocities, 0.05, 0.05} {}
+  std::unique_ptr<const Model> model;
+  State state;
+  Step step;
+};
+
+void element_forces(benchmark::State& bench) {
+  const Setting setting(static_cast<int>(bench.range(0)));
+  Vectors forces(setting.state.positions.size(), Vec3::Zero());
+  for (auto _ : bench) setting.model->laws.front()->add_forces(setting.step, forces);
+  bench.counters["elements"] = static_cast<double>(setting.model->tissue.elements.size());
+}
+BENCHMARK(element_forces)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
+
+void tangent_product(benchmark::State& bench) {
+  const Setting setting(static_cast<int>(bench.range(0)));
+  Vectors product(setting.state.positions.size(), Vec3::Zero());
+  for (auto _ : bench) setting.model->laws.front()->add_tangent_product(setting.step, setting.state.positions, product);
+}
+BENCHMARK(tangent_product)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
+
+void assembly(benchmark::State& bench) {
+  const Setting setting(static_cast<int>(bench.range(0)));
+  StepMatrix matrix(*setting.model);
+  for (auto _ : bench) {
+    matrix.set_zero();
+    for (const auto& law : setting.model->laws) law->add_tangent(setting.step, matrix);
+  }
+}
+BENCHMARK(assembly)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
+
+void factorisation(benchmark::State& bench) {
+  const Setting setting(static_cast<int>(bench.range(0)));
+  StepMatrix matrix(*setting.model);
+  matrix.set_zero();
+  for (const auto& law : setting.model->laws) law->add_tangent(setting.step, matrix);
+  matrix.set_volume_gradients(setting.model->volumes, setting.state.positions);
+  std::vector<double> values;
+  matrix.write_values(std::vector<NodeFrame>(setting.state.positions.size()), values);
+  const auto solver = make_direct_solver();
+  solver->analyse(matrix.pattern());
+  for (auto _ : bench) benchmark::DoNotOptimize(solver->factorise(values));
+}
+BENCHMARK(factorisation)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
+
+void first_step(benchmark::State& bench) {
+  const Setting setting(static_cast<int>(bench.range(0)));
+  StepSolver solver(*setting.model);
+  State next;
+  for (auto _ : bench) {
+    solver.forget_factor();
+    benchmark::DoNotOptimize(solver.advance(setting.state, 0.05, true, next));
+  }
+}
+BENCHMARK(first_step)->Arg(1)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace plica
