@@ -48,9 +48,9 @@ void add_mesh_command(CLI::App& app, int&) {
     MeshArrays arrays;
     std::vector<int> ids;
     for (std::size_t c = 0; c < tissue.cells.size(); ++c) ids.push_back(static_cast<int>(c));
-    arrays.cell_integers.push_back({"cell_id", ids});
+    arrays.cell_integers.emplace_back("cell_id", ids);
     for (const auto& [name, cells] : tissue.regions)
-      arrays.cell_integers.push_back({"region_" + name, std::vector<int>(cells.begin(), cells.end())});
+      arrays.cell_integers.emplace_back("region_" + name, std::vector<int>(cells.begin(), cells.end()));
     write_mesh(*out, tissue, tissue.rest_positions, arrays);
     print_quality(tissue);
   });

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
@@ -43,6 +45,14 @@ void print_result(const nlohmann::ordered_json& summary, const std::string& out)
   fmt::print("  results in {}\n", out);
 }
 
+// As asked; else as OMP_NUM_THREADS says; else as many as the mesh can keep busy. Results do not depend on it.
+int threads_for(int asked, std::size_t elements) {
+  if (asked > 0) return asked;
+  if (std::getenv("OMP_NUM_THREADS") != nullptr) return omp_get_max_threads();
+  constexpr std::size_t elements_a_thread = 10000;
+  return static_cast<int>(std::min<std::size_t>(omp_get_num_procs(), 1 + elements / elements_a_thread));
+}
+
 // A scenario that lies in DIR under a name that plica writes there would be lost.
 void refuse_to_replace(const std::string& scenario_file, const std::filesystem::path& out) {
   if (out.empty()) throw UsageError("--out is empty; give the directory for the results");
@@ -60,10 +70,10 @@ int exit_status(const RunResult& result, bool missed) {
 
 int run_scenario(const RunOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  if (options.threads > 0) omp_set_num_threads(options.threads);
   const ScenarioSource source = find_scenario(options.scenario.name_or_path);
   const Scenario scenario = load_scenario(source, options.scenario.overrides);
   const auto model = make_model(scenario);
+  omp_set_num_threads(threads_for(options.threads, model->tissue.elements.size()));
   const RunControls controls = make_controls(scenario);
   const Observer observer(*model, make_furrow_sites(scenario, model->tissue));
 

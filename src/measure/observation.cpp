@@ -68,6 +68,7 @@ SpeedHistory speed_history(const std::vector<Observation>& rows) {
   if (!peak) return history;
   history.peak_ratio = rows[*peak].speed_ratio;
   history.peak_ratio_time_s = rows[*peak].time_s;
+  if (lead(rows[*peak]) <= 0) return history;  // the ends never lead
   for (std::size_t i = *peak + 1; i < rows.size(); ++i) {
     const double before = lead(rows[i - 1]), after = lead(rows[i]);
     if (after > 0) continue;

@@ -68,25 +68,27 @@ Mat3 turning_stiffness(const Segment& s) {
 
 std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule) {
   std::vector<Spring> springs;
-  const auto add = [&](std::vector<NodeId> nodes, double factor) {
-    if (factor <= 0) return;
-    Spring spring{std::move(nodes), factor * rule.stiffness, factor * rule.preload, rule.damping, 0};
+  const auto add = [&](std::vector<NodeId> nodes, double ratio, double share) {
+    if (ratio <= 0) return;
+    Spring spring{std::move(nodes), share * ratio * rule.stiffness, share * ratio * rule.preload, share * rule.damping,
+                  0};
     spring.rest_length = rule.rest_length_ratio * chain_length(spring.nodes, tissue.rest_positions);
     springs.push_back(std::move(spring));
   };
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     if (!cells[c]) continue;
     const Cell& cell = tissue.cells[c];
-    for (const CellEdge& edge : cell.edges) {
-      if (edge.side != rule.side) continue;
-      add(edge.nodes, edge.direction == EdgeDirection::along    ? rule.along_ratio
-                      : edge.direction == EdgeDirection::across ? rule.across_ratio
-                                                                : 1);
+    for (const auto& [line, share] : cell.lines) {
+      if (line.side != rule.side) continue;
+      const double ratio = line.direction == EdgeDirection::along    ? rule.along_ratio
+                           : line.direction == EdgeDirection::across ? rule.across_ratio
+                                                                     : 1;
+      add(line.nodes, ratio, share);
     }
     if (rule.diagonals && rule.side != EdgeSide::lateral) {
       const int first = rule.side == EdgeSide::apical ? 4 : 0;
       for (const int i : {0, 1})
-        add({cell.corners[first + i], cell.corners[first + i + 2]}, 0.5 * (rule.along_ratio + rule.across_ratio));
+        add({cell.corners[first + i], cell.corners[first + i + 2]}, 0.5 * (rule.along_ratio + rule.across_ratio), 1);
     }
   }
   return springs;

@@ -30,7 +30,9 @@ struct ContractionRule {
   double damping = 0;            // nN s/um
 };
 
-/// The springs of all cells of `cells`. Two contractile cells that share an edge have a spring each.
+/// The springs of all cells of `cells`. Two contractile cells that share an edge have a spring each. In a cell of
+/// several elements the tension of its edges is spread over the lines of its face
+/// (docs/decisions/0005-spread-springs.md).
 std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule);
 
 class Contraction final : public Law {

@@ -275,12 +275,13 @@ void Corotational::add_tangent(const Step& step, TangentSink& tangent) const {
       }
       Mat24 K = element.stiffness;
       if (viscous_) K += f.viscous_factor * element.viscosity;
-      const Mat24x3 W = K * Y;
-      const Mat3 middle = Y.transpose() * W - Q * Y - cross_matrix(f.S * f.t);
+      // lazyProduct: these products are too small for Eigen's blocked kernels.
+      const Mat24x3 W = K.lazyProduct(Y);
+      const Mat3 middle = Y.transpose().lazyProduct(W) - Q.lazyProduct(Y) - cross_matrix(f.S * f.t);
       const Mat24x3 left = W - g;
-      const Mat3x24 right = W.transpose() - Q - D + middle * G;
-      K.noalias() += left * G;
-      K.noalias() += G.transpose() * right;
+      const Mat3x24 right = W.transpose() - Q - D + middle.lazyProduct(G);
+      K += left.lazyProduct(G);
+      K += G.transpose().lazyProduct(right);
       blocks[k] = 0.5 * (K + K.transpose());  // symmetric but for rounding
       rotations[k] = f.R;
     });

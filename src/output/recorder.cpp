@@ -149,7 +149,7 @@ void Recorder::write_frame(const State& state, const Vectors& velocities) {
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) ids.push_back(static_cast<int>(c));
   arrays.cell_integers = {{"cell_id", ids}, {"mother_id", mothers}, {"generation", generations}};
   for (const auto& [name, cells] : tissue.regions)
-    arrays.cell_integers.push_back({"region_" + name, std::vector<int>(cells.begin(), cells.end())});
+    arrays.cell_integers.emplace_back("region_" + name, std::vector<int>(cells.begin(), cells.end()));
   std::vector<double> ratios = apical_areas(tissue, state.positions), pressures = state.pressures;
   for (std::size_t c = 0; c < ratios.size(); ++c)
     ratios[c] = observer_.rest_apical_areas()[c] > 0 ? ratios[c] / observer_.rest_apical_areas()[c] : 1;
@@ -161,7 +161,7 @@ void Recorder::write_frame(const State& state, const Vectors& velocities) {
                          {"activity", activities(model_, state.time_s)}};
   const std::string file = fmt::format("frames/frame_{:05}.vtu", frames_.size());
   write_mesh(directory_ / file, tissue, state.positions, arrays, state.time_s);
-  frames_.push_back({state.time_s, file});
+  frames_.emplace_back(state.time_s, file);
   write_collection(directory_ / "frames.pvd", frames_);
   if (cells_) append_cells(state);
   append_midline(state);

@@ -138,6 +138,11 @@ void read_overrides(const std::vector<std::string>& overrides, int layer, Scenar
   }
 }
 
+void forget_expectations(Scenario& scenario, Input& input) {
+  scenario.expect.clear();
+  std::erase_if(input.places, [](const auto& place) { return place.first.starts_with("expect."); });
+}
+
 /// In the order of the sources, and of the lines in each.
 void sort_diagnostics(std::vector<Diagnostic>& diagnostics, const std::vector<Document>& documents) {
   const auto rank = [&](const Diagnostic& diagnostic) {
@@ -178,6 +183,9 @@ Scenario load_scenario(const ScenarioSource& source, const std::vector<std::stri
   int layer = 0;
   for (const Document& document : documents) {
     read_layer(document.table, {document.source.file, layer++, true}, scenario, input);
+    // What a built-in expects holds for the built-in as it is, not for what is made of it.
+    const bool changed = &document != &documents.back() || !overrides.empty();
+    if (changed && std::ranges::count(builtin_names(), document.source.file) > 0) forget_expectations(scenario, input);
   }
   read_overrides(overrides, layer, scenario, input);
   // Without a base, what it gives would be missed everywhere.

@@ -33,6 +33,7 @@ std::string in_toml(const std::string& text) {
 template <class Items>
 std::string list_in_toml(const Items& items) {
   std::vector<std::string> texts;
+  texts.reserve(items.size());
   for (const auto& item : items) texts.push_back(in_toml(item));
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }

@@ -83,7 +83,7 @@ Problem read_items(const toml::node& node, const Row& row, const Take& take) {
   if (items->empty()) return "the list is empty";
   for (const toml::node& item : *items) {
     Item value{};
-    if (const Problem problem = read(item, row, value)) return problem;
+    if (Problem problem = read(item, row, value)) return problem;
     take(value);
   }
   return {};
@@ -98,7 +98,7 @@ Problem read(const toml::node& node, const Row& row, std::vector<Item>& target) 
 template <class Item, std::size_t n>
 Problem read(const toml::node& node, const Row& row, std::array<Item, n>& target) {
   std::vector<Item> items;
-  if (const Problem problem = read(node, row, items)) return problem;
+  if (Problem problem = read(node, row, items)) return problem;
   if (items.size() != n) return fmt::format("{} values were given, not {}", items.size(), n);
   if (std::is_same_v<std::array<Item, n>, Range> && items.front() > items.back()) return "low is above high";
   std::ranges::copy(items, target.begin());
@@ -114,7 +114,7 @@ Problem read(const toml::node& node, const Row& row, std::optional<Value>& targe
     return {};
   }
   Value value{};
-  const Problem problem = read(node, row, value);
+  Problem problem = read(node, row, value);
   if (!problem) target = value;
   return problem;
 }
@@ -294,7 +294,7 @@ class Reader {
     }
     note(address, written, key, &row);
     const Slot slot = row.field(scenario_, name);
-    if (const Problem problem = read(node, row, slot)) {
+    if (Problem problem = read(node, row, slot)) {
       report(key, written, *problem, remedy_for(node, row));
       input_.doubtful.insert(address);
     } else if (row.options.is_path) {

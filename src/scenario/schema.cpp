@@ -270,7 +270,7 @@ std::string Row::expected() const {
   if (type == "word") return "one of: " + range;
   if (type == "list of words") return "a list of: " + range;
   const bool plain = type == "text" || type == "true or false" || type == "[low, high]" || type == "3 integers";
-  const std::string noun = plain ? type : (type == "integer" ? "an " : "a ") + type;
+  std::string noun = plain ? type : (type == "integer" ? "an " : "a ") + type;
   if (range.empty()) return noun;
   return noun + (range.front() == '>' || range.front() == '<' ? " " : ", ") + range;
 }
@@ -299,7 +299,9 @@ std::span<const TableInfo> schema_tables() {
       {"stop", "When a run is over before its end.", {}},
       {"furrow", "What is measured as the furrow.", {}},
       {"output", "What a run writes.", {}},
-      {"expect.*", "Checked at the end, exit status 1 when missed: `NAME = { value = 28.89, within_percent = 5 }`.",
+      {"expect.*",
+       "Checked at the end, exit status 1 when missed: `NAME = { value = 28.89, within_percent = 5 }`. What a built-in "
+       "expects holds for the built-in as it is: it is not inherited through `base`, nor checked after `--set`.",
        names_in(&S::expect)},
   };
   return tables;

@@ -27,9 +27,12 @@ double StepLength::propose(double time_s) const {
       if (point > time_s * (1 + 1e-12)) stop = std::min(stop, point);
   }
   const double left = stop - time_s;
-  if (wanted_s_ >= left * (1 - 1e-9)) return left;
-  // Rather two even steps than a long one and a crumb.
-  return wanted_s_ > 0.5 * left && !controls_.fixed_step_s ? 0.5 * left : wanted_s_;
+  if (controls_.fixed_step_s) return std::min(wanted_s_, left);
+  // Even steps to the next stop rather than long ones and a crumb; one a quarter longer than wanted if that saves one.
+  constexpr double stretch = 1.25;
+  const double steps = std::ceil(left / wanted_s_ * (1 - 1e-12));
+  if (steps == 2 && left <= std::min(stretch * wanted_s_, controls_.max_step_s)) return left;
+  return steps <= 3 ? left / steps : wanted_s_;
 }
 
 bool StepLength::accept(const State& before, const State& after, double duration_s) {

@@ -158,7 +158,7 @@ std::vector<CellLattice> shell_lattices(const SurfaceGrid& coarse, const Surface
           SurfaceGrid::Place place{};
           for (int axis = 0; axis < 3; ++axis)
             place[axis] = square.origin[axis] * ratio[axis] + u * square.u[axis] + v * square.v[axis];
-          lattice.nodes.push_back(NodeId(w * fine.vertex_count() + fine.index(place)));
+          lattice.nodes.emplace_back(w * fine.vertex_count() + fine.index(place));
         }
     lattices.push_back(std::move(lattice));
   }
@@ -211,7 +211,7 @@ Tissue build_block(const BlockShape& shape) {
         for (int w = 0; w <= nw; ++w)
           for (int v = 0; v <= nv; ++v)
             for (int u = 0; u <= nu; ++u)
-              lattice.nodes.push_back(NodeId((i * nu + u) + x_nodes * ((j * nv + v) + y_nodes * (k * nw + w))));
+              lattice.nodes.emplace_back((i * nu + u) + x_nodes * ((j * nv + v) + y_nodes * (k * nw + w)));
         lattices.push_back(std::move(lattice));
       }
   return tissue_from_lattices(lattices, std::move(positions));

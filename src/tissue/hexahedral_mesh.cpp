@@ -93,6 +93,7 @@ void check_welded(const HexahedralMesh& mesh, const MeshFaces& faces) {
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   std::vector<std::pair<double, NodeId>> sorted;
+  sorted.reserve(nodes.size());
   for (const NodeId node : nodes) sorted.emplace_back(direction.dot(mesh.points[node.index()]), node);
   std::sort(sorted.begin(), sorted.end());
   for (std::size_t i = 0; i < sorted.size(); ++i)

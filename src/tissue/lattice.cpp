@@ -48,6 +48,26 @@ void set_corners_and_edges(const CellLattice& lattice, const Vectors& rest_posit
   }
 }
 
+// The lines of element edges on the apical and basal faces, those of the rim with half a share, and the lateral edges.
+void set_lines(const CellLattice& lattice, Cell& cell) {
+  for (const EdgeSide side : {EdgeSide::basal, EdgeSide::apical}) {
+    const int w = side == EdgeSide::apical ? lattice.elements[2] : 0;
+    for (const int axis : {0, 1}) {  // the axis along which the line runs
+      const int segments = lattice.elements[axis], lines = lattice.elements[1 - axis];
+      for (int across = 0; across <= lines; ++across) {
+        CellLine line;
+        for (int along = 0; along <= segments; ++along)
+          line.chain.nodes.push_back(axis == 0 ? lattice.node(along, across, w) : lattice.node(across, along, w));
+        line.chain.side = side;
+        line.chain.direction = cell.edges[axis == 0 ? 0 : 4].direction;
+        line.share = (across == 0 || across == lines ? 1.0 : 2.0) / lines;
+        cell.lines.push_back(std::move(line));
+      }
+    }
+  }
+  for (int e = 8; e < 12; ++e) cell.lines.push_back({cell.edges[e], 1});
+}
+
 void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue) {
   const auto [nu, nv, nw] = lattice.elements;
   for (int w = 0; w < nw; ++w)
@@ -83,6 +103,7 @@ Tissue tissue_from_lattices(const std::vector<CellLattice>& cells, Vectors rest_
     cell.element_count = lattice.elements[0] * lattice.elements[1] * lattice.elements[2];
     cell.grid_place = lattice.grid_place;
     set_corners_and_edges(lattice, tissue.rest_positions, cell);
+    set_lines(lattice, cell);
     add_elements_and_facets(lattice, CellId(tissue.cells.size()), tissue);
     tissue.cells.push_back(std::move(cell));
   }

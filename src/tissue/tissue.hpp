@@ -33,6 +33,14 @@ struct CellEdge {
   EdgeSide side;
 };
 
+/// A line along which a cell may contract: one of its edges or, in a cell of several elements, a line of element edges
+/// across its apical or basal face that runs beside them. `share` is the part of an edge's tension that the line
+/// carries: per face and direction the shares add up to 2, those of the two edges of an undivided cell.
+struct CellLine {
+  CellEdge chain;
+  double share = 1;
+};
+
 /// Where a cell lies on the box whose surface grid the embryo was made from.
 struct GridPlace {
   enum class Face { ventral, dorsal, left, right, anterior, posterior };
@@ -46,6 +54,7 @@ struct Cell {
   int element_count = 1;                // its elements are contiguous
   std::array<NodeId, 8> corners;        // VTK's order: 0-3 basal, 4-7 apical
   std::array<CellEdge, 12> edges;       // in the order of hex_edges
+  std::vector<CellLine> lines;          // what can contract; the edges themselves in a cell of one element
   std::optional<GridPlace> grid_place;  // of a built embryo
 };
 

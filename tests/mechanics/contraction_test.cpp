@@ -152,17 +152,56 @@ TEST(Contraction, RatiosScaleStiffnessAndPreloadByDirection) {
   EXPECT_EQ(diagonal, 4);
 }
 
-// Refinement changes the error and not the model: unbent chains pull like the edges they refine.
-TEST(Contraction, RefinedElementsKeepTheSpringsOfTheCells) {
+// Refinement changes the error and not the model: the tension of a face's edges is spread over its lines, those on the
+// rim with half a share, and adds up to the same.
+TEST(Contraction, RefinedElementsKeepTheTensionOfTheCells) {
   const ContractionRule rule{.stiffness = 2, .across_ratio = 0.4, .rest_length_ratio = 0.3, .preload = 1, .damping = 1};
   const auto coarse = contraction_springs(build_block(two_cells), CellSet(2, true), rule);
   const auto fine = contraction_springs(build_block(refined), CellSet(2, true), rule);
-  ASSERT_EQ(coarse.size(), fine.size());
-  for (std::size_t s = 0; s < coarse.size(); ++s) {
-    EXPECT_EQ(fine[s].nodes.size(), 3u);
-    EXPECT_EQ(coarse[s].stiffness, fine[s].stiffness);
-    EXPECT_NEAR(coarse[s].rest_length, fine[s].rest_length, 1e-13);
+  const auto sum = [](const std::vector<Spring>& springs, double Spring::*what) {
+    double total = 0;
+    for (const Spring& spring : springs) total += spring.*what;
+    return total;
+  };
+  EXPECT_NEAR(sum(fine, &Spring::stiffness), sum(coarse, &Spring::stiffness), 1e-13);
+  EXPECT_NEAR(sum(fine, &Spring::preload), sum(coarse, &Spring::preload), 1e-13);
+  EXPECT_NEAR(sum(fine, &Spring::damping), sum(coarse, &Spring::damping), 1e-13);
+  ASSERT_EQ(coarse.size(), 8u);
+  ASSERT_EQ(fine.size(), 12u);
+  for (const Spring& spring : fine) EXPECT_EQ(spring.nodes.size(), 3u);
+}
+
+// A sheet under uniform contraction pulls through every cut with one force, however its cells are divided.
+TEST(Contraction, ResultantThroughACutDoesNotDependOnRefinement) {
+  const ContractionRule rule{.stiffness = 2, .across_ratio = 0.4, .rest_length_ratio = 0.3, .preload = 1, .damping = 3};
+  BlockShape shape{.length_um = 60, .width_um = 30, .cell_height_um = 40, .cells = {3, 2, 1}};
+  // Cells are 20 x 15 um now; each was 1.1 times as long and 0.9 times as wide when the step began.
+  Motion motion;
+  const double along = 2 * (20 - 0.3 * 20) + 1 + 3 * (20 - 22) / motion.duration_s;
+  const double across = 0.4 * (2 * (15 - 0.3 * 15) + 1) + 3 * (15 - 13.5) / motion.duration_s;
+  int cases = 0;
+  for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 2, 2}, {4, 4, 4}, {4, 2, 1}}) {
+    shape.elements_per_cell = elements;
+    const Tissue tissue = build_block(shape);
+    motion = at_rest(tissue);
+    for (Vec3& x : motion.previous_positions) x = x.cwiseProduct(Vec3(1.1, 0.9, 1));
+    const Vectors forces = forces_of(law_of(tissue, rule), motion.step());
+    // Two edges of each cell that the cut goes through pull at what lies behind it. 29 and 14: the last nodes alone.
+    for (const auto& [axis, place, pull] : {std::tuple{0, -29.0, 4 * along},
+                                            {0, 1.0, 4 * along},
+                                            {0, 29.0, 4 * along},
+                                            {1, -14.0, 6 * across},
+                                            {1, 1.0, 6 * across},
+                                            {1, 14.0, 6 * across}}) {
+      Vec3 behind = Vec3::Zero(), expected = Vec3::Zero();
+      for (std::size_t n = 0; n < forces.size(); ++n)
+        if (tissue.rest_positions[n][axis] > place) behind += forces[n];
+      expected[axis] = -pull;
+      EXPECT_LE((behind - expected).norm(), 1e-12 * pull) << elements[0] << " elements, axis " << axis << ", " << place;
+      ++cases;
+    }
   }
+  RecordProperty("cases", cases);
 }
 
 TEST(Contraction, SpringsHaveNoResultantAndNoTorque) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -232,6 +233,63 @@ TEST(StepSolver, AStepThatFailsSaysSoAndLeavesTheStateAlone) {
   EXPECT_FALSE(report.reason().empty());
   EXPECT_EQ(next.time_s, 77);
   EXPECT_TRUE(next.positions.empty());
+}
+
+// Asked before every iteration; a request that comes in the middle of a step is heard there.
+TEST(StepSolver, AnInterruptedStepSaysSoAndLeavesTheStateAlone) {
+  const Model model = dimpling_sheet();
+  StepSolver solver(model);
+  int cases = 0;
+  for (const int answers : {0, 1, 2}) {
+    int asked = 0;
+    solver.stop_when([&] { return asked++ >= answers; });
+    State next;
+    next.time_s = 77;
+    const StepReport report = solver.advance(rest_state(model), 2, true, next);
+    EXPECT_EQ(report.outcome, StepReport::Outcome::interrupted);
+    EXPECT_FALSE(report.converged());
+    EXPECT_FALSE(report.reason().empty());
+    EXPECT_EQ(report.newton_iterations, answers);
+    EXPECT_EQ(next.time_s, 77);
+    EXPECT_TRUE(next.positions.empty() && next.velocities.empty() && next.pressures.empty());
+    ++cases;
+  }
+  RecordProperty("cases", cases);
+  // Interruption leaves nothing behind: the step solved afterwards is that of a new solver.
+  State after, expected;
+  solver.stop_when([] { return false; });
+  solver.forget_factor();
+  ASSERT_TRUE(solver.advance(rest_state(model), 2, true, after).converged());
+  ASSERT_TRUE(StepSolver(model).advance(rest_state(model), 2, true, expected).converged());
+  EXPECT_EQ(after.positions, expected.positions);
+}
+
+// The volume of a cell that cannot move needs no pressure: its constraint must not make the system singular.
+TEST(StepSolver, WholeCellsMayBeHeldWithTheirVolumes) {
+  int cases = 0;
+  for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 1, 2}})
+    for (const std::vector<int>& held : {std::vector<int>{0}, {4}, {0, 1, 8}, {0, 1, 2, 3, 4, 5, 6, 7, 8}}) {
+      Model model = dimpling_sheet(elements);
+      for (const int cell : held)
+        for (std::size_t e = 0; e < model.tissue.elements.size(); ++e)
+          if (model.tissue.element_cell[e] == CellId(cell))
+            for (const NodeId node : model.tissue.elements[e]) model.held[node.index()] = {true, true, true};
+      StepSolver solver(model);
+      State before = rest_state(model), after;
+      for (int k = 0; k < 3; ++k) {
+        const StepReport report = solver.advance(before, 5, k == 0, after);
+        ASSERT_TRUE(report.converged()) << report.reason() << " with " << held.size() << " cells held";
+        for (std::size_t n = 0; n < after.positions.size(); ++n)
+          if (model.held[n][0]) {
+            EXPECT_EQ(after.positions[n], model.tissue.rest_positions[n]);
+          }
+        for (const double pressure : after.pressures) EXPECT_TRUE(std::isfinite(pressure));
+        EXPECT_LE(worst_volume_error(model, after), 1e-10);
+        std::swap(before, after);
+      }
+      ++cases;
+    }
+  RecordProperty("cases", cases);
 }
 
 // A force that no shape can bear: the step may fail, but never with an element inside out.

@@ -1,0 +1,176 @@
+"""Scenarios and mesh files that cannot be run: refused with a line that says where and what instead."""
+import re
+
+import support
+from support import BLOCK, SPHERE, CommandLine, plica
+
+
+class BadScenario(CommandLine):
+    """What cannot be run is refused with status 2, a line that says where and what instead, and no output folder."""
+
+    def test_one_thing_wrong(self):
+        # what is replaced, by what, line of the message, key, words of the message
+        embryo = "[embryo]\n"  # replaced by a table in front of it
+        cases = [
+            ("width_um = 40", "widht_um = 40", 6, "embryo.widht_um", ['"width_um"']),
+            ("[time]", "[tiem]", 12, "tiem", ["time"]),
+            ("width_um = 40", 'width_um = "40"', 6, "embryo.width_um", ["type"]),
+            ("width_um = 40", "width_um = true", 6, "embryo.width_um", ["type"]),
+            ("width_um = 40", "width_mm = 40", 6, "embryo.width_mm", ["width_um"]),
+            ("width_um = 40", "width = 40", 6, "embryo.width", ["width_um"]),
+            ("stiffness_nN_per_um = 1", "stiffness_N_per_m = 1", 11, "contraction.all.stiffness_N_per_m", ["_nN_per_um"]),
+            ("end_s = 0.5", "end_h = 1", 13, "time.end_h", ["end_s"]),
+            ("end_s = 0.5", "end_s = 1\nend_min = 1", None, None, ["end_s", "end_min"]),
+            ("width_um = 40", "width_um = -40", 6, "embryo.width_um", ["-40"]),
+            ("width_um = 40", "width_um = 0", 6, "embryo.width_um", ["0"]),
+            ("width_um = 40", "width_um = nan", 6, "embryo.width_um", ["nan"]),
+            ("width_um = 40", "width_um = inf", 6, "embryo.width_um", ["inf"]),
+            ("width_um = 40", "width_um = -inf", 6, "embryo.width_um", ["inf"]),
+            ("[3, 2, 1]", "[3, 2]", 8, "embryo.cells", ["3"]),
+            ("[3, 2, 1]", "[3, 2, 0]", 8, "embryo.cells", ["0"]),
+            ("[3, 2, 1]", "[3, 2.5, 1]", 8, "embryo.cells", ["2.5"]),
+            ("[3, 2, 1]", "6", 8, "embryo.cells", ["type"]),
+            ('"block"', '"blok"', 4, "embryo.shape", ['"block"']),
+            ('"block"', '"sphere"', None, None, ["shape"]),
+            ('region = "all"', 'region = "al"', 10, "contraction.all.region", ['"all"']),
+            ('region = "all"\n', "", 9, "contraction.all.region", ["missing"]),
+            ("format = 1", "format = 2", 1, "format", ["2"]),
+            ("format = 1", "formatt = 1", 1, "formatt", ['"format"']),
+            (embryo, "[region.a]\nx_um = [1000, 2000]\n" + embryo, 3, "region.a", ["no cell"]),
+            (embryo, "[region.a]\nx_um = [2, 1]\n" + embryo, 4, "region.a.x_um", []),
+            (embryo, "[region.a]\nids = [6]\n" + embryo, 4, "region.a.ids", ["6", "5"]),
+            (embryo, "[region.a]\nids = [-1]\n" + embryo, 4, "region.a.ids", ["-1"]),
+            (embryo, "[region.a]\nids = []\n" + embryo, 4, "region.a.ids", ["empty"]),
+            (embryo, "[region.a]\n" + embryo, 3, "region.a", []),
+            (embryo, '[region.a]\nids = [0]\nexcept = ["all"]\n' + embryo, 3, "region.a", ["no cell"]),
+            (embryo, '[region.a]\nunion = ["a"]\n' + embryo, 3, "region.a", ["itself"]),
+            (embryo, '[region.a]\nunion = ["b"]\n' + embryo, 4, "region.a.union", ['"b"']),
+            (embryo, '[region.a]\nface = "ventral"\ncells_along = 2\n' + embryo, 5, "region.a.cells_along", ["1"]),
+            (embryo, "[dynamics]\nsurface_drag_Pa_s_per_um = 0\n" + embryo, 4, "dynamics.surface_drag_Pa_s_per_um", ["density"]),
+            (embryo, "[elasticity]\npoisson_ratio = 0.5\n" + embryo, 4, "elasticity.poisson_ratio", ["0.5"]),
+            (embryo, "[expect]\nfurow_depth_um = { value = 1, within = 1 }\n" + embryo, 4, "expect.furow_depth_um", ["furrow"]),
+            (embryo, "[expect]\nfurrow_depth_um = { value = 1 }\n" + embryo, 4, "expect.furrow_depth_um", ["within"]),
+        ]
+        for old, new, line, key, parts in cases:
+            with self.subTest(f"{old} -> {new}"):
+                self.assertIn(old, BLOCK)
+                count = None if key is None else 1
+                text = BLOCK.replace(old, new, 1)
+                if count:
+                    self.assert_refused(text, *parts, line=line, key=key)
+                else:
+                    result = self.run_scenario(text, status=2)
+                    for part in parts:
+                        self.assertIn(part, result.stderr)
+                    self.assertFalse(self.out.exists())
+
+    def test_a_mesh_that_would_be_inverted(self):
+        for height in ("100", "300", "1e300", "1e-300"):
+            with self.subTest(height):
+                self.assert_refused(SPHERE.replace("cell_height_um = 30", f"cell_height_um = {height}"), "embryo.")
+        for old, new in (("[5, 5, 4]", "[1, 1, 100]"), ("diameter_um = 200", "diameter_um = 1e300")):
+            with self.subTest(new):
+                self.assert_refused(SPHERE.replace(old, new).replace("cells_along = 3\ncells_across = 3\n", ""), "embryo.")
+
+    def test_hundreds_of_millions_of_cells_are_refused_before_any_is_made(self):
+        for cells in ("[1000, 1000, 1000]", "[100000, 100000, 1]", "[100000, 100000, 100000]", "[20000, 20000, 1]"):
+            with self.subTest(cells):
+                # 4 GB of address space: building such a mesh would fail differently.
+                self.assert_refused(BLOCK.replace("[3, 2, 1]", cells), "embryo.cells", line=8, key="embryo.cells")
+        elements = BLOCK.replace("cells = [3, 2, 1]", "cells = [100, 100, 100]\nelements_per_cell = [8, 8, 8]")
+        self.assert_refused(elements, "512000000")
+
+    def test_syntax_errors_name_their_line(self):
+        for text, line in (("format = 1\n[time\n", 2), ("format = 1\nx = \n", 2), ("a = 1\na = 2\n", 2), (b"\xff\xfe\n", 1),
+                           ("a = " + "[" * 10000, 1)):
+            with self.subTest(text[:40]):
+                self.assert_refused(text, line=line)
+
+    def test_nesting_without_end_is_refused(self):
+        self.assert_refused("[" + ".".join(["a"] * 100000) + "]\n")
+
+    def test_all_errors_at_once_in_the_order_of_their_lines(self):
+        text = """\
+format = 1
+[embryo]
+shape = "block"
+lenght_um = 60
+width_um = -40
+cells = [3, 2]
+[contraction.all]
+region = "al"
+edges = "apcal"
+stiffness_nN_per_um = "strong"
+[time]
+end_s = nan
+"""
+        result = self.run_scenario(text, status=2)
+        lines = self.assert_messages(result, 7)
+        numbers = [int(re.match(r".*?\.toml:(\d+): ", line).group(1)) for line in lines]
+        self.assertEqual(numbers, [4, 5, 6, 8, 9, 10, 12])
+        self.assertFalse(self.out.exists())
+
+    def test_bad_set(self):
+        for assignment, part in (
+            ("time", "time"), ("time.", "time."), ("=3", ""), ("", ""), ("time.end_s=", "time.end_s"),
+            ("time.end_s=nan", "nan"), ("time.end_s=-1", "-1"), ("time.end_s=soon", "soon"), ("time.edn_s=1", "end_s"),
+            ("embryo.cells=[1,2", "embryo.cells"), ("time=3", "time"), ("contraction.new.edges=apical", "region"),
+            ("embryo.shape=blok", "block"), ("time.end_s=1=2", "time.end_s"),
+        ):
+            with self.subTest(assignment):
+                self.assert_refused(BLOCK, "--set", part, arguments=["--set", assignment])
+
+    def test_base_in_a_circle_or_nowhere(self):
+        self.write('base = "scenario.toml"\n', "other.toml")
+        self.assert_refused('base = "scenario.toml"\n', "base")
+        self.assert_refused('base = "other.toml"\n', "base")
+        self.assert_refused('base = "drosophla"\n', "base", '"drosophila"')
+        self.assert_refused('base = "missing.toml"\n', "base", "missing.toml")
+
+    def test_check_and_mesh_refuse_the_same(self):
+        path = self.write(BLOCK.replace("width_um", "widht_um"))
+        for command in (["check", path], ["mesh", path, "--out", self.folder / "rest.vtu"]):
+            result = plica(*command)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(f"{path}:6: embryo.widht_um: ", self.assert_messages(result)[0])
+            self.assertEqual(result.stdout, "")
+        self.assertFalse((self.folder / "rest.vtu").exists())
+
+
+class BadMesh(CommandLine):
+    """Mesh files that are none: status 2 or 4, a line that names the file, and no output folder."""
+
+    def test_mesh_files_that_are_none(self):
+        rest = self.folder / "rest.vtu"
+        self.assertEqual(plica("mesh", self.write(BLOCK), "--out", rest).returncode, 0)
+        whole = rest.read_bytes()
+        meshes = {
+            "text.vtu": b"hello\n", "empty.vtu": b"", "half.vtu": whole[: len(whole) // 2], "data.vtu": whole[:-60],
+            "zero.vtu": whole[:-200] + bytes(150) + whole[-50:], "noise.vtu": bytes(range(256)) * 20,
+            "legacy.vtk": b"# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 float\n0 0 0 1\n",
+            "xml.vtu": b'<?xml version="1.0"?>\n<VTKFile type="PolyData" version="1.0"></VTKFile>\n',
+        }
+        legacy = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+        four = "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n"
+        meshes["tetrahedra.vtk"] = (legacy + four + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n").encode()
+        eight = "POINTS 8 double\n0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\n"
+        meshes["beyond.vtk"] = (legacy + eight + "CELLS 1 9\n8 0 1 2 3 4 5 6 99\nCELL_TYPES 1\n12\n").encode()
+        meshes["nan.vtk"] = (legacy + eight.replace("0 0 1 1 0 1", "0 0 nan 1 0 1") +
+                             "CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n").encode()
+        meshes["none.vtk"] = (legacy + "POINTS 0 double\nCELLS 0 0\nCELL_TYPES 0\n").encode()
+        scenario = 'format = 1\n[embryo]\nshape = "file"\nfile = "MESH"\n[vitelline]\nenabled = false\n'
+        for name, content in meshes.items():
+            with self.subTest(name):
+                (self.folder / name).write_bytes(content)
+                result = plica("run", self.write(scenario.replace("MESH", name)), "--out", self.out)
+                self.assertIn(result.returncode, (2, 4), result.stdout + result.stderr)
+                self.assertIn(name, self.assert_messages(result)[0])
+                self.assertFalse(self.out.exists())
+        with self.subTest("missing"):
+            result = plica("run", self.write(scenario.replace("MESH", "missing.vtu")), "--out", self.out)
+            self.assertEqual(result.returncode, 4, result.stderr)
+            self.assertIn("missing.vtu", self.assert_messages(result)[0])
+
+
+if __name__ == "__main__":
+    support.main()

@@ -1,0 +1,81 @@
+"""The two embryos of the paper, whole: what the built-in scenarios promise, symmetry, and a rest state that no step changes.
+
+Run: embryos_test.py PROGRAM
+"""
+import csv
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = ""
+
+
+def run(scenario, *overrides):
+    """Runs a scenario; its summary and the last frame's rows of cells.csv. Fails unless plica is satisfied."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "out"
+        command = [PROGRAM, "run", scenario, "--out", str(out), "--quiet"]
+        for override in overrides:
+            command += ["--set", override]
+        subprocess.run(command, check=True)
+        summary = json.loads((out / "summary.json").read_text())
+        with open(out / "cells.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+    last = rows[-1]["time_s"]
+    return summary, [row for row in rows if row["time_s"] == last]
+
+
+class Embryos(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.drosophila, cls.pill = run("drosophila")
+        cls.xenopus, cls.sphere = run("xenopus")
+
+    def test_drosophila_is_what_the_paper_prints(self):
+        # The figures and margins of the paper's table; the scenario's own [expect] has been met, or run() had failed.
+        s = self.drosophila
+        self.assertEqual(s["status"], "equilibrium")
+        self.assertAlmostEqual(s["time_s"], 900, delta=45)
+        self.assertAlmostEqual(s["furrow_depth_um"], 28.89, delta=0.05 * 28.89)
+        self.assertAlmostEqual(s["vml_apical_area_ratio"], 0.70, delta=0.02)
+        self.assertGreaterEqual(s["peak_speed_ratio"], 2.5)
+        self.assertTrue(7 <= s["vml_displacement_at_equal_speed_um"] <= 10)
+        self.assertTrue(13 <= s["vce_displacement_at_equal_speed_um"] <= 17)
+        self.assertLessEqual(s["max_volume_error"], 1e-9)
+        self.assertLessEqual(s["max_shell_penetration_um"], 1e-6)
+
+    def test_the_sphere_folds_at_once_the_pill_from_its_ends(self):
+        s = self.xenopus
+        self.assertEqual(s["status"], "equilibrium")
+        self.assertAlmostEqual(s["furrow_depth_um"], 27.44, delta=0.10 * 27.44)
+        self.assertTrue(1.0 <= s["peak_speed_ratio"] <= 1.6)
+        self.assertLess(s["peak_speed_ratio"], self.drosophila["peak_speed_ratio"])
+        self.assertLess(s["ends_lead_until_s"], self.drosophila["ends_lead_until_s"])
+
+    def test_symmetric_left_right_and_front_back(self):
+        compared = 0
+        for rows in (self.pill, self.sphere):
+            places = sorted((float(r["x_um"]), float(r["y_um"]), float(r["z_um"]), float(r["volume_um3"]),
+                             float(r["apical_area_um2"])) for r in rows)
+            for mirror in ((-1, 1), (1, -1)):
+                # The nearest cell of the mirrored sheet, among those with about the same z and area.
+                for x, y, z, volume, area in places:
+                    nearest = min(abs(x * mirror[0] - p[0]) + abs(y * mirror[1] - p[1]) + abs(z - p[2]) for p in places)
+                    self.assertLess(nearest, 1e-6)
+                    compared += 1
+        print(f"{compared} cells compared with their mirror images")
+
+    def test_where_it_rests_does_not_depend_on_the_step(self):
+        rest = ["stop.equilibrium_speed_um_per_min=0.001", "time.end_s=20000", "output.frame_every_s=0"]
+        depths = [run("drosophila", f"time.step_s={step}", *rest)[0]["furrow_depth_um"]
+                  for step in ("5", "20", '"adaptive"')]
+        print("depth at rest with steps of 5 s, 20 s and adaptive:", *(f"{depth:.5f}" for depth in depths))
+        self.assertLess(max(depths) / min(depths) - 1, 1e-3)
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv.pop(1)
+    unittest.main()

@@ -1,0 +1,183 @@
+"""What goes wrong on the way: files, full disks, numerics that give up, signals."""
+import os
+import re
+import signal
+import subprocess
+import time
+import unittest
+from pathlib import Path
+
+import support
+from support import BLOCK, RESULTS, SPHERE, CommandLine, plica, start, table, tree
+
+
+class Files(CommandLine):
+    """Status 4: what the file system refuses, and what must not be overwritten."""
+
+    def test_results_are_never_overwritten_unasked(self):
+        self.run_scenario(BLOCK)
+        before = tree(self.out)
+        result = self.run_scenario(SPHERE, status=4)
+        self.assertIn("--overwrite", self.assert_messages(result)[0])
+        self.assertEqual(tree(self.out), before)
+
+    def test_overwrite_keeps_the_results_when_the_scenario_is_bad(self):
+        self.run_scenario(BLOCK)
+        before = tree(self.out)
+        self.run_scenario(BLOCK + "wrong = 1\n", "--overwrite", status=2)
+        self.assertEqual(tree(self.out), before)
+
+    def test_overwrite_replaces_only_plicas_own_files(self):
+        self.run_scenario(BLOCK, "--set", "output.frame_every_s=0.1")
+        foreign = {"notes.txt": b"mine", "frames/mine.vtu": b"mine", "frames/frame_mine.vtu": b"mine", "data/series.csv": b"mine"}
+        for name, content in foreign.items():
+            (self.out / name).parent.mkdir(exist_ok=True)
+            (self.out / name).write_bytes(content)
+        self.run_scenario(BLOCK, "--overwrite", "--set", "output.frame_every_s=0")
+        after = tree(self.out)
+        for name, content in foreign.items():
+            with self.subTest(name):
+                self.assertEqual(after.get(name), content)
+        for name in foreign:
+            (self.out / name).unlink(missing_ok=True)
+        self.assert_whole(self.out)
+        self.assertEqual(len(list((self.out / "frames").iterdir())), 2, "frames of the run before are left")
+
+    def test_places_that_cannot_be_written(self):
+        file = self.write("mine", "file")
+        for out in (file, file / "below", Path("/proc/plica"), Path("/dev/null")):
+            with self.subTest(out):
+                result = self.run_scenario(BLOCK, out=out, status=4)
+                self.assertIn(str(out), self.assert_messages(result)[0])
+        self.assertEqual(file.read_text(), "mine")
+        mesh = self.folder / "rest.vtu"
+        scenario = self.write(BLOCK)
+        self.assertEqual(plica("mesh", scenario, "--out", file / "rest.vtu").returncode, 4)
+        self.assertEqual(plica("mesh", scenario, "--out", mesh).returncode, 0)
+        before = mesh.read_bytes()
+        self.assertEqual(plica("mesh", scenario, "--set", "embryo.length_um=70", "--out", mesh).returncode, 4)
+        self.assertEqual(mesh.read_bytes(), before)
+        self.assertEqual(plica("mesh", scenario, "--set", "embryo.length_um=70", "--out", mesh, "--overwrite").returncode, 0)
+        self.assertNotEqual(mesh.read_bytes(), before)
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "needs /dev/full")
+    def test_standard_output_that_is_full(self):
+        scenario = self.write(BLOCK)
+        for arguments in (["check", scenario], ["scenarios"]):
+            with self.subTest(arguments), open("/dev/full", "w") as full:
+                self.assertEqual(plica(*arguments, stdout=full).returncode, 4)
+
+    def small_disk(self, kilobytes):
+        disk = self.folder / f"disk{kilobytes}"
+        disk.mkdir()
+        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "plica_test", disk], capture_output=True)
+        if mount.returncode != 0:
+            return None
+        self.addCleanup(subprocess.run, ["umount", disk], capture_output=True)
+        return disk
+
+    def test_full_disk_at_the_start_and_in_the_middle(self):
+        run = ["--quiet", "--set", "time.end_s=60", "--set", "output.frame_every_s=0.5"]
+        for kilobytes in (4, 12, 32, 60, 100, 160):
+            with self.subTest(kilobytes):
+                disk = self.small_disk(kilobytes)
+                if disk is None:
+                    self.skipTest("may not mount a small disk here; the file size limit is tried all the same")
+                result = self.run_scenario(BLOCK, *run, out=disk / "out", status=4)
+                self.assertIn("No space left", self.assert_messages(result)[0])
+                self.assert_whole(disk / "out")
+
+    def test_a_file_that_may_not_grow_is_cut_to_whole_rows(self):
+        # SIGXFSZ ignored: write then fails in the middle of a row, as on a full disk.
+        limit = ["bash", "-c", 'trap "" XFSZ; ulimit -f 12; exec "$0" "$@"', support.PROGRAM]
+        support.count_case()
+        command = ["run", self.write(BLOCK), "--out", self.out, "--quiet", "--set", "time.end_s=60", "--set",
+                   "output.frame_every_s=0"]
+        result = subprocess.run([*limit, *map(str, command)], capture_output=True, text=True, timeout=60)
+        self.assertEqual(result.returncode, 4, result.stderr)
+        self.assertIn("File too large", self.assert_messages(result)[0])
+        self.assert_whole(self.out)
+
+
+class Endings(CommandLine):
+    """Runs that end early: what they leave is whole, and the status says why."""
+
+    def test_numerics_that_give_up_are_status_3_and_keep_the_last_good_state(self):
+        result = self.run_scenario(BLOCK, "--set", "contraction.all.preload_nN=-1e6", status=3)
+        summary = self.summary()
+        self.assertEqual(summary["status"], "failed")
+        message = [line for line in result.stderr.splitlines() if "gave up" in line]
+        self.assertEqual(len(message), 1, result.stderr)
+        self.assertRegex(message[0], r"cell \d+")
+        self.assertRegex(message[0], r"t = [\d.e+-]+ s")
+        self.assertIn("inside out", message[0])
+        self.assert_whole(self.out)
+        self.assertEqual(summary["steps"], len((self.out / "series.csv").read_text().splitlines()) - 2)
+
+    def test_forces_beyond_all_numbers_leave_no_nan(self):
+        self.run_scenario(BLOCK, "--set", "contraction.all.stiffness_nN_per_um=1e300", status=3)
+        self.assertEqual(self.summary()["status"], "failed")
+        self.assert_whole(self.out)
+
+    def test_a_run_that_is_interrupted_keeps_what_it_has(self):
+        for name, number, status in (("INT", signal.SIGINT, 130), ("TERM", signal.SIGTERM, 143)):
+            with self.subTest(name):
+                result, out = self.stopped_run(number, name)
+                self.assertEqual(result.returncode, status, result.stderr)
+                self.assertEqual(self.summary(out)["status"], "interrupted")
+                self.assertEqual({path.name for path in out.iterdir()}, RESULTS)
+                rows = table(out / "series.csv")
+                self.assertEqual(self.summary(out)["steps"], len(rows) - 1)
+                self.assert_whole(out)
+
+    def test_an_interrupted_step_is_given_up_within_seconds(self):
+        # An embryo so thin that Newton's method struggles for minutes within one step: the signal must be heard there.
+        support.count_case()
+        text = "[embryo]\ncell_height_um = 0.001\n[time]\nend_s = 1e9\n[stop]\nat_equilibrium = false\n"
+        process = start("run", self.write(text), "--out", self.out)
+        try:
+            time.sleep(2)
+            if process.poll() is not None:
+                self.skipTest("the run was over before the signal")
+            process.send_signal(signal.SIGTERM)
+            started = time.monotonic()
+            process.communicate(timeout=10)
+        except subprocess.TimeoutExpired:
+            self.fail(f"still running {time.monotonic() - started:.0f} s after SIGTERM")
+        finally:
+            process.kill()
+            process.communicate()
+        self.assertEqual(process.returncode, 143)
+        self.assert_whole(self.out)
+
+    def test_a_killed_run_leaves_whole_files(self):
+        result, out = self.stopped_run(signal.SIGKILL, "KILL")
+        self.assertEqual(result.returncode, -signal.SIGKILL)
+        # What was being written under another name may be left; what has its name is whole.
+        for path in out.rglob("*"):
+            if re.search(r"tmp|temp|part|~$", path.name):
+                path.unlink()
+        self.assert_whole(out)
+
+    def stopped_run(self, number, name):
+        """A run without end, signalled once its series has a few rows; they are readable while it goes on."""
+        support.count_case()
+        out = self.folder / name
+        process = start("run", self.write(BLOCK), "--out", out, "--set", "time.end_s=1e9", "--quiet")
+        try:
+            deadline = time.monotonic() + 30
+            series = out / "series.csv"
+            while time.monotonic() < deadline and not (series.exists() and series.read_bytes().count(b"\n") > 5):
+                self.assertIsNone(process.poll())
+                time.sleep(0.02)
+            self.assertGreater(series.read_bytes().count(b"\n"), 5)
+            process.send_signal(number)
+            process.stdout_text, process.stderr_text = process.communicate(timeout=30)
+        finally:
+            process.kill()
+            process.communicate()
+        return subprocess.CompletedProcess(process.args, process.returncode, process.stdout_text, process.stderr_text), out
+
+
+if __name__ == "__main__":
+    support.main()

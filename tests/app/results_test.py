@@ -1,0 +1,128 @@
+"""What a run leaves, and with which status it ends."""
+import xml.etree.ElementTree
+
+import support
+from support import BLOCK, CELL_DATA, CELLS, MIDLINE, POINT_DATA, RESULTS, SERIES, SPHERE, SUMMARY, CommandLine
+from support import plica, read_vtu, table, tree
+
+
+class Outcomes(CommandLine):
+    """What a run leaves, and with which status it ends."""
+
+    def test_a_run_leaves_the_files_of_the_contract(self):
+        self.run_scenario(SPHERE)
+        self.assertEqual({path.name for path in self.out.iterdir()}, RESULTS)
+        self.assert_whole(self.out)
+        series = table(self.out / "series.csv")
+        self.assertEqual(list(series[0])[: len(SERIES)], SERIES)
+        self.assertEqual(list(series[0])[len(SERIES) :], [], "a column without a monitor")
+        self.assertEqual(float(series[0]["time_s"]), 0)
+        self.assertEqual(series[0]["speed_ratio"], "", "what has no value is left empty")
+        self.assertTrue(all(float(a["time_s"]) < float(b["time_s"]) for a, b in zip(series, series[1:])))
+        frames = sorted((self.out / "frames").iterdir())
+        cells = table(self.out / "cells.csv")
+        self.assertEqual(list(cells[0]), CELLS)
+        self.assertEqual(len(cells), 130 * len(frames))
+        midline = table(self.out / "midline.csv")
+        self.assertEqual(list(midline[0]), MIDLINE)
+        self.assertEqual(len({row["time_s"] for row in midline}), len(frames))
+        summary = self.summary()
+        self.assertEqual([key for key in SUMMARY if key not in summary], [])
+        self.assertEqual((summary["status"], summary["cells"], summary["nodes"]), ("end_time", 130, 264))
+        self.assertEqual(summary["steps"], len(series) - 1)
+        self.assertIsNone(summary["equilibrium_time_s"])
+        self.assertLessEqual(summary["max_volume_error"], 1e-9)
+        self.assertLessEqual(summary["max_shell_penetration_um"], 1e-6)
+        for key in ("furrow_depth_um", "lip_distance_um", "vml_displacement_um", "vml_apical_area_ratio"):
+            self.assertAlmostEqual(summary[key], float(series[-1][key]), delta=1e-8 * max(1, abs(summary[key])), msg=key)
+        self.assertTrue({"version", "commit", "compiler", "threads"} <= set(summary["provenance"]))
+        for key, value in summary.items():
+            self.assertNotIsInstance(value, list)
+            self.assertTrue(key == "provenance" or not isinstance(value, dict), "flat")
+
+    def test_frames_hold_the_fields_of_the_contract(self):
+        self.run_scenario(BLOCK)
+        frames = sorted((self.out / "frames").iterdir())
+        pvd = list(xml.etree.ElementTree.parse(self.out / "frames.pvd").iter("DataSet"))
+        self.assertEqual([float(entry.get("timestep")) for entry in pvd], [0, 0.2, 0.4, 0.5])
+        self.assertEqual([self.out / entry.get("file") for entry in pvd], frames)
+        arrays = read_vtu(frames[-1])
+        self.assertLessEqual(POINT_DATA, {name for name, (section, _) in arrays.items() if section == "PointData"})
+        self.assertLessEqual(CELL_DATA, {name for name, (section, _) in arrays.items() if section == "CellData"})
+        self.assertEqual(set(arrays["region_all"][1]), {1})
+        self.assertEqual(set(arrays["types"][1]), {12})
+        self.assertEqual(arrays["cell_id"][1], tuple(range(6)))
+        rest = {name: values for name, (_, values) in read_vtu(frames[0]).items()}
+        moved = [p - q for p, q in zip(arrays["positions"][1] if "positions" in arrays else arrays["Points"][1],
+                                       rest["positions"] if "positions" in rest else rest["Points"])]
+        self.assertLess(max(abs(a - b) for a, b in zip(moved, arrays["displacement_um"][1])), 1e-9)
+        self.assertGreater(max(map(abs, moved)), 1e-3)
+
+    def test_scenario_as_given_and_as_resolved(self):
+        text = "# a comment to keep\n" + BLOCK
+        self.run_scenario(text, "--set", "time.end_s=0.3")
+        self.assertEqual((self.out / "scenario.input.toml").read_text(), text)
+        again = self.folder / "again"
+        self.assertEqual(plica("run", self.out / "scenario.toml", "--out", again).returncode, 0)
+        self.assertEqual((again / "series.csv").read_bytes(), (self.out / "series.csv").read_bytes())
+
+    def test_runs_are_repeatable_to_the_byte_with_any_number_of_threads(self):
+        outs = [self.folder / name for name in ("once", "again", "one", "two")]
+        for out, threads in zip(outs, ([], [], ["--threads", "1"], ["--threads", "2"])):
+            self.run_scenario(SPHERE, *threads, out=out)
+        expected = tree(outs[0])
+        for out in outs[1:]:
+            for name, content in tree(out).items():
+                if name != "summary.json":  # holds wall clock times
+                    with self.subTest(f"{out.name}/{name}"):
+                        self.assertEqual(content, expected[name])
+
+    def test_a_missed_expectation_is_status_1_and_says_by_how_much(self):
+        text = BLOCK + "[expect]\nvml_apical_area_ratio = { value = 0.5, within_percent = 1 }\n"
+        text += "cells = { value = 6, within = 0 }\n"
+        result = self.run_scenario(text, status=1)
+        line = [line for line in (result.stdout + result.stderr).splitlines() if "vml_apical_area_ratio" in line]
+        self.assertEqual(len(line), 1, result.stdout + result.stderr)
+        value = self.summary()["vml_apical_area_ratio"]
+        self.assertIn("0.5", line[0])
+        self.assertIn(f"{value:.3f}"[:-1], line[0])
+        self.assert_whole(self.out)
+        self.run_scenario(text.replace("0.5, within_percent = 1", f"{value}, within_percent = 0.001"), "--overwrite")
+        # What never happened cannot meet an expectation.
+        self.run_scenario(BLOCK + "[expect]\nequilibrium_time_s = { value = 1, within = 1e9 }\n", "--overwrite", status=1)
+
+    def test_mesh_writes_regions_and_can_be_read_back_as_a_scenario(self):
+        mesh = self.folder / "rest.vtu"
+        result = plica("mesh", self.write(SPHERE), "--out", mesh)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        arrays = read_vtu(mesh)
+        self.assertEqual(sum(arrays["region_furrow"][1]), 9)
+        self.assertEqual(len(arrays["region_furrow"][1]), 130)
+        text = SPHERE.replace('shape = "sphere"\ndiameter_um = 200\ncell_height_um = 30\ncells = [5, 5, 4]',
+                              f'shape = "file"\nfile = "{mesh.name}"')
+        text = text.replace('face = "ventral"\ncells_along = 3\ncells_across = 3', 'array = "region_furrow"')
+        text += "[vitelline]\nenabled = false\n"
+        self.run_scenario(text)
+        self.assertEqual((self.summary()["cells"], self.summary()["nodes"]), (130, 264))
+        self.assertLess(min(float(row["apical_area_ratio"]) for row in table(self.out / "cells.csv")), 1)
+        # The same sheet built directly moves the same way.
+        built = self.folder / "built"
+        self.run_scenario(SPHERE, "--set", "vitelline.enabled=false", out=built)
+        direct, file = self.summary(built), self.summary()
+        self.assertAlmostEqual(direct["time_s"], file["time_s"])
+        self.assertAlmostEqual(direct["max_node_speed_um_per_s"], file["max_node_speed_um_per_s"], delta=1e-3)
+
+    def test_hostile_names_and_titles(self):
+        for name in ("with spaces", "ünï-β", "it's \"quoted\"", "$HOME;x&<y>", "a\nb", "-dash"):
+            with self.subTest(name):
+                self.run_scenario(BLOCK, out=self.folder / name)
+                self.assertEqual({path.name for path in (self.folder / name).iterdir()}, RESULTS)
+                self.assert_whole(self.folder / name)
+        title = "x" * 100000 + ' \\"quoted\\" \\u001b[31m ü <b>&amp;'
+        self.run_scenario(BLOCK.replace("A small block", title))
+        self.assertEqual(self.summary()["title"], title.replace('\\"', '"').replace("\\u001b", "\x1b"))
+        self.assertEqual(plica("check", self.out / "scenario.toml").returncode, 0)
+
+
+if __name__ == "__main__":
+    support.main()

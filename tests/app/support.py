@@ -1,0 +1,243 @@
+"""The command line as a user meets it, held to part 1 of the design: exit status, messages, files left behind.
+
+What its tests share: scenarios, the names of the contract, running the program, checks of its messages and files.
+
+Nothing of plica is linked or read here: the program is run as a black box on small blocks and spheres.
+Run: FILE_test.py [PROGRAM] [unittest options], or with PLICA=PROGRAM in the environment.
+"""
+import csv
+import json
+import math
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import xml.etree.ElementTree
+import zlib
+from pathlib import Path
+
+PROGRAM = ""
+CASES = 0  # programs started and judged; printed at the end
+
+BLOCK = """\
+format = 1
+title = "A small block"
+[embryo]
+shape = "block"
+length_um = 60
+width_um = 40
+cell_height_um = 40
+cells = [3, 2, 1]
+[contraction.all]
+region = "all"
+stiffness_nN_per_um = 1
+[time]
+end_s = 0.5
+step_s = 0.1
+[stop]
+at_equilibrium = false
+[output]
+frame_every_s = 0.2
+"""
+
+SPHERE = """\
+format = 1
+title = "A small sphere"
+[embryo]
+shape = "sphere"
+diameter_um = 200
+cell_height_um = 30
+cells = [5, 5, 4]
+[region.furrow]
+face = "ventral"
+cells_along = 3
+cells_across = 3
+[contraction.apical]
+region = "furrow"
+stiffness_nN_per_um = 8
+across_ratio = 0.35
+[time]
+end_s = 0.3
+"""
+
+SERIES = (
+    "time_s furrow_depth_um furrow_depth_below_lips_um lip_distance_um vml_speed_um_per_s vce_speed_um_per_s "
+    "speed_ratio vml_displacement_um vce_displacement_um vml_apical_area_ratio vce_apical_area_ratio "
+    "max_node_speed_um_per_s max_volume_error lumen_volume_ratio cells step_s newton_iterations linear_iterations"
+).split()
+CELLS = (
+    "time_s cell_id mother_id generation x_um y_um z_um volume_um3 apical_area_um2 basal_area_um2 height_um "
+    "apical_area_ratio speed_um_per_s pressure_Pa activity"
+).split()
+MIDLINE = "time_s ap_um depth_um normal_speed_um_per_s apical_area_ratio".split()
+SUMMARY = (
+    "scenario status time_s equilibrium_time_s cells nodes steps wall_s wall_solver_s furrow_depth_um "
+    "furrow_depth_below_lips_um lip_distance_um vml_apical_area_ratio vce_apical_area_ratio vml_displacement_um "
+    "vce_displacement_um peak_speed_ratio peak_speed_ratio_time_s ends_lead_until_s "
+    "vml_displacement_at_equal_speed_um vce_displacement_at_equal_speed_um max_volume_error "
+    "max_shell_penetration_um min_scaled_jacobian provenance"
+).split()
+POINT_DATA = {"displacement_um", "velocity_um_per_s", "force_nN"}
+CELL_DATA = {
+    "cell_id", "mother_id", "generation", "volume_um3", "volume_error", "apical_area_ratio", "pressure_Pa", "activity",
+}
+RESULTS = {
+    "summary.json", "series.csv", "cells.csv", "midline.csv", "frames", "frames.pvd", "scenario.toml",
+    "scenario.input.toml",
+}
+
+
+def count_case():
+    """A program started without plica(), by a test that has to handle it itself."""
+    global CASES
+    CASES += 1
+
+
+def start(*arguments, **options):
+    """The program, started; its output is kept apart as text."""
+    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "stdin": subprocess.DEVNULL, "text": True} | options
+    return subprocess.Popen([PROGRAM, *map(str, arguments)], **options)
+
+
+def plica(*arguments, timeout=60, **options):
+    """The finished program: returncode, stdout, stderr."""
+    count_case()
+    process = start(*arguments, **options)
+    try:
+        process.stdout_text, process.stderr_text = process.communicate(timeout=timeout)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        raise
+    return subprocess.CompletedProcess(process.args, process.returncode, process.stdout_text, process.stderr_text)
+
+
+def table(path):
+    """The rows of a .csv with a header."""
+    return list(csv.DictReader(Path(path).read_text().splitlines()))
+
+
+def tree(folder):
+    """Every file below a folder and its bytes, so that a change of any of them shows."""
+    folder = Path(folder)
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def read_vtu(path):
+    """The arrays of a .vtu that VTK's own writer made (appended raw data, zlib or none): name -> (section, values)."""
+    data = Path(path).read_bytes()
+    start_of_data = data.index(b"_", data.index(b"<AppendedData")) + 1
+    head = data[: data.index(b"<AppendedData")] + b"</VTKFile>"
+    root = xml.etree.ElementTree.fromstring(head)
+    word = {"UInt64": "Q", "UInt32": "I"}[root.get("header_type")]
+    size_of_word = struct.calcsize(word)
+
+    def words(offset, count):
+        return struct.unpack_from(f"<{count}{word}", data, offset)
+
+    arrays = {}
+    for section in root.iter():
+        for array in section.findall("DataArray"):
+            at = start_of_data + int(array.get("offset"))
+            if root.get("compressor"):
+                blocks, _, _ = words(at, 3)
+                sizes = words(at + 3 * size_of_word, blocks)
+                at += (3 + blocks) * size_of_word
+                raw = b""
+                for size in sizes:
+                    raw += zlib.decompress(data[at : at + size])
+                    at += size
+            else:
+                raw = data[at + size_of_word : at + size_of_word + words(at, 1)[0]]
+            letter = {"Float64": "d", "Float32": "f", "Int64": "q", "Int32": "i", "UInt8": "B", "Int8": "b"}[array.get("type")]
+            values = struct.unpack(f"<{len(raw) // struct.calcsize(letter)}{letter}", raw)
+            arrays[array.get("Name")] = (section.tag, values)
+    if b"</VTKFile>" not in data[-40:]:
+        raise ValueError(f"{path} is cut short")
+    return arrays
+
+
+class CommandLine(unittest.TestCase):
+    """A folder of its own for every test, and the checks that all tests share."""
+
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="plica_command_line_"))
+        self.out = self.folder / "out"
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def write(self, text, name="scenario.toml"):
+        path = self.folder / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    def run_scenario(self, text, *arguments, out=None, status=0, name="scenario.toml", **options):
+        """Runs a scenario given as text into `out` and holds it to a status."""
+        result = plica("run", self.write(text, name), "--out", out or self.out, *arguments, **options)
+        self.assertEqual(result.returncode, status, f"{result.args}\n{result.stdout}{result.stderr}")
+        return result
+
+    def assert_messages(self, result, count=1):
+        """`count` lines on stderr, and nothing that came from a library."""
+        lines = result.stderr.splitlines()
+        self.assertEqual(len(lines), count, result.stderr)
+        for noise in ("\x1b", "ERR|", ".cxx", "terminate called", "std::", "Segmentation"):
+            self.assertNotIn(noise, result.stderr)
+        return lines
+
+    def assert_refused(self, text, *parts, line=None, key=None, arguments=(), lines=1):
+        """Status 2, one message in the contract's format with these words in it, and nothing written."""
+        started = time.monotonic()
+        result = self.run_scenario(text, *arguments, status=2)
+        self.assertLess(time.monotonic() - started, 10)
+        message = self.assert_messages(result, lines)[0]
+        if line is not None:
+            where = re.escape(str(self.folder / "scenario.toml")) + rf":{line}: "
+            self.assertRegex(message, where + (re.escape(key) + ": " if key else ""))
+            if key:
+                self.assertRegex(message, r"[;?]", "a message says what would be right")
+        for part in parts:
+            self.assertIn(part, message)
+        self.assertFalse(self.out.exists(), "something was written")
+
+    def assert_whole(self, out):
+        """Every file that is there is whole and free of NaN."""
+        out = Path(out)
+        self.assertEqual([], [str(p) for p in out.rglob("*") if re.search(r"tmp|temp|part|~$", p.name)], "left-overs")
+        for path in out.rglob("*.csv"):
+            text = path.read_text()
+            self.assertTrue(text.endswith("\n"), f"{path} ends in the middle of a row: {text[-80:]!r}")
+            rows = list(csv.reader(text.splitlines()))
+            for number, row in enumerate(rows):
+                self.assertEqual(len(row), len(rows[0]), f"{path}:{number + 1}")
+                for value in row if number else ():
+                    self.assertTrue(value == "" or math.isfinite(float(value)), f"{path}:{number + 1}: {value}")
+        for path in out.rglob("*.json"):
+            json.loads(path.read_text(), parse_constant=lambda name: self.fail(f"{path}: {name}"))
+        for path in out.rglob("*.vtu"):
+            for name, (_, values) in read_vtu(path).items():
+                self.assertTrue(all(map(math.isfinite, values)), f"{path}: {name}")
+        if (out / "frames.pvd").exists():
+            for entry in xml.etree.ElementTree.parse(out / "frames.pvd").iter("DataSet"):
+                self.assertTrue((out / entry.get("file")).exists(), entry.get("file"))
+
+    def summary(self, out=None):
+        return json.loads((Path(out or self.out) / "summary.json").read_text())
+
+
+def main():
+    """Runs the tests of the file that calls this, on the program given to it."""
+    global PROGRAM
+    PROGRAM = os.environ.get("PLICA", "")
+    if len(sys.argv) > 1 and os.path.isfile(sys.argv[1]):
+        PROGRAM = sys.argv.pop(1)
+    if not PROGRAM:
+        sys.exit(f"usage: {os.path.basename(sys.argv[0])} PROGRAM [unittest options], or PLICA=PROGRAM")
+    PROGRAM = os.path.abspath(PROGRAM)
+    outcome = unittest.main(exit=False)
+    print(f"{CASES} cases ran")
+    sys.exit(not outcome.result.wasSuccessful())

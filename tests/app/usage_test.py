@@ -1,0 +1,98 @@
+"""Commands and options: help, usage, what `check` prints, --set, --quiet."""
+import shutil
+
+import support
+from support import BLOCK, SPHERE, CommandLine, plica
+
+
+class Usage(CommandLine):
+    def test_help_of_every_command_has_an_example(self):
+        top = plica("--help")
+        self.assertEqual(top.returncode, 0)
+        for command in ("run", "check", "mesh", "scenarios"):
+            with self.subTest(command):
+                self.assertIn(command, top.stdout)
+                result = plica(command, "--help")
+                self.assertEqual((result.returncode, result.stderr), (0, ""))
+                self.assertRegex(result.stdout, rf"Example.*plica {command}")
+
+    def test_version_names_version_commit_and_compiler(self):
+        result = plica("--version")
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stdout, r"^plica \d+\.\d+\.\d+ \([^,]+, .*(GNU|Clang).*\)$")
+
+    def test_scenarios_are_listed_one_a_line(self):
+        result = plica("scenarios")
+        self.assertEqual(result.returncode, 0)
+        names = [line.split()[0] for line in result.stdout.splitlines()]
+        self.assertIn("drosophila", names)
+        self.assertIn("xenopus", names)
+        for name in names:
+            with self.subTest(name):
+                self.assertEqual(plica("check", name).returncode, 0)
+
+    def test_bad_usage_is_status_2(self):
+        scenario = self.write(BLOCK, "small.toml")
+        for arguments in (
+            [],
+            ["rum", scenario],
+            ["run"],
+            ["run", scenario],
+            ["run", scenario, "--out"],
+            ["run", scenario, "--out", self.out, "--threads", "0"],
+            ["run", scenario, "--out", self.out, "--threads", "many"],
+            ["run", scenario, "--out", self.out, "--unknown"],
+            ["run", scenario, scenario, "--out", self.out],
+            ["run", scenario, "--out", ""],
+            ["mesh", scenario],
+            ["scenarios", "more"],
+        ):
+            with self.subTest(arguments):
+                result = plica(*arguments, cwd=self.folder)
+                self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+                self.assertTrue(result.stderr.strip())
+                written = [path for path in self.folder.iterdir() if path != scenario]
+                for path in written:
+                    shutil.rmtree(path) if path.is_dir() else path.unlink()
+                self.assertEqual(written, [], "something was written")
+
+    def test_an_unknown_scenario_is_answered_with_the_nearest(self):
+        result = plica("run", "drosophla", "--out", self.out)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn('"drosophila"', self.assert_messages(result)[0])
+        self.assertFalse(self.out.exists())
+
+    def test_a_scenario_that_cannot_be_read(self):
+        for path in (self.folder / "missing.toml", self.folder):
+            with self.subTest(path):
+                result = plica("run", path, "--out", self.out)
+                self.assertIn(result.returncode, (2, 4))
+                self.assertIn(str(path), self.assert_messages(result)[0])
+                self.assertFalse(self.out.exists())
+
+    def test_check_prints_a_scenario_that_loads_again(self):
+        for text in (BLOCK, SPHERE):
+            first = plica("check", self.write(text))
+            self.assertEqual(first.returncode, 0, first.stderr)
+            for key in ("young_modulus_Pa", "poisson_ratio", "surface_drag_Pa_s_per_um", "equilibrium_speed_um_per_min"):
+                self.assertIn(key, first.stdout)
+            second = plica("check", self.write(first.stdout, "scenario.toml"))
+            self.assertEqual((second.returncode, second.stdout), (0, first.stdout))
+
+    def test_set_reaches_named_tables_and_the_last_one_counts(self):
+        result = plica("check", self.write(BLOCK), "--set", "contraction.all.stiffness_nN_per_um=2.5", "--set", "time.end_s=7",
+                       "--set", "time.end_s=9", "--set", "region.first.ids=[0, 1]", "--set", 'title="Another title"')
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for line in ("stiffness_nN_per_um = 2.5", "end_s = 9", "ids = [0, 1]", 'title = "Another title"'):
+            self.assertIn(line, result.stdout.splitlines())
+
+    def test_quiet_is_quiet_and_piped_progress_has_no_control_characters(self):
+        result = self.run_scenario(BLOCK, "--quiet")
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+        result = self.run_scenario(BLOCK, out=self.folder / "loud")
+        self.assertIn("end_time", result.stdout)
+        self.assertNotRegex(result.stdout + result.stderr, r"[\r\x1b]")
+
+
+if __name__ == "__main__":
+    support.main()

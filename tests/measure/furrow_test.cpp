@@ -1,0 +1,166 @@
+#include "measure/furrow.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tissue/embryo.hpp"
+
+namespace plica {
+namespace {
+
+/// The paper's Drosophila, its 14 x 5 contractile ventral cells, and what is measured of them.
+struct Pill {
+  Tissue tissue = build_shell({});
+  CellSet contractile = CellSet(tissue.cells.size());
+  FurrowSites sites;
+
+  explicit Pill(int vce_from_end = 2) {
+    for (std::size_t c = 0; c < contractile.size(); ++c) {
+      const GridPlace& place = *tissue.cells[c].grid_place;
+      contractile[c] = place.face == GridPlace::Face::ventral && 2 <= place.place[0] && place.place[0] < 16 &&
+                       2 <= place.place[1] && place.place[1] < 7;
+    }
+    sites = choose_furrow_sites(tissue, contractile, vce_from_end);
+  }
+
+  /// Columns and rows of cells on the ventral face.
+  [[nodiscard]] std::set<std::array<int, 2>> places(const std::vector<CellId>& cells) const {
+    std::set<std::array<int, 2>> result;
+    for (const CellId cell : cells) {
+      const GridPlace& place = *tissue.cells[cell.index()].grid_place;
+      EXPECT_EQ(place.face, GridPlace::Face::ventral);
+      result.insert(place.place);
+    }
+    return result;
+  }
+
+  /// Positions at rest, the nodes of some cells shifted.
+  [[nodiscard]] Vectors shifted(const std::vector<CellId>& cells, const Vec3& shift) const {
+    Vectors positions = tissue.rest_positions;
+    std::set<NodeId> nodes;
+    for (const CellId cell : cells)
+      for (const NodeId node : tissue.cells[cell.index()].corners) nodes.insert(node);
+    for (const NodeId node : nodes) positions[node.index()] += shift;
+    return positions;
+  }
+
+  [[nodiscard]] std::vector<CellId> contractile_cells() const {
+    std::vector<CellId> cells;
+    for (std::size_t c = 0; c < contractile.size(); ++c)
+      if (contractile[c]) cells.emplace_back(c);
+    return cells;
+  }
+};
+
+using Places = std::set<std::array<int, 2>>;
+
+TEST(Furrow, MonitoredCellsAreAtTheMiddleAndSecondLastOnTheMidline) {
+  const Pill pill;
+  EXPECT_EQ(pill.contractile_cells().size(), 70u);
+  EXPECT_EQ(pill.sites.midline_pairs, 7);
+  ASSERT_EQ(pill.sites.vml.size(), 2u);
+  ASSERT_EQ(pill.sites.vce.size(), 2u);
+  EXPECT_EQ(pill.places(pill.sites.vml), (Places{{8, 4}, {9, 4}}));
+  EXPECT_EQ(pill.places(pill.sites.vce), (Places{{3, 4}, {14, 4}}));
+}
+
+TEST(Furrow, EndCellsAreCountedFromTheEndsAndStopAtTheMiddle) {
+  int cases = 0;
+  for (const auto& [from_end, column] : {std::pair{1, 2}, {2, 3}, {7, 8}, {8, 8}, {100, 8}}) {
+    const Pill pill(from_end);
+    EXPECT_EQ(pill.places(pill.sites.vce), (Places{{column, 4}, {17 - column, 4}})) << from_end << " from the end";
+    ++cases;
+  }
+  RecordProperty("cases", cases);
+}
+
+TEST(Furrow, MidlineRunsFromAnteriorToPosterior) {
+  const Pill pill;
+  double before = -1e300;
+  int ventral = 0;
+  for (const CellId cell : pill.sites.midline) {
+    const Vec3 centre = cell_centre(pill.tissue.cells[cell.index()], pill.tissue.rest_positions);
+    EXPECT_GT(centre.x(), before);
+    EXPECT_NEAR(centre.y(), 0, 1e-9);
+    EXPECT_LT(centre.z(), 0);
+    before = centre.x();
+    ventral += pill.tissue.cells[cell.index()].grid_place->face == GridPlace::Face::ventral;
+  }
+  EXPECT_EQ(ventral, 18);
+}
+
+TEST(Furrow, LipsAreTheEdgeOfTheRegionInTheMiddle) {
+  const Pill pill;
+  ASSERT_TRUE(pill.sites.has_lips);
+  const Vectors& rest = pill.tissue.rest_positions;
+  // The outermost nodes of the region on x = 0.
+  double edge_y = 0, edge_z = 0;
+  for (const CellId cell : pill.contractile_cells())
+    for (int corner = 4; corner < 8; ++corner) {
+      const Vec3& x = rest[pill.tissue.cells[cell.index()].corners[corner].index()];
+      if (x.x() == 0 && std::abs(x.y()) > edge_y) edge_y = std::abs(x.y()), edge_z = x.z();
+    }
+  ASSERT_GT(edge_y, 0);
+  const Vec3 left = pill.sites.lips[0].at(pill.tissue, rest), right = pill.sites.lips[1].at(pill.tissue, rest);
+  EXPECT_LE((left - Vec3(0, -edge_y, edge_z)).norm(), 1e-12);
+  EXPECT_LE((right - Vec3(0, edge_y, edge_z)).norm(), 1e-12);
+  EXPECT_NEAR(furrow_shape(pill.tissue, pill.sites, rest).lip_distance_um.value(), 2 * edge_y, 1e-12);
+}
+
+TEST(Furrow, AtRestThereIsNone) {
+  const Pill pill;
+  const FurrowShape shape = furrow_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
+  EXPECT_NEAR(shape.depth_um.value(), 0, 1e-12);
+  EXPECT_LT(shape.depth_below_lips_um.value(), 0) << "the belly is convex";
+  for (const CellId cell : pill.sites.midline)
+    EXPECT_NEAR(cell_depth_um(pill.tissue, cell, pill.tissue.rest_positions).value(), 0, 1e-12);
+}
+
+TEST(Furrow, DepthIsTheShiftOfTheMiddle) {
+  const Pill pill;
+  const FurrowShape rest = furrow_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
+  int cases = 0;
+  for (const double shift : {0.5, 7.0, 31.0}) {
+    const Vectors positions = pill.shifted(pill.sites.vml, Vec3(0, 0, shift));
+    const FurrowShape shape = furrow_shape(pill.tissue, pill.sites, positions);
+    EXPECT_NEAR(shape.depth_um.value(), shift, 1e-10);
+    EXPECT_NEAR(shape.depth_below_lips_um.value(), rest.depth_below_lips_um.value() + shift, 1e-10);
+    EXPECT_NEAR(shape.lip_distance_um.value(), rest.lip_distance_um.value(), 1e-12);
+    for (const CellId cell : pill.sites.vml)
+      EXPECT_NEAR(cell_depth_um(pill.tissue, cell, positions).value(), shift, 1e-10);
+    for (const CellId cell : pill.sites.vce) EXPECT_NEAR(cell_depth_um(pill.tissue, cell, positions).value(), 0, 1e-12);
+    ++cases;
+  }
+  RecordProperty("cases", cases);
+}
+
+TEST(Furrow, LipsMoveWithTheTissue) {
+  const Pill pill;
+  const FurrowShape rest = furrow_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
+  // All contractile cells rise: as deep inside the shell, no deeper below the lips.
+  const FurrowShape raised =
+      furrow_shape(pill.tissue, pill.sites, pill.shifted(pill.contractile_cells(), Vec3(0, 0, 9)));
+  EXPECT_NEAR(raised.depth_um.value(), 9, 1e-10);
+  EXPECT_NEAR(raised.depth_below_lips_um.value(), rest.depth_below_lips_um.value(), 1e-10);
+  EXPECT_NEAR(raised.lip_distance_um.value(), rest.lip_distance_um.value(), 1e-12);
+  // Every width narrows by a tenth, and the lips' distance does.
+  Vectors narrow = pill.tissue.rest_positions;
+  for (Vec3& x : narrow) x.y() *= 0.9;
+  EXPECT_NEAR(furrow_shape(pill.tissue, pill.sites, narrow).lip_distance_um.value(), 0.9 * *rest.lip_distance_um,
+              1e-12);
+}
+
+TEST(Furrow, WithoutContractileCellsNothingHasAValue) {
+  const Tissue tissue = build_shell({});
+  const FurrowSites sites = choose_furrow_sites(tissue, CellSet(tissue.cells.size()), 2);
+  EXPECT_TRUE(sites.vml.empty());
+  EXPECT_TRUE(sites.vce.empty());
+  EXPECT_FALSE(sites.has_lips);
+  const FurrowShape shape = furrow_shape(tissue, sites, tissue.rest_positions);
+  EXPECT_FALSE(shape.depth_um || shape.depth_below_lips_um || shape.lip_distance_um ||
+               shape.highest_points_distance_um);
+}
+
+}  // namespace
+}  // namespace plica
