@@ -9,6 +9,10 @@
 
 namespace plica {
 
+/// The narrowest capsule along x around all nodes at rest: the shell of a mesh from a file, which is meant to be
+/// centred on the x axis. For a pill or a sphere it is the one that the nodes were laid on.
+Capsule enclosing_capsule(const Vectors& positions);
+
 class Vitelline {
  public:
   /// A capsule or ball; the nodes are those of the tissue's apical surface.

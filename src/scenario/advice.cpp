@@ -34,6 +34,11 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   if (model.vitelline && scenario.vitelline.gap_um > 0)
     note(fmt::format("the embryo starts {} um away from its shell", scenario.vitelline.gap_um));
 
+  if (model.vitelline && scenario.embryo.shape == "file")
+    note(fmt::format("the shell is the capsule along x around the mesh, {:.4g} um long and {:.4g} um across",
+                     2 * (model.vitelline->shell().half_axis_um + model.vitelline->shell().radius_um),
+                     2 * model.vitelline->shell().radius_um));
+
   const MeshQuality quality = mesh_quality(model.tissue, model.tissue.rest_positions);
   note(fmt::format(
       "{} cells, {} elements, {} nodes; cell volume {:.0f} to {:.0f} um3, apical area {:.0f} to {:.0f} um2",

@@ -23,7 +23,9 @@ Tissue build_tissue(const Scenario& scenario) {
         {embryo.length_um, embryo.width_um, embryo.cell_height_um, embryo.cells, embryo.elements_per_cell});
   if (embryo.shape == "file") {
     try {
-      return read_mesh_file(embryo.file, embryo.apical_array, embryo.elements_per_cell);
+      Tissue tissue = read_mesh_file(embryo.file, embryo.apical_array, embryo.elements_per_cell);
+      if (scenario.vitelline.enabled) tissue.outer_shape = enclosing_capsule(tissue.rest_positions);
+      return tissue;
     } catch (const MeshError& error) {
       throw ScenarioError({diagnostic_at(scenario, "embryo.file", error.what(), "")});
     }
@@ -131,14 +133,9 @@ std::unique_ptr<const Model> make_model(const Scenario& scenario) {
   std::vector<Diagnostic> errors;
   add_holds(scenario, *model, errors);
   if (scenario.vitelline.enabled) {
-    if (tissue.outer_shape) {
-      Capsule shell = *tissue.outer_shape;
-      shell.radius_um += scenario.vitelline.gap_um;
-      model->vitelline.emplace(tissue, shell);
-    } else {
-      errors.push_back(diagnostic_at(scenario, "vitelline.enabled", "there is no shell for a mesh from a file yet",
-                                     "set vitelline.enabled = false"));
-    }
+    Capsule shell = *tissue.outer_shape;
+    shell.radius_um += scenario.vitelline.gap_um;
+    model->vitelline.emplace(tissue, shell);
   }
   if (!errors.empty()) throw ScenarioError(std::move(errors));
   return model;

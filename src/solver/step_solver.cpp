@@ -262,8 +262,9 @@ std::optional<CellId> StepSolver::inverted_cell(const Vectors& positions) const 
 }
 
 // Goes along the direction as far as elements stay upright and the residual falls; if it falls nowhere, where it is
-// least. Returns the cell that blocks when no length keeps every element upright.
-std::optional<CellId> StepSolver::search_line(const Step& step, const Direction& d, Iterate& at, Residual& now) const {
+// least. False, with the reason in the report, when no length keeps every element upright and every force finite.
+bool StepSolver::search_line(const Step& step, const Direction& d, Iterate& at, Residual& now,
+                             StepReport& report) const {
   std::optional<CellId> blocking;
   std::optional<std::pair<Iterate, Residual>> best;
   double part = 1;
@@ -280,10 +281,14 @@ std::optional<CellId> StepSolver::search_line(const Step& step, const Direction&
     if (r.finite() && (!best || r.merit() < best->second.merit())) best.emplace(std::move(trial), std::move(r));
     if (best && best->second.merit() < (1 - 1e-4 * part) * now.merit()) break;
   }
-  if (!best) return blocking ? blocking : std::optional<CellId>(CellId(0));
+  if (!best) {
+    report.outcome = blocking ? StepReport::Outcome::inverted_element : StepReport::Outcome::not_finite;
+    report.cell = blocking ? blocking : cell_at(largest(now.forces));
+    return false;
+  }
   at = std::move(best->first);
   now = std::move(best->second);
-  return std::nullopt;
+  return true;
 }
 
 StepReport StepSolver::advance(const State& state, double duration_s, bool from_rest, State& next) {
@@ -334,12 +339,7 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
     }
     const double before = now.merit();
     ++report.linear_solves;
-    const auto blocking = search_line(step, direction(at, now), at, now);
-    if (blocking) {
-      report.outcome = StepReport::Outcome::inverted_element;
-      report.cell = blocking;
-      return report;
-    }
+    if (!search_line(step, direction(at, now), at, now, report)) return report;
     slow = now.merit() > 0.1 * before;
     slow_iterations = now.merit() > 0.5 * before ? slow_iterations + 1 : 0;
     contacts_settled = !revise_contacts(at);
@@ -348,9 +348,9 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
       now = residual(step, at);
     }
   }
+  next.velocities.resize(at.positions.size());
   for (std::size_t n = 0; n < at.positions.size(); ++n)
-    next.velocities.resize(at.positions.size()),
-        next.velocities[n] = (at.positions[n] - state.positions[n]) / duration_s;
+    next.velocities[n] = (at.positions[n] - state.positions[n]) / duration_s;
   next.time_s = state.time_s + duration_s;
   next.positions = std::move(at.positions);
   next.pressures = std::move(at.pressures);

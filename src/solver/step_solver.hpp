@@ -69,7 +69,7 @@ class StepSolver {
   bool revise_contacts(Iterate& at) const;
   [[nodiscard]] std::optional<CellId> cell_at(std::size_t node) const;
   [[nodiscard]] std::optional<CellId> inverted_cell(const Vectors& positions) const;
-  std::optional<CellId> search_line(const Step& step, const Direction& direction, Iterate& at, Residual& now) const;
+  bool search_line(const Step& step, const Direction& direction, Iterate& at, Residual& now, StepReport& report) const;
 
   const Model& model_;
   StepTolerances tolerances_;

@@ -75,7 +75,7 @@ struct Tissue {
   std::vector<Cell> cells;
   std::vector<Facet> apical_facets;  // of elements; those of a cell are contiguous
   std::vector<Facet> basal_facets;
-  std::optional<Capsule> outer_shape;          // of the apical surface at rest; empty for blocks and files
+  std::optional<Capsule> outer_shape;          // of the apical surface at rest, or the shell around a file's mesh
   std::map<std::string, CellSet> cell_arrays;  // of a mesh file: cells where the array is not 0
   std::map<std::string, CellSet> regions;      // named; "all" is always there
 

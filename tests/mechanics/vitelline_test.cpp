@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/tissues.hpp"
+#include "tissue/embryo.hpp"
 
 namespace plica {
 namespace {
@@ -75,6 +76,23 @@ TEST(Vitelline, CentreHasAFiniteGap) {
   const Vitelline::Gap gap = shell_of(ball).gap(Vec3::Zero());
   EXPECT_EQ(gap.value, 140);
   EXPECT_TRUE(gap.inward.allFinite());
+}
+
+// Three cases: the capsule of a pill and of a sphere are found again; one node far out on the axis makes it longer, not
+// wider.
+TEST(EnclosingCapsule, IsTheOneThatABuiltEmbryoLiesOn) {
+  for (const double length_um : {460.0, 280.0}) {
+    const Tissue tissue = build_shell({.length_um = length_um});
+    const Capsule capsule = enclosing_capsule(tissue.rest_positions);
+    EXPECT_NEAR(capsule.radius_um, 140, 0.5) << "no node need lie on the widest circle";
+    EXPECT_NEAR(capsule.half_axis_um + capsule.radius_um, length_um / 2, 0.5);
+    const Vitelline shell(tissue, capsule);
+    for (const NodeId node : shell.nodes())
+      EXPECT_GE(shell.gap(tissue.rest_positions[node.index()]).value, -1e-12 * length_um);
+  }
+  const Capsule longer = enclosing_capsule({Vec3(0, 3, 4), Vec3(20, 0, 0)});
+  EXPECT_DOUBLE_EQ(longer.radius_um, 5);
+  EXPECT_DOUBLE_EQ(longer.half_axis_um, 15);
 }
 
 }  // namespace
