@@ -108,7 +108,7 @@ std::vector<NodeFrame> StepSolver::frames(const Iterate& at) const {
 StepSolver::Residual StepSolver::residual(const Step& step, const Iterate& at) const {
   Residual r;
   r.forces.assign(at.positions.size(), Vec3::Zero());
-  Vectors of_law(at.positions.size());
+  Vectors of_law(at.positions.size(), Vec3::Zero());
   double balanced = 0;  // squared norm of the forces that have to balance
   const auto take = [&] {
     for (std::size_t n = 0; n < of_law.size(); ++n) {
@@ -117,7 +117,6 @@ StepSolver::Residual StepSolver::residual(const Step& step, const Iterate& at) c
     }
     std::fill(of_law.begin(), of_law.end(), Vec3::Zero());
   };
-  std::fill(of_law.begin(), of_law.end(), Vec3::Zero());
   for (const auto& law : model_.laws) {
     law->add_forces(step, of_law);
     take();
@@ -209,9 +208,9 @@ StepSolver::Direction StepSolver::direction(const Iterate& at, const Residual& r
   if (model_.vitelline) {
     Vectors left(nodes);
     matrix_.multiply(d.positions, left);
-    for (double& pressure : d.pressures) pressure = -pressure;
-    matrix_.add_pressure_forces(d.pressures, left);
-    for (double& pressure : d.pressures) pressure = -pressure;
+    std::vector<double> relieved = d.pressures;
+    for (double& pressure : relieved) pressure = -pressure;
+    matrix_.add_pressure_forces(relieved, left);
     for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
       if (!at.in_contact[k]) continue;
       const std::size_t n = model_.vitelline->nodes()[k].index();
