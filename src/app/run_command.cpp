@@ -75,7 +75,7 @@ int run_scenario(const RunOptions& options) {
   const auto model = make_model(scenario);
   omp_set_num_threads(threads_for(options.threads, model->tissue.elements.size()));
   const RunControls controls = make_controls(scenario);
-  const Observer observer(*model, make_furrow_sites(scenario, model->tissue));
+  Observer observer(*model, make_furrow_sites(scenario, model->tissue));
 
   if (!options.quiet)
     for (const std::string& line : advice(scenario, *model))
@@ -99,7 +99,13 @@ int run_scenario(const RunOptions& options) {
         recording_s += seconds_since(recording_start);
         return caught_signal == 0;
       },
-      [] { return caught_signal != 0; });
+      [] { return caught_signal != 0; },
+      [&](const Division& division, const State& state) {
+        const auto recording_start = std::chrono::steady_clock::now();
+        observer.follow_division(division);
+        recorder.record_division(division, state);
+        recording_s += seconds_since(recording_start);
+      });
   const double solver_s = seconds_since(run_start) - recording_s;
   progress.finish();
   const auto summary = recorder.finish(result, {seconds_since(start), solver_s});

@@ -3,30 +3,6 @@
 #include <algorithm>
 
 namespace plica {
-namespace {
-
-std::array<Vec3, 4> corners(const Facet& facet, std::span<const Vec3> positions) {
-  std::array<Vec3, 4> points;
-  for (int i = 0; i < 4; ++i) points[i] = positions[facet.nodes[i].index()];
-  return points;
-}
-
-std::vector<double> areas(const std::vector<Facet>& facets, std::size_t cells, std::span<const Vec3> positions) {
-  std::vector<double> result(cells, 0.0);
-  for (const Facet& facet : facets) result[facet.cell.index()] += facet_area(corners(facet, positions));
-  return result;
-}
-
-}  // namespace
-
-std::vector<double> apical_areas(const Tissue& tissue, std::span<const Vec3> positions) {
-  return areas(tissue.apical_facets, tissue.cells.size(), positions);
-}
-
-std::vector<double> basal_areas(const Tissue& tissue, std::span<const Vec3> positions) {
-  return areas(tissue.basal_facets, tissue.cells.size(), positions);
-}
-
 double cell_height(const Cell& cell, std::span<const Vec3> positions) {
   double sum = 0;
   for (int i = 0; i < 4; ++i)
@@ -70,7 +46,7 @@ std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> p
   Vec3 area_vector = Vec3::Zero();
   double volume = 0, area = 0;
   for (const Facet& facet : tissue.basal_facets) {
-    const auto [a, b, c, d] = corners(facet, positions);
+    const auto [a, b, c, d] = gather(positions, facet);
     // The cone from the origin, as in hex_volume; basal facets look into the lumen.
     volume -= (a.dot(b.cross(c)) + a.dot(c.cross(d)) + a.dot(b.cross(d)) + b.dot(c.cross(d))) / 12;
     area_vector += facet_area_vector({a, b, c, d});

@@ -10,10 +10,6 @@
 
 namespace plica {
 
-/// Area of each cell's apical facets, um^2; 0 for a cell without. Bilinear facets, 2 x 2 Gauss points.
-std::vector<double> apical_areas(const Tissue& tissue, std::span<const Vec3> positions);
-std::vector<double> basal_areas(const Tissue& tissue, std::span<const Vec3> positions);
-
 /// Mean length of the four apico-basal edges, um.
 double cell_height(const Cell& cell, std::span<const Vec3> positions);
 

@@ -32,7 +32,7 @@ std::vector<bool> ventral_facets(const Tissue& tissue) {
 // How far a material point lies inside the ventral shell along z, less the same at rest. Without a shell: how far it
 // has risen.
 double depth_of(const Tissue& tissue, const MaterialPoint& point, std::span<const Vec3> positions) {
-  const Vec3 now = point.at(tissue, positions), rest = point.at(tissue, tissue.rest_positions);
+  const Vec3 now = point.at(positions), rest = point.at(tissue.rest_positions);
   if (!tissue.outer_shape) return now.z() - rest.z();
   return (now.z() - ventral_height(*tissue.outer_shape, now.x())) -
          (rest.z() - ventral_height(*tissue.outer_shape, rest.x()));
@@ -41,7 +41,7 @@ double depth_of(const Tissue& tissue, const MaterialPoint& point, std::span<cons
 // Cells with an apical facet that meets y = 0 at rest.
 std::vector<CellId> cells_on_midline(const Tissue& tissue, const std::vector<bool>& facets) {
   std::set<CellId> cells;
-  for (const MaterialPoint& point : cut_apical_surface(tissue, tissue.rest_positions, axis_y, facets))
+  for (const SurfacePoint& point : cut_apical_surface(tissue, tissue.rest_positions, axis_y, facets))
     cells.insert(tissue.apical_facets[point.facet].cell);
   return {cells.begin(), cells.end()};
 }
@@ -55,13 +55,13 @@ bool find_lips(const Tissue& tissue, FurrowSites& sites) {
     if (sites.contractile[facet.cell.index()])
       for (int i = 0; i < 4; ++i) ++uses[edge(facet, i)];
   double left = 0, right = 0;
-  for (const MaterialPoint& point :
+  for (const SurfacePoint& point :
        cut_apical_surface(tissue, tissue.rest_positions, axis_x, facets_of(tissue, sites.contractile))) {
     const Facet& facet = tissue.apical_facets[point.facet];
     for (int i = 0; i < 4; ++i) {
       const bool on_edge = point.weights[i] + point.weights[(i + 1) % 4] > 1 - 1e-12;
       if (!on_edge || uses[edge(facet, i)] != 1) continue;
-      const double y = point.at(tissue, tissue.rest_positions).y();
+      const double y = point.at(tissue.rest_positions).y();
       if (y < left) left = y, sites.lips[0] = point;
       if (y > right) right = y, sites.lips[1] = point;
     }
@@ -69,15 +69,21 @@ bool find_lips(const Tissue& tissue, FurrowSites& sites) {
   return left < 0 && right > 0;
 }
 
+// Ventral cells on the midline at rest, anterior to posterior.
+std::vector<CellId> ventral_midline(const Tissue& tissue) {
+  std::vector<CellId> midline = cells_on_midline(tissue, ventral_facets(tissue));
+  std::ranges::stable_sort(
+      midline, {}, [&](CellId cell) { return cell_centre(tissue.cells[cell.index()], tissue.rest_positions).x(); });
+  return midline;
+}
+
 }  // namespace
 
 FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile, int vce_from_end) {
   FurrowSites sites;
   sites.contractile = contractile;
-  sites.midline = cells_on_midline(tissue, ventral_facets(tissue));
+  sites.midline = ventral_midline(tissue);
   const auto rest_x = [&](CellId cell) { return cell_centre(tissue.cells[cell.index()], tissue.rest_positions).x(); };
-  std::stable_sort(sites.midline.begin(), sites.midline.end(),
-                   [&](CellId a, CellId b) { return rest_x(a) < rest_x(b); });
 
   // Distances from the middle that contractile midline cells have, each once, with the cells that have it.
   std::vector<std::pair<double, MonitoredCells>> by_distance;
@@ -102,18 +108,28 @@ FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile
   return sites;
 }
 
+void follow_division(FurrowSites& sites, const Tissue& tissue, const Division& division) {
+  sites.contractile = inherited(division, sites.contractile);
+  sites.midline = ventral_midline(tissue);
+  for (MonitoredCells* cells : {&sites.vml, &sites.vce}) {
+    const MonitoredCells before = *cells;
+    for (const auto& [low, high] : division.daughters)
+      if (std::ranges::find(before, low) != before.end()) cells->push_back(high);
+  }
+}
+
 FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions) {
   FurrowShape shape;
-  for (const MaterialPoint& point : cut_apical_surface(tissue, positions, axis_y, facets_of(tissue, sites.contractile)))
+  for (const SurfacePoint& point : cut_apical_surface(tissue, positions, axis_y, facets_of(tissue, sites.contractile)))
     shape.depth_um = std::max(shape.depth_um.value_or(-1e300), depth_of(tissue, point, positions));
   if (!sites.has_lips) return shape;
 
-  const Vec3 left = sites.lips[0].at(tissue, positions), right = sites.lips[1].at(tissue, positions);
+  const Vec3 left = sites.lips[0].at(positions), right = sites.lips[1].at(positions);
   shape.lip_distance_um = (right - left).norm();
   // The floor: the cross-section's height at y = 0, between the nearest points on either side.
   Vec3 before(0, -1e300, 0), after(0, 1e300, 0), highest_left = Vec3::Zero(), highest_right = Vec3::Zero();
-  for (const MaterialPoint& cut : cut_apical_surface(tissue, positions, axis_x, ventral_facets(tissue))) {
-    const Vec3 p = cut.at(tissue, positions);
+  for (const SurfacePoint& cut : cut_apical_surface(tissue, positions, axis_x, ventral_facets(tissue))) {
+    const Vec3 p = cut.at(positions);
     if (p.y() <= 0 && p.y() > before.y()) before = p;
     if (p.y() >= 0 && p.y() < after.y()) after = p;
     if (p.y() <= 0 && p.z() < highest_left.z()) highest_left = p;
@@ -135,7 +151,7 @@ std::optional<double> cell_depth_um(const Tissue& tissue, CellId cell, std::span
   const auto points = cut_apical_surface(tissue, positions, axis_y, wanted);
   if (points.empty()) return std::nullopt;
   double sum = 0;
-  for (const MaterialPoint& point : points) sum += depth_of(tissue, point, positions);
+  for (const SurfacePoint& point : points) sum += depth_of(tissue, point, positions);
   return sum / static_cast<double>(points.size());
 }
 

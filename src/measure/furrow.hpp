@@ -9,6 +9,7 @@
 
 #include "measure/surface_cut.hpp"
 #include "mechanics/model.hpp"
+#include "tissue/division.hpp"
 
 namespace plica {
 
@@ -28,6 +29,9 @@ struct FurrowSites {
 
 /// `vce_from_end`: VCE is this cell of the contractile midline counted from its ends, 1 the last.
 FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile, int vce_from_end);
+
+/// The same sites after a division: of a monitored cell both daughters. Lips are nodes and stay.
+void follow_division(FurrowSites& sites, const Tissue& tissue, const Division& division);
 
 /// Everything about the furrow at one moment. What has no value is empty.
 struct FurrowShape {

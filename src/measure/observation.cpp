@@ -10,7 +10,6 @@ namespace plica {
 Observer::Observer(const Model& model, FurrowSites sites)
     : model_(model),
       sites_(std::move(sites)),
-      rest_apical_areas_(apical_areas(model.tissue, model.tissue.rest_positions)),
       rest_lumen_volume_(lumen_volume(model.tissue, model.tissue.rest_positions)) {}
 
 void Observer::observe_state(const State& state, Observation& row) const {
@@ -27,7 +26,8 @@ void Observer::observe_state(const State& state, Observation& row) const {
   row.vml_displacement_um = mean_node_displacement(tissue, sites_.vml, state.positions);
   row.vce_displacement_um = mean_node_displacement(tissue, sites_.vce, state.positions);
   std::vector<double> ratios = apical_areas(tissue, state.positions);
-  for (std::size_t c = 0; c < ratios.size(); ++c) ratios[c] /= rest_apical_areas_[c];
+  const std::vector<double> rest_areas = rest_apical_areas(tissue);
+  for (std::size_t c = 0; c < ratios.size(); ++c) ratios[c] /= rest_areas[c];
   row.vml_apical_area_ratio = mean_over(sites_.vml, ratios);
   row.vce_apical_area_ratio = mean_over(sites_.vce, ratios);
 }

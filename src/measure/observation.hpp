@@ -34,14 +34,15 @@ class Observer {
   /// The same of the body at rest, before the first step.
   [[nodiscard]] Observation observe_rest(const State& state) const;
   [[nodiscard]] const FurrowSites& sites() const { return sites_; }
-  [[nodiscard]] const std::vector<double>& rest_apical_areas() const { return rest_apical_areas_; }
+
+  /// The model's cells have divided.
+  void follow_division(const Division& division) { plica::follow_division(sites_, model_.tissue, division); }
 
  private:
   void observe_state(const State& state, Observation& row) const;
 
   const Model& model_;
   FurrowSites sites_;
-  std::vector<double> rest_apical_areas_;
   std::optional<double> rest_lumen_volume_;
 };
 

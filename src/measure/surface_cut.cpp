@@ -5,15 +5,15 @@
 
 namespace plica {
 
-Vec3 MaterialPoint::at(const Tissue& tissue, std::span<const Vec3> positions) const {
+Vec3 MaterialPoint::at(std::span<const Vec3> positions) const {
   Vec3 point = Vec3::Zero();
-  for (int i = 0; i < 4; ++i) point += weights[i] * positions[tissue.apical_facets[facet].nodes[i].index()];
+  for (int i = 0; i < 4; ++i) point += weights[i] * positions[nodes[i].index()];
   return point;
 }
 
-std::vector<MaterialPoint> cut_apical_surface(const Tissue& tissue, std::span<const Vec3> positions, int axis,
-                                              const std::vector<bool>& wanted) {
-  std::vector<MaterialPoint> points;
+std::vector<SurfacePoint> cut_apical_surface(const Tissue& tissue, std::span<const Vec3> positions, int axis,
+                                             const std::vector<bool>& wanted) {
+  std::vector<SurfacePoint> points;
   for (std::size_t f = 0; f < tissue.apical_facets.size(); ++f) {
     if (!wanted[f]) continue;
     std::array<double, 4> height;
@@ -25,7 +25,7 @@ std::vector<MaterialPoint> cut_apical_surface(const Tissue& tissue, std::span<co
                            double height_b) {
       if (height_a * height_b > 0 || height_a == height_b) return;
       const double part = height_a / (height_a - height_b);
-      MaterialPoint point{f, {}};
+      SurfacePoint point{{tissue.apical_facets[f].nodes, {}}, f};
       for (int i = 0; i < 4; ++i) point.weights[i] = (1 - part) * a[i] + part * b[i];
       points.push_back(point);
     };

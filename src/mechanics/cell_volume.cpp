@@ -132,4 +132,12 @@ NodeGroups Dilatation::node_groups() const {
   return groups;
 }
 
+std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
+  return std::make_unique<Dilatation>(tissue, bulk_modulus_);
+}
+
+void Dilatation::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
+  for (const ElementId e : elements) rest_volumes_[e.index()] = hex_volume(tissue.element_rest_shape[e.index()]);
+}
+
 }  // namespace plica

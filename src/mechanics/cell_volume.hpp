@@ -19,6 +19,7 @@ class CellVolumes {
 
   [[nodiscard]] std::size_t count() const { return targets_.size(); }
   [[nodiscard]] const std::vector<double>& targets() const { return targets_; }
+  void set_target(CellId cell, double volume) { targets_[cell.index()] = volume; }
 
   /// V_c at the given positions, um^3; cells.
   [[nodiscard]] std::vector<double> volumes(std::span<const Vec3> positions) const;
@@ -63,6 +64,9 @@ class Dilatation final : public Law {
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups() const override;
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                    std::span<const Vec3> positions) const override;
+  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
 
  private:
   std::vector<std::array<NodeId, 8>> elements_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "tissue/division.hpp"
+
 namespace plica {
 namespace {
 
@@ -68,10 +70,11 @@ Mat3 turning_stiffness(const Segment& s) {
 
 std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule) {
   std::vector<Spring> springs;
-  const auto add = [&](std::vector<NodeId> nodes, double ratio, double share) {
+  const auto add = [&](std::size_t cell, std::vector<NodeId> nodes, double ratio, double share) {
     if (ratio <= 0) return;
-    Spring spring{std::move(nodes), share * ratio * rule.stiffness, share * ratio * rule.preload, share * rule.damping,
-                  0};
+    Spring spring{
+        std::move(nodes), share * ratio * rule.stiffness, share * ratio * rule.preload, share * rule.damping, 0,
+        CellId(cell)};
     spring.rest_length = rule.rest_length_ratio * chain_length(spring.nodes, tissue.rest_positions);
     springs.push_back(std::move(spring));
   };
@@ -83,12 +86,12 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cel
       const double ratio = line.direction == EdgeDirection::along    ? rule.along_ratio
                            : line.direction == EdgeDirection::across ? rule.across_ratio
                                                                      : 1;
-      add(line.nodes, ratio, share);
+      add(c, line.nodes, ratio, share);
     }
     if (rule.diagonals && rule.side != EdgeSide::lateral) {
       const int first = rule.side == EdgeSide::apical ? 4 : 0;
       for (const int i : {0, 1})
-        add({cell.corners[first + i], cell.corners[first + i + 2]}, 0.5 * (rule.along_ratio + rule.across_ratio), 1);
+        add(c, {cell.corners[first + i], cell.corners[first + i + 2]}, 0.5 * (rule.along_ratio + rule.across_ratio), 1);
     }
   }
   return springs;
@@ -154,6 +157,67 @@ NodeGroups Contraction::node_groups() const {
   NodeGroups groups;
   for (const Spring& spring : springs_) groups.push_back(spring.nodes);
   return groups;
+}
+
+namespace {
+
+bool is_corner(const Tissue& tissue, CellId cell, NodeId node) {
+  const auto& corners = tissue.cells[cell.index()].corners;
+  return std::ranges::find(corners, node) != corners.end();
+}
+
+// The chain with the nodes that cuts have put into it, its own cell's and its neighbours'.
+std::vector<NodeId> with_midway_nodes(const std::vector<NodeId>& chain, const Division& division) {
+  std::vector<NodeId> nodes = {chain.front()};
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    const auto midway = division.node_midway.find(std::minmax(chain[i - 1], chain[i]));
+    if (midway != division.node_midway.end()) nodes.push_back(midway->second);
+    nodes.push_back(chain[i]);
+  }
+  return nodes;
+}
+
+// The daughters' parts of their mother's spring: two in series where it was cut, else the whole.
+std::vector<Spring> inherit(const Spring& spring, CellId low, CellId high, const Tissue& tissue,
+                            std::span<const Vec3> positions) {
+  const auto& nodes = spring.nodes;
+  const auto both = [&](NodeId node) { return is_corner(tissue, low, node) && is_corner(tissue, high, node); };
+  const auto cut = std::find_if(nodes.begin() + 1, nodes.end() - 1, both);
+  std::vector<Spring> parts = {spring};
+  if (cut != nodes.end() - 1) {
+    parts.push_back(spring);
+    parts[0].nodes.assign(nodes.begin(), cut + 1);
+    parts[1].nodes.assign(cut, nodes.end());
+  }
+  for (Spring& part : parts) {
+    const double share = chain_length(part.nodes, positions) / chain_length(nodes, positions);
+    part.stiffness /= share;
+    part.damping /= share;
+    part.rest_length *= share;
+    const bool is_low = is_corner(tissue, low, part.nodes.front()) && is_corner(tissue, low, part.nodes.back());
+    part.cell = is_low ? low : high;
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::unique_ptr<Law> Contraction::after_division(const Tissue& tissue, const Division& division,
+                                                 std::span<const Vec3> positions) const {
+  std::map<CellId, CellId> other_daughter;
+  for (const auto& [low, high] : division.daughters) other_daughter[low] = high;
+  std::vector<Spring> springs;
+  for (Spring spring : springs_) {
+    spring.nodes = with_midway_nodes(spring.nodes, division);
+    const auto daughter = other_daughter.find(spring.cell);
+    if (daughter == other_daughter.end()) {
+      springs.push_back(std::move(spring));
+      continue;
+    }
+    for (Spring& part : inherit(spring, daughter->first, daughter->second, tissue, positions))
+      springs.push_back(std::move(part));
+  }
+  return std::make_unique<Contraction>(std::move(springs), program_);
 }
 
 }  // namespace plica

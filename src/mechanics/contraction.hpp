@@ -16,6 +16,7 @@ struct Spring {
   double preload = 0;      // P, nN
   double damping = 0;      // c, nN s/um
   double rest_length = 0;  // U, um
+  CellId cell;             // whose spring it is
 };
 
 /// What a contraction asks of each edge. Lengths and stiffness as in the scenario's [contraction.NAME].
@@ -46,6 +47,10 @@ class Contraction final : public Law {
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups() const override;
+  /// An edge that is cut becomes two springs in series, k scaled so that their tension is the same; edges of the new
+  /// facet have none. A diagonal stays whole.
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                    std::span<const Vec3> positions) const override;
 
   [[nodiscard]] const Program& program() const { return program_; }
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }

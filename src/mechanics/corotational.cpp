@@ -119,27 +119,32 @@ Mat24 incompatible_stiffness(const HexPoints& rest, const ElasticModuli& moduli)
   return 0.5 * (stiffness + stiffness.transpose());
 }
 
+Corotational::Element Corotational::make_element(const std::array<NodeId, 8>& nodes, const HexPoints& rest) const {
+  Element element;
+  element.nodes = nodes;
+  element.mean_gradient = mean_gradients(rest);
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& point : rest) centre += point / 8;
+  for (int i = 0; i < 8; ++i) element.rest[i] = rest[i] - centre;
+  Vec24 b;
+  for (int i = 0; i < 8; ++i) b.segment<3>(3 * i) = element.mean_gradient[i];
+  element.stiffness =
+      incompatible_stiffness(rest, moduli_) - moduli_.bulk_modulus() * hex_volume(rest) * b * b.transpose();
+  const ElasticModuli viscous_moduli{-2 * shear_viscosity_ / 3, shear_viscosity_};  // deviatoric
+  if (viscous_) element.viscosity = incompatible_stiffness(rest, viscous_moduli);
+  return element;
+}
+
 Corotational::Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity)
-    : elements_(tissue.elements.size()), viscous_(shear_viscosity > 0) {
-  const ElasticModuli viscous_moduli{-2 * shear_viscosity / 3, shear_viscosity};  // deviatoric
+    : moduli_(moduli),
+      shear_viscosity_(shear_viscosity),
+      viscous_(shear_viscosity > 0),
+      elements_(tissue.elements.size()) {
   std::vector<char> inverted(elements_.size(), 0);
   parallel_for(elements_.size(), [&](std::size_t e) {
     const HexPoints& rest = tissue.element_rest_shape[e];
-    Element& element = elements_[e];
-    element.nodes = tissue.elements[e];
-    if (hex_scaled_jacobian(rest) <= 0) {
-      inverted[e] = 1;
-      return;
-    }
-    element.mean_gradient = mean_gradients(rest);
-    Vec3 centre = Vec3::Zero();
-    for (const Vec3& point : rest) centre += point / 8;
-    for (int i = 0; i < 8; ++i) element.rest[i] = rest[i] - centre;
-    Vec24 b;
-    for (int i = 0; i < 8; ++i) b.segment<3>(3 * i) = element.mean_gradient[i];
-    element.stiffness =
-        incompatible_stiffness(rest, moduli) - moduli.bulk_modulus() * hex_volume(rest) * b * b.transpose();
-    if (viscous_) element.viscosity = incompatible_stiffness(rest, viscous_moduli);
+    inverted[e] = hex_scaled_jacobian(rest) <= 0;
+    if (!inverted[e]) elements_[e] = make_element(tissue.elements[e], rest);
   });
   const auto bad = std::find(inverted.begin(), inverted.end(), 1);
   if (bad != inverted.end()) {
@@ -299,6 +304,15 @@ NodeGroups Corotational::node_groups() const {
   NodeGroups groups;
   for (const Element& element : elements_) groups.emplace_back(element.nodes.begin(), element.nodes.end());
   return groups;
+}
+
+std::unique_ptr<Law> Corotational::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
+  return std::make_unique<Corotational>(tissue, moduli_, shear_viscosity_);
+}
+
+void Corotational::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
+  for (const ElementId e : elements)
+    elements_[e.index()] = make_element(tissue.elements[e.index()], tissue.element_rest_shape[e.index()]);
 }
 
 }  // namespace plica

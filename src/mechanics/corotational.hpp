@@ -47,6 +47,9 @@ class Corotational final : public Law {
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups() const override;
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                    std::span<const Vec3> positions) const override;
+  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
 
  private:
   struct Element {
@@ -60,8 +63,12 @@ class Corotational final : public Law {
 
   [[nodiscard]] Frame frame(const Element& element, const Step& step) const;
 
+  [[nodiscard]] Element make_element(const std::array<NodeId, 8>& nodes, const HexPoints& rest) const;
+
+  ElasticModuli moduli_;
+  double shear_viscosity_;
+  bool viscous_;
   std::vector<Element> elements_;
-  bool viscous_ = false;
 };
 
 }  // namespace plica

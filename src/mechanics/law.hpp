@@ -3,6 +3,7 @@
 // and the line search has something to descend on.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,9 @@
 #include "core/vector.hpp"
 
 namespace plica {
+
+struct Tissue;
+struct Division;
 
 /// Where a step stands: the unknown positions at its end, and everything that is constant during it.
 struct Step {
@@ -53,6 +57,14 @@ class Law {
 
   /// The nodes that the law joins. Laws that act on single nodes have none.
   [[nodiscard]] virtual NodeGroups node_groups() const { return {}; }
+
+  /// The same law for the tissue after a division, with nodes at `positions`. Existing nodes feel the same forces, but
+  /// for what finer elements change.
+  [[nodiscard]] virtual std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                            std::span<const Vec3> positions) const = 0;
+
+  /// Daughters have grown: the rest shapes of these elements are new. Between steps only.
+  virtual void take_rest_shapes(const Tissue& /*tissue*/, std::span<const ElementId> /*elements*/) {}
 };
 
 }  // namespace plica

@@ -6,6 +6,11 @@
 
 namespace plica {
 
+double Growth::part(double time_s) const {
+  if (time_s >= end_s) return 1;
+  return time_s <= start_s ? 0 : (time_s - start_s) / (end_s - start_s);
+}
+
 double Model::force_scale() const {
   double volume = 0;
   for (const double target : volumes.targets()) volume += target;

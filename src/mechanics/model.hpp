@@ -9,12 +9,24 @@
 #include "mechanics/cell_volume.hpp"
 #include "mechanics/contraction.hpp"
 #include "mechanics/law.hpp"
+#include "mechanics/surroundings.hpp"
 #include "mechanics/vitelline.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
 
-/// Topology and parameters. Nothing here changes during a run; only division makes a new one.
+/// A daughter on her way from a half of her mother to her final size: linear in time.
+struct Growth {
+  CellId cell;
+  HexPoints rest_from, rest_to;           // um
+  double target_from = 0, target_to = 0;  // volume, um^3
+  double start_s = 0, end_s = 0;
+
+  /// Part of the way, 0 to 1.
+  [[nodiscard]] double part(double time_s) const;
+};
+
+/// Topology and parameters. Constant during a step; between steps cells may divide and grow (mechanics/division.hpp).
 struct Model {
   Tissue tissue;
   std::vector<std::unique_ptr<Law>> laws;
@@ -24,6 +36,8 @@ struct Model {
   std::vector<std::array<bool, 3>> held;         // nodes; directions x, y, z in which a node does not move
   std::vector<const Contraction*> contractions;  // among the laws
   std::vector<CellSet> contraction_cells;        // contractions
+  const Inertia* inertia = nullptr;              // among the laws
+  std::vector<Growth> growths;                   // over and under way
   double stiffness_scale = 1;  // Young's modulus, kPa: for tolerances that must not depend on the load
 
   explicit Model(Tissue t) : tissue(std::move(t)), volumes(tissue), held(tissue.node_count(), {false, false, false}) {}
@@ -45,6 +59,7 @@ struct State {
   std::vector<double> pressures;       // cells; kPa: the multipliers of the volumes
   std::vector<double> contact_forces;  // the vitelline's nodes; nN, >= 0
   std::vector<char> in_contact;        // the vitelline's nodes
+  double divided_until_s = -1;         // divisions that were due up to here have been made
 };
 
 /// The model at rest, before the first step.

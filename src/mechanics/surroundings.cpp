@@ -1,14 +1,40 @@
 #include "mechanics/surroundings.hpp"
 
+#include "tissue/division.hpp"
+
 namespace plica {
 
-SurfaceDrag::SurfaceDrag(const Tissue& tissue, double drag) : coefficients_(tissue.node_count(), 0.0) {
+namespace {
+
+std::vector<double> drag_coefficients(const Tissue& tissue, double drag) {
+  std::vector<double> coefficients(tissue.node_count(), 0.0);
   for (const auto* facets : {&tissue.apical_facets, &tissue.basal_facets})
     for (const Facet& facet : *facets) {
-      std::array<Vec3, 4> points;
-      for (int i = 0; i < 4; ++i) points[i] = tissue.rest_positions[facet.nodes[i].index()];
-      for (const NodeId node : facet.nodes) coefficients_[node.index()] += drag * facet_area(points) / 4;
+      const double of_corner = drag * facet_area(rest_corners(tissue, facet)) / 4;
+      for (const NodeId node : facet.nodes) coefficients[node.index()] += of_corner;
     }
+  return coefficients;
+}
+
+std::vector<double> lumped_masses(const Tissue& tissue, double density) {
+  std::vector<double> masses(tissue.node_count(), 0.0);
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
+    for (const NodeId node : tissue.elements[e])
+      masses[node.index()] += density * hex_volume(tissue.element_rest_shape[e]) / 8;
+  return masses;
+}
+
+}  // namespace
+
+SurfaceDrag::SurfaceDrag(const Tissue& tissue, double drag)
+    : drag_(drag), coefficients_(drag_coefficients(tissue, drag)) {}
+
+std::unique_ptr<Law> SurfaceDrag::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
+  return std::make_unique<SurfaceDrag>(tissue, drag_);
+}
+
+void SurfaceDrag::take_rest_shapes(const Tissue& tissue, std::span<const ElementId>) {
+  coefficients_ = drag_coefficients(tissue, drag_);
 }
 
 double SurfaceDrag::energy(const Step& step) const {
@@ -34,10 +60,14 @@ void SurfaceDrag::add_tangent(const Step& step, TangentSink& tangent) const {
     tangent.add_block(NodeId(n), NodeId(n), coefficients_[n] / step.duration_s * Mat3::Identity());
 }
 
-Inertia::Inertia(const Tissue& tissue, double density) : masses_(tissue.node_count(), 0.0) {
-  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
-    for (const NodeId node : tissue.elements[e])
-      masses_[node.index()] += density * hex_volume(tissue.element_rest_shape[e]) / 8;
+Inertia::Inertia(const Tissue& tissue, double density) : density_(density), masses_(lumped_masses(tissue, density)) {}
+
+std::unique_ptr<Law> Inertia::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
+  return std::make_unique<Inertia>(tissue, density_);
+}
+
+void Inertia::take_rest_shapes(const Tissue& tissue, std::span<const ElementId>) {
+  masses_ = lumped_masses(tissue, density_);
 }
 
 double Inertia::energy(const Step& step) const {
@@ -66,11 +96,14 @@ void Inertia::add_tangent(const Step& step, TangentSink& tangent) const {
     tangent.add_block(NodeId(n), NodeId(n), masses_[n] / (step.duration_s * step.duration_s) * Mat3::Identity());
 }
 
-FacePressure::FacePressure(const Tissue& tissue, const std::vector<Facet>& facets, const CellSet& cells,
-                           double pressure, Program program)
-    : loads_(tissue.node_count(), Vec3::Zero()), program_(std::move(program)) {
-  for (const Facet& facet : facets) {
-    if (!cells[facet.cell.index()]) continue;
+FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellSet cells, double pressure, Program program)
+    : on_apical_(on_apical),
+      cells_(std::move(cells)),
+      pressure_(pressure),
+      loads_(tissue.node_count(), Vec3::Zero()),
+      program_(std::move(program)) {
+  for (const Facet& facet : on_apical ? tissue.apical_facets : tissue.basal_facets) {
+    if (!cells_[facet.cell.index()]) continue;
     // The consistent load of a uniform pressure on a bilinear facet: integral of N_i n dA, 2 x 2 Gauss points.
     std::array<Vec3, 4> x;
     for (int i = 0; i < 4; ++i) x[i] = tissue.rest_positions[facet.nodes[i].index()];
@@ -96,6 +129,11 @@ double FacePressure::energy(const Step& step) const {
 void FacePressure::add_forces(const Step& step, std::span<Vec3> forces) const {
   const double activity = program_.at(step.end_time_s);
   for (std::size_t n = 0; n < loads_.size(); ++n) forces[n] += activity * loads_[n];
+}
+
+std::unique_ptr<Law> FacePressure::after_division(const Tissue& tissue, const Division& division,
+                                                  std::span<const Vec3>) const {
+  return std::make_unique<FacePressure>(tissue, on_apical_, inherited(division, cells_), pressure_, program_);
 }
 
 }  // namespace plica

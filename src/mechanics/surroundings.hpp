@@ -18,8 +18,12 @@ class SurfaceDrag final : public Law {
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                    std::span<const Vec3> positions) const override;
+  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
 
  private:
+  double drag_;
   std::vector<double> coefficients_;  // nodes; nN s/um
 };
 
@@ -35,8 +39,12 @@ class Inertia final : public Law {
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] const std::vector<double>& masses() const { return masses_; }
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                    std::span<const Vec3> positions) const override;
+  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
 
  private:
+  double density_;
   std::vector<double> masses_;  // nodes; g
 };
 
@@ -44,16 +52,20 @@ class Inertia final : public Law {
 class FacePressure final : public Law {
  public:
   /// `pressure` in kPa.
-  FacePressure(const Tissue& tissue, const std::vector<Facet>& facets, const CellSet& cells, double pressure,
-               Program program);
+  FacePressure(const Tissue& tissue, bool on_apical, CellSet cells, double pressure, Program program);
 
   [[nodiscard]] std::string_view name() const override { return "pressure"; }
   [[nodiscard]] double energy(const Step& step) const override;
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step&, std::span<const Vec3>, std::span<Vec3>) const override {}  // constant force
   void add_tangent(const Step&, TangentSink&) const override {}
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                    std::span<const Vec3> positions) const override;
 
  private:
+  bool on_apical_;
+  CellSet cells_;
+  double pressure_;
   Vectors loads_;  // nodes; nN at activity 1
   Program program_;
 };

@@ -21,6 +21,7 @@ Vitelline::Vitelline(const Tissue& tissue, const Capsule& shell) : shell_(shell)
   for (const Facet& facet : tissue.apical_facets) nodes_.insert(nodes_.end(), facet.nodes.begin(), facet.nodes.end());
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  std::erase_if(nodes_, [&](NodeId node) { return node.index() >= tissue.free_node_count(); });
 }
 
 Vitelline::Gap Vitelline::gap(const Vec3& position) const {

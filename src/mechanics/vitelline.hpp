@@ -15,7 +15,7 @@ Capsule enclosing_capsule(const Vectors& positions);
 
 class Vitelline {
  public:
-  /// A capsule or ball; the nodes are those of the tissue's apical surface.
+  /// A capsule or ball; the nodes are the free ones of the tissue's apical surface (what hangs lies between them).
   Vitelline(const Tissue& tissue, const Capsule& shell);
 
   /// A node's gap to the shell (positive inside, um), its gradient (unit inward normal) and Hessian (1/um).

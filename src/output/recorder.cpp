@@ -23,8 +23,9 @@ constexpr const char* midline_header = "time_s,ap_um,depth_um,normal_speed_um_pe
 constexpr const char* cells_header =
     "time_s,cell_id,mother_id,generation,x_um,y_um,z_um,volume_um3,apical_area_um2,basal_area_um2,height_um,"
     "apical_area_ratio,speed_um_per_s,pressure_Pa,activity";
-const std::vector<std::string> own_files = {"summary.json", "series.csv",    "cells.csv",          "midline.csv",
-                                            "frames.pvd",   "scenario.toml", "scenario.input.toml"};
+constexpr const char* lineage_header = "cell_id,mother_id,generation,birth_s";
+const std::vector<std::string> own_files = {"summary.json", "series.csv", "cells.csv",     "midline.csv",
+                                            "lineage.csv",  "frames.pvd", "scenario.toml", "scenario.input.toml"};
 
 // A number for a CSV file; what has no value, or is not finite, is left empty.
 std::string field(std::optional<double> value) {
@@ -106,6 +107,7 @@ Recorder::Recorder(fs::path directory, const Scenario& scenario, const std::stri
   write_file(directory_ / "scenario.toml", resolved_toml(scenario));
   if (scenario.output.cells_csv.value_or(model.tissue.cells.size() <= most_cells_by_default))
     cells_ = table(directory_ / "cells.csv", cells_header);
+  if (!scenario.divisions.empty()) lineage_ = table(directory_ / "lineage.csv", lineage_header);
   rows_.push_back(observer.observe_rest(rest));
   append_series(rows_.back());
   write_frame(rest, rest.velocities);
@@ -116,6 +118,11 @@ const Observation& Recorder::record(const AcceptedStep& step) {
   append_series(rows_.back());
   if (step.frame_is_due) write_frame(step.state, step.state.velocities);
   return rows_.back();
+}
+
+void Recorder::record_division(const Division& division, const State& state) {
+  if (lineage_) append_lineage(division);
+  write_frame(state, state.velocities);
 }
 
 nlohmann::ordered_json Recorder::finish(const RunResult& result, const WallTimes& wall) {
@@ -145,14 +152,18 @@ void Recorder::write_frame(const State& state, const Vectors& velocities) {
 
   MeshArrays arrays;
   arrays.node_vectors = {{"displacement_um", displacements}, {"velocity_um_per_s", velocities}, {"force_nN", forces}};
-  std::vector<int> ids, mothers(tissue.cells.size(), -1), generations(tissue.cells.size(), 0);
-  for (std::size_t c = 0; c < tissue.cells.size(); ++c) ids.push_back(static_cast<int>(c));
+  std::vector<int> ids, mothers, generations;
+  for (const Cell& cell : tissue.cells) {
+    ids.push_back(cell.lineage.id);
+    mothers.push_back(cell.lineage.mother);
+    generations.push_back(cell.lineage.generation);
+  }
   arrays.cell_integers = {{"cell_id", ids}, {"mother_id", mothers}, {"generation", generations}};
   for (const auto& [name, cells] : tissue.regions)
     arrays.cell_integers.emplace_back("region_" + name, std::vector<int>(cells.begin(), cells.end()));
   std::vector<double> ratios = apical_areas(tissue, state.positions), pressures = state.pressures;
-  for (std::size_t c = 0; c < ratios.size(); ++c)
-    ratios[c] = observer_.rest_apical_areas()[c] > 0 ? ratios[c] / observer_.rest_apical_areas()[c] : 1;
+  const std::vector<double> rest_areas = rest_apical_areas(tissue);
+  for (std::size_t c = 0; c < ratios.size(); ++c) ratios[c] = rest_areas[c] > 0 ? ratios[c] / rest_areas[c] : 1;
   for (double& pressure : pressures) pressure /= units::pascal;
   arrays.cell_scalars = {{"volume_um3", model_.volumes.volumes(state.positions)},
                          {"volume_error", model_.volumes.relative_errors(state.positions)},
@@ -167,33 +178,43 @@ void Recorder::write_frame(const State& state, const Vectors& velocities) {
   append_midline(state);
 }
 
+void Recorder::append_lineage(const Division& division) {
+  for (const auto& daughters : division.daughters)
+    for (const CellId daughter : daughters) {
+      const Lineage& lineage = model_.tissue.cells[daughter.index()].lineage;
+      lineage_->append(row_of({static_cast<double>(lineage.id), static_cast<double>(lineage.mother),
+                               static_cast<double>(lineage.generation), lineage.birth_s}));
+    }
+}
+
 void Recorder::append_cells(const State& state) {
   const Tissue& tissue = model_.tissue;
   const auto volumes = model_.volumes.volumes(state.positions);
   const auto apical = apical_areas(tissue, state.positions), basal = basal_areas(tissue, state.positions);
-  const auto activity = activities(model_, state.time_s);
+  const auto activity = activities(model_, state.time_s), rest_areas = rest_apical_areas(tissue);
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     const Cell& cell = tissue.cells[c];
     const Vec3 centre = cell_centre(cell, state.positions);
-    const double rest_area = observer_.rest_apical_areas()[c];
-    const std::optional<double> no_mother;
-    cells_->append(
-        row_of({state.time_s, static_cast<double>(c), no_mother, 0.0, centre.x(), centre.y(), centre.z(), volumes[c],
-                apical[c], basal[c], cell_height(cell, state.positions),
-                rest_area > 0 ? std::optional(apical[c] / rest_area) : std::nullopt,
-                cell_centre(cell, state.velocities).norm(), state.pressures[c] / units::pascal, activity[c]}));
+    const double rest_area = rest_areas[c];
+    const std::optional<double> mother =
+        cell.lineage.mother >= 0 ? std::optional<double>(cell.lineage.mother) : std::nullopt;
+    cells_->append(row_of(
+        {state.time_s, static_cast<double>(cell.lineage.id), mother, static_cast<double>(cell.lineage.generation),
+         centre.x(), centre.y(), centre.z(), volumes[c], apical[c], basal[c], cell_height(cell, state.positions),
+         rest_area > 0 ? std::optional(apical[c] / rest_area) : std::nullopt,
+         cell_centre(cell, state.velocities).norm(), state.pressures[c] / units::pascal, activity[c]}));
   }
 }
 
 void Recorder::append_midline(const State& state) {
   const Tissue& tissue = model_.tissue;
-  const auto apical = apical_areas(tissue, state.positions);
+  const auto apical = apical_areas(tissue, state.positions), rest_areas = rest_apical_areas(tissue);
   for (const CellId id : observer_.sites().midline) {
     const Cell& cell = tissue.cells[id.index()];
     midline_.append(
         row_of({state.time_s, cell_centre(cell, tissue.rest_positions).x(), cell_depth_um(tissue, id, state.positions),
                 -apical_normal(tissue, id).dot(mean_apical(cell, state.velocities)),
-                apical[id.index()] / observer_.rest_apical_areas()[id.index()]}));
+                apical[id.index()] / rest_areas[id.index()]}));
   }
 }
 

@@ -26,6 +26,9 @@ class Recorder {
   /// A row of series.csv, and a frame when one is due. Returns the row.
   const Observation& record(const AcceptedStep& step);
 
+  /// A frame that shows the daughters, and their lines in lineage.csv.
+  void record_division(const Division& division, const State& state);
+
   /// The last frame and summary.json.
   nlohmann::ordered_json finish(const RunResult& result, const WallTimes& wall);
 
@@ -33,6 +36,7 @@ class Recorder {
 
  private:
   void append_series(const Observation& row);
+  void append_lineage(const Division& division);
   void write_frame(const State& state, const Vectors& velocities);
   void append_cells(const State& state);
   void append_midline(const State& state);
@@ -42,7 +46,7 @@ class Recorder {
   const Model& model_;
   const Observer& observer_;
   RowFile series_, midline_;
-  std::optional<RowFile> cells_;
+  std::optional<RowFile> cells_, lineage_;
   std::vector<Observation> rows_;
   std::vector<std::pair<double, std::string>> frames_;  // time, file
 };

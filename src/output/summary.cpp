@@ -68,8 +68,9 @@ Json make_summary(const Scenario& scenario, const Model& model, const RunResult&
   summary["time_s"] = last.time_s;
   summary["equilibrium_time_s"] = number(result.equilibrium_time_s);
   summary["cells"] = model.tissue.cells.size();
-  summary["nodes"] = model.tissue.node_count();
+  summary["nodes"] = model.tissue.free_node_count();
   summary["elements"] = model.tissue.elements.size();
+  summary["divisions"] = result.divisions;
   summary["steps"] = result.steps;
   summary["wall_s"] = wall.total_s;
   summary["wall_solver_s"] = wall.solver_s;

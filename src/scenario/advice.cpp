@@ -16,8 +16,11 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   const bool pulls = std::ranges::any_of(scenario.contractions, [](const auto& entry) {
     return entry.second.stiffness_nN_per_um > 0 || entry.second.preload_nN > 0;
   });
-  if (!pulls && scenario.pressures.empty())
-    warn("nothing pushes or pulls: without [contraction] or [pressure] the embryo stays at rest");
+  if (!pulls && scenario.pressures.empty() && scenario.divisions.empty())
+    warn("nothing pushes or pulls: without [contraction], [pressure] or [division] the embryo stays at rest");
+  for (const auto& [name, division] : scenario.divisions)
+    if (division.at_s && *division.at_s >= scenario.time.end_s)
+      warn(fmt::format("division.{}: it comes after the run's end at {} s", name, scenario.time.end_s));
   for (const auto& [name, contraction] : scenario.contractions)
     if (!contraction.program.activity.empty() && std::ranges::max(contraction.program.activity) == 0)
       warn(fmt::format("contraction.{}: its program is 0 at every point", name));

@@ -76,6 +76,17 @@ struct ContractionInput {
   ProgramInput program;
 };
 
+struct DivisionInput {
+  std::string region;
+  std::optional<double> at_s;  // TOML: at_s or at_min
+  std::string when;            // area_above_um2 | volume_above_um3 | elongation_above, with a threshold
+  std::optional<double> threshold;
+  std::string plane = "transverse";  // transverse | sagittal | longest-axis
+  double growth_s = 300;             // TOML: growth_s or growth_min
+  double daughter_volume_ratio = 1;
+  std::optional<int> max_generation;  // empty: 1 with `when`, no limit with a time
+};
+
 struct TimeInput {
   std::optional<double> step_s;  // empty: "adaptive"
   double first_step_s = 0.05;    // adaptive
@@ -144,6 +155,7 @@ struct Scenario {
   OutputInput output;
   std::map<std::string, HoldInput> holds;
   std::map<std::string, PressureInput> pressures;
+  std::map<std::string, DivisionInput> divisions;
   std::map<std::string, ExpectInput> expect;  // keys are those of summary.json
 };
 

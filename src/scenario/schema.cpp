@@ -65,6 +65,7 @@ const std::vector<Row>& rows() {
   using H = HoldInput;
   using X = ExpectInput;
   using O = OutputInput;
+  using V = DivisionInput;
   static const std::vector<Row> table = {
       row("", "format", at(&S::format), between(1, 1), "Version of this format."),
       row("", "title", at(&S::title), anything, "One line for reports."),
@@ -179,6 +180,28 @@ const std::vector<Row>& rows() {
       row("pressure.*", "program.activity", at(&S::pressures, &P::program, &ProgramInput::activity), not_negative,
           "Activity at these times: a factor on the pressure, linear between them."),
 
+      row("division.*", "region", at(&S::divisions, &V::region), anything, "Region whose cells divide.",
+          {.required = true}),
+      row("division.*", "at_s", at(&S::divisions, &V::at_s), positive, "When all of them divide (s)."),
+      row("division.*", "at_min", at(&S::divisions, &V::at_s), positive, "The same in minutes.",
+          {.instead_of = "at_s", .scale = 60}),
+      row("division.*", "when", at(&S::divisions, &V::when),
+          words({"area_above_um2", "volume_above_um3", "elongation_above"}),
+          "Instead of a time: a cell divides when its apical area, its volume, or the ratio of its longer to its "
+          "shorter side passes the threshold, unless it is still growing."),
+      row("division.*", "threshold", at(&S::divisions, &V::threshold), positive, "What has to be passed, with `when`."),
+      row("division.*", "plane", at(&S::divisions, &V::plane), words({"transverse", "sagittal", "longest-axis"}),
+          "Apico-basal plane of the cut: across the embryo's axis, along the midline, or across the cell's longer "
+          "side; it runs between the middles of opposite sides of the cell."),
+      row("division.*", "growth_s", at(&S::divisions, &V::growth_s), not_negative,
+          "Time in which daughters grow to their final size (s)."),
+      row("division.*", "growth_min", at(&S::divisions, &V::growth_s), not_negative, "The same in minutes.",
+          {.instead_of = "growth_s", .scale = 60}),
+      row("division.*", "daughter_volume_ratio", at(&S::divisions, &V::daughter_volume_ratio), between(0.25, 2),
+          "Final volume of a daughter over her mother's: 1 as large, 0.5 a half."),
+      row("division.*", "max_generation", at(&S::divisions, &V::max_generation), between(1, 30),
+          "Daughters of a later generation are not born; without it 1 with `when`, and no limit at a time."),
+
       row("time", "step_s", at(&S::time, &T::step_s), {.low = 0, .low_included = false, .word_for_none = "adaptive"},
           "Time step (s), or chosen by its error."),
       row("time", "first_step_s", at(&S::time, &T::first_step_s), positive, "First adaptive step (s)."),
@@ -253,7 +276,7 @@ std::string Allowed::text() const {
   if (low == high) {
     range = fmt::format("{}", low);
   } else if (low > -infinity && high < infinity && low_included && high_included) {
-    range = fmt::format("{:.0f} to {:.0f}", low, high);
+    range = fmt::format("{} to {}", low, high);
   } else {
     if (low > -infinity) range = fmt::format("{} {}", low_included ? ">=" : ">", low);
     if (high < infinity)
@@ -295,6 +318,9 @@ std::span<const TableInfo> schema_tables() {
       {"contraction.*", "Springs on edges of the cells of a region.", names_in(&S::contractions)},
       {"hold.*", "Nodes of a region fixed in given directions.", names_in(&S::holds)},
       {"pressure.*", "A pressure on faces of a region.", names_in(&S::pressures)},
+      {"division.*",
+       "Cells of a region divide, at a time or when they pass a threshold. Cells begin as one element each.",
+       names_in(&S::divisions)},
       {"time", "Steps and end.", {}},
       {"stop", "When a run is over before its end.", {}},
       {"furrow", "What is measured as the furrow.", {}},

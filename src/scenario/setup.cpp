@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "core/units.hpp"
 #include "mechanics/corotational.hpp"
@@ -72,9 +73,9 @@ void add_contractions(const Scenario& scenario, Model& model) {
 
 void add_pressures(const Scenario& scenario, Model& model) {
   for (const auto& [name, input] : scenario.pressures)
-    model.laws.push_back(std::make_unique<FacePressure>(
-        model.tissue, input.face == "apical" ? model.tissue.apical_facets : model.tissue.basal_facets,
-        model.tissue.regions.at(input.region), input.pressure_Pa * units::pascal, make_program(input.program)));
+    model.laws.push_back(
+        std::make_unique<FacePressure>(model.tissue, input.face == "apical", model.tissue.regions.at(input.region),
+                                       input.pressure_Pa * units::pascal, make_program(input.program)));
 }
 
 void add_holds(const Scenario& scenario, Model& model, std::vector<Diagnostic>& errors) {
@@ -100,6 +101,27 @@ void add_holds(const Scenario& scenario, Model& model, std::vector<Diagnostic>& 
   }
 }
 
+DivisionRule make_division_rule(const DivisionInput& input) {
+  DivisionRule rule;
+  rule.region = input.region;
+  if (input.at_s) {
+    rule.trigger = DivisionTrigger::time;
+    rule.threshold = *input.at_s;
+  } else {
+    rule.trigger = input.when == "area_above_um2"     ? DivisionTrigger::apical_area
+                   : input.when == "volume_above_um3" ? DivisionTrigger::volume
+                                                      : DivisionTrigger::elongation;
+    rule.threshold = *input.threshold;
+  }
+  rule.plane = input.plane == "transverse" ? DivisionPlane::transverse
+               : input.plane == "sagittal" ? DivisionPlane::sagittal
+                                           : DivisionPlane::longest_axis;
+  rule.growth_s = input.growth_s;
+  rule.volume_ratio = input.daughter_volume_ratio;
+  rule.max_generation = input.max_generation.value_or(input.at_s ? std::numeric_limits<int>::max() : 1);
+  return rule;
+}
+
 }  // namespace
 
 Tissue make_tissue(const Scenario& scenario) {
@@ -111,7 +133,7 @@ Tissue make_tissue(const Scenario& scenario) {
   return tissue;
 }
 
-std::unique_ptr<const Model> make_model(const Scenario& scenario) {
+std::unique_ptr<Model> make_model(const Scenario& scenario) {
   auto model = std::make_unique<Model>(make_tissue(scenario));
   const Tissue& tissue = model->tissue;
   const double young_modulus = scenario.elasticity.young_modulus_Pa * units::pascal;
@@ -126,9 +148,12 @@ std::unique_ptr<const Model> make_model(const Scenario& scenario) {
   if (scenario.dynamics.surface_drag_Pa_s_per_um > 0)
     model->laws.push_back(std::make_unique<SurfaceDrag>(
         tissue, scenario.dynamics.surface_drag_Pa_s_per_um * units::pascal_second_per_um));
-  if (scenario.dynamics.density_kg_per_m3 > 0)
-    model->laws.push_back(
-        std::make_unique<Inertia>(tissue, scenario.dynamics.density_kg_per_m3 * units::kilogram_per_cubic_metre));
+  if (scenario.dynamics.density_kg_per_m3 > 0) {
+    auto inertia =
+        std::make_unique<Inertia>(tissue, scenario.dynamics.density_kg_per_m3 * units::kilogram_per_cubic_metre);
+    model->inertia = inertia.get();
+    model->laws.push_back(std::move(inertia));
+  }
 
   std::vector<Diagnostic> errors;
   add_holds(scenario, *model, errors);
@@ -137,6 +162,10 @@ std::unique_ptr<const Model> make_model(const Scenario& scenario) {
     shell.radius_um += scenario.vitelline.gap_um;
     model->vitelline.emplace(tissue, shell);
   }
+  if (const auto why = why_indivisible(tissue); why && !scenario.divisions.empty())
+    errors.push_back(diagnostic_at(scenario, "division." + scenario.divisions.begin()->first,
+                                   "the cells of this embryo cannot divide: " + *why,
+                                   "take one element a cell and one layer of cells"));
   if (!errors.empty()) throw ScenarioError(std::move(errors));
   return model;
 }
@@ -156,6 +185,10 @@ RunControls make_controls(const Scenario& scenario) {
   };
   for (const auto& [name, input] : scenario.contractions) add_points(input.program);
   for (const auto& [name, input] : scenario.pressures) add_points(input.program);
+  for (const auto& [name, input] : scenario.divisions) {
+    controls.divisions.push_back(make_division_rule(input));
+    if (input.at_s) controls.program_points_s.push_back(*input.at_s);
+  }
   return controls;
 }
 

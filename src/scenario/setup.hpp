@@ -15,7 +15,7 @@ namespace plica {
 Tissue make_tissue(const Scenario& scenario);
 
 /// The laws of a scenario on its tissue. Throws ScenarioError for what only the tissue shows to be wrong.
-std::unique_ptr<const Model> make_model(const Scenario& scenario);
+std::unique_ptr<Model> make_model(const Scenario& scenario);
 
 RunControls make_controls(const Scenario& scenario);
 

@@ -135,6 +135,19 @@ void check_program(const std::string& table, const ProgramInput& program, Input&
   }
 }
 
+void check_division(const std::string& table, const DivisionInput& division, Input& input) {
+  for (const char* key : {".at_s", ".when", ".threshold"})
+    if (!input.sound(table) || !input.sound(table + key)) return;
+  if (division.at_s && !division.when.empty())
+    input.report(table + ".when", "the division has a time already", "give at_min or when, not both");
+  if (!division.at_s && division.when.empty())
+    input.report(table, "says not when", "give at_s, at_min, or when with a threshold");
+  if (!division.when.empty() && !division.threshold)
+    input.report(table + ".threshold", "is missing", "give the value that `when` is about");
+  if (division.when.empty() && division.threshold)
+    input.report(table + ".threshold", "belongs to `when`", "remove it, or give when");
+}
+
 /// The rules about regions: selectors that make sense on this embryo, names that exist, no circles.
 class RegionCheck {
  public:
@@ -154,6 +167,7 @@ class RegionCheck {
     for (const auto& [name, it] : scenario_.contractions) check_reference("contraction." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.holds) check_reference("hold." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.pressures) check_reference("pressure." + name + ".region", it.region);
+    for (const auto& [name, it] : scenario_.divisions) check_reference("division." + name + ".region", it.region);
     check_reference("furrow.region", scenario_.furrow.region);
     for (const auto& [name, region] : scenario_.regions) {
       for (const std::string& other : region.unite) check_reference("region." + name + ".union", other);
@@ -262,6 +276,7 @@ void validate(Scenario& scenario, Input& input) {
   check_expectations(scenario, input);
   for (const auto& [name, it] : scenario.contractions) check_program("contraction." + name, it.program, input);
   for (const auto& [name, it] : scenario.pressures) check_program("pressure." + name, it.program, input);
+  for (const auto& [name, it] : scenario.divisions) check_division("division." + name, it, input);
   RegionCheck regions(scenario, input);
   for (const auto& [name, region] : scenario.regions) regions.check_selectors(name, region);
   regions.check_references();

@@ -21,25 +21,46 @@ bool passes_frame(double from_s, double to_s, double every_s) {
   return every_s > 0 && std::floor(to_s / every_s + 1e-9) > std::floor(from_s / every_s + 1e-9);
 }
 
-std::string failure_text(const StepReport& report, const State& state, double duration_s) {
+double last_of(const std::vector<double>& times_s) {
+  return times_s.empty() ? 0 : *std::max_element(times_s.begin(), times_s.end());
+}
+
+std::string failure_text(StepReport report, const Model& model, const State& state, double duration_s) {
+  // Users know a cell by its id, which after divisions is not its place.
+  if (report.cell) report.cell = CellId(model.tissue.cells[report.cell->index()].lineage.id);
   return fmt::format("{} at t = {:g} s, with steps down to {:g} s", report.reason(), state.time_s, duration_s);
 }
 
 }  // namespace
 
-RunResult run(const Model& model, State state, const RunControls& controls, const StepObserver& observer,
-              const std::function<bool()>& stop_requested) {
+RunResult run(Model& model, State state, RunControls controls, const StepObserver& observer,
+              const std::function<bool()>& stop_requested, const DivisionObserver& division_observer) {
   RunResult result;
-  StepSolver solver(model);
-  solver.stop_when(stop_requested);
+  std::optional<StepSolver> solver;
+  const auto renew_solver = [&] {
+    solver.emplace(model);
+    solver->stop_when(stop_requested);
+  };
+  renew_solver();
   StepLength step_length(controls);
+  const auto divide = [&](const std::vector<PlannedDivision>& due) {
+    state.divided_until_s = state.time_s;
+    if (due.empty()) return;
+    const Division division = divide_cells(model, state, due);
+    result.divisions += static_cast<int>(due.size());
+    for (const PlannedDivision& one : due) controls.program_points_s.push_back(state.time_s + one.growth_s);
+    renew_solver();
+    step_length.restart();
+    if (division_observer) division_observer(division, state);
+  };
+  divide(due_divisions(model, state, controls.divisions));
+
   State next;
-  double program_end_s = 0;
-  for (const double point : controls.program_points_s) program_end_s = std::max(program_end_s, point);
   int wasted_iterations = 0, wasted_solves = 0;
   while (state.time_s < controls.end_s * (1 - 1e-12)) {
     const double duration_s = step_length.propose(state.time_s);
-    StepReport report = solver.advance(state, duration_s, result.steps == 0, next);
+    grow(model, state.time_s + duration_s);
+    StepReport report = solver->advance(state, duration_s, result.steps == 0, next);
     if (report.outcome == StepReport::Outcome::interrupted) {
       result.status = RunStatus::interrupted;
       break;
@@ -47,10 +68,10 @@ RunResult run(const Model& model, State state, const RunControls& controls, cons
     if (!report.converged()) {
       wasted_iterations += report.newton_iterations;
       wasted_solves += report.linear_solves;
-      solver.forget_factor();
+      solver->forget_factor();
       if (step_length.halve(duration_s)) continue;
       result.status = RunStatus::failed;
-      result.failure = failure_text(report, state, duration_s);
+      result.failure = failure_text(report, model, state, duration_s);
       break;
     }
     report.newton_iterations += std::exchange(wasted_iterations, 0);
@@ -64,18 +85,23 @@ RunResult run(const Model& model, State state, const RunControls& controls, cons
     ++result.steps;
 
     const double speed = max_speed(state);
-    const bool at_equilibrium = speed < controls.equilibrium_speed_um_per_s && state.time_s >= program_end_s;
+    const std::vector<PlannedDivision> due = due_divisions(model, state, controls.divisions);
+    const bool at_equilibrium = speed < controls.equilibrium_speed_um_per_s && due.empty() &&
+                                state.time_s >= last_of(controls.program_points_s);
     if (at_equilibrium && !result.equilibrium_time_s) result.equilibrium_time_s = state.time_s;
-    const bool frame_is_due = passes_frame(next.time_s, state.time_s, controls.frame_every_s);
+    // At a division, the frame shows the daughters.
+    const bool frame_is_due = due.empty() && passes_frame(next.time_s, state.time_s, controls.frame_every_s);
     if (!observer({state, next, duration_s, report, speed, frame_is_due})) {
       result.status = RunStatus::interrupted;
       break;
     }
+    divide(due);
     if (at_equilibrium && controls.stop_at_equilibrium) {
       result.status = RunStatus::equilibrium;
       break;
     }
   }
+  grow(model, state.time_s);
   result.state = std::move(state);
   return result;
 }

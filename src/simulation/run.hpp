@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mechanics/model.hpp"
+#include "simulation/division_rules.hpp"
 #include "solver/step_solver.hpp"
 
 namespace plica {
@@ -23,6 +24,7 @@ struct RunControls {
   bool stop_at_equilibrium = true;
   double frame_every_s = 15;             // adaptive steps end on frames; 0: no frames in between
   std::vector<double> program_points_s;  // adaptive steps end on them, too; equilibrium counts only after the last
+  std::vector<DivisionRule> divisions;   // their times are among the program points
 };
 
 /// What the loop tells about an accepted step.
@@ -41,6 +43,7 @@ struct RunResult {
   RunStatus status = RunStatus::end_time;
   State state;  // where it ended; the last good one after a failure
   int steps = 0;
+  int divisions = 0;                         // cells that divided
   std::optional<double> equilibrium_time_s;  // first time that every node was slower than the limit
   std::string failure;                       // what gave up, where and when
 };
@@ -48,9 +51,12 @@ struct RunResult {
 /// Called after every accepted step; false interrupts the run.
 using StepObserver = std::function<bool(const AcceptedStep&)>;
 
-/// `stop_requested` is asked often, also within a step; once true, the run ends as interrupted with the last good
-/// state.
-RunResult run(const Model& model, State state, const RunControls& controls, const StepObserver& observer,
-              const std::function<bool()>& stop_requested = {});
+/// Called after cells have divided, with the state from which the run goes on.
+using DivisionObserver = std::function<void(const Division&, const State&)>;
+
+/// Divisions change the model: every reference to it sees the new one. `stop_requested` is asked often, also within a
+/// step; once true, the run ends as interrupted with the last good state.
+RunResult run(Model& model, State state, RunControls controls, const StepObserver& observer,
+              const std::function<bool()>& stop_requested = {}, const DivisionObserver& division_observer = {});
 
 }  // namespace plica

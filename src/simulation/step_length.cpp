@@ -59,6 +59,11 @@ bool StepLength::accept(const State& before, const State& after, double duration
   return true;
 }
 
+void StepLength::restart() {
+  wanted_s_ = controls_.fixed_step_s.value_or(controls_.first_step_s);
+  previous_s_ = 0;
+}
+
 bool StepLength::halve(double failed_s) {
   wanted_s_ = 0.5 * failed_s;
   return wanted_s_ > 1e-4 * std::max(controls_.first_step_s, controls_.fixed_step_s.value_or(0));

@@ -17,6 +17,9 @@ class StepLength {
   /// False when it is so large that the step should be taken again, shorter.
   [[nodiscard]] bool accept(const State& before, const State& after, double duration_s);
 
+  /// Begins anew with a short step: after a division nothing is known of the next step's error.
+  void restart();
+
   /// The step could not be solved. False when the next would be too short to be worth it.
   [[nodiscard]] bool halve(double failed_s);
 

@@ -4,20 +4,23 @@
 
 namespace plica {
 
-StepMatrix::StepMatrix(const Model& model) {
-  const int nodes = static_cast<int>(model.tissue.node_count());
+StepMatrix::StepMatrix(const Model& model) : tissue_(model.tissue) {
+  const int nodes = static_cast<int>(tissue_.free_node_count());
   // Which blocks can be non-zero: pairs within the laws' groups of nodes, and every node with itself.
   std::vector<std::vector<int>> lower(nodes);
   for (int n = 0; n < nodes; ++n) lower[n].push_back(n);
+  std::vector<NodeId> free;
   const auto join = [&](const std::vector<NodeId>& group) {
-    for (const NodeId a : group)
-      for (const NodeId b : group)
+    free.clear();
+    for (const NodeId node : group) tissue_.for_free_nodes(node, [&](NodeId n, double) { free.push_back(n); });
+    for (const NodeId a : free)
+      for (const NodeId b : free)
         if (b < a) lower[a.index()].push_back(b.number());
   };
   for (const auto& law : model.laws)
     for (const auto& group : law->node_groups()) join(group);
   if (model.volumes_are_held)
-    for (const auto& element : model.tissue.elements) join({element.begin(), element.end()});
+    for (const auto& element : tissue_.elements) join({element.begin(), element.end()});
   row_start_.push_back(0);
   for (auto& row : lower) {
     std::sort(row.begin(), row.end());
@@ -29,21 +32,26 @@ StepMatrix::StepMatrix(const Model& model) {
 
   // The nodes of each cell, for its volume's gradient.
   gradient_start_.push_back(0);
-  element_slots_.resize(model.tissue.elements.size());
-  for (const Cell& cell : model.tissue.cells) {
+  element_slots_.resize(tissue_.elements.size());
+  for (const Cell& cell : tissue_.cells) {
     if (!model.volumes_are_held) break;
     std::vector<NodeId> members;
     const auto first = cell.first_element.index();
     for (std::size_t e = first; e < first + cell.element_count; ++e)
-      members.insert(members.end(), model.tissue.elements[e].begin(), model.tissue.elements[e].end());
+      for (const NodeId node : tissue_.elements[e])
+        tissue_.for_free_nodes(node, [&](NodeId n, double) { members.push_back(n); });
     std::sort(members.begin(), members.end());
     members.erase(std::unique(members.begin(), members.end()), members.end());
     const int offset = static_cast<int>(gradients_.size());
     for (std::size_t e = first; e < first + cell.element_count; ++e)
-      for (int i = 0; i < 8; ++i) {
-        const auto at = std::lower_bound(members.begin(), members.end(), model.tissue.elements[e][i]);
-        element_slots_[e][i] = offset + static_cast<int>(at - members.begin());
-      }
+      for (int i = 0; i < 8; ++i)
+        tissue_.for_free_nodes(tissue_.elements[e][i], [&](NodeId n, double weight) {
+          const auto at = std::lower_bound(members.begin(), members.end(), n);
+          const int slot = offset + static_cast<int>(at - members.begin());
+          const bool hangs = n != tissue_.elements[e][i];
+          element_slots_[e][i] = hangs ? -1 : slot;
+          if (hangs) hanging_slots_.push_back({e, i, slot, weight});
+        });
     for (const NodeId node : members) gradients_.push_back({node, Vec3::Zero()});
     gradient_start_.push_back(static_cast<int>(gradients_.size()));
   }
@@ -69,6 +77,15 @@ StepMatrix::StepMatrix(const Model& model) {
 void StepMatrix::set_zero() { std::fill(blocks_.begin(), blocks_.end(), Mat3::Zero()); }
 
 void StepMatrix::add_block(NodeId row, NodeId column, const Mat3& block) {
+  const std::size_t free = tissue_.free_node_count();
+  if (row.index() < free && column.index() < free) return add_free_block(row, column, block);
+  tissue_.for_free_nodes(row, [&](NodeId r, double weight_r) {
+    tissue_.for_free_nodes(column,
+                           [&](NodeId c, double weight_c) { add_free_block(r, c, weight_r * weight_c * block); });
+  });
+}
+
+void StepMatrix::add_free_block(NodeId row, NodeId column, const Mat3& block) {
   if (column > row) return;
   const auto first = columns_.begin() + row_start_[row.index()], last = columns_.begin() + row_start_[row.index() + 1];
   blocks_[std::lower_bound(first, last, column.number()) - columns_.begin()] += block;
@@ -79,7 +96,10 @@ void StepMatrix::set_volume_gradients(const CellVolumes& volumes, std::span<cons
   for (Gradient& gradient : gradients_) gradient.value.setZero();
   const auto of_elements = volumes.element_gradients(positions);
   for (std::size_t e = 0; e < of_elements.size(); ++e)
-    for (int i = 0; i < 8; ++i) gradients_[element_slots_[e][i]].value += of_elements[e][i];
+    for (int i = 0; i < 8; ++i)
+      if (element_slots_[e][i] >= 0) gradients_[element_slots_[e][i]].value += of_elements[e][i];
+  for (const auto& [element, corner, slot, weight] : hanging_slots_)
+    gradients_[slot].value += weight * of_elements[element][corner];
 }
 
 void StepMatrix::multiply(std::span<const Vec3> direction, std::span<Vec3> product) const {

@@ -1,7 +1,8 @@
 // The symmetric system of one Newton iteration:
 //   [ A  -J^T ] [ dx      ]
 //   [ -J   0  ] [ dlambda ]
-// A: tangent of all laws, 3 x 3 blocks a pair of nodes; J: gradients of the cells' volumes. Some nodes have directions
+// A: tangent of all laws, 3 x 3 blocks a pair of nodes; J: gradients of the cells' volumes. Nodes are the free ones:
+// what acts on a hanging node acts on those that carry it. Some nodes have directions
 // in which they are fixed (held, or in contact): their unknowns are turned into a frame whose first axes are those
 // directions, and those rows and columns are taken out.
 #pragma once
@@ -25,7 +26,7 @@ class StepMatrix final : public TangentSink {
  public:
   explicit StepMatrix(const Model& model);
 
-  /// Unknowns: three a node, then one a cell (when volumes are held).
+  /// Unknowns: three a free node, then one a cell (when volumes are held).
   [[nodiscard]] const SymmetricPattern& pattern() const { return pattern_; }
 
   void set_zero();
@@ -47,12 +48,21 @@ class StepMatrix final : public TangentSink {
     NodeId node;
     Vec3 value;
   };
+  void add_free_block(NodeId row, NodeId column, const Mat3& block);
+
+  const Tissue& tissue_;
   // Lower triangle of blocks, row by row: columns_[row_start_[r] .. row_start_[r + 1]) are sorted, the last is r.
   std::vector<int> row_start_, columns_;
   std::vector<Mat3> blocks_;
   std::vector<int> gradient_start_;  // cells + 1
   std::vector<Gradient> gradients_;
-  std::vector<std::array<int, 8>> element_slots_;  // elements: where their nodes' gradients are added
+  std::vector<std::array<int, 8>> element_slots_;  // elements: where their nodes' gradients are added; -1: node hangs
+  struct HangingSlot {
+    std::size_t element;
+    int corner, slot;
+    double weight;
+  };
+  std::vector<HangingSlot> hanging_slots_;  // the same for hanging nodes, one for each node that carries them
   SymmetricPattern pattern_;
 };
 

@@ -69,6 +69,7 @@ StepSolver::StepSolver(const Model& model, StepTolerances tolerances)
       force_scale_(model.force_scale()),
       force_rounding_(model.force_rounding()),
       volume_rounding_(model.volume_rounding()),
+      free_nodes_(model.tissue.free_node_count()),
       matrix_(model),
       linear_solver_(make_direct_solver()) {
   linear_solver_->analyse(matrix_.pattern());
@@ -85,7 +86,7 @@ Vec3 StepSolver::free_part(std::size_t node, Vec3 direction) const {
 }
 
 std::vector<NodeFrame> StepSolver::frames(const Iterate& at) const {
-  std::vector<NodeFrame> frames(at.positions.size());
+  std::vector<NodeFrame> frames(free_nodes_);
   // The fixed directions of each node, made orthonormal: held axes first, then the shell's normal.
   const auto add_fixed = [](NodeFrame& frame, const Vec3& direction) {
     frame.axes.col(frame.fixed++) = direction.normalized();
@@ -111,6 +112,7 @@ StepSolver::Residual StepSolver::residual(const Step& step, const Iterate& at) c
   Vectors of_law(at.positions.size(), Vec3::Zero());
   double balanced = 0;  // squared norm of the forces that have to balance
   const auto take = [&] {
+    model_.tissue.carry_hanging(of_law);
     for (std::size_t n = 0; n < of_law.size(); ++n) {
       balanced += of_law[n].squaredNorm();
       r.forces[n] += of_law[n];
@@ -141,7 +143,7 @@ StepSolver::Residual StepSolver::residual(const Step& step, const Iterate& at) c
 
   const std::vector<NodeFrame> node_frames = frames(at);
   double free = 0;
-  for (std::size_t n = 0; n < r.forces.size(); ++n) {
+  for (std::size_t n = 0; n < free_nodes_; ++n) {
     const Vec3 local = node_frames[n].axes.transpose() * r.forces[n];
     for (int i = node_frames[n].fixed; i < 3; ++i) free += local[i] * local[i];
   }
@@ -174,7 +176,7 @@ bool StepSolver::refresh_factor(const Step& step, const Iterate& at) {
 }
 
 StepSolver::Direction StepSolver::direction(const Iterate& at, const Residual& r) {
-  const std::size_t nodes = at.positions.size();
+  const std::size_t nodes = free_nodes_;
   // What the shell prescribes: every node in contact goes back to it along its normal.
   Vectors prescribed(nodes, Vec3::Zero());
   for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
@@ -203,6 +205,8 @@ StepSolver::Direction StepSolver::direction(const Iterate& at, const Residual& r
   d.pressures.resize(at.pressures.size(), 0.0);
   for (std::size_t n = 0; n < nodes; ++n)
     d.positions[n] += factor_frames_[n].axes * Vec3(unknowns[3 * n], unknowns[3 * n + 1], unknowns[3 * n + 2]);
+  d.positions.resize(at.positions.size());
+  model_.tissue.place_hanging(d.positions);
 
   // The shell's forces take up what is left along the normals: N dmu = A dx - J^T dlambda - forces.
   if (model_.vitelline) {
@@ -270,6 +274,7 @@ bool StepSolver::search_line(const Step& step, const Direction& d, Iterate& at, 
   for (int halving = 0; halving < 8; ++halving, part *= 0.5) {
     Iterate trial = at;
     for (std::size_t n = 0; n < trial.positions.size(); ++n) trial.positions[n] += part * d.positions[n];
+    model_.tissue.place_hanging(trial.positions);
     blocking = inverted_cell(trial.positions);
     if (blocking) continue;
     for (std::size_t c = 0; c < trial.pressures.size(); ++c) trial.pressures[c] += part * d.pressures[c];
@@ -351,6 +356,7 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
   for (std::size_t n = 0; n < at.positions.size(); ++n)
     next.velocities[n] = (at.positions[n] - state.positions[n]) / duration_s;
   next.time_s = state.time_s + duration_s;
+  next.divided_until_s = state.divided_until_s;
   next.positions = std::move(at.positions);
   next.pressures = std::move(at.pressures);
   next.contact_forces = std::move(at.contact_forces);

@@ -76,6 +76,7 @@ class StepSolver {
   double force_scale_;      // nN
   double force_rounding_;   // nN: what rounding of positions makes of forces
   double volume_rounding_;  // the same, of relative volumes
+  std::size_t free_nodes_;
   StepMatrix matrix_;
   std::unique_ptr<LinearSolver> linear_solver_;
   std::vector<double> values_;

@@ -38,6 +38,19 @@ std::array<Vec3, 8> hex_shape_gradients(const Vec3& reference) {
   return gradients;
 }
 
+HexPoints hex_part(const HexPoints& points, const Vec3& low, const Vec3& high) {
+  HexPoints part;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 reference;
+    for (int axis = 0; axis < 3; ++axis)
+      reference[axis] = 2 * (hex_reference_nodes[corner][axis] > 0 ? high : low)[axis] - 1;
+    const std::array<double, 8> shape = hex_shape(reference);
+    part[corner].setZero();
+    for (int i = 0; i < 8; ++i) part[corner] += shape[i] * points[i];
+  }
+  return part;
+}
+
 Mat3 hex_jacobian(const HexPoints& points, const Vec3& reference) {
   const std::array<Vec3, 8> gradients = hex_shape_gradients(reference);
   Mat3 jacobian = Mat3::Zero();

@@ -26,6 +26,9 @@ std::array<double, 8> hex_shape(const Vec3& reference);
 /// Gradients dN_i/d(reference) of the shape functions.
 std::array<Vec3, 8> hex_shape_gradients(const Vec3& reference);
 
+/// The part of a trilinear hexahedron between two places of it, given in [0, 1]^3: 0 and 1 its faces.
+HexPoints hex_part(const HexPoints& points, const Vec3& low, const Vec3& high);
+
 /// dx/d(reference), columns by reference direction.
 Mat3 hex_jacobian(const HexPoints& points, const Vec3& reference);
 

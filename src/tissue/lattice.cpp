@@ -68,6 +68,17 @@ void set_lines(const CellLattice& lattice, Cell& cell) {
   for (int e = 8; e < 12; ++e) cell.lines.push_back({cell.edges[e], 1});
 }
 
+void set_walls(const Vectors& rest_positions, Cell& cell) {
+  cell.rest_shape = gather(rest_positions, cell.corners);
+  if (cell.element_count > 1) return;
+  constexpr std::array<std::array<int, 2>, 4> ends = {{{0, 1}, {1, 2}, {3, 2}, {0, 3}}};  // local basal nodes
+  for (int wall = 0; wall < 4; ++wall)
+    for (const int end : {0, 1}) {
+      const int corner = ends[wall][end];
+      cell.walls[wall].push_back({static_cast<double>(end), cell.corners[corner], cell.corners[corner + 4]});
+    }
+}
+
 void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue) {
   const auto [nu, nv, nw] = lattice.elements;
   for (int w = 0; w < nw; ++w)
@@ -84,10 +95,11 @@ void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tiss
         tissue.elements.push_back(element);
         tissue.element_cell.push_back(id);
         tissue.element_rest_shape.push_back(gather(tissue.rest_positions, element));
+        const ElementId element_id(tissue.elements.size() - 1);
         if (w == 0 && lattice.has_basal)
-          tissue.basal_facets.push_back({{element[0], element[3], element[2], element[1]}, id});
+          tissue.basal_facets.push_back({{element[0], element[3], element[2], element[1]}, id, element_id});
         if (w == nw - 1 && lattice.has_apical)
-          tissue.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id});
+          tissue.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id, element_id});
       }
 }
 
@@ -104,6 +116,8 @@ Tissue tissue_from_lattices(const std::vector<CellLattice>& cells, Vectors rest_
     cell.grid_place = lattice.grid_place;
     set_corners_and_edges(lattice, tissue.rest_positions, cell);
     set_lines(lattice, cell);
+    set_walls(tissue.rest_positions, cell);
+    cell.lineage.id = tissue.next_cell_id++;
     add_elements_and_facets(lattice, CellId(tissue.cells.size()), tissue);
     tissue.cells.push_back(std::move(cell));
   }

@@ -1,6 +1,20 @@
 #include "tissue/tissue.hpp"
 
+#include <algorithm>
+
 namespace plica {
+
+void Tissue::place_hanging(std::span<Vec3> vectors) const {
+  for (std::size_t h = 0; h < hanging.size(); ++h) vectors[free_node_count() + h] = mean_of(hanging[h], vectors);
+}
+
+void Tissue::carry_hanging(std::span<Vec3> forces) const {
+  for (std::size_t h = 0; h < hanging.size(); ++h) {
+    Vec3& force = forces[free_node_count() + h];
+    for (const auto& [node, weight] : hanging[h]) forces[node.index()] += weight * force;
+    force.setZero();
+  }
+}
 
 Vec3 cell_centre(const Cell& cell, const Vectors& positions) {
   Vec3 sum = Vec3::Zero();
@@ -13,6 +27,37 @@ double cell_volume(const Tissue& tissue, const Cell& cell, const Vectors& positi
   for (int e = 0; e < cell.element_count; ++e)
     volume += hex_volume(gather(positions, tissue.elements[cell.first_element.index() + e]));
   return volume;
+}
+
+std::array<Vec3, 4> rest_corners(const Tissue& tissue, const Facet& facet) {
+  const auto& nodes = tissue.elements[facet.element.index()];
+  const HexPoints& rest = tissue.element_rest_shape[facet.element.index()];
+  std::array<Vec3, 4> points;
+  for (int i = 0; i < 4; ++i) points[i] = rest[std::ranges::find(nodes, facet.nodes[i]) - nodes.begin()];
+  return points;
+}
+
+namespace {
+
+template <class Corners>
+std::vector<double> areas(const Tissue& tissue, const std::vector<Facet>& facets, const Corners& corners) {
+  std::vector<double> result(tissue.cells.size(), 0.0);
+  for (const Facet& facet : facets) result[facet.cell.index()] += facet_area(corners(facet));
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> apical_areas(const Tissue& tissue, std::span<const Vec3> positions) {
+  return areas(tissue, tissue.apical_facets, [&](const Facet& facet) { return gather(positions, facet); });
+}
+
+std::vector<double> basal_areas(const Tissue& tissue, std::span<const Vec3> positions) {
+  return areas(tissue, tissue.basal_facets, [&](const Facet& facet) { return gather(positions, facet); });
+}
+
+std::vector<double> rest_apical_areas(const Tissue& tissue) {
+  return areas(tissue, tissue.apical_facets, [&](const Facet& facet) { return rest_corners(tissue, facet); });
 }
 
 }  // namespace plica

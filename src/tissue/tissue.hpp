@@ -5,7 +5,9 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/ids.hpp"
@@ -18,6 +20,7 @@ namespace plica {
 struct Facet {
   std::array<NodeId, 4> nodes;
   CellId cell;
+  ElementId element;
 };
 
 /// The direction of a cell's edge: along the embryo's axis (x), across it, or apico-basal.
@@ -49,6 +52,21 @@ struct GridPlace {
   std::array<int, 2> count;  // columns and rows of that face
 };
 
+/// A place on the lateral wall of a cell where nodes lie, one basal and one apical: a corner of the cell, or where the
+/// neighbour behind the wall has been cut.
+struct WallStop {
+  double at;  // along the wall, from 0 to 1
+  NodeId basal, apical;
+};
+
+/// Where a cell comes from. Ids are given once and never again, whatever a cell's place in `Tissue::cells`.
+struct Lineage {
+  int id = -1;
+  int mother = -1;  // -1: was there at the beginning
+  int generation = 0;
+  double birth_s = 0;
+};
+
 struct Cell {
   ElementId first_element;
   int element_count = 1;                // its elements are contiguous
@@ -56,6 +74,11 @@ struct Cell {
   std::array<CellEdge, 12> edges;       // in the order of hex_edges
   std::vector<CellLine> lines;          // what can contract; the edges themselves in a cell of one element
   std::optional<GridPlace> grid_place;  // of a built embryo
+  // What division needs (division.hpp). The walls, each a chain of stops: along u at v = 0 and v = 1 (walls 0 and 2),
+  // along v at u = 1 and u = 0 (walls 1 and 3). Empty in a cell that begins with several elements.
+  std::array<std::vector<WallStop>, 4> walls;
+  HexPoints rest_shape;  // um
+  Lineage lineage;
 };
 
 /// A capsule (a cylinder between two half balls, axis on x), or a ball when half_axis is 0: the shape of built embryos.
@@ -67,8 +90,19 @@ struct Capsule {
 /// A set of cells: one flag a cell.
 using CellSet = std::vector<bool>;
 
+/// A node without freedom of its own: where it is, is a weighted mean of free nodes. Weights add up to 1.
+using NodeMean = std::vector<std::pair<NodeId, double>>;
+
+inline Vec3 mean_of(const NodeMean& mean, std::span<const Vec3> vectors) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& [node, weight] : mean) sum += weight * vectors[node.index()];
+  return sum;
+}
+
 struct Tissue {
+  // Nodes: the free ones first, then those that hang on them. A free node keeps its number for good.
   Vectors rest_positions;                       // nodes; um
+  std::vector<NodeMean> hanging;                // of the last nodes; only where cells have divided
   std::vector<std::array<NodeId, 8>> elements;  // VTK's order
   std::vector<CellId> element_cell;             // elements
   std::vector<HexPoints> element_rest_shape;    // elements; um. A daughter's is her mother's, not where her nodes are
@@ -78,8 +112,23 @@ struct Tissue {
   std::optional<Capsule> outer_shape;          // of the apical surface at rest, or the shell around a file's mesh
   std::map<std::string, CellSet> cell_arrays;  // of a mesh file: cells where the array is not 0
   std::map<std::string, CellSet> regions;      // named; "all" is always there
+  int next_cell_id = 0;                        // for Lineage
 
   [[nodiscard]] std::size_t node_count() const { return rest_positions.size(); }
+  [[nodiscard]] std::size_t free_node_count() const { return rest_positions.size() - hanging.size(); }
+
+  /// Calls `take(free node, weight)` for the node itself when it is free, else for each node that it hangs on.
+  template <class Take>
+  void for_free_nodes(NodeId node, Take take) const {
+    if (node.index() < free_node_count()) return take(node, 1.0);
+    for (const auto& [free, weight] : hanging[node.index() - free_node_count()]) take(free, weight);
+  }
+
+  /// Puts hanging nodes where their free nodes say; a Vec3 a node: positions, or anything linear in them.
+  void place_hanging(std::span<Vec3> vectors) const;
+
+  /// Moves forces on hanging nodes to the free nodes that carry them.
+  void carry_hanging(std::span<Vec3> forces) const;
 };
 
 /// The element's points among `positions`.
@@ -91,6 +140,22 @@ inline HexPoints gather(const std::vector<Vec3>& positions, const std::array<Nod
 
 /// Mean of the cell's eight corners: its barycentre as monitored.
 Vec3 cell_centre(const Cell& cell, const Vectors& positions);
+
+/// The corners of a facet.
+inline std::array<Vec3, 4> gather(std::span<const Vec3> positions, const Facet& facet) {
+  return {positions[facet.nodes[0].index()], positions[facet.nodes[1].index()], positions[facet.nodes[2].index()],
+          positions[facet.nodes[3].index()]};
+}
+
+/// The facet's corners in its element's rest shape: where they began, until a daughter grows.
+std::array<Vec3, 4> rest_corners(const Tissue& tissue, const Facet& facet);
+
+/// Area of each cell's apical facets, um^2; 0 for a cell without. Bilinear facets, 2 x 2 Gauss points.
+std::vector<double> apical_areas(const Tissue& tissue, std::span<const Vec3> positions);
+std::vector<double> basal_areas(const Tissue& tissue, std::span<const Vec3> positions);
+
+/// The same at rest, by the cells' rest shapes.
+std::vector<double> rest_apical_areas(const Tissue& tissue);
 
 /// Volume of a cell: the sum over its elements, um^3.
 double cell_volume(const Tissue& tissue, const Cell& cell, const Vectors& positions);

@@ -102,7 +102,7 @@ TEST(Furrow, LipsAreTheEdgeOfTheRegionInTheMiddle) {
       if (x.x() == 0 && std::abs(x.y()) > edge_y) edge_y = std::abs(x.y()), edge_z = x.z();
     }
   ASSERT_GT(edge_y, 0);
-  const Vec3 left = pill.sites.lips[0].at(pill.tissue, rest), right = pill.sites.lips[1].at(pill.tissue, rest);
+  const Vec3 left = pill.sites.lips[0].at(rest), right = pill.sites.lips[1].at(rest);
   EXPECT_LE((left - Vec3(0, -edge_y, edge_z)).norm(), 1e-12);
   EXPECT_LE((right - Vec3(0, edge_y, edge_z)).norm(), 1e-12);
   EXPECT_NEAR(furrow_shape(pill.tissue, pill.sites, rest).lip_distance_um.value(), 2 * edge_y, 1e-12);

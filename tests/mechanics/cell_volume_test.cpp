@@ -34,6 +34,10 @@ class Pressurised final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override {
     volumes_.add_tangent(step.positions, pressures_, tangent);
   }
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const Division&,
+                                                    std::span<const Vec3>) const override {
+    return nullptr;  // not divided here
+  }
 
  private:
   const CellVolumes& volumes_;

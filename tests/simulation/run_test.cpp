@@ -17,7 +17,7 @@ using namespace support;
 const StepObserver go_on = [](const AcceptedStep&) { return true; };
 
 TEST(Run, GoesToEquilibriumWhereForcesBalanceWithoutDrag) {
-  const Model model = dimpling_sheet();
+  Model model = dimpling_sheet();
   RunControls controls;
   controls.equilibrium_speed_um_per_s = 1e-5;
   controls.end_s = 1e5;
@@ -36,7 +36,7 @@ TEST(Run, GoesToEquilibriumWhereForcesBalanceWithoutDrag) {
 }
 
 TEST(Run, RestDoesNotDependOnTheStep) {
-  const Model model = dimpling_sheet();
+  Model model = dimpling_sheet();
   std::vector<State> ends;
   for (const double step : {2.0, 5.0, 20.0, 0.0}) {
     RunControls controls;
@@ -56,7 +56,7 @@ TEST(Run, RestDoesNotDependOnTheStep) {
 }
 
 TEST(Run, AdaptiveStepsLandOnEveryFrame) {
-  const Model model = dimpling_sheet();
+  Model model = dimpling_sheet();
   RunControls controls;
   controls.frame_every_s = 7;
   controls.end_s = 60;
@@ -76,7 +76,7 @@ TEST(Run, AdaptiveStepsLandOnEveryFrame) {
 }
 
 TEST(Run, AdaptiveStepsLandOnTheProgramsPoints) {
-  const Model model = dimpling_sheet();
+  Model model = dimpling_sheet();
   RunControls controls;
   controls.program_points_s = {0, 3.3, 41.7};
   controls.end_s = 60;
@@ -93,7 +93,7 @@ TEST(Run, AdaptiveStepsLandOnTheProgramsPoints) {
 }
 
 TEST(Run, FixedStepsFormAGridWhateverTheFrames) {
-  const Model model = dimpling_sheet();
+  Model model = dimpling_sheet();
   RunControls controls;
   controls.fixed_step_s = 0.7;
   controls.frame_every_s = 2;
@@ -127,7 +127,7 @@ TEST(Run, EquilibriumCountsOnlyAfterTheProgram) {
 }
 
 TEST(Run, GoesOnToTheEndWhenAskedAndNotesTheTimeOfEquilibrium) {
-  const Model model = dimpling_sheet();
+  Model model = dimpling_sheet();
   RunControls controls;
   controls.equilibrium_speed_um_per_s = 0.05;
   controls.stop_at_equilibrium = false;
@@ -139,7 +139,7 @@ TEST(Run, GoesOnToTheEndWhenAskedAndNotesTheTimeOfEquilibrium) {
 }
 
 TEST(Run, StopsWhenTheObserverSaysSo) {
-  const Model model = dimpling_sheet();
+  Model model = dimpling_sheet();
   int steps = 0;
   const RunResult result =
       run(model, rest_state(model), RunControls{}, [&](const AcceptedStep&) { return ++steps < 3; });
@@ -159,7 +159,7 @@ TEST(Run, GivesUpWithTheLastGoodStateAndAReason) {
 }
 
 TEST(Run, TheSameRunGivesTheSameBits) {
-  const Model model = dimpling_sheet();
+  Model model = dimpling_sheet();
   RunControls controls;
   controls.end_s = 30;
   const RunResult a = run(model, rest_state(model), controls, go_on);

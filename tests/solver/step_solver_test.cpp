@@ -99,8 +99,8 @@ TEST(StepSolver, PressurisedSphereRestsOnItsShell) {
   add_elasticity(model);
   add_drag(model);
   const double pressure = 0.01;
-  model.laws.push_back(std::make_unique<FacePressure>(model.tissue, model.tissue.basal_facets,
-                                                      CellSet(model.tissue.cells.size(), true), pressure, Program{}));
+  model.laws.push_back(std::make_unique<FacePressure>(model.tissue, false, CellSet(model.tissue.cells.size(), true),
+                                                      pressure, Program{}));
   model.vitelline.emplace(model.tissue, *model.tissue.outer_shape);
   StepSolver solver(model);
   State before;

@@ -39,6 +39,7 @@ inline Tissue with_rest_positions(Tissue tissue, Vectors positions) {
   tissue.rest_positions = std::move(positions);
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
     tissue.element_rest_shape[e] = gather(tissue.rest_positions, tissue.elements[e]);
+  for (Cell& cell : tissue.cells) cell.rest_shape = gather(tissue.rest_positions, cell.corners);
   return tissue;
 }
 

@@ -27,7 +27,7 @@ Radial solve_sphere(std::array<int, 3> cells, int elements, double poisson) {
   const Tissue tissue =
       build_shell({.length_um = 2 * outer, .cells = cells, .elements_per_cell = {elements, elements, elements}});
   LinearStatics statics(tissue, ElasticModuli::from_young(young, poisson));
-  const FacePressure load(tissue, tissue.basal_facets, CellSet(tissue.cells.size(), true), pressure, {});
+  const FacePressure load(tissue, false, CellSet(tissue.cells.size(), true), pressure, {});
   const Motion rest = at_rest(tissue);
   statics.add_loads(forces_of(load, rest.step()));
   // The load balances itself, so six displacements held take no force; what rigid motion they leave has no mean radial

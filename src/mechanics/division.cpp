@@ -1,0 +1,159 @@
+#include "mechanics/division.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+namespace plica {
+namespace {
+
+// How each daughter will grow; cells by their place before the cut, where the mother is still there.
+struct Destiny {
+  HexPoints rest_to;
+  double target_to;
+};
+
+// What a mother grows towards: where she is under way to, or what she is.
+Destiny destiny(const Model& model, CellId cell) {
+  for (const Growth& growth : model.growths)
+    if (growth.cell == cell) return {growth.rest_to, growth.target_to};
+  return {model.tissue.cells[cell.index()].rest_shape, model.volumes.targets()[cell.index()]};
+}
+
+std::array<Growth, 2> growths_of(const PlannedDivision& plan, const std::array<CellId, 2>& daughters,
+                                 const Destiny& mother, const Tissue& tissue, const Vectors& positions, double time_s) {
+  std::array<Growth, 2> growths;
+  const Vec3 across = Vec3::Unit(plan.cut.first_wall);
+  for (const int i : {0, 1}) {
+    Growth& growth = growths[i];
+    const Cell& daughter = tissue.cells[daughters[i].index()];
+    growth.cell = daughters[i];
+    growth.rest_from = daughter.rest_shape;
+    // The part of the mother's final shape that is `volume_ratio` wide, on the daughter's side.
+    growth.rest_to = i == 0 ? hex_part(mother.rest_to, Vec3::Zero(), Vec3::Ones() - (1 - plan.volume_ratio) * across)
+                            : hex_part(mother.rest_to, (1 - plan.volume_ratio) * across, Vec3::Ones());
+    growth.target_from = cell_volume(tissue, daughter, positions);
+    growth.target_to = plan.volume_ratio * mother.target_to;
+    growth.start_s = time_s;
+    growth.end_s = time_s + plan.growth_s;
+  }
+  return growths;
+}
+
+void divide_laws(Model& model, const Division& division, const Vectors& positions) {
+  for (auto& law : model.laws) {
+    auto after = law->after_division(model.tissue, division, positions);
+    for (const Contraction*& contraction : model.contractions)
+      if (contraction == law.get()) contraction = static_cast<const Contraction*>(after.get());
+    if (model.inertia == law.get()) model.inertia = static_cast<const Inertia*>(after.get());
+    law = std::move(after);
+  }
+  for (CellSet& cells : model.contraction_cells) cells = inherited(division, cells);
+}
+
+// Held nodes stay held; a new one is where all nodes that it lies between are.
+void divide_holds(Model& model, const Division& division) {
+  model.held.resize(division.free_nodes_before);
+  for (const NodeMean& place : division.new_nodes) {
+    std::array<bool, 3> held = {true, true, true};
+    for (const auto& [node, weight] : place)
+      for (int axis = 0; axis < 3; ++axis) held[axis] = held[axis] && model.held[node.index()][axis];
+    model.held.push_back(held);
+  }
+  model.held.resize(model.tissue.node_count(), {false, false, false});
+}
+
+// New nodes lie inside the shell, on chords of it.
+void divide_contacts(Model& model, State& state) {
+  if (!model.vitelline) return;
+  std::map<NodeId, std::size_t> place;
+  for (std::size_t k = 0; k < model.vitelline->nodes().size(); ++k) place[model.vitelline->nodes()[k]] = k;
+  model.vitelline.emplace(model.tissue, model.vitelline->shell());
+  std::vector<double> forces;
+  std::vector<char> in_contact;
+  for (const NodeId node : model.vitelline->nodes()) {
+    const auto known = place.find(node);
+    forces.push_back(known == place.end() ? 0 : state.contact_forces[known->second]);
+    in_contact.push_back(known == place.end() ? 0 : state.in_contact[known->second]);
+  }
+  state.contact_forces = std::move(forces);
+  state.in_contact = std::move(in_contact);
+}
+
+Vec3 momentum(const Inertia& inertia, const Vectors& velocities) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t n = 0; n < velocities.size(); ++n) sum += inertia.masses()[n] * velocities[n];
+  return sum;
+}
+
+// Halves of unequal mass, moving as their mother did, would have another momentum: new nodes make up for it.
+void restore_momentum(const Model& model, const Division& division, const Vec3& before, Vectors& velocities) {
+  if (division.new_nodes.empty()) return;
+  Vectors unit(model.tissue.node_count(), Vec3::Zero());
+  for (std::size_t n = 0; n < division.new_nodes.size(); ++n) unit[division.free_nodes_before + n] = Vec3::Ones();
+  model.tissue.place_hanging(unit);
+  const Vec3 mass = momentum(*model.inertia, unit);
+  const Vec3 missing = (before - momentum(*model.inertia, velocities)).cwiseQuotient(mass);
+  for (std::size_t n = 0; n < velocities.size(); ++n) velocities[n] += unit[n].cwiseProduct(missing);
+}
+
+}  // namespace
+
+Division divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned) {
+  if (const auto why = why_indivisible(model.tissue)) throw std::logic_error("cells cannot divide: " + *why);
+  const Vec3 momentum_before = model.inertia ? momentum(*model.inertia, state.velocities) : Vec3::Zero();
+  std::vector<CellCut> cuts;
+  std::vector<Destiny> destinies;
+  for (const PlannedDivision& plan : planned) {
+    cuts.push_back(plan.cut);
+    destinies.push_back(destiny(model, plan.cut.cell));
+    std::erase_if(model.growths, [&](const Growth& growth) { return growth.cell == plan.cut.cell; });
+  }
+
+  const Division division = divide(model.tissue, cuts, state.time_s);
+  state.positions = with_new_nodes(model.tissue, division, state.positions);
+  state.velocities = with_new_nodes(model.tissue, division, state.velocities);
+  state.pressures = inherited(division, state.pressures);
+
+  std::vector<double> targets = inherited(division, model.volumes.targets());
+  model.volumes = CellVolumes(model.tissue);
+  for (std::size_t c = 0; c < targets.size(); ++c) model.volumes.set_target(CellId(c), targets[c]);
+  for (std::size_t i = 0; i < planned.size(); ++i)
+    for (const Growth& growth :
+         growths_of(planned[i], division.daughters[i], destinies[i], model.tissue, state.positions, state.time_s)) {
+      model.volumes.set_target(growth.cell, growth.target_from);
+      model.growths.push_back(growth);
+    }
+
+  divide_laws(model, division, state.positions);
+  divide_holds(model, division);
+  divide_contacts(model, state);
+  if (model.inertia) restore_momentum(model, division, momentum_before, state.velocities);
+  return division;
+}
+
+void grow(Model& model, double time_s) {
+  std::vector<ElementId> changed;
+  for (const Growth& growth : model.growths) {
+    const double part = growth.part(time_s);
+    HexPoints rest;
+    for (int i = 0; i < 8; ++i) rest[i] = (1 - part) * growth.rest_from[i] + part * growth.rest_to[i];
+    Cell& cell = model.tissue.cells[growth.cell.index()];
+    model.volumes.set_target(growth.cell, (1 - part) * growth.target_from + part * growth.target_to);
+    if (rest == cell.rest_shape) continue;
+    cell.rest_shape = rest;
+    set_element_rest_shapes(model.tissue, growth.cell);
+    for (int e = 0; e < cell.element_count; ++e) changed.emplace_back(cell.first_element.index() + e);
+  }
+  if (!changed.empty())
+    for (const auto& law : model.laws) law->take_rest_shapes(model.tissue, changed);
+}
+
+double growth_end_s(const Model& model) {
+  double end = std::numeric_limits<double>::lowest();
+  for (const Growth& growth : model.growths) end = std::max(end, growth.end_s);
+  return end;
+}
+
+}  // namespace plica

@@ -1,0 +1,207 @@
+// Division and growth of a model: what is continuous through a cut, and what daughters become.
+#include "mechanics/division.hpp"
+
+#include <gtest/gtest.h>
+
+#include "solver/step_solver.hpp"
+#include "support/divided.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+const BlockShape three_cells{.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}};
+const BlockShape sheet{.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 3, 1}};
+
+Vec3 momentum_of(const Model& model, const State& state) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t n = 0; n < state.velocities.size(); ++n) sum += model.inertia->masses()[n] * state.velocities[n];
+  return sum;
+}
+
+State moved(const Model& model, double size_um, Random& random) {
+  State state = rest_state(model);
+  for (Vec3& x : state.positions) x += random.vector(size_um);
+  for (Vec3& v : state.velocities) v = random.vector(1);
+  model.tissue.place_hanging(state.positions);
+  model.tissue.place_hanging(state.velocities);
+  return state;
+}
+
+TEST(DivideCells, KeepsLinearMomentum) {
+  double worst = 0;
+  int rounds = 0;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    Model model(distorted_block(sheet, 2, seed));
+    add_elasticity(model);
+    auto inertia = std::make_unique<Inertia>(model.tissue, 1e-12);
+    model.inertia = inertia.get();
+    model.laws.push_back(std::move(inertia));
+    Random random(seed);
+    State state = moved(model, 0.5, random);
+    for (int round = 0; round < 3; ++round, ++rounds) {
+      const Vec3 before = momentum_of(model, state);
+      double size = 0;
+      for (std::size_t n = 0; n < state.velocities.size(); ++n)
+        size += model.inertia->masses()[n] * state.velocities[n].norm();
+      divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
+      worst = std::max(worst, (momentum_of(model, state) - before).norm() / size);
+    }
+  }
+  EXPECT_LE(worst, 1e-14);
+  std::cout << "linear momentum through " << rounds << " random rounds of cuts: off by " << worst << "\n";
+}
+
+TEST(DivideCells, KeepsTheTensionOfSprings) {
+  double worst = 0;
+  for (const auto& rule :
+       {ContractionRule{.stiffness = 3, .across_ratio = 0.4, .rest_length_ratio = 0.5},
+        ContractionRule{.stiffness = 3, .preload = 7, .damping = 2}, ContractionRule{.stiffness = 3, .diagonals = true},
+        ContractionRule{.side = EdgeSide::lateral, .stiffness = 1},
+        ContractionRule{.side = EdgeSide::basal, .stiffness = 1}}) {
+    Model model(distorted_block(sheet, 2, 3));
+    CellSet some(12, false);
+    for (const int c : {1, 2, 5, 6, 7}) some[c] = true;
+    auto law = std::make_unique<Contraction>(contraction_springs(model.tissue, some, rule), Program{});
+    model.contractions.push_back(law.get());
+    model.contraction_cells.push_back(some);
+    model.laws.push_back(std::move(law));
+    Random random(4);
+    State state = moved(model, 1, random);
+    Vectors previous = state.positions;
+    for (std::size_t n = 0; n < previous.size(); ++n) previous[n] -= 0.7 * state.velocities[n];
+    for (int round = 0; round < 3; ++round) {
+      const auto forces = [&] {
+        Vectors result(state.positions.size(), Vec3::Zero());
+        model.contractions[0]->add_forces({state.positions, previous, state.velocities, 0.7, 1}, result);
+        return result;
+      };
+      const Vectors before = forces();
+      const Division division = divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
+      previous = with_new_nodes(model.tissue, division, previous);
+      Vectors after = forces();
+      for (std::size_t n = 0; n < after.size(); ++n) {
+        const Vec3 expected = n < division.free_nodes_before ? before[n] : Vec3::Zero();
+        worst = std::max(worst, (after[n] - expected).norm() / largest(before));
+      }
+    }
+  }
+  EXPECT_LE(worst, 1e-12);
+  std::cout << "forces of contraction through random cuts: off by " << worst << "\n";
+}
+
+TEST(DivideCells, HandsPressuresHoldsAndContactsOn) {
+  Model model = furrowing_sphere();
+  model.held[3] = {true, false, true};
+  State state = rest_state(model);
+  for (std::size_t c = 0; c < state.pressures.size(); ++c) state.pressures[c] = static_cast<double>(c);
+  const std::size_t contacts = state.in_contact.size();
+  const Division division = divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(40), 0}}});
+  EXPECT_EQ(state.pressures.at(450), 40);
+  EXPECT_EQ(model.held[3], (std::array<bool, 3>{true, false, true}));
+  EXPECT_EQ(model.held.size(), model.tissue.node_count());
+  EXPECT_EQ(state.in_contact.size(), contacts + 2);
+  EXPECT_EQ(model.vitelline->nodes().size(), contacts + 2);
+  for (std::size_t k = 0; k < state.in_contact.size(); ++k)
+    EXPECT_EQ(state.in_contact[k] != 0, model.vitelline->nodes()[k].index() < division.free_nodes_before);
+}
+
+TEST(Grow, TakesDaughtersFromHalvesToTheirMothersShapeAndVolume) {
+  Model model(distorted_block(three_cells, 2, 7));
+  add_elasticity(model);
+  State state = rest_state(model);
+  state.time_s = 10;
+  const HexPoints mother = model.tissue.cells[1].rest_shape;
+  const double mothers_volume = model.volumes.targets()[1];
+  divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 0}, 100, 1}});
+  const auto sum = [&] { return model.volumes.targets()[1] + model.volumes.targets()[3]; };
+  EXPECT_NEAR(sum(), mothers_volume, 1e-12 * mothers_volume);
+  grow(model, 60);
+  EXPECT_NEAR(sum(), 1.5 * mothers_volume, 1e-12 * mothers_volume);
+  EXPECT_EQ(growth_end_s(model), 110);
+  grow(model, 110);
+  for (const int daughter : {1, 3}) {
+    EXPECT_EQ(model.volumes.targets()[daughter], mothers_volume);
+    for (int i = 0; i < 8; ++i) EXPECT_LE((model.tissue.cells[daughter].rest_shape[i] - mother[i]).norm(), 1e-13);
+  }
+  // Back again: a step may be taken anew.
+  grow(model, 60);
+  EXPECT_NEAR(sum(), 1.5 * mothers_volume, 1e-12 * mothers_volume);
+}
+
+TEST(Grow, OfADaughterThatDividesGoesTowardsTheSameSize) {
+  Model model(build_block(three_cells));
+  add_elasticity(model);
+  State state = rest_state(model);
+  divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 0}, 100, 1}});
+  grow(model, 50);
+  state.time_s = 50;
+  divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 0}, 100, 1}});
+  grow(model, 150);
+  for (const int c : {1, 3, 4}) EXPECT_NEAR(model.volumes.targets()[c], 16000, 1e-9);
+}
+
+// A divided sheet under a homogeneous strain in its plane, with Poisson's ratio 0 so that no stress acts on the apical
+// and basal faces: every node off the rim is in balance, what acts on hanging nodes carried by their neighbours.
+TEST(DividedSheet, PassesThePatchTest) {
+  Model model(build_block(sheet));
+  add_elasticity(model, 0);
+  State state = rest_state(model);
+  Random random(11);
+  for (int round = 0; round < 3; ++round) divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
+  ASSERT_GT(model.tissue.hanging.size(), 20u);
+  Mat3 strain = Mat3::Zero();
+  strain.topLeftCorner<2, 2>() << 2e-6, 1e-6, 1e-6, -3e-6;
+  Vectors positions = model.tissue.rest_positions;
+  for (Vec3& x : positions) x += strain * x;
+  const Motion motion{positions, positions, Vectors(positions.size(), Vec3::Zero())};
+  Vectors forces(positions.size(), Vec3::Zero());
+  for (const auto& law : model.laws) law->add_forces(motion.step(), forces);
+  model.tissue.carry_hanging(forces);
+  double inside = 0, rim = 0;
+  int inner = 0;
+  for (std::size_t n = 0; n < model.tissue.free_node_count(); ++n) {
+    const Vec3& x = model.tissue.rest_positions[n];
+    const bool on_rim = std::abs(x.x()) > 39.9 || std::abs(x.y()) > 29.9;
+    (on_rim ? rim : inside) = std::max(on_rim ? rim : inside, forces[n].norm());
+    inner += on_rim ? 0 : 1;
+  }
+  EXPECT_LE(inside, 1e-5 * rim);  // the corotational frame is exact to second order in the strain
+  std::cout << inner << " inner nodes, " << model.tissue.hanging.size() << " hanging: force " << inside
+            << " nN against " << rim << " on the rim\n";
+}
+
+// Newton's matrix on the free nodes is the laws' tangent seen through the hanging nodes.
+TEST(DividedSheet, AssemblesTheTangentOfItsFreeNodes) {
+  Model model(build_block(sheet));
+  add_elasticity(model);
+  add_drag(model);
+  Random random(12);
+  State state = moved(model, 0.5, random);
+  for (int round = 0; round < 2; ++round) divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
+  const Motion motion{state.positions, state.positions, state.velocities};
+  StepMatrix matrix(model);
+  matrix.set_zero();
+  for (const auto& law : model.laws) law->add_tangent(motion.step(), matrix);
+  Vectors direction = random.vectors(model.tissue.node_count());
+  model.tissue.place_hanging(direction);
+  Vectors assembled(direction.size(), Vec3::Zero()), matrix_free(direction.size(), Vec3::Zero());
+  matrix.multiply(direction, assembled);
+  for (const auto& law : model.laws) law->add_tangent_product(motion.step(), direction, matrix_free);
+  model.tissue.carry_hanging(matrix_free);
+  for (std::size_t n = 0; n < direction.size(); ++n)
+    EXPECT_LE((assembled[n] - matrix_free[n]).norm(), 1e-12 * largest(matrix_free));
+
+  const auto volumes = [&](double part) {
+    Vectors positions = state.positions;
+    for (std::size_t n = 0; n < positions.size(); ++n) positions[n] += part * direction[n];
+    return model.volumes.volumes(positions);
+  };
+  matrix.set_volume_gradients(model.volumes, state.positions);
+  const std::vector<double> rates = matrix.volume_rates(direction), ahead = volumes(1e-4), behind = volumes(-1e-4);
+  for (std::size_t c = 0; c < rates.size(); ++c) EXPECT_NEAR(rates[c], (ahead[c] - behind[c]) / 2e-4, 1e-5 * 2000);
+}
+
+}  // namespace
+}  // namespace plica
