@@ -46,6 +46,9 @@ struct ElasticityInput {
   std::string model = "corotational";
   double young_modulus_Pa = 1000;
   double poisson_ratio = 0.45;
+  std::optional<double> attractor_stiffness_nN_per_um;  // shape-memory; empty: derived from the two above
+  double attractor_preload_nN = 0;                      // shape-memory
+  double attractor_preload_length_um = 0.5;             // shape-memory: the preload acts in full farther off than this
 };
 
 struct VolumeInput {

@@ -111,13 +111,26 @@ const std::vector<Row>& rows() {
       row("region.*", "intersect", at(&S::regions, &R::intersect), anything, "Only cells of each of these regions."),
       row("region.*", "except", at(&S::regions, &R::except), anything, "No cells of these regions."),
 
-      row("elasticity", "model", at(&S::elasticity, &ElasticityInput::model), words({"corotational"}, {"shape-memory"}),
-          "Elastic law of a cell."),
+      row("elasticity", "model", at(&S::elasticity, &ElasticityInput::model), words({"corotational", "shape-memory"}),
+          "Elastic law of a cell: isotropic in a frame that turns with it, or springs from its nodes to their places "
+          "in "
+          "the rest shape that follows it."),
       row("elasticity", "young_modulus_Pa", at(&S::elasticity, &ElasticityInput::young_modulus_Pa), positive,
           "Young's modulus (Pa)."),
       row("elasticity", "poisson_ratio", at(&S::elasticity, &ElasticityInput::poisson_ratio),
           {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
           "Poisson's ratio; with coupled volumes it only sets the shear modulus and the dilatation inside a cell."),
+      row("elasticity", "attractor_stiffness_nN_per_um",
+          at(&S::elasticity, &ElasticityInput::attractor_stiffness_nN_per_um),
+          {.low = 0, .low_included = false, .word_for_none = "derived"},
+          "Model shape-memory: stiffness of the springs from the nodes of a cell to the attractor (nN/µm), or such "
+          "that "
+          "the mean shear modulus is that of young_modulus_Pa and poisson_ratio."),
+      row("elasticity", "attractor_preload_nN", at(&S::elasticity, &ElasticityInput::attractor_preload_nN),
+          not_negative, "Model shape-memory: tension of these springs that does not depend on their length (nN)."),
+      row("elasticity", "attractor_preload_length_um",
+          at(&S::elasticity, &ElasticityInput::attractor_preload_length_um), positive,
+          "Model shape-memory: how far from its place a node feels 0.7 of the preload (µm); it has no direction at 0."),
 
       row("volume", "method", at(&S::volume, &VolumeInput::method), words({"coupled", "none"}, {"projection"}),
           "How cells keep their volume: as constraints of each step, or not."),

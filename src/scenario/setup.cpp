@@ -6,6 +6,7 @@
 
 #include "core/units.hpp"
 #include "mechanics/corotational.hpp"
+#include "mechanics/shape_memory.hpp"
 #include "mechanics/surroundings.hpp"
 #include "scenario/regions.hpp"
 #include "tissue/embryo.hpp"
@@ -48,6 +49,26 @@ void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vecto
 
 EdgeSide side_named(const std::string& name) {
   return name == "apical" ? EdgeSide::apical : name == "basal" ? EdgeSide::basal : EdgeSide::lateral;
+}
+
+void add_elasticity(const Scenario& scenario, Model& model) {
+  const ElasticityInput& input = scenario.elasticity;
+  const double young_modulus = input.young_modulus_Pa * units::pascal;
+  const double viscosity = scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second;
+  const ElasticModuli moduli = ElasticModuli::from_young(young_modulus, input.poisson_ratio);
+  model.stiffness_scale = young_modulus;
+  if (input.model == "shape-memory") {
+    const AttractorSprings springs{input.attractor_stiffness_nN_per_um.value_or(0), moduli.shear_modulus,
+                                   input.attractor_preload_nN, input.attractor_preload_length_um};
+    auto law = std::make_unique<ShapeMemory>(model.tissue, springs, viscosity);
+    // The modulus that a given stiffness amounts to.
+    const double shear = attractor_moduli(model.tissue.element_rest_shape[0], law->stiffness()[0]).mean_shear();
+    model.stiffness_scale = 2 * (1 + input.poisson_ratio) * shear;
+    model.laws.push_back(std::move(law));
+    return;
+  }
+  model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, viscosity));
+  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus()));
 }
 
 void add_contractions(const Scenario& scenario, Model& model) {
@@ -114,13 +135,8 @@ Tissue make_tissue(const Scenario& scenario) {
 std::unique_ptr<const Model> make_model(const Scenario& scenario) {
   auto model = std::make_unique<Model>(make_tissue(scenario));
   const Tissue& tissue = model->tissue;
-  const double young_modulus = scenario.elasticity.young_modulus_Pa * units::pascal;
-  const ElasticModuli moduli = ElasticModuli::from_young(young_modulus, scenario.elasticity.poisson_ratio);
-  model->stiffness_scale = young_modulus;
   model->volumes_are_held = scenario.volume.method == "coupled";
-  model->laws.push_back(
-      std::make_unique<Corotational>(tissue, moduli, scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second));
-  model->laws.push_back(std::make_unique<Dilatation>(tissue, moduli.bulk_modulus()));
+  add_elasticity(scenario, *model);
   add_contractions(scenario, *model);
   add_pressures(scenario, *model);
   if (scenario.dynamics.surface_drag_Pa_s_per_um > 0)

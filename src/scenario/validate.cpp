@@ -8,6 +8,7 @@
 #include <set>
 
 #include "scenario/suggest.hpp"
+#include "scenario/validate_laws.hpp"
 
 namespace plica {
 namespace {
@@ -256,6 +257,7 @@ class RegionCheck {
 void validate(Scenario& scenario, Input& input) {
   check_embryo(scenario, input);
   check_vitelline(scenario, input);
+  check_elasticity(scenario.elasticity, input);
   check_dynamics(scenario.dynamics, input);
   check_time(scenario.time, input);
   check_required_keys(scenario, input);

@@ -166,8 +166,15 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {"[embryo]\nshape = \"pil\"",
        "test.toml:2: embryo.shape: \"pil\" is not known; give one of: pill | sphere | block | file (did you mean "
        "\"pill\"?)"},
-      {"[elasticity]\nmodel = \"shape-memory\"",
-       "test.toml:2: elasticity.model: \"shape-memory\" is not available yet; give one of: corotational"},
+      {"[volume]\nmethod = \"projection\"",
+       "test.toml:2: volume.method: \"projection\" is not available yet; give one of: coupled | none"},
+      {"[elasticity]\nattractor_stiffness_nN_per_um = 0",
+       "test.toml:2: elasticity.attractor_stiffness_nN_per_um: 0 is out of range; give a number > 0 or \"derived\""},
+      {"[elasticity]\nattractor_preload_nN = 1",
+       "test.toml:2: elasticity.attractor_preload_nN: has no meaning with model \"corotational\"; remove it, or choose "
+       "model \"shape-memory\""},
+      {"[elasticity]\nmodel = \"shape-memory\"\nattractor_preload_nN = -1",
+       "test.toml:3: elasticity.attractor_preload_nN: -1 is out of range; give a number >= 0"},
       {"[time]\nstep_s = \"fast\"",
        "test.toml:2: time.step_s: \"fast\" is of the wrong type; give a number > 0 or \"adaptive\""},
       {"[stop]\nat_equilibrium = 1", "test.toml:2: stop.at_equilibrium: 1 is of the wrong type; give true or false"},
@@ -321,6 +328,16 @@ TEST(LoadScenario, SettlesDefaultsThatDependOnTheShape) {
   const auto here = std::filesystem::current_path();
   EXPECT_EQ(load_scenario({"a", "in/a.toml", "[embryo]\nshape = \"file\"\nfile = \"../b.vtu\""}).embryo.file,
             (here / "b.vtu").string());
+}
+
+// An inherited attractor is dropped with its model, as an inherited length is with a pill.
+TEST(LoadScenario, SettlesTheAttractorByTheElasticModel) {
+  const std::string springs = "[elasticity]\nmodel = \"shape-memory\"\nattractor_stiffness_nN_per_um = 7\n";
+  EXPECT_EQ(load(springs).elasticity.attractor_stiffness_nN_per_um, 7);
+  EXPECT_EQ(
+      load(springs, {"elasticity.attractor_stiffness_nN_per_um=derived"}).elasticity.attractor_stiffness_nN_per_um,
+      std::nullopt);
+  EXPECT_EQ(load(springs, {"elasticity.model=corotational"}).elasticity.attractor_stiffness_nN_per_um, std::nullopt);
 }
 
 TEST(LoadScenario, OverridesGoLast) {
