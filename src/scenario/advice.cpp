@@ -43,8 +43,8 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   for (const auto& [name, contraction] : scenario.contractions)
     if (!contraction.program.activity.empty() && std::ranges::max(contraction.program.activity) == 0)
       warn(fmt::format("contraction.{}: its program is 0 at every point", name));
-  for (const auto& [name, contraction] : scenario.contractions)
-    if (!contraction.program.time_s.empty() && contraction.program.time_s.back() > scenario.time.end_s)
+  for (std::size_t k = 0; const auto& [name, contraction] : scenario.contractions)
+    if (model.contractions[k++]->points_s().back() > scenario.time.end_s)
       warn(fmt::format("contraction.{}: its program goes on after the run's end at {} s", name, scenario.time.end_s));
   if (scenario.time.step_s && *scenario.time.step_s > scenario.time.end_s)
     warn("time.step_s is longer than the whole run");

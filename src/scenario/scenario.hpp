@@ -66,6 +66,24 @@ struct DynamicsInput {
   double density_kg_per_m3 = 0;
 };
 
+struct ProfileInput {
+  std::string shape;                          // constant | linear | gaussian; empty: constant
+  std::string axis;                           // across | along; empty: across
+  std::optional<double> half_width_um, edge;  // linear
+  std::optional<double> sigma_um;             // gaussian
+};
+
+struct DelayInput {
+  std::optional<double> speed_um_per_s;  // empty: no delay
+  std::string axis;                      // along | across; empty: along
+  std::string from;                      // middle | ends | low | high; empty: middle
+};
+
+struct VariationInput {
+  double spread = 0;
+  int seed = 1;
+};
+
 struct ContractionInput {
   std::string region;
   std::string edges = "apical";  // apical | basal | lateral
@@ -77,6 +95,9 @@ struct ContractionInput {
   double preload_nN = 0;
   double damping_nN_s_per_um = 0;
   ProgramInput program;
+  ProfileInput profile;
+  DelayInput delay;
+  VariationInput variation;
 };
 
 struct TimeInput {

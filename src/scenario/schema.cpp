@@ -27,10 +27,9 @@ Field at(Named<Table> tables, T Table::*field) {
   return [=](Scenario& scenario, const std::string& name) -> Slot { return &((scenario.*tables)[name].*field); };
 }
 
-template <class Table>
-Field at(Named<Table> tables, ProgramInput Table::*program, std::vector<double> ProgramInput::*field) {
-  return
-      [=](Scenario& scenario, const std::string& name) -> Slot { return &((scenario.*tables)[name].*program.*field); };
+template <class Table, class Inner, class T>
+Field at(Named<Table> tables, Inner Table::*inner, T Inner::*field) {
+  return [=](Scenario& scenario, const std::string& name) -> Slot { return &((scenario.*tables)[name].*inner.*field); };
 }
 
 Field no_field() {
@@ -171,6 +170,35 @@ const std::vector<Row>& rows() {
           "The same in minutes.", {.instead_of = "program.time_s", .scale = 60}),
       row("contraction.*", "program.activity", at(&S::contractions, &C::program, &ProgramInput::activity), not_negative,
           "Activity at these times: a factor on the tension, linear between them."),
+      row("contraction.*", "profile.shape", at(&S::contractions, &C::profile, &ProfileInput::shape),
+          words({"constant", "linear", "gaussian"}),
+          "Factor on stiffness and preload by a cell's distance from the region's middle: 1, falling to `edge` at "
+          "`half_width_um`, or exp(−d²/2σ²)."),
+      row("contraction.*", "profile.axis", at(&S::contractions, &C::profile, &ProfileInput::axis),
+          words({"across", "along"}),
+          "Distance across the axis (the arc about it through the cell's centre; y in a block) or along it (x); "
+          "without "
+          "it across."),
+      row("contraction.*", "profile.half_width_um", at(&S::contractions, &C::profile, &ProfileInput::half_width_um),
+          positive, "Linear: distance at which the factor is `edge`, as it is beyond (µm)."),
+      row("contraction.*", "profile.edge", at(&S::contractions, &C::profile, &ProfileInput::edge), not_negative,
+          "Linear: factor there; without it 0."),
+      row("contraction.*", "profile.sigma_um", at(&S::contractions, &C::profile, &ProfileInput::sigma_um), positive,
+          "Gaussian: its standard deviation σ (µm)."),
+      row("contraction.*", "delay.speed_um_per_s", at(&S::contractions, &C::delay, &DelayInput::speed_um_per_s),
+          {.low = 0, .low_included = false, .word_for_none = "none"},
+          "Speed of a wave (µm/s): a cell's program starts when it arrives, and the cell is slack before."),
+      row("contraction.*", "delay.axis", at(&S::contractions, &C::delay, &DelayInput::axis), words({"along", "across"}),
+          "Direction of the wave, as in `profile.axis`; without it along."),
+      row("contraction.*", "delay.from", at(&S::contractions, &C::delay, &DelayInput::from),
+          words({"middle", "ends", "low", "high"}),
+          "Where the region's wave starts at time 0; without it in the middle. Low is the anterior end, or the left "
+          "side."),
+      row("contraction.*", "variation.spread", at(&S::contractions, &C::variation, &VariationInput::spread),
+          not_negative,
+          "Relative standard deviation of a log-normal factor with mean 1 on each cell's stiffness and preload."),
+      row("contraction.*", "variation.seed", at(&S::contractions, &C::variation, &VariationInput::seed), not_negative,
+          "Another seed gives other factors; a cell's factor depends on seed and cell number only."),
 
       row("hold.*", "region", at(&S::holds, &H::region), anything, "Region whose nodes are held.", {.required = true}),
       row("hold.*", "directions", at(&S::holds, &H::directions), words({"x", "y", "z"}),

@@ -71,6 +71,30 @@ void add_elasticity(const Scenario& scenario, Model& model) {
   model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus()));
 }
 
+ContractionPattern make_pattern(const ContractionInput& input) {
+  using Shape = ContractionProfile::Shape;
+  using From = ContractionDelay::From;
+  const auto axis = [](const std::string& name) { return name == "along" ? PatternAxis::along : PatternAxis::across; };
+  ContractionPattern pattern;
+  const ProfileInput& profile = input.profile;
+  pattern.profile.shape = profile.shape == "linear"     ? Shape::linear
+                          : profile.shape == "gaussian" ? Shape::gaussian
+                                                        : Shape::constant;
+  pattern.profile.axis = axis(profile.axis);
+  pattern.profile.half_width = profile.half_width_um.value_or(1);
+  pattern.profile.edge = profile.edge.value_or(0);
+  pattern.profile.sigma = profile.sigma_um.value_or(1);
+  pattern.delay.speed = input.delay.speed_um_per_s.value_or(0);
+  pattern.delay.axis = axis(input.delay.axis);
+  pattern.delay.from = input.delay.from == "ends"   ? From::ends
+                       : input.delay.from == "low"  ? From::low
+                       : input.delay.from == "high" ? From::high
+                                                    : From::middle;
+  pattern.spread = input.variation.spread;
+  pattern.seed = static_cast<std::uint64_t>(input.variation.seed);
+  return pattern;
+}
+
 void add_contractions(const Scenario& scenario, Model& model) {
   for (const auto& [name, input] : scenario.contractions) {
     const CellSet& cells = model.tissue.regions.at(input.region);
@@ -83,8 +107,9 @@ void add_contractions(const Scenario& scenario, Model& model) {
     rule.rest_length_ratio = input.rest_length_ratio;
     rule.preload = input.preload_nN;
     rule.damping = input.damping_nN_s_per_um;
-    auto law =
-        std::make_unique<Contraction>(contraction_springs(model.tissue, cells, rule), make_program(input.program));
+    CellPattern pattern = cell_pattern(model.tissue, cells, make_pattern(input));
+    auto law = std::make_unique<Contraction>(contraction_springs(model.tissue, cells, rule, pattern),
+                                             make_program(input.program), std::move(pattern.delays_s));
     model.contractions.push_back(law.get());
     model.contraction_cells.push_back(cells);
     model.laws.push_back(std::move(law));
@@ -157,7 +182,7 @@ std::unique_ptr<const Model> make_model(const Scenario& scenario) {
   return model;
 }
 
-RunControls make_controls(const Scenario& scenario) {
+RunControls make_controls(const Scenario& scenario, const Model& model) {
   RunControls controls;
   controls.fixed_step_s = scenario.time.step_s;
   controls.first_step_s = scenario.time.first_step_s;
@@ -167,11 +192,11 @@ RunControls make_controls(const Scenario& scenario) {
   controls.equilibrium_speed_um_per_s = scenario.stop.equilibrium_speed_um_per_min * units::um_per_minute;
   controls.stop_at_equilibrium = scenario.stop.at_equilibrium;
   controls.frame_every_s = scenario.output.frame_every_s;
-  const auto add_points = [&](const ProgramInput& program) {
-    controls.program_points_s.insert(controls.program_points_s.end(), program.time_s.begin(), program.time_s.end());
+  const auto add_points = [&](const std::vector<double>& points) {
+    controls.program_points_s.insert(controls.program_points_s.end(), points.begin(), points.end());
   };
-  for (const auto& [name, input] : scenario.contractions) add_points(input.program);
-  for (const auto& [name, input] : scenario.pressures) add_points(input.program);
+  for (const Contraction* contraction : model.contractions) add_points(contraction->points_s());
+  for (const auto& [name, input] : scenario.pressures) add_points(input.program.time_s);
   return controls;
 }
 

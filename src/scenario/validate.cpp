@@ -262,7 +262,10 @@ void validate(Scenario& scenario, Input& input) {
   check_time(scenario.time, input);
   check_required_keys(scenario, input);
   check_expectations(scenario, input);
-  for (const auto& [name, it] : scenario.contractions) check_program("contraction." + name, it.program, input);
+  for (auto& [name, it] : scenario.contractions) {
+    check_program("contraction." + name, it.program, input);
+    check_pattern("contraction." + name, it, input);
+  }
   for (const auto& [name, it] : scenario.pressures) check_program("pressure." + name, it.program, input);
   RegionCheck regions(scenario, input);
   for (const auto& [name, region] : scenario.regions) regions.check_selectors(name, region);

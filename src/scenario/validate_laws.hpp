@@ -10,4 +10,8 @@ namespace plica {
 /// with the model or after it, and dropped where they were inherited from a scenario of the other model.
 void check_elasticity(ElasticityInput& elasticity, Input& input);
 
+/// Profile and delay of the contraction at `table` ("contraction.NAME"): what their shape needs and what has no meaning
+/// with it, as above; settles their axis and where a wave starts.
+void check_pattern(const std::string& table, ContractionInput& contraction, Input& input);
+
 }  // namespace plica
