@@ -74,7 +74,7 @@ int run_scenario(const RunOptions& options) {
   const Scenario scenario = load_scenario(source, options.scenario.overrides);
   const auto model = make_model(scenario);
   omp_set_num_threads(threads_for(options.threads, model->tissue.elements.size()));
-  const RunControls controls = make_controls(scenario);
+  const RunControls controls = make_controls(scenario, *model);
   Observer observer(*model, make_furrow_sites(scenario, model->tissue));
 
   if (!options.quiet)

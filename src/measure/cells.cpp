@@ -38,7 +38,7 @@ std::vector<double> activities(const Model& model, double time_s) {
   std::vector<double> result(model.tissue.cells.size(), 0.0);
   for (std::size_t k = model.contractions.size(); k-- > 0;)
     for (std::size_t c = 0; c < result.size(); ++c)
-      if (model.contraction_cells[k][c]) result[c] = model.contractions[k]->program().at(time_s);
+      if (model.contraction_cells[k][c]) result[c] = model.contractions[k]->activity_of(CellId(c), time_s);
   return result;
 }
 

@@ -23,7 +23,8 @@ double mean_node_displacement(const Tissue& tissue, const MonitoredCells& cells,
 /// Mean of a value of cells.
 double mean_over(const MonitoredCells& cells, const std::vector<double>& values);
 
-/// Activity of each cell: of the first contraction that it belongs to, at the given time; 0 outside.
+/// Activity of each cell: that of its program, delay included, in the first contraction that it belongs to; 0 outside.
+/// Profile and variation are no part of it.
 std::vector<double> activities(const Model& model, double time_s);
 
 /// Volume enclosed by the basal surface, um^3; empty when that surface is not closed.

@@ -68,19 +68,23 @@ Mat3 turning_stiffness(const Segment& s) {
 
 }  // namespace
 
-std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule) {
+std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule,
+                                        const CellPattern& pattern) {
   std::vector<Spring> springs;
+  double factor = 1, delay = 0;  // of the cell at hand
   const auto add = [&](std::size_t cell, std::vector<NodeId> nodes, double ratio, double share) {
     if (ratio <= 0) return;
-    Spring spring{
-        std::move(nodes), share * ratio * rule.stiffness, share * ratio * rule.preload, share * rule.damping, 0,
-        CellId(cell)};
+    const double strength = factor * share * ratio;
+    Spring spring{std::move(nodes), strength * rule.stiffness, strength * rule.preload, share * rule.damping, 0, delay,
+                  CellId(cell)};
     spring.rest_length = rule.rest_length_ratio * chain_length(spring.nodes, tissue.rest_positions);
     springs.push_back(std::move(spring));
   };
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     if (!cells[c]) continue;
     const Cell& cell = tissue.cells[c];
+    if (!pattern.factors.empty()) factor = pattern.factors[c];
+    if (!pattern.delays_s.empty()) delay = pattern.delays_s[c];
     for (const auto& [line, share] : cell.lines) {
       if (line.side != rule.side) continue;
       const double ratio = line.direction == EdgeDirection::along    ? rule.along_ratio
@@ -97,17 +101,41 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cel
   return springs;
 }
 
+double Contraction::activity(double delay_s, double time_s) const {
+  const double own_time = time_s - delay_s;
+  return own_time < -1e-9 ? 0 : program_.at(own_time);  // a step that ends on the delay does so but for rounding
+}
+
+double Contraction::activity_of(CellId cell, double time_s) const {
+  return activity(cell_delays_s_.empty() ? 0 : cell_delays_s_[cell.index()], time_s);
+}
+
+std::vector<double> Contraction::points_s() const {
+  std::vector<double> delays = {0};
+  for (const Spring& spring : springs_) delays.push_back(spring.delay_s);
+  std::ranges::sort(delays);
+  const double apart = 0.01 * delays.back();
+  std::vector<double> kept = {0};
+  for (const double delay : delays)
+    if (delay > 0 && (delay >= kept.back() + apart || delay == delays.back())) kept.push_back(delay);
+  const std::vector<double> from_start = {0};  // a program without points: from nothing to 1 at its time 0
+  std::vector<double> points;
+  for (const double point : program_.times_s().empty() ? from_start : program_.times_s())
+    for (const double delay : kept) points.push_back(point + delay);
+  std::ranges::sort(points);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
 double Contraction::energy(const Step& step) const {
-  const double activity = program_.at(step.end_time_s);
   double sum = 0;
-  for (const Spring& spring : springs_) sum += respond(spring, step, activity).energy;
+  for (const Spring& spring : springs_) sum += respond(spring, step, activity(spring.delay_s, step.end_time_s)).energy;
   return sum;
 }
 
 void Contraction::add_forces(const Step& step, std::span<Vec3> forces) const {
-  const double activity = program_.at(step.end_time_s);
   for (const Spring& spring : springs_) {
-    const double tension = respond(spring, step, activity).tension;
+    const double tension = respond(spring, step, activity(spring.delay_s, step.end_time_s)).tension;
     const Vectors gradient = length_gradient(spring, step.positions);
     for (std::size_t i = 0; i < spring.nodes.size(); ++i) forces[spring.nodes[i].index()] -= tension * gradient[i];
   }
@@ -115,9 +143,8 @@ void Contraction::add_forces(const Step& step, std::span<Vec3> forces) const {
 
 void Contraction::add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                       std::span<Vec3> product) const {
-  const double activity = program_.at(step.end_time_s);
   for (const Spring& spring : springs_) {
-    const Response r = respond(spring, step, activity);
+    const Response r = respond(spring, step, activity(spring.delay_s, step.end_time_s));
     const Vectors gradient = length_gradient(spring, step.positions);
     double lengthening = 0;
     for (std::size_t i = 0; i < spring.nodes.size(); ++i)
@@ -135,9 +162,8 @@ void Contraction::add_tangent_product(const Step& step, std::span<const Vec3> di
 }
 
 void Contraction::add_tangent(const Step& step, TangentSink& tangent) const {
-  const double activity = program_.at(step.end_time_s);
   for (const Spring& spring : springs_) {
-    const Response r = respond(spring, step, activity);
+    const Response r = respond(spring, step, activity(spring.delay_s, step.end_time_s));
     const Vectors gradient = length_gradient(spring, step.positions);
     for (std::size_t i = 0; i < spring.nodes.size(); ++i)
       for (std::size_t j = 0; j < spring.nodes.size(); ++j)
@@ -217,7 +243,9 @@ std::unique_ptr<Law> Contraction::after_division(const Tissue& tissue, const Div
     for (Spring& part : inherit(spring, daughter->first, daughter->second, tissue, positions))
       springs.push_back(std::move(part));
   }
-  return std::make_unique<Contraction>(std::move(springs), program_);
+  return std::make_unique<Contraction>(
+      std::move(springs), program_,
+      cell_delays_s_.empty() ? std::vector<double>{} : inherited(division, cell_delays_s_));
 }
 
 }  // namespace plica

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "mechanics/contraction_pattern.hpp"
 #include "mechanics/law.hpp"
 #include "mechanics/program.hpp"
 #include "tissue/tissue.hpp"
@@ -16,6 +17,7 @@ struct Spring {
   double preload = 0;      // P, nN
   double damping = 0;      // c, nN s/um
   double rest_length = 0;  // U, um
+  double delay_s = 0;      // its program starts that much later
   CellId cell;             // whose spring it is
 };
 
@@ -33,13 +35,15 @@ struct ContractionRule {
 
 /// The springs of all cells of `cells`. Two contractile cells that share an edge have a spring each. In a cell of
 /// several elements the tension of its edges is spread over the lines of its face
-/// (docs/decisions/0005-spread-springs.md).
-std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule);
+/// (docs/decisions/0005-spread-springs.md). A cell's factor of `pattern` scales k and P, its delay is its springs'.
+std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule,
+                                        const CellPattern& pattern = {});
 
 class Contraction final : public Law {
  public:
-  Contraction(std::vector<Spring> springs, Program program)
-      : springs_(std::move(springs)), program_(std::move(program)) {}
+  /// `cell_delays_s`: cells, empty for none; for activity_of, the springs carry their own.
+  Contraction(std::vector<Spring> springs, Program program, std::vector<double> cell_delays_s = {})
+      : springs_(std::move(springs)), program_(std::move(program)), cell_delays_s_(std::move(cell_delays_s)) {}
 
   [[nodiscard]] std::string_view name() const override { return "contraction"; }
   [[nodiscard]] double energy(const Step& step) const override;
@@ -53,11 +57,19 @@ class Contraction final : public Law {
                                                     std::span<const Vec3> positions) const override;
 
   [[nodiscard]] const Program& program() const { return program_; }
+  /// Activity at a time for springs with a delay: that of the program `delay_s` earlier, 0 before the program's time 0.
+  [[nodiscard]] double activity(double delay_s, double time_s) const;
+  /// The same for the springs of a cell.
+  [[nodiscard]] double activity_of(CellId cell, double time_s) const;
+  /// Times at which activity starts or bends anywhere, s, increasing: the program's points shifted by the delays.
+  /// Delays closer than a hundredth of the longest count as one.
+  [[nodiscard]] std::vector<double> points_s() const;
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
 
  private:
   std::vector<Spring> springs_;
   Program program_;
+  std::vector<double> cell_delays_s_;
 };
 
 }  // namespace plica

@@ -1,19 +1,12 @@
-// Letters as in docs/theory/corotational.md: F mean deformation gradient, R its rotation, S = R^T F its stretch, u
-// local displacement, y = R^T (x - c) local position, q = K u local force without the turning of R, t = H (sum y_i x
-// q_i) with H = (tr(S) I - S)^-1, g_i = q_i - t x b_i the gradient in the local frame.
 #include "mechanics/corotational.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "core/parallel.hpp"
 
 namespace plica {
 namespace {
 
-using Mat24x3 = Eigen::Matrix<double, 24, 3>;
-using Mat3x24 = Eigen::Matrix<double, 3, 24>;
 using Mat6x24 = Eigen::Matrix<double, 6, 24>;
 using Mat6x9 = Eigen::Matrix<double, 6, 9>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -46,35 +39,6 @@ Mat6 stress_matrix(const ElasticModuli& moduli) {
   return d;
 }
 
-// The nearest rotation R to F and the stretch S = R^T F. Newton's iteration for the polar factor, X <- (X + X^-T)/2
-// (Higham 1986), converges quadratically wherever det F > 0; elsewhere, on the way to being rejected, the SVD serves.
-void polar(const Mat3& F, Mat3& R, Mat3& S) {
-  R = F;
-  for (int iteration = 0; iteration < 20; ++iteration) {
-    // X^-T is the matrix of cofactors over the determinant.
-    Mat3 cofactors;
-    cofactors.col(0) = R.col(1).cross(R.col(2));
-    cofactors.col(1) = R.col(2).cross(R.col(0));
-    cofactors.col(2) = R.col(0).cross(R.col(1));
-    const double determinant = R.col(0).dot(cofactors.col(0));
-    if (!(determinant > 1e-3)) break;
-    const Mat3 next = 0.5 * (R + cofactors / determinant);
-    const double change = (next - R).squaredNorm();
-    R = next;
-    // Quadratic: the next change would be below rounding.
-    if (change < 1e-18) {
-      S = R.transpose() * F;
-      S = 0.5 * (S + S.transpose()).eval();
-      return;
-    }
-  }
-  const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vec3 sign = Vec3::Ones();
-  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) sign.z() = -1;
-  R = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
-  S = svd.matrixV() * (sign.cwiseProduct(svd.singularValues())).asDiagonal() * svd.matrixV().transpose();
-}
-
 }  // namespace
 
 ElasticModuli ElasticModuli::from_young(double young_modulus, double poisson_ratio) {
@@ -82,12 +46,7 @@ ElasticModuli ElasticModuli::from_young(double young_modulus, double poisson_rat
           young_modulus / (2 * (1 + poisson_ratio))};
 }
 
-std::array<Vec3, 8> mean_gradients(const HexPoints& rest) {
-  std::array<Vec3, 8> gradients = hex_volume_gradient(rest);
-  const double volume = hex_volume(rest);
-  for (Vec3& gradient : gradients) gradient /= volume;
-  return gradients;
-}
+ElasticModuli viscous_moduli(double shear_viscosity) { return {-2 * shear_viscosity / 3, shear_viscosity}; }
 
 Mat24 incompatible_stiffness(const HexPoints& rest, const ElasticModuli& moduli) {
   const Mat6 d = stress_matrix(moduli);
@@ -119,200 +78,34 @@ Mat24 incompatible_stiffness(const HexPoints& rest, const ElasticModuli& moduli)
   return 0.5 * (stiffness + stiffness.transpose());
 }
 
-Corotational::Element Corotational::make_element(const std::array<NodeId, 8>& nodes, const HexPoints& rest) const {
-  Element element;
-  element.nodes = nodes;
-  element.mean_gradient = mean_gradients(rest);
-  Vec3 centre = Vec3::Zero();
-  for (const Vec3& point : rest) centre += point / 8;
-  for (int i = 0; i < 8; ++i) element.rest[i] = rest[i] - centre;
-  Vec24 b;
-  for (int i = 0; i < 8; ++i) b.segment<3>(3 * i) = element.mean_gradient[i];
-  element.stiffness =
-      incompatible_stiffness(rest, moduli_) - moduli_.bulk_modulus() * hex_volume(rest) * b * b.transpose();
-  const ElasticModuli viscous_moduli{-2 * shear_viscosity_ / 3, shear_viscosity_};  // deviatoric
-  if (viscous_) element.viscosity = incompatible_stiffness(rest, viscous_moduli);
-  return element;
-}
-
 Corotational::Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity)
-    : moduli_(moduli),
+    : TurningElements(tissue, shear_viscosity > 0),
+      moduli_(moduli),
       shear_viscosity_(shear_viscosity),
-      viscous_(shear_viscosity > 0),
-      elements_(tissue.elements.size()) {
-  std::vector<char> inverted(elements_.size(), 0);
-  parallel_for(elements_.size(), [&](std::size_t e) {
-    const HexPoints& rest = tissue.element_rest_shape[e];
-    inverted[e] = hex_scaled_jacobian(rest) <= 0;
-    if (!inverted[e]) elements_[e] = make_element(tissue.elements[e], rest);
-  });
-  const auto bad = std::find(inverted.begin(), inverted.end(), 1);
-  if (bad != inverted.end()) {
-    const auto e = static_cast<std::size_t>(bad - inverted.begin());
-    throw std::domain_error("element " + std::to_string(e) + " of cell " +
-                            std::to_string(tissue.element_cell[e].number()) + " is inverted or flat at rest");
-  }
+      stiffness_(tissue.elements.size()) {
+  parallel_for(elements_.size(), [&](std::size_t e) { fit(tissue, e); });
 }
 
-struct Corotational::Frame {
-  Mat3 R, S, H;
-  Vec24 u;  // local displacement
-  Vec24 q;  // K u, and the viscous part
-  Vec24 g;  // gradient of the energy in the local frame
-  std::array<Vec3, 8> y;
-  Vec3 t;
-  double energy = 0;
-  double viscous_factor = 0;  // 1/h
-};
-
-Corotational::Frame Corotational::frame(const Element& element, const Step& step) const {
-  // The local displacement at given positions, with its rotation and stretch.
-  const auto localise = [&](std::span<const Vec3> positions, Mat3& R, Mat3& S, std::array<Vec3, 8>& y) {
-    Mat3 F = Mat3::Zero();
-    Vec3 centre = Vec3::Zero();
-    for (int i = 0; i < 8; ++i) centre += positions[element.nodes[i].index()] / 8;
-    for (int i = 0; i < 8; ++i)
-      F += (positions[element.nodes[i].index()] - centre) * element.mean_gradient[i].transpose();
-    polar(F, R, S);
-    Vec24 u;
-    for (int i = 0; i < 8; ++i) {
-      y[i] = R.transpose() * (positions[element.nodes[i].index()] - centre);
-      u.segment<3>(3 * i) = y[i] - element.rest[i];
-    }
-    return u;
-  };
-
-  Frame f;
-  f.u = localise(step.positions, f.R, f.S, f.y);
-  f.q.noalias() = element.stiffness * f.u;
-  f.energy = 0.5 * f.u.dot(f.q);
-  if (viscous_) {
-    Mat3 previous_rotation, previous_stretch;
-    std::array<Vec3, 8> previous_y;
-    const Vec24 change = f.u - localise(step.previous_positions, previous_rotation, previous_stretch, previous_y);
-    f.viscous_factor = 1 / step.duration_s;
-    const Vec24 viscous = f.viscous_factor * (element.viscosity * change);
-    f.energy += 0.5 * change.dot(viscous);
-    f.q += viscous;
-  }
-  // How R turns with x adds -t x b_i. H exists unless the stretch is far from 1 (two principal stretches sum to 0).
-  f.H = (f.S.trace() * Mat3::Identity() - f.S).inverse();
-  Vec3 torque = Vec3::Zero();
-  for (int i = 0; i < 8; ++i) torque += f.y[i].cross(Vec3(f.q.segment<3>(3 * i)));
-  f.t = f.H * torque;
-  for (int i = 0; i < 8; ++i) f.g.segment<3>(3 * i) = f.q.segment<3>(3 * i) - f.t.cross(element.mean_gradient[i]);
-  return f;
-}
-
-double Corotational::energy(const Step& step) const {
-  std::vector<double> energies(elements_.size());
-  parallel_for(elements_.size(), [&](std::size_t e) { energies[e] = frame(elements_[e], step).energy; });
-  double sum = 0;
-  for (const double energy : energies) sum += energy;
-  return sum;
-}
-
-void Corotational::add_forces(const Step& step, std::span<Vec3> forces) const {
-  std::vector<std::array<Vec3, 8>> gradients(elements_.size());
-  parallel_for(elements_.size(), [&](std::size_t e) {
-    const Frame f = frame(elements_[e], step);
-    for (int i = 0; i < 8; ++i) gradients[e][i] = f.R * f.g.segment<3>(3 * i);
-  });
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    for (int i = 0; i < 8; ++i) forces[elements_[e].nodes[i].index()] -= gradients[e][i];
-}
-
-void Corotational::add_tangent_product(const Step& step, std::span<const Vec3> direction,
-                                       std::span<Vec3> product) const {
-  std::vector<std::array<Vec3, 8>> results(elements_.size());
-  parallel_for(elements_.size(), [&](std::size_t e) {
-    const Element& element = elements_[e];
-    const Frame f = frame(element, step);
-    const auto& b = element.mean_gradient;
-    // w: the direction in the local frame; omega: how fast the frame turns; du: the change of u (and of y).
-    std::array<Vec3, 8> w;
-    Vec3 spin = Vec3::Zero();
-    Mat3 stretching = Mat3::Zero();
-    for (int i = 0; i < 8; ++i) {
-      w[i] = f.R.transpose() * direction[element.nodes[i].index()];
-      spin += b[i].cross(w[i]);
-      stretching += w[i] * b[i].transpose();
-    }
-    const Vec3 omega = f.H * spin;
-    Vec24 du;
-    for (int i = 0; i < 8; ++i) du.segment<3>(3 * i) = w[i] - omega.cross(f.y[i]);
-    Vec24 dq = element.stiffness * du;
-    if (viscous_) dq += f.viscous_factor * (element.viscosity * du);
-    // dS and from it dt; then d(R g_i) = R (omega x g_i + dq_i - dt x b_i).
-    const Mat3 dS = stretching - cross_matrix(omega) * f.S;
-    Vec3 dtorque = dS * f.t - dS.trace() * f.t;
-    for (int i = 0; i < 8; ++i)
-      dtorque +=
-          Vec3(du.segment<3>(3 * i)).cross(Vec3(f.q.segment<3>(3 * i))) + f.y[i].cross(Vec3(dq.segment<3>(3 * i)));
-    const Vec3 dt = f.H * dtorque;
-    for (int i = 0; i < 8; ++i)
-      results[e][i] = f.R * (omega.cross(Vec3(f.g.segment<3>(3 * i))) + Vec3(dq.segment<3>(3 * i)) - dt.cross(b[i]));
-  });
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    for (int i = 0; i < 8; ++i) product[elements_[e].nodes[i].index()] += results[e][i];
-}
-
-void Corotational::add_tangent(const Step& step, TangentSink& tangent) const {
-  // A batch at a time: computed by all threads, added in order.
-  constexpr std::size_t batch = 1024;
-  std::vector<Mat24> blocks(std::min(batch, elements_.size()));
-  std::vector<Mat3> rotations(blocks.size());
-  for (std::size_t first = 0; first < elements_.size(); first += batch) {
-    const std::size_t count = std::min(batch, elements_.size() - first);
-    parallel_for(count, [&](std::size_t k) {
-      const Element& element = elements_[first + k];
-      const Frame f = frame(element, step);
-      // The product above as matrices: omega = G w, du = (I + Y G) w with Y_i = [y_i]x.
-      Mat3x24 G, Q, D;
-      Mat24x3 Y, g;
-      for (int i = 0; i < 8; ++i) {
-        const Vec3& b = element.mean_gradient[i];
-        G.middleCols<3>(3 * i) = f.H * cross_matrix(b);
-        Q.middleCols<3>(3 * i) = -cross_matrix(f.q.segment<3>(3 * i));
-        D.middleCols<3>(3 * i) = b.dot(f.t) * Mat3::Identity() - f.t * b.transpose();
-        Y.middleRows<3>(3 * i) = cross_matrix(f.y[i]);
-        g.middleRows<3>(3 * i) = cross_matrix(f.g.segment<3>(3 * i));
-      }
-      Mat24 K = element.stiffness;
-      if (viscous_) K += f.viscous_factor * element.viscosity;
-      // lazyProduct: these products are too small for Eigen's blocked kernels.
-      const Mat24x3 W = K.lazyProduct(Y);
-      const Mat3 middle = Y.transpose().lazyProduct(W) - Q.lazyProduct(Y) - cross_matrix(f.S * f.t);
-      const Mat24x3 left = W - g;
-      const Mat3x24 right = W.transpose() - Q - D + middle.lazyProduct(G);
-      K += left.lazyProduct(G);
-      K += G.transpose().lazyProduct(right);
-      blocks[k] = 0.5 * (K + K.transpose());  // symmetric but for rounding
-      rotations[k] = f.R;
-    });
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto& nodes = elements_[first + k].nodes;
-      const Mat3& R = rotations[k];
-      for (int i = 0; i < 8; ++i)
-        for (int j = 0; j < 8; ++j)
-          tangent.add_block(nodes[i], nodes[j], R * blocks[k].block<3, 3>(3 * i, 3 * j) * R.transpose());
-    }
-  }
-}
-
-NodeGroups Corotational::node_groups() const {
-  NodeGroups groups;
-  for (const Element& element : elements_) groups.emplace_back(element.nodes.begin(), element.nodes.end());
-  return groups;
+void Corotational::fit(const Tissue& tissue, std::size_t e) {
+  const HexPoints& rest = tissue.element_rest_shape[e];
+  elements_[e].frame = mean_gradients(rest);
+  Vec24 b;
+  for (int i = 0; i < 8; ++i) b.segment<3>(3 * i) = elements_[e].frame[i];
+  stiffness_[e] = incompatible_stiffness(rest, moduli_) - moduli_.bulk_modulus() * hex_volume(rest) * b * b.transpose();
+  if (shear_viscosity_ > 0) elements_[e].viscosity = incompatible_stiffness(rest, viscous_moduli(shear_viscosity_));
 }
 
 std::unique_ptr<Law> Corotational::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
   return std::make_unique<Corotational>(tissue, moduli_, shear_viscosity_);
 }
 
-void Corotational::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
-  for (const ElementId e : elements)
-    elements_[e.index()] = make_element(tissue.elements[e.index()], tissue.element_rest_shape[e.index()]);
+double Corotational::respond(std::size_t element, const Vec24& u, Vec24& q) const {
+  q.noalias() = stiffness_[element] * u;
+  return 0.5 * u.dot(q);
+}
+
+const Mat24& Corotational::local_stiffness(std::size_t element, const Vec24&, Mat24&) const {
+  return stiffness_[element];
 }
 
 }  // namespace plica

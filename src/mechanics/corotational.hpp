@@ -7,16 +7,9 @@
 // momentum is exact and the tangent symmetric.
 #pragma once
 
-#include <Eigen/Dense>
-
-#include "mechanics/law.hpp"
-#include "tissue/hexahedron.hpp"
-#include "tissue/tissue.hpp"
+#include "mechanics/turning_elements.hpp"
 
 namespace plica {
-
-using Mat24 = Eigen::Matrix<double, 24, 24>;
-using Vec24 = Eigen::Matrix<double, 24, 1>;
 
 /// Isotropic linear elasticity. Stress = 2 G strain + lambda trace(strain) I, in kPa (nN/um^2).
 struct ElasticModuli {
@@ -32,43 +25,29 @@ struct ElasticModuli {
 /// Source: Taylor, Beresford, Wilson 1976 for the correction of the modes.
 Mat24 incompatible_stiffness(const HexPoints& rest, const ElasticModuli& moduli);
 
-/// Mean gradients b_i of the shape functions over the rest volume, 1/um: mean deformation gradient F = sum x_i b_i^T.
-std::array<Vec3, 8> mean_gradients(const HexPoints& rest);
+/// The moduli (nN s/um^2) of a viscosity that resists shear only: deviatoric. Their stiffness is a damping.
+ElasticModuli viscous_moduli(double shear_viscosity);
 
-class Corotational final : public Law {
+class Corotational final : public TurningElements {
  public:
   /// `shear_viscosity` in nN s/um^2 (0: none). Rest shapes are those of the tissue's elements. Throws std::domain_error
   /// when a rest shape is inverted.
   Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity);
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
-  [[nodiscard]] double energy(const Step& step) const override;
-  void add_forces(const Step& step, std::span<Vec3> forces) const override;
-  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
-  void add_tangent(const Step& step, TangentSink& tangent) const override;
-  [[nodiscard]] NodeGroups node_groups() const override;
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
-  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
+
+ protected:
+  double respond(std::size_t element, const Vec24& u, Vec24& q) const override;
+  const Mat24& local_stiffness(std::size_t element, const Vec24& u, Mat24& space) const override;
 
  private:
-  struct Element {
-    std::array<NodeId, 8> nodes;
-    std::array<Vec3, 8> mean_gradient;  // b_i
-    HexPoints rest;                     // X_i - C
-    Mat24 stiffness;                    // without its mean volumetric part
-    Mat24 viscosity;                    // used with shear_viscosity_ > 0 only
-  };
-  struct Frame;  // an element's rotation, local displacement and local force at given positions
-
-  [[nodiscard]] Frame frame(const Element& element, const Step& step) const;
-
-  [[nodiscard]] Element make_element(const std::array<NodeId, 8>& nodes, const HexPoints& rest) const;
+  void fit(const Tissue& tissue, std::size_t element) override;
 
   ElasticModuli moduli_;
   double shear_viscosity_;
-  bool viscous_;
-  std::vector<Element> elements_;
+  std::vector<Mat24> stiffness_;  // elements; without the mean volumetric part
 };
 
 }  // namespace plica

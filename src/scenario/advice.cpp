@@ -3,10 +3,32 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
+#include "mechanics/shape_memory.hpp"
 #include "tissue/mesh_quality.hpp"
 
 namespace plica {
+namespace {
+
+using Say = std::function<void(std::string)>;
+
+void advise_on_shape_memory(const Scenario& scenario, const Model& model, const Say& note, const Say& warn) {
+  for (const auto& law : model.laws)
+    if (const auto* springs = dynamic_cast<const ShapeMemory*>(law.get())) {
+      const auto [least, most] = std::ranges::minmax(springs->stiffness());
+      note(fmt::format("springs to the attractor have {:.4g} to {:.4g} nN/um{}", least, most,
+                       scenario.elasticity.attractor_stiffness_nN_per_um
+                           ? "; Young's modulus and Poisson's ratio are not used"
+                           : ", so that the mean shear modulus is that of Young's modulus and Poisson's ratio"));
+      if (model.tissue.elements.size() > model.tissue.cells.size())
+        warn(
+            "shape memory is a law of whole cells: in cells of several elements the sheet bends up to three times more "
+            "easily (docs/theory/shape_memory.md)");
+    }
+}
+
+}  // namespace
 
 std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   std::vector<std::string> lines;
@@ -24,12 +46,13 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   for (const auto& [name, contraction] : scenario.contractions)
     if (!contraction.program.activity.empty() && std::ranges::max(contraction.program.activity) == 0)
       warn(fmt::format("contraction.{}: its program is 0 at every point", name));
-  for (const auto& [name, contraction] : scenario.contractions)
-    if (!contraction.program.time_s.empty() && contraction.program.time_s.back() > scenario.time.end_s)
+  for (std::size_t k = 0; const auto& [name, contraction] : scenario.contractions)
+    if (model.contractions[k++]->points_s().back() > scenario.time.end_s)
       warn(fmt::format("contraction.{}: its program goes on after the run's end at {} s", name, scenario.time.end_s));
   if (scenario.time.step_s && *scenario.time.step_s > scenario.time.end_s)
     warn("time.step_s is longer than the whole run");
-  if (scenario.volume.method == "coupled")
+  advise_on_shape_memory(scenario, model, note, warn);
+  if (scenario.volume.method == "coupled" && scenario.elasticity.model == "corotational")
     note(
         "every cell's volume is held exactly, so Poisson's ratio sets only the shear modulus and how far parts of a "
         "cell "

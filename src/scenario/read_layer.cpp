@@ -271,7 +271,8 @@ class Reader {
     for (const Row* row : rows_of(table)) {
       if (row->key == row_key) return read_value(*row, name, path, written, key, node);
       if (row->key.starts_with(row_key + ".")) {
-        const toml::table* inner = as_table(node, key, written, "a table of times and activities");
+        const toml::table* inner =
+            as_table(node, key, written, row_key == "program" ? "a table of times and activities" : "a table");
         if (inner == nullptr) return;
         note(written, written, key, nullptr);
         return read_keys(table, name, row_key + ".", *inner);

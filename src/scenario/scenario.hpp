@@ -46,6 +46,9 @@ struct ElasticityInput {
   std::string model = "corotational";
   double young_modulus_Pa = 1000;
   double poisson_ratio = 0.45;
+  std::optional<double> attractor_stiffness_nN_per_um;  // shape-memory; empty: derived from the two above
+  double attractor_preload_nN = 0;                      // shape-memory
+  double attractor_preload_length_um = 0.5;             // shape-memory: the preload acts in full farther off than this
 };
 
 struct VolumeInput {
@@ -63,6 +66,24 @@ struct DynamicsInput {
   double density_kg_per_m3 = 0;
 };
 
+struct ProfileInput {
+  std::string shape;                          // constant | linear | gaussian; empty: constant
+  std::string axis;                           // across | along; empty: across
+  std::optional<double> half_width_um, edge;  // linear
+  std::optional<double> sigma_um;             // gaussian
+};
+
+struct DelayInput {
+  std::optional<double> speed_um_per_s;  // empty: no delay
+  std::string axis;                      // along | across; empty: along
+  std::string from;                      // middle | ends | low | high; empty: middle
+};
+
+struct VariationInput {
+  double spread = 0;
+  int seed = 1;
+};
+
 struct ContractionInput {
   std::string region;
   std::string edges = "apical";  // apical | basal | lateral
@@ -74,6 +95,9 @@ struct ContractionInput {
   double preload_nN = 0;
   double damping_nN_s_per_um = 0;
   ProgramInput program;
+  ProfileInput profile;
+  DelayInput delay;
+  VariationInput variation;
 };
 
 struct DivisionInput {

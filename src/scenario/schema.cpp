@@ -27,10 +27,9 @@ Field at(Named<Table> tables, T Table::*field) {
   return [=](Scenario& scenario, const std::string& name) -> Slot { return &((scenario.*tables)[name].*field); };
 }
 
-template <class Table>
-Field at(Named<Table> tables, ProgramInput Table::*program, std::vector<double> ProgramInput::*field) {
-  return
-      [=](Scenario& scenario, const std::string& name) -> Slot { return &((scenario.*tables)[name].*program.*field); };
+template <class Table, class Inner, class T>
+Field at(Named<Table> tables, Inner Table::*inner, T Inner::*field) {
+  return [=](Scenario& scenario, const std::string& name) -> Slot { return &((scenario.*tables)[name].*inner.*field); };
 }
 
 Field no_field() {
@@ -112,13 +111,26 @@ const std::vector<Row>& rows() {
       row("region.*", "intersect", at(&S::regions, &R::intersect), anything, "Only cells of each of these regions."),
       row("region.*", "except", at(&S::regions, &R::except), anything, "No cells of these regions."),
 
-      row("elasticity", "model", at(&S::elasticity, &ElasticityInput::model), words({"corotational"}, {"shape-memory"}),
-          "Elastic law of a cell."),
+      row("elasticity", "model", at(&S::elasticity, &ElasticityInput::model), words({"corotational", "shape-memory"}),
+          "Elastic law of a cell: isotropic in a frame that turns with it, or springs from its nodes to their places "
+          "in "
+          "the rest shape that follows it."),
       row("elasticity", "young_modulus_Pa", at(&S::elasticity, &ElasticityInput::young_modulus_Pa), positive,
           "Young's modulus (Pa)."),
       row("elasticity", "poisson_ratio", at(&S::elasticity, &ElasticityInput::poisson_ratio),
           {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
           "Poisson's ratio; with coupled volumes it only sets the shear modulus and the dilatation inside a cell."),
+      row("elasticity", "attractor_stiffness_nN_per_um",
+          at(&S::elasticity, &ElasticityInput::attractor_stiffness_nN_per_um),
+          {.low = 0, .low_included = false, .word_for_none = "derived"},
+          "Model shape-memory: stiffness of the springs from the nodes of a cell to the attractor (nN/µm), or such "
+          "that "
+          "the mean shear modulus is that of young_modulus_Pa and poisson_ratio."),
+      row("elasticity", "attractor_preload_nN", at(&S::elasticity, &ElasticityInput::attractor_preload_nN),
+          not_negative, "Model shape-memory: tension of these springs that does not depend on their length (nN)."),
+      row("elasticity", "attractor_preload_length_um",
+          at(&S::elasticity, &ElasticityInput::attractor_preload_length_um), positive,
+          "Model shape-memory: how far from its place a node feels 0.7 of the preload (µm); it has no direction at 0."),
 
       row("volume", "method", at(&S::volume, &VolumeInput::method), words({"coupled", "none"}, {"projection"}),
           "How cells keep their volume: as constraints of each step, or not."),
@@ -159,6 +171,35 @@ const std::vector<Row>& rows() {
           "The same in minutes.", {.instead_of = "program.time_s", .scale = 60}),
       row("contraction.*", "program.activity", at(&S::contractions, &C::program, &ProgramInput::activity), not_negative,
           "Activity at these times: a factor on the tension, linear between them."),
+      row("contraction.*", "profile.shape", at(&S::contractions, &C::profile, &ProfileInput::shape),
+          words({"constant", "linear", "gaussian"}),
+          "Factor on stiffness and preload by a cell's distance from the region's middle: 1, falling to `edge` at "
+          "`half_width_um`, or exp(−d²/2σ²)."),
+      row("contraction.*", "profile.axis", at(&S::contractions, &C::profile, &ProfileInput::axis),
+          words({"across", "along"}),
+          "Distance across the axis (the arc about it through the cell's centre; y in a block) or along it (x); "
+          "without "
+          "it across."),
+      row("contraction.*", "profile.half_width_um", at(&S::contractions, &C::profile, &ProfileInput::half_width_um),
+          positive, "Linear: distance at which the factor is `edge`, as it is beyond (µm)."),
+      row("contraction.*", "profile.edge", at(&S::contractions, &C::profile, &ProfileInput::edge), not_negative,
+          "Linear: factor there; without it 0."),
+      row("contraction.*", "profile.sigma_um", at(&S::contractions, &C::profile, &ProfileInput::sigma_um), positive,
+          "Gaussian: its standard deviation σ (µm)."),
+      row("contraction.*", "delay.speed_um_per_s", at(&S::contractions, &C::delay, &DelayInput::speed_um_per_s),
+          {.low = 0, .low_included = false, .word_for_none = "none"},
+          "Speed of a wave (µm/s): a cell's program starts when it arrives, and the cell is slack before."),
+      row("contraction.*", "delay.axis", at(&S::contractions, &C::delay, &DelayInput::axis), words({"along", "across"}),
+          "Direction of the wave, as in `profile.axis`; without it along."),
+      row("contraction.*", "delay.from", at(&S::contractions, &C::delay, &DelayInput::from),
+          words({"middle", "ends", "low", "high"}),
+          "Where the region's wave starts at time 0; without it in the middle. Low is the anterior end, or the left "
+          "side."),
+      row("contraction.*", "variation.spread", at(&S::contractions, &C::variation, &VariationInput::spread),
+          not_negative,
+          "Relative standard deviation of a log-normal factor with mean 1 on each cell's stiffness and preload."),
+      row("contraction.*", "variation.seed", at(&S::contractions, &C::variation, &VariationInput::seed), not_negative,
+          "Another seed gives other factors; a cell's factor depends on seed and cell number only."),
 
       row("hold.*", "region", at(&S::holds, &H::region), anything, "Region whose nodes are held.", {.required = true}),
       row("hold.*", "directions", at(&S::holds, &H::directions), words({"x", "y", "z"}),

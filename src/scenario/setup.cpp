@@ -7,6 +7,7 @@
 
 #include "core/units.hpp"
 #include "mechanics/corotational.hpp"
+#include "mechanics/shape_memory.hpp"
 #include "mechanics/surroundings.hpp"
 #include "scenario/regions.hpp"
 #include "tissue/embryo.hpp"
@@ -51,6 +52,50 @@ EdgeSide side_named(const std::string& name) {
   return name == "apical" ? EdgeSide::apical : name == "basal" ? EdgeSide::basal : EdgeSide::lateral;
 }
 
+void add_elasticity(const Scenario& scenario, Model& model) {
+  const ElasticityInput& input = scenario.elasticity;
+  const double young_modulus = input.young_modulus_Pa * units::pascal;
+  const double viscosity = scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second;
+  const ElasticModuli moduli = ElasticModuli::from_young(young_modulus, input.poisson_ratio);
+  model.stiffness_scale = young_modulus;
+  if (input.model == "shape-memory") {
+    const AttractorSprings springs{input.attractor_stiffness_nN_per_um.value_or(0), moduli.shear_modulus,
+                                   input.attractor_preload_nN, input.attractor_preload_length_um};
+    auto law = std::make_unique<ShapeMemory>(model.tissue, springs, viscosity);
+    // The modulus that a given stiffness amounts to.
+    const double shear = attractor_moduli(model.tissue.element_rest_shape[0], law->stiffness()[0]).mean_shear();
+    model.stiffness_scale = 2 * (1 + input.poisson_ratio) * shear;
+    model.laws.push_back(std::move(law));
+    return;
+  }
+  model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, viscosity));
+  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus()));
+}
+
+ContractionPattern make_pattern(const ContractionInput& input) {
+  using Shape = ContractionProfile::Shape;
+  using From = ContractionDelay::From;
+  const auto axis = [](const std::string& name) { return name == "along" ? PatternAxis::along : PatternAxis::across; };
+  ContractionPattern pattern;
+  const ProfileInput& profile = input.profile;
+  pattern.profile.shape = profile.shape == "linear"     ? Shape::linear
+                          : profile.shape == "gaussian" ? Shape::gaussian
+                                                        : Shape::constant;
+  pattern.profile.axis = axis(profile.axis);
+  pattern.profile.half_width = profile.half_width_um.value_or(1);
+  pattern.profile.edge = profile.edge.value_or(0);
+  pattern.profile.sigma = profile.sigma_um.value_or(1);
+  pattern.delay.speed = input.delay.speed_um_per_s.value_or(0);
+  pattern.delay.axis = axis(input.delay.axis);
+  pattern.delay.from = input.delay.from == "ends"   ? From::ends
+                       : input.delay.from == "low"  ? From::low
+                       : input.delay.from == "high" ? From::high
+                                                    : From::middle;
+  pattern.spread = input.variation.spread;
+  pattern.seed = static_cast<std::uint64_t>(input.variation.seed);
+  return pattern;
+}
+
 void add_contractions(const Scenario& scenario, Model& model) {
   for (const auto& [name, input] : scenario.contractions) {
     const CellSet& cells = model.tissue.regions.at(input.region);
@@ -63,8 +108,9 @@ void add_contractions(const Scenario& scenario, Model& model) {
     rule.rest_length_ratio = input.rest_length_ratio;
     rule.preload = input.preload_nN;
     rule.damping = input.damping_nN_s_per_um;
-    auto law =
-        std::make_unique<Contraction>(contraction_springs(model.tissue, cells, rule), make_program(input.program));
+    CellPattern pattern = cell_pattern(model.tissue, cells, make_pattern(input));
+    auto law = std::make_unique<Contraction>(contraction_springs(model.tissue, cells, rule, pattern),
+                                             make_program(input.program), std::move(pattern.delays_s));
     model.contractions.push_back(law.get());
     model.contraction_cells.push_back(cells);
     model.laws.push_back(std::move(law));
@@ -136,13 +182,8 @@ Tissue make_tissue(const Scenario& scenario) {
 std::unique_ptr<Model> make_model(const Scenario& scenario) {
   auto model = std::make_unique<Model>(make_tissue(scenario));
   const Tissue& tissue = model->tissue;
-  const double young_modulus = scenario.elasticity.young_modulus_Pa * units::pascal;
-  const ElasticModuli moduli = ElasticModuli::from_young(young_modulus, scenario.elasticity.poisson_ratio);
-  model->stiffness_scale = young_modulus;
   model->volumes_are_held = scenario.volume.method == "coupled";
-  model->laws.push_back(
-      std::make_unique<Corotational>(tissue, moduli, scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second));
-  model->laws.push_back(std::make_unique<Dilatation>(tissue, moduli.bulk_modulus()));
+  add_elasticity(scenario, *model);
   add_contractions(scenario, *model);
   add_pressures(scenario, *model);
   if (scenario.dynamics.surface_drag_Pa_s_per_um > 0)
@@ -170,7 +211,7 @@ std::unique_ptr<Model> make_model(const Scenario& scenario) {
   return model;
 }
 
-RunControls make_controls(const Scenario& scenario) {
+RunControls make_controls(const Scenario& scenario, const Model& model) {
   RunControls controls;
   controls.fixed_step_s = scenario.time.step_s;
   controls.first_step_s = scenario.time.first_step_s;
@@ -180,11 +221,11 @@ RunControls make_controls(const Scenario& scenario) {
   controls.equilibrium_speed_um_per_s = scenario.stop.equilibrium_speed_um_per_min * units::um_per_minute;
   controls.stop_at_equilibrium = scenario.stop.at_equilibrium;
   controls.frame_every_s = scenario.output.frame_every_s;
-  const auto add_points = [&](const ProgramInput& program) {
-    controls.program_points_s.insert(controls.program_points_s.end(), program.time_s.begin(), program.time_s.end());
+  const auto add_points = [&](const std::vector<double>& points) {
+    controls.program_points_s.insert(controls.program_points_s.end(), points.begin(), points.end());
   };
-  for (const auto& [name, input] : scenario.contractions) add_points(input.program);
-  for (const auto& [name, input] : scenario.pressures) add_points(input.program);
+  for (const Contraction* contraction : model.contractions) add_points(contraction->points_s());
+  for (const auto& [name, input] : scenario.pressures) add_points(input.program.time_s);
   for (const auto& [name, input] : scenario.divisions) {
     controls.divisions.push_back(make_division_rule(input));
     if (input.at_s) controls.program_points_s.push_back(*input.at_s);

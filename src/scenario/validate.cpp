@@ -8,6 +8,7 @@
 #include <set>
 
 #include "scenario/suggest.hpp"
+#include "scenario/validate_laws.hpp"
 
 namespace plica {
 namespace {
@@ -270,11 +271,15 @@ class RegionCheck {
 void validate(Scenario& scenario, Input& input) {
   check_embryo(scenario, input);
   check_vitelline(scenario, input);
+  check_elasticity(scenario.elasticity, input);
   check_dynamics(scenario.dynamics, input);
   check_time(scenario.time, input);
   check_required_keys(scenario, input);
   check_expectations(scenario, input);
-  for (const auto& [name, it] : scenario.contractions) check_program("contraction." + name, it.program, input);
+  for (auto& [name, it] : scenario.contractions) {
+    check_program("contraction." + name, it.program, input);
+    check_pattern("contraction." + name, it, input);
+  }
   for (const auto& [name, it] : scenario.pressures) check_program("pressure." + name, it.program, input);
   for (const auto& [name, it] : scenario.divisions) check_division("division." + name, it, input);
   RegionCheck regions(scenario, input);

@@ -55,6 +55,20 @@ class Embryos(unittest.TestCase):
         self.assertLess(s["peak_speed_ratio"], self.drosophila["peak_speed_ratio"])
         self.assertLess(s["ends_lead_until_s"], self.drosophila["ends_lead_until_s"])
 
+    def test_folds_under_the_other_elasticity_too(self):
+        # Its own [expect] has been met, or run() had failed; here, that it is another law and the same furrow.
+        s = run("drosophila-shape-memory")[0]
+        self.assertEqual(s["status"], "equilibrium")
+        self.assertAlmostEqual(s["furrow_depth_um"], self.drosophila["furrow_depth_um"], delta=0.5)
+        self.assertGreater(s["vml_apical_area_ratio"], self.drosophila["vml_apical_area_ratio"] + 0.02)
+
+    def test_deep_furrow_lies_well_below_its_lips(self):
+        # Its own [expect] has been met, or run() had failed.
+        s = run("drosophila-deep")[0]
+        self.assertEqual(s["status"], "equilibrium")
+        self.assertGreaterEqual(s["furrow_depth_below_lips_um"], 20)
+        self.assertGreaterEqual(s["min_scaled_jacobian"], 0.5)
+
     def test_symmetric_left_right_and_front_back(self):
         compared = 0
         for rows in (self.pill, self.sphere):

@@ -88,6 +88,57 @@ TEST(Contraction, ActivityIsReadAtTheEndOfTheStep) {
   RecordProperty("cases", cases);
 }
 
+// A wave: the program of a spring starts when its delay is over, and the spring is slack before, whatever its first
+// point.
+TEST(Contraction, DelayedSpringStartsItsProgramLater) {
+  const Contraction step_on({Spring{{NodeId(0), NodeId(1)}, 3, 5, 0, 0, 10}}, {});
+  const Contraction ramp({Spring{{NodeId(0), NodeId(1)}, 3, 5, 0, 0, 10}}, Program({0, 4}, {0.5, 1.0}));
+  Motion motion = pair(20);
+  int cases = 0;
+  for (const auto& [time, on, ramped] : {std::tuple{0.0, 0.0, 0.0},
+                                         {9.99, 0.0, 0.0},
+                                         {10.0, 1.0, 0.5},
+                                         {12.0, 1.0, 0.75},
+                                         {14.0, 1.0, 1.0},
+                                         {99.0, 1.0, 1.0}}) {
+    motion.end_time_s = time;
+    EXPECT_NEAR(forces_of(step_on, motion.step())[0].x(), on * 65, 1e-12) << time;
+    EXPECT_NEAR(forces_of(ramp, motion.step())[0].x(), ramped * 65, 1e-12) << time;
+    EXPECT_NEAR(ramp.activity(10, time), ramped, 1e-12);
+    ++cases;
+  }
+  RecordProperty("cases", cases);
+}
+
+TEST(Contraction, DerivativesAgreeWithFiniteDifferencesInAWave) {
+  const Tissue tissue = distorted_block(two_cells, 1, 6);
+  // At 1.3 s, when random_motion's step ends, one cell is in the middle of its program and one before its end.
+  const CellPattern pattern{{1, 0.3}, {0.2, 0.8}};
+  check_derivatives(Contraction(contraction_springs(tissue, CellSet(2, true), {.stiffness = 2, .preload = 3}, pattern),
+                                Program({0, 1}, {0, 1}), pattern.delays_s),
+                    tissue, 3);
+}
+
+TEST(Contraction, PointsAreThoseOfTheProgramAfterEachDelay) {
+  const auto points = [](const std::vector<double>& delays, Program program) {
+    std::vector<Spring> springs;
+    for (const double delay : delays) springs.push_back({{NodeId(0), NodeId(1)}, 1, 0, 0, 0, delay});
+    return Contraction(std::move(springs), std::move(program)).points_s();
+  };
+  using Points = std::vector<double>;
+  EXPECT_EQ(points({0, 0}, {}), (Points{0}));
+  EXPECT_EQ(points({0}, Program({1, 5}, {0, 1})), (Points{1, 5}));
+  EXPECT_EQ(points({7, 0, 7, 3}, {}), (Points{0, 3, 7}));
+  EXPECT_EQ(points({0, 4, 10}, Program({1, 5}, {0, 1})), (Points{1, 5, 9, 11, 15}));
+  // Many delays: about a hundred of them, and the last.
+  Points many;
+  for (int i = 0; i <= 1000; ++i) many.push_back(0.1 * i);
+  const Points thinned = points(many, {});
+  EXPECT_LE(thinned.size(), 102u);
+  EXPECT_EQ(thinned.back(), 100);
+  for (std::size_t i = 1; i < thinned.size(); ++i) EXPECT_LE(thinned[i] - thinned[i - 1], 1.11);
+}
+
 // An edge of two segments is one spring of their total length: at a straight middle node nothing pulls, at a bent one
 // the tension of the whole length pulls both ways.
 TEST(Contraction, ChainHasTheTensionOfItsTotalLength) {

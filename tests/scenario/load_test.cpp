@@ -166,8 +166,15 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {"[embryo]\nshape = \"pil\"",
        "test.toml:2: embryo.shape: \"pil\" is not known; give one of: pill | sphere | block | file (did you mean "
        "\"pill\"?)"},
-      {"[elasticity]\nmodel = \"shape-memory\"",
-       "test.toml:2: elasticity.model: \"shape-memory\" is not available yet; give one of: corotational"},
+      {"[volume]\nmethod = \"projection\"",
+       "test.toml:2: volume.method: \"projection\" is not available yet; give one of: coupled | none"},
+      {"[elasticity]\nattractor_stiffness_nN_per_um = 0",
+       "test.toml:2: elasticity.attractor_stiffness_nN_per_um: 0 is out of range; give a number > 0 or \"derived\""},
+      {"[elasticity]\nattractor_preload_nN = 1",
+       "test.toml:2: elasticity.attractor_preload_nN: has no meaning with model \"corotational\"; remove it, or choose "
+       "model \"shape-memory\""},
+      {"[elasticity]\nmodel = \"shape-memory\"\nattractor_preload_nN = -1",
+       "test.toml:3: elasticity.attractor_preload_nN: -1 is out of range; give a number >= 0"},
       {"[time]\nstep_s = \"fast\"",
        "test.toml:2: time.step_s: \"fast\" is of the wrong type; give a number > 0 or \"adaptive\""},
       {"[stop]\nat_equilibrium = 1", "test.toml:2: stop.at_equilibrium: 1 is of the wrong type; give true or false"},
@@ -223,6 +230,38 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "before"},
       {program + "program = { time_s = [0], activity = [-1] }",
        "test.toml:3: contraction.a.program.activity: -1 is out of range; give a list of numbers >= 0"},
+      // Patterns of a contraction.
+      {program + "profile = { sigma_um = 30 }",
+       "test.toml:3: contraction.a.profile.shape: is missing; give one of: constant | linear | gaussian"},
+      {program + "profile = { shape = \"gaussian\" }",
+       "test.toml:3: contraction.a.profile.sigma_um: is missing; give the width of the gaussian, a number > 0"},
+      {program + "profile = { shape = \"linear\", edge = 0.5 }",
+       "test.toml:3: contraction.a.profile.half_width_um: is missing; give the distance at which the factor is edge, a "
+       "number > 0"},
+      {program + "profile = { shape = \"linear\", half_width_um = 50, sigma_um = 3 }",
+       "test.toml:3: contraction.a.profile.sigma_um: has no meaning with shape \"linear\"; remove it, or choose shape "
+       "gaussian"},
+      {program + "profile = { shape = \"constant\", edge = 0.5 }",
+       "test.toml:3: contraction.a.profile.edge: has no meaning with shape \"constant\"; remove it, or choose shape "
+       "linear"},
+      {program + "profile = { shape = \"gausian\", sigma_um = 30 }",
+       "test.toml:3: contraction.a.profile.shape: \"gausian\" is not known; give one of: constant | linear | gaussian "
+       "(did you mean \"gaussian\"?)"},
+      {program + "profile = { shape = \"gaussian\", sigma_um = 0 }",
+       "test.toml:3: contraction.a.profile.sigma_um: 0 is out of range; give a number > 0"},
+      {program + "profile = \"gaussian\"",
+       "test.toml:3: contraction.a.profile: \"gaussian\" is not a table; give a table"},
+      {program + "delay = { from = \"ends\" }",
+       "test.toml:3: contraction.a.delay.speed_um_per_s: is missing; give the speed of the wave, a number > 0, or "
+       "\"none\""},
+      {program + "delay = { from = \"ends\", speed_um_per_s = \"none\" }",
+       "test.toml:3: contraction.a.delay.from: has no meaning with speed \"none\"; remove it, or give a speed"},
+      {program + "delay = { speed_um_per_s = -1 }",
+       "test.toml:3: contraction.a.delay.speed_um_per_s: -1 is out of range; give a number > 0 or \"none\""},
+      {program + "variation = { spread = -0.1 }",
+       "test.toml:3: contraction.a.variation.spread: -0.1 is out of range; give a number >= 0"},
+      {program + "variation = { sead = 2 }",
+       "test.toml:3: contraction.a.variation.sead: unknown key; did you mean \"variation.seed\"?"},
       // Regions.
       {"[contraction.a]\nstiffness_nN_per_um = 1", "test.toml:1: contraction.a.region: is missing; give text"},
       {"[region.furrow]\nface = \"ventral\"\n[contraction.a]\nregion = \"furow\"",
@@ -321,6 +360,39 @@ TEST(LoadScenario, SettlesDefaultsThatDependOnTheShape) {
   const auto here = std::filesystem::current_path();
   EXPECT_EQ(load_scenario({"a", "in/a.toml", "[embryo]\nshape = \"file\"\nfile = \"../b.vtu\""}).embryo.file,
             (here / "b.vtu").string());
+}
+
+// An inherited attractor is dropped with its model, as an inherited length is with a pill.
+TEST(LoadScenario, SettlesTheAttractorByTheElasticModel) {
+  const std::string springs = "[elasticity]\nmodel = \"shape-memory\"\nattractor_stiffness_nN_per_um = 7\n";
+  EXPECT_EQ(load(springs).elasticity.attractor_stiffness_nN_per_um, 7);
+  EXPECT_EQ(
+      load(springs, {"elasticity.attractor_stiffness_nN_per_um=derived"}).elasticity.attractor_stiffness_nN_per_um,
+      std::nullopt);
+  EXPECT_EQ(load(springs, {"elasticity.model=corotational"}).elasticity.attractor_stiffness_nN_per_um, std::nullopt);
+}
+
+TEST(LoadScenario, SettlesTheDefaultsOfPatterns) {
+  const std::string start = "[contraction.a]\nregion = \"all\"\n";
+  const ContractionInput none = load(start).contractions.at("a");
+  EXPECT_EQ(none.profile.shape, "");
+  EXPECT_EQ(none.delay.speed_um_per_s, std::nullopt);
+  EXPECT_EQ(none.variation.spread, 0);
+  const std::string given =
+      start + "profile = { shape = \"linear\", half_width_um = 50 }\ndelay = { speed_um_per_s = 2 }";
+  const ContractionInput some = load(given).contractions.at("a");
+  EXPECT_EQ(some.profile.axis, "across");
+  EXPECT_EQ(some.profile.edge, 0);
+  EXPECT_EQ(some.delay.axis, "along");
+  EXPECT_EQ(some.delay.from, "middle");
+  // What belonged to the shape and the wave goes with them.
+  const ContractionInput other =
+      load(given, {"contraction.a.profile.shape=gaussian", "contraction.a.profile.sigma_um=30",
+                   "contraction.a.delay.speed_um_per_s=none"})
+          .contractions.at("a");
+  EXPECT_EQ(other.profile.half_width_um, std::nullopt);
+  EXPECT_EQ(other.profile.sigma_um, 30);
+  EXPECT_EQ(other.delay.axis, "");
 }
 
 TEST(LoadScenario, OverridesGoLast) {

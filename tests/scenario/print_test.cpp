@@ -56,6 +56,12 @@ union = ["a", "all"]
 [contraction.c]
 region = "b"
 program = { time_min = [0, 0.1, 7], activity = [0, 0.3333333333333333, 1] }
+profile = { shape = "linear", half_width_um = 33.3 }
+delay = { speed_um_per_s = 0.7, from = "ends" }
+variation = { spread = 0.2, seed = 5 }
+[contraction.f]
+region = "a"
+profile = { shape = "gaussian", axis = "along", sigma_um = 30 }
 [hold.d]
 region = "a"
 directions = ["y"]

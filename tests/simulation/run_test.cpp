@@ -126,6 +126,36 @@ TEST(Run, EquilibriumCountsOnlyAfterTheProgram) {
   EXPECT_GT(result.steps, 5);
 }
 
+// A wave without a program: slow at its start, when few cells pull, and not at rest before the last one does.
+TEST(Run, EquilibriumCountsOnlyAfterTheWave) {
+  Model model(build_block({.length_um = 60, .width_um = 60, .cell_height_um = 40, .cells = {3, 3, 1}}));
+  add_elasticity(model);
+  ContractionPattern wave;
+  wave.delay = {PatternAxis::along, ContractionDelay::From::low, 0.1};
+  const CellPattern pattern = cell_pattern(model.tissue, CellSet(9, true), wave);
+  auto law = std::make_unique<Contraction>(
+      contraction_springs(model.tissue, CellSet(9, true), {.stiffness = 1}, pattern), Program(), pattern.delays_s);
+  RunControls controls;
+  controls.program_points_s = law->points_s();
+  EXPECT_EQ(controls.program_points_s.size(), 3u);
+  model.laws.push_back(std::move(law));
+  add_drag(model, 0.01);
+  controls.max_step_s = 500;
+  controls.end_s = 5000;
+  controls.frame_every_s = 0;
+  int met = 0;
+  const RunResult result = run(model, rest_state(model), controls, [&](const AcceptedStep& step) {
+    for (const double arrival : {200.0, 400.0}) {
+      EXPECT_FALSE(step.previous.time_s < arrival - 1e-9 && step.state.time_s > arrival + 1e-9) << arrival;
+      met += std::abs(step.state.time_s - arrival) < 1e-9;
+    }
+    return true;
+  });
+  EXPECT_EQ(met, 2);
+  ASSERT_EQ(result.status, RunStatus::equilibrium) << result.failure;
+  EXPECT_GT(*result.equilibrium_time_s, 400);
+}
+
 TEST(Run, GoesOnToTheEndWhenAskedAndNotesTheTimeOfEquilibrium) {
   Model model = dimpling_sheet();
   RunControls controls;

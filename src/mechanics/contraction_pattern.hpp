@@ -1,0 +1,57 @@
+// How a contraction differs from cell to cell: strength over the region, chance, and a wave
+// (docs/theory/contraction.md, "From cell to cell").
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// Along the embryo's axis: x. Across it: the arc about the axis through the cell's centre, from the region's mean
+/// direction, to the right (+y) on the belly; y in a tissue that has no outer shape.
+enum class PatternAxis { along, across };
+
+/// A factor by the distance d from the region's middle along an axis.
+struct ContractionProfile {
+  enum class Shape { constant, linear, gaussian };
+  Shape shape = Shape::constant;
+  PatternAxis axis = PatternAxis::across;
+  double half_width = 1;  // um; linear: from 1 at the middle to `edge` here, and `edge` beyond
+  double edge = 0;
+  double sigma = 1;  // um; gaussian: exp(-d^2 / (2 sigma^2))
+
+  [[nodiscard]] double factor(double distance) const;
+};
+
+/// A wave that starts at a place of the region at time 0 and reaches a cell after distance / speed.
+struct ContractionDelay {
+  enum class From { middle, ends, low, high };  // low: the region's least coordinate; ends: both, whichever is nearer
+  PatternAxis axis = PatternAxis::along;
+  From from = From::middle;
+  double speed = 0;  // um/s; 0: no wave, all cells at once
+};
+
+struct ContractionPattern {
+  ContractionProfile profile;
+  ContractionDelay delay;
+  double spread = 0;       // standard deviation of the cells' chance factors, whose mean is 1
+  std::uint64_t seed = 1;  // of these factors
+};
+
+/// What the pattern is on each cell. Empty: 1 and 0 everywhere.
+struct CellPattern {
+  std::vector<double> factors;   // cells; on stiffness and preload
+  std::vector<double> delays_s;  // cells
+};
+
+/// The pattern of `cells` on `tissue` at rest; 0 in both for other cells. The region's middle lies halfway between its
+/// outermost cell centres.
+CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const ContractionPattern& pattern);
+
+/// A log-normal factor with mean 1 and standard deviation `spread`: a function of seed and cell only, the same on every
+/// machine but for the last bit of its exp, log and cos.
+double chance_factor(double spread, std::uint64_t seed, std::size_t cell);
+
+}  // namespace plica

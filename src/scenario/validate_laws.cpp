@@ -1,0 +1,90 @@
+#include "scenario/validate_laws.hpp"
+
+#include <fmt/format.h>
+
+namespace plica {
+namespace {
+
+/// Whether the key at `address` was given along with the one at `chooser` or after it, so that it cannot have been
+/// meant for another choice that was inherited.
+bool given_with(const std::string& address, const std::string& chooser, const Input& input) {
+  const Place* place = input.place(address);
+  const Place* choice = input.place(chooser);
+  return place != nullptr && (choice == nullptr || place->layer >= choice->layer);
+}
+
+/// Gives `field` its default; an error where it was given another value along with a choice that does not use it.
+template <class T>
+void drop(const std::string& address, T& field, const T& default_value, const std::string& chooser,
+          const std::string& chosen, const std::string& remedy, Input& input) {
+  if (field != default_value && given_with(address, chooser, input))
+    input.report(address, fmt::format("has no meaning with {}", chosen), remedy);
+  field = default_value;
+}
+
+void check_profile(const std::string& path, ProfileInput& profile, Input& input) {
+  const std::string chooser = path + ".shape";
+  if (!input.sound(path) || !input.sound(chooser)) return;
+  if (profile.shape.empty()) {
+    if (!profile.axis.empty() || profile.sigma_um || profile.half_width_um || profile.edge)
+      input.report(chooser, "is missing", "give one of: constant | linear | gaussian");
+    return;
+  }
+  if (profile.axis.empty()) profile.axis = "across";
+  const auto need = [&](const std::string& key, const std::optional<double>& value, const std::string& remedy) {
+    if (!value && input.sound(path + key)) input.report(path + key, "is missing", remedy);
+  };
+  const auto no_use = [&](const std::string& key, std::optional<double>& value, const std::string& shape) {
+    drop(path + key, value, {}, chooser, fmt::format("shape \"{}\"", profile.shape),
+         fmt::format("remove it, or choose shape {}", shape), input);
+  };
+  if (profile.shape == "gaussian") {
+    need(".sigma_um", profile.sigma_um, "give the width of the gaussian, a number > 0");
+  } else {
+    no_use(".sigma_um", profile.sigma_um, "gaussian");
+  }
+  if (profile.shape == "linear") {
+    need(".half_width_um", profile.half_width_um, "give the distance at which the factor is edge, a number > 0");
+    if (!profile.edge) profile.edge = 0;
+  } else {
+    no_use(".half_width_um", profile.half_width_um, "linear");
+    no_use(".edge", profile.edge, "linear");
+  }
+}
+
+void check_delay(const std::string& path, DelayInput& delay, Input& input) {
+  const std::string chooser = path + ".speed_um_per_s";
+  if (!input.sound(path) || !input.sound(chooser)) return;
+  if (delay.speed_um_per_s) {
+    if (delay.axis.empty()) delay.axis = "along";
+    if (delay.from.empty()) delay.from = "middle";
+  } else if (input.place(chooser) == nullptr && (!delay.axis.empty() || !delay.from.empty())) {
+    input.report(chooser, "is missing", "give the speed of the wave, a number > 0, or \"none\"");
+  } else {
+    const std::string remedy = "remove it, or give a speed";
+    drop(path + ".axis", delay.axis, {}, chooser, "speed \"none\"", remedy, input);
+    drop(path + ".from", delay.from, {}, chooser, "speed \"none\"", remedy, input);
+  }
+}
+
+}  // namespace
+
+void check_elasticity(ElasticityInput& elasticity, Input& input) {
+  if (!input.sound("elasticity.model") || elasticity.model == "shape-memory") return;
+  const ElasticityInput defaults;
+  const auto check = [&](const std::string& key, auto ElasticityInput::*field) {
+    drop("elasticity." + key, elasticity.*field, defaults.*field, "elasticity.model",
+         fmt::format("model \"{}\"", elasticity.model), "remove it, or choose model \"shape-memory\"", input);
+  };
+  check("attractor_stiffness_nN_per_um", &ElasticityInput::attractor_stiffness_nN_per_um);
+  check("attractor_preload_nN", &ElasticityInput::attractor_preload_nN);
+  check("attractor_preload_length_um", &ElasticityInput::attractor_preload_length_um);
+}
+
+void check_pattern(const std::string& table, ContractionInput& contraction, Input& input) {
+  if (!input.sound(table)) return;
+  check_profile(table + ".profile", contraction.profile, input);
+  check_delay(table + ".delay", contraction.delay, input);
+}
+
+}  // namespace plica
