@@ -67,12 +67,14 @@ RunResult run(const Model& model, State state, const RunControls& controls, cons
     const bool at_equilibrium = speed < controls.equilibrium_speed_um_per_s && state.time_s >= program_end_s;
     if (at_equilibrium && !result.equilibrium_time_s) result.equilibrium_time_s = state.time_s;
     const bool frame_is_due = passes_frame(next.time_s, state.time_s, controls.frame_every_s);
-    if (!observer({state, next, duration_s, report, speed, frame_is_due})) {
+    const StepAnswer answer = observer({state, next, duration_s, report, speed, frame_is_due, at_equilibrium});
+    if (!answer.go_on) {
       result.status = RunStatus::interrupted;
       break;
     }
-    if (at_equilibrium && controls.stop_at_equilibrium) {
-      result.status = RunStatus::equilibrium;
+    result.criterion_met = answer.criterion_met;
+    if (answer.criterion_met || (at_equilibrium && controls.stop_at_equilibrium)) {
+      if (at_equilibrium) result.status = RunStatus::equilibrium;
       break;
     }
   }
