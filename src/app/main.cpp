@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int status = exit_done;
   add_run_command(app, status);
+  add_compare_command(app, status);
   add_check_command(app, status);
   add_mesh_command(app, status);
   add_scenarios_command(app, status);

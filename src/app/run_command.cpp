@@ -16,6 +16,7 @@
 #include "output/recorder.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/setup.hpp"
+#include "scenario/watch.hpp"
 
 namespace plica {
 namespace {
@@ -37,8 +38,11 @@ void print_result(const nlohmann::ordered_json& summary, const std::string& out)
   const auto value = [&](const char* key, const char* unit) {
     return summary.at(key).is_number() ? fmt::format("{:.2f}{}", summary.at(key).get<double>(), unit) : "none";
   };
-  fmt::print("{}: {} at {:.2f} min after {} steps in {:.1f} s\n", summary.at("scenario").get<std::string>(),
-             summary.at("status").get<std::string>(), summary.at("time_s").get<double>() / units::minute,
+  const std::string criterion = summary.at("stopped_by").is_string() && summary.at("stopped_by") != "equilibrium"
+                                    ? fmt::format(" (stopped by {})", summary.at("stopped_by").get<std::string>())
+                                    : "";
+  fmt::print("{}: {}{} at {:.2f} min after {} steps in {:.1f} s\n", summary.at("scenario").get<std::string>(),
+             summary.at("status").get<std::string>(), criterion, summary.at("time_s").get<double>() / units::minute,
              summary.at("steps").get<int>(), summary.at("wall_s").get<double>());
   fmt::print("  furrow depth {}, apical area ratio {} (VML), peak speed ratio {}\n", value("furrow_depth_um", " um"),
              value("vml_apical_area_ratio", ""), value("peak_speed_ratio", ""));
@@ -62,6 +66,15 @@ void refuse_to_replace(const std::string& scenario_file, const std::filesystem::
       throw UsageError(scenario_file + ": the results would replace it; give another --out, or move the scenario");
 }
 
+// Nor would there be anything to measure against.
+void refuse_to_replace_reference(const std::vector<Monitor>& monitors, const std::filesystem::path& out) {
+  std::error_code error;
+  for (const Monitor& monitor : monitors)
+    if (monitor.reference_run && std::filesystem::equivalent(monitor.reference_run->directory(), out, error))
+      throw UsageError(
+          fmt::format("--out {} is the reference of monitor \"{}\"; give another --out", out.string(), monitor.name));
+}
+
 int exit_status(const RunResult& result, bool missed) {
   if (result.status == RunStatus::failed) return exit_gave_up;
   if (result.status == RunStatus::interrupted) return caught_signal == SIGTERM ? exit_terminated : exit_interrupted;
@@ -75,13 +88,14 @@ int run_scenario(const RunOptions& options) {
   const auto model = make_model(scenario);
   omp_set_num_threads(threads_for(options.threads, model->tissue.elements.size()));
   const RunControls controls = make_controls(scenario, *model);
-  Observer observer(*model, make_furrow_sites(scenario, model->tissue));
+  Observer observer(*model, make_furrow_sites(scenario, model->tissue), make_watch(scenario, model->tissue));
 
   if (!options.quiet)
     for (const std::string& line : advice(scenario, *model))
       if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
 
   refuse_to_replace(source.file, options.out);
+  refuse_to_replace_reference(observer.monitors(), options.out);
   prepare_directory(options.out, options.overwrite);
   const State rest = rest_state(*model);
   Recorder recorder(options.out, scenario, source.text, *model, observer, rest);
@@ -95,9 +109,10 @@ int run_scenario(const RunOptions& options) {
       *model, rest, controls,
       [&](const AcceptedStep& step) {
         const auto recording_start = std::chrono::steady_clock::now();
-        progress.show(recorder.record(step));
+        const Observation& row = recorder.record(step, seconds_since(run_start));
+        progress.show(row);
         recording_s += seconds_since(recording_start);
-        return caught_signal == 0;
+        return StepAnswer(caught_signal == 0, row.is_over);
       },
       [] { return caught_signal != 0; },
       [&](const Division& division, const State& state) {

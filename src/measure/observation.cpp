@@ -7,9 +7,10 @@
 
 namespace plica {
 
-Observer::Observer(const Model& model, FurrowSites sites)
+Observer::Observer(const Model& model, FurrowSites sites, Watch watch)
     : model_(model),
       sites_(std::move(sites)),
+      watch_(std::move(watch)),
       rest_lumen_volume_(lumen_volume(model.tissue, model.tissue.rest_positions)) {}
 
 void Observer::observe_state(const State& state, Observation& row) const {
@@ -32,9 +33,18 @@ void Observer::observe_state(const State& state, Observation& row) const {
   row.vce_apical_area_ratio = mean_over(sites_.vce, ratios);
 }
 
-Observation Observer::observe(const AcceptedStep& step) const {
+void Observer::observe_monitors(const State& state, double wall_s, bool at_equilibrium, Observation& row) const {
+  std::vector<Reading> readings;
+  for (const Monitor& monitor : watch_.monitors) readings.push_back(read_monitor(monitor, {model_, state, wall_s}));
+  for (const Reading& reading : readings) row.monitors.push_back(reading.number);
+  row.criteria_met = watch_.stop.met(readings);
+  row.is_over = watch_.stop.is_over(row.criteria_met.size(), at_equilibrium);
+}
+
+Observation Observer::observe(const AcceptedStep& step, double wall_s) const {
   Observation row;
   observe_state(step.state, row);
+  observe_monitors(step.state, wall_s, step.at_equilibrium, row);
   row.max_node_speed_um_per_s = step.max_node_speed_um_per_s;
   row.step_s = step.duration_s;
   row.newton_iterations = step.report.newton_iterations;
@@ -52,6 +62,7 @@ Observation Observer::observe(const AcceptedStep& step) const {
 Observation Observer::observe_rest(const State& state) const {
   Observation row;
   observe_state(state, row);
+  observe_monitors(state, 0, false, row);
   return row;
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "measure/furrow.hpp"
+#include "measure/stop_rule.hpp"
 #include "simulation/run.hpp"
 
 namespace plica {
@@ -24,25 +26,38 @@ struct Observation {
   double step_s = 0;
   int newton_iterations = 0;
   int linear_solves = 0;
+  std::vector<std::optional<double>> monitors;  // in the order of the scenario's
+  std::vector<std::string> criteria_met;        // of [stop]
+  bool is_over = false;                         // the criteria say so
+};
+
+/// What a scenario asks to be watched beside the furrow.
+struct Watch {
+  std::vector<Monitor> monitors;
+  StopRule stop;
 };
 
 /// Measures steps of one model.
 class Observer {
  public:
-  Observer(const Model& model, FurrowSites sites);
-  [[nodiscard]] Observation observe(const AcceptedStep& step) const;
+  Observer(const Model& model, FurrowSites sites, Watch watch = {});
+  /// `wall_s`: computing time since the first step began, for the monitor of that name.
+  [[nodiscard]] Observation observe(const AcceptedStep& step, double wall_s = 0) const;
   /// The same of the body at rest, before the first step.
   [[nodiscard]] Observation observe_rest(const State& state) const;
   [[nodiscard]] const FurrowSites& sites() const { return sites_; }
+  [[nodiscard]] const std::vector<Monitor>& monitors() const { return watch_.monitors; }
 
   /// The model's cells have divided.
   void follow_division(const Division& division) { plica::follow_division(sites_, model_.tissue, division); }
 
  private:
   void observe_state(const State& state, Observation& row) const;
+  void observe_monitors(const State& state, double wall_s, bool at_equilibrium, Observation& row) const;
 
   const Model& model_;
   FurrowSites sites_;
+  Watch watch_;
   std::optional<double> rest_lumen_volume_;
 };
 

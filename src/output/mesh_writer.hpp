@@ -14,9 +14,10 @@ namespace plica {
 
 /// Named data of a mesh. Cell values are one a plica cell; the file repeats them for each element of the cell.
 struct MeshArrays {
-  std::vector<std::pair<std::string, std::span<const Vec3>>> node_vectors;  // nodes
-  std::vector<std::pair<std::string, std::vector<double>>> cell_scalars;    // cells
-  std::vector<std::pair<std::string, std::vector<int>>> cell_integers;      // cells
+  std::vector<std::pair<std::string, std::span<const Vec3>>> node_vectors;     // nodes
+  std::vector<std::pair<std::string, std::vector<double>>> cell_scalars;       // cells
+  std::vector<std::pair<std::string, std::vector<int>>> cell_integers;         // cells
+  std::vector<std::pair<std::string, std::vector<double>>> node_scalars = {};  // nodes
 };
 
 /// Writes the tissue's elements as VTK hexahedra at `positions` (nodes; um) to a `.vtu` file: VTK's XML format, binary,

@@ -40,6 +40,16 @@ vtkNew<vtkDoubleArray> vector_array(const std::string& name, std::span<const Vec
   return array;
 }
 
+vtkNew<vtkDoubleArray> scalar_array(const std::string& name, const std::vector<double>& values, const Tissue& tissue) {
+  require(values.size() == tissue.node_count(), name, "has not one value a node");
+  require(std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }), name,
+          "is not finite");
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name.c_str());
+  for (const double value : values) array->InsertNextValue(value);
+  return array;
+}
+
 /// Each cell's value, repeated for its elements.
 template <class Array, class Value>
 vtkNew<Array> element_array(const std::string& name, const std::vector<Value>& values, const Tissue& tissue) {
@@ -75,6 +85,8 @@ void write_mesh(const std::filesystem::path& file, const Tissue& tissue, std::sp
   add_elements(tissue, positions, *grid);
   for (const auto& [name, values] : arrays.node_vectors)
     grid->GetPointData()->AddArray(vector_array(name, values, tissue));
+  for (const auto& [name, values] : arrays.node_scalars)
+    grid->GetPointData()->AddArray(scalar_array(name, values, tissue));
   for (const auto& [name, values] : arrays.cell_scalars)
     grid->GetCellData()->AddArray(element_array<vtkDoubleArray>(name, values, tissue));
   for (const auto& [name, values] : arrays.cell_integers)

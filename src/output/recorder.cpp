@@ -34,7 +34,10 @@ std::string field(std::optional<double> value) {
 
 std::string row_of(const std::vector<std::optional<double>>& values) {
   std::string row;
-  for (std::size_t i = 0; i < values.size(); ++i) row += (i > 0 ? "," : "") + field(values[i]);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) row += ',';
+    row += field(values[i]);
+  }
   return row;
 }
 
@@ -42,6 +45,12 @@ std::string row_of(const std::vector<std::optional<double>>& values) {
 RowFile table(const fs::path& file, const std::string& header) {
   write_file(file, header + "\n");
   return RowFile(file, header.size() + 1);
+}
+
+std::string series_columns(const Observer& observer) {
+  std::string header = series_header;
+  for (const Monitor& monitor : observer.monitors()) header += fmt::format(",{}", monitor.column());
+  return header;
 }
 
 // frame_00042.vtu and the like: what write_frame names.
@@ -101,7 +110,7 @@ Recorder::Recorder(fs::path directory, const Scenario& scenario, const std::stri
       scenario_(scenario),
       model_(model),
       observer_(observer),
-      series_(table(directory_ / "series.csv", series_header)),
+      series_(table(directory_ / "series.csv", series_columns(observer))),
       midline_(table(directory_ / "midline.csv", midline_header)) {
   write_file(directory_ / "scenario.input.toml", input_toml);
   write_file(directory_ / "scenario.toml", resolved_toml(scenario));
@@ -113,8 +122,8 @@ Recorder::Recorder(fs::path directory, const Scenario& scenario, const std::stri
   write_frame(rest, rest.velocities);
 }
 
-const Observation& Recorder::record(const AcceptedStep& step) {
-  rows_.push_back(observer_.observe(step));
+const Observation& Recorder::record(const AcceptedStep& step, double wall_s) {
+  rows_.push_back(observer_.observe(step, wall_s));
   append_series(rows_.back());
   if (step.frame_is_due) write_frame(step.state, step.state.velocities);
   return rows_.back();
@@ -127,18 +136,20 @@ void Recorder::record_division(const Division& division, const State& state) {
 
 nlohmann::ordered_json Recorder::finish(const RunResult& result, const WallTimes& wall) {
   if (frames_.back().first != result.state.time_s) write_frame(result.state, result.state.velocities);
-  nlohmann::ordered_json summary = make_summary(scenario_, model_, result, rows_, wall);
+  nlohmann::ordered_json summary = make_summary(scenario_, model_, result, rows_, observer_.monitors(), wall);
   write_file(directory_ / "summary.json", summary.dump(2) + "\n");
   return summary;
 }
 
 void Recorder::append_series(const Observation& row) {
-  series_.append(row_of({row.time_s, row.furrow.depth_um, row.furrow.depth_below_lips_um, row.furrow.lip_distance_um,
-                         row.vml_speed_um_per_s, row.vce_speed_um_per_s, row.speed_ratio, row.vml_displacement_um,
-                         row.vce_displacement_um, row.vml_apical_area_ratio, row.vce_apical_area_ratio,
-                         row.max_node_speed_um_per_s, row.max_volume_error, row.lumen_volume_ratio,
-                         static_cast<double>(model_.tissue.cells.size()), row.step_s,
-                         static_cast<double>(row.newton_iterations), static_cast<double>(row.linear_solves)}));
+  std::string line = row_of(
+      {row.time_s, row.furrow.depth_um, row.furrow.depth_below_lips_um, row.furrow.lip_distance_um,
+       row.vml_speed_um_per_s, row.vce_speed_um_per_s, row.speed_ratio, row.vml_displacement_um,
+       row.vce_displacement_um, row.vml_apical_area_ratio, row.vce_apical_area_ratio, row.max_node_speed_um_per_s,
+       row.max_volume_error, row.lumen_volume_ratio, static_cast<double>(model_.tissue.cells.size()), row.step_s,
+       static_cast<double>(row.newton_iterations), static_cast<double>(row.linear_solves)});
+  for (const std::optional<double>& value : row.monitors) line += fmt::format(",{}", field(value));
+  series_.append(line);
 }
 
 void Recorder::write_frame(const State& state, const Vectors& velocities) {

@@ -23,8 +23,8 @@ class Recorder {
   Recorder(std::filesystem::path directory, const Scenario& scenario, const std::string& input_toml, const Model& model,
            const Observer& observer, const State& rest);
 
-  /// A row of series.csv, and a frame when one is due. Returns the row.
-  const Observation& record(const AcceptedStep& step);
+  /// A row of series.csv, and a frame when one is due. Returns the row. `wall_s`: as of Observer::observe.
+  const Observation& record(const AcceptedStep& step, double wall_s = 0);
 
   /// A frame that shows the daughters, and their lines in lineage.csv.
   void record_division(const Division& division, const State& state);

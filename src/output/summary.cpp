@@ -1,6 +1,7 @@
 #include "output/summary.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -48,10 +49,25 @@ const char* word(RunStatus status) {
   return "";
 }
 
+// What ended the run: the criteria that were met and rest, where they count; null at the end of time or a failure.
+Json stopped_by(const Scenario& scenario, const RunResult& result, const Observation& last) {
+  std::vector<std::string> names = result.criterion_met ? last.criteria_met : std::vector<std::string>{};
+  if (result.status == RunStatus::equilibrium && scenario.stop.at_equilibrium) names.emplace_back("equilibrium");
+  return names.empty() ? Json(nullptr) : Json(fmt::format("{}", fmt::join(names, ", ")));
+}
+
+// The last value that a monitor had.
+std::optional<double> last_value(const std::vector<Observation>& rows, std::size_t monitor) {
+  std::optional<double> value;
+  for (const Observation& row : rows)
+    if (row.monitors[monitor]) value = row.monitors[monitor];
+  return value;
+}
+
 }  // namespace
 
 Json make_summary(const Scenario& scenario, const Model& model, const RunResult& result,
-                  const std::vector<Observation>& rows, const WallTimes& wall) {
+                  const std::vector<Observation>& rows, const std::vector<Monitor>& monitors, const WallTimes& wall) {
   const Observation& last = rows.back();
   const SpeedHistory history = speed_history(rows);
   double volume_error = 0, penetration = 0, jacobian = 1;
@@ -64,6 +80,7 @@ Json make_summary(const Scenario& scenario, const Model& model, const RunResult&
   summary["scenario"] = scenario.name;
   summary["title"] = scenario.title;
   summary["status"] = word(result.status);
+  summary["stopped_by"] = stopped_by(scenario, result, last);
   summary["failure"] = result.failure.empty() ? Json(nullptr) : Json(result.failure);
   summary["time_s"] = last.time_s;
   summary["equilibrium_time_s"] = number(result.equilibrium_time_s);
@@ -96,6 +113,7 @@ Json make_summary(const Scenario& scenario, const Model& model, const RunResult&
   for (const Observation& row : rows) newton += row.newton_iterations, solves += row.linear_solves;
   summary["newton_iterations"] = newton;
   summary["linear_iterations"] = solves;
+  for (std::size_t m = 0; m < monitors.size(); ++m) summary[monitors[m].column()] = number(last_value(rows, m));
   summary["provenance"] = {{"version", version()},
                            {"commit", commit()},
                            {"compiler", compiler()},

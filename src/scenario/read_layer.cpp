@@ -163,7 +163,7 @@ Suggestion suggest_key(const std::string& table, const std::string& path, const 
   }
   if (table.empty()) {
     for (const TableInfo& info : schema_tables()) {
-      if (!info.path.empty()) known.emplace_back(info.stem());
+      if (!info.path.empty() && known.back() != info.stem()) known.emplace_back(info.stem());
     }
   }
   if (const auto nearest = nearest_name(key, known)) {
@@ -189,17 +189,33 @@ class Reader {
         read_key("", "", "", key, node);
       } else if (const toml::table* table = as_table(node, key, std::string(key.str()), "a table")) {
         note(std::string(key.str()), std::string(key.str()), key, nullptr);
-        info->named() ? read_named(*info, *table) : read_keys(std::string(info->path), "", "", *table);
+        info->named() ? read_named(*info, *table) : read_plain(*info, *table);
       }
     }
   }
 
  private:
-  static const TableInfo* table_with_stem(std::string_view stem) {
+  /// The table of that name; of two, the plain one or, when `named` is asked for, the one of named tables.
+  static const TableInfo* table_with_stem(std::string_view stem, bool named = false) {
     for (const TableInfo& info : schema_tables()) {
-      if (!info.path.empty() && info.stem() == stem) return &info;
+      if (!info.path.empty() && info.stem() == stem && (!named || info.named())) return &info;
     }
     return nullptr;
+  }
+
+  /// The keys of a table and, where there are such, the named tables within it: [stop] and [stop.NAME].
+  void read_plain(const TableInfo& info, const toml::table& table) {
+    const std::string path(info.path);
+    const TableInfo* inner = table_with_stem(info.stem(), true);
+    for (const auto& [key, node] : table) {
+      const auto rows = rows_of(info.path);
+      const bool is_key = std::ranges::any_of(rows, [&](const Row* row) { return row->key == key.str(); });
+      if (inner != nullptr && node.is_table() && !is_key) {
+        read_named_table(*inner, std::string(key.str()), key, node);
+      } else {
+        read_key(path, "", "", key, node);
+      }
+    }
   }
 
   int line_of(const toml::key& key) const { return layer_.has_lines ? static_cast<int>(key.source().begin.line) : 0; }
@@ -221,26 +237,38 @@ class Reader {
   }
 
   void read_named(const TableInfo& info, const toml::table& tables) {
-    const std::string stem(info.stem());
     for (const auto& [key, node] : tables) {
-      const std::string name(key.str()), path = joined(stem, name);
-      if (!is_known_name(info, key, path)) continue;
-      if (stem == "expect" && node.is_value()) {
-        report(key, path, fmt::format("{} has no tolerance", in_toml(node)),
-               "give { value = ..., within_percent = ... } or { value = ..., within = ... }");
+      const std::string name(key.str());
+      const toml::table* inner = node.as_table();
+      const bool of_monitor = info.stem() == "expect" && inner != nullptr && !inner->empty() &&
+                              std::ranges::all_of(*inner, [](const auto& it) { return it.second.is_table(); });
+      if (!of_monitor) {
+        read_named_table(info, name, key, node);
         continue;
       }
-      const toml::table* table = as_table(node, key, path, "a table");
-      if (table == nullptr) continue;
-      note(path, path, key, nullptr);
-      rows_of(info.path).front()->field(scenario_, name);  // so that a table without keys exists, too
-      read_keys(std::string(info.path), name, "", *table);
+      for (const auto& [column, table] : *inner)  // floor.position_um = { ... }
+        read_named_table(info, joined(name, column.str()), column, table);
     }
   }
 
-  bool is_known_name(const TableInfo& info, const toml::key& key, const std::string& path) {
-    const std::string name(key.str());
+  void read_named_table(const TableInfo& info, const std::string& name, const toml::key& key, const toml::node& node) {
+    const std::string path = joined(std::string(info.stem()), name);
+    if (!is_known_name(info, name, key, path)) return;
+    if (info.stem() == "expect" && node.is_value()) {
+      report(key, path, fmt::format("{} has no tolerance", in_toml(node)),
+             "give { value = ..., within_percent = ... } or { value = ..., within = ... }");
+      return;
+    }
+    const toml::table* table = as_table(node, key, path, "a table");
+    if (table == nullptr) return;
+    note(path, path, key, nullptr);
+    rows_of(info.path).front()->field(scenario_, name);  // so that a table without keys exists, too
+    read_keys(std::string(info.path), name, "", *table);
+  }
+
+  bool is_known_name(const TableInfo& info, const std::string& name, const toml::key& key, const std::string& path) {
     if (info.stem() == "expect") {
+      if (name.find('.') != std::string::npos) return true;  // of a monitor, which may not have been read yet
       const auto names = expectation_names();
       if (std::ranges::find(names, name) != names.end()) return true;
       report(key, path, "unknown result", did_you_mean(name, {names.begin(), names.end()}));

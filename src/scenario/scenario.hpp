@@ -123,6 +123,24 @@ struct TimeInput {
 struct StopInput {
   double equilibrium_speed_um_per_min = 0.2;
   bool at_equilibrium = true;
+  std::string combine = "any";  // any | all, of the criteria and of equilibrium
+};
+
+/// A bound on a monitor, in the unit of its column.
+struct CriterionInput {
+  std::string monitor;
+  std::optional<double> above, below;
+  std::string over;  // any | all of the monitor's nodes or cells; empty: its number
+};
+
+struct MonitorInput {
+  std::string quantity;
+  std::string region = "all";
+  std::string face;          // apical | basal; empty: all nodes; of the area, apical
+  std::string axis;          // x | y | z; empty: the norm
+  std::string over;          // mean | max | min | sum | rms; empty: mean
+  std::string reference;     // directory of a run, or a mesh file
+  std::string reference_at;  // same-time | end; empty: same-time
 };
 
 struct FurrowInput {
@@ -175,12 +193,14 @@ struct Scenario {
   std::map<std::string, ContractionInput> contractions;
   TimeInput time;
   StopInput stop;
+  std::map<std::string, CriterionInput> criteria;  // TOML: [stop.NAME]
+  std::map<std::string, MonitorInput> monitors;
   FurrowInput furrow;
   OutputInput output;
   std::map<std::string, HoldInput> holds;
   std::map<std::string, PressureInput> pressures;
   std::map<std::string, DivisionInput> divisions;
-  std::map<std::string, ExpectInput> expect;  // keys are those of summary.json
+  std::map<std::string, ExpectInput> expect;  // keys are those of summary.json, monitors' among them
 };
 
 }  // namespace plica

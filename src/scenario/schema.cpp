@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "measure/monitor.hpp"
+
 namespace plica {
 namespace {
 
@@ -45,6 +47,12 @@ Allowed words(std::vector<std::string_view> words, std::vector<std::string_view>
   return {.words = std::move(words), .later_words = std::move(later)};
 }
 
+std::vector<std::string_view> quantity_names() {
+  std::vector<std::string_view> names;
+  for (const QuantityInfo& info : quantities()) names.push_back(info.name);
+  return names;
+}
+
 constexpr double max_count = 100000;
 
 Row row(std::string_view table, std::string_view key, Field field, Allowed allowed, std::string_view meaning,
@@ -65,6 +73,8 @@ const std::vector<Row>& rows() {
   using X = ExpectInput;
   using O = OutputInput;
   using V = DivisionInput;
+  using M = MonitorInput;
+  using K = CriterionInput;
   static const std::vector<Row> table = {
       row("", "format", at(&S::format), between(1, 1), "Version of this format."),
       row("", "title", at(&S::title), anything, "One line for reports."),
@@ -259,6 +269,32 @@ const std::vector<Row>& rows() {
           "Equilibrium is when all nodes are slower (µm/min)."),
       row("stop", "at_equilibrium", at(&S::stop, &StopInput::at_equilibrium), anything,
           "Whether to stop there; false notes the time and runs on."),
+      row("stop", "combine", at(&S::stop, &StopInput::combine), words({"any", "all"}),
+          "Whether any of the `[stop.NAME]` and equilibrium ends the run, or all of them together."),
+      row("stop.*", "monitor", at(&S::criteria, &K::monitor), anything, "The monitor that is bounded.",
+          {.required = true}),
+      row("stop.*", "above", at(&S::criteria, &K::above), anything,
+          "Met when the value is larger (unit of the monitor's column)."),
+      row("stop.*", "below", at(&S::criteria, &K::below), anything, "Met when the value is smaller (the same unit)."),
+      row("stop.*", "over", at(&S::criteria, &K::over), words({"any", "all"}),
+          "Met when any one of the monitor's nodes or cells is beyond the bound, or all of them are; without it, when "
+          "the monitor's number is."),
+
+      row("monitor.*", "quantity", at(&S::monitors, &M::quantity), words(quantity_names()), "What is measured.",
+          {.required = true}),
+      row("monitor.*", "region", at(&S::monitors, &M::region), anything, "Where: the cells of this region."),
+      row("monitor.*", "face", at(&S::monitors, &M::face), words({"apical", "basal"}),
+          "Only nodes of this side of the cells; without it, all. The side of an area; without it, apical."),
+      row("monitor.*", "axis", at(&S::monitors, &M::axis), words({"x", "y", "z"}),
+          "The component along this axis; without it, the norm."),
+      row("monitor.*", "over", at(&S::monitors, &M::over), words({"mean", "max", "min", "sum", "rms"}),
+          "How the values of nodes or cells make one number; without it, their mean."),
+      row("monitor.*", "reference", at(&S::monitors, &M::reference), anything,
+          "What it is measured against, path relative to the scenario's file: the results of a run (deviation, "
+          "relative_energy_norm), or a mesh (surface_distance).",
+          {.is_path = true}),
+      row("monitor.*", "reference_at", at(&S::monitors, &M::reference_at), words({"same-time", "end"}),
+          "Which of the run's frames; without it, the one of the same time."),
 
       row("furrow", "region", at(&S::furrow, &FurrowInput::region), anything,
           "Contractile cells whose furrow is measured; without it the first contraction's region."),
@@ -364,11 +400,17 @@ std::span<const TableInfo> schema_tables() {
        names_in(&S::divisions)},
       {"time", "Steps and end.", {}},
       {"stop", "When a run is over before its end.", {}},
+      {"stop.*", "A bound on a monitor that ends the run, checked after each step.", names_in(&S::criteria)},
+      {"monitor.*",
+       "One number a step, in `series.csv` under `NAME.quantity_unit`, the last in `summary.json`; see "
+       "[measures.md](measures.md).",
+       names_in(&S::monitors)},
       {"furrow", "What is measured as the furrow.", {}},
       {"output", "What a run writes.", {}},
       {"expect.*",
        "Checked at the end, exit status 1 when missed: `NAME = { value = 28.89, within_percent = 5 }`. What a built-in "
-       "expects holds for the built-in as it is: it is not inherited through `base`, nor checked after `--set`.",
+       "expects holds for the built-in as it is: it is not inherited through `base`, nor checked after `--set`. A "
+       "monitor is named as in `summary.json`: `floor.position_um = { ... }`.",
        names_in(&S::expect)},
   };
   return tables;

@@ -219,7 +219,9 @@ RunControls make_controls(const Scenario& scenario, const Model& model) {
   controls.position_tolerance_um = scenario.time.tolerance_um;
   controls.end_s = scenario.time.end_s;
   controls.equilibrium_speed_um_per_s = scenario.stop.equilibrium_speed_um_per_min * units::um_per_minute;
-  controls.stop_at_equilibrium = scenario.stop.at_equilibrium;
+  // Where rest must come together with criteria, it is one of them (make_watch).
+  controls.stop_at_equilibrium =
+      scenario.stop.at_equilibrium && (scenario.stop.combine == "any" || scenario.criteria.empty());
   controls.frame_every_s = scenario.output.frame_every_s;
   const auto add_points = [&](const std::vector<double>& points) {
     controls.program_points_s.insert(controls.program_points_s.end(), points.begin(), points.end());

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <set>
 
+#include "scenario/monitor_rules.hpp"
 #include "scenario/suggest.hpp"
 #include "scenario/validate_laws.hpp"
 
@@ -169,6 +170,7 @@ class RegionCheck {
     for (const auto& [name, it] : scenario_.holds) check_reference("hold." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.pressures) check_reference("pressure." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.divisions) check_reference("division." + name + ".region", it.region);
+    for (const auto& [name, it] : scenario_.monitors) check_reference("monitor." + name + ".region", it.region);
     check_reference("furrow.region", scenario_.furrow.region);
     for (const auto& [name, region] : scenario_.regions) {
       for (const std::string& other : region.unite) check_reference("region." + name + ".union", other);
@@ -276,6 +278,7 @@ void validate(Scenario& scenario, Input& input) {
   check_time(scenario.time, input);
   check_required_keys(scenario, input);
   check_expectations(scenario, input);
+  check_monitors(scenario, input);
   for (auto& [name, it] : scenario.contractions) {
     check_program("contraction." + name, it.program, input);
     check_pattern("contraction." + name, it, input);

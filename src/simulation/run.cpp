@@ -91,13 +91,15 @@ RunResult run(Model& model, State state, RunControls controls, const StepObserve
     if (at_equilibrium && !result.equilibrium_time_s) result.equilibrium_time_s = state.time_s;
     // At a division, the frame shows the daughters.
     const bool frame_is_due = due.empty() && passes_frame(next.time_s, state.time_s, controls.frame_every_s);
-    if (!observer({state, next, duration_s, report, speed, frame_is_due})) {
+    const StepAnswer answer = observer({state, next, duration_s, report, speed, frame_is_due, at_equilibrium});
+    if (!answer.go_on) {
       result.status = RunStatus::interrupted;
       break;
     }
     divide(due);
-    if (at_equilibrium && controls.stop_at_equilibrium) {
-      result.status = RunStatus::equilibrium;
+    result.criterion_met = answer.criterion_met;
+    if (answer.criterion_met || (at_equilibrium && controls.stop_at_equilibrium)) {
+      if (at_equilibrium) result.status = RunStatus::equilibrium;
       break;
     }
   }

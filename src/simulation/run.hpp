@@ -35,6 +35,15 @@ struct AcceptedStep {
   const StepReport& report;  // of the accepted attempt, iterations of rejected ones added
   double max_node_speed_um_per_s;
   bool frame_is_due;
+  bool at_equilibrium = false;
+};
+
+/// What the observer answers. From a bool: true goes on, false interrupts the run.
+struct StepAnswer {
+  bool go_on = true;
+  bool criterion_met = false;  // the run is over, as planned
+
+  StepAnswer(bool goes_on, bool met = false) : go_on(goes_on), criterion_met(met) {}  // NOLINT: meant to convert
 };
 
 enum class RunStatus { equilibrium, end_time, failed, interrupted };
@@ -44,12 +53,13 @@ struct RunResult {
   State state;  // where it ended; the last good one after a failure
   int steps = 0;
   int divisions = 0;                         // cells that divided
+  bool criterion_met = false;                // the observer said so; status is then equilibrium or end_time
   std::optional<double> equilibrium_time_s;  // first time that every node was slower than the limit
   std::string failure;                       // what gave up, where and when
 };
 
-/// Called after every accepted step; false interrupts the run.
-using StepObserver = std::function<bool(const AcceptedStep&)>;
+/// Called after every accepted step.
+using StepObserver = std::function<StepAnswer(const AcceptedStep&)>;
 
 /// Called after cells have divided, with the state from which the run goes on.
 using DivisionObserver = std::function<void(const Division&, const State&)>;

@@ -1,38 +1,8 @@
 #include "tissue/mesh_bytes.hpp"
 
-#include <cstring>
+#include "core/bytes.hpp"
 
 namespace plica {
-namespace {
-
-/// Appends the length and the items of a vector or string.
-template <class Items>
-void put(const Items& items, std::string& bytes) {
-  const std::size_t count = items.size();
-  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-  bytes.append(reinterpret_cast<const char*>(items.data()), count * sizeof(typename Items::value_type));
-}
-
-/// Takes what `put` appended off the front.
-template <class Items>
-Items take(std::string_view& bytes) {
-  std::size_t count = 0;
-  constexpr std::size_t item_size = sizeof(typename Items::value_type);
-  const auto need = [&](bool there) {
-    if (!there) throw MeshError("the mesh ends early");
-  };
-  need(bytes.size() >= sizeof count);
-  std::memcpy(&count, bytes.data(), sizeof count);
-  bytes.remove_prefix(sizeof count);
-  need(count <= bytes.size() / item_size);
-  Items items;
-  items.resize(count);
-  if (count > 0) std::memcpy(static_cast<void*>(items.data()), bytes.data(), count * item_size);
-  bytes.remove_prefix(count * item_size);
-  return items;
-}
-
-}  // namespace
 
 std::string mesh_to_bytes(const HexahedralMesh& mesh) {
   std::string bytes;
@@ -46,7 +16,7 @@ std::string mesh_to_bytes(const HexahedralMesh& mesh) {
   return bytes;
 }
 
-HexahedralMesh mesh_from_bytes(std::string_view bytes) {
+HexahedralMesh mesh_from_bytes(std::string_view bytes) try {
   HexahedralMesh mesh;
   mesh.points = take<Vectors>(bytes);
   mesh.cells = take<std::vector<std::array<NodeId, 8>>>(bytes);
@@ -56,6 +26,8 @@ HexahedralMesh mesh_from_bytes(std::string_view bytes) {
     mesh.arrays[name] = CellSet(flags.begin(), flags.end());
   }
   return mesh;
+} catch (const BytesEndEarly&) {
+  throw MeshError("the mesh ends early");
 }
 
 }  // namespace plica

@@ -9,7 +9,7 @@ class Usage(CommandLine):
     def test_help_of_every_command_has_an_example(self):
         top = plica("--help")
         self.assertEqual(top.returncode, 0)
-        for command in ("run", "check", "mesh", "scenarios"):
+        for command in ("run", "check", "mesh", "scenarios", "compare"):
             with self.subTest(command):
                 self.assertIn(command, top.stdout)
                 result = plica(command, "--help")

@@ -177,6 +177,27 @@ TEST(Run, StopsWhenTheObserverSaysSo) {
   EXPECT_EQ(result.steps, 3);
 }
 
+TEST(Run, ACriterionEndsItAsPlannedAndAtRestAsEquilibrium) {
+  Model model = dimpling_sheet();
+  int steps = 0;
+  const RunResult early =
+      run(model, rest_state(model), RunControls{}, [&](const AcceptedStep&) { return StepAnswer(true, ++steps == 3); });
+  EXPECT_EQ(early.status, RunStatus::end_time);
+  EXPECT_TRUE(early.criterion_met);
+  EXPECT_EQ(early.steps, 3);
+
+  RunControls controls;
+  controls.equilibrium_speed_um_per_s = 1e-3;
+  controls.stop_at_equilibrium = false;
+  controls.end_s = 1e5;
+  const RunResult late = run(model, rest_state(model), controls,
+                             [](const AcceptedStep& step) { return StepAnswer(true, step.at_equilibrium); });
+  EXPECT_EQ(late.status, RunStatus::equilibrium);
+  EXPECT_TRUE(late.criterion_met);
+  EXPECT_EQ(late.equilibrium_time_s.value(), late.state.time_s);
+  EXPECT_FALSE(run(model, rest_state(model), controls, [](const AcceptedStep&) { return false; }).criterion_met);
+}
+
 TEST(Run, GivesUpWithTheLastGoodStateAndAReason) {
   Model model = dimpling_sheet();
   Vectors loads(model.tissue.node_count(), Vec3::Zero());

@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "app/commands.hpp"
+#include "core/errors.hpp"
+#include "study/compare_report.hpp"
+#include "tissue/hexahedral_mesh.hpp"
+
+namespace plica {
+namespace {
+
+struct CompareOptions {
+  std::string a, b, out;
+  std::optional<double> time_s;
+  bool json = false, overwrite = false;
+};
+
+void compare(const CompareOptions& options) {
+  if (!options.out.empty() && !options.out.ends_with(".vtu"))
+    throw UsageError("--out " + options.out + ": the file's name must end in .vtu");
+  if (!options.out.empty() && std::filesystem::exists(options.out) && !options.overwrite)
+    throw FileError(options.out + ": is there already; give another --out, or --overwrite to replace it");
+  const ReferenceRun run_a(options.a), run_b(options.b);
+  const Frame a = frame_to_compare(run_a, options.time_s), b = frame_to_compare(run_b, options.time_s);
+  const Comparison comparison = compare_runs(run_a, a, run_b, b);
+  if (!options.out.empty()) write_distances(options.out, a, b);
+  fmt::print("{}", options.json ? comparison_json(comparison).dump(2) + "\n" : comparison_text(comparison));
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, int&) {
+  CLI::App* command = app.add_subcommand("compare", "hold the results of two runs beside each other");
+  auto options = std::make_shared<CompareOptions>();
+  command->add_option("DIR_A", options->a, "results of a run")->required();
+  command->add_option("DIR_B", options->b, "results of another, the reference")->required();
+  command->add_option("--time_s", options->time_s, "compare the frames of this time; without it, the last ones");
+  command->add_option("--out", options->out, "FILE.vtu to write: the mesh of A, coloured by its distance from B");
+  command->add_flag("--json", options->json, "print JSON instead of a table");
+  command->add_flag("--overwrite", options->overwrite, "replace FILE.vtu where it is there");
+  command->footer(
+      "Distances of different meshes are from surface to surface; of the same mesh, from node to node as well.\n"
+      "Example: plica compare results/isotropic results/drosophila --out distances.vtu");
+  command->callback([options] {
+    try {
+      compare(*options);
+    } catch (const MeshError& error) {
+      throw FileError(error.what());
+    }
+  });
+}
+
+}  // namespace plica

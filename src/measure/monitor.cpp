@@ -1,0 +1,241 @@
+#include "measure/monitor.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/units.hpp"
+#include "measure/cells.hpp"
+#include "measure/energy_norm.hpp"
+#include "mechanics/surroundings.hpp"
+
+namespace plica {
+namespace {
+
+using Info = QuantityInfo;
+constexpr auto may = Info::Axis::may_have, must = Info::Axis::must_have, no_axis = Info::Axis::none;
+
+constexpr std::array<Info, 14> table = {{
+    {Quantity::position, "position", "um", Info::Of::node, must},
+    {Quantity::displacement, "displacement", "um", Info::Of::node, may},
+    {Quantity::speed, "speed", "um_per_s", Info::Of::node},
+    {Quantity::velocity, "velocity", "um_per_s", Info::Of::node, must},
+    {Quantity::deviation, "deviation", "um", Info::Of::node, may, Info::Reference::run},
+    {Quantity::relative_energy_norm, "relative_energy_norm", "", Info::Of::region, no_axis, Info::Reference::run},
+    {Quantity::surface_distance, "surface_distance", "um", Info::Of::node, no_axis, Info::Reference::surface},
+    {Quantity::force, "force", "nN", Info::Of::node, may},
+    {Quantity::volume, "volume", "um3", Info::Of::cell},
+    {Quantity::area, "area", "um2", Info::Of::cell},
+    {Quantity::pressure, "pressure", "Pa", Info::Of::cell},
+    {Quantity::kinetic_energy, "kinetic_energy", "nN_um", Info::Of::region},
+    {Quantity::time, "time", "s", Info::Of::region},
+    {Quantity::wall, "wall", "s", Info::Of::region},
+}};
+
+/// One value of each vector: its component or its norm.
+std::vector<double> sized(const Vectors& vectors, std::optional<int> axis) {
+  std::vector<double> values;
+  for (const Vec3& v : vectors) values.push_back(axis ? v[*axis] : v.norm());
+  return values;
+}
+
+/// What pulls at the nodes of a body that stands still: elasticity, contractions without their dampers, applied
+/// pressures. No drag, no inertia; volumes and the shell, which balance these, are not in it.
+Vectors driving_forces(const Model& model, const State& state) {
+  const Vectors no_velocity(state.positions.size(), Vec3::Zero());
+  const Step still{state.positions, state.positions, no_velocity, 1, state.time_s};
+  Vectors forces(state.positions.size(), Vec3::Zero());
+  for (const auto& law : model.laws) law->add_forces(still, forces);
+  model.tissue.carry_hanging(forces);
+  return forces;
+}
+
+/// The frame to measure against, where there is one of this mesh.
+std::optional<Frame> reference_frame(const Monitor& monitor, const Moment& moment) {
+  std::optional<Frame> frame =
+      monitor.reference_frame ? monitor.reference_frame : monitor.reference_run->frame_at(moment.state.time_s);
+  if (frame && frame->elements != moment.model.tissue.elements) frame.reset();
+  return frame;
+}
+
+std::vector<double> energy_norm_values(const Monitor& monitor, const Moment& moment) {
+  const Tissue& tissue = moment.model.tissue;
+  const std::optional<Frame> frame = reference_frame(monitor, moment);
+  if (!frame) return {};
+  const CellSet& region = tissue.regions.at(monitor.region);
+  RestMesh mesh{tissue.elements, tissue.element_rest_shape, {}};
+  for (const CellId cell : tissue.element_cell) mesh.chosen.push_back(region[cell.index()]);
+  Vectors displacements, references;
+  for (std::size_t n = 0; n < tissue.node_count(); ++n) {
+    displacements.push_back(moment.state.positions[n] - tissue.rest_positions[n]);
+    references.push_back(frame->positions[n] - tissue.rest_positions[n]);
+  }
+  const auto norm = relative_energy_norm(mesh, monitor.poisson_ratio, displacements, references);
+  return norm ? std::vector<double>{*norm} : std::vector<double>{};
+}
+
+/// Each element's mass moves an eighth with each of its nodes, as Inertia lumps it. Without mass there is none.
+std::vector<double> kinetic_energy_values(const Monitor& monitor, const Moment& moment) {
+  const Tissue& tissue = moment.model.tissue;
+  const CellSet& region = tissue.regions.at(monitor.region);
+  const Inertia* inertia = nullptr;
+  for (const auto& law : moment.model.laws)
+    if (const auto* found = dynamic_cast<const Inertia*>(law.get())) inertia = found;
+  if (inertia == nullptr) return {};
+  double mass = 0, rest_volume = 0, energy_of_unit_density = 0;
+  for (const double part : inertia->masses()) mass += part;
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
+    const double volume = hex_volume(tissue.element_rest_shape[e]);
+    rest_volume += volume;
+    if (!region[tissue.element_cell[e].index()]) continue;
+    for (const NodeId node : tissue.elements[e])
+      energy_of_unit_density += 0.5 * volume / 8 * moment.state.velocities[node.index()].squaredNorm();
+  }
+  return {mass / rest_volume * energy_of_unit_density};
+}
+
+std::vector<double> node_values(const Monitor& monitor, const Moment& moment) {
+  const Tissue& tissue = moment.model.tissue;
+  const State& state = moment.state;
+  const std::vector<NodeId> nodes = monitored_nodes(monitor, tissue);
+  Vectors vectors;
+  const auto collect = [&](const auto& vector_at) {
+    for (const NodeId node : nodes) vectors.push_back(vector_at(node.index()));
+    return sized(vectors, monitor.axis);
+  };
+  switch (monitor.quantity) {
+    case Quantity::position:
+      return collect([&](std::size_t n) { return state.positions[n]; });
+    case Quantity::displacement:
+      return collect([&](std::size_t n) -> Vec3 { return state.positions[n] - tissue.rest_positions[n]; });
+    case Quantity::speed:
+    case Quantity::velocity:
+      return collect([&](std::size_t n) { return state.velocities[n]; });
+    case Quantity::deviation: {
+      const std::optional<Frame> frame = reference_frame(monitor, moment);
+      if (!frame) return {};
+      return collect([&](std::size_t n) -> Vec3 { return state.positions[n] - frame->positions[n]; });
+    }
+    case Quantity::force: {
+      const Vectors forces = driving_forces(moment.model, state);
+      return collect([&](std::size_t n) { return forces[n]; });
+    }
+    case Quantity::surface_distance: {
+      std::vector<double> values;
+      for (const NodeId node : nodes) values.push_back(monitor.reference_surface->from(state.positions[node.index()]));
+      return values;
+    }
+    default:
+      return {};
+  }
+}
+
+std::vector<double> cell_values(const Monitor& monitor, const Moment& moment) {
+  const Tissue& tissue = moment.model.tissue;
+  std::vector<double> of_all;
+  if (monitor.quantity == Quantity::volume) of_all = moment.model.volumes.volumes(moment.state.positions);
+  if (monitor.quantity == Quantity::area)
+    of_all = monitor.face == Monitor::Face::basal ? basal_areas(tissue, moment.state.positions)
+                                                  : apical_areas(tissue, moment.state.positions);
+  if (monitor.quantity == Quantity::pressure && moment.model.volumes_are_held)
+    for (const double pressure : moment.state.pressures) of_all.push_back(pressure / units::pascal);
+  std::vector<double> values;
+  if (of_all.empty()) return values;
+  for (const CellId cell : monitored_cells(monitor, tissue)) values.push_back(of_all[cell.index()]);
+  return values;
+}
+
+std::vector<double> region_values(const Monitor& monitor, const Moment& moment) {
+  switch (monitor.quantity) {
+    case Quantity::relative_energy_norm:
+      return energy_norm_values(monitor, moment);
+    case Quantity::kinetic_energy:
+      return kinetic_energy_values(monitor, moment);
+    case Quantity::time:
+      return {moment.state.time_s};
+    case Quantity::wall:
+      return {moment.wall_s};
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+std::span<const QuantityInfo> quantities() { return table; }
+
+const QuantityInfo& info_of(Quantity quantity) { return table[static_cast<std::size_t>(quantity)]; }
+
+const QuantityInfo* quantity_named(std::string_view name) {
+  const auto found = std::ranges::find(table, name, &QuantityInfo::name);
+  return found == table.end() ? nullptr : &*found;
+}
+
+std::string Monitor::column() const {
+  const QuantityInfo& info = info_of(quantity);
+  return fmt::format("{}.{}{}{}", name, info.name, info.unit.empty() ? "" : "_", info.unit);
+}
+
+std::vector<NodeId> monitored_nodes(const Monitor& monitor, const Tissue& tissue) {
+  const CellSet& region = tissue.regions.at(monitor.region);
+  std::vector<bool> monitored(tissue.node_count(), false);
+  if (monitor.face == Monitor::Face::any) {
+    for (std::size_t e = 0; e < tissue.elements.size(); ++e)
+      if (region[tissue.element_cell[e].index()])
+        for (const NodeId node : tissue.elements[e]) monitored[node.index()] = true;
+  } else {
+    for (const Facet& facet : monitor.face == Monitor::Face::apical ? tissue.apical_facets : tissue.basal_facets)
+      if (region[facet.cell.index()])
+        for (const NodeId node : facet.nodes) monitored[node.index()] = true;
+  }
+  std::vector<NodeId> nodes;
+  for (std::size_t n = 0; n < monitored.size(); ++n)
+    if (monitored[n]) nodes.emplace_back(n);
+  return nodes;
+}
+
+std::vector<CellId> monitored_cells(const Monitor& monitor, const Tissue& tissue) {
+  CellSet chosen = tissue.regions.at(monitor.region);
+  if (monitor.quantity == Quantity::area) {
+    CellSet has_side(chosen.size(), false);
+    for (const Facet& facet : monitor.face == Monitor::Face::basal ? tissue.basal_facets : tissue.apical_facets)
+      has_side[facet.cell.index()] = chosen[facet.cell.index()];
+    chosen = std::move(has_side);
+  }
+  std::vector<CellId> cells;
+  for (std::size_t c = 0; c < chosen.size(); ++c)
+    if (chosen[c]) cells.emplace_back(c);
+  return cells;
+}
+
+std::optional<double> combined(Over over, std::span<const double> values) {
+  if (values.empty()) return std::nullopt;
+  if (over == Over::max) return *std::ranges::max_element(values);
+  if (over == Over::min) return *std::ranges::min_element(values);
+  double sum = 0;
+  for (const double value : values) sum += over == Over::rms ? value * value : value;
+  if (over == Over::sum) return sum;
+  const double mean = sum / static_cast<double>(values.size());
+  return over == Over::rms ? std::sqrt(mean) : mean;
+}
+
+Reading read_monitor(const Monitor& monitor, const Moment& moment) {
+  Reading reading;
+  switch (info_of(monitor.quantity).of) {
+    case QuantityInfo::Of::node:
+      reading.values = node_values(monitor, moment);
+      break;
+    case QuantityInfo::Of::cell:
+      reading.values = cell_values(monitor, moment);
+      break;
+    case QuantityInfo::Of::region:
+      reading.values = region_values(monitor, moment);
+      break;
+  }
+  reading.number = combined(monitor.over, reading.values);
+  return reading;
+}
+
+}  // namespace plica

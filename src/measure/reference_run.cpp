@@ -1,0 +1,41 @@
+#include "measure/reference_run.hpp"
+
+#include <cmath>
+
+#include "core/errors.hpp"
+
+namespace plica {
+
+ReferenceRun::ReferenceRun(std::filesystem::path directory) : directory_(std::move(directory)) {
+  std::error_code error;
+  const std::string name = directory_.string();
+  if (!std::filesystem::exists(directory_, error)) throw FileError(name + ": there is no such directory");
+  if (!std::filesystem::is_directory(directory_, error)) throw FileError(name + ": is no directory of results");
+  if (!std::filesystem::exists(directory_ / "frames.pvd", error))
+    throw FileError(name + ": holds no run: there is no frames.pvd; give the --out directory of a `plica run`");
+  frames_ = read_collection(directory_ / "frames.pvd");
+  if (frames_.empty()) throw FileError((directory_ / "frames.pvd").string() + ": lists no frame");
+}
+
+std::vector<double> ReferenceRun::times_s() const {
+  std::vector<double> times;
+  for (const auto& [time_s, file] : frames_) times.push_back(time_s);
+  return times;
+}
+
+std::optional<Frame> ReferenceRun::frame_at(double time_s) const {
+  constexpr double same_time_s = 1e-6;
+  for (std::size_t i = 0; i < frames_.size(); ++i)
+    if (std::abs(frames_[i].first - time_s) <= same_time_s) return read(i);
+  return std::nullopt;
+}
+
+Frame ReferenceRun::last_frame() const { return read(frames_.size() - 1); }
+
+Frame ReferenceRun::read(std::size_t index) const {
+  Frame frame = read_frame(directory_ / frames_[index].second);
+  frame.time_s = frames_[index].first;
+  return frame;
+}
+
+}  // namespace plica

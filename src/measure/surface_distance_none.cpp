@@ -1,0 +1,23 @@
+// What stands in for surface_distance_vtk.cpp when plica is built without VTK.
+#ifndef PLICA_WITH_VTK
+
+#include "core/errors.hpp"
+#include "measure/surface_distance.hpp"
+
+namespace plica {
+
+struct SurfaceDistance::Search {};
+
+SurfaceDistance::SurfaceDistance(const TriangleSurface&) {
+  throw FileError("distances to a surface cannot be measured: plica was built without VTK");
+}
+
+SurfaceDistance::SurfaceDistance(SurfaceDistance&&) noexcept = default;
+SurfaceDistance& SurfaceDistance::operator=(SurfaceDistance&&) noexcept = default;
+SurfaceDistance::~SurfaceDistance() = default;
+
+double SurfaceDistance::from(const Vec3&) const { return 0; }
+
+}  // namespace plica
+
+#endif

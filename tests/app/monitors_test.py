@@ -1,0 +1,207 @@
+"""[monitor.NAME] and [stop.NAME] from outside: columns, the summary, references, when and why a run stops."""
+import math
+
+import support
+from support import BLOCK, SERIES, CommandLine, plica, table
+
+SOFT = BLOCK.replace("end_s = 0.5\nstep_s = 0.1", "end_s = 5\nstep_s = 0.5").replace("frame_every_s = 0.2", "frame_every_s = 1")
+MONITORS = """\
+[region.first]
+ids = [0]
+[monitor.floor]
+quantity = "position"
+axis = "z"
+face = "apical"
+over = "max"
+[monitor.motion]
+quantity = "displacement"
+[monitor.first]
+quantity = "area"
+region = "first"
+[monitor.pull]
+quantity = "force"
+over = "max"
+[monitor.clock]
+quantity = "time"
+[monitor.all]
+quantity = "volume"
+over = "sum"
+"""
+COLUMNS = ["all.volume_um3", "clock.time_s", "first.area_um2", "floor.position_um", "motion.displacement_um", "pull.force_nN"]
+
+
+def without_wall(path):
+    """The rows of a series less what the contract lets differ."""
+    return [{key: value for key, value in row.items() if ".wall_" not in key} for row in table(path)]
+
+
+class Monitors(CommandLine):
+    def test_each_monitor_is_a_column_and_its_last_value_is_in_the_summary(self):
+        self.run_scenario(BLOCK + MONITORS)
+        rows = table(self.out / "series.csv")
+        self.assertEqual(list(rows[0]), SERIES + COLUMNS)
+        self.assertEqual([float(rows[0][name]) for name in COLUMNS[:3]], [96000, 0, 400])
+        self.assertEqual(float(rows[0]["motion.displacement_um"]), 0)
+        self.assertGreater(float(rows[-1]["motion.displacement_um"]), 0)
+        summary = self.summary()
+        for name in COLUMNS:
+            self.assertAlmostEqual(summary[name], float(rows[-1][name]), delta=1e-9 * abs(summary[name]), msg=name)
+            self.assertEqual(float(rows[-1]["clock.time_s"]), float(rows[-1]["time_s"]))
+        self.assertIsNone(summary["stopped_by"])
+        self.assert_whole(self.out)
+        again = self.folder / "again"
+        self.assertEqual(plica("run", self.out / "scenario.toml", "--out", again).returncode, 0)
+        self.assertEqual((again / "series.csv").read_bytes(), (self.out / "series.csv").read_bytes())
+
+    def test_only_computing_time_differs_between_runs(self):
+        text = BLOCK + MONITORS + '[monitor.cpu]\nquantity = "wall"\n'
+        other = self.folder / "other"
+        self.run_scenario(text)
+        self.run_scenario(text, "--threads", "2", out=other)
+        self.assertEqual(without_wall(self.out / "series.csv"), without_wall(other / "series.csv"))
+        spent = [float(row["cpu.wall_s"]) for row in table(self.out / "series.csv")]
+        self.assertEqual(spent, sorted(spent))
+        self.assertGreater(spent[-1], 0)
+        self.assertIn("cpu.wall_s", self.summary())
+
+    def test_against_a_reference_run(self):
+        self.run_scenario(BLOCK, out=self.folder / "reference")
+        monitors = "".join(
+            f'[monitor.{name}]\nquantity = "{quantity}"\nreference = "reference"\n{more}\n'
+            for name, quantity, more in (("apart", "deviation", 'over = "max"'), ("end", "deviation", 'reference_at = "end"'),
+                                         ("norm", "relative_energy_norm", "")))
+        self.run_scenario(BLOCK + monitors)
+        rows = table(self.out / "series.csv")
+        at_frames = [row for row in rows if row["apart.deviation_um"] != ""]
+        # Steps of 0.1 s, frames at 0, 0.2, 0.4 and 0.5 s: the same run is no distance away from itself.
+        self.assertEqual([float(row["time_s"]) for row in at_frames], [0, 0.2, 0.4, 0.5])
+        self.assertEqual({float(row["apart.deviation_um"]) for row in at_frames}, {0})
+        self.assertEqual([row["norm.relative_energy_norm"] for row in at_frames], ["", "0", "0", "0"], "nothing is relative to rest")
+        ends = [float(row["end.deviation_um"]) for row in rows]
+        self.assertEqual(ends, sorted(ends, reverse=True))
+        self.assertEqual(ends[-1], 0)
+        # Half the force, about half the way.
+        half = self.folder / "half"
+        self.run_scenario(BLOCK + monitors, "--set", "contraction.all.stiffness_nN_per_um=0.5", out=half)
+        self.assertAlmostEqual(self.summary(half)["norm.relative_energy_norm"], 0.5, delta=0.1)
+        self.assertGreater(self.summary(half)["apart.deviation_um"], 0)
+        # Another mesh has no nodes to compare: empty, and null.
+        other = self.folder / "other"
+        self.run_scenario((BLOCK + monitors).replace("[3, 2, 1]", "[4, 2, 1]"), out=other)
+        self.assertEqual({row["apart.deviation_um"] for row in table(other / "series.csv")}, {""})
+        self.assertIsNone(self.summary(other)["apart.deviation_um"])
+
+    def test_distance_to_a_reference_surface(self):
+        mesh = self.folder / "rest.vtu"
+        self.assertEqual(plica("mesh", self.write(BLOCK), "--out", mesh).returncode, 0)
+        self.run_scenario(BLOCK + '[monitor.skin]\nquantity = "surface_distance"\nreference = "rest.vtu"\nover = "max"\nface = "apical"\n')
+        distances = [float(row["skin.surface_distance_um"]) for row in table(self.out / "series.csv")]
+        self.assertLess(distances[0], 1e-9)
+        moved = max(math.hypot(*(float(x) for x in point)) for point in self.last_displacements())
+        self.assertGreater(distances[-1], 1e-3)
+        self.assertLessEqual(distances[-1], moved + 1e-9)
+
+    def last_displacements(self):
+        values = support.read_vtu(sorted((self.out / "frames").iterdir())[-1])["displacement_um"][1]
+        return zip(values[0::3], values[1::3], values[2::3])
+
+    def test_references_that_cannot_be_used(self):
+        empty = self.folder / "empty"
+        empty.mkdir()
+        (self.folder / "text.stl").write_text("nothing")
+        no_frames = self.folder / "no_frames"
+        no_frames.mkdir()
+        (no_frames / "frames.pvd").write_text("<VTKFile><Collection></Collection></VTKFile>")
+        for quantity, reference, part in (("deviation", "missing", "no such directory"), ("deviation", "empty", "frames.pvd"),
+                                          ("deviation", "scenario.toml", "no directory"), ("deviation", "no_frames", "no frame"),
+                                          ("surface_distance", "missing.stl", "No such file"),
+                                          ("surface_distance", "text.stl", "text.stl")):
+            with self.subTest(reference):
+                text = f'[monitor.a]\nquantity = "{quantity}"\nreference = "{reference}"\n' + BLOCK.replace("format = 1\n", "", 1)
+                text = text.replace('title = "A small block"\n', "")
+                self.assert_refused(text, part, line=3, key="monitor.a.reference")
+        self.run_scenario(BLOCK)
+        before = support.tree(self.out)
+        result = self.run_scenario(BLOCK + f'[monitor.a]\nquantity = "deviation"\nreference = "{self.out}"\n', "--overwrite", status=2)
+        self.assertIn("reference", self.assert_messages(result)[0])
+        self.assertEqual(support.tree(self.out), before)
+
+    def test_empty_regions_and_sides_name_their_line(self):
+        self.assert_refused(BLOCK + '[region.none]\nx_um = [500, 600]\n[monitor.a]\nquantity = "speed"\nregion = "none"\n',
+                            "no cell", line=19, key="region.none")
+        two_layers = BLOCK.replace("[3, 2, 1]", "[3, 2, 2]")
+        low = '[region.low]\nz_um = [-100, -1]\n[monitor.a]\nquantity = "area"\nregion = "low"\nface = "apical"\n'
+        self.assert_refused(two_layers + low, "low", line=24, key="monitor.a.face")
+
+    def test_an_expectation_of_a_monitor(self):
+        expect = "[expect]\nall.volume_um3 = { value = 96000, within = 1e-3 }\n"
+        self.run_scenario(BLOCK + MONITORS + expect)
+        result = self.run_scenario(BLOCK + MONITORS + expect.replace("96000", "96001"), "--overwrite", status=1)
+        self.assertIn("expect.all.volume_um3", result.stderr)
+
+
+class Criteria(CommandLine):
+    def stops(self, criteria, *arguments, text=SOFT, **options):
+        """The last row and the summary of a run with these criteria."""
+        self.run_scenario(text + MONITORS + criteria, "--overwrite", *arguments, **options)
+        return table(self.out / "series.csv"), self.summary()
+
+    def rows_of_the_whole_run(self):
+        rows, summary = self.stops("")
+        self.assertEqual((summary["status"], summary["stopped_by"], len(rows)), ("end_time", None, 11))
+        return rows
+
+    def test_a_run_stops_at_the_first_step_beyond_a_bound(self):
+        whole = self.rows_of_the_whole_run()
+        bound = (float(whole[4]["motion.displacement_um"]) + float(whole[5]["motion.displacement_um"])) / 2
+        rows, summary = self.stops(f'[stop.moved]\nmonitor = "motion"\nabove = {bound}\n')
+        self.assertEqual(rows, whole[:6])
+        self.assertEqual((summary["status"], summary["stopped_by"], summary["time_s"]), ("end_time", "moved", 2.5))
+        self.assertEqual(float(table(self.out / "cells.csv")[-1]["time_s"]), 2.5, "the last moment is a frame")
+        rows, summary = self.stops(f'[stop.weak]\nmonitor = "first"\nbelow = {float(whole[3]["first.area_um2"]) + 1e-6}\n')
+        self.assertEqual((rows, summary["stopped_by"]), (whole[:4], "weak"))
+
+    def test_any_and_all_of_several(self):
+        criteria = '[stop.early]\nmonitor = "clock"\nabove = 0.9\n[stop.late]\nmonitor = "clock"\nabove = 2.9\n'
+        for combine, time_s, names in (("any", 1, "early"), ("all", 3, "early, late")):
+            with self.subTest(combine):
+                _, summary = self.stops(criteria, "--set", f"stop.combine={combine}")
+                self.assertEqual((summary["status"], summary["stopped_by"], summary["time_s"]), ("end_time", names, time_s))
+
+    def test_any_and_all_of_the_nodes(self):
+        whole = self.rows_of_the_whole_run()
+        top = '[monitor.{0}]\nquantity = "displacement"\nover = "{0}"\n'
+        both = top.format("min") + top.format("max")
+        self.run_scenario(SOFT + both, "--overwrite")
+        rows = table(self.out / "series.csv")
+        self.assertEqual(len(rows), len(whole))
+        bound = 0.02
+        for over, name in (("any", "max"), ("all", "min")):
+            with self.subTest(over):
+                first = next((row for row in rows[1:] if float(row[f"{name}.displacement_um"]) > bound), rows[-1])
+                _, summary = self.stops(f'[stop.a]\nmonitor = "motion"\nabove = {bound}\nover = "{over}"\n')
+                self.assertEqual(summary["time_s"], float(first["time_s"]))
+
+    def test_with_equilibrium(self):
+        rest = SOFT.replace("at_equilibrium = false", "equilibrium_speed_um_per_min = 1").replace("end_s = 5", "end_s = 500")
+        rest = rest.replace("step_s = 0.5", 'step_s = "adaptive"')
+        _, alone = self.stops("", text=rest)
+        self.assertEqual((alone["status"], alone["stopped_by"]), ("equilibrium", "equilibrium"))
+        never = '[stop.never]\nmonitor = "clock"\nabove = 1e9\n'
+        late = f'[stop.late]\nmonitor = "clock"\nabove = {alone["time_s"] + 60}\n'
+        early = '[stop.early]\nmonitor = "clock"\nabove = 1\n'
+        for criteria, combine, status, names in ((never, "any", "equilibrium", "equilibrium"), (never, "all", "end_time", None),
+                                                 (late, "all", "equilibrium", "late, equilibrium"),
+                                                 (early, "any", "end_time", "early"), (early, "all", "equilibrium", "early, equilibrium")):
+            with self.subTest(f"{names} {combine}"):
+                _, summary = self.stops(criteria, "--set", f"stop.combine={combine}", text=rest)
+                self.assertEqual((summary["status"], summary["stopped_by"]), (status, names))
+                self.assertAlmostEqual(summary["equilibrium_time_s"] or alone["time_s"], alone["time_s"])
+
+    def test_the_terminal_names_the_criterion(self):
+        result = self.run_scenario(SOFT + MONITORS + '[stop.early]\nmonitor = "clock"\nabove = 0.9\n')
+        self.assertIn("stopped by early", result.stdout)
+
+
+if __name__ == "__main__":
+    support.main()

@@ -1,0 +1,210 @@
+#include "measure/monitor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "support/loads.hpp"
+#include "support/models.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+/// Three cells of 20 x 20 x 40 um along x; "left" is the first, nodes at x = -30 and -10.
+Model row_of_three() {
+  Model model(build_block({.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}}));
+  model.tissue.regions["left"] = {true, false, false};
+  return model;
+}
+
+Monitor monitor_of(Quantity quantity, const std::string& region = "left") {
+  Monitor monitor;
+  monitor.name = "m";
+  monitor.quantity = quantity;
+  monitor.region = region;
+  return monitor;
+}
+
+double number(const Monitor& monitor, const Model& model, const State& state) {
+  return read_monitor(monitor, {model, state}).number.value();
+}
+
+TEST(Monitor, EveryQuantityHasItsPlaceNameAndColumn) {
+  int count = 0;
+  for (const QuantityInfo& info : quantities()) {
+    EXPECT_EQ(&info_of(info.quantity), &info) << info.name;
+    EXPECT_EQ(quantity_named(info.name), &info) << info.name;
+    ++count;
+  }
+  std::cout << count << " quantities\n";
+  EXPECT_EQ(quantity_named("sped"), nullptr);
+  EXPECT_EQ(monitor_of(Quantity::velocity).column(), "m.velocity_um_per_s");
+  EXPECT_EQ(monitor_of(Quantity::relative_energy_norm).column(), "m.relative_energy_norm");
+  EXPECT_EQ(monitor_of(Quantity::wall).column(), "m.wall_s");
+}
+
+TEST(Monitor, CombinesValues) {
+  const std::vector<double> values = {3, -4, 1};
+  EXPECT_EQ(combined(Over::mean, values), 0);
+  EXPECT_EQ(combined(Over::max, values), 3);
+  EXPECT_EQ(combined(Over::min, values), -4);
+  EXPECT_EQ(combined(Over::sum, values), 0);
+  EXPECT_EQ(combined(Over::rms, values), std::sqrt(26 / 3.0));
+  for (const Over over : {Over::mean, Over::max, Over::min, Over::sum, Over::rms}) EXPECT_FALSE(combined(over, {}));
+}
+
+TEST(Monitor, ReadsNodesOfItsRegionAndSide) {
+  const Model model = row_of_three();
+  Monitor monitor = monitor_of(Quantity::displacement);
+  EXPECT_EQ(monitored_nodes(monitor, model.tissue).size(), 8U);
+  const double bottom = model.tissue.rest_positions[model.tissue.cells[0].corners[0].index()].z();
+  for (const auto& [face, height] : {std::pair(Monitor::Face::apical, 40.0), {Monitor::Face::basal, 0.0}}) {
+    monitor.face = face;
+    const auto nodes = monitored_nodes(monitor, model.tissue);
+    ASSERT_EQ(nodes.size(), 4U);
+    for (const NodeId node : nodes) EXPECT_EQ(model.tissue.rest_positions[node.index()].z() - bottom, height);
+  }
+}
+
+TEST(Monitor, MotionOfNodesByNormAndComponent) {
+  const Model model = row_of_three();
+  State state = rest_state(model);
+  for (std::size_t n = 0; n < state.positions.size(); ++n) {
+    state.positions[n] += Vec3(3, 0, -4);
+    state.velocities[n] = Vec3(0, -0.6, 0.8);
+  }
+  EXPECT_NEAR(number(monitor_of(Quantity::displacement), model, state), 5, 1e-12);
+  EXPECT_NEAR(number(monitor_of(Quantity::speed), model, state), 1, 1e-12);
+  Monitor along = monitor_of(Quantity::displacement);
+  along.axis = 2;
+  EXPECT_NEAR(number(along, model, state), -4, 1e-12);
+  along.quantity = Quantity::velocity;
+  along.axis = 1;
+  EXPECT_NEAR(number(along, model, state), -0.6, 1e-12);
+  // Nodes of the left cell lie at two places in x, shifted by 3.
+  along.quantity = Quantity::position;
+  along.axis = 0;
+  const double first = model.tissue.rest_positions[0].x();
+  EXPECT_NEAR(number(along, model, state), first + 10 + 3, 1e-12);
+  along.over = Over::max;
+  EXPECT_NEAR(number(along, model, state), first + 20 + 3, 1e-12);
+}
+
+TEST(Monitor, VolumeOfAnInvertedCellIsNegative) {
+  const Model model = row_of_three();
+  State state = rest_state(model);
+  EXPECT_NEAR(number(monitor_of(Quantity::volume), model, state), 16000, 1e-9);
+  for (Vec3& x : state.positions) x.z() = -x.z();  // the mirror image: inside out
+  EXPECT_NEAR(number(monitor_of(Quantity::volume), model, state), -16000, 1e-9);
+  Monitor all = monitor_of(Quantity::volume, "all");
+  all.over = Over::sum;
+  EXPECT_NEAR(number(all, model, state), -48000, 1e-9);
+}
+
+TEST(Monitor, AreaOfEitherSide) {
+  const Model model = row_of_three();
+  State state = rest_state(model);
+  const double top = model.tissue.rest_positions[model.tissue.cells[0].corners[4].index()].z();
+  for (Vec3& x : state.positions)
+    if (x.z() == top) x.y() *= 0.5;
+  Monitor monitor = monitor_of(Quantity::area, "all");
+  EXPECT_NEAR(number(monitor, model, state), 200, 1e-10);
+  monitor.face = Monitor::Face::basal;
+  EXPECT_NEAR(number(monitor, model, state), 400, 1e-10);
+  monitor.over = Over::sum;
+  EXPECT_NEAR(number(monitor, model, state), 1200, 1e-10);
+}
+
+TEST(Monitor, CellsOfALowerLayerHaveNoApicalArea) {
+  const Model model(build_block({.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 2}}));
+  Monitor monitor = monitor_of(Quantity::area, "all");
+  EXPECT_EQ(monitored_cells(monitor, model.tissue).size(), 1U);
+  monitor.quantity = Quantity::volume;
+  EXPECT_EQ(monitored_cells(monitor, model.tissue).size(), 2U);
+}
+
+TEST(Monitor, PressureIsInPascalAndOnlyWhereVolumesAreHeld) {
+  Model model = row_of_three();
+  State state = rest_state(model);
+  state.pressures = {0.25, 7, 7};  // kPa
+  EXPECT_NEAR(number(monitor_of(Quantity::pressure), model, state), 250, 1e-9);
+  model.volumes_are_held = false;
+  EXPECT_FALSE(read_monitor(monitor_of(Quantity::pressure), {model, state}).number);
+}
+
+// A spring on each of four apical edges, 20 um long, k = 2 nN/um: 40 nN along each of two edges at every corner. The
+// body moves, is dragged and heavy: that does not count.
+TEST(Monitor, ForceIsThatOfTheStandingBody) {
+  Model model(build_block({.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 1}}));
+  add_elasticity(model);
+  add_contraction(model, {true}, {.stiffness = 2});
+  add_drag(model);
+  model.laws.push_back(std::make_unique<Inertia>(model.tissue, 1e-3));
+  State state = rest_state(model);
+  for (Vec3& v : state.velocities) v = Vec3(1, 2, 3);
+  Monitor monitor = monitor_of(Quantity::force, "all");
+  monitor.face = Monitor::Face::apical;
+  EXPECT_NEAR(number(monitor, model, state), 40 * std::sqrt(2.0), 1e-9);
+  monitor.face = Monitor::Face::basal;
+  EXPECT_NEAR(number(monitor, model, state), 0, 1e-9);
+  // Elasticity counts, too: stretched along z, the body pulls its top down. Contractions lie across.
+  for (Vec3& x : state.positions) x.z() *= 1.1;
+  monitor.axis = 2;
+  EXPECT_GT(number(monitor, model, state), 1);
+}
+
+TEST(Monitor, KineticEnergyOfARegion) {
+  Model model = row_of_three();
+  const Moment moment_without_mass{model, rest_state(model)};
+  EXPECT_FALSE(read_monitor(monitor_of(Quantity::kinetic_energy), moment_without_mass).number);
+  model.laws.push_back(std::make_unique<Inertia>(model.tissue, 1e-3));  // g/um^3
+  State state = rest_state(model);
+  for (Vec3& v : state.velocities) v = Vec3(0, 3, 4);
+  EXPECT_NEAR(number(monitor_of(Quantity::kinetic_energy), model, state), 0.5 * 16 * 25, 1e-9);
+  EXPECT_NEAR(number(monitor_of(Quantity::kinetic_energy, "all"), model, state), 3 * 0.5 * 16 * 25, 1e-9);
+}
+
+TEST(Monitor, TimeAndComputingTime) {
+  const Model model = row_of_three();
+  State state = rest_state(model);
+  state.time_s = 12.5;
+  EXPECT_EQ(read_monitor(monitor_of(Quantity::time), {model, state, 3}).number, 12.5);
+  EXPECT_EQ(read_monitor(monitor_of(Quantity::wall), {model, state, 3}).number, 3);
+}
+
+TEST(Monitor, DeviationAndEnergyNormAgainstTheEndOfARun) {
+  const Model model = row_of_three();
+  const Tissue& tissue = model.tissue;
+  State state = rest_state(model);
+  Frame frame;
+  frame.elements = tissue.elements;
+  for (const Vec3& x : tissue.rest_positions) frame.positions.push_back(1.2 * x);
+  for (Vec3& x : state.positions) x *= 1.1;
+
+  Monitor deviation = monitor_of(Quantity::deviation, "all");
+  deviation.reference_frame = frame;
+  double sum = 0;
+  for (const Vec3& x : tissue.rest_positions) sum += 0.1 * x.norm();
+  EXPECT_NEAR(number(deviation, model, state), sum / static_cast<double>(tissue.node_count()), 1e-12);
+  deviation.axis = 0;
+  deviation.over = Over::min;  // with its sign
+  EXPECT_LT(number(deviation, model, state), 0);
+
+  // Half the strain of the reference: half its energy norm, in any region.
+  Monitor norm = monitor_of(Quantity::relative_energy_norm, "left");
+  norm.poisson_ratio = 0.45;
+  norm.reference_frame = frame;
+  EXPECT_NEAR(number(norm, model, state), 0.5, 1e-12);
+  norm.reference_frame->positions = tissue.rest_positions;
+  EXPECT_FALSE(read_monitor(norm, {model, state}).number) << "nothing is relative to rest";
+
+  // Another mesh: no value.
+  deviation.reference_frame->elements.pop_back();
+  EXPECT_FALSE(read_monitor(deviation, {model, state}).number);
+}
+
+}  // namespace
+}  // namespace plica

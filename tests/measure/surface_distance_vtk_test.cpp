@@ -1,0 +1,55 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "measure/surface_distance.hpp"
+#include "support/tissues.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+/// Distance to a triangle the long way: to its plane where the foot lies inside, else to its edges.
+double to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 normal = (b - a).cross(c - a).normalized();
+  const auto inside = [&](const Vec3& from, const Vec3& to) { return normal.cross(to - from).dot(p - from) >= 0; };
+  if (inside(a, b) && inside(b, c) && inside(c, a)) return std::abs(normal.dot(p - a));
+  const auto to_edge = [&](const Vec3& from, const Vec3& to) {
+    const double part = std::clamp((p - from).dot(to - from) / (to - from).squaredNorm(), 0.0, 1.0);
+    return (p - from - part * (to - from)).norm();
+  };
+  return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
+}
+
+TEST(SurfaceDistance, IsThatOfTheNearestTriangle) {
+  Random random(11);
+  TriangleSurface surface;
+  surface.points = random.vectors(300, 100);
+  for (int t = 0; t < 100; ++t) surface.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  const SurfaceDistance distance(surface);
+  int cases = 0;
+  for (const double size : {50.0, 150.0, 1000.0})  // among, beside and far from them
+    for (int i = 0; i < 300; ++i) {
+      const Vec3 point = random.vector(size);
+      double nearest = 1e300;
+      for (const auto& [a, b, c] : surface.triangles)
+        nearest = std::min(nearest, to_triangle(point, surface.points[a], surface.points[b], surface.points[c]));
+      ASSERT_NEAR(distance.from(point), nearest, 1e-9) << point.transpose();
+      ++cases;
+    }
+  for (const Vec3& point : surface.points) EXPECT_LE(distance.from(point), 1e-12);
+  std::cout << cases << " points\n";
+}
+
+TEST(SurfaceDistance, ToASingleFlatTriangle) {
+  const SurfaceDistance distance({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+  EXPECT_NEAR(distance.from({0.2, 0.2, 3}), 3, 1e-12);
+  EXPECT_NEAR(distance.from({0.2, 0.2, -3}), 3, 1e-12);
+  EXPECT_NEAR(distance.from({4, 0, 4}), 5, 1e-12);
+}
+
+}  // namespace
+}  // namespace plica

@@ -1,0 +1,160 @@
+#include "scenario/monitor_rules.hpp"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "scenario/load.hpp"
+#include "scenario/print.hpp"
+#include "scenario/watch.hpp"
+#include "tissue/embryo.hpp"
+
+namespace plica {
+namespace {
+
+Scenario load(const std::string& text) { return load_scenario({"test", "test.toml", text}); }
+
+std::string errors_of(const std::string& text) {
+  try {
+    (void)load(text);
+    return "";
+  } catch (const ScenarioError& error) {
+    return error.what();
+  }
+}
+
+const std::string floor_monitor = "[monitor.floor]\nquantity = \"position\"\naxis = \"z\"\n";  // three lines
+
+TEST(MonitorRules, EveryErrorIsOneLineWithARemedy) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"[monitor.a]",
+       "test.toml:1: monitor.a.quantity: is missing; give one of: position | displacement | speed | "
+       "velocity | deviation | relative_energy_norm | surface_distance | force | volume | area | "
+       "pressure | kinetic_energy | time | wall"},
+      {"[monitor.a]\nquantity = \"displacment\"",
+       "test.toml:2: monitor.a.quantity: \"displacment\" is not known; give one of: position | displacement | speed | "
+       "velocity | deviation | relative_energy_norm | surface_distance | force | volume | area | pressure | "
+       "kinetic_energy | time | wall (did you mean \"displacement\"?)"},
+      {"[monitor.a]\nquantity = \"speed\"\nregion = \"al\"",
+       "test.toml:3: monitor.a.region: there is no region \"al\"; did you mean \"all\"?"},
+      {"[monitor.a]\nquantity = \"position\"", "test.toml:1: monitor.a.axis: is missing; give \"x\", \"y\" or \"z\""},
+      {"[monitor.a]\nquantity = \"speed\"\naxis = \"z\"",
+       "test.toml:3: monitor.a.axis: has no meaning for quantity \"speed\"; remove it, or monitor velocity"},
+      {"[monitor.a]\nquantity = \"volume\"\nface = \"apical\"",
+       "test.toml:3: monitor.a.face: has no meaning for quantity \"volume\"; remove it"},
+      {"[monitor.a]\nquantity = \"time\"\nover = \"max\"",
+       "test.toml:3: monitor.a.over: has no meaning for quantity \"time\"; remove it: there is one value only"},
+      {"[monitor.a]\nquantity = \"deviation\"",
+       "test.toml:1: monitor.a.reference: is missing; name the directory of a run's results"},
+      {"[monitor.a]\nquantity = \"surface_distance\"",
+       "test.toml:1: monitor.a.reference: is missing; name a mesh file"},
+      {"[monitor.a]\nquantity = \"speed\"\nreference = \"b\"",
+       "test.toml:3: monitor.a.reference: has no meaning for quantity \"speed\"; remove it"},
+      {"[monitor.a]\nquantity = \"surface_distance\"\nreference = \"b\"\nreference_at = \"end\"",
+       "test.toml:4: monitor.a.reference_at: has no meaning for quantity \"surface_distance\"; remove it"},
+      {"[monitor.a]\nquantity = \"kinetic_energy\"",
+       "test.toml:2: monitor.a.quantity: a body without mass has no kinetic energy; give a density in [dynamics], or "
+       "monitor speed"},
+      {"[volume]\nmethod = \"none\"\n[monitor.a]\nquantity = \"pressure\"",
+       "test.toml:4: monitor.a.quantity: cells that do not hold their volume have no pressure; give volume.method = "
+       "\"coupled\""},
+      // Criteria.
+      {"[stop.a]\nabove = 1", "test.toml:1: stop.a.monitor: is missing; give text"},
+      {floor_monitor + "[stop.a]\nmonitor = \"floor\"", "test.toml:4: stop.a: bounds nothing; give above or below"},
+      {"[stop.a]",
+       "test.toml:1: stop.a.monitor: is missing; give text\n"
+       "test.toml:1: stop.a: bounds nothing; give above or below"},
+      {floor_monitor + "[stop.a]\nmonitor = \"flor\"\nabove = 1",
+       "test.toml:5: stop.a.monitor: there is no monitor \"flor\"; did you mean \"floor\"?"},
+      {"[stop.a]\nmonitor = \"floor\"\nabove = 1",
+       "test.toml:2: stop.a.monitor: there is no monitor \"floor\"; give it as [monitor.floor]"},
+      {floor_monitor + "[stop.a]\nmonitor = \"floor\"\nabove = 3\nbelow = 3",
+       "test.toml:6: stop.a.above: no value lies above 3 and below 3; give a lower bound for above, or make two "
+       "criteria of it"},
+      {floor_monitor + "[stop.a]\nmonitor = \"floor\"\nabove = nan",
+       "test.toml:6: stop.a.above: nan is not a finite number; give a number"},
+      {floor_monitor + "[stop.a]\nmonitor = \"floor\"\nabov = 3",
+       "test.toml:6: stop.a.abov: unknown key; did you mean \"above\"?"},
+      {floor_monitor + "[stop.equilibrium]\nmonitor = \"floor\"\nabove = 3",
+       "test.toml:4: stop.equilibrium: equilibrium is a criterion already; see equilibrium_speed_um_per_min, or choose "
+       "another name"},
+      {"[monitor.t]\nquantity = \"time\"\n[stop.a]\nmonitor = \"t\"\nabove = 3\nover = \"any\"",
+       "test.toml:6: stop.a.over: monitor \"t\" has one value only; remove it"},
+      {"[stop]\ncombine = \"none\"", "test.toml:2: stop.combine: \"none\" is not known; give one of: any | all"},
+      {"[stop]\ncombine = {}", "test.toml:2: stop.combine: a table is of the wrong type; give one of: any | all"},
+      {"[stop]\nat_equilibium = false",
+       "test.toml:2: stop.at_equilibium: unknown key; did you mean \"at_equilibrium\"?"},
+      {"[stop.\"a b\"]", "test.toml:1: stop.a b: is no name; use letters, digits, \"_\" and \"-\""},
+      // Expectations of monitors.
+      {floor_monitor + "[expect]\nfloor.position_m = { value = 1, within = 1 }",
+       "test.toml:5: expect.floor.position_m: no monitor has that name; did you mean \"floor.position_um\"?"},
+      {"[expect]\n\"floor.position_um\" = { value = 1, within = 1 }",
+       "test.toml:2: expect.floor.position_um: no monitor has that name; give the monitor as [monitor.NAME]"},
+      {floor_monitor + "[expect]\nfloor.position_um = { value = 1 }",
+       "test.toml:5: expect.floor.position_um: has no tolerance; give within or within_percent, too"},
+  };
+  int count = 0;
+  for (const auto& [text, message] : cases) {
+    EXPECT_EQ(errors_of(text), message) << text;
+    ++count;
+  }
+  std::cout << count << " wrong scenarios\n";
+}
+
+const std::string rich = floor_monitor + R"(region = "belly"
+face = "apical"
+over = "max"
+[monitor.clock]
+quantity = "time"
+[region.belly]
+face = "ventral"
+[stop]
+combine = "all"
+at_equilibrium = false
+late = { monitor = "clock", above = 60 }
+[stop.deep]
+monitor = "floor"
+above = -120
+below = 0
+over = "any"
+[expect]
+floor.position_um = { value = -120, within = 1 }
+)";
+
+TEST(MonitorRules, ResolvedScenarioLoadsBack) {
+  const Scenario scenario = load(rich);
+  EXPECT_EQ(scenario.expect.count("floor.position_um"), 1U);
+  EXPECT_EQ(scenario.criteria.size(), 2U);
+  const std::string text = resolved_toml(scenario);
+  EXPECT_EQ(resolved_toml(load(text)), text);
+}
+
+TEST(MonitorRules, SetReachesCriteriaAndExpectations) {
+  const Scenario scenario = load_scenario(
+      {"test", "test.toml", rich}, {"stop.deep.above=-100", "stop.combine=any", "expect.floor.position_um.within=2"});
+  EXPECT_EQ(scenario.criteria.at("deep").above, -100);
+  EXPECT_EQ(scenario.stop.combine, "any");
+  EXPECT_EQ(scenario.expect.at("floor.position_um").within, 2);
+}
+
+TEST(Watch, MakesMonitorsAndCriteriaOfAScenario) {
+  Tissue tissue = build_shell({.length_um = 460, .cells = {18, 9, 8}});
+  tissue.regions["belly"] = tissue.regions.at("all");
+  const Watch watch = make_watch(load(rich), tissue);
+  ASSERT_EQ(watch.monitors.size(), 2U);
+  EXPECT_EQ(watch.monitors[0].column(), "clock.time_s");
+  EXPECT_EQ(watch.monitors[1].column(), "floor.position_um");
+  EXPECT_EQ(watch.monitors[1].axis, 2);
+  EXPECT_EQ(watch.monitors[1].over, Over::max);
+  EXPECT_EQ(watch.monitors[1].face, Monitor::Face::apical);
+  EXPECT_TRUE(watch.stop.all);
+  EXPECT_FALSE(watch.stop.needs_rest);
+  ASSERT_EQ(watch.stop.criteria.size(), 2U);
+  EXPECT_EQ(watch.stop.criteria[0].monitor, 1U);  // deep is on floor
+  EXPECT_EQ(watch.stop.criteria[0].over, Criterion::Over::any);
+  EXPECT_EQ(watch.stop.criteria[1].monitor, 0U);  // late on clock
+  EXPECT_EQ(watch.stop.criteria[1].above, 60);
+}
+
+}  // namespace
+}  // namespace plica
