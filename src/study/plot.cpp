@@ -37,7 +37,9 @@ Scale scale_of(const PlotAxis& axis, const std::vector<const std::vector<double>
   for (const Guide& guide : guides) take(guide.at), take(guide.high.value_or(guide.at));
   if (!(low <= high)) low = axis.logarithmic ? 0.1 : 0, high = 1;
   if (low == high) low = axis.logarithmic ? low / 2 : low - 0.5, high = axis.logarithmic ? high * 2 : high + 0.5;
-  if (!axis.logarithmic) {
+  if (axis.logarithmic) {
+    low /= 1.3, high *= 1.3;
+  } else {
     const double margin = 0.06 * (high - low);
     low = low >= 0 && low - margin < 0 ? 0 : low - margin;
     high += margin;
@@ -75,8 +77,7 @@ void draw_guides(Svg& svg, const Plot& plot, const Scale& x, const Scale& y) {
       svg.rectangle({left, y.pixel(*guide.high)}, width - right - left, at - y.pixel(*guide.high), "#f1e9c9");
     else
       svg.polyline({{left, at}, {width - right, at}}, "#777", 1, "3 3");
-    svg.text({width - right - 4, (guide.high ? y.pixel(*guide.high) + 12 : at - 4)}, guide.label,
-             {.size = 11, .anchor = "end"});
+    svg.text({left + 4, guide.high ? y.pixel(*guide.high) + 12 : at - 4}, guide.label, {.size = 11});
   }
   int row = 0;
   for (const Guide& guide : plot.vertical) {

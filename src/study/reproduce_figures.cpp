@@ -14,7 +14,7 @@ namespace plica {
 namespace {
 
 constexpr double small_um_per_pixel = 1.9, large_um_per_pixel = 1.2;
-const ColourScale displacement_scale{"displacement from rest, um", 0, 30};
+const ColourScale displacement_scale{"displacement from rest, um", 0, 35};
 
 Figure chart(const std::string& name, const Plot& plot, const std::string& caption) {
   return {name, draw(plot).file(plot.title), caption, plot_csv(plot)};
@@ -251,7 +251,7 @@ std::vector<Figure> reproduction_figures(const Results& results, const Measured&
   figures.push_back(
       chart("mechanism", why.plot,
             "**Why the ends lead** (section 4). At t = 0, before anything moves, springs of the same strength "
-            "everywhere press the caps inwards about twice as hard as the cylinder, and a sphere everywhere "
+            "everywhere press the caps inwards harder than the cylinder, and a sphere everywhere "
             "alike, as Laplace's law has it. On the strip of the chosen reading the last cells are drawn "
             "along the axis as well. Springs along the axis alone do not press on the cylinder at all."));
   if (!measured.pill_onsets.ap_um.empty())

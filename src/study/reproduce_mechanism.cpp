@@ -11,6 +11,9 @@
 namespace plica {
 namespace {
 
+// The pill's cylinder ends at 90 um; cells that lie on both sides of that are left out.
+constexpr double cylinder_to_um = 70, cap_from_um = 110;
+
 std::unique_ptr<Model> model_of(const std::string& name, const std::vector<std::string>& overrides) {
   return make_model(load_scenario(find_scenario(name), overrides));
 }
@@ -42,6 +45,28 @@ Curve inward_force(const std::string& name, const Model& model, const FurrowSite
   return curve;
 }
 
+// Hoop and mean tension of a network of equal springs at each midline cell, over that of square cells: a spring of zero
+// rest length carries k l, and stands for a width w; so T = 2 k l / w, more along the longer side of the cell.
+struct NetworkTension {
+  std::vector<double> hoop, mean;
+};
+
+NetworkTension network_tension(const Tissue& tissue, const FurrowSites& sites) {
+  NetworkTension tension;
+  for (const CellId id : sites.midline) {
+    double along = 0, across = 0;
+    for (const CellEdge& edge : tissue.cells[id.index()].edges) {
+      if (edge.side != EdgeSide::apical) continue;
+      const double length =
+          (tissue.rest_positions[edge.nodes.back().index()] - tissue.rest_positions[edge.nodes.front().index()]).norm();
+      (edge.direction == EdgeDirection::along ? along : across) += length;
+    }
+    tension.hoop.push_back(across / along);
+    tension.mean.push_back((across / along + along / across) / 2);
+  }
+  return tension;
+}
+
 Curve inward_force(const std::string& name, const std::string& scenario, const std::vector<std::string>& overrides) {
   const Scenario loaded = load_scenario(find_scenario(scenario), overrides);
   const auto model = make_model(loaded);
@@ -55,6 +80,17 @@ double mean_between(const Curve& curve, double low, double high) {
   for (std::size_t i = 0; i < curve.x.size(); ++i)
     if (std::abs(curve.x[i]) >= low && std::abs(curve.x[i]) <= high) sum += curve.y[i], ++count;
   return count > 0 ? sum / count : 0;
+}
+
+// Inward force over the tension that causes it, on the caps (both directions) over on the cylinder (the hoop): 2 by
+// Laplace's law, 1/R + 1/R against 1/R.
+double cap_over_cylinder(Curve force) {
+  const Scenario scenario = load_scenario(find_scenario("drosophila"));
+  const Tissue tissue = make_tissue(scenario);
+  const NetworkTension tension = network_tension(tissue, make_furrow_sites(scenario, tissue));
+  Curve over_hoop = force, over_mean = force;
+  for (std::size_t i = 0; i < force.y.size(); ++i) over_hoop.y[i] /= tension.hoop[i], over_mean.y[i] /= tension.mean[i];
+  return mean_between(over_mean, cap_from_um, 1e3) / mean_between(over_hoop, 0, cylinder_to_um);
 }
 
 struct Extent {
@@ -74,13 +110,11 @@ Mechanism mechanism() {
       inward_force("pill, 5 rows, springs along the axis only", "drosophila", {"contraction.apical.across_ratio=0"});
 
   Mechanism result;
-  // The pill's cylinder ends at 90 um; the last ventral cells' edges, where rows from three sides meet, are left out.
-  result.figures["laplace.pill_ratio"] = mean_between(pill, 110, 190) / mean_between(pill, 0, 50);
+  result.figures["laplace.pill_ratio"] = mean_between(pill, cap_from_um, 1e3) / mean_between(pill, 0, cylinder_to_um);
+  result.figures["laplace.pill_ratio_of_tension"] = cap_over_cylinder(pill);
   result.figures["laplace.sphere_ratio"] = mean_between(sphere, 50, 100) / mean_between(sphere, 0, 30);
-  const auto middle_over_end = [](const Curve& curve) {  // VCE: the second-last of 14 cells, 128 um from the middle
-    double largest = 0;
-    for (const double value : curve.y) largest = std::max(largest, value);
-    return mean_between(curve, 0, 15) / largest;
+  const auto middle_over_end = [](const Curve& curve) {
+    return mean_between(curve, 0, 15) / *std::ranges::max_element(curve.y);
   };
   result.figures["laplace.chosen_middle_over_end"] = middle_over_end(chosen);
   result.figures["laplace.axial_middle_over_end"] = middle_over_end(axial);

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 
 #include "core/version.hpp"
@@ -20,11 +22,17 @@ std::string number(std::optional<double> value, const std::string& none = "never
   if (!value) return none;
   if (std::abs(*value - 1) < 1e-6 && *value != 1)
     return fmt::format("1 {} {:.1e}", *value > 1 ? "+" : "-", std::abs(*value - 1));
-  return fmt::format("{:.4g}", *value + 0.0);
+  return std::abs(*value) >= 1e4 ? fmt::format("{:.0f}", *value) : fmt::format("{:.4g}", *value + 0.0);
+}
+
+std::string signed_number(double value) {
+  if (value == 0) return "0";
+  return std::abs(value) >= 1e3 ? fmt::format("{:+.0f}", value) : fmt::format("{:+.3g}", value);
 }
 
 std::string with_unit(const std::string& text, const std::string& unit) {
-  return unit.empty() || text == "never" ? text : text + " " + unit;
+  return unit.empty() || text.empty() || !std::isdigit(static_cast<unsigned char>(text.back())) ? text
+                                                                                                : text + " " + unit;
 }
 
 // Ids of figures' runs: the part before the first dot.
@@ -45,13 +53,10 @@ std::vector<std::string> claim_row(const Claim& claim, const Measured& measured,
   ++outcome.claims;
   if (found == Verdict::reproduced) ++outcome.reproduced;
   if (found == Verdict::under_this_reading) ++outcome.under_this_reading;
-  const std::string difference =
-      ours && claim.value
-          ? fmt::format("{:+.3g}", std::abs(*ours - *claim.value) < 1e-9 ? *ours - *claim.value : *ours - *claim.value)
-          : "";
+  const std::string difference = ours && claim.value ? signed_number(*ours - *claim.value) : "";
   return {claim.section,
           claim.text,
-          with_unit(claim.printed, claim.printed == "15 min" ? "" : claim.unit),
+          with_unit(claim.printed, claim.unit),
           with_unit(number(ours), claim.unit),
           difference,
           word_of(found),
@@ -164,7 +169,7 @@ void add_error_bars(Document& page, const Measured& measured) {
   const Figures& figures = measured.figures;
   for (const Headline& headline : headlines) {
     std::vector<std::string> row = {
-        with_unit(headline.text, headline.unit[0] ? fmt::format("({})", headline.unit) : ""), headline.printed};
+        headline.unit[0] ? fmt::format("{}, {}", headline.text, headline.unit) : headline.text, headline.printed};
     for (const std::string embryo : {"pill", "sphere"}) {
       const auto value = [&](const std::string& which) { return find(figures, which + embryo + "." + headline.name); };
       const auto difference = [&](const std::string& fine, const std::string& coarse) {

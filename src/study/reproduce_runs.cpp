@@ -129,7 +129,7 @@ void measure_divisions(Figures& figures, const Results& results) {
   const auto highest = [&](const char* id) { return summary_number(results, id, "highest_points_distance_um"); };
   add_ratio(figures, "division.lips_ratio", lips("division"), lips("division-without"));
   add_ratio(figures, "division.highest_ratio", highest("division"), highest("division-without"));
-  add_ratio(figures, "division.twice_ratio", lips("division-twice"), lips("division"));
+  add_ratio(figures, "twice.lips_ratio", lips("division-twice"), lips("division"));
   for (const char* id : {"division", "division-without", "division-twice"}) {
     if (lips(id)) figures[fmt::format("{}.lips_um", id)] = *lips(id);
     if (highest(id)) figures[fmt::format("{}.highest_um", id)] = *highest(id);
@@ -193,6 +193,8 @@ void measure_onsets(Measured& measured, const Results& results) {
   add_ratio(figures, "onset_pill.middle_over_ends", figure("onset_pill.middle_s"), figure("onset_pill.ends_s"));
   add_ratio(figures, "onset_sphere.spread_over_equal", figure("onset_sphere.spread_s"),
             figure("sphere.equal_speeds_s"));
+  add_ratio(figures, "onset_sphere.spread_over_pill_equal", figure("onset_sphere.spread_s"),
+            figure("pill.equal_speeds_s"));
   add_ratio(figures, "onset_sphere.spread_over_pill", figure("onset_sphere.spread_s"), figure("onset_pill.spread_s"));
   add_ratio(figures, "both.ratio_of_ratios", figure("pill.peak_ratio"), figure("sphere.peak_ratio"));
 }

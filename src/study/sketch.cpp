@@ -41,23 +41,24 @@ std::string colour_of(double value, const ColourScale& scale, double light) {
 // A polygon on its way to paper: x to the right, y downwards, um.
 struct Patch {
   double depth = 0;  // towards the eye; nearer ones are painted later
-  std::vector<Pixel> points;
-  std::string fill;
+  FilledPolygon shape;
 };
 
-// Moves patches into the picture. All pictures of one size show the same place in the middle: `half_size` in um.
-Svg painted(std::vector<Patch> patches, double half_width, double half_height, double um_per_pixel) {
+// Moves patches into the picture, whose middle is the body's origin; `half` is half of its size in um.
+Svg painted(std::vector<Patch> patches, const std::array<double, 2>& half, double um_per_pixel) {
   std::ranges::stable_sort(patches, {}, &Patch::depth);
-  Svg svg(2 * (half_width / um_per_pixel + margin), 2 * (half_height / um_per_pixel + margin));
+  Svg svg(2 * (half[0] / um_per_pixel + margin), 2 * (half[1] / um_per_pixel + margin));
+  std::vector<FilledPolygon> shapes;
   for (Patch& patch : patches) {
-    for (Pixel& point : patch.points)
+    for (Pixel& point : patch.shape.points)
       point = {svg.width() / 2 + point[0] / um_per_pixel, svg.height() / 2 + point[1] / um_per_pixel};
-    svg.polygon(patch.points, patch.fill, "#222", 0.35);
+    shapes.push_back(std::move(patch.shape));
   }
+  svg.polygons(shapes, "#999", 0.5);  // seen on dark and on light colours
   return svg;
 }
 
-// Half the size of what is drawn, as if the body were at rest, so that a strip's pictures share one scale.
+// How far the body reaches from the origin along the picture's sides, um.
 std::array<double, 2> half_size(const Vectors& points, const Vec3& right, const Vec3& up) {
   std::array<double, 2> half = {0, 0};
   for (const Vec3& point : points) {
@@ -86,7 +87,7 @@ std::vector<Vec3> cut_element(const HexPoints& points, int axis, double at) {
 }  // namespace
 
 Viewpoint ventral_view() { return {Vec3(0, 0, -1), Vec3(0, -1, 0)}; }
-Viewpoint antero_ventral_view() { return {Vec3(-0.62, -0.38, -0.69), Vec3(0, -0.6, 0.8)}; }
+Viewpoint antero_ventral_view() { return {Vec3(-0.6, 0, -0.8), Vec3(0.4, -0.87, -0.3)}; }
 Viewpoint side_view() { return {Vec3(0, -1, 0), Vec3(0, 0, 1)}; }
 
 std::vector<double> displacements(const Frame& frame) {
@@ -109,15 +110,14 @@ Svg sketch_surface(const Frame& frame, const std::vector<double>& node_values, c
       corners[i] = frame.positions[nodes[i].index()];
       value += node_values[nodes[i].index()] / 4;
       patch.depth += corners[i].dot(eye) / 4;
-      patch.points.push_back({corners[i].dot(right), -corners[i].dot(up)});
+      patch.shape.points.push_back({corners[i].dot(right), -corners[i].dot(up)});
     }
     const Vec3 normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]).normalized();
     if (normal.dot(eye) <= 0) continue;
-    patch.fill = colour_of(value, scale, 0.55 + 0.45 * std::max(0.0, normal.dot(light)));
+    patch.shape.fill = colour_of(value, scale, 0.55 + 0.45 * std::max(0.0, normal.dot(light)));
     patches.push_back(std::move(patch));
   }
-  const auto half = half_size(frame.positions, right, up);
-  return painted(std::move(patches), half[0], half[1], um_per_pixel);
+  return painted(std::move(patches), half_size(frame.positions, right, up), um_per_pixel);
 }
 
 Svg sketch_section(const Frame& frame, const std::vector<double>& node_values, const ColourScale& scale, int axis,
@@ -130,16 +130,16 @@ Svg sketch_section(const Frame& frame, const std::vector<double>& node_values, c
     Patch patch;
     double value = 0;
     for (const NodeId node : nodes) value += node_values[node.index()] / 8;
-    for (const Vec3& point : cut) patch.points.push_back({point.dot(right), -point.dot(up)});
-    patch.fill = colour_of(value, scale, 1);
+    for (const Vec3& point : cut) patch.shape.points.push_back({point.dot(right), -point.dot(up)});
+    patch.shape.fill = colour_of(value, scale, 1);
     patches.push_back(std::move(patch));
   }
-  const auto half = half_size(frame.positions, right, up);
-  return painted(std::move(patches), half[0], half[1], um_per_pixel);
+  return painted(std::move(patches), half_size(frame.positions, right, up), um_per_pixel);
 }
 
 Svg strip(const std::vector<std::pair<std::string, Svg>>& pictures, std::size_t columns, const ColourScale& scale) {
   constexpr double heading = 20, bar_height = 46, bar_width = 220;
+  columns = std::min(columns, pictures.size());
   double width = 0, height = 0;
   for (const auto& [name, picture] : pictures)
     width = std::max(width, picture.width()), height = std::max(height, picture.height());
@@ -160,8 +160,8 @@ Svg strip(const std::vector<std::pair<std::string, Svg>>& pictures, std::size_t 
     whole.rectangle({x + i * bar_width / steps, y}, bar_width / steps + 0.5, 10,
                     colour_of(scale.low + (i + 0.5) / steps * (scale.high - scale.low), scale, 1));
   for (const double tick : axis_ticks(scale.low, scale.high, false))
-    whole.text({x + bar_width * (tick - scale.low) / (scale.high - scale.low), y + 22}, fmt::format("{:.4g}", tick),
-               {.size = 11, .anchor = "middle"});
+    whole.text({x + bar_width * (tick - scale.low) / (scale.high - scale.low), y + 22},
+               fmt::format("{:.4g}", tick + 0.0), {.size = 11, .anchor = "middle"});
   whole.text({whole.width() / 2, y + 36}, scale.label, {.size = 12, .anchor = "middle"});
   return whole;
 }

@@ -31,10 +31,11 @@ std::string xml_escaped(const std::string& text) {
   return escaped;
 }
 
-void Svg::polygon(const std::vector<Pixel>& points, const std::string& fill, const std::string& stroke,
-                  double stroke_width) {
-  shapes_ += fmt::format("<polygon points=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"{:.2g}\"/>\n", joined(points),
-                         fill, stroke, stroke_width);
+void Svg::polygons(const std::vector<FilledPolygon>& polygons, const std::string& stroke, double stroke_width) {
+  shapes_ += fmt::format("<g stroke=\"{}\" stroke-width=\"{:.2g}\" stroke-linejoin=\"round\">\n", stroke, stroke_width);
+  for (const FilledPolygon& polygon : polygons)
+    shapes_ += fmt::format("<polygon points=\"{}\" fill=\"{}\"/>\n", joined(polygon.points), polygon.fill);
+  shapes_ += "</g>\n";
 }
 
 void Svg::polyline(const std::vector<Pixel>& points, const std::string& colour, double width,

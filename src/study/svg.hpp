@@ -10,6 +10,11 @@ namespace plica {
 /// A place in a picture: pixels from its left and upper edge.
 using Pixel = std::array<double, 2>;
 
+struct FilledPolygon {
+  std::vector<Pixel> points;
+  std::string fill;
+};
+
 /// How text stands at its place.
 struct TextStyle {
   double size = 12;
@@ -23,8 +28,8 @@ class Svg {
  public:
   Svg(double width, double height) : width_(width), height_(height) {}
 
-  void polygon(const std::vector<Pixel>& points, const std::string& fill, const std::string& stroke,
-               double stroke_width = 0.5);
+  /// Filled polygons with a common outline, the later over the earlier.
+  void polygons(const std::vector<FilledPolygon>& polygons, const std::string& stroke, double stroke_width);
   /// `dashes` as SVG has them ("6 3"); empty for a whole line.
   void polyline(const std::vector<Pixel>& points, const std::string& colour, double width = 1.5,
                 const std::string& dashes = "");
