@@ -176,7 +176,7 @@ const std::vector<Claim> table = {
      "s",
      Basis::measured,
      "the ends are through their range before the middle is in its own",
-     "shortly before the speeds are equal"},
+     "about when the speeds are equal"},
     {"3.1, Fig. 10", "Invagination spreads from the ends to the middle (rank correlation of onset with distance)", "-1",
      "onset_pill.rank_correlation", -1, -0.8, -1, "", Basis::fixed,
      "onset times do not rise towards the middle throughout", "onset: a tenth of the cell's final depth"},

@@ -45,7 +45,7 @@ bool group_was_measured(const Figures& figures, const std::string& group) {
 std::vector<std::string> claim_row(const Claim& claim, const Measured& measured, ReproduceOutcome& outcome) {
   const std::optional<double> ours = find(measured.figures, claim.figure);
   std::vector<std::optional<double>> scanned;
-  for (const Reading& reading : readings()) {
+  for (const PaperReading& reading : readings()) {
     const auto found = measured.readings.find(reading.id);
     if (reading.scanned && found != measured.readings.end()) scanned.push_back(find(found->second, claim.figure));
   }
@@ -100,7 +100,7 @@ void add_readings(Document& page, const Measured& measured, const Plan& plan) {
   };
   std::vector<Row> rows;
   std::vector<std::string> absent;
-  for (const Reading& reading : readings()) {
+  for (const PaperReading& reading : readings()) {
     const auto found = measured.readings.find(reading.id);
     const auto skipped = plan.skipped.find(reading.id + "-pill");
     if (skipped != plan.skipped.end())

@@ -18,7 +18,7 @@ const std::string drag = "dynamics.surface_drag_Pa_s_per_um=";
 //   plica calibrate drosophila --set KEY=VALUE --vary contraction.apical.stiffness_nN_per_um=2:20
 //     --target furrow_depth_um=28.89
 // finds them, with the keys of their row; rows marked "stiffness as chosen" keep 8.0.
-const std::vector<Reading> table = {
+const std::vector<PaperReading> table = {
     {"chosen",
      "chosen",
      "5 rows, across/along 0.35, k = 8.0, drag 136, step on",
@@ -115,11 +115,11 @@ const std::vector<PrintedNumber> numbers = {
 
 }  // namespace
 
-std::span<const Reading> readings() { return table; }
+std::span<const PaperReading> readings() { return table; }
 
-const Reading& chosen_reading() { return table.front(); }
+const PaperReading& chosen_reading() { return table.front(); }
 
-std::vector<std::string> sphere_overrides(const Reading& reading) {
+std::vector<std::string> sphere_overrides(const PaperReading& reading) {
   std::vector<std::string> keys = {"embryo.shape=sphere", "embryo.cells=[9,9,8]", "region.furrow.cells_along=7"};
   if (reading.base == "drosophila-deep") keys.emplace_back("region.floor.cells_along=7");
   return keys;
@@ -127,7 +127,7 @@ std::vector<std::string> sphere_overrides(const Reading& reading) {
 
 std::span<const PrintedNumber> printed_numbers() { return numbers; }
 
-std::optional<double> figure_in(const Reading& reading, const std::string& name, const Figures& figures) {
+std::optional<double> figure_in(const PaperReading& reading, const std::string& name, const Figures& figures) {
   std::string key = name;
   if (reading.depth_below_lips && name.ends_with(".depth_um"))
     key = name.substr(0, name.size() - 8) + "depth_below_lips_um";
@@ -137,7 +137,7 @@ std::optional<double> figure_in(const Reading& reading, const std::string& name,
   return found == figures.end() ? std::nullopt : std::optional(found->second);
 }
 
-std::optional<Score> score(const Reading& reading, const Figures& figures) {
+std::optional<Score> score(const PaperReading& reading, const Figures& figures) {
   if (!figures.contains("pill.depth_um") || !figures.contains("sphere.depth_um")) return std::nullopt;
   Score result;
   for (const PrintedNumber& number : numbers) {

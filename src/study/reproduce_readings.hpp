@@ -11,7 +11,7 @@
 namespace plica {
 
 /// One way to read the paper: the scenario `drosophila` with some keys changed, on the pill and on the sphere.
-struct Reading {
+struct PaperReading {
   std::string id;                      // names its runs
   std::string group;                   // what is varied
   std::string text;                    // the choice
@@ -25,11 +25,11 @@ struct Reading {
   bool has_sphere = true;         // worth a run
 };
 
-std::span<const Reading> readings();
-const Reading& chosen_reading();
+std::span<const PaperReading> readings();
+const PaperReading& chosen_reading();
 
 /// The keys that turn a pill scenario into the sphere with the same cells.
-std::vector<std::string> sphere_overrides(const Reading& reading);
+std::vector<std::string> sphere_overrides(const PaperReading& reading);
 
 /// A printed number: what is within centre +- half counts as met.
 struct PrintedNumber {
@@ -48,9 +48,9 @@ struct Score {
 inline constexpr double largest_miss = 5;
 
 /// `figures`: of the reading's two runs, prefixed. Nothing where there is no figure of one of the embryos.
-std::optional<Score> score(const Reading& reading, const Figures& figures);
+std::optional<Score> score(const PaperReading& reading, const Figures& figures);
 
 /// The figure that a printed number has in a reading: depth and VCE as the reading takes them.
-std::optional<double> figure_in(const Reading& reading, const std::string& name, const Figures& figures);
+std::optional<double> figure_in(const PaperReading& reading, const std::string& name, const Figures& figures);
 
 }  // namespace plica

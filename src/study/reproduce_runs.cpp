@@ -225,7 +225,7 @@ Plan make_plan(bool quick) {
       planner.add(id, base, no_frames + std::vector<std::string>{tolerance(fine_tolerance_um)});
   }
   plan_chosen(planner, quick);
-  for (const Reading& reading : readings()) {
+  for (const PaperReading& reading : readings()) {
     if (!reading.same_runs_as.empty() || (quick && !reading.quick)) continue;
     const std::vector<std::string> overrides = no_frames + coarse + reading.overrides;
     planner.add(reading.id + "-pill", reading.base, overrides, pill_along);
@@ -244,7 +244,7 @@ Measured measure(const Results& results) {
       if (const auto found = finished(results, std::string(which) + id))
         add_prefixed(figures, std::string(which) == "main-" ? fmt::format("{}.", id) : fmt::format("{}{}.", which, id),
                      *found);
-  for (const Reading& reading : readings()) {
+  for (const PaperReading& reading : readings()) {
     const std::string runs = reading.same_runs_as.empty() ? reading.id : reading.same_runs_as;
     for (const char* id : {"pill", "sphere"})
       if (const auto found = finished(results, runs + "-" + id))

@@ -54,7 +54,7 @@ Svg painted(std::vector<Patch> patches, const std::array<double, 2>& half, doubl
       point = {svg.width() / 2 + point[0] / um_per_pixel, svg.height() / 2 + point[1] / um_per_pixel};
     shapes.push_back(std::move(patch.shape));
   }
-  svg.polygons(shapes, "#999", 0.5);  // seen on dark and on light colours
+  svg.polygons(shapes, "#888", 0.35);  // seen on dark and on light colours
   return svg;
 }
 

@@ -1,6 +1,7 @@
 // The tables of claims and readings, and what is made of figures: verdicts and scores.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "study/reproduce_claims.hpp"
@@ -48,14 +49,15 @@ TEST(Score, IsNothingForThePrintedNumbersAndTheLargestMissForNoneOfThem) {
   EXPECT_FALSE(score(chosen_reading(), {{"pill.depth_um", 28.89}}));
   // One number at the edge of its tolerance.
   printed["pill.rest_min"] += 0.75;
-  EXPECT_NEAR(score(chosen_reading(), printed)->rms, 1 / std::sqrt(printed_numbers().size()), 1e-12);
+  EXPECT_NEAR(score(chosen_reading(), printed)->rms, 1 / std::sqrt(static_cast<double>(printed_numbers().size())),
+              1e-12);
 }
 
 TEST(Readings, HaveRunsOfTheirOwnOrOfAnother) {
   std::set<std::string> ids;
-  for (const Reading& reading : readings()) EXPECT_TRUE(ids.insert(reading.id).second) << reading.id;
-  for (const Reading& reading : readings())
-    if (!reading.same_runs_as.empty()) EXPECT_TRUE(ids.contains(reading.same_runs_as)) << reading.id;
+  for (const PaperReading& reading : readings()) EXPECT_TRUE(ids.insert(reading.id).second) << reading.id;
+  for (const PaperReading& reading : readings())
+    EXPECT_TRUE(reading.same_runs_as.empty() || ids.contains(reading.same_runs_as)) << reading.id;
   EXPECT_GE(ids.size(), 25u);
 }
 
@@ -68,7 +70,8 @@ TEST(Plan, LeavesOutNothingThatThisBuildKnows) {
   }
   for (const char* id : {"main-pill", "main-sphere", "fine-space-pill", "division-without", "across-1-sphere"})
     EXPECT_TRUE(ids.contains(id)) << id;
-  for (const auto& [id, why] : plan.skipped) EXPECT_NE(why.find("available"), std::string::npos) << id << ": " << why;
+  for (const auto& [id, why] : plan.skipped)
+    EXPECT_TRUE(id.starts_with("paper-") || id == "division-twice") << id << ": " << why;
 }
 
 TEST(Mechanism, IsLaplacesLaw) {
