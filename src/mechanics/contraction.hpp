@@ -35,6 +35,7 @@ struct ContractionRule {
 /// (docs/decisions/0005-spread-springs.md).
 std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule);
 
+/// Its semidefinite tangent leaves out the turning of springs that push.
 class Contraction final : public Law {
  public:
   Contraction(std::vector<Spring> springs, Program program)

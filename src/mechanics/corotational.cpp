@@ -217,8 +217,30 @@ void Corotational::add_forces(const Step& step, std::span<Vec3> forces) const {
     for (int i = 0; i < 8; ++i) forces[elements_[e].nodes[i].index()] -= gradients[e][i];
 }
 
+// R K R^T times a vector; of a frame only the rotation is needed.
+void Corotational::add_warped_product(const Step& step, std::span<const Vec3> direction,
+                                      std::span<Vec3> product) const {
+  std::vector<std::array<Vec3, 8>> results(elements_.size());
+  parallel_for(elements_.size(), [&](std::size_t e) {
+    const Element& element = elements_[e];
+    Mat3 F = Mat3::Zero(), R, S;
+    const Vec3& origin = step.positions[element.nodes[0].index()];  // any: the mean gradients add up to zero
+    for (int i = 1; i < 8; ++i)
+      F += (step.positions[element.nodes[i].index()] - origin) * element.mean_gradient[i].transpose();
+    polar(F, R, S);
+    Vec24 w;
+    for (int i = 0; i < 8; ++i) w.segment<3>(3 * i) = R.transpose() * direction[element.nodes[i].index()];
+    Vec24 q = element.stiffness * w;
+    if (viscous_) q += 1 / step.duration_s * (element.viscosity * w);
+    for (int i = 0; i < 8; ++i) results[e][i] = R * q.segment<3>(3 * i);
+  });
+  for (std::size_t e = 0; e < elements_.size(); ++e)
+    for (int i = 0; i < 8; ++i) product[elements_[e].nodes[i].index()] += results[e][i];
+}
+
 void Corotational::add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                        std::span<Vec3> product) const {
+  if (step.semidefinite_tangent) return add_warped_product(step, direction, product);
   std::vector<std::array<Vec3, 8>> results(elements_.size());
   parallel_for(elements_.size(), [&](std::size_t e) {
     const Element& element = elements_[e];
@@ -262,6 +284,12 @@ void Corotational::add_tangent(const Step& step, TangentSink& tangent) const {
     parallel_for(count, [&](std::size_t k) {
       const Element& element = elements_[first + k];
       const Frame f = frame(element, step);
+      if (step.semidefinite_tangent) {
+        blocks[k] = element.stiffness;
+        if (viscous_) blocks[k] += f.viscous_factor * element.viscosity;
+        rotations[k] = f.R;
+        return;
+      }
       // The product above as matrices: omega = G w, du = (I + Y G) w with Y_i = [y_i]x.
       Mat3x24 G, Q, D;
       Mat24x3 Y, g;
