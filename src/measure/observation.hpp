@@ -24,6 +24,7 @@ struct Observation {
   double step_s = 0;
   int newton_iterations = 0;
   int linear_solves = 0;
+  int projection_sweeps = 0, cubics = 0, cubics_with_three_roots = 0;
 };
 
 /// Measures steps of one model.

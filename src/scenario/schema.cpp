@@ -119,8 +119,18 @@ const std::vector<Row>& rows() {
           {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
           "Poisson's ratio; with coupled volumes it only sets the shear modulus and the dilatation inside a cell."),
 
-      row("volume", "method", at(&S::volume, &VolumeInput::method), words({"coupled", "none"}, {"projection"}),
-          "How cells keep their volume: as constraints of each step, or not."),
+      row("volume", "method", at(&S::volume, &VolumeInput::method), words({"coupled", "projection", "none"}),
+          "How cells keep their volume: as constraints of each step; by the paper's projection after it, so that the "
+          "state of rest depends on the step; or not."),
+      row("volume", "projection_surface", at(&S::volume, &VolumeInput::projection_surface),
+          words({"cells", "tissue", "embryo"}),
+          "Closed surfaces whose volume is projected: each cell's; the one around all cells; the apical one, with the "
+          "lumen inside."),
+      row("volume", "projection_weights", at(&S::volume, &VolumeInput::projection_weights),
+          words({"equal", "mobility"}),
+          "How far the projection moves nodes along the volume's gradient: all alike (the paper), or each as far as "
+          "its "
+          "drag and mass let it, which is where the coupled solve goes as steps get short."),
 
       row("vitelline", "enabled", at(&S::vitelline, &VitellineInput::enabled), anything,
           "A rigid shell around a closed embryo; false by default for a block."),
@@ -188,8 +198,12 @@ const std::vector<Row>& rows() {
       row("time", "end_s", at(&S::time, &T::end_s), positive, "When the run ends (s)."),
       row("time", "end_min", at(&S::time, &T::end_s), positive, "The same in minutes.",
           {.instead_of = "end_s", .scale = 60}),
-      row("time", "scheme", at(&S::time, &T::scheme), words({"newton"}, {"linearly-implicit"}),
-          "How a step is solved."),
+      row("time", "scheme", at(&S::time, &T::scheme), words({"newton", "linearly-implicit"}),
+          "How a step is solved: Newton's method, or one linear system by conjugate gradients (the paper)."),
+      row("time", "cg_tolerance", at(&S::time, &T::cg_tolerance), {.low = 1e-14, .high = 0.1},
+          "Residual of the conjugate gradients over the force (scheme linearly-implicit)."),
+      row("time", "cg_max_iterations", at(&S::time, &T::cg_max_iterations), between(1, 1000000),
+          "Conjugate gradients give up after as many iterations (scheme linearly-implicit)."),
 
       row("stop", "equilibrium_speed_um_per_min", at(&S::stop, &StopInput::equilibrium_speed_um_per_min), positive,
           "Equilibrium is when all nodes are slower (µm/min)."),
@@ -344,6 +358,19 @@ void reset_to_default(const Row& row, Scenario& scenario, const std::string& nam
   std::visit(
       [&](auto target) {
         if constexpr (!std::is_same_v<decltype(target), std::monostate>) *target = *std::get<decltype(target)>(from);
+      },
+      to);
+}
+
+bool is_default(const Row& row, const Scenario& scenario, const std::string& name) {
+  Scenario defaults, copy = scenario;  // the table hands out pointers to fields that may be written
+  const Slot from = row.field(defaults, name), to = row.field(copy, name);
+  return std::visit(
+      [&](auto field) {
+        if constexpr (std::is_same_v<decltype(field), std::monostate>)
+          return true;
+        else
+          return *field == *std::get<decltype(field)>(from);
       },
       to);
 }

@@ -30,8 +30,8 @@ std::string failure_text(const StepReport& report, const State& state, double du
 RunResult run(const Model& model, State state, const RunControls& controls, const StepObserver& observer,
               const std::function<bool()>& stop_requested) {
   RunResult result;
-  StepSolver solver(model);
-  solver.stop_when(stop_requested);
+  const std::unique_ptr<Stepper> stepper = make_stepper(model, controls.scheme);
+  stepper->stop_when(stop_requested);
   StepLength step_length(controls);
   State next;
   double program_end_s = 0;
@@ -39,7 +39,7 @@ RunResult run(const Model& model, State state, const RunControls& controls, cons
   int wasted_iterations = 0, wasted_solves = 0;
   while (state.time_s < controls.end_s * (1 - 1e-12)) {
     const double duration_s = step_length.propose(state.time_s);
-    StepReport report = solver.advance(state, duration_s, result.steps == 0, next);
+    StepReport report = stepper->advance(state, duration_s, result.steps == 0, next);
     if (report.outcome == StepReport::Outcome::interrupted) {
       result.status = RunStatus::interrupted;
       break;
@@ -47,7 +47,7 @@ RunResult run(const Model& model, State state, const RunControls& controls, cons
     if (!report.converged()) {
       wasted_iterations += report.newton_iterations;
       wasted_solves += report.linear_solves;
-      solver.forget_factor();
+      stepper->forget_factor();
       if (step_length.halve(duration_s)) continue;
       result.status = RunStatus::failed;
       result.failure = failure_text(report, state, duration_s);
