@@ -39,6 +39,7 @@ struct ContractionRule {
 std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule,
                                         const CellPattern& pattern = {});
 
+/// Its semidefinite tangent leaves out the turning of springs that push.
 class Contraction final : public Law {
  public:
   /// `cell_delays_s`: cells, empty for none; for activity_of, the springs carry their own.
