@@ -128,6 +128,22 @@ TEST(LinearlyImplicit, HeldDirectionsStayAndRestStaysAtRest) {
   EXPECT_LE(distance(steps(on_idle, rest_state(idle), 10, 1), rest_state(idle)), 1e-10);
 }
 
+// The active force is that of the step's end, as in Newton's step.
+TEST(LinearlyImplicit, ContractionIsThatOfTheEndOfTheStep) {
+  const double duration_s = 2;
+  Vectors ends[2];
+  for (const bool ramp : {false, true}) {
+    Model model(build_block({.length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}}));
+    add_elasticity(model);
+    add_contraction(model, {true, false}, {.stiffness = 3}, ramp ? Program({0, duration_s}, {0, 1}) : Program{});
+    add_drag(model);
+    LinearlyImplicit stepper(model, 1e-10, 1000);
+    ends[ramp] = steps(stepper, rest_state(model), duration_s, 1).positions;
+    EXPECT_GT((ends[ramp].front() - model.tissue.rest_positions.front()).norm(), 1e-3);
+  }
+  EXPECT_EQ(ends[0], ends[1]);
+}
+
 TEST(LinearlyImplicit, FailuresAreReportedAndLeaveTheStateAlone) {
   const Model model = held_sheet();
   State next;
