@@ -339,8 +339,9 @@ def half_size(points, sight, up):
 def draw_strip(frames, times_min, function, file, rows=("anteroventral", "cross_section"), panel_px=270):
     """Times from left to right, a view a row, all panels of a row at one scale."""
     legend_px, font = 140, 18
+    rest = Frame(frames[0][1], frames[0][0])
     shown = [Frame(path, time) for time, path in (nearest(frames, t) for t in times_min)]
-    halves = {name: half_size(shown[0].points, VIEWS[name].sight, VIEWS[name].up) for name in rows}
+    halves = {name: half_size(rest.points, VIEWS[name].sight, VIEWS[name].up) for name in rows}
     half_width = max(h[0] for h in halves.values()) * 1.04
     um_per_px = 2 * half_width / panel_px
     heights = [math.ceil(2 * 1.06 * halves[name][1] / um_per_px) for name in rows]
@@ -357,7 +358,7 @@ def draw_strip(frames, times_min, function, file, rows=("anteroventral", "cross_
         for column, frame in enumerate(shown):
             box = (column * panel_px, top - height, (column + 1) * panel_px, top)
             renderer = new_renderer(window, box, size)
-            add_frame(renderer, frame, shown[0], VIEWS[name], function, 1.0)
+            add_frame(renderer, frame, rest, VIEWS[name], function, 1.0)
             aim(renderer, VIEWS[name], height / 2 * um_per_px)
         top -= height
     footer = new_renderer(window, (0, 0, size[0], bar_px), size)

@@ -26,8 +26,8 @@ struct Allowed {
   double high = std::numeric_limits<double>::infinity();
   bool low_included = true;
   bool high_included = true;
-  std::vector<std::string_view> words = {};        // empty: any text
-  std::string_view word_for_none = {};             // how an optional number says that it has none
+  std::vector<std::string_view> words = {};  // empty: any text
+  std::string_view word_for_none = {};       // how an optional number says that it has none
 
   [[nodiscard]] bool contains(double value) const;
   /// As in "> 0", "1 to 8", "pill | sphere"; empty where anything goes.
