@@ -3,6 +3,7 @@
 #include <omp.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -68,37 +69,54 @@ std::string results_text(const CalibrationProblem& problem, const Trial& trial) 
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-// A line a trial; on a terminal, also what the one under way is at.
-class TrialPrinter {
+// A row a trial; on a terminal, below it also what the one under way is at.
+class TrialTable {
  public:
-  explicit TrialPrinter(const CalibrationProblem& problem)
+  explicit TrialTable(const CalibrationProblem& problem)
       : problem_(problem), on_terminal_(isatty(STDERR_FILENO) != 0) {}
 
-  void show(int number, const std::vector<double>& values, const Observation& row) {
+  void show_progress(int number, const std::vector<double>& values, const Observation& row) {
     const auto now = std::chrono::steady_clock::now();
     if (!on_terminal_ || now - last_ < std::chrono::milliseconds(100)) return;
     last_ = now;
-    fmt::print(stderr, "\r{:>3}  {}: t = {:.2f} min\033[K", number, values_text(problem_, values),
+    fmt::print(stderr, "\r{:>5}  {}: t = {:.2f} min\033[K", number, values_text(problem_, values),
                row.time_s / units::minute);
     std::fflush(stderr);
   }
 
-  void show(const Trial& trial, bool best) {
-    clear();
-    fmt::print("{:>3}  {}: {}{}  {:.1f} s\n", trial.number, values_text(problem_, trial.values),
-               trial.failure.empty() ? results_text(problem_, trial) : "no value: " + trial.failure,
-               trial.worst_miss <= 1 ? "  met"
-               : best                ? "  nearest so far"
-                                     : "",
-               trial.wall_s);
+  void add(const Trial& trial, bool best) {
+    end_progress();
+    if (trial.number == 1) fmt::print("{}\n", header());
+    std::string line = fmt::format("{:>5}", trial.number);
+    for (std::size_t k = 0; k < problem_.keys.size(); ++k)
+      line += fmt::format("  {:>{}}", trial.values[k], width(problem_.keys[k].key));
+    for (std::size_t t = 0; t < problem_.targets.size(); ++t) {
+      const Target& target = problem_.targets[t];
+      const std::optional<double> found = trial.found[t];
+      line += fmt::format("  {:>{}}  {:>10}", found ? fmt::format("{:.6g}", *found) : "none", width(target.name),
+                          found ? miss_text(target, *found) : "none");
+    }
+    line += fmt::format("  {:>6.1f}  {}", trial.wall_s, trial.worst_miss <= 1 ? "met" : best ? "nearest so far" : "");
+    fmt::print("{}{}\n", line.substr(0, line.find_last_not_of(' ') + 1),
+               trial.failure.empty() ? "" : "  no value: " + trial.failure);
     std::fflush(stdout);
   }
 
-  void clear() const {
+  void end_progress() const {
     if (on_terminal_) fmt::print(stderr, "\r\033[K");
   }
 
  private:
+  static std::size_t width(const std::string& name) { return std::max<std::size_t>(name.size(), 9); }
+
+  [[nodiscard]] std::string header() const {
+    std::string line = "trial";
+    for (const VariedKey& key : problem_.keys) line += fmt::format("  {:>{}}", key.key, width(key.key));
+    for (const Target& target : problem_.targets)
+      line += fmt::format("  {:>{}}  {:>10}", target.name, width(target.name), "off by");
+    return line + "   run s";
+  }
+
   const CalibrationProblem& problem_;
   bool on_terminal_;
   std::chrono::steady_clock::time_point last_;
@@ -138,7 +156,8 @@ void print_missed(const CalibrationProblem& problem, const Calibration& calibrat
   for (std::size_t k = 0; k < problem.keys.size(); ++k) {
     const VariedKey& key = problem.keys[k];
     const double value = calibration.best->values[k];
-    if (value == key.low || value == key.high)
+    const bool at_bound = value == key.low || value == key.high;
+    if (calibration.end == CalibrationEnd::not_met && at_bound)
       fmt::print(stderr, "  {} is at its bound {}; another bound may help\n", key.key, value);
   }
 }
@@ -153,15 +172,15 @@ int calibrate_scenario(const CalibrateOptions& options) {
   refuse_out(options, problem.source);
   const auto model = make_model(load_scenario(problem.source, problem.overrides));
   omp_set_num_threads(threads_for(options.threads, model->tissue.elements.size()));
-  TrialPrinter printer(problem);
+  TrialTable table(problem);
   catch_interruptions();
   const Calibration calibration =
       calibrate(problem, {interrupted,
                           [&](int number, const std::vector<double>& values, const Observation& row) {
-                            printer.show(number, values, row);
+                            table.show_progress(number, values, row);
                           },
-                          [&](const Trial& trial, bool best) { printer.show(trial, best); }});
-  printer.clear();
+                          [&](const Trial& trial, bool best) { table.add(trial, best); }});
+  table.end_progress();
   if (calibration.end == CalibrationEnd::met)
     fmt::print("Met in {} run{}: {}\n", calibration.trials, calibration.trials == 1 ? "" : "s",
                values_text(problem, calibration.best->values));

@@ -26,6 +26,7 @@ std::string base_of(const ScenarioSource& source, const std::string& file) {
 }
 
 std::string quoted(const std::string& text) {
+  if (text.find_first_of("\"\\") == std::string::npos) return fmt::format("\"{}\"", text);
   std::ostringstream stream;
   stream << toml::value<std::string>(text);
   return stream.str();

@@ -48,7 +48,7 @@ void refuse_repetitions(const CalibrationProblem& problem) {
     if (!keys.insert(key.key).second)
       throw UsageError(fmt::format("--vary {}: is given twice; leave one out", key.key));
     for (const std::string& override : problem.overrides)
-      if (override.substr(0, override.find('=')) == key.key)
+      if (override.substr(0, override.find_first_of(" =")) == key.key)
         throw UsageError(fmt::format("--vary {}: is given by --set as well; leave one out", key.key));
   }
   for (const Target& target : problem.targets)
