@@ -24,6 +24,9 @@ struct Series {
 /// FileError when the file cannot be read, or is no table that begins with time_s.
 Series read_series(const std::filesystem::path& file);
 
+/// The same of a table with several rows a time: cells.csv, midline.csv. `times_increase` asks for one row a time.
+Series read_table(const std::filesystem::path& file, bool times_increase = false);
+
 /// summary.json; null where the run has not left one (yet). FileError when it cannot be understood.
 nlohmann::ordered_json read_summary(const std::filesystem::path& directory);
 

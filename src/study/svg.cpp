@@ -1,0 +1,77 @@
+#include "study/svg.hpp"
+
+#include <fmt/format.h>
+
+namespace plica {
+namespace {
+
+// Tenths of a pixel: finer is not seen and makes files large.
+std::string joined(const std::vector<Pixel>& points) {
+  std::string text;
+  for (const Pixel& point : points) text += fmt::format("{}{:.1f},{:.1f}", text.empty() ? "" : " ", point[0], point[1]);
+  return text;
+}
+
+}  // namespace
+
+std::string xml_escaped(const std::string& text) {
+  std::string escaped;
+  for (const char letter : text) {
+    if (letter == '&')
+      escaped += "&amp;";
+    else if (letter == '<')
+      escaped += "&lt;";
+    else if (letter == '>')
+      escaped += "&gt;";
+    else if (letter == '"')
+      escaped += "&quot;";
+    else
+      escaped += letter;
+  }
+  return escaped;
+}
+
+void Svg::polygon(const std::vector<Pixel>& points, const std::string& fill, const std::string& stroke,
+                  double stroke_width) {
+  shapes_ += fmt::format("<polygon points=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"{:.2g}\"/>\n", joined(points),
+                         fill, stroke, stroke_width);
+}
+
+void Svg::polyline(const std::vector<Pixel>& points, const std::string& colour, double width,
+                   const std::string& dashes) {
+  const std::string pattern = dashes.empty() ? "" : fmt::format(" stroke-dasharray=\"{}\"", dashes);
+  shapes_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:.2g}\"{}/>\n",
+                         joined(points), colour, width, pattern);
+}
+
+void Svg::circle(const Pixel& centre, double radius, const std::string& fill) {
+  shapes_ += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" fill=\"{}\"/>\n", centre[0], centre[1],
+                         radius, fill);
+}
+
+void Svg::rectangle(const Pixel& corner, double width, double height, const std::string& fill) {
+  shapes_ += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n",
+                         corner[0], corner[1], width, height, fill);
+}
+
+void Svg::text(const Pixel& place, const std::string& words, const TextStyle& style) {
+  const std::string turn =
+      style.upwards ? fmt::format(" transform=\"rotate(-90 {:.1f} {:.1f})\"", place[0], place[1]) : "";
+  shapes_ += fmt::format(
+      "<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"{:.3g}\" text-anchor=\"{}\"{}{} fill=\"#111\">{}</text>\n", place[0],
+      place[1], style.size, style.anchor, style.bold ? " font-weight=\"bold\"" : "", turn, xml_escaped(words));
+}
+
+void Svg::place(const Svg& picture, const Pixel& corner) {
+  shapes_ += fmt::format("<g transform=\"translate({:.1f} {:.1f})\">\n{}</g>\n", corner[0], corner[1], picture.shapes_);
+}
+
+std::string Svg::file(const std::string& title) const {
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+      "font-family=\"Helvetica, Arial, sans-serif\" role=\"img\">\n<title>{2}</title>\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{3}</svg>\n",
+      width_, height_, xml_escaped(title), shapes_);
+}
+
+}  // namespace plica

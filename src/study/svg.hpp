@@ -1,0 +1,50 @@
+// Vector pictures: the few shapes that plots and sketches need, written as SVG that any browser shows.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace plica {
+
+/// A place in a picture: pixels from its left and upper edge.
+using Pixel = std::array<double, 2>;
+
+/// How text stands at its place.
+struct TextStyle {
+  double size = 12;
+  std::string anchor = "start";  // start | middle | end
+  bool bold = false;
+  bool upwards = false;  // turned by a quarter, to read from below
+};
+
+/// A picture on white that grows shape by shape; later ones cover earlier ones.
+class Svg {
+ public:
+  Svg(double width, double height) : width_(width), height_(height) {}
+
+  void polygon(const std::vector<Pixel>& points, const std::string& fill, const std::string& stroke,
+               double stroke_width = 0.5);
+  /// `dashes` as SVG has them ("6 3"); empty for a whole line.
+  void polyline(const std::vector<Pixel>& points, const std::string& colour, double width = 1.5,
+                const std::string& dashes = "");
+  void circle(const Pixel& centre, double radius, const std::string& fill);
+  void rectangle(const Pixel& corner, double width, double height, const std::string& fill);
+  void text(const Pixel& place, const std::string& words, const TextStyle& style = {});
+  /// Another picture with its left upper corner at `corner`.
+  void place(const Svg& picture, const Pixel& corner);
+
+  [[nodiscard]] double width() const { return width_; }
+  [[nodiscard]] double height() const { return height_; }
+  /// The whole file. `title` is read out by screen readers.
+  [[nodiscard]] std::string file(const std::string& title) const;
+
+ private:
+  double width_, height_;
+  std::string shapes_;
+};
+
+/// Text with &, <, > and quotes as XML and HTML want them.
+std::string xml_escaped(const std::string& text);
+
+}  // namespace plica
