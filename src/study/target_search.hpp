@@ -4,8 +4,8 @@
 // bracket). Otherwise COBYLA (Powell 1994) on the misses as equations: it fits each miss by a linear function on n + 1
 // places and steps to where the largest of them is least, within a radius that shrinks. So with several keys and
 // targets it does what Newton's method does, without derivatives and within bounds. Rejected: BOBYQA on the sum of
-// squares of the misses, which must learn the curvature of that sum first and needs two coordinates; Nelder-Mead,
-// which needs several times as many runs.
+// squares of the misses, which must learn the curvature of that sum first, and Nelder-Mead: both need three to four
+// times as many runs (docs/calibrate.md).
 #pragma once
 
 #include <functional>
