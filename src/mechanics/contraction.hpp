@@ -18,7 +18,7 @@ struct Spring {
   double damping = 0;      // c, nN s/um
   double rest_length = 0;  // U, um
   double delay_s = 0;      // its program starts that much later
-  CellId cell;             // whose spring it is
+  CellId cell = {};        // whose spring it is
 };
 
 /// What a contraction asks of each edge. Lengths and stiffness as in the scenario's [contraction.NAME].
