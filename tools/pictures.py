@@ -336,11 +336,12 @@ def half_size(points, sight, up):
             max(abs(sum(a * b for a, b in zip(p, up))) for p in points))
 
 
-def draw_strip(frames, function, file, rows=("anteroventral", "cross_section"), panel_px=270):
+def draw_strip(frames, times_min, function, file, rows=("anteroventral", "cross_section"), panel_px=270):
     """Times from left to right, a view a row, all panels of a row at one scale."""
     legend_px, font = 140, 18
-    shown = [Frame(path, time) for time, path in (nearest(frames, t) for t in STRIP_TIMES_MIN)]
-    halves = {name: half_size(shown[0].points, VIEWS[name].sight, VIEWS[name].up) for name in rows}
+    rest = Frame(frames[0][1], frames[0][0])
+    shown = [Frame(path, time) for time, path in (nearest(frames, t) for t in times_min)]
+    halves = {name: half_size(rest.points, VIEWS[name].sight, VIEWS[name].up) for name in rows}
     half_width = max(h[0] for h in halves.values()) * 1.04
     um_per_px = 2 * half_width / panel_px
     heights = [math.ceil(2 * 1.06 * halves[name][1] / um_per_px) for name in rows]
@@ -357,7 +358,7 @@ def draw_strip(frames, function, file, rows=("anteroventral", "cross_section"), 
         for column, frame in enumerate(shown):
             box = (column * panel_px, top - height, (column + 1) * panel_px, top)
             renderer = new_renderer(window, box, size)
-            add_frame(renderer, frame, shown[0], VIEWS[name], function, 1.0)
+            add_frame(renderer, frame, rest, VIEWS[name], function, 1.0)
             aim(renderer, VIEWS[name], height / 2 * um_per_px)
         top -= height
     footer = new_renderer(window, (0, 0, size[0], bar_px), size)
@@ -409,6 +410,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", type=Path, help="the results of a run")
     parser.add_argument("--out", type=Path, help="where the pictures go (default: DIRECTORY/pictures)")
+    parser.add_argument("--times", type=float, nargs="+", metavar="MIN", help="times of the strip's panels, in minutes")
     parser.add_argument("--on-this-display", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
     frames = read_frames(options.directory)
@@ -420,7 +422,7 @@ def main():
     # One scale for all pictures, up to a round number over the largest displacement of the surface.
     largest = max(last.displacements[node] for face in last.faces for node in face)
     function = colours(max(5 * math.ceil(largest / 5), 5))
-    draw_strip(frames, function, out / "strip.png")
+    draw_strip(frames, options.times or STRIP_TIMES_MIN, function, out / "strip.png")
     for name in VIEWS:
         draw_view(last, rest, name, function, out / f"{name}.png")
 

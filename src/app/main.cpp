@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   int status = exit_done;
   add_run_command(app, status);
   add_compare_command(app, status);
+  add_calibrate_command(app, status);
   add_reproduce_command(app, status);
   add_check_command(app, status);
   add_mesh_command(app, status);

@@ -1,16 +1,15 @@
 #include <fmt/format.h>
 #include <omp.h>
 
-#include <algorithm>
 #include <chrono>
-#include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/interruption.hpp"
 #include "app/progress.hpp"
 #include "app/scenario_options.hpp"
+#include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
 #include "output/recorder.hpp"
@@ -20,8 +19,6 @@
 
 namespace plica {
 namespace {
-
-volatile std::sig_atomic_t caught_signal = 0;
 
 struct RunOptions {
   ScenarioOptions scenario;
@@ -49,14 +46,6 @@ void print_result(const nlohmann::ordered_json& summary, const std::string& out)
   fmt::print("  results in {}\n", out);
 }
 
-// As asked; else as OMP_NUM_THREADS says; else as many as the mesh can keep busy. Results do not depend on it.
-int threads_for(int asked, std::size_t elements) {
-  if (asked > 0) return asked;
-  if (std::getenv("OMP_NUM_THREADS") != nullptr) return omp_get_max_threads();
-  constexpr std::size_t elements_a_thread = 10000;
-  return static_cast<int>(std::min<std::size_t>(omp_get_num_procs(), 1 + elements / elements_a_thread));
-}
-
 // A scenario that lies in DIR under a name that plica writes there would be lost.
 void refuse_to_replace(const std::string& scenario_file, const std::filesystem::path& out) {
   if (out.empty()) throw UsageError("--out is empty; give the directory for the results");
@@ -77,7 +66,7 @@ void refuse_to_replace_reference(const std::vector<Monitor>& monitors, const std
 
 int exit_status(const RunResult& result, bool missed) {
   if (result.status == RunStatus::failed) return exit_gave_up;
-  if (result.status == RunStatus::interrupted) return caught_signal == SIGTERM ? exit_terminated : exit_interrupted;
+  if (result.status == RunStatus::interrupted) return interrupted_status();
   return missed ? exit_missed : exit_done;
 }
 
@@ -100,8 +89,7 @@ int run_scenario(const RunOptions& options) {
   const State rest = rest_state(*model);
   Recorder recorder(options.out, scenario, source.text, *model, observer, rest);
   Progress progress(controls, options.quiet);
-  std::signal(SIGINT, [](int signal) { caught_signal = signal; });
-  std::signal(SIGTERM, [](int signal) { caught_signal = signal; });
+  catch_interruptions();
 
   double recording_s = 0;
   const auto run_start = std::chrono::steady_clock::now();
@@ -112,9 +100,9 @@ int run_scenario(const RunOptions& options) {
         const Observation& row = recorder.record(step, seconds_since(run_start));
         progress.show(row);
         recording_s += seconds_since(recording_start);
-        return StepAnswer(caught_signal == 0, row.is_over);
+        return StepAnswer(!interrupted(), row.is_over);
       },
-      [] { return caught_signal != 0; },
+      interrupted,
       [&](const Division& division, const State& state) {
         const auto recording_start = std::chrono::steady_clock::now();
         observer.follow_division(division);

@@ -10,6 +10,7 @@
 #include "measure/cells.hpp"
 #include "measure/energy_norm.hpp"
 #include "mechanics/surroundings.hpp"
+#include "tissue/part.hpp"
 
 namespace plica {
 namespace {
@@ -51,6 +52,22 @@ Vectors driving_forces(const Model& model, const State& state) {
   model.tissue.carry_hanging(forces);
   return forces;
 }
+
+}  // namespace
+
+Vectors forces_of_cells(const Model& model, const State& state, const CellSet& cells) {
+  Tissue part = model.tissue;
+  const Division kept = keep_only(part, cells);
+  const Vectors no_velocity(state.positions.size(), Vec3::Zero());
+  const Step still{state.positions, state.positions, no_velocity, 1, state.time_s};
+  Vectors forces(state.positions.size(), Vec3::Zero());
+  for (const auto& law : model.laws) law->after_division(part, kept, state.positions)->add_forces(still, forces);
+  CellVolumes(part).add_forces(state.positions, inherited(kept, state.pressures), forces);
+  part.carry_hanging(forces);
+  return forces;
+}
+
+namespace {
 
 /// The frame to measure against, where there is one of this mesh.
 std::optional<Frame> reference_frame(const Monitor& monitor, const Moment& moment) {
@@ -119,7 +136,9 @@ std::vector<double> node_values(const Monitor& monitor, const Moment& moment) {
       return collect([&](std::size_t n) -> Vec3 { return state.positions[n] - frame->positions[n]; });
     }
     case Quantity::force: {
-      const Vectors forces = driving_forces(moment.model, state);
+      const Vectors forces = monitor.from.empty()
+                                 ? driving_forces(moment.model, state)
+                                 : forces_of_cells(moment.model, state, tissue.regions.at(monitor.from));
       return collect([&](std::size_t n) { return forces[n]; });
     }
     case Quantity::surface_distance: {

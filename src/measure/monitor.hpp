@@ -64,6 +64,7 @@ struct Monitor {
   std::string region = "all";
   Face face = Face::any;    // only nodes of this side; of the area, its side (any: apical)
   std::optional<int> axis;  // 0 1 2: that component; empty: the norm
+  std::string from;         // of a force: only what the cells of this region exert
   Over over = Over::mean;
   double poisson_ratio = 0;  // of the energy norm
   std::unique_ptr<const ReferenceRun> reference_run;
@@ -87,6 +88,10 @@ struct Reading {
   std::vector<double> values;
   std::optional<double> number;
 };
+
+/// What cells exert on nodes while the body stands still, nN: elasticity, contraction, applied pressures and the
+/// pressures that hold their volumes. The rest of the body exerts the opposite, but for drag and the shell.
+Vectors forces_of_cells(const Model& model, const State& state, const CellSet& cells);
 
 Reading read_monitor(const Monitor& monitor, const Moment& moment);
 

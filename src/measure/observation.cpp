@@ -49,6 +49,9 @@ Observation Observer::observe(const AcceptedStep& step, double wall_s) const {
   row.step_s = step.duration_s;
   row.newton_iterations = step.report.newton_iterations;
   row.linear_solves = step.report.linear_solves;
+  row.projection_sweeps = step.report.projection_sweeps;
+  row.cubics = step.report.cubics;
+  row.cubics_with_three_roots = step.report.cubics_with_three_roots;
   if (sites_.vml.empty()) return row;
   const auto speed = [&](const MonitoredCells& cells) {
     return mean_speed(model_.tissue, cells, step.state.positions, step.previous.positions, step.duration_s);

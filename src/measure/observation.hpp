@@ -26,6 +26,7 @@ struct Observation {
   double step_s = 0;
   int newton_iterations = 0;
   int linear_solves = 0;
+  int projection_sweeps = 0, cubics = 0, cubics_with_three_roots = 0;
   std::vector<std::optional<double>> monitors;  // in the order of the scenario's
   std::vector<std::string> criteria_met;        // of [stop]
   bool is_over = false;                         // the criteria say so

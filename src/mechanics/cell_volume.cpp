@@ -105,7 +105,7 @@ void Dilatation::add_tangent_product(const Step& step, std::span<const Vec3> dir
     const auto& nodes = elements_[e];
     const HexPoints points = gather(step.positions, nodes);
     const double pressure = bulk_modulus_ * (1 - hex_volume(points) / rest_volumes_[e]);
-    add_volume_hessian_product(nodes, points, -pressure, direction, product);
+    if (!step.semidefinite_tangent) add_volume_hessian_product(nodes, points, -pressure, direction, product);
     const auto gradient = hex_volume_gradient(points);
     double rate = 0;
     for (int i = 0; i < 8; ++i) rate += gradient[i].dot(direction[nodes[i].index()]);
@@ -118,7 +118,7 @@ void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
     const auto& nodes = elements_[e];
     const HexPoints points = gather(step.positions, nodes);
     const double pressure = bulk_modulus_ * (1 - hex_volume(points) / rest_volumes_[e]);
-    add_volume_hessian(nodes, points, -pressure, tangent);
+    if (!step.semidefinite_tangent) add_volume_hessian(nodes, points, -pressure, tangent);
     const auto gradient = hex_volume_gradient(points);
     for (int i = 0; i < 8; ++i)
       for (int j = 0; j < 8; ++j)

@@ -52,7 +52,7 @@ class CellVolumes {
 /// The bulk modulus at work: energy kappa V0 (V/V0 - 1)^2 / 2 an element, with exact volumes. It replaces the mean
 /// volumetric part that Corotational leaves out. Where a cell is one element of exact volume it is zero; within a cell
 /// of several it resists one element growing at another's cost; without the constraint it is the whole volume
-/// elasticity.
+/// elasticity. Its semidefinite tangent leaves out the pressure times d2V/dx2.
 class Dilatation final : public Law {
  public:
   /// `bulk_modulus` in kPa.

@@ -37,6 +37,11 @@ Response respond(const Spring& spring, const Step& step, double activity) {
   return r;
 }
 
+// What resists the turning of a spring: its tension. A spring under pressure (a negative preload) is unstable there.
+double turning_tension(const Response& response, const Step& step) {
+  return step.semidefinite_tangent ? std::max(0.0, response.tension) : response.tension;
+}
+
 // Segment s of a chain: its direction and length. A segment shrunk to a point has no direction and pulls nowhere.
 struct Segment {
   Vec3 direction;
@@ -153,7 +158,7 @@ void Contraction::add_tangent_product(const Step& step, std::span<const Vec3> di
       product[spring.nodes[i].index()] += r.slope * lengthening * gradient[i];
     for (std::size_t s = 0; s + 1 < spring.nodes.size(); ++s) {
       const NodeId a = spring.nodes[s], b = spring.nodes[s + 1];
-      const Vec3 change = r.tension * turning_stiffness(segment(spring, s, step.positions)) *
+      const Vec3 change = turning_tension(r, step) * turning_stiffness(segment(spring, s, step.positions)) *
                           (direction[b.index()] - direction[a.index()]);
       product[a.index()] -= change;
       product[b.index()] += change;
@@ -170,7 +175,7 @@ void Contraction::add_tangent(const Step& step, TangentSink& tangent) const {
         tangent.add_block(spring.nodes[i], spring.nodes[j], r.slope * gradient[i] * gradient[j].transpose());
     for (std::size_t s = 0; s + 1 < spring.nodes.size(); ++s) {
       const NodeId a = spring.nodes[s], b = spring.nodes[s + 1];
-      const Mat3 block = r.tension * turning_stiffness(segment(spring, s, step.positions));
+      const Mat3 block = turning_tension(r, step) * turning_stiffness(segment(spring, s, step.positions));
       tangent.add_block(a, a, block);
       tangent.add_block(b, b, block);
       tangent.add_block(a, b, -block);
@@ -230,10 +235,13 @@ std::vector<Spring> inherit(const Spring& spring, CellId low, CellId high, const
 
 std::unique_ptr<Law> Contraction::after_division(const Tissue& tissue, const Division& division,
                                                  std::span<const Vec3> positions) const {
-  std::map<CellId, CellId> other_daughter;
+  std::map<CellId, CellId> now, other_daughter;
+  for (std::size_t c = 0; c < division.origin.size(); ++c) now.try_emplace(division.origin[c], CellId(c));
   for (const auto& [low, high] : division.daughters) other_daughter[low] = high;
   std::vector<Spring> springs;
   for (Spring spring : springs_) {
+    if (!now.contains(spring.cell)) continue;  // the cell is no part of the tissue any more
+    spring.cell = now.at(spring.cell);
     spring.nodes = with_midway_nodes(spring.nodes, division);
     const auto daughter = other_daughter.find(spring.cell);
     if (daughter == other_daughter.end()) {

@@ -18,7 +18,7 @@ struct Spring {
   double damping = 0;      // c, nN s/um
   double rest_length = 0;  // U, um
   double delay_s = 0;      // its program starts that much later
-  CellId cell;             // whose spring it is
+  CellId cell = {};        // whose spring it is
 };
 
 /// What a contraction asks of each edge. Lengths and stiffness as in the scenario's [contraction.NAME].
@@ -39,6 +39,7 @@ struct ContractionRule {
 std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule,
                                         const CellPattern& pattern = {});
 
+/// Its semidefinite tangent leaves out the turning of springs that push.
 class Contraction final : public Law {
  public:
   /// `cell_delays_s`: cells, empty for none; for activity_of, the springs carry their own.

@@ -4,7 +4,8 @@
 // deformation gradient F = sum_i x_i b_i^T, local displacement u_i = R^T (x_i - c) - (X_i - C) and energy u^T K u / 2.
 // K is the 24 x 24 stiffness of the rest shape with nine incompatible modes (Wilson-Taylor) condensed, less its mean
 // volumetric part, which belongs to cell_volume. R is differentiated too: the force is the exact gradient, so angular
-// momentum is exact and the tangent symmetric.
+// momentum is exact and the tangent symmetric. The semidefinite tangent leaves the derivative of R out: R K R^T, the
+// warped stiffness.
 #pragma once
 
 #include "mechanics/turning_elements.hpp"

@@ -23,6 +23,9 @@ struct Step {
   std::span<const Vec3> previous_velocities;  // v at its beginning, um/s; nodes
   double duration_s = 0;                      // h > 0
   double end_time_s = 0;                      // activity programs are read here
+  // Whether tangents leave out what could make them indefinite, for a solver that needs a positive definite system.
+  // Each law's header says what that is. Forces do not change.
+  bool semidefinite_tangent = false;
 };
 
 /// Collects 3 x 3 blocks of a symmetric tangent. `add_block(a, b, K)` adds K to the rows of a and columns of b; every
@@ -48,11 +51,11 @@ class Law {
   /// Adds -d(energy)/dx.
   virtual void add_forces(const Step& step, std::span<Vec3> forces) const = 0;
 
-  /// Adds d2(energy)/dx2 times `direction`, without a matrix.
+  /// Adds d2(energy)/dx2 times `direction`, without a matrix; or the semidefinite part of it that the step asks for.
   virtual void add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                    std::span<Vec3> product) const = 0;
 
-  /// Adds d2(energy)/dx2: every block (a, b) and (b, a) of nodes that the law joins.
+  /// Adds the same as a matrix: every block (a, b) and (b, a) of nodes that the law joins.
   virtual void add_tangent(const Step& step, TangentSink& tangent) const = 0;
 
   /// The nodes that the law joins. Laws that act on single nodes have none.

@@ -150,8 +150,27 @@ void TurningElements::add_forces(const Step& step, std::span<Vec3> forces) const
     for (int i = 0; i < 8; ++i) forces[elements_[e].nodes[i].index()] -= gradients[e][i];
 }
 
+// R K R^T times a vector: the tangent without the turning of R.
+void TurningElements::add_warped_product(const Step& step, std::span<const Vec3> direction,
+                                         std::span<Vec3> product) const {
+  std::vector<std::array<Vec3, 8>> results(elements_.size());
+  parallel_for(elements_.size(), [&](std::size_t e) {
+    const Element& element = elements_[e];
+    const Frame f = frame(e, step);
+    Vec24 w;
+    for (int i = 0; i < 8; ++i) w.segment<3>(3 * i) = f.R.transpose() * direction[element.nodes[i].index()];
+    Mat24 space;
+    Vec24 q = local_stiffness(e, f.u, space) * w;
+    if (viscous_) q += f.viscous_factor * (element.viscosity * w);
+    for (int i = 0; i < 8; ++i) results[e][i] = f.R * q.segment<3>(3 * i);
+  });
+  for (std::size_t e = 0; e < elements_.size(); ++e)
+    for (int i = 0; i < 8; ++i) product[elements_[e].nodes[i].index()] += results[e][i];
+}
+
 void TurningElements::add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                           std::span<Vec3> product) const {
+  if (step.semidefinite_tangent) return add_warped_product(step, direction, product);
   std::vector<std::array<Vec3, 8>> results(elements_.size());
   parallel_for(elements_.size(), [&](std::size_t e) {
     const Element& element = elements_[e];
@@ -196,6 +215,14 @@ void TurningElements::add_tangent(const Step& step, TangentSink& tangent) const 
     parallel_for(count, [&](std::size_t k) {
       const Element& element = elements_[first + k];
       const Frame f = frame(first + k, step);
+      rotations[k] = f.R;
+      Mat24 space;
+      Mat24 K = local_stiffness(first + k, f.u, space);
+      if (viscous_) K += f.viscous_factor * element.viscosity;
+      if (step.semidefinite_tangent) {
+        blocks[k] = K;
+        return;
+      }
       // The product above as matrices: omega = G w, du = (I + Y G) w with Y_i = [y_i]x.
       Mat3x24 G, Q, D;
       Mat24x3 Y, g;
@@ -207,9 +234,6 @@ void TurningElements::add_tangent(const Step& step, TangentSink& tangent) const 
         Y.middleRows<3>(3 * i) = cross_matrix(f.y[i]);
         g.middleRows<3>(3 * i) = cross_matrix(f.g.segment<3>(3 * i));
       }
-      Mat24 space;
-      Mat24 K = local_stiffness(first + k, f.u, space);
-      if (viscous_) K += f.viscous_factor * element.viscosity;
       // lazyProduct: these products are too small for Eigen's blocked kernels.
       const Mat24x3 W = K.lazyProduct(Y);
       const Mat3 middle = Y.transpose().lazyProduct(W) - Q.lazyProduct(Y) - cross_matrix(f.S * f.t);
@@ -218,7 +242,6 @@ void TurningElements::add_tangent(const Step& step, TangentSink& tangent) const 
       K += left.lazyProduct(G);
       K += G.transpose().lazyProduct(right);
       blocks[k] = 0.5 * (K + K.transpose());  // symmetric but for rounding
-      rotations[k] = f.R;
     });
     for (std::size_t k = 0; k < count; ++k) {
       const auto& nodes = elements_[first + k].nodes;

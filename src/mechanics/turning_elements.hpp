@@ -59,6 +59,7 @@ class TurningElements : public Law {
   std::vector<Element> elements_;
 
  private:
+  void add_warped_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const;
   void take_rest_shape(const Tissue& tissue, std::size_t element);
   struct Frame;  // an element's rotation, local displacement and local force at given positions
   [[nodiscard]] Frame frame(std::size_t e, const Step& step) const;

@@ -109,11 +109,18 @@ Json make_summary(const Scenario& scenario, const Model& model, const RunResult&
   summary["max_shell_penetration_um"] = number(penetration);
   summary["min_scaled_jacobian"] = number(jacobian);
   summary["lumen_volume_ratio"] = number(last.lumen_volume_ratio);
-  int newton = 0, solves = 0;
-  for (const Observation& row : rows) newton += row.newton_iterations, solves += row.linear_solves;
+  std::int64_t newton = 0, solves = 0, sweeps = 0, cubics = 0, three_roots = 0;
+  for (const Observation& row : rows) {
+    newton += row.newton_iterations, solves += row.linear_solves;
+    sweeps += row.projection_sweeps, cubics += row.cubics, three_roots += row.cubics_with_three_roots;
+  }
   summary["newton_iterations"] = newton;
   summary["linear_iterations"] = solves;
   for (std::size_t m = 0; m < monitors.size(); ++m) summary[monitors[m].column()] = number(last_value(rows, m));
+  const bool projects = scenario.volume.method == "projection";
+  summary["projection_sweeps"] = projects ? Json(sweeps) : Json(nullptr);
+  summary["cubic_solves"] = projects ? Json(cubics) : Json(nullptr);
+  summary["cubic_three_real_roots"] = projects ? Json(three_roots) : Json(nullptr);
   summary["provenance"] = {{"version", version()},
                            {"commit", commit()},
                            {"compiler", compiler()},

@@ -57,6 +57,14 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
         "every cell's volume is held exactly, so Poisson's ratio sets only the shear modulus and how far parts of a "
         "cell "
         "may swell at each other's cost");
+  if (scenario.volume.method == "projection") {
+    note("volumes are projected after the forces: where the embryo comes to rest depends on time.step_s");
+    if (!scenario.time.step_s && scenario.volume.projection_weights == "equal")
+      warn(
+          "where a projection with equal weights comes to rest moves with the step's length, so adaptive steps chase "
+          "it "
+          "and stay short; give time.step_s a number");
+  }
   if (model.vitelline && scenario.vitelline.gap_um > 0)
     note(fmt::format("the embryo starts {} um away from its shell", scenario.vitelline.gap_um));
 

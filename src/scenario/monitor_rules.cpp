@@ -22,6 +22,7 @@ void check_keys(const std::string& path, const Info& info, Input& input) {
   const auto require = [&](const std::string& key, const std::string& remedy) {
     if (!given(key)) input.report(path + key, "is missing", remedy);
   };
+  if (info.quantity != Quantity::force) refuse(".from", "remove it; only a force comes from somewhere");
   if (info.axis == Info::Axis::must_have) require(".axis", "give \"x\", \"y\" or \"z\"");
   if (info.axis == Info::Axis::none)
     refuse(".axis", info.quantity == Quantity::speed ? "remove it, or monitor velocity" : "remove it");

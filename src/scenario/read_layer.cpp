@@ -65,9 +65,6 @@ Problem read(const toml::node& node, const Row& row, std::string& target) {
   if (!value) return wrong_type(node);
   if (value->empty()) return "the text is empty";
   const auto& words = row.allowed.words;
-  if (std::ranges::find(row.allowed.later_words, *value) != row.allowed.later_words.end()) {
-    return fmt::format("\"{}\" is not available yet", *value);
-  }
   if (!words.empty() && std::ranges::find(words, *value) == words.end()) {
     return fmt::format("\"{}\" is not known", *value);
   }

@@ -52,7 +52,9 @@ struct ElasticityInput {
 };
 
 struct VolumeInput {
-  std::string method = "coupled";  // coupled | none
+  std::string method = "coupled";            // coupled | projection | none
+  std::string projection_surface = "cells";  // cells | tissue | embryo
+  std::string projection_weights = "equal";  // equal | mobility
 };
 
 struct VitellineInput {
@@ -112,12 +114,14 @@ struct DivisionInput {
 };
 
 struct TimeInput {
-  std::optional<double> step_s;  // empty: "adaptive"
-  double first_step_s = 0.05;    // adaptive
-  double max_step_s = 30;        // adaptive
-  double tolerance_um = 0.02;    // adaptive: error of a step, on positions
-  double end_s = 3600;           // TOML: end_s or end_min
-  std::string scheme = "newton";
+  std::optional<double> step_s;   // empty: "adaptive"
+  double first_step_s = 0.05;     // adaptive
+  double max_step_s = 30;         // adaptive
+  double tolerance_um = 0.02;     // adaptive: error of a step, on positions
+  double end_s = 3600;            // TOML: end_s or end_min
+  std::string scheme = "newton";  // newton | linearly-implicit
+  double cg_tolerance = 1e-6;     // linearly-implicit
+  int cg_max_iterations = 2000;   // linearly-implicit
 };
 
 struct StopInput {
@@ -138,6 +142,7 @@ struct MonitorInput {
   std::string region = "all";
   std::string face;          // apical | basal; empty: all nodes; of the area, apical
   std::string axis;          // x | y | z; empty: the norm
+  std::string from;          // of a force: what the cells of this region exert, volumes' pressures included
   std::string over;          // mean | max | min | sum | rms; empty: mean
   std::string reference;     // directory of a run, or a mesh file
   std::string reference_at;  // same-time | end; empty: same-time

@@ -43,9 +43,7 @@ const Allowed positive = {.low = 0, .low_included = false};
 const Allowed not_negative = {.low = 0};
 
 Allowed between(double low, double high) { return {.low = low, .high = high}; }
-Allowed words(std::vector<std::string_view> words, std::vector<std::string_view> later = {}) {
-  return {.words = std::move(words), .later_words = std::move(later)};
-}
+Allowed words(std::vector<std::string_view> words) { return {.words = std::move(words)}; }
 
 std::vector<std::string_view> quantity_names() {
   std::vector<std::string_view> names;
@@ -142,8 +140,18 @@ const std::vector<Row>& rows() {
           at(&S::elasticity, &ElasticityInput::attractor_preload_length_um), positive,
           "Model shape-memory: how far from its place a node feels 0.7 of the preload (µm); it has no direction at 0."),
 
-      row("volume", "method", at(&S::volume, &VolumeInput::method), words({"coupled", "none"}, {"projection"}),
-          "How cells keep their volume: as constraints of each step, or not."),
+      row("volume", "method", at(&S::volume, &VolumeInput::method), words({"coupled", "projection", "none"}),
+          "How cells keep their volume: as constraints of each step; by the paper's projection after it, so that the "
+          "state of rest depends on the step; or not."),
+      row("volume", "projection_surface", at(&S::volume, &VolumeInput::projection_surface),
+          words({"cells", "tissue", "embryo"}),
+          "Closed surfaces whose volume is projected: each cell's; the one around all cells; the apical one, with the "
+          "lumen inside."),
+      row("volume", "projection_weights", at(&S::volume, &VolumeInput::projection_weights),
+          words({"equal", "mobility"}),
+          "How far the projection moves nodes along the volume's gradient: all alike (the paper), or each as far as "
+          "its "
+          "drag and mass let it, which is where the coupled solve goes as steps get short."),
 
       row("vitelline", "enabled", at(&S::vitelline, &VitellineInput::enabled), anything,
           "A rigid shell around a closed embryo; false by default for a block."),
@@ -262,8 +270,12 @@ const std::vector<Row>& rows() {
       row("time", "end_s", at(&S::time, &T::end_s), positive, "When the run ends (s)."),
       row("time", "end_min", at(&S::time, &T::end_s), positive, "The same in minutes.",
           {.instead_of = "end_s", .scale = 60}),
-      row("time", "scheme", at(&S::time, &T::scheme), words({"newton"}, {"linearly-implicit"}),
-          "How a step is solved."),
+      row("time", "scheme", at(&S::time, &T::scheme), words({"newton", "linearly-implicit"}),
+          "How a step is solved: Newton's method, or one linear system by conjugate gradients (the paper)."),
+      row("time", "cg_tolerance", at(&S::time, &T::cg_tolerance), {.low = 1e-14, .high = 0.1},
+          "Residual of the conjugate gradients over the force (scheme linearly-implicit)."),
+      row("time", "cg_max_iterations", at(&S::time, &T::cg_max_iterations), between(1, 1000000),
+          "Conjugate gradients give up after as many iterations (scheme linearly-implicit)."),
 
       row("stop", "equilibrium_speed_um_per_min", at(&S::stop, &StopInput::equilibrium_speed_um_per_min), positive,
           "Equilibrium is when all nodes are slower (µm/min)."),
@@ -287,6 +299,9 @@ const std::vector<Row>& rows() {
           "Only nodes of this side of the cells; without it, all. The side of an area; without it, apical."),
       row("monitor.*", "axis", at(&S::monitors, &M::axis), words({"x", "y", "z"}),
           "The component along this axis; without it, the norm."),
+      row("monitor.*", "from", at(&S::monitors, &M::from), anything,
+          "Of a force: only what the cells of this region exert on the nodes, the pressures that hold their volumes "
+          "included; without it, what drives the nodes."),
       row("monitor.*", "over", at(&S::monitors, &M::over), words({"mean", "max", "min", "sum", "rms"}),
           "How the values of nodes or cells make one number; without it, their mean."),
       row("monitor.*", "reference", at(&S::monitors, &M::reference), anything,
@@ -453,6 +468,19 @@ void reset_to_default(const Row& row, Scenario& scenario, const std::string& nam
   std::visit(
       [&](auto target) {
         if constexpr (!std::is_same_v<decltype(target), std::monostate>) *target = *std::get<decltype(target)>(from);
+      },
+      to);
+}
+
+bool is_default(const Row& row, const Scenario& scenario, const std::string& name) {
+  Scenario defaults, copy = scenario;  // the table hands out pointers to fields that may be written
+  const Slot from = row.field(defaults, name), to = row.field(copy, name);
+  return std::visit(
+      [&](auto field) {
+        if constexpr (std::is_same_v<decltype(field), std::monostate>)
+          return true;
+        else
+          return *field == *std::get<decltype(field)>(from);
       },
       to);
 }

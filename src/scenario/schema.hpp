@@ -26,9 +26,8 @@ struct Allowed {
   double high = std::numeric_limits<double>::infinity();
   bool low_included = true;
   bool high_included = true;
-  std::vector<std::string_view> words = {};        // empty: any text
-  std::vector<std::string_view> later_words = {};  // known, but not available yet
-  std::string_view word_for_none = {};             // how an optional number says that it has none
+  std::vector<std::string_view> words = {};  // empty: any text
+  std::string_view word_for_none = {};       // how an optional number says that it has none
 
   [[nodiscard]] bool contains(double value) const;
   /// As in "> 0", "1 to 8", "pill | sphere"; empty where anything goes.
@@ -69,6 +68,9 @@ std::span<const Row> schema();
 std::span<const TableInfo> schema_tables();               // in the order in which a scenario is written
 std::vector<const Row*> rows_of(std::string_view table);  // of one table, in order
 std::span<const std::string_view> expectation_names();    // what [expect] may name
+
+/// Whether the row's field of `scenario` has its default.
+bool is_default(const Row& row, const Scenario& scenario, const std::string& name);
 
 /// Gives the row's field of `scenario` its default.
 void reset_to_default(const Row& row, Scenario& scenario, const std::string& name);

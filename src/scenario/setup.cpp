@@ -10,6 +10,7 @@
 #include "mechanics/shape_memory.hpp"
 #include "mechanics/surroundings.hpp"
 #include "scenario/regions.hpp"
+#include "solver/closed_surface.hpp"
 #include "tissue/embryo.hpp"
 #include "tissue/mesh_file.hpp"
 
@@ -46,6 +47,15 @@ void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vecto
                                      "take more cells, or flatter ones"));
       return;
     }
+}
+
+// A mesh file's apical surface may be open; that of a built embryo is not.
+void check_encloses(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
+  std::vector<ClosedSurface::Quad> facets;
+  for (const Facet& facet : tissue.apical_facets) facets.push_back(facet.nodes);
+  if (!ClosedSurface(facets).is_closed())
+    errors.push_back(diagnostic_at(scenario, "volume.projection_surface",
+                                   "the apical surface of this mesh encloses nothing", "give \"cells\" or \"tissue\""));
 }
 
 EdgeSide side_named(const std::string& name) {
@@ -207,12 +217,35 @@ std::unique_ptr<Model> make_model(const Scenario& scenario) {
     errors.push_back(diagnostic_at(scenario, "division." + scenario.divisions.begin()->first,
                                    "the cells of this embryo cannot divide: " + *why,
                                    "take one element a cell and one layer of cells"));
+  if (scenario.volume.projection_surface == "embryo") check_encloses(scenario, tissue, errors);
   if (!errors.empty()) throw ScenarioError(std::move(errors));
   return model;
 }
 
+namespace {
+
+StepScheme make_scheme(const Scenario& scenario) {
+  StepScheme scheme;
+  if (scenario.time.scheme == "linearly-implicit") scheme.forces = StepScheme::Forces::linearly_implicit;
+  scheme.linear_tolerance = scenario.time.cg_tolerance;
+  scheme.most_linear_iterations = scenario.time.cg_max_iterations;
+  if (scenario.volume.method == "projection") {
+    using Rule = ProjectionRule;
+    const std::string& surface = scenario.volume.projection_surface;
+    Rule& rule = scheme.projection.emplace();
+    rule.surfaces = surface == "cells"    ? Rule::Surfaces::cells
+                    : surface == "tissue" ? Rule::Surfaces::tissue
+                                          : Rule::Surfaces::embryo;
+    rule.weights = scenario.volume.projection_weights == "equal" ? Rule::Weights::equal : Rule::Weights::mobility;
+  }
+  return scheme;
+}
+
+}  // namespace
+
 RunControls make_controls(const Scenario& scenario, const Model& model) {
   RunControls controls;
+  controls.scheme = make_scheme(scenario);
   controls.fixed_step_s = scenario.time.step_s;
   controls.first_step_s = scenario.time.first_step_s;
   controls.max_step_s = scenario.time.max_step_s;

@@ -97,6 +97,46 @@ void check_time(const TimeInput& time, Input& input) {
   }
 }
 
+/// Keys that only one choice of another key uses: given in vain is an error, inherited in vain is dropped.
+void check_keys_of_choices(Scenario& scenario, Input& input) {
+  struct Choice {
+    std::string_view table, key, chosen_by, value;
+    bool made;
+  };
+  const bool projection = scenario.volume.method == "projection", cg = scenario.time.scheme == "linearly-implicit";
+  for (const Choice& choice : {Choice{"volume", "projection_surface", "volume.method", "projection", projection},
+                               {"volume", "projection_weights", "volume.method", "projection", projection},
+                               {"time", "cg_tolerance", "time.scheme", "linearly-implicit", cg},
+                               {"time", "cg_max_iterations", "time.scheme", "linearly-implicit", cg}}) {
+    const std::string address = fmt::format("{}.{}", choice.table, choice.key);
+    if (choice.made || !input.sound(std::string(choice.chosen_by)) || !input.sound(address)) continue;
+    for (const Row* row : rows_of(choice.table)) {
+      if (row->key != choice.key) continue;
+      const Place *given = input.place(address), *chooser = input.place(std::string(choice.chosen_by));
+      if (given != nullptr && !is_default(*row, scenario, "") && (chooser == nullptr || given->layer >= chooser->layer))
+        input.report(address, fmt::format("is used with {} = \"{}\" only", choice.chosen_by, choice.value),
+                     fmt::format("remove it, or give {} = \"{}\"", choice.chosen_by, choice.value));
+      reset_to_default(*row, scenario, "");
+    }
+  }
+}
+
+void check_scheme(const Scenario& scenario, Input& input) {
+  if (!input.sound("time.scheme") || !input.sound("volume.method") || !input.sound("embryo.shape")) return;
+  if (scenario.time.scheme == "linearly-implicit" && scenario.volume.method == "coupled")
+    input.report("time.scheme",
+                 "solves forces only, it cannot hold volumes as constraints (volume.method is \"coupled\")",
+                 "give volume.method = \"projection\" or \"none\", or scheme = \"newton\"");
+  if (!scenario.divisions.empty() && (scenario.volume.method == "projection" || scenario.time.scheme != "newton"))
+    input.report(scenario.volume.method == "projection" ? "volume.method" : "time.scheme",
+                 "cells cannot divide under the paper's algorithm",
+                 "give method = \"coupled\" or \"none\" and scheme = \"newton\", or no [division]");
+  if (scenario.volume.projection_surface == "embryo" && scenario.embryo.shape == "block" &&
+      input.sound("volume.projection_surface"))
+    input.report("volume.projection_surface", "the apical surface of a block encloses nothing",
+                 "give \"cells\" or \"tissue\"");
+}
+
 void check_required_keys(const Scenario& scenario, Input& input) {
   for (const TableInfo& info : schema_tables()) {
     if (!info.named()) continue;
@@ -170,7 +210,10 @@ class RegionCheck {
     for (const auto& [name, it] : scenario_.holds) check_reference("hold." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.pressures) check_reference("pressure." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.divisions) check_reference("division." + name + ".region", it.region);
-    for (const auto& [name, it] : scenario_.monitors) check_reference("monitor." + name + ".region", it.region);
+    for (const auto& [name, it] : scenario_.monitors) {
+      check_reference("monitor." + name + ".region", it.region);
+      check_reference("monitor." + name + ".from", it.from);
+    }
     check_reference("furrow.region", scenario_.furrow.region);
     for (const auto& [name, region] : scenario_.regions) {
       for (const std::string& other : region.unite) check_reference("region." + name + ".union", other);
@@ -276,6 +319,8 @@ void validate(Scenario& scenario, Input& input) {
   check_elasticity(scenario.elasticity, input);
   check_dynamics(scenario.dynamics, input);
   check_time(scenario.time, input);
+  check_keys_of_choices(scenario, input);
+  check_scheme(scenario, input);
   check_required_keys(scenario, input);
   check_expectations(scenario, input);
   check_monitors(scenario, input);

@@ -34,6 +34,7 @@ Monitor make_monitor(const std::string& name, const MonitorInput& input, const S
   monitor.name = name;
   monitor.quantity = quantity_named(input.quantity)->quantity;
   monitor.region = input.region;
+  monitor.from = input.from;
   if (!input.face.empty()) monitor.face = input.face == "apical" ? Monitor::Face::apical : Monitor::Face::basal;
   if (!input.axis.empty()) monitor.axis = input.axis[0] - 'x';
   monitor.over = over_named(input.over);

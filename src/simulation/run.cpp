@@ -36,12 +36,12 @@ std::string failure_text(StepReport report, const Model& model, const State& sta
 RunResult run(Model& model, State state, RunControls controls, const StepObserver& observer,
               const std::function<bool()>& stop_requested, const DivisionObserver& division_observer) {
   RunResult result;
-  std::optional<StepSolver> solver;
-  const auto renew_solver = [&] {
-    solver.emplace(model);
-    solver->stop_when(stop_requested);
+  std::unique_ptr<Stepper> stepper;
+  const auto renew_stepper = [&] {
+    stepper = make_stepper(model, controls.scheme);
+    stepper->stop_when(stop_requested);
   };
-  renew_solver();
+  renew_stepper();
   StepLength step_length(controls);
   const auto divide = [&](const std::vector<PlannedDivision>& due) {
     state.divided_until_s = state.time_s;
@@ -49,7 +49,7 @@ RunResult run(Model& model, State state, RunControls controls, const StepObserve
     const Division division = divide_cells(model, state, due);
     result.divisions += static_cast<int>(due.size());
     for (const PlannedDivision& one : due) controls.program_points_s.push_back(state.time_s + one.growth_s);
-    renew_solver();
+    renew_stepper();
     step_length.restart();
     if (division_observer) division_observer(division, state);
   };
@@ -60,7 +60,7 @@ RunResult run(Model& model, State state, RunControls controls, const StepObserve
   while (state.time_s < controls.end_s * (1 - 1e-12)) {
     const double duration_s = step_length.propose(state.time_s);
     grow(model, state.time_s + duration_s);
-    StepReport report = solver->advance(state, duration_s, result.steps == 0, next);
+    StepReport report = stepper->advance(state, duration_s, result.steps == 0, next);
     if (report.outcome == StepReport::Outcome::interrupted) {
       result.status = RunStatus::interrupted;
       break;
@@ -68,7 +68,7 @@ RunResult run(Model& model, State state, RunControls controls, const StepObserve
     if (!report.converged()) {
       wasted_iterations += report.newton_iterations;
       wasted_solves += report.linear_solves;
-      solver->forget_factor();
+      stepper->forget_factor();
       if (step_length.halve(duration_s)) continue;
       result.status = RunStatus::failed;
       result.failure = failure_text(report, model, state, duration_s);

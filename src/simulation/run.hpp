@@ -9,12 +9,13 @@
 
 #include "mechanics/model.hpp"
 #include "simulation/division_rules.hpp"
-#include "solver/step_solver.hpp"
+#include "solver/stepper.hpp"
 
 namespace plica {
 
 /// When to step how far, and when to stop.
 struct RunControls {
+  StepScheme scheme;
   std::optional<double> fixed_step_s;   // empty: adaptive
   double first_step_s = 0.05;           // adaptive
   double max_step_s = 30;               // adaptive

@@ -30,39 +30,6 @@ struct StepSolver::Direction {
   std::vector<double> contact_forces;
 };
 
-std::string StepReport::reason() const {
-  const std::string where = cell ? "cell " + std::to_string(cell->number()) : "an unknown cell";
-  switch (outcome) {
-    case Outcome::converged:
-      return "converged";
-    case Outcome::inverted_element:
-      return where + " turns inside out";
-    case Outcome::no_convergence:
-      return "forces and volumes cannot be balanced (Newton's method does not converge); worst in " + where;
-    case Outcome::singular_system:
-      return "the linear system is singular (something is held twice, or by nothing); largest force in " + where;
-    case Outcome::not_finite:
-      return "a force in " + where + " is not a finite number";
-    case Outcome::interrupted:
-      return "interrupted";
-  }
-  return "";
-}
-
-namespace {
-
-// The node with the largest vector; one that is not finite goes before all others.
-std::size_t largest(const Vectors& vectors) {
-  std::size_t found = 0;
-  for (std::size_t n = 0; n < vectors.size(); ++n) {
-    if (!vectors[n].allFinite()) return n;
-    if (vectors[n].squaredNorm() > vectors[found].squaredNorm()) found = n;
-  }
-  return found;
-}
-
-}  // namespace
-
 StepSolver::StepSolver(const Model& model, StepTolerances tolerances)
     : model_(model),
       tolerances_(tolerances),
@@ -250,20 +217,6 @@ bool StepSolver::revise_contacts(Iterate& at) const {
   return changed;
 }
 
-std::optional<CellId> StepSolver::cell_at(std::size_t node) const {
-  for (std::size_t e = 0; e < model_.tissue.elements.size(); ++e)
-    for (const NodeId member : model_.tissue.elements[e])
-      if (member.index() == node) return model_.tissue.element_cell[e];
-  return std::nullopt;
-}
-
-std::optional<CellId> StepSolver::inverted_cell(const Vectors& positions) const {
-  const Tissue& tissue = model_.tissue;
-  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
-    if (!(hex_scaled_jacobian(gather(positions, tissue.elements[e])) > 0)) return tissue.element_cell[e];
-  return std::nullopt;
-}
-
 // Goes along the direction as far as elements stay upright and the residual falls; if it falls nowhere, where it is
 // least. False, with the reason in the report, when no length keeps every element upright and every force finite.
 bool StepSolver::search_line(const Step& step, const Direction& d, Iterate& at, Residual& now,
@@ -275,7 +228,7 @@ bool StepSolver::search_line(const Step& step, const Direction& d, Iterate& at, 
     Iterate trial = at;
     for (std::size_t n = 0; n < trial.positions.size(); ++n) trial.positions[n] += part * d.positions[n];
     model_.tissue.place_hanging(trial.positions);
-    blocking = inverted_cell(trial.positions);
+    blocking = inverted_cell(model_.tissue, trial.positions);
     if (blocking) continue;
     for (std::size_t c = 0; c < trial.pressures.size(); ++c) trial.pressures[c] += part * d.pressures[c];
     for (std::size_t k = 0; k < trial.contact_forces.size(); ++k) trial.contact_forces[k] += part * d.contact_forces[k];
@@ -287,7 +240,7 @@ bool StepSolver::search_line(const Step& step, const Direction& d, Iterate& at, 
   }
   if (!best) {
     report.outcome = blocking ? StepReport::Outcome::inverted_element : StepReport::Outcome::not_finite;
-    report.cell = blocking ? blocking : cell_at(largest(now.forces));
+    report.cell = blocking ? blocking : cell_with_largest(model_.tissue, now.forces);
     return false;
   }
   at = std::move(best->first);
@@ -299,7 +252,7 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
   Iterate at{state.positions, state.pressures, state.contact_forces, state.in_contact};
   if (!from_rest) {
     for (std::size_t n = 0; n < at.positions.size(); ++n) at.positions[n] += duration_s * state.velocities[n];
-    if (inverted_cell(at.positions)) at.positions = state.positions;
+    if (inverted_cell(model_.tissue, at.positions)) at.positions = state.positions;
   }
   Step step{at.positions, state.positions, state.velocities, duration_s, state.time_s + duration_s};
   StepReport report;
@@ -313,7 +266,7 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
     report.volume_error = now.volume;
     if (!now.finite()) {
       report.outcome = StepReport::Outcome::not_finite;
-      report.cell = cell_at(largest(now.forces));
+      report.cell = cell_with_largest(model_.tissue, now.forces);
       return report;
     }
     const bool solved = now.force <= tolerances_.force && now.gap_um <= tolerances_.gap_um &&
@@ -325,7 +278,7 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
     }
     if (report.newton_iterations >= tolerances_.max_iterations || slow_iterations >= most_slow_iterations) {
       report.outcome = StepReport::Outcome::no_convergence;
-      report.cell = cell_at(largest(now.forces));
+      report.cell = cell_with_largest(model_.tissue, now.forces);
       return report;
     }
     // A factor of a step of nearly this length converges nearly as fast; of other contacts it has the wrong unknowns.
@@ -337,7 +290,7 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
       ++report.factorisations;
       if (!refresh_factor(step, at)) {
         report.outcome = StepReport::Outcome::singular_system;
-        report.cell = cell_at(largest(now.forces));
+        report.cell = cell_with_largest(model_.tissue, now.forces);
         return report;
       }
     }

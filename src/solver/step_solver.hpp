@@ -5,14 +5,13 @@
 // after each iteration. A factor is kept while it still converges fast (docs/decisions/0003-newton.md).
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "mechanics/model.hpp"
 #include "solver/step_matrix.hpp"
+#include "solver/stepper.hpp"
 
 namespace plica {
 
@@ -24,37 +23,16 @@ struct StepTolerances {
   int max_iterations = 40;
 };
 
-/// How a step went. A value: a step that fails is not an exception, the caller tries a shorter one.
-struct StepReport {
-  enum class Outcome { converged, inverted_element, no_convergence, singular_system, not_finite, interrupted };
-  Outcome outcome = Outcome::no_convergence;
-  int newton_iterations = 0;
-  int factorisations = 0;
-  int linear_solves = 0;
-  double residual = 0;  // relative, as in StepTolerances
-  double volume_error = 0;
-  std::optional<CellId> cell;  // where it failed, when that is one place
-
-  [[nodiscard]] bool converged() const { return outcome == Outcome::converged; }
-  /// "cell 37 turns inside out" and the like.
-  [[nodiscard]] std::string reason() const;
-};
-
 /// Solves steps of one model; keeps pattern, factor and scratch between them.
-class StepSolver {
+class StepSolver final : public Stepper {
  public:
   explicit StepSolver(const Model& model, StepTolerances tolerances = {});
-  ~StepSolver();
+  ~StepSolver() override;
 
-  /// From `state` over `duration_s` to `next` (left alone when the step fails). Starts from the velocities' forecast
-  /// unless `from_rest`.
-  StepReport advance(const State& state, double duration_s, bool from_rest, State& next);
-
-  /// A step asks this now and then; once true it ends as interrupted.
-  void stop_when(std::function<bool()> stop_requested) { stop_requested_ = std::move(stop_requested); }
-
-  /// Forgets the factor, so that the next step does not depend on what was solved before.
-  void forget_factor();
+  /// Starts from the velocities' forecast unless `from_rest`.
+  StepReport advance(const State& state, double duration_s, bool from_rest, State& next) override;
+  void stop_when(std::function<bool()> stop_requested) override { stop_requested_ = std::move(stop_requested); }
+  void forget_factor() override;
 
  private:
   struct Iterate;
@@ -67,8 +45,6 @@ class StepSolver {
   bool refresh_factor(const Step& step, const Iterate& at);
   [[nodiscard]] Direction direction(const Iterate& at, const Residual& residual);
   bool revise_contacts(Iterate& at) const;
-  [[nodiscard]] std::optional<CellId> cell_at(std::size_t node) const;
-  [[nodiscard]] std::optional<CellId> inverted_cell(const Vectors& positions) const;
   bool search_line(const Step& step, const Direction& direction, Iterate& at, Residual& now, StepReport& report) const;
 
   const Model& model_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "support/divided.hpp"
 #include "support/loads.hpp"
 #include "support/models.hpp"
 
@@ -204,6 +205,35 @@ TEST(Monitor, DeviationAndEnergyNormAgainstTheEndOfARun) {
   // Another mesh: no value.
   deviation.reference_frame->elements.pop_back();
   EXPECT_FALSE(read_monitor(deviation, {model, state}).number);
+}
+
+// What two halves of a body exert adds up to what the whole does, springs, pressures and hanging nodes included.
+TEST(ForcesOfCells, OfPartsAddUpToThoseOfTheWhole) {
+  Model model(distorted_block({.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 3, 1}}, 1, 3));
+  add_elasticity(model);
+  add_contraction(model, CellSet(12, true), {.stiffness = 2, .across_ratio = 0.4});
+  add_drag(model);
+  Random random(5);
+  State state = rest_state(model);
+  for (double& pressure : state.pressures) pressure = random.number();
+  divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
+  for (Vec3& x : state.positions) x += random.vector(0.5);
+  model.tissue.place_hanging(state.positions);
+  const std::size_t cells = model.tissue.cells.size();
+  CellSet left(cells, false), right(cells, false);
+  for (std::size_t c = 0; c < cells; ++c) (c % 3 == 0 ? left : right)[c] = true;
+  const Vectors of_left = forces_of_cells(model, state, left), of_right = forces_of_cells(model, state, right);
+  const Vectors of_all = forces_of_cells(model, state, CellSet(cells, true));
+  for (std::size_t n = 0; n < of_all.size(); ++n)
+    EXPECT_LE((of_left[n] + of_right[n] - of_all[n]).norm(), 1e-12 * largest(of_all));
+
+  Vectors expected(of_all.size(), Vec3::Zero());
+  const Vectors no_velocity(of_all.size(), Vec3::Zero());
+  const Step still{state.positions, state.positions, no_velocity, 1, 0};
+  for (const auto& law : model.laws) law->add_forces(still, expected);
+  model.volumes.add_forces(state.positions, state.pressures, expected);
+  model.tissue.carry_hanging(expected);
+  for (std::size_t n = 0; n < of_all.size(); ++n) EXPECT_LE((of_all[n] - expected[n]).norm(), 1e-12 * largest(of_all));
 }
 
 }  // namespace

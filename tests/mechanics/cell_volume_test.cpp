@@ -113,6 +113,11 @@ TEST(Dilatation, DerivativesAgreeWithFiniteDifferences) {
   check_derivatives(Dilatation(tissue, 3.0), tissue, 4);
 }
 
+TEST(Dilatation, SemidefiniteTangentLeavesOutThePressure) {
+  const Tissue tissue = distorted_block(two_cells, 2, 5);
+  check_semidefinite_tangent(Dilatation(tissue, 3.0), tissue, 4, true);
+}
+
 TEST(Dilatation, RestAndRigidMotionsHaveNoForce) {
   const Tissue tissue = distorted_block(two_cells, 2, 6);
   const Dilatation law(tissue, 3.0);

@@ -55,6 +55,12 @@ TEST(Contraction, DerivativesAgreeWithFiniteDifferencesOnLateralEdges) {
   check_derivatives(law_of(tissue, {.side = EdgeSide::lateral, .stiffness = 2, .damping = 1}), tissue, 3);
 }
 
+TEST(Contraction, SemidefiniteTangentLeavesOutTheTurningOfSpringsThatPush) {
+  const Tissue tissue = distorted_block(two_cells, 1, 5);
+  check_semidefinite_tangent(law_of(tissue, {.stiffness = 1, .preload = -60}), tissue, 3, true);
+  check_semidefinite_tangent(law_of(tissue, {.stiffness = 1, .preload = 60}), tissue, 3, false);
+}
+
 TEST(Contraction, TensionIsStiffnessTimesStretchPlusPreload) {
   const Contraction law({Spring{{NodeId(0), NodeId(1)}, 3, 5, 0, 12}}, {});
   const Motion motion = pair(20);

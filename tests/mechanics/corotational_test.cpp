@@ -42,6 +42,12 @@ TEST(Corotational, DerivativesAgreeWithFiniteDifferencesWithViscosity) {
   check_derivatives(Corotational(tissue, ElasticModuli::from_young(young, 0.45), 2), tissue, 4);
 }
 
+TEST(Corotational, SemidefiniteTangentLeavesOutTheTurningOfTheFrame) {
+  const Tissue tissue = distorted_block(two_cells, 2, 5);
+  check_semidefinite_tangent(Corotational(tissue, ElasticModuli::from_young(young, poisson), 0), tissue, 6, true);
+  check_semidefinite_tangent(Corotational(tissue, ElasticModuli::from_young(young, 0.45), 2), tissue, 6, true);
+}
+
 TEST(Corotational, RestShapeHasNoForceAndNoEnergy) {
   const Tissue tissue = distorted_block(two_cells, 2, 7);
   const Corotational law(tissue, ElasticModuli::from_young(young, poisson), 1);

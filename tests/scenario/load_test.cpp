@@ -166,8 +166,6 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {"[embryo]\nshape = \"pil\"",
        "test.toml:2: embryo.shape: \"pil\" is not known; give one of: pill | sphere | block | file (did you mean "
        "\"pill\"?)"},
-      {"[volume]\nmethod = \"projection\"",
-       "test.toml:2: volume.method: \"projection\" is not available yet; give one of: coupled | none"},
       {"[elasticity]\nattractor_stiffness_nN_per_um = 0",
        "test.toml:2: elasticity.attractor_stiffness_nN_per_um: 0 is out of range; give a number > 0 or \"derived\""},
       {"[elasticity]\nattractor_preload_nN = 1",

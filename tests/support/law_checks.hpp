@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "mechanics/law.hpp"
 #include "support/tissues.hpp"
 
@@ -98,6 +100,31 @@ inline void check_derivatives(const Law& law, const Tissue& tissue, double size_
     expect_assembled_is_matrix_free(law, motion, static_cast<unsigned>(100 + seed));
   }
   ::testing::Test::RecordProperty("random_motions", cases);
+}
+
+/// The semidefinite tangent at random large deformations: both forms of it are one, it is symmetric, no direction has
+/// negative stiffness, and forces do not change. `exact_is_indefinite`: whether some of these motions need it.
+inline void check_semidefinite_tangent(const Law& law, const Tissue& tissue, double size_um, bool exact_is_indefinite,
+                                       int cases = 5) {
+  double worst = 0, exact_worst = 0;  // least eigenvalue over the largest
+  for (int seed = 1; seed <= cases; ++seed) {
+    Motion motion = random_motion(tissue, size_um, static_cast<unsigned>(seed));
+    const auto least_over_largest = [&] {
+      const Eigen::MatrixXd tangent = DenseTangent(law, motion.step()).matrix;
+      const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(tangent).eigenvalues();
+      return values.minCoeff() / values.cwiseAbs().maxCoeff();
+    };
+    exact_worst = std::min(exact_worst, least_over_largest());
+    const Vectors forces = forces_of(law, motion.step());
+    motion.semidefinite_tangent = true;
+    EXPECT_EQ(forces, forces_of(law, motion.step()));
+    expect_assembled_is_matrix_free(law, motion, static_cast<unsigned>(100 + seed));
+    worst = std::min(worst, least_over_largest());
+  }
+  std::printf("%s: least eigenvalue of the tangent over the largest %.1e exact, %.1e semidefinite, in %d motions\n",
+              std::string(law.name()).c_str(), exact_worst, worst, cases);
+  EXPECT_GE(worst, -1e-12) << law.name();
+  EXPECT_EQ(exact_worst < -1e-6, exact_is_indefinite) << law.name();
 }
 
 /// The resultant of forces, and their torque about the origin.

@@ -87,9 +87,10 @@ struct Motion {
   Vectors positions, previous_positions, previous_velocities;
   double duration_s = 0.7;
   double end_time_s = 1.3;
+  bool semidefinite_tangent = false;
 
   [[nodiscard]] Step step() const {
-    return {positions, previous_positions, previous_velocities, duration_s, end_time_s};
+    return {positions, previous_positions, previous_velocities, duration_s, end_time_s, semidefinite_tangent};
   }
 };
 

@@ -1,0 +1,222 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <omp.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/interruption.hpp"
+#include "app/scenario_options.hpp"
+#include "app/threads.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/units.hpp"
+#include "scenario/setup.hpp"
+#include "study/calibrate.hpp"
+
+namespace plica {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CalibrateOptions {
+  ScenarioOptions scenario;
+  std::vector<std::string> vary, targets;
+  std::string out;
+  int trials = 40, threads = 0;
+  bool overwrite = false;
+};
+
+// Now, and not after an hour of runs.
+void refuse_out(const CalibrateOptions& options, const ScenarioSource& source) {
+  if (options.out.empty()) return;
+  if (!options.out.ends_with(".toml")) throw UsageError("--out " + options.out + ": the file's name must end in .toml");
+  std::error_code error;
+  if (fs::equivalent(options.out, source.file, error))
+    throw UsageError("--out " + options.out + ": is the scenario itself; give another name");
+  if (fs::exists(options.out, error) && !options.overwrite)
+    throw FileError(options.out + ": is there already; give another --out, or --overwrite to replace it");
+  if (fs::path folder = fs::absolute(options.out).parent_path(); !fs::is_directory(folder, error))
+    throw FileError(options.out + ": its folder is not there; make it, or give another --out");
+}
+
+// How far the found value is off, as a share of the target where that is not 0.
+std::string miss_text(const Target& target, double found) {
+  if (target.value == 0) return fmt::format("{:+.3g}", found);
+  return fmt::format("{:+.2f} %", 100 * (found - target.value) / std::abs(target.value));
+}
+
+std::string values_text(const CalibrationProblem& problem, const std::vector<double>& values) {
+  std::vector<std::string> texts;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    texts.push_back(fmt::format("{} = {}", problem.keys[k].key, values[k]));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string results_text(const CalibrationProblem& problem, const Trial& trial) {
+  std::vector<std::string> texts;
+  for (std::size_t t = 0; t < problem.targets.size(); ++t) {
+    const Target& target = problem.targets[t];
+    if (trial.found[t])
+      texts.push_back(
+          fmt::format("{} = {:.6g} ({})", target.name, *trial.found[t], miss_text(target, *trial.found[t])));
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+// A row a trial; on a terminal, below it also what the one under way is at.
+class TrialTable {
+ public:
+  explicit TrialTable(const CalibrationProblem& problem)
+      : problem_(problem), on_terminal_(isatty(STDERR_FILENO) != 0) {}
+
+  void show_progress(int number, const std::vector<double>& values, const Observation& row) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!on_terminal_ || now - last_ < std::chrono::milliseconds(100)) return;
+    last_ = now;
+    fmt::print(stderr, "\r{:>5}  {}: t = {:.2f} min\033[K", number, values_text(problem_, values),
+               row.time_s / units::minute);
+    std::fflush(stderr);
+  }
+
+  void add(const Trial& trial, bool best) {
+    end_progress();
+    if (trial.number == 1) fmt::print("{}\n", header());
+    std::string line = fmt::format("{:>5}", trial.number);
+    for (std::size_t k = 0; k < problem_.keys.size(); ++k)
+      line += fmt::format("  {:>{}}", trial.values[k], width(problem_.keys[k].key));
+    for (std::size_t t = 0; t < problem_.targets.size(); ++t) {
+      const Target& target = problem_.targets[t];
+      const std::optional<double> found = trial.found[t];
+      line += fmt::format("  {:>{}}  {:>10}", found ? fmt::format("{:.6g}", *found) : "none", width(target.name),
+                          found ? miss_text(target, *found) : "none");
+    }
+    line += fmt::format("  {:>6.1f}  {}", trial.wall_s, trial.worst_miss <= 1 ? "met" : best ? "nearest so far" : "");
+    fmt::print("{}{}\n", line.substr(0, line.find_last_not_of(' ') + 1),
+               trial.failure.empty() ? "" : "  no value: " + trial.failure);
+    std::fflush(stdout);
+  }
+
+  void end_progress() const {
+    if (on_terminal_) fmt::print(stderr, "\r\033[K");
+  }
+
+ private:
+  static std::size_t width(const std::string& name) { return std::max<std::size_t>(name.size(), 9); }
+
+  [[nodiscard]] std::string header() const {
+    std::string line = "trial";
+    for (const VariedKey& key : problem_.keys) line += fmt::format("  {:>{}}", key.key, width(key.key));
+    for (const Target& target : problem_.targets)
+      line += fmt::format("  {:>{}}  {:>10}", target.name, width(target.name), "off by");
+    return line + "   run s";
+  }
+
+  const CalibrationProblem& problem_;
+  bool on_terminal_;
+  std::chrono::steady_clock::time_point last_;
+};
+
+CalibrationProblem problem_of(const CalibrateOptions& options) {
+  CalibrationProblem problem{
+      find_scenario(options.scenario.name_or_path), options.scenario.overrides, {}, {}, options.trials};
+  for (const std::string& text : options.vary) problem.keys.push_back(parse_varied_key(text));
+  for (const std::string& text : options.targets) problem.targets.push_back(parse_target(text));
+  return problem;
+}
+
+// Why the targets were not met, and what the nearest is.
+void print_missed(const CalibrationProblem& problem, const Calibration& calibration) {
+  const int trials = calibration.trials;
+  const std::string runs = fmt::format("{} run{}", trials, trials == 1 ? "" : "s");
+  switch (calibration.end) {
+    case CalibrationEnd::met:
+      return;
+    case CalibrationEnd::not_met:
+      fmt::print(stderr, "plica: not met: no values within the bounds were found that meet all targets ({})\n", runs);
+      break;
+    case CalibrationEnd::trials_spent:
+      fmt::print(stderr, "plica: not met in {}; give more --trials, or nearer bounds\n", runs);
+      break;
+    case CalibrationEnd::interrupted:
+      fmt::print(stderr, "plica: interrupted after {}\n", runs);
+      break;
+  }
+  if (!calibration.best) {
+    fmt::print(stderr, "plica: no run gave values of all targets\n");
+    return;
+  }
+  fmt::print(stderr, "  nearest: {}\n", values_text(problem, calibration.best->values));
+  fmt::print(stderr, "  there: {}\n", results_text(problem, *calibration.best));
+  for (std::size_t k = 0; k < problem.keys.size(); ++k) {
+    const VariedKey& key = problem.keys[k];
+    const double value = calibration.best->values[k];
+    const bool at_bound = value == key.low || value == key.high;
+    if (calibration.end == CalibrationEnd::not_met && at_bound)
+      fmt::print(stderr, "  {} is at its bound {}; another bound may help\n", key.key, value);
+  }
+}
+
+int exit_status(CalibrationEnd end) {
+  if (end == CalibrationEnd::interrupted) return interrupted_status();
+  return end == CalibrationEnd::met ? exit_done : exit_missed;
+}
+
+int calibrate_scenario(const CalibrateOptions& options) {
+  const CalibrationProblem problem = problem_of(options);
+  refuse_out(options, problem.source);
+  const auto model = make_model(load_scenario(problem.source, problem.overrides));
+  omp_set_num_threads(threads_for(options.threads, model->tissue.elements.size()));
+  TrialTable table(problem);
+  catch_interruptions();
+  const Calibration calibration =
+      calibrate(problem, {interrupted,
+                          [&](int number, const std::vector<double>& values, const Observation& row) {
+                            table.show_progress(number, values, row);
+                          },
+                          [&](const Trial& trial, bool best) { table.add(trial, best); }});
+  table.end_progress();
+  if (calibration.end == CalibrationEnd::met)
+    fmt::print("Met in {} run{}: {}\n", calibration.trials, calibration.trials == 1 ? "" : "s",
+               values_text(problem, calibration.best->values));
+  print_missed(problem, calibration);
+  if (calibration.best && !options.out.empty()) {
+    write_file(options.out, calibrated_toml(problem, calibration, options.out));
+    fmt::print("{} in {}\n", calibration.end == CalibrationEnd::met ? "The scenario is" : "The nearest scenario is",
+               options.out);
+  }
+  return exit_status(calibration.end);
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("calibrate", "find the values of keys with which a scenario meets targets");
+  auto options = std::make_shared<CalibrateOptions>();
+  options->scenario.add_to(*command);
+  command->add_option("--vary", options->vary, "KEY=LOW:HIGH: a key that may take any number in between; repeatable")
+      ->required()
+      ->allow_extra_args(false);
+  command
+      ->add_option("--target", options->targets,
+                   "NAME=VALUE[~WITHIN]: what a number of summary.json is to be, give or take WITHIN (in its unit, or "
+                   "as 2%; without it, 0.5%); repeatable")
+      ->required()
+      ->allow_extra_args(false);
+  command->add_option("--out", options->out, "FILE.toml to write: the calibrated scenario");
+  command->add_option("--trials", options->trials, "runs to make at most (40)")->check(CLI::Range(1, 100000));
+  command->add_option("--threads", options->threads, "threads to use; results do not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--overwrite", options->overwrite, "replace FILE.toml where it is there");
+  command->footer(
+      "Example: plica calibrate drosophila --vary contraction.apical.stiffness_nN_per_um=6:10 --target "
+      "furrow_depth_um=28.89~0.1 --out mine.toml");
+  command->callback([options, &status] { status = calibrate_scenario(*options); });
+}
+
+}  // namespace plica

@@ -1,0 +1,68 @@
+#include "solver/stepper.hpp"
+
+#include <fmt/format.h>
+
+#include "solver/linearly_implicit.hpp"
+#include "solver/projected_stepper.hpp"
+#include "solver/step_solver.hpp"
+
+namespace plica {
+
+std::string StepReport::reason() const {
+  const std::string where = cell ? fmt::format("cell {}", cell->number()) : "an unknown cell";
+  switch (outcome) {
+    case Outcome::converged:
+      return "converged";
+    case Outcome::inverted_element:
+      return where + " turns inside out";
+    case Outcome::no_convergence:
+      return "forces and volumes cannot be balanced (Newton's method does not converge); worst in " + where;
+    case Outcome::no_linear_convergence:
+      return "conjugate gradients do not converge; largest force in " + where;
+    case Outcome::singular_system:
+      return "the linear system is singular (something is held twice, or by nothing); largest force in " + where;
+    case Outcome::not_projected:
+      return fmt::format(
+          "volumes and shell are not met after {} sweeps of projection: the volume of {} is off by {:.1e}, a node is "
+          "{:.1e} um outside the shell",
+          projection_sweeps, cell ? where : "the whole surface", volume_error, outside_um);
+    case Outcome::not_finite:
+      return "a force in " + where + " is not a finite number";
+    case Outcome::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+std::unique_ptr<Stepper> make_stepper(const Model& model, const StepScheme& scheme) {
+  if (scheme.forces == StepScheme::Forces::newton && !scheme.projection) return std::make_unique<StepSolver>(model);
+  // Only Newton's step keeps nodes in the shell by itself.
+  if (scheme.forces == StepScheme::Forces::linearly_implicit)
+    return std::make_unique<ProjectedStepper>(
+        model, std::make_unique<LinearlyImplicit>(model, scheme.linear_tolerance, scheme.most_linear_iterations),
+        scheme.projection);
+  return std::make_unique<ProjectedStepper>(model, std::make_unique<StepSolver>(model), scheme.projection);
+}
+
+std::optional<CellId> cell_with_largest(const Tissue& tissue, const Vectors& vectors) {
+  std::size_t largest = 0;
+  for (std::size_t n = 0; n < vectors.size(); ++n) {
+    if (!vectors[n].allFinite()) {
+      largest = n;
+      break;
+    }
+    if (vectors[n].squaredNorm() > vectors[largest].squaredNorm()) largest = n;
+  }
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
+    for (const NodeId node : tissue.elements[e])
+      if (node.index() == largest) return tissue.element_cell[e];
+  return std::nullopt;
+}
+
+std::optional<CellId> inverted_cell(const Tissue& tissue, const Vectors& positions) {
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
+    if (!(hex_scaled_jacobian(gather(positions, tissue.elements[e])) > 0)) return tissue.element_cell[e];
+  return std::nullopt;
+}
+
+}  // namespace plica

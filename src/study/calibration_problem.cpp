@@ -1,0 +1,170 @@
+#include "study/calibration_problem.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "core/errors.hpp"
+#include "scenario/print.hpp"
+#include "scenario/setup.hpp"
+#include "scenario/suggest.hpp"
+#include "study/quiet_run.hpp"
+
+namespace plica {
+namespace {
+
+constexpr double usual_percent = 0.5;
+
+std::optional<double> parse_number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+// Whole numbers too are written as floating-point, so that a key that wants an integer says so at once.
+std::string in_toml(double value) {
+  const std::string text = fmt::format("{}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+// A value as it is run and written: to a millionth of the bounds' width, so that it can be read.
+double value_at(const VariedKey& key, double place) {
+  const int decimals = 6 - static_cast<int>(std::floor(std::log10(key.high - key.low)));
+  const double value = key.low + place * (key.high - key.low);
+  if (place <= 0 || place >= 1 || decimals < 0 || decimals > 300) return std::clamp(value, key.low, key.high);
+  return std::clamp(*parse_number(fmt::format("{:.{}f}", value, decimals)), key.low, key.high);
+}
+
+void refuse_repetitions(const CalibrationProblem& problem) {
+  std::set<std::string> keys, targets;
+  for (const VariedKey& key : problem.keys) {
+    if (!keys.insert(key.key).second)
+      throw UsageError(fmt::format("--vary {}: is given twice; leave one out", key.key));
+    for (const std::string& override : problem.overrides)
+      if (override.substr(0, override.find_first_of(" =")) == key.key)
+        throw UsageError(fmt::format("--vary {}: is given by --set as well; leave one out", key.key));
+  }
+  for (const Target& target : problem.targets)
+    if (!targets.insert(target.name).second)
+      throw UsageError(fmt::format("--target {}: is given twice; leave one out", target.name));
+}
+
+bool is_of_the_clock(const std::string& name) { return name.find("wall_s") != std::string::npos; }
+
+// What of the summary can be a target: numbers, and what may become one, but no computing times.
+std::vector<std::string> known_targets(const Scenario& scenario) {
+  std::vector<std::string> names;
+  const RunSummary rest = run_at_rest(scenario);
+  for (const auto& [name, value] : rest.summary.items())
+    if ((value.is_number() || value.is_null()) && name != "stopped_by" && name != "failure" && !is_of_the_clock(name))
+      names.push_back(name);
+  return names;
+}
+
+void refuse_unknown_targets(const CalibrationProblem& problem, const std::vector<std::string>& known) {
+  for (const Target& target : problem.targets) {
+    if (std::ranges::count(known, target.name) > 0) continue;
+    if (is_of_the_clock(target.name))
+      throw UsageError(fmt::format("--target {}: computing time differs from run to run; give a result", target.name));
+    throw UsageError(
+        fmt::format("--target {}: is no number of summary.json; {}", target.name, did_you_mean(target.name, known)));
+  }
+}
+
+}  // namespace
+
+VariedKey parse_varied_key(const std::string& text) {
+  const std::size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
+  if (equals == std::string::npos || equals == 0 || colon == std::string::npos)
+    throw UsageError(fmt::format("--vary {}: is not understood; give KEY=LOW:HIGH", text));
+  const auto low = parse_number(std::string_view(text).substr(equals + 1, colon - equals - 1));
+  const auto high = parse_number(std::string_view(text).substr(colon + 1));
+  if (!low || !high) throw UsageError(fmt::format("--vary {}: a bound is not a number; give KEY=LOW:HIGH", text));
+  const std::string key = text.substr(0, equals);
+  if (*low == *high)
+    throw UsageError(fmt::format("--vary {}: the bounds are equal; give that value by --set {}={}", text, key, *low));
+  if (*low > *high)
+    throw UsageError(fmt::format("--vary {}: low is above high; write {}={}:{}", text, key, *high, *low));
+  return {key, *low, *high};
+}
+
+Target parse_target(const std::string& text) {
+  const std::size_t equals = text.find('='), tilde = text.find('~', equals == std::string::npos ? 0 : equals);
+  const std::string_view view(text);
+  const auto value =
+      equals == std::string::npos || equals == 0
+          ? std::nullopt
+          : parse_number(view.substr(equals + 1, tilde == std::string::npos ? tilde : tilde - equals - 1));
+  if (!value)
+    throw UsageError(
+        fmt::format("--target {}: is not understood; give NAME=VALUE, NAME=VALUE~WITHIN or NAME=VALUE~PERCENT%", text));
+  Target target{text.substr(0, equals), *value, std::abs(*value) * usual_percent / 100};
+  if (tilde == std::string::npos) {
+    if (target.within == 0)
+      throw UsageError(fmt::format("--target {}: no share of 0 is a tolerance; give {}=0~WITHIN", text, target.name));
+    return target;
+  }
+  const bool percent = text.ends_with('%');
+  const auto within = parse_number(view.substr(tilde + 1, view.size() - tilde - 1 - (percent ? 1 : 0)));
+  target.within = within ? (percent ? std::abs(*value) * *within / 100 : *within) : 0;
+  if (!(target.within > 0))
+    throw UsageError(fmt::format("--target {}: the tolerance must be over 0; give NAME=VALUE~0.1 or ~2%", text));
+  return target;
+}
+
+std::vector<std::string> trial_overrides(const CalibrationProblem& problem, const std::vector<double>& values) {
+  std::vector<std::string> overrides = problem.overrides;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    overrides.push_back(fmt::format("{}={}", problem.keys[k].key, in_toml(values[k])));
+  return overrides;
+}
+
+std::vector<double> values_at(const CalibrationProblem& problem, const std::vector<double>& place) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < place.size(); ++k) values.push_back(value_at(problem.keys[k], place[k]));
+  return values;
+}
+
+std::vector<double> first_place(const CalibrationProblem& problem) {
+  const toml::table resolved = toml::parse(resolved_toml(load_scenario(problem.source, problem.overrides)));
+  std::vector<double> place;
+  for (const VariedKey& key : problem.keys) {
+    const auto own = toml::at_path(resolved, key.key).value<double>();
+    const double coordinate = own ? (*own - key.low) / (key.high - key.low) : -1;
+    place.push_back(coordinate >= 0 && coordinate <= 1 ? coordinate : 0.5);
+  }
+  return place;
+}
+
+Scenario load_trial(const CalibrationProblem& problem, const std::vector<double>& values) {
+  try {
+    return load_scenario(problem.source, trial_overrides(problem, values));
+  } catch (const ScenarioError& error) {
+    std::vector<Diagnostic> diagnostics = error.diagnostics();
+    for (Diagnostic& diagnostic : diagnostics) {
+      const auto is_it = [&](const VariedKey& key) { return key.key == diagnostic.key; };
+      if (diagnostic.file != "--set" || std::ranges::none_of(problem.keys, is_it)) continue;
+      diagnostic.file = "--vary";
+      if (diagnostic.problem.ends_with("is not an integer"))
+        diagnostic = {"--vary", 0, diagnostic.key, "takes whole numbers only",
+                      "vary a key that takes any number, and set this one by --set"};
+    }
+    throw ScenarioError(std::move(diagnostics));
+  }
+}
+
+void check_calibration(const CalibrationProblem& problem) {
+  refuse_repetitions(problem);
+  const std::vector<double> low(problem.keys.size(), 0), high(problem.keys.size(), 1);
+  for (const auto& place : {low, high}) (void)make_model(load_trial(problem, values_at(problem, place)));
+  refuse_unknown_targets(problem, known_targets(load_trial(problem, values_at(problem, low))));
+}
+
+}  // namespace plica

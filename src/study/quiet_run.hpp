@@ -1,0 +1,32 @@
+// A scenario run in the program itself, without files or progress: what the studies over many runs are made of.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "measure/observation.hpp"
+#include "scenario/scenario.hpp"
+
+namespace plica {
+
+struct RunSummary {
+  nlohmann::ordered_json summary;  // as summary.json; "status" is "failed" where the numerics gave up
+  std::vector<Observation> rows;   // as series.csv, the one at rest first
+  State state;                     // where the run ended
+};
+
+/// What somebody may want while it runs.
+struct QuietRunHooks {
+  std::function<bool()> stop_requested = {};            // asked often; once true, the run ends as interrupted
+  std::function<void(const Observation&)> on_row = {};  // after every accepted step
+};
+
+/// Runs to equilibrium or the end of time, to the same bits as `plica run`. Threads are as set (omp_set_num_threads).
+/// Throws ScenarioError for what only the tissue shows to be wrong.
+RunSummary quiet_run(const Scenario& scenario, const QuietRunHooks& hooks = {});
+
+/// The summary of a run that has not begun: every key that one of this scenario will have.
+RunSummary run_at_rest(const Scenario& scenario);
+
+}  // namespace plica

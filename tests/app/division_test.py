@@ -1,0 +1,107 @@
+"""[division.NAME] from outside: lineage, frames, series, rules, what is refused."""
+import math
+
+import support
+from support import BLOCK, CommandLine, plica, table
+
+ROW = """\
+format = 1
+[embryo]
+shape = "block"
+length_um = 60
+width_um = 20
+cell_height_um = 40
+cells = [3, 1, 1]
+[region.middle]
+ids = [1]
+[time]
+end_s = 60
+[stop]
+at_equilibrium = false
+[output]
+frame_every_s = 20
+"""
+CUT = '[division.cut]\nregion = "middle"\nat_s = 15\nplane = "transverse"\ngrowth_s = 30\n'
+
+
+class Divisions(CommandLine):
+    def test_a_cell_becomes_two_with_a_lineage(self):
+        self.run_scenario(ROW + CUT)
+        summary = self.summary()
+        self.assertEqual((summary["cells"], summary["divisions"], summary["nodes"]), (4, 1, 20))
+        self.assertLessEqual(summary["max_volume_error"], 1e-9)
+        self.assertEqual([tuple(row.values()) for row in table(self.out / "lineage.csv")],
+                         [("3", "1", "1", "15"), ("4", "1", "1", "15")])
+        series = table(self.out / "series.csv")
+        for row in series:
+            self.assertEqual(row["cells"], "3" if float(row["time_s"]) <= 15 else "4")
+        cells = table(self.out / "cells.csv")
+        frames = sorted({float(row["time_s"]) for row in cells})
+        self.assertEqual(frames, [0, 15, 20, 40, 60])
+        for time in frames:
+            at = [row for row in cells if float(row["time_s"]) == time]
+            self.assertEqual(sorted(row["cell_id"] for row in at), ["0", "1", "2"] if time == 0 else ["0", "2", "3", "4"])
+            daughters = [row for row in at if row["mother_id"]]
+            self.assertTrue(all(row["generation"] == "1" and row["mother_id"] == "1" for row in daughters))
+            expected = 8000 + 8000 * min(1, (time - 15) / 30)
+            for row in daughters:
+                self.assertAlmostEqual(float(row["volume_um3"]) / expected, 1, delta=1e-9)
+        self.assert_whole(self.out)
+
+    def test_rounds_follow_each_other_and_mothers_are_named(self):
+        self.run_scenario(ROW + CUT + CUT.replace("cut", "again").replace("at_s = 15", "at_s = 30"))
+        rows = {row["cell_id"]: row for row in table(self.out / "lineage.csv")}
+        self.assertEqual(len(rows), 6)
+        self.assertEqual({rows[cell]["mother_id"] for cell in "5678"}, {"3", "4"})
+        self.assertEqual({rows[cell]["generation"] for cell in "5678"}, {"2"})
+
+    def test_a_threshold_divides_until_the_last_generation(self):
+        self.run_scenario(ROW + '[division.big]\nregion = "all"\nwhen = "volume_above_um3"\nthreshold = 15000\n'
+                          "daughter_volume_ratio = 1\ngrowth_s = 5\nmax_generation = 2\n")
+        self.assertEqual(self.summary()["cells"], 12)
+
+    def test_the_same_bits_for_any_threads(self):
+        other = self.folder / "other"
+        self.run_scenario(ROW + CUT)
+        self.run_scenario(ROW + CUT, "--threads", "2", out=other)
+        for name in ("series.csv", "cells.csv", "lineage.csv"):
+            self.assertEqual((self.out / name).read_bytes(), (other / name).read_bytes())
+
+    def test_what_cannot_be_is_refused(self):
+        cases = {
+            "region": CUT.replace("middle", "midle"),
+            "at and when": CUT + 'when = "area_above_um2"\nthreshold = 3\n',
+            "when without threshold": CUT.replace("at_s = 15", 'when = "area_above_um2"'),
+            "threshold without when": CUT + "threshold = 3\n",
+            "no time": CUT.replace("at_s = 15\n", ""),
+            "at the start": CUT.replace("at_s = 15", "at_s = 0"),
+            "plane": CUT.replace("transverse", "vertical"),
+            "ratio": CUT + "daughter_volume_ratio = 0\n",
+        }
+        for what, text in cases.items():
+            with self.subTest(what):
+                self.assert_refused(ROW + text, "division.cut")
+        self.assert_refused(ROW.replace("cells = [3, 1, 1]", "cells = [3, 1, 1]\nelements_per_cell = [2, 2, 2]") + CUT,
+                            "division.cut")
+        self.assert_refused(BLOCK.replace("cells = [3, 2, 1]", "cells = [3, 1, 2]") + CUT.replace("middle", "all"),
+                            "division.cut")
+        self.assert_refused(ROW.replace("end_s = 60", 'end_s = 60\nscheme = "linearly-implicit"') +
+                            '[volume]\nmethod = "projection"\n' + CUT, "volume.method")
+
+
+class BuiltIn(CommandLine):
+    def test_division_demo_ends_with_four_equal_cells(self):
+        done = plica("run", "division-demo", "--out", self.out, "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = table(self.out / "cells.csv")
+        end = max(float(row["time_s"]) for row in rows)
+        last = [row for row in rows if float(row["time_s"]) == end]
+        self.assertEqual(len(last), 4)
+        for row in last:
+            self.assertTrue(math.isclose(float(row["volume_um3"]), 16000, rel_tol=1e-9))
+            self.assertTrue(math.isclose(float(row["apical_area_um2"]), 400, rel_tol=0.01))
+            self.assertTrue(math.isclose(float(row["height_um"]), 40, rel_tol=0.01))
+
+
+if __name__ == "__main__":
+    support.main()

@@ -1,0 +1,194 @@
+#include "study/calibrate.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "scenario/print.hpp"
+#include "study/quiet_run.hpp"
+#include "support/block_scenario.hpp"
+
+namespace plica {
+namespace {
+
+namespace fs = std::filesystem;
+
+CalibrationProblem block_problem(const std::vector<std::string>& vary, const std::vector<std::string>& targets) {
+  CalibrationProblem problem{support::pulled_block(), {}, {}, {}};
+  for (const std::string& text : vary) problem.keys.push_back(parse_varied_key(text));
+  for (const std::string& text : targets) problem.targets.push_back(parse_target(text));
+  return problem;
+}
+
+const std::string stiffness = "contraction.all.stiffness_nN_per_um=0.1:20";
+const std::string across = "contraction.all.across_ratio=0.1:4";
+
+// The message of the UsageError or ScenarioError that it throws.
+std::string refusal(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CalibrationProblem, ReadsKeysAndTargets) {
+  const VariedKey key = parse_varied_key("a.b=-1e-3:2.5");
+  EXPECT_EQ(key.key, "a.b");
+  EXPECT_EQ(key.low, -1e-3);
+  EXPECT_EQ(key.high, 2.5);
+  EXPECT_DOUBLE_EQ(parse_target("x=-200").within, 1);
+  EXPECT_EQ(parse_target("x=-200").value, -200);
+  EXPECT_EQ(parse_target("x=3~0.25").within, 0.25);
+  EXPECT_EQ(parse_target("x=0~0.25").within, 0.25);
+  EXPECT_DOUBLE_EQ(parse_target("x=50~4%").within, 2);
+  EXPECT_EQ(parse_target("end.position_um=3").name, "end.position_um");
+}
+
+TEST(CalibrationProblem, RefusesWhatIsNone) {
+  int cases = 0;
+  for (const char* text : {"", "a", "a=1", "=1:2", "a=1:", "a=:1", "a=1:2:3", "a=x:2", "a=1:nan", "a=1:inf", "a=1:1"}) {
+    EXPECT_THROW((void)parse_varied_key(text), UsageError) << text;
+    ++cases;
+  }
+  for (const char* text : {"", "x", "=1", "x=", "x=y", "x=0", "x=0~5%", "x=1~", "x=1~0", "x=1~-1", "x=1~%", "x=nan"}) {
+    EXPECT_THROW((void)parse_target(text), UsageError) << text;
+    ++cases;
+  }
+  EXPECT_NE(refusal([] { (void)parse_varied_key("a=2:1"); }).find("write a=1:2"), std::string::npos);
+  std::cout << cases << " texts refused\n";
+}
+
+TEST(CalibrationProblem, IsCheckedBeforeTheFirstRun) {
+  const auto said = [](const std::vector<std::string>& vary, const std::vector<std::string>& targets,
+                       const std::vector<std::string>& overrides = {}) {
+    return refusal([&] {
+      CalibrationProblem problem = block_problem(vary, targets);
+      problem.overrides = overrides;
+      check_calibration(problem);
+    });
+  };
+  EXPECT_EQ(said({stiffness}, {"end.position_um=28"}), "");
+  EXPECT_EQ(said({"contraction.all.stifness_nN_per_um=1:2"}, {"end.position_um=28"}),
+            "--vary: contraction.all.stifness_nN_per_um: unknown key; did you mean \"stiffness_nN_per_um\"?");
+  EXPECT_NE(said({"contraction.all.stiffness_nN_per_um=-1:2"}, {"end.position_um=28"}).find("out of range"),
+            std::string::npos);
+  EXPECT_NE(said({"elasticity.poisson_ratio=0.3:0.7"}, {"end.position_um=28"}).find("out of range"), std::string::npos)
+      << "the upper bound too";
+  EXPECT_NE(said({"region.x.cells_along=1:3"}, {"end.position_um=28"}).find("whole numbers"), std::string::npos);
+  EXPECT_NE(said({stiffness}, {"end.positon_um=28"}).find("did you mean \"end.position_um\"?"), std::string::npos);
+  EXPECT_NE(said({stiffness}, {"wall_s=1"}).find("differs from run to run"), std::string::npos);
+  EXPECT_NE(said({stiffness}, {"status=1"}).find("is no number"), std::string::npos);
+  EXPECT_NE(said({stiffness, stiffness}, {"end.position_um=28"}).find("twice"), std::string::npos);
+  EXPECT_NE(said({stiffness}, {"end.position_um=28", "end.position_um=27"}).find("twice"), std::string::npos);
+  EXPECT_NE(said({stiffness}, {"end.position_um=28"}, {"contraction.all.stiffness_nN_per_um=3"}).find("--set as well"),
+            std::string::npos);
+}
+
+TEST(Calibrate, BeginsAtTheScenariosOwnValues) {
+  CalibrationProblem problem = block_problem({"contraction.all.stiffness_nN_per_um=0:4", "time.end_min=1:3"}, {});
+  EXPECT_EQ(first_place(problem), (std::vector<double>{0.25, 0.5})) << "the middle where there is none within";
+  problem.overrides = {"contraction.all.stiffness_nN_per_um=3"};
+  EXPECT_EQ(first_place(problem)[0], 0.75);
+}
+
+TEST(Calibrate, MeetsOneTargetWithOneKey) {
+  const CalibrationProblem problem = block_problem({stiffness}, {"end.position_um=28~0.001"});
+  std::vector<Trial> trials;
+  CalibrationHooks hooks;
+  hooks.on_trial = [&](const Trial& trial, bool) { trials.push_back(trial); };
+  const Calibration found = calibrate(problem, hooks);
+  ASSERT_EQ(found.end, CalibrationEnd::met);
+  EXPECT_LE(found.trials, 8);
+  EXPECT_EQ(static_cast<int>(trials.size()), found.trials);
+  EXPECT_EQ(trials.back().values, found.best->values);
+  const double again = quiet_run(load_trial(problem, found.best->values)).summary.at("end.position_um");
+  EXPECT_EQ(again, *found.best->found[0]) << "what is written is what was run";
+  EXPECT_NEAR(again, 28, 0.001);
+}
+
+TEST(Calibrate, MeetsTwoTargetsWithTwoKeysAndWritesTheScenario) {
+  const CalibrationProblem problem =
+      block_problem({stiffness, across}, {"end.position_um=28~0.01", "side.position_um=19.5~0.01"});
+  const Calibration found = calibrate(problem);
+  ASSERT_EQ(found.end, CalibrationEnd::met);
+  std::cout << found.trials << " trials\n";
+  EXPECT_LE(found.trials, 25);
+  EXPECT_EQ(calibrate(problem).best->values, found.best->values) << "the search is the same each time";
+
+  const fs::path folder = fs::path(testing::TempDir()) / ("plica_calibrate_" + std::to_string(::getpid()));
+  fs::create_directories(folder / "of mine");
+  CalibrationProblem of_file = problem;
+  of_file.source.file = (folder / "block.toml").string();
+  write_file(of_file.source.file, of_file.source.text);
+  const std::string file = (folder / "of mine" / "calibrated.toml").string();
+  const std::string text = calibrated_toml(of_file, found, file);
+  EXPECT_NE(text.find("base = \"../block.toml\""), std::string::npos) << text;
+  EXPECT_NE(text.find("# Target: side.position_um = 19.5 within 0.01; it came to 19."), std::string::npos) << text;
+  const Scenario written = load_scenario({"calibrated", file, text});
+  const auto summary = quiet_run(written).summary;
+  EXPECT_EQ(summary.at("end.position_um"), *found.best->found[0]);
+  EXPECT_EQ(written.expect.at("side.position_um").value, 19.5);
+  EXPECT_EQ(written.expect.at("side.position_um").within, 0.01);
+
+  // A table set as a whole cannot be written above a key of it: the scenario is then written in full.
+  of_file.overrides = {R"(contraction.all={region="all", damping_nN_s_per_um=0.5})", "elasticity.model=shape-memory"};
+  const Scenario in_full = load_scenario({"calibrated", file, calibrated_toml(of_file, found, file)});
+  EXPECT_EQ(in_full.contractions.at("all").damping_nN_s_per_um, 0.5);
+  EXPECT_EQ(in_full.contractions.at("all").stiffness_nN_per_um, found.best->values[0]);
+  of_file.overrides.erase(of_file.overrides.begin());
+  const Scenario short_one = load_scenario({"calibrated", file, calibrated_toml(of_file, found, file)});
+  EXPECT_EQ(short_one.elasticity.model, "shape-memory") << "bare words are quoted";
+  fs::remove_all(folder);
+}
+
+TEST(Calibrate, SaysTheNearestWhereATargetCannotBeMet) {
+  const CalibrationProblem problem =
+      block_problem({"contraction.all.stiffness_nN_per_um=0.1:2"}, {"end.position_um=25"});
+  const Calibration found = calibrate(problem);
+  EXPECT_EQ(found.end, CalibrationEnd::not_met);
+  EXPECT_EQ(found.best->values, std::vector<double>{2});
+  EXPECT_EQ(calibrated_toml(problem, found, "x.toml").find("expect"), std::string::npos) << "it would be missed";
+}
+
+TEST(Calibrate, RunsThatFailHaveNoValue) {
+  // The lower end gives up.
+  CalibrationProblem problem = block_problem({"contraction.all.preload_nN=-1e6:0"}, {"end.position_um=28.1~0.1"});
+  std::vector<Trial> failed;
+  CalibrationHooks hooks;
+  hooks.on_trial = [&](const Trial& trial, bool best) {
+    if (trial.failure.empty()) return;
+    failed.push_back(trial);
+    EXPECT_FALSE(best);
+    EXPECT_TRUE(std::isinf(trial.worst_miss));
+  };
+  const Calibration found = calibrate(problem, hooks);
+  ASSERT_FALSE(failed.empty());
+  EXPECT_EQ(found.end, CalibrationEnd::met);
+  EXPECT_EQ(found.best->values, std::vector<double>{0});
+}
+
+TEST(Calibrate, KeepsToItsTrialsAndStopsWhenAsked) {
+  CalibrationProblem problem = block_problem({stiffness}, {"end.position_um=28~1e-9"});
+  problem.most_trials = 3;
+  const Calibration spent = calibrate(problem);
+  EXPECT_EQ(spent.end, CalibrationEnd::trials_spent);
+  EXPECT_EQ(spent.trials, 3);
+  bool stop = false;
+  CalibrationHooks hooks;
+  hooks.stop_requested = [&] { return stop; };
+  hooks.on_trial = [&](const Trial& trial, bool) { stop = trial.number == 2; };
+  const Calibration stopped = calibrate(problem, hooks);
+  EXPECT_EQ(stopped.end, CalibrationEnd::interrupted);
+  EXPECT_EQ(stopped.trials, 2);
+  EXPECT_EQ(stopped.best->values.size(), 1U);
+}
+
+}  // namespace
+}  // namespace plica
