@@ -181,7 +181,7 @@ Figure division_volumes(const Results& results) {
 // Fig. 5: cross-sections with and without division, and the distance between the lips.
 Figure division_sections(const Results& results) {
   std::vector<std::pair<std::string, Svg>> pictures;
-  const ColourScale scale{"displacement from rest, um", 0, 50};
+  const ColourScale scale{"displacement from rest, um", 0, 90};
   for (const auto& [id, words] : {std::pair{"division", "with division"},
                                   {"division-without", "without"},
                                   {"division-twice", "with a second round"}}) {
