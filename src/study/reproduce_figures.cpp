@@ -210,6 +210,19 @@ Figure division_lips(const Results& results) {
       "division and without.");
 }
 
+Figure division_push(const Results& results) {
+  Plot plot{"Push of the furrow's cells on the row to their right", {"time, s"}, {"force across, nN"}, {}, {}, {}};
+  for (const auto& [id, words] :
+       {std::pair{"division-without", "without division"}, {"division", "with division of the floor"}})
+    if (results.has(id))
+      plot.curves.push_back(column_of(read_series(results.folder(id) / "series.csv"), words, "push.force_nN"));
+  return chart(
+      "fig5-push", plot,
+      "**Fig. 5, forces.** What the contractile cells exert on the row of cells beside them, across the embryo; "
+      "positive drives the borders apart. Dividing cells push outward at all times; the lips close because the "
+      "floor between them buckles inward and turns them over.");
+}
+
 }  // namespace
 
 std::vector<Figure> reproduction_figures(const Results& results, const Measured& measured) {
@@ -226,6 +239,7 @@ std::vector<Figure> reproduction_figures(const Results& results, const Measured&
   const bool divided = results.has("division") && results.has("division-without");
   picture(divided, [&] { return division_sections(results); });
   picture(divided, [&] { return division_lips(results); });
+  picture(divided, [&] { return division_push(results); });
   picture(results.has("main-pill"), [&] {
     return two_views(
         results, "main-pill", "fig7-pill", "The pill invaginates",

@@ -134,6 +134,7 @@ void measure_divisions(Figures& figures, const Results& results) {
     if (lips(id)) figures[fmt::format("{}.lips_um", id)] = *lips(id);
     if (highest(id)) figures[fmt::format("{}.highest_um", id)] = *highest(id);
   }
+  if (const auto push = summary_number(results, "division", "push.force_nN")) figures["division.push_nN"] = *push;
   if (!lips("division-without")) return;
   const Series series = read_series(results.folder("division-without") / "series.csv");
   add_ratio(figures, "division.open_ratio", lips("division-without"),
