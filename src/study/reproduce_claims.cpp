@@ -13,8 +13,7 @@ const std::vector<Claim> table = {
     {"2.1, Table 1", "The pill has 756 cells", "756", "mesh.pill_cells", 756, 756, 756, "", Basis::fixed},
     {"2.1, Table 1", "The pill's mesh has 2268 nodes", "2268", "mesh.pill_nodes", 2268, 2268, 2268, "", Basis::fixed,
      "2268 is 3 x 756. A closed single layer of Q hexahedra has Q + 2 nodes on each side: 1516, as 904 for the "
-     "sphere's "
-     "450"},
+     "sphere's 450"},
     {"2.1, Table 1", "The sphere has 450 cells", "450", "mesh.sphere_cells", 450, 450, 450, "", Basis::fixed},
     {"2.1, Table 1", "The sphere's mesh has 904 nodes", "904", "mesh.sphere_nodes", 904, 904, 904, "", Basis::fixed},
     {"2.1", "The pill is 460 um long", "460", "mesh.pill_length_um", 455.4, 464.6, 460, "um", Basis::fixed},
@@ -41,8 +40,7 @@ const std::vector<Claim> table = {
     {"2.7", "Every node is slower than 0.2 um/s for the first time at the end, 15 min", "15 min",
      "pill.slower_than_printed_s", 14.25 * minute, 15.75 * minute, 900, "s", Basis::measured,
      "a furrow 29 um deep that forms in 15 min moves at 0.03 um/s on average; the printed stop would end the run at "
-     "the "
-     "start. With 0.2 um/min stop and time agree"},
+     "the start. With 0.2 um/min stop and time agree"},
 
     // Section 2.6: division.
     {"2.6, Fig. 4", "One of three cells divides: four cells", "4", "demo.cells", 4, 4, 4, "", Basis::fixed},
@@ -86,8 +84,7 @@ const std::vector<Claim> table = {
      "nN",
      Basis::measured,
      "they push the borders apart, three to five times as hard as without division; the borders lean on the shell, the "
-     "floor "
-     "buckles inward, and the lips turn over (docs/division.md)",
+     "floor buckles inward, and the lips turn over (docs/division.md)",
      "at the end"},
     {"4, thesis",
      "Without division the furrow stays open (lips apart, over the distance at rest)",
@@ -139,8 +136,7 @@ const std::vector<Claim> table = {
     {"3.1, note 8", "Total depth, from the lips down", "28.89", "pill.depth_below_lips_um", 27.45, 30.33, 28.89, "um",
      Basis::measured,
      "the lips are drawn in with the floor: a flattened belly. `drosophila-deep` has 30 um from the lips down, and 75 "
-     "from "
-     "the shell"},
+     "from the shell"},
     {"3.1, Fig. 8a",
      "The ends are faster than the middle at first (speed ratio at the largest difference)",
      "> 1",
@@ -221,8 +217,7 @@ const std::vector<Claim> table = {
     {"3.2, Fig. 11", "The streak forms at once all along: spread of onset over the time to equal speeds on the sphere",
      "~0", "onset_sphere.spread_over_equal", 0, 0.1, 0, "", Basis::fixed,
      "the sphere's speeds are equal so early that a tenth of that is no measure; cells next to the ends of the strip "
-     "get "
-     "there a little before the middle",
+     "get there a little before the middle",
      "a tenth or less"},
     {"3.2, Fig. 11", "The same over the time to equal speeds on the pill, with the same springs and drag", "~0",
      "onset_sphere.spread_over_pill_equal", 0, 0.1, 0, "", Basis::fixed, "not a tenth or less", "a tenth or less"},
