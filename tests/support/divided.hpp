@@ -11,24 +11,30 @@
 
 namespace plica::support {
 
-/// Volume inside the boundary: over the faces of elements that no other element has, the cone from the origin to each.
-/// At a hanging node a whole face and its parts all count, in opposite directions, and cancel.
+/// The cone from the origin to a bilinear facet, um^3: facets of a closed surface add up to the volume inside.
+inline double cone(const std::array<NodeId, 4>& facet, const Vectors& positions) {
+  const Vec3 &a = positions[facet[0].index()], &b = positions[facet[1].index()], &c = positions[facet[2].index()],
+             &d = positions[facet[3].index()];
+  return (a.dot(b.cross(c)) + a.dot(c.cross(d)) + a.dot(b.cross(d)) + b.dot(c.cross(d))) / 12;
+}
+
+/// Volume inside the boundary of a one-layered tissue: apical and basal facets, and walls that no neighbour shares.
+/// Nothing inside counts, so a gap or an overlap between cells makes it differ from the sum of their volumes.
 inline double volume_inside_boundary(const Tissue& tissue, const Vectors& positions) {
-  std::map<std::array<NodeId, 4>, std::array<NodeId, 4>> faces;
-  for (const auto& element : tissue.elements)
-    for (const auto& corners : hex_faces) {
-      std::array<NodeId, 4> face{}, key{};
-      for (int i = 0; i < 4; ++i) face[i] = key[i] = element[corners[i]];
-      std::sort(key.begin(), key.end());
-      if (!faces.emplace(key, face).second) faces.erase(key);
-    }
   double volume = 0;
-  for (const auto& [key, face] : faces) {
-    std::array<Vec3, 4> x;
-    for (int i = 0; i < 4; ++i) x[i] = positions[face[i].index()];
-    const auto& [a, b, c, d] = x;
-    volume += (a.dot(b.cross(c)) + a.dot(c.cross(d)) + a.dot(b.cross(d)) + b.dot(c.cross(d))) / 12;
-  }
+  for (const auto* facets : {&tissue.apical_facets, &tissue.basal_facets})
+    for (const Facet& facet : *facets) volume += cone(facet.nodes, positions);
+  std::map<std::pair<NodeId, NodeId>, std::array<NodeId, 4>> outer;  // facets of walls, by their apical edge
+  for (const Cell& cell : tissue.cells)
+    for (int wall = 0; wall < 4; ++wall)
+      for (std::size_t i = 1; i < cell.walls[wall].size(); ++i) {
+        WallStop from = cell.walls[wall][i - 1], to = cell.walls[wall][i];
+        if (wall >= 2) std::swap(from, to);  // counter-clockwise seen from outside the cell
+        const auto edge = std::minmax(from.apical, to.apical);
+        const std::array<NodeId, 4> facet = {from.basal, to.basal, to.apical, from.apical};
+        if (!outer.emplace(edge, facet).second) outer.erase(edge);
+      }
+  for (const auto& [edge, facet] : outer) volume += cone(facet, positions);
   return volume;
 }
 
