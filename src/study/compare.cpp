@@ -9,7 +9,7 @@
 #include "measure/energy_norm.hpp"
 #include "output/mesh_writer.hpp"
 #include "scenario/load.hpp"
-#include "study/results.hpp"
+#include "output/results.hpp"
 #include "tissue/hexahedron.hpp"
 
 namespace plica {

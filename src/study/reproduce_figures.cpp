@@ -7,7 +7,7 @@
 #include "study/plot.hpp"
 #include "study/reproduce.hpp"
 #include "study/reproduce_mechanism.hpp"
-#include "study/results.hpp"
+#include "output/results.hpp"
 #include "study/sketch.hpp"
 
 namespace plica {

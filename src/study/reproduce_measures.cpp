@@ -8,7 +8,7 @@
 
 #include "core/units.hpp"
 #include "measure/observation.hpp"
-#include "study/results.hpp"
+#include "output/results.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;

@@ -10,7 +10,7 @@
 #include "scenario/load.hpp"
 #include "study/frame_surface.hpp"
 #include "study/reproduce_mechanism.hpp"
-#include "study/results.hpp"
+#include "output/results.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;

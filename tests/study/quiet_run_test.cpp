@@ -8,7 +8,7 @@
 
 #include "core/files.hpp"
 #include "scenario/load.hpp"
-#include "study/results.hpp"
+#include "output/results.hpp"
 #include "support/block_scenario.hpp"
 
 namespace plica {

@@ -1,4 +1,4 @@
-#include "study/results.hpp"
+#include "output/results.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
