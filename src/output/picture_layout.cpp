@@ -81,8 +81,8 @@ class Composer {
       half_heights_um_.push_back(row.half_size_um[1] + extra);
       if (!picture.anatomy) continue;
       for (const Mark& mark : marks_of(row.view)) {
-        if (std::abs(mark.direction[0]) > 0.5) side_marks_ = mark_em * em_;
-        if (std::abs(mark.direction[1]) > 0.5) upper_marks_ = mark_em * em_;
+        if (std::abs(mark.direction[0]) > 0.5) side_marks_ = std::round(mark_em * em_);
+        if (std::abs(mark.direction[1]) > 0.5) upper_marks_ = std::round(mark_em * em_);
       }
     }
   }
@@ -94,8 +94,8 @@ class Composer {
       title.replace(stroke + 1, 1, "\u00a0");
     legend_title_ = wrapped(title, legend_title_letters);
     set_sizes();
-    double top = layout_.height_px - top_em() * em_;
-    const double rows_top = top;
+    const double rows_top = layout_.height_px - top_px() - std::floor((layout_.height_px - needed_height()) / 2);
+    double top = rows_top;
     for (std::size_t row = 0; row < picture_.rows.size(); ++row) {
       const double height = row_height(row);
       add_row(row, top, height);
@@ -108,7 +108,10 @@ class Composer {
   }
 
  private:
-  [[nodiscard]] double top_em() const { return heading_em + line_em * static_cast<double>(heading_lines_ - 1); }
+  // Panels begin and end at whole pixels and have a pixel's corner in their middle, so that what is symmetric stays so.
+  [[nodiscard]] double top_px() const {
+    return std::ceil((heading_em + line_em * static_cast<double>(heading_lines_ - 1)) * em_);
+  }
 
   [[nodiscard]] double legend_em() const {
     double labels = 0;
@@ -117,7 +120,13 @@ class Composer {
   }
 
   [[nodiscard]] double row_height(std::size_t row) const {
-    return 2 * (half_heights_um_[row] / layout_.um_per_px + upper_marks_ + gap_em * em_ / 2);
+    return 2 * std::ceil(half_heights_um_[row] / layout_.um_per_px + upper_marks_ + gap_em * em_ / 2);
+  }
+
+  [[nodiscard]] double needed_height() const {
+    double height = top_px() + std::ceil(footer_em * em_);
+    for (std::size_t row = 0; row < picture_.rows.size(); ++row) height += row_height(row);
+    return height;
   }
 
   // The panels' scale follows from the width, or from the height where that is given and leaves less.
@@ -125,8 +134,8 @@ class Composer {
     const auto columns = static_cast<double>(picture_.columns.size());
     for (const bool broken : {false, true}) {
       broken_names_ = broken;
-      left_px_ = picture_.rows.size() > 1 ? (broken ? 2 * line_em + 0.4 : line_em + 0.4) * em_ : 0;
-      panel_px_ = (layout_.width_px - left_px_ - legend_em() * em_ - 2 * side_marks_) / columns;
+      left_px_ = picture_.rows.size() > 1 ? std::ceil((broken ? 2 * line_em + 0.4 : line_em + 0.4) * em_) : 0;
+      panel_px_ = 2 * std::floor((layout_.width_px - left_px_ - legend_em() * em_ - 2 * side_marks_) / columns / 2);
       if (panel_px_ < 3 * em_) throw UsageError("the picture is too narrow for its panels; give a larger --size");
       layout_.um_per_px = 2 * half_width_um_ / (panel_px_ - gap_em * em_);
       wrap_column_headings();
@@ -146,16 +155,18 @@ class Composer {
   }
 
   void fit_height() {
-    const double other =
-        (top_em() + footer_em) * em_ + static_cast<double>(picture_.rows.size()) * (2 * upper_marks_ + gap_em * em_);
-    double content_um = 0;
-    for (const double half : half_heights_um_) content_um += 2 * half;
     // Even, as video codecs want it.
-    layout_.height_px = 2 * static_cast<int>(std::ceil((other + content_um / layout_.um_per_px) / 2));
+    layout_.height_px = 2 * static_cast<int>(std::ceil(needed_height() / 2));
     if (picture_.height_px <= 0) return;
     layout_.height_px = picture_.height_px;
-    if (layout_.height_px < other + 3 * em_)
-      throw UsageError("the picture is too low for its rows; give a larger --size");
+    double content_um = 0;
+    for (const double half : half_heights_um_) content_um += 2 * half;
+    const auto rows = static_cast<double>(picture_.rows.size());
+    const double other = top_px() + std::ceil(footer_em * em_) + rows * (2 * upper_marks_ + gap_em * em_ + 2);
+    const double least = other + 3 * em_ * rows;
+    if (layout_.height_px < least)
+      throw UsageError(fmt::format("the picture is too low for its rows; a --size of {}x{} or more holds them",
+                                   layout_.width_px, std::ceil(least)));
     layout_.um_per_px = std::max(layout_.um_per_px, content_um / (layout_.height_px - other));
   }
 

@@ -280,7 +280,7 @@ vtkSmartPointer<vtkImageData> averaged(vtkImageData& fine, int scale) {
 std::string png_bytes(vtkImageData& image) {
   vtkNew<vtkPNGWriter> writer;
   writer->SetInputData(&image);
-  writer->SetCompressionLevel(9);
+  writer->SetCompressionLevel(6);
   writer->WriteToMemoryOn();
   writer->Write();
   vtkUnsignedCharArray* bytes = writer->GetResult();
