@@ -68,6 +68,7 @@ int reproduce_paper(const ReproduceCommand& command) {
       [] { return caught_signal != 0; });
   if (outcome.interrupted) return caught_signal == SIGTERM ? exit_terminated : exit_interrupted;
   for (const std::string& run : outcome.failed_runs) fmt::print(stderr, "plica: a run failed: {}\n", run);
+  for (const std::string& figure : outcome.missing_figures) fmt::print(stderr, "plica: missing: {}\n", figure);
   if (!command.quiet)
     fmt::print("{} claims: {} reproduced, {} reproduced under this reading, {} not reproduced\n  {}\n", outcome.claims,
                outcome.reproduced, outcome.under_this_reading,
