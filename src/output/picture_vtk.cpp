@@ -43,11 +43,12 @@ namespace plica {
 namespace {
 
 constexpr Rgb ink = {0.12, 0.12, 0.12}, grey = {0.55, 0.55, 0.55}, shell_grey = {0.45, 0.45, 0.5};
-constexpr double ambient = 0.55;              // of the light; the rest comes from the eye
-constexpr int map_entries = 1024;             // of the table of colours
-constexpr int samples = 4;                    // a pixel, by the graphics library, before pixels are averaged
-constexpr double eye_um = 3000;               // its distance
-constexpr double in_front_um = 1;             // what lines are moved by, so that facets do not hide them
+constexpr double ambient = 0.55;   // of the light; the rest comes from the eye
+constexpr int map_entries = 1024;  // of the table of colours
+constexpr int samples = 4;         // a pixel, by the graphics library, before pixels are averaged
+constexpr double eye_um = 3000;    // its distance
+constexpr double in_front_um = 1;  // what lines are moved by, so that facets do not hide them
+constexpr double descender_em = 0.1;
 constexpr double band_em = 0.15;              // thickness of the shell, in letters' heights
 constexpr double most_pixels_averaged = 5e6;  // larger pictures are not drawn finer than they are shown
 
@@ -142,14 +143,15 @@ double outline_px(const Scene& scene, const Layout& layout) {
 void add_dots(const Vectors& places, const View& view, double radius_um, vtkRenderer& renderer) {
   constexpr int corners = 24;
   const auto [right, up] = screenwise(view);
+  // In front of the facets that meet there.
+  const Vec3 move = -3 * radius_um * view.sight.normalized();
   Vectors points;
   for (const Vec3& place : places)
     for (int i = 0; i < corners; ++i) {
       const double angle = 2 * EIGEN_PI * i / corners;
       points.emplace_back(place + radius_um * (std::cos(angle) * right + std::sin(angle) * up));
     }
-  add_plain(*poly_data(points, corners, false, -2 * in_front_um * view.sight.normalized()), {0.75, 0.1, 0.1}, 1, 1,
-            renderer);
+  add_plain(*poly_data(points, corners, false, move), {0.75, 0.1, 0.1}, 1, 1, renderer);
 }
 
 /// The window and what is in it, `scale` times as fine as the picture.
@@ -245,7 +247,10 @@ class Stage {
                                                          : VTK_TEXT_RIGHT);
     look.SetVerticalJustificationToCentered();
     if (label.upwards) look.SetOrientation(90);
-    actor->SetPosition(label.x * scale_, label.y * scale_);
+    // VTK has descenders in the height whose middle it takes.
+    const double lower = descender_em * label.size_px;
+    actor->SetPosition((label.x + (label.upwards ? lower : 0)) * scale_,
+                       (label.y - (label.upwards ? 0 : lower)) * scale_);
     overlay_->AddActor2D(actor);
   }
 

@@ -89,12 +89,14 @@ Figure ReproductionPictures::division_demo() {
   constexpr double mother = 1, division_s = 60;
   const Frame rest = at(0), divided = at(division_s);
   Picture picture;
+  const auto minutes = [](const Frame& frame) { return fmt::format("{:.2g} min", frame.time_s.value_or(0) / 60); };
+  const Frame growing = at(180), grown = run.last_frame();
   picture.columns = {{"(a) at rest", rest},
-                     {"(b) where to cut", rest, new_places(rest, divided)},
-                     {"(c) mother out", without_cell(rest, mother)},
-                     {"(d) daughters in", divided},
-                     {"(e) they grow, 3 min", at(180)},
-                     {"(f) grown, 30 min", run.last_frame()}};
+                     {"(b) the cut", rest, new_places(rest, divided)},
+                     {"(c) without her", without_cell(rest, mother)},
+                     {"(d) " + minutes(divided), divided},
+                     {"(e) " + minutes(growing), growing},
+                     {"(f) " + minutes(grown), grown}};
   const View view = {"", "from the left, in front and above", {0.35, 0.8, -0.5}, {0, 0, 1}, {}};
   picture.rows = {{view, {0, 0}}};
   for (const PictureColumn& column : picture.columns) {
