@@ -24,9 +24,10 @@ class ReproductionPictures {
   Figure sphere_from_two_sides();
 
  private:
-  [[nodiscard]] RunPictures run_pictures(const std::string& run, const std::vector<std::string>& views) const;
+  [[nodiscard]] RunPictures run_pictures(const std::string& run, const std::vector<std::string>& views);
   Figure moments(const std::string& run, const std::vector<std::string>& views, const std::vector<double>& times_s,
                  const std::string& name, const std::string& caption);
+  Painter& painter();
   Figure drawn(const std::string& name, const Picture& picture, const std::string& caption);
 
   const Results& results_;
