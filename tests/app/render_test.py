@@ -154,13 +154,14 @@ class Render(CommandLine):
     def test_an_end_by_force_leaves_no_server_behind(self):
         before = servers()
         for how, status in ((signal.SIGTERM, 143), (signal.SIGINT, 130), (signal.SIGKILL, -9)):
-            process = support.start("render", self.out, "--out", self.picture, "--movie", "--size", "3000x3000", "--overwrite")
+            process = support.start("render", self.out, "--out", self.picture, "--movie", "--size", "2000x2000", "--overwrite")
             support.count_case()
             for _ in range(200):
                 if servers() - before:
                     break
                 time.sleep(0.02)
             self.assertTrue(servers() - before, "no X server was started")
+            time.sleep(0.5)  # until it draws
             process.send_signal(how)
             process.communicate(timeout=60)
             self.assertEqual(process.returncode, status)
