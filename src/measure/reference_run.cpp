@@ -26,16 +26,16 @@ std::vector<double> ReferenceRun::times_s() const {
 std::optional<Frame> ReferenceRun::frame_at(double time_s) const {
   constexpr double same_time_s = 1e-6;
   for (std::size_t i = 0; i < frames_.size(); ++i)
-    if (std::abs(frames_[i].first - time_s) <= same_time_s) return read(i);
+    if (std::abs(frames_[i].first - time_s) <= same_time_s) return frame(i);
   return std::nullopt;
 }
 
-Frame ReferenceRun::last_frame() const { return read(frames_.size() - 1); }
+Frame ReferenceRun::last_frame() const { return frame(frames_.size() - 1); }
 
-Frame ReferenceRun::read(std::size_t index) const {
-  Frame frame = read_frame(directory_ / frames_[index].second);
-  frame.time_s = frames_[index].first;
-  return frame;
+Frame ReferenceRun::frame(std::size_t index) const {
+  Frame result = read_frame(directory_ / frames_[index].second);
+  result.time_s = frames_[index].first;
+  return result;
 }
 
 }  // namespace plica

@@ -23,10 +23,9 @@ class ReferenceRun {
   /// The frame at a time, to 1e-6 s; nothing where the run has none then.
   [[nodiscard]] std::optional<Frame> frame_at(double time_s) const;
   [[nodiscard]] Frame last_frame() const;
+  [[nodiscard]] Frame frame(std::size_t index) const;  // in the order of times_s()
 
  private:
-  [[nodiscard]] Frame read(std::size_t index) const;
-
   std::filesystem::path directory_;
   std::vector<std::pair<double, std::string>> frames_;  // time, file
 };
