@@ -146,13 +146,15 @@ std::vector<std::string> regions_of(const Frame& frame) {
   return names;
 }
 
-// The shell from the scenario, as the run had it.
+// The vitelline shell as the scenario's run had it.
 ordered_json shell_of(const fs::path& directory, const Frame& rest) {
   const std::string text = text_of(directory / "scenario.toml");
   if (text.empty()) return nullptr;
   const Scenario scenario = load_scenario({"scenario", (directory / "scenario.toml").string(), text});
-  if (!scenario.vitelline.enabled || scenario.embryo.shape == "block") return nullptr;
-  const Capsule shell = enclosing_capsule(rest.positions);
+  const EmbryoInput& embryo = scenario.embryo;
+  if (!scenario.vitelline.enabled || embryo.shape == "block") return nullptr;
+  const double radius = embryo.diameter_um / 2, half_axis = embryo.shape == "pill" ? embryo.length_um / 2 - radius : 0;
+  const Capsule shell = embryo.shape == "file" ? enclosing_capsule(rest.positions) : Capsule{half_axis, radius};
   return {{"half_axis_um", shell.half_axis_um}, {"radius_um", shell.radius_um + scenario.vitelline.gap_um}};
 }
 

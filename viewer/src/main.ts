@@ -13,6 +13,7 @@ import { showTables } from "./tables";
 import { number, words } from "./text";
 
 const usualPlaySeconds = 10; // for a whole run
+const mostCellsWithEdges = 5000; // at first: of more, edges would hide the colours
 
 function tell(problem: string): void {
   const notice = byId("problem");
@@ -25,7 +26,9 @@ function firstState(page: PageData, runs: Run[]): State {
   const duration = (times.at(-1) ?? 0) - (times[0] ?? 0);
   return new State({
     time: times.at(-1) ?? 0, playing: false, speed: Number(Math.max(duration / usualPlaySeconds, 1).toPrecision(2)),
-    field: page.fields[0], view: page.views[0], cut: null, edges: true, shell: true, marks: true, picked: null,
+    field: page.fields[0], view: page.views[0], cut: null,
+    edges: runs.every((run) => run.topologies.every((topology) => topology.cells <= mostCellsWithEdges)),
+    shell: true, marks: true, picked: null,
   });
 }
 
