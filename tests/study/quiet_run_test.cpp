@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "core/files.hpp"
-#include "scenario/load.hpp"
 #include "output/results.hpp"
+#include "scenario/load.hpp"
 #include "support/block_scenario.hpp"
 
 namespace plica {
