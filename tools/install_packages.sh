@@ -1,6 +1,7 @@
 #!/bin/bash
 # Installs the Debian 12 packages that plica needs: with root or sudo, and only when some are missing.
-# Usage: tools/install_packages.sh [GROUP...], of: build libraries tests checks tidy pictures. Without a group: all of them.
+# Usage: tools/install_packages.sh [GROUP...], of: build libraries viewer browser tests checks tidy pictures. Without a
+# group: all of them.
 set -euo pipefail
 
 # The one list of packages. docs/dependencies.md says why each library is here.
@@ -8,16 +9,21 @@ declare -A packages=(
   [build]="cmake ninja-build g++"
   # OpenBLAS in its serial variant: one thread, so that results are the same to the bit.
   [libraries]="libeigen3-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
-               libmumps-seq-dev libopenblas-serial-dev libvtk9-dev libx11-dev libnlopt-cxx-dev libboost-dev"
+               libmumps-seq-dev libopenblas-serial-dev zlib1g-dev libvtk9-dev libx11-dev libnlopt-cxx-dev libboost-dev"
+  # To bundle the report's page. Node 18 or newer from elsewhere does as well.
+  [viewer]="nodejs npm"
+  # To test that page.
+  [browser]="chromium fonts-dejavu-core"
   [tests]="libgtest-dev libbenchmark-dev"
   [checks]="clang-format python3 python3-vtk9 python3-pandas python3-matplotlib"
   [tidy]="clang-tidy"
-  # What plica render draws with where there is no screen: an X server without one, and OpenGL in software.
-  [pictures]="xvfb libgl1-mesa-dri"
+  # What plica render draws with where there is no screen: an X server without one, and OpenGL in software. (xauth: for
+  # xvfb-run, by which ParaView's test does so.)
+  [pictures]="xvfb xauth libgl1-mesa-dri"
 )
 
 groups=("$@")
-[ ${#groups[@]} -gt 0 ] || groups=(build libraries tests checks tidy pictures)
+[ ${#groups[@]} -gt 0 ] || groups=(build libraries viewer browser tests checks tidy pictures)
 
 wanted=()
 for group in "${groups[@]}"; do
@@ -32,6 +38,7 @@ done
 
 missing=()
 for name in "${wanted[@]}"; do
+  case $name in nodejs) command -v node >/dev/null && continue ;; npm) command -v npm >/dev/null && continue ;; esac
   status=$(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null) || status=""
   [ "$status" = installed ] || missing+=("$name")
 done

@@ -2,18 +2,16 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/interruption.hpp"
 #include "core/errors.hpp"
 #include "study/reproduce.hpp"
 
 namespace plica {
 namespace {
-
-volatile std::sig_atomic_t caught_signal = 0;
 
 struct ReproduceCommand {
   std::string out;
@@ -59,14 +57,12 @@ class BatchProgress {
 
 int reproduce_paper(const ReproduceCommand& command) {
   refuse_to_replace(command.out, command.overwrite);
-  std::signal(SIGINT, [](int signal) { caught_signal = signal; });
-  std::signal(SIGTERM, [](int signal) { caught_signal = signal; });
+  catch_interruptions();
   BatchProgress progress(command.quiet);
   const ReproduceOutcome outcome = reproduce(
       {command.out, command.quick, command.at_a_time},
-      [&](std::size_t done, std::size_t count, const std::string& id) { progress.show(done, count, id); },
-      [] { return caught_signal != 0; });
-  if (outcome.interrupted) return caught_signal == SIGTERM ? exit_terminated : exit_interrupted;
+      [&](std::size_t done, std::size_t count, const std::string& id) { progress.show(done, count, id); }, interrupted);
+  if (outcome.interrupted) return interrupted_status();
   for (const std::string& run : outcome.failed_runs) fmt::print(stderr, "plica: a run failed: {}\n", run);
   for (const std::string& figure : outcome.missing_figures) fmt::print(stderr, "plica: missing: {}\n", figure);
   if (!command.quiet)

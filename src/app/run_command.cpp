@@ -11,8 +11,10 @@
 #include "app/scenario_options.hpp"
 #include "app/threads.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "core/units.hpp"
 #include "output/recorder.hpp"
+#include "output/report.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/watch.hpp"
@@ -43,7 +45,7 @@ void print_result(const nlohmann::ordered_json& summary, const std::string& out)
              summary.at("steps").get<int>(), summary.at("wall_s").get<double>());
   fmt::print("  furrow depth {}, apical area ratio {} (VML), peak speed ratio {}\n", value("furrow_depth_um", " um"),
              value("vml_apical_area_ratio", ""), value("peak_speed_ratio", ""));
-  fmt::print("  results in {}\n", out);
+  fmt::print("  results in {0}{1}\n", out, can_report() ? fmt::format("; to look at: {}/report.html", out) : "");
 }
 
 // A scenario that lies in DIR under a name that plica writes there would be lost.
@@ -112,6 +114,7 @@ int run_scenario(const RunOptions& options) {
   const double solver_s = seconds_since(run_start) - recording_s;
   progress.finish();
   const auto summary = recorder.finish(result, {seconds_since(start), solver_s});
+  if (can_report()) write_file(std::filesystem::path(options.out) / "report.html", report_page({options.out}));
 
   const std::vector<std::string> missed = result.status == RunStatus::failed || result.status == RunStatus::interrupted
                                               ? std::vector<std::string>{}

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 namespace plica {
+
 double cell_height(const Cell& cell, std::span<const Vec3> positions) {
   double sum = 0;
   for (int i = 0; i < 4; ++i)
@@ -49,8 +50,9 @@ std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> p
     const auto [a, b, c, d] = gather(positions, facet);
     // The cone from the origin, as in hex_volume; basal facets look into the lumen.
     volume -= (a.dot(b.cross(c)) + a.dot(c.cross(d)) + a.dot(b.cross(d)) + b.dot(c.cross(d))) / 12;
-    area_vector += facet_area_vector({a, b, c, d});
-    area += area_vector.norm();
+    const Vec3 of_facet = facet_area_vector({a, b, c, d});
+    area_vector += of_facet;
+    area += of_facet.norm();
   }
   if (tissue.basal_facets.empty() || area_vector.norm() > 1e-9 * area) return std::nullopt;
   return volume;

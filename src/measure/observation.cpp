@@ -19,7 +19,9 @@ void Observer::observe_state(const State& state, Observation& row) const {
   row.furrow = furrow_shape(tissue, sites_, state.positions);
   for (const double error : model_.volumes.relative_errors(state.positions))
     row.max_volume_error = std::max(row.max_volume_error, std::abs(error));
-  if (rest_lumen_volume_) row.lumen_volume_ratio = *lumen_volume(tissue, state.positions) / *rest_lumen_volume_;
+  if (rest_lumen_volume_)
+    if (const auto volume = lumen_volume(tissue, state.positions))
+      row.lumen_volume_ratio = *volume / *rest_lumen_volume_;
   row.max_shell_penetration_um = shell_penetration(model_, state.positions);
   for (const auto& element : tissue.elements)
     row.min_scaled_jacobian = std::min(row.min_scaled_jacobian, hex_scaled_jacobian(gather(state.positions, element)));

@@ -64,7 +64,8 @@ void divide_holds(Model& model, const Division& division) {
   model.held.resize(model.tissue.node_count(), {false, false, false});
 }
 
-// New nodes lie inside the shell, on chords of it.
+// New nodes begin without contact: midway between two they lie inside the shell, on a chord of it. What a bent face
+// puts outside (it is blended from its edges, and need not lie between them) the next step takes back.
 void divide_contacts(Model& model, State& state) {
   if (!model.vitelline) return;
   std::map<NodeId, std::size_t> place;
@@ -87,14 +88,17 @@ Vec3 momentum(const Inertia& inertia, const Vectors& velocities) {
   return sum;
 }
 
-// Halves of unequal mass, moving as their mother did, would have another momentum: new nodes make up for it.
+// Halves of unequal mass, moving as their mother did, would have another momentum: new nodes make up for it, where they
+// can move.
 void restore_momentum(const Model& model, const Division& division, const Vec3& before, Vectors& velocities) {
   if (division.new_nodes.empty()) return;
   Vectors unit(model.tissue.node_count(), Vec3::Zero());
-  for (std::size_t n = 0; n < division.new_nodes.size(); ++n) unit[division.free_nodes_before + n] = Vec3::Ones();
+  for (std::size_t n = division.free_nodes_before; n < model.tissue.free_node_count(); ++n)
+    for (int axis = 0; axis < 3; ++axis) unit[n][axis] = model.held[n][axis] ? 0 : 1;
   model.tissue.place_hanging(unit);
   const Vec3 mass = momentum(*model.inertia, unit);
-  const Vec3 missing = (before - momentum(*model.inertia, velocities)).cwiseQuotient(mass);
+  Vec3 missing = before - momentum(*model.inertia, velocities);
+  for (int axis = 0; axis < 3; ++axis) missing[axis] = mass[axis] > 0 ? missing[axis] / mass[axis] : 0;
   for (std::size_t n = 0; n < velocities.size(); ++n) velocities[n] += unit[n].cwiseProduct(missing);
 }
 
@@ -102,6 +106,10 @@ void restore_momentum(const Model& model, const Division& division, const Vec3& 
 
 Division divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned) {
   if (const auto why = why_indivisible(model.tissue)) throw std::logic_error("cells cannot divide: " + *why);
+  // Who has grown up is done with: her last shape and target are hers.
+  grow(model, state.time_s);
+  std::erase_if(model.growths, [&](const Growth& growth) { return growth.end_s <= state.time_s; });
+
   const Vec3 momentum_before = model.inertia ? momentum(*model.inertia, state.velocities) : Vec3::Zero();
   std::vector<CellCut> cuts;
   std::vector<Destiny> destinies;
@@ -134,13 +142,17 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
 }
 
 void grow(Model& model, double time_s) {
+  // Exactly `to` at the end, and where there is no way to go: stiffness is made anew for shapes that change only.
+  const auto between = [](double from, double to, double part) { return part < 1 ? from + part * (to - from) : to; };
   std::vector<ElementId> changed;
   for (const Growth& growth : model.growths) {
     const double part = growth.part(time_s);
     HexPoints rest;
-    for (int i = 0; i < 8; ++i) rest[i] = (1 - part) * growth.rest_from[i] + part * growth.rest_to[i];
+    for (int i = 0; i < 8; ++i)
+      for (int axis = 0; axis < 3; ++axis)
+        rest[i][axis] = between(growth.rest_from[i][axis], growth.rest_to[i][axis], part);
     Cell& cell = model.tissue.cells[growth.cell.index()];
-    model.volumes.set_target(growth.cell, (1 - part) * growth.target_from + part * growth.target_to);
+    model.volumes.set_target(growth.cell, between(growth.target_from, growth.target_to, part));
     if (rest == cell.rest_shape) continue;
     cell.rest_shape = rest;
     set_element_rest_shapes(model.tissue, growth.cell);

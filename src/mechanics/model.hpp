@@ -37,7 +37,7 @@ struct Model {
   std::vector<const Contraction*> contractions;  // among the laws
   std::vector<CellSet> contraction_cells;        // contractions
   const Inertia* inertia = nullptr;              // among the laws
-  std::vector<Growth> growths;                   // over and under way
+  std::vector<Growth> growths;                   // under way, and over since the last division
   double stiffness_scale = 1;  // Young's modulus, kPa: for tolerances that must not depend on the load
 
   explicit Model(Tissue t) : tissue(std::move(t)), volumes(tissue), held(tissue.node_count(), {false, false, false}) {}

@@ -64,6 +64,7 @@ double rounded_up(double value) {
 const char* array_of(const ColourField& field) {
   if (field.name == "area-ratio") return "apical_area_ratio";
   if (field.name == "pressure") return "pressure_Pa";
+  if (field.name == "volume") return "volume_um3";
   if (field.name == "volume-error") return "volume_error";
   if (field.name == "contraction") return "activity";
   return "generation";
@@ -99,6 +100,7 @@ const std::vector<ColourField>& colour_fields() {
       {"area-ratio", "apical area / at rest", "", false, ScaleKind::about, 1},
       {"pressure", "pressure", "Pa", false, ScaleKind::about, 0},
       {"volume-error", "volume error", "", false, ScaleKind::about, 0},
+      {"volume", "volume", "µm³"},
       {"contraction", "contraction's activity", "", false},
       {"generation", "generation", "", false, ScaleKind::steps}};
   return fields;

@@ -42,7 +42,7 @@ struct ColourField {
   [[nodiscard]] std::string title() const;  // "pressure, Pa"
 };
 
-/// displacement, speed, area-ratio, pressure, volume-error, contraction, generation.
+/// displacement, speed, area-ratio, pressure, volume-error, volume, contraction, generation.
 const std::vector<ColourField>& colour_fields();
 
 /// The field's values of a frame: one a node where `on_nodes`, else one an element. FileError when the frame lacks the

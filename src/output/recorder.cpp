@@ -24,8 +24,9 @@ constexpr const char* cells_header =
     "time_s,cell_id,mother_id,generation,x_um,y_um,z_um,volume_um3,apical_area_um2,basal_area_um2,height_um,"
     "apical_area_ratio,speed_um_per_s,pressure_Pa,activity";
 constexpr const char* lineage_header = "cell_id,mother_id,generation,birth_s";
-const std::vector<std::string> own_files = {"summary.json", "series.csv", "cells.csv",     "midline.csv",
-                                            "lineage.csv",  "frames.pvd", "scenario.toml", "scenario.input.toml"};
+const std::vector<std::string> own_files = {"summary.json",  "series.csv",          "cells.csv",
+                                            "midline.csv",   "lineage.csv",         "frames.pvd",
+                                            "scenario.toml", "scenario.input.toml", "report.html"};
 
 // A number for a CSV file; what has no value, or is not finite, is left empty.
 std::string field(std::optional<double> value) {

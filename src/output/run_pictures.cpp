@@ -8,6 +8,7 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "output/run_shell.hpp"
 #include "scenario/load.hpp"
 
 namespace plica {
@@ -46,10 +47,8 @@ RunPictures::RunPictures(fs::path directory, PictureOptions options)
   if (!options_.shell) return;
   if (!scenario)
     throw FileError(run_.directory().string() + ": holds no scenario.toml that says what the vitelline shell is");
-  if (!scenario->vitelline.enabled || !is_embryo_)
-    throw FileError(run_.directory().string() + ": was run without a vitelline shell; leave out --shell");
-  shell_ = enclosing_capsule(rest_.positions);
-  shell_->radius_um += scenario->vitelline.gap_um;
+  shell_ = shell_of(*scenario, rest_.positions);
+  if (!shell_) throw FileError(run_.directory().string() + ": was run without a vitelline shell; leave out --shell");
   const double reach = shell_->half_axis_um + shell_->radius_um;
   for (PictureRow& row : rows_) {
     // Its two ends and its two sides are enough to make room for it.

@@ -58,10 +58,11 @@ std::vector<PlannedDivision> due_divisions(const Model& model, const State& stat
                                            std::span<const DivisionRule> rules) {
   std::vector<PlannedDivision> due;
   std::vector<char> growing(model.tissue.cells.size(), 0), chosen(model.tissue.cells.size(), 0);
-  for (const Growth& growth : model.growths) growing[growth.cell.index()] = growth.end_s > state.time_s;
+  for (const Growth& growth : model.growths) growing[growth.cell.index()] = !has_come(growth.end_s, state.time_s);
   for (const DivisionRule& rule : rules) {
     const bool at_a_time = rule.trigger == DivisionTrigger::time;
-    if (at_a_time && !(state.divided_until_s < rule.threshold && rule.threshold <= state.time_s)) continue;
+    if (at_a_time && (has_come(rule.threshold, state.divided_until_s) || !has_come(rule.threshold, state.time_s)))
+      continue;
     const std::vector<double> values = measured(rule.trigger, model, state);
     const CellSet& region = model.tissue.regions.at(rule.region);
     for (std::size_t c = 0; c < region.size(); ++c) {

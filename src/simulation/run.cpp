@@ -48,6 +48,7 @@ RunResult run(Model& model, State state, RunControls controls, const StepObserve
     if (due.empty()) return;
     const Division division = divide_cells(model, state, due);
     result.divisions += static_cast<int>(due.size());
+    result.equilibrium_time_s.reset();  // it counts only after the last division
     for (const PlannedDivision& one : due) controls.program_points_s.push_back(state.time_s + one.growth_s);
     renew_stepper();
     step_length.restart();
@@ -87,7 +88,7 @@ RunResult run(Model& model, State state, RunControls controls, const StepObserve
     const double speed = max_speed(state);
     const std::vector<PlannedDivision> due = due_divisions(model, state, controls.divisions);
     const bool at_equilibrium = speed < controls.equilibrium_speed_um_per_s && due.empty() &&
-                                state.time_s >= last_of(controls.program_points_s);
+                                has_come(last_of(controls.program_points_s), state.time_s);
     if (at_equilibrium && !result.equilibrium_time_s) result.equilibrium_time_s = state.time_s;
     // At a division, the frame shows the daughters.
     const bool frame_is_due = due.empty() && passes_frame(next.time_s, state.time_s, controls.frame_every_s);

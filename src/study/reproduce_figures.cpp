@@ -8,6 +8,7 @@
 #include "study/reproduce.hpp"
 #include "study/reproduce_mechanism.hpp"
 #include "study/reproduce_pictures.hpp"
+#include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
 namespace {
@@ -138,6 +139,8 @@ std::vector<Figure> reproduction_figures(const Results& results, const Measured&
     try {
       figures.push_back(make());
     } catch (const FileError& error) {
+      missing.push_back(fmt::format("{}: {}", name, error.what()));
+    } catch (const MeshError& error) {  // a frame that does not fit together
       missing.push_back(fmt::format("{}: {}", name, error.what()));
     }
   };

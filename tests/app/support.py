@@ -88,7 +88,7 @@ CELL_DATA = {
 }
 RESULTS = {
     "summary.json", "series.csv", "cells.csv", "midline.csv", "frames", "frames.pvd", "scenario.toml",
-    "scenario.input.toml",
+    "scenario.input.toml", "report.html",
 }
 
 

@@ -142,6 +142,60 @@ TEST(Grow, OfADaughterThatDividesGoesTowardsTheSameSize) {
   for (const int c : {1, 3, 4}) EXPECT_NEAR(model.volumes.targets()[c], 16000, 1e-9);
 }
 
+// Daughters that stay halves have nowhere to go: not a bit of their shapes changes, so no stiffness is made anew.
+TEST(Grow, OfDaughtersThatStayHalvesChangesNothing) {
+  Model model(distorted_block(three_cells, 2, 7));
+  add_elasticity(model);
+  State state = rest_state(model);
+  divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 0}, 100, 0.5}});
+  const auto shapes = model.tissue.element_rest_shape;
+  int times = 0;
+  for (double time_s = 0; time_s <= 120; time_s += 7, ++times) {
+    grow(model, time_s);
+    EXPECT_EQ(model.tissue.element_rest_shape, shapes) << time_s;
+  }
+  EXPECT_EQ(times, 18);
+}
+
+TEST(DivideCells, IsDoneWithWhoHasGrownUp) {
+  Model model(build_block(sheet));
+  add_elasticity(model);
+  State state = rest_state(model);
+  divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 0}, 100, 1}, {{CellId(6), 0}, 300, 1}});
+  state.time_s = 200;
+  divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(9), 0}, 100, 1}});
+  std::vector<int> growing;
+  for (const Growth& growth : model.growths) growing.push_back(growth.cell.number());
+  EXPECT_EQ(growing, (std::vector<int>{6, 13, 9, 14}));  // and not 1 and 12
+  grow(model, 400);
+  for (const int c : {1, 12, 6, 13, 9, 14}) EXPECT_NEAR(model.volumes.targets()[c], 16000, 1e-9) << c;
+}
+
+// New nodes between held ones are held, and make up for no momentum that the cut changes.
+TEST(DivideCells, LeavesNewNodesThatAreHeldAtRest) {
+  Model model(distorted_block(sheet, 2, 3));
+  auto inertia = std::make_unique<Inertia>(model.tissue, 1e-12);
+  model.inertia = inertia.get();
+  model.laws.push_back(std::move(inertia));
+  Random random(3);
+  State state = moved(model, 0.5, random);
+  for (std::size_t n = 0; n < state.velocities.size(); ++n)
+    if (model.tissue.rest_positions[n].x() < 10) {
+      model.held[n] = {true, false, false};
+      state.velocities[n].x() = 0;
+    }
+  const Vec3 before = momentum_of(model, state);
+  const Division division = divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
+  int held = 0, free = 0;
+  for (std::size_t n = division.free_nodes_before; n < model.tissue.free_node_count(); ++n) {
+    ++(model.held[n][0] ? held : free);
+    EXPECT_TRUE(!model.held[n][0] || state.velocities[n].x() == 0) << n;
+  }
+  EXPECT_GT(held, 0);
+  EXPECT_GT(free, 0);
+  EXPECT_LE((momentum_of(model, state) - before).norm(), 1e-14 * before.norm());
+}
+
 // A divided sheet under a homogeneous strain in its plane, with Poisson's ratio 0 so that no stress acts on the apical
 // and basal faces: every node off the rim is in balance, what acts on hanging nodes carried by their neighbours.
 TEST(DividedSheet, PassesThePatchTest) {

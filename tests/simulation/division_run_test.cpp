@@ -86,7 +86,9 @@ TEST(DivisionRun, FreeDaughtersEndWithTheirMothersShapeAndVolume) {
       for (int e = 0; e < 12; ++e) shape = std::max(shape, std::abs(lengths[e] / mother[e] - 1));
     }
     // Along the row the ends are free; side by side the two are held together by neighbours that stay narrow.
-    if (plane == DivisionPlane::transverse) EXPECT_LE(shape, 0.01);
+    if (plane == DivisionPlane::transverse) {
+      EXPECT_LE(shape, 0.01);
+    }
     std::cout << kept.steps << " steps: volumes to " << kept.volume_error << ", gap " << kept.gap
               << ", daughters' edges off by " << shape << "\n";
   }
@@ -137,6 +139,37 @@ TEST(DivisionRun, ByElongationCutsTheLongerSide) {
   run(model, rest_state(model), controls_of({rule}), [](const AcceptedStep&) { return true; });
   ASSERT_EQ(model.tissue.cells.size(), 2u);  // 30 by 20: not elongated enough to go on
   EXPECT_NEAR(cell_centre(model.tissue.cells[0], model.tissue.rest_positions).x(), -15, 1e-9);
+}
+
+// 3 steps of 0.7 s are 4e-16 s short of 2.1 s.
+TEST(DivisionRun, ATimeHasComeWhateverRoundingSays) {
+  const Model model = row_of_cells(1);
+  const std::vector<DivisionRule> rules = {at(2.1, "all", 10, DivisionPlane::transverse)};
+  State state = rest_state(model);
+  state.time_s = 0.7 + 0.7;
+  EXPECT_TRUE(due_divisions(model, state, rules).empty());
+  state.time_s = 3 * 0.7;
+  ASSERT_LT(state.time_s, 2.1);
+  EXPECT_EQ(due_divisions(model, state, rules).size(), 1u);
+  state.divided_until_s = state.time_s;
+  state.time_s = 4 * 0.7;
+  EXPECT_TRUE(due_divisions(model, state, rules).empty());
+}
+
+TEST(DivisionRun, EquilibriumCountsAfterTheLastDivision) {
+  Model model = row_of_cells(1);
+  RunControls controls = controls_of({at(500, "all", 100, DivisionPlane::transverse)});
+  controls.program_points_s.clear();  // as of a threshold: nobody knows of it beforehand
+  controls.stop_at_equilibrium = false;
+  controls.end_s = 3000;
+  std::optional<double> first_at_rest_s;
+  const RunResult result = run(model, rest_state(model), controls, [&](const AcceptedStep& step) {
+    if (step.at_equilibrium && !first_at_rest_s) first_at_rest_s = step.state.time_s;
+    return true;
+  });
+  EXPECT_EQ(result.divisions, 1);
+  EXPECT_LT(first_at_rest_s.value(), 500);
+  EXPECT_GT(result.equilibrium_time_s.value(), 600);
 }
 
 TEST(DivisionRun, GivesTheSameBitsAgain) {

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "mechanics/cell_volume.hpp"
 #include "support/law_checks.hpp"
 #include "support/linear_statics.hpp"
 

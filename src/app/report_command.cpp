@@ -1,0 +1,60 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "output/report.hpp"
+#include "tissue/hexahedral_mesh.hpp"
+
+namespace plica {
+namespace {
+
+struct ReportOptions {
+  std::vector<std::string> directories;
+  std::string out;
+  bool overwrite = false;
+};
+
+void report(const ReportOptions& options) {
+  if (options.out.empty() && options.directories.size() > 1)
+    throw UsageError("--out is missing; give the FILE.html for a page of several runs");
+  if (!options.out.empty() && !options.out.ends_with(".html"))
+    throw UsageError("--out " + options.out + ": the file's name must end in .html");
+  // A run's own page is made from its results and may be made anew.
+  const std::filesystem::path file = options.out.empty()
+                                         ? std::filesystem::path(options.directories.front()) / "report.html"
+                                         : std::filesystem::path(options.out);
+  std::error_code error;
+  if (!options.out.empty() && std::filesystem::exists(file, error) && !options.overwrite)
+    throw FileError(file.string() + ": is there already; give another --out, or --overwrite to replace it");
+  const std::string page = report_page({options.directories.begin(), options.directories.end()});
+  write_file(file, page);
+  fmt::print("{} ({:.1f} MB): open it in a browser\n", file.string(), static_cast<double>(page.size()) / 1e6);
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app, int&) {
+  CLI::App* command = app.add_subcommand("report", "make one HTML page of a run, or of several side by side");
+  auto options = std::make_shared<ReportOptions>();
+  command->add_option("DIR", options->directories, "results of a run, repeatable")->required();
+  command->add_option("--out", options->out, "FILE.html to write; for one run, DIR/report.html without it");
+  command->add_flag("--overwrite", options->overwrite, "replace FILE.html where it is there");
+  command->footer(
+      "The page needs no network: mail it, open it by double click.\n"
+      "Example: plica report results/drosophila results/xenopus --out embryos.html");
+  command->callback([options] {
+    try {
+      report(*options);
+    } catch (const MeshError& error) {
+      throw FileError(error.what());
+    }
+  });
+}
+
+}  // namespace plica

@@ -1,0 +1,56 @@
+#include "output/packing.hpp"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <nlohmann/json.hpp>
+
+namespace plica {
+namespace {
+
+std::string inflated(const std::string& bytes, std::size_t size) {
+  std::string result(size, '\0');
+  uLongf length = size;
+  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(result.data()), &length, reinterpret_cast<const Bytef*>(bytes.data()),
+                       bytes.size()),
+            Z_OK);
+  result.resize(length);
+  return result;
+}
+
+TEST(PackedArrays, KeepsDifferencesBytePlaneByBytePlane) {
+  PackedArrays arrays;
+  const std::vector<std::uint16_t> small = {0x0102, 0x0304, 0x0103, 0x0300};
+  const std::vector<std::uint32_t> large = {0x01020304, 0x01020303};
+  arrays.add("small", std::span<const std::uint16_t>(small), 2);
+  arrays.add("large", std::span<const std::uint32_t>(large), 1);
+  // Differences: 0102 0304 0001 fffc, then 01020304 ffffffff; lowest bytes first.
+  EXPECT_EQ(arrays.bytes(), std::string("\x02\x04\x01\xfc\x01\x03\x00\xff\x04\xff\x03\xff\x02\xff\x01\xff", 16));
+  const auto index = arrays.index();
+  EXPECT_EQ(index[1]["name"], "large");
+  EXPECT_EQ(index[1]["bits"], 32);
+  EXPECT_EQ(index[1]["offset"], 8);
+  EXPECT_EQ(index[1]["count"], 2);
+}
+
+TEST(Quantiser, IsExactAtItsEndsAndWithinHalfAStepBetween) {
+  Quantiser range;
+  EXPECT_EQ(range.step_of(3), 0);  // nothing known yet
+  for (const double value : {-2.0, 5.0, 1.0}) range.include(value);
+  EXPECT_EQ(range.step_of(-2), 0);
+  EXPECT_EQ(range.step_of(5), 65535);
+  EXPECT_EQ(range.step_of(7), 65535);
+  for (const double value : {-1.9, 0.0, 3.3333}) {
+    const double back = -2 + 7.0 * range.step_of(value) / 65535;
+    EXPECT_NEAR(back, value, 0.5 * 7 / 65535 * (1 + 1e-9));
+  }
+}
+
+TEST(Deflated, ComesBack) {
+  std::string bytes;
+  for (int i = 0; i < 10000; ++i) bytes += static_cast<char>(i * i % 251);
+  EXPECT_EQ(inflated(deflated(bytes), bytes.size()), bytes);
+}
+
+}  // namespace
+}  // namespace plica

@@ -1,0 +1,127 @@
+#include "support/law_checks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+namespace plica::support {
+namespace {
+
+Eigen::Index size_of(const Step& step) { return 3 * static_cast<Eigen::Index>(step.positions.size()); }
+
+}  // namespace
+
+DenseTangent::DenseTangent(const Law& law, const Step& step)
+    : matrix(Eigen::MatrixXd::Zero(size_of(step), size_of(step))) {
+  law.add_tangent(step, *this);
+}
+
+void DenseTangent::add_block(NodeId row, NodeId column, const Mat3& block) {
+  matrix.block<3, 3>(3 * row.number(), 3 * column.number()) += block;
+}
+
+Eigen::VectorXd flat(const Vectors& vectors) {
+  Eigen::VectorXd result(3 * static_cast<Eigen::Index>(vectors.size()));
+  for (std::size_t n = 0; n < vectors.size(); ++n) result.segment<3>(3 * static_cast<Eigen::Index>(n)) = vectors[n];
+  return result;
+}
+
+Eigen::VectorXd product_of(const Law& law, const Step& step, const Vectors& direction) {
+  Vectors product(step.positions.size(), Vec3::Zero());
+  law.add_tangent_product(step, direction, product);
+  return flat(product);
+}
+
+void expect_forces_are_minus_energy_gradient(const Law& law, Motion motion, double tolerance) {
+  const Vectors forces = forces_of(law, motion.step());
+  const double scale = std::max(largest(forces), 1e-3);
+  for (std::size_t n = 0; n < motion.positions.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis) {
+      double& x = motion.positions[n][axis];
+      const double kept = x;
+      x = kept + difference_um;
+      const double above = law.energy(motion.step());
+      x = kept - difference_um;
+      const double below = law.energy(motion.step());
+      x = kept;
+      EXPECT_NEAR(forces[n][axis], -(above - below) / (2 * difference_um), tolerance * scale)
+          << law.name() << ", node " << n << ", axis " << axis;
+    }
+}
+
+void expect_tangent_is_minus_force_gradient(const Law& law, Motion motion, double tolerance) {
+  const Eigen::MatrixXd tangent = DenseTangent(law, motion.step()).matrix;
+  Eigen::MatrixXd differences(tangent.rows(), tangent.cols());
+  for (Eigen::Index i = 0; i < tangent.cols(); ++i) {
+    double& x = motion.positions[static_cast<std::size_t>(i / 3)][i % 3];
+    const double kept = x;
+    x = kept + difference_um;
+    const Eigen::VectorXd above = flat(forces_of(law, motion.step()));
+    x = kept - difference_um;
+    const Eigen::VectorXd below = flat(forces_of(law, motion.step()));
+    x = kept;
+    differences.col(i) = -(above - below) / (2 * difference_um);
+  }
+  const double scale = std::max(tangent.cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LE((tangent - differences).cwiseAbs().maxCoeff(), tolerance * scale) << law.name();
+}
+
+void expect_assembled_is_matrix_free(const Law& law, const Motion& motion, unsigned seed) {
+  const Eigen::MatrixXd tangent = DenseTangent(law, motion.step()).matrix;
+  const double scale = std::max(tangent.cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LE((tangent - tangent.transpose()).cwiseAbs().maxCoeff(), 1e-12 * scale) << law.name() << ": not symmetric";
+  Random random(seed);
+  for (int k = 0; k < 4; ++k) {
+    const Vectors direction = random.vectors(motion.positions.size());
+    const Eigen::VectorXd assembled = tangent * flat(direction), free = product_of(law, motion.step(), direction);
+    EXPECT_LE((assembled - free).cwiseAbs().maxCoeff(), 1e-12 * scale * static_cast<double>(tangent.rows()))
+        << law.name();
+  }
+}
+
+void check_derivatives(const Law& law, const Tissue& tissue, double size_um, int cases, double tolerance) {
+  for (int seed = 1; seed <= cases; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "random motion " << seed << " of " << cases);
+    const Motion motion = random_motion(tissue, size_um, static_cast<unsigned>(seed));
+    expect_forces_are_minus_energy_gradient(law, motion, tolerance);
+    expect_tangent_is_minus_force_gradient(law, motion, tolerance);
+    expect_assembled_is_matrix_free(law, motion, static_cast<unsigned>(100 + seed));
+  }
+  ::testing::Test::RecordProperty("random_motions", cases);
+}
+
+void check_semidefinite_tangent(const Law& law, const Tissue& tissue, double size_um, bool exact_is_indefinite,
+                                int cases) {
+  double worst = 0, exact_worst = 0;  // least eigenvalue over the largest
+  for (int seed = 1; seed <= cases; ++seed) {
+    Motion motion = random_motion(tissue, size_um, static_cast<unsigned>(seed));
+    const auto least_over_largest = [&] {
+      const Eigen::MatrixXd tangent = DenseTangent(law, motion.step()).matrix;
+      const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(tangent).eigenvalues();
+      return values.minCoeff() / values.cwiseAbs().maxCoeff();
+    };
+    exact_worst = std::min(exact_worst, least_over_largest());
+    const Vectors forces = forces_of(law, motion.step());
+    motion.semidefinite_tangent = true;
+    EXPECT_EQ(forces, forces_of(law, motion.step()));
+    expect_assembled_is_matrix_free(law, motion, static_cast<unsigned>(100 + seed));
+    worst = std::min(worst, least_over_largest());
+  }
+  std::printf("%s: least eigenvalue of the tangent over the largest %.1e exact, %.1e semidefinite, in %d motions\n",
+              std::string(law.name()).c_str(), exact_worst, worst, cases);
+  EXPECT_GE(worst, -1e-12) << law.name();
+  EXPECT_EQ(exact_worst < -1e-6, exact_is_indefinite) << law.name();
+}
+
+Vec3 resultant(const Vectors& forces) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& f : forces) sum += f;
+  return sum;
+}
+Vec3 torque(const Vectors& forces, std::span<const Vec3> positions) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t n = 0; n < forces.size(); ++n) sum += positions[n].cross(forces[n]);
+  return sum;
+}
+
+}  // namespace plica::support

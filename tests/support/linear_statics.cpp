@@ -1,0 +1,105 @@
+#include "support/linear_statics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Sparse>
+
+#include "mechanics/cell_volume.hpp"
+#include "solver/linear_solver.hpp"
+
+namespace plica::support {
+namespace {
+
+struct Triplets final : TangentSink {
+  void add_block(NodeId row, NodeId column, const Mat3& block) override {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) entries.emplace_back(3 * row.number() + i, 3 * column.number() + j, block(i, j));
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+};
+
+Vectors unflat(const Eigen::VectorXd& u) {
+  Vectors result(u.size() / 3);
+  for (std::size_t n = 0; n < result.size(); ++n) result[n] = u.segment<3>(3 * static_cast<int>(n));
+  return result;
+}
+
+}  // namespace
+
+struct LinearStatics::Stiffness {
+  Eigen::SparseMatrix<double> matrix;
+
+  Stiffness(int size, const Triplets& triplets) : matrix(size, size) {
+    matrix.setFromTriplets(triplets.entries.begin(), triplets.entries.end());
+  }
+};
+
+LinearStatics::LinearStatics(const Tissue& tissue)
+    : size_(3 * static_cast<int>(tissue.node_count())), prescribed_(size_), loads_(Eigen::VectorXd::Zero(size_)) {}
+
+LinearStatics::LinearStatics(const Tissue& tissue, const ElasticModuli& moduli) : LinearStatics(tissue) {
+  Triplets triplets;
+  const Motion rest = at_rest(tissue);
+  Corotational(tissue, moduli, 0).add_tangent(rest.step(), triplets);
+  Dilatation(tissue, moduli.bulk_modulus()).add_tangent(rest.step(), triplets);
+  stiffness_ = std::make_unique<Stiffness>(size_, triplets);
+}
+
+LinearStatics::~LinearStatics() = default;
+LinearStatics::LinearStatics(LinearStatics&& other) noexcept = default;
+
+LinearStatics LinearStatics::of_elements(const Tissue& tissue, const ElasticModuli& moduli) {
+  LinearStatics statics(tissue);
+  Triplets triplets;
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
+    const Mat24 K = incompatible_stiffness(tissue.element_rest_shape[e], moduli);
+    for (int i = 0; i < 8; ++i)
+      for (int j = 0; j < 8; ++j)
+        triplets.add_block(tissue.elements[e][i], tissue.elements[e][j], K.block<3, 3>(3 * i, 3 * j));
+  }
+  statics.stiffness_ = std::make_unique<Stiffness>(statics.size_, triplets);
+  return statics;
+}
+
+Vectors LinearStatics::solve() const {
+  const auto& K = stiffness_->matrix;
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(size_);
+  for (int i = 0; i < size_; ++i) u[i] = prescribed_[i].value_or(0);
+  const Eigen::VectorXd right = loads_ - K * u;
+  SymmetricPattern pattern;
+  std::vector<double> values, unknowns(size_, 0.0);
+  pattern.size = size_;
+  for (int column = 0; column < size_; ++column)
+    for (Eigen::SparseMatrix<double>::InnerIterator k(K, column); k; ++k) {
+      const int row = static_cast<int>(k.row());
+      if (row < column) continue;
+      const bool fixed = prescribed_[row] || prescribed_[column];
+      if (fixed && row != column) continue;
+      pattern.rows.push_back(row);
+      pattern.columns.push_back(column);
+      values.push_back(k.value());
+    }
+  for (int i = 0; i < size_; ++i)
+    if (!prescribed_[i]) unknowns[i] = right[i];
+  const auto solver = make_direct_solver();
+  solver->analyse(pattern);
+  EXPECT_TRUE(solver->factorise(values));
+  solver->solve(unknowns);
+  for (int i = 0; i < size_; ++i)
+    if (!prescribed_[i]) u[i] = unknowns[i];
+  // The answer is checked here, so that the linear solver is not taken on trust.
+  const Eigen::VectorXd left = K * u - loads_;
+  double residual = 0;
+  for (int i = 0; i < size_; ++i)
+    if (!prescribed_[i]) residual = std::max(residual, std::abs(left[i]));
+  EXPECT_LE(residual, 1e-9 * (K.cwiseAbs() * u.cwiseAbs()).maxCoeff());
+  return unflat(u);
+}
+
+Vectors LinearStatics::reactions(const Vectors& displacements) const {
+  Eigen::VectorXd u(size_);
+  for (int n = 0; n < size_ / 3; ++n) u.segment<3>(3 * n) = displacements[n];
+  return unflat(stiffness_->matrix * u - loads_);
+}
+
+}  // namespace plica::support

@@ -1,0 +1,116 @@
+// What is written over the picture: scale bar, marks of the axes, time; and the colour legend. Drawn on a 2D canvas, so
+// that the page and a saved picture have the same.
+import * as three from "three";
+import { colourAt, css } from "./colour";
+import { styleColour } from "./dom";
+import { type Field, type PageData, titleOf, type Vec3 } from "./page_data";
+import { number } from "./text";
+
+const font = "system-ui, sans-serif";
+
+const marks: { text: string; axis: number; sign: number }[] = [
+  { text: "A", axis: 0, sign: -1 }, { text: "P", axis: 0, sign: 1 },
+  { text: "L", axis: 1, sign: -1 }, { text: "R", axis: 1, sign: 1 },
+  { text: "V", axis: 2, sign: -1 }, { text: "D", axis: 2, sign: 1 },
+];
+
+export interface Frame {
+  width: number; // CSS pixels
+  height: number;
+  camera: three.OrthographicCamera;
+  centre: Vec3;
+  /** How far the embryo reaches from its centre in a direction of the picture (right, up), um. */
+  reach: (right: three.Vector3, up: three.Vector3, along: three.Vector2) => number;
+  title: string;
+  time: string;
+  showMarks: boolean;
+}
+
+export function annotate(context: CanvasRenderingContext2D, frame: Frame): void {
+  context.textBaseline = "middle";
+  context.fillStyle = context.strokeStyle = styleColour("ink");
+  if (frame.showMarks) drawMarks(context, frame);
+  drawScaleBar(context, frame);
+  context.textAlign = "left";
+  context.textBaseline = "top";
+  context.font = `600 15px ${font}`;
+  context.fillText(frame.time, 10, 10);
+  if (frame.title !== "") {
+    context.font = `13px ${font}`;
+    context.fillText(shortened(context, frame.title, frame.width - 20), 10, 30);
+  }
+}
+
+function shortened(context: CanvasRenderingContext2D, text: string, width: number): string {
+  let short = text.slice(0, 300);
+  while (short.length > 1 && context.measureText(short).width > width) short = `${short.slice(0, -2).trimEnd()}…`;
+  return short;
+}
+
+// A mark stands outside the embryo in the direction in which its axis is seen; faint where it points away from the eye;
+// none where one looks along the axis.
+function drawMarks(context: CanvasRenderingContext2D, frame: Frame): void {
+  const { camera, centre, width, height, reach } = frame;
+  const pixelsPerUm = (width * camera.zoom) / (camera.right - camera.left);
+  const right = new three.Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
+  const up = new three.Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
+  const sight = camera.getWorldDirection(new three.Vector3());
+  const middle = new three.Vector3(...centre).project(camera);
+  context.font = `600 14px ${font}`;
+  context.textAlign = "center";
+  for (const { text, axis, sign } of marks) {
+    const along = new three.Vector2(right.getComponent(axis), up.getComponent(axis)).multiplyScalar(sign);
+    if (along.length() < 0.3) continue;
+    along.normalize();
+    const distance = pixelsPerUm * reach(right, up, along) + 13;
+    const x = ((middle.x + 1) / 2) * width + along.x * distance;
+    const y = ((1 - middle.y) / 2) * height - along.y * distance;
+    context.fillStyle = styleColour(sign * sight.getComponent(axis) > 0.3 ? "faint" : "ink");
+    context.fillText(text, x, y);
+  }
+  context.fillStyle = styleColour("ink");
+}
+
+function drawScaleBar(context: CanvasRenderingContext2D, frame: Frame): void {
+  const { camera, width, height } = frame;
+  const umPerPixel = (camera.right - camera.left) / camera.zoom / width;
+  const longest = 0.25 * width * umPerPixel;
+  const power = 10 ** Math.floor(Math.log10(longest));
+  const length = [5, 2, 1].map((factor) => factor * power).find((candidate) => candidate <= longest) ?? power;
+  const pixels = length / umPerPixel;
+  const [x, y] = [12, height - 14];
+  context.fillRect(x, y, pixels, 3);
+  context.font = `13px ${font}`;
+  context.textAlign = "left";
+  context.textBaseline = "bottom";
+  context.fillText(`${number(length)} µm`, x, y - 3);
+}
+
+export const legendHeight = 54;
+
+/** The colour scale with its title and the values at its ticks, `legendHeight` high. */
+export function drawLegend(context: CanvasRenderingContext2D, width: number, field: Field, page: PageData): void {
+  const map = page.maps[field.map];
+  const [left, top, high] = [Math.max(16, (width - 460) / 2), 20, 13];
+  const wide = width - 2 * left;
+  context.font = `13px ${font}`;
+  context.textAlign = "center";
+  context.textBaseline = "top";
+  context.fillStyle = styleColour("ink");
+  context.fillText(titleOf(field), width / 2, 2);
+  const steps = field.scale === "steps";
+  const count = steps ? map.length : Math.round(wide);
+  for (let i = 0; i < count; ++i) {
+    context.fillStyle = css(colourAt(map, i / (count - 1)));
+    context.fillRect(left + (wide * i) / count, top, wide / count + 0.5, high);
+  }
+  context.fillStyle = styleColour("ink");
+  const ticks = steps ? map.length : 5;
+  for (let i = 0; i < ticks; ++i) {
+    const part = steps ? (i + 0.5) / ticks : i / (ticks - 1);
+    const value = field.low + (i / (ticks - 1)) * (field.high - field.low);
+    context.fillRect(left + wide * part - 0.5, top + high, 1, 4);
+    const last = steps && i === ticks - 1 ? "+" : "";
+    context.fillText(number(Math.abs(value) < 1e-12 * field.high ? 0 : value, 3) + last, left + wide * part, top + high + 6);
+  }
+}

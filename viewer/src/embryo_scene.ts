@@ -1,0 +1,246 @@
+// The embryo of one run as three.js draws it: its skin, the outlines of its cells, a section, the shell.
+import * as three from "three";
+import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
+import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
+import { colourAt, partOf } from "./colour";
+import type { Field, PageData } from "./page_data";
+import type { Place, Run, Topology } from "./run";
+import { cutByPlane, cutOutlines, type CutPolygon } from "./section";
+import type { Cut } from "./state";
+
+const texels = 256;
+const lineColour = 0x1c1c22;
+const pickedColour = 0xe6007e;
+
+// A colour map as a texture: values become its first coordinate, so that between two nodes values are interpolated and
+// not colours.
+function mapTexture(map: string[], steps: boolean): three.DataTexture {
+  const count = steps ? map.length : texels;
+  const data = new Uint8Array(4 * count);
+  for (let i = 0; i < count; ++i) data.set([...colourAt(map, i / (count - 1)), 255], 4 * i);
+  const texture = new three.DataTexture(data, count, 1);
+  texture.colorSpace = three.SRGBColorSpace;
+  texture.magFilter = texture.minFilter = steps ? three.NearestFilter : three.LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+export class EmbryoScene {
+  readonly scene = new three.Scene();
+  private readonly light = new three.DirectionalLight(0xffffff, 1.5);
+  private readonly textures = new Map<string, three.DataTexture>();
+  private readonly plane = new three.Plane();
+  private readonly skinMaterial = new three.MeshLambertMaterial({
+    flatShading: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+  });
+  private readonly capMaterial = new three.MeshBasicMaterial({
+    side: three.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+  });
+  private readonly lineMaterial = new three.LineBasicMaterial({ color: lineColour, transparent: true, opacity: 0.6 });
+  private readonly capLineMaterial = new three.LineBasicMaterial({ color: lineColour });
+  private readonly shellMaterial = new three.MeshBasicMaterial({
+    color: 0x7f8fa6, transparent: true, opacity: 0.16, depthWrite: false, side: three.BackSide,
+  });
+  private readonly pickedMaterial = new LineMaterial({ color: pickedColour, linewidth: 3.5 });
+
+  private readonly skin = new three.Mesh(new three.BufferGeometry(), this.skinMaterial);
+  private readonly lines = new three.LineSegments(new three.BufferGeometry(), this.lineMaterial);
+  private readonly cap = new three.Mesh(new three.BufferGeometry(), this.capMaterial);
+  private readonly capLines = new three.LineSegments(new three.BufferGeometry(), this.capLineMaterial);
+  private readonly pickedLines = new LineSegments2(new LineSegmentsGeometry(), this.pickedMaterial);
+  private readonly shell: three.Mesh | null;
+
+  private topology: Topology | null = null;
+  private positions = new Float32Array(0);
+  private values = new Float32Array(0);
+  private polygons: CutPolygon[] = [];
+  private elementOfCapTriangle: number[] = [];
+
+  constructor(private readonly run: Run, page: PageData) {
+    for (const [name, map] of Object.entries(page.maps)) this.textures.set(name, mapTexture(map, name === "steps"));
+    this.shell = this.makeShell();
+    this.scene.add(new three.AmbientLight(0xffffff, 2.1), this.light, this.light.target);
+    for (const object of [this.skin, this.lines, this.cap, this.capLines, this.pickedLines]) {
+      object.frustumCulled = false;
+      this.scene.add(object);
+    }
+  }
+
+  /** Light from the eye's upper left. */
+  lightFrom(camera: three.Camera): void {
+    this.light.position.set(-0.5, 0.7, 1).applyQuaternion(camera.quaternion);
+  }
+
+  show(place: Place, field: Field, cut: Cut | null, options: { edges: boolean; shell: boolean }, picked: number): void {
+    if (place.topology !== this.topology) this.take(place.topology);
+    const topology = place.topology;
+    topology.positions(place.moment, place.part, this.positions);
+    topology.values(field, place.moment, place.part, this.values);
+    const texture = this.textures.get(field.map)!;
+    for (const material of [this.skinMaterial, this.capMaterial])
+      if (material.map !== texture) {
+        material.map = texture;
+        material.needsUpdate = true;
+      }
+    this.fillSkin(topology, field);
+    this.fillLines(topology);
+    this.fillCut(topology, field, cut);
+    this.fillPicked(topology, picked);
+    this.lines.visible = options.edges;
+    this.capLines.visible = options.edges && cut !== null;
+    if (this.shell) this.shell.visible = options.shell;
+  }
+
+  /** The cell that a ray meets first; -1 where it meets none. */
+  cellOn(ray: three.Raycaster, cut: Cut | null): number {
+    const topology = this.topology;
+    if (!topology) return -1;
+    const skinHit = ray.intersectObject(this.skin, false).find((hit) => !cut || this.plane.distanceToPoint(hit.point) > 0);
+    const capHit = cut ? ray.intersectObject(this.cap, false)[0] : undefined;
+    const element = (hit: three.Intersection) => topology.elementOfFacet[Math.floor(hit.faceIndex! / 4)];
+    if (capHit && (!skinHit || capHit.distance <= skinHit.distance))
+      return topology.cellOfElement[this.elementOfCapTriangle[capHit.faceIndex!]];
+    return skinHit ? topology.cellOfElement[element(skinHit)] : -1;
+  }
+
+  /** How far the nodes reach from the embryo's centre in a direction of the picture (right, up), um. */
+  reach(right: three.Vector3, up: three.Vector3, along: three.Vector2): number {
+    const direction = right.clone().multiplyScalar(along.x).addScaledVector(up, along.y);
+    const { x, y, z } = direction;
+    let reach = -Infinity;
+    for (let n = 0; n < this.positions.length; n += 3)
+      reach = Math.max(reach, x * this.positions[n] + y * this.positions[n + 1] + z * this.positions[n + 2]);
+    return reach - direction.dot(new three.Vector3(...this.run.centre));
+  }
+
+  private makeShell(): three.Mesh | null {
+    const size = this.run.data.shell;
+    if (!size) return null;
+    const geometry = new three.CapsuleGeometry(size.radius_um, 2 * size.half_axis_um, 24, 64, 1).rotateZ(Math.PI / 2);
+    const shell = new three.Mesh(geometry, this.shellMaterial);
+    this.scene.add(shell);
+    return shell;
+  }
+
+  // New cells: arrays of the right size, and which corners make a triangle. Each facet has a fifth corner in its middle,
+  // so that a symmetric body is drawn symmetric.
+  private take(topology: Topology): void {
+    this.topology = topology;
+    this.positions = new Float32Array(3 * topology.nodes);
+    this.values = new Float32Array(Math.max(topology.nodes, topology.cells));
+    const facets = topology.facets.length / 4;
+    const triangles = new Uint32Array(12 * facets);
+    for (let f = 0; f < facets; ++f)
+      for (let i = 0; i < 4; ++i) triangles.set([5 * f + i, 5 * f + ((i + 1) % 4), 5 * f + 4], 12 * f + 3 * i);
+    this.skin.geometry.dispose();
+    this.skin.geometry = new three.BufferGeometry();
+    this.skin.geometry.setIndex(new three.BufferAttribute(triangles, 1));
+    this.skin.geometry.setAttribute("position", dynamic(new Float32Array(15 * facets), 3));
+    this.skin.geometry.setAttribute("uv", dynamic(new Float32Array(10 * facets).fill(0.5), 2));
+    this.lines.geometry.dispose();
+    this.lines.geometry = new three.BufferGeometry();
+    this.lines.geometry.setAttribute("position", dynamic(new Float32Array(3 * topology.outlines.length), 3));
+  }
+
+  private fillSkin(topology: Topology, field: Field): void {
+    const { facets, elementOfFacet, cellOfElement } = topology;
+    const points = this.skin.geometry.getAttribute("position") as three.BufferAttribute;
+    const uv = this.skin.geometry.getAttribute("uv") as three.BufferAttribute;
+    const [to, parts] = [points.array as Float32Array, uv.array as Float32Array];
+    for (let f = 0; f < facets.length / 4; ++f) {
+      const middle = [0, 0, 0, 0];
+      for (let i = 0; i < 4; ++i) {
+        const node = facets[4 * f + i];
+        for (let k = 0; k < 3; ++k) {
+          to[15 * f + 3 * i + k] = this.positions[3 * node + k];
+          middle[k] += this.positions[3 * node + k] / 4;
+        }
+        const value = this.values[field.on_nodes ? node : cellOfElement[elementOfFacet[f]]];
+        parts[10 * f + 2 * i] = this.texel(field, value);
+        middle[3] += value / 4;
+      }
+      to.set(middle.slice(0, 3), 15 * f + 12);
+      parts[10 * f + 8] = this.texel(field, middle[3]);
+    }
+    points.needsUpdate = uv.needsUpdate = true;
+    this.skin.geometry.boundingSphere = null;
+  }
+
+  // The texture's coordinate: the middles of its first and last texel are the ends of the scale.
+  private texel(field: Field, value: number): number {
+    const count = field.scale === "steps" ? this.textures.get("steps")!.image.width : texels;
+    return (0.5 + partOf(field, value) * (count - 1)) / count;
+  }
+
+  private fillLines(topology: Topology): void {
+    const points = this.lines.geometry.getAttribute("position") as three.BufferAttribute;
+    const to = points.array as Float32Array;
+    topology.outlines.forEach((node, i) => {
+      for (let k = 0; k < 3; ++k) to[3 * i + k] = this.positions[3 * node + k];
+    });
+    points.needsUpdate = true;
+  }
+
+  private fillCut(topology: Topology, field: Field, cut: Cut | null): void {
+    const planes = cut ? [this.plane] : null;
+    for (const material of [this.skinMaterial, this.lineMaterial, this.shellMaterial, this.pickedMaterial])
+      material.clippingPlanes = planes;
+    this.cap.visible = cut !== null;
+    this.polygons = [];
+    if (!cut) return;
+    this.plane.normal.set(0, 0, 0).setComponent(cut.axis, cut.keep);
+    this.plane.constant = -cut.keep * cut.at;
+    this.polygons = cutByPlane(topology, this.positions, cut);
+    const points: number[] = [];
+    const parts: number[] = [];
+    this.elementOfCapTriangle = [];
+    for (const { element, corners } of this.polygons) {
+      const values = corners.map((corner) =>
+        field.on_nodes
+          ? (1 - corner.part) * this.values[corner.first] + corner.part * this.values[corner.second]
+          : this.values[topology.cellOfElement[element]],
+      );
+      const middle = [0, 1, 2].map((i) => corners.reduce((sum, corner) => sum + corner.point[i], 0) / corners.length);
+      const middleValue = values.reduce((sum, value) => sum + value, 0) / values.length;
+      corners.forEach((corner, i) => {
+        const next = (i + 1) % corners.length;
+        points.push(...corner.point, ...corners[next].point, ...middle);
+        for (const value of [values[i], values[next], middleValue]) parts.push(this.texel(field, value), 0.5);
+        this.elementOfCapTriangle.push(element);
+      });
+    }
+    refill(this.cap, points, parts);
+    refill(this.capLines, cutOutlines(topology, this.polygons).flatMap(([a, b]) => [...a.point, ...b.point]));
+  }
+
+  private fillPicked(topology: Topology, cell: number): void {
+    this.pickedLines.visible = cell >= 0;
+    if (cell < 0) return;
+    const points: number[] = [];
+    const own = new Set(topology.elementsOfCell[cell]);
+    const push = (a: number, b: number) => {
+      for (const node of [a, b]) points.push(...this.positions.subarray(3 * node, 3 * node + 3));
+    };
+    topology.elementOfFacet.forEach((element, f) => {
+      if (own.has(element))
+        for (let i = 0; i < 4; ++i) push(topology.facets[4 * f + i], topology.facets[4 * f + ((i + 1) % 4)]);
+    });
+    for (const { element, corners } of this.polygons)
+      if (own.has(element))
+        corners.forEach((corner, i) => points.push(...corner.point, ...corners[(i + 1) % corners.length].point));
+    this.pickedLines.geometry.dispose();
+    this.pickedLines.geometry = new LineSegmentsGeometry().setPositions(points);
+  }
+}
+
+function dynamic(array: Float32Array, size: number): three.BufferAttribute {
+  return new three.BufferAttribute(array, size).setUsage(three.DynamicDrawUsage);
+}
+
+function refill(object: three.Mesh | three.LineSegments, points: number[], parts?: number[]): void {
+  object.geometry.dispose();
+  object.geometry = new three.BufferGeometry();
+  object.geometry.setAttribute("position", new three.BufferAttribute(new Float32Array(points), 3));
+  if (parts) object.geometry.setAttribute("uv", new three.BufferAttribute(new Float32Array(parts), 2));
+}

@@ -1,0 +1,219 @@
+// A run: its tables, and its frames as positions and values at any moment.
+import { PackedArrays, inflate } from "./packed";
+import type { Field, RunData, Vec3 } from "./page_data";
+import { Table } from "./table";
+
+/** The frames between two divisions: the same cells of the same elements, at several times. */
+export class Topology {
+  readonly nodes: number;
+  readonly cells: number;
+  readonly times: number[];
+  readonly elements: Uint32Array; // 8 nodes each
+  readonly cellOfElement: Uint32Array;
+  readonly elementsOfCell: number[][];
+  readonly facets: Uint32Array; // 4 nodes each
+  readonly elementOfFacet: Uint32Array;
+  readonly outlines: Uint32Array; // 2 nodes each
+  readonly cellIds: Uint32Array;
+  readonly generation: Uint32Array;
+  private readonly motherIds: Uint32Array;
+  private readonly regions: Uint32Array;
+  private readonly arrays = new Map<string, Uint16Array>();
+
+  constructor(private readonly data: RunData, private readonly packed: PackedArrays, readonly index: number) {
+    const entry = data.topologies[index];
+    this.nodes = entry.nodes;
+    this.cells = entry.cells;
+    this.times = entry.times_s;
+    const ids = (name: string) => packed.get(`${index}/${name}`) as Uint32Array;
+    this.elements = ids("elements");
+    this.cellOfElement = ids("cell_of_element");
+    this.facets = ids("facets");
+    this.elementOfFacet = ids("element_of_facet");
+    this.outlines = ids("outlines");
+    this.cellIds = ids("cell_id");
+    this.generation = ids("generation");
+    this.motherIds = ids("mother_id");
+    this.regions = ids("regions");
+    this.elementsOfCell = Array.from({ length: this.cells }, () => []);
+    this.cellOfElement.forEach((cell, element) => this.elementsOfCell[cell].push(element));
+  }
+
+  /** The cell with this id, as a number in this topology; -1 where there is none. */
+  cellWith(id: number): number {
+    return this.cellIds.indexOf(id);
+  }
+
+  motherOf(cell: number): number | null {
+    return this.motherIds[cell] === 0 ? null : this.motherIds[cell] - 1;
+  }
+
+  regionsOf(cell: number): string[] {
+    return this.data.regions.filter((_, bit) => (this.regions[cell] >>> bit) & 1);
+  }
+
+  nodesOfCell(cell: number): number[] {
+    return this.elementsOfCell[cell].flatMap((e) => Array.from(this.elements.subarray(8 * e, 8 * e + 8)));
+  }
+
+  /** Positions at a moment of this topology, and `part` of the way to the next; um, 3 a node. */
+  positions(moment: number, part: number, out: Float32Array): void {
+    const { low, high } = this.data.box;
+    const steps = this.array("positions");
+    const at = moment * 3 * this.nodes;
+    const next = part > 0 ? at + 3 * this.nodes : at;
+    const scale = [0, 1, 2].map((i) => (high[i] - low[i]) / 65535);
+    for (let n = 0; n < 3 * this.nodes; n += 3)
+      for (let i = 0; i < 3; ++i)
+        out[n + i] = low[i] + scale[i] * (steps[at + n + i] + part * (steps[next + n + i] - steps[at + n + i]));
+  }
+
+  /** The field's values, likewise: one a node or a cell. */
+  values(field: Field, moment: number, part: number, out: Float32Array): void {
+    const range = this.data.fields[field.name];
+    const steps = this.array(field.name);
+    const count = field.on_nodes ? this.nodes : this.cells;
+    const scale = (range.high - range.low) / 65535;
+    const at = moment * count;
+    const next = part > 0 ? at + count : at;
+    for (let i = 0; i < count; ++i)
+      out[i] = range.low + scale * (steps[at + i] + part * (steps[next + i] - steps[at + i]));
+  }
+
+  /** The field's value of a cell; of one on nodes, the mean over the cell's. */
+  valueOfCell(field: Field, moment: number, cell: number): number {
+    const values = this.scratch(field);
+    this.values(field, moment, 0, values);
+    if (!field.on_nodes) return values[cell];
+    const nodes = this.nodesOfCell(cell);
+    return nodes.reduce((sum, node) => sum + values[node], 0) / nodes.length;
+  }
+
+  private array(name: string): Uint16Array {
+    let array = this.arrays.get(name);
+    if (!array) this.arrays.set(name, (array = this.packed.get(`${this.index}/${name}`) as Uint16Array));
+    return array;
+  }
+
+  private scratchValues = new Float32Array(0);
+  private scratch(field: Field): Float32Array {
+    const count = field.on_nodes ? this.nodes : this.cells;
+    if (this.scratchValues.length < count) this.scratchValues = new Float32Array(Math.max(this.nodes, this.cells));
+    return this.scratchValues;
+  }
+}
+
+/** A place in a run's frames: a moment of a topology, and how far it has gone to the next one. */
+export interface Place {
+  topology: Topology;
+  moment: number;
+  part: number;
+}
+
+export class Run {
+  readonly series: Table;
+  readonly midline: Table;
+  readonly frames: { topology: Topology; moment: number; time: number }[] = [];
+
+  private constructor(readonly data: RunData, readonly number: number, readonly topologies: Topology[]) {
+    this.series = new Table(data.series);
+    this.midline = new Table(data.midline);
+    for (const topology of topologies)
+      topology.times.forEach((time, moment) => this.frames.push({ topology, moment, time }));
+  }
+
+  static async read(data: RunData, number: number): Promise<Run> {
+    const element = document.getElementById(`frames-${number}`)!;
+    const packed = new PackedArrays(await inflate(element.textContent!), data.arrays);
+    element.textContent = "";
+    return new Run(data, number, data.topologies.map((_, i) => new Topology(data, packed, i)));
+  }
+
+  get name(): string {
+    return this.data.name;
+  }
+
+  get title(): string {
+    const title = this.data.summary?.title;
+    return typeof title === "string" && title !== "" ? title : this.name;
+  }
+
+  get hasFrames(): boolean {
+    return this.frames.length > 0;
+  }
+
+  get endTime(): number {
+    const rows = this.series.rows;
+    return Math.max(this.frames.at(-1)?.time ?? 0, rows.at(-1)?.[0] ?? 0);
+  }
+
+  /** The last frame at or before the time. */
+  frameAt(time: number): number {
+    let low = 0;
+    for (let high = this.frames.length - 1; low < high; ) {
+      const middle = Math.ceil((low + high) / 2);
+      if (this.frames[middle].time <= time + 1e-6) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  }
+
+  placeAt(time: number): Place {
+    const index = this.frameAt(time);
+    const { topology, moment } = this.frames[index];
+    const next = this.frames[index + 1];
+    const within = next && next.topology === topology && time > this.frames[index].time;
+    const part = within ? (time - this.frames[index].time) / (next.time - this.frames[index].time) : 0;
+    return { topology, moment, part: part < 1e-9 ? 0 : Math.min(part, 1) };
+  }
+
+  get centre(): Vec3 {
+    const { low, high } = this.data.box;
+    return [0, 1, 2].map((i) => (low[i] + high[i]) / 2) as Vec3;
+  }
+
+  /** Half the size of the box around all frames, um. */
+  get halfSize(): Vec3 {
+    const { low, high } = this.data.box;
+    return [0, 1, 2].map((i) => (high[i] - low[i]) / 2) as Vec3;
+  }
+
+  /** The cell itself at that frame or, where it is not yet born, the one that it comes from; -1 where it has divided. */
+  ancestorAt(id: number, topology: Topology): number {
+    for (let t = this.topologies.length - 1, wanted: number | null = id; wanted !== null; ) {
+      const here = topology.cellWith(wanted);
+      if (here >= 0) return here;
+      // Its mother is known where the cell lives.
+      let mother: number | null = null;
+      for (let i = t; i >= 0; --i) {
+        const cell = this.topologies[i].cellWith(wanted);
+        if (cell >= 0) {
+          mother = this.topologies[i].motherOf(cell);
+          t = i;
+          break;
+        }
+      }
+      wanted = mother;
+    }
+    return -1;
+  }
+
+  daughtersOf(id: number): number[] {
+    const daughters = new Set<number>();
+    for (const topology of this.topologies)
+      topology.cellIds.forEach((daughter, cell) => {
+        if (topology.motherOf(cell) === id) daughters.add(daughter);
+      });
+    return [...daughters];
+  }
+
+  /** The field of a cell over the frames, those of its mothers before its birth; nothing after it has divided. */
+  history(field: Field, id: number): { time: number; value: number }[] {
+    const points: { time: number; value: number }[] = [];
+    for (const { topology, moment, time } of this.frames) {
+      const cell = this.ancestorAt(id, topology);
+      if (cell >= 0) points.push({ time, value: topology.valueOfCell(field, moment, cell) });
+    }
+    return points;
+  }
+}

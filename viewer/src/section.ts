@@ -1,0 +1,69 @@
+// What a plane shows of the inside: where it cuts the elements. The C++ of pictures has the same: src/output/skin.cpp.
+import type { Cut } from "./state";
+import type { Topology } from "./run";
+
+const hexEdges = [
+  [0, 1], [3, 2], [4, 5], [7, 6], [0, 3], [1, 2], [4, 7], [5, 6], [0, 4], [1, 5], [2, 6], [3, 7],
+];
+
+/** A corner of a cut lies between two nodes: (1 - part) first + part second. */
+interface Corner {
+  first: number;
+  second: number;
+  part: number;
+  point: [number, number, number];
+}
+
+export interface CutPolygon {
+  element: number;
+  corners: Corner[]; // around their middle
+}
+
+export function cutByPlane(topology: Topology, positions: Float32Array, cut: Cut): CutPolygon[] {
+  const { elements } = topology;
+  const polygons: CutPolygon[] = [];
+  for (let e = 0; e < elements.length / 8; ++e) {
+    let least = Infinity;
+    let greatest = -Infinity;
+    for (let k = 0; k < 8; ++k) {
+      const height = positions[3 * elements[8 * e + k] + cut.axis];
+      least = Math.min(least, height);
+      greatest = Math.max(greatest, height);
+    }
+    if (least >= cut.at || greatest < cut.at) continue;
+    const corners: Corner[] = [];
+    for (const [a, b] of hexEdges) {
+      const first = elements[8 * e + a];
+      const second = elements[8 * e + b];
+      const before = positions[3 * first + cut.axis] - cut.at;
+      const after = positions[3 * second + cut.axis] - cut.at;
+      if (before < 0 === after < 0) continue;
+      const part = before / (before - after);
+      const point = [0, 1, 2].map((i) => (1 - part) * positions[3 * first + i] + part * positions[3 * second + i]);
+      corners.push({ first, second, part, point: point as [number, number, number] });
+    }
+    if (corners.length >= 3) polygons.push({ element: e, corners: aroundMiddle(corners, cut.axis) });
+  }
+  return polygons;
+}
+
+function aroundMiddle(corners: Corner[], axis: number): Corner[] {
+  const [across, up] = [(axis + 1) % 3, (axis + 2) % 3];
+  const mean = (i: number) => corners.reduce((sum, corner) => sum + corner.point[i], 0) / corners.length;
+  const [middleAcross, middleUp] = [mean(across), mean(up)];
+  const angle = (corner: Corner) => Math.atan2(corner.point[up] - middleUp, corner.point[across] - middleAcross);
+  return corners.sort((a, b) => angle(a) - angle(b));
+}
+
+/** The sides of the polygons that part cells: those that no two polygons of one cell share. */
+export function cutOutlines(topology: Topology, polygons: CutPolygon[]): [Corner, Corner][] {
+  const sides = new Map<string, [Corner, Corner] | null>();
+  const name = (corner: Corner) => `${Math.min(corner.first, corner.second)}-${Math.max(corner.first, corner.second)}`;
+  for (const { element, corners } of polygons)
+    corners.forEach((corner, i) => {
+      const next = corners[(i + 1) % corners.length];
+      const key = `${topology.cellOfElement[element]} ${[name(corner), name(next)].sort().join(" ")}`;
+      sides.set(key, sides.has(key) ? null : [corner, next]);
+    });
+  return [...sides.values()].filter((side) => side !== null) as [Corner, Corner][];
+}

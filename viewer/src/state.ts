@@ -1,0 +1,49 @@
+// What the page shows just now. Parts of the page change it and are told when it has changed.
+import type { Field, View } from "./page_data";
+
+export interface Cut {
+  axis: number; // 0 x, 1 y, 2 z
+  at: number; // um
+  keep: 1 | -1; // which side stays: 1 that of greater coordinates
+}
+
+export interface Picked {
+  run: number;
+  id: number; // of the cell
+}
+
+export interface PageState {
+  time: number; // s
+  playing: boolean;
+  speed: number; // s of the embryo in a second
+  field: Field;
+  view: View;
+  cut: Cut | null;
+  edges: boolean;
+  shell: boolean;
+  marks: boolean;
+  picked: Picked | null;
+}
+
+export type Key = keyof PageState;
+
+export class State {
+  private readonly listeners: { keys: Key[]; tell: () => void }[] = [];
+
+  constructor(private readonly values: PageState) {}
+
+  get now(): Readonly<PageState> {
+    return this.values;
+  }
+
+  set(changes: Partial<PageState>): void {
+    const changed = (Object.keys(changes) as Key[]).filter((key) => this.values[key] !== changes[key]);
+    Object.assign(this.values, changes);
+    for (const { keys, tell } of this.listeners) if (keys.some((key) => changed.includes(key))) tell();
+  }
+
+  /** Calls `tell` at each change of one of these values. */
+  on(keys: Key[], tell: () => void): void {
+    this.listeners.push({ keys, tell });
+  }
+}

@@ -1,0 +1,47 @@
+// Numbers and names as people read them.
+
+/** Four or more significant digits, without a tail of zeros. */
+export function number(value: number | null | undefined, digits = 4): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size < 1e-3 || size >= 1e7) {
+    const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+    return `${Number(mantissa)}·10${superscript(Number(exponent))}`.replace("-", "−");
+  }
+  const text = size >= 10 ** digits ? value.toFixed(0) : String(Number(value.toPrecision(digits)));
+  return text.replace("-", "−");
+}
+
+function superscript(exponent: number): string {
+  return String(exponent).replace(/[-0-9]/g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]);
+}
+
+export function time(seconds: number): string {
+  return seconds < 120 ? `${number(seconds)} s` : `${number(seconds / 60)} min`;
+}
+
+const units: [RegExp, string][] = [
+  [/_um_per_min$/, "µm/min"],
+  [/_um_per_s$/, "µm/s"],
+  [/_um3$/, "µm³"],
+  [/_um2$/, "µm²"],
+  [/_um$/, "µm"],
+  [/_nN$/, "nN"],
+  [/_Pa$/, "Pa"],
+  [/_s$/, "s"],
+];
+
+/** A column or key as words and unit: "vml_speed_um_per_s" is ["VML speed", "µm/s"]. */
+export function words(key: string): [string, string] {
+  let name = key;
+  let unit = "";
+  for (const [ending, words] of units)
+    if (ending.test(key)) {
+      name = key.replace(ending, "");
+      unit = words;
+      break;
+    }
+  name = name.replaceAll("_", " ").replace(/\bvml\b/g, "VML").replace(/\bvce\b/g, "VCE").replace(/\bap\b/g, "place along the axis");
+  return [name, unit];
+}
