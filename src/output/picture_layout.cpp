@@ -35,7 +35,8 @@ double widest_em(const std::vector<std::string>& texts) {
 }
 
 std::string number_text(double value) {
-  std::string text = fmt::format("{:.4g}", value + 0.0);
+  const bool large = std::abs(value) >= 1e4 && std::abs(value) < 1e7;  // 15000, not 1.5e+04
+  std::string text = large ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value + 0.0);
   return text.starts_with('-') ? "\u2212" + text.substr(1) : text;
 }
 

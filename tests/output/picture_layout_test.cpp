@@ -96,6 +96,8 @@ TEST(PictureLayout, SaysWhatIsShown) {
   plain.field = field("pressure");
   plain.range = {-200, 200};
   EXPECT_TRUE(contains(texts_of(make_layout(plain)), "\u2212100"));
+  plain.range = {0, 20000};
+  EXPECT_TRUE(contains(texts_of(make_layout(plain)), "15000"));
 }
 
 TEST(PictureLayout, MarksStandAtTheirEndsOfTheEmbryo) {
