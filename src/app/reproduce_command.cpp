@@ -64,6 +64,7 @@ int reproduce_paper(const ReproduceCommand& command) {
       [&](std::size_t done, std::size_t count, const std::string& id) { progress.show(done, count, id); }, interrupted);
   if (outcome.interrupted) return interrupted_status();
   for (const std::string& run : outcome.failed_runs) fmt::print(stderr, "plica: a run failed: {}\n", run);
+  for (const std::string& figure : outcome.missing_figures) fmt::print(stderr, "plica: missing: {}\n", figure);
   if (!command.quiet)
     fmt::print("{} claims: {} reproduced, {} reproduced under this reading, {} not reproduced\n  {}\n", outcome.claims,
                outcome.reproduced, outcome.under_this_reading,

@@ -1,4 +1,4 @@
-// Numbers as few bytes in a page of text: whole numbers coded so that they compress well, deflate, base64.
+// Numbers as few bytes in a page of text: whole numbers coded so that they compress well, deflate.
 // viewer/src/packed.ts reads them.
 #pragma once
 
@@ -51,8 +51,5 @@ struct Quantiser {
 
 /// zlib's format (RFC 1950). std::runtime_error when memory is short.
 std::string deflated(std::string_view bytes);
-
-/// RFC 4648.
-std::string base64(std::string_view bytes);
 
 }  // namespace plica

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/base64.hpp"
 #include "core/errors.hpp"
 #include "core/version.hpp"
 #include "output/looks.hpp"

@@ -8,11 +8,10 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "measure/reference_run.hpp"
-#include "mechanics/vitelline.hpp"
 #include "output/looks.hpp"
 #include "output/results.hpp"
+#include "output/run_scenario.hpp"
 #include "output/skin.hpp"
-#include "scenario/load.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;
@@ -146,16 +145,11 @@ std::vector<std::string> regions_of(const Frame& frame) {
   return names;
 }
 
-// The vitelline shell as the scenario's run had it.
-ordered_json shell_of(const fs::path& directory, const Frame& rest) {
-  const std::string text = text_of(directory / "scenario.toml");
-  if (text.empty()) return nullptr;
-  const Scenario scenario = load_scenario({"scenario", (directory / "scenario.toml").string(), text});
-  const EmbryoInput& embryo = scenario.embryo;
-  if (!scenario.vitelline.enabled || embryo.shape == "block") return nullptr;
-  const double radius = embryo.diameter_um / 2, half_axis = embryo.shape == "pill" ? embryo.length_um / 2 - radius : 0;
-  const Capsule shell = embryo.shape == "file" ? enclosing_capsule(rest.positions) : Capsule{half_axis, radius};
-  return {{"half_axis_um", shell.half_axis_um}, {"radius_um", shell.radius_um + scenario.vitelline.gap_um}};
+ordered_json shell_json(const fs::path& directory, const Frame& rest) {
+  const std::optional<Scenario> scenario = scenario_of_run(directory);
+  const std::optional<Capsule> shell = scenario ? shell_of_run(*scenario, rest.positions) : std::nullopt;
+  if (!shell) return nullptr;
+  return {{"half_axis_um", shell->half_axis_um}, {"radius_um", shell->radius_um}};
 }
 
 template <class Ids>
@@ -244,7 +238,7 @@ void read_frames(const fs::path& directory, double most_bytes, ReportRun& run) {
     const Frame frame = frames.frame(i);
     if (topologies.empty()) {
       regions = regions_of(frame);
-      run.json["shell"] = shell_of(directory, frame);
+      run.json["shell"] = shell_json(directory, frame);
     }
     if (topologies.empty() || !shows(topologies.back(), frame)) topologies.push_back(topology_of(frame, regions));
     topologies.back().moments.push_back(moment_of(frame, topologies.back(), times[i]));

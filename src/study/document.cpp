@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base64.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "study/svg.hpp"
@@ -14,6 +15,8 @@ template <class... Takes>
 struct Overloaded : Takes... {
   using Takes::operator()...;
 };
+
+std::string file_name(const Figure& figure) { return figure.name + (figure.png.empty() ? ".svg" : ".png"); }
 
 // `|` would end a cell of a Markdown table.
 std::string cell_text(const std::string& text) {
@@ -39,7 +42,7 @@ std::string markdown(const Document& document) {
         for (const auto& cells : table.rows) row(cells);
       },
       [&](const Figure& figure) {
-        text += fmt::format("\n![{0}](figures/{0}.svg)\n\n{1}", figure.name, figure.caption);
+        text += fmt::format("\n![{}](figures/{})\n\n{}", figure.name, file_name(figure), figure.caption);
         if (!figure.csv.empty()) text += fmt::format(" Data: `figures/{}.csv`.", figure.name);
         text += "\n";
       }};
@@ -71,7 +74,8 @@ constexpr const char* style =
     "body{font:15px/1.5 system-ui,sans-serif;color:#111;background:#fff;max-width:75rem;margin:2rem auto;padding:0 "
     "1rem}table{border-collapse:collapse;margin:1rem 0;font-size:13px}th,td{border:1px solid #ccc;padding:.3rem "
     ".5rem;text-align:left;vertical-align:top}th{background:#f3f3f3}tbody tr:nth-child(even){background:#fafafa}"
-    "figure{margin:2rem 0}figure svg{max-width:100%;height:auto}figcaption{max-width:60rem}.yes{background:#dcefe6}"
+    "figure{margin:2rem 0}figure svg,figure "
+    "img{max-width:100%;height:auto}figcaption{max-width:60rem}.yes{background:#dcefe6}"
     ".reading{background:#f5ecc8}.no{background:#f6dcd2}";
 
 // Verdicts carry a colour, beside the word.
@@ -101,6 +105,13 @@ std::string html(const Document& document) {
                               body += "</tbody></table>\n";
                             },
                             [&](const Figure& figure) {
+                              if (!figure.png.empty()) {
+                                body += fmt::format(
+                                    "<figure>\n<img alt=\"{}\" src=\"data:image/png;base64,{}\">"
+                                    "<figcaption>{}</figcaption>\n</figure>\n",
+                                    xml_escaped(figure.name), base64(figure.png), inline_html(figure.caption));
+                                return;
+                              }
                               // Inline SVG needs no namespace, and so the page holds no address.
                               std::string svg = figure.svg;
                               constexpr std::string_view name_space = " xmlns=\"http://www.w3.org/2000/svg\"";
@@ -125,7 +136,7 @@ void write_document(const fs::path& directory, const std::string& name, const Do
   if (error) throw FileError((directory / "figures").string() + ": cannot be made: " + error.message());
   for (const auto& block : document.blocks)
     if (const auto* figure = std::get_if<Figure>(&block)) {
-      write_file(directory / "figures" / (figure->name + ".svg"), figure->svg);
+      write_file(directory / "figures" / file_name(*figure), figure->png.empty() ? figure->svg : figure->png);
       if (!figure->csv.empty()) write_file(directory / "figures" / (figure->name + ".csv"), figure->csv);
     }
   write_file(directory / (name + ".md"), markdown(document));

@@ -21,10 +21,11 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 struct Figure {
-  std::string name;     // of its files in figures/
-  std::string svg;      // the whole file
-  std::string caption;  // in our words
-  std::string csv;      // what is drawn; empty for a picture
+  std::string name;      // of its files in figures/
+  std::string svg;       // the whole file; empty for a picture
+  std::string caption;   // in our words
+  std::string csv;       // what is drawn; empty for a picture
+  std::string png = {};  // of a picture, the whole file
 };
 
 struct Document {

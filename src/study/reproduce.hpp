@@ -20,6 +20,7 @@ struct ReproduceOutcome {
   bool interrupted = false;
   int claims = 0, reproduced = 0, under_this_reading = 0;  // rows, and how many have the better verdicts
   std::vector<std::string> failed_runs;                    // id and message
+  std::vector<std::string> missing_figures;                // name and why
 };
 
 /// Makes the runs (DIR/runs, over those that lie there) and writes DIR/reproduction.md and .html with DIR/figures.
@@ -33,7 +34,8 @@ Document reproduction_document(const Results& results, const Measured& measured,
                                ReproduceOutcome& outcome);
 
 /// Plots and pictures of the paper's figures 4, 5 and 7 to 11, of the mechanism, the onset and the trade-off. What its
-/// runs lack is left out.
-std::vector<Figure> reproduction_figures(const Results& results, const Measured& measured);
+/// runs lack is left out. Names of those that could not be made, with the reason, are added to `missing`.
+std::vector<Figure> reproduction_figures(const Results& results, const Measured& measured,
+                                         std::vector<std::string>& missing);
 
 }  // namespace plica

@@ -3,31 +3,18 @@
 #include <algorithm>
 
 #include "core/errors.hpp"
-#include "measure/reference_run.hpp"
+#include "output/results.hpp"
 #include "study/plot.hpp"
 #include "study/reproduce.hpp"
 #include "study/reproduce_mechanism.hpp"
-#include "output/results.hpp"
-#include "study/sketch.hpp"
+#include "study/reproduce_pictures.hpp"
 
 namespace plica {
 namespace {
 
-constexpr double small_um_per_pixel = 1.9, large_um_per_pixel = 1.2;
-const ColourScale displacement_scale{"displacement from rest, um", 0, 35};
-
 Figure chart(const std::string& name, const Plot& plot, const std::string& caption) {
   return {name, draw(plot).file(plot.title), caption, plot_csv(plot)};
 }
-
-// The frame whose time is nearest.
-Frame frame_near(const ReferenceRun& run, double time_s) {
-  const std::vector<double> times = run.times_s();
-  const auto nearest = std::ranges::min_element(times, {}, [&](double time) { return std::abs(time - time_s); });
-  return run.frame_at(*nearest).value();
-}
-
-std::string minutes(double time_s) { return fmt::format("{:.3g} min", time_s / 60); }
 
 Curve column_of(const Series& series, const std::string& name, const std::string& column) {
   Curve curve{name, {}, {}};
@@ -48,53 +35,6 @@ Figure speeds(const Results& results, const std::string& embryo, const std::stri
             {{"largest difference, paper", 30, {}}, {"equal speeds and rest, paper", 900, {}}},
             {}};
   return chart(name, plot, caption);
-}
-
-// Figs. 7 and 11: the same moments from two sides.
-Figure two_views(const Results& results, const std::string& run_id, const std::string& name, const std::string& title,
-                 const std::string& caption) {
-  const ReferenceRun run(results.folder(run_id));
-  std::vector<std::pair<std::string, Svg>> pictures;
-  for (const bool from_front : {true, false})
-    for (const double time_s : {0.0, 60.0, 300.0, 900.0}) {
-      const Frame frame = frame_near(run, time_s);
-      pictures.emplace_back(fmt::format("{}, {}", from_front ? "antero-ventral" : "ventral", minutes(*frame.time_s)),
-                            sketch_surface(frame, displacements(frame), displacement_scale,
-                                           from_front ? antero_ventral_view() : ventral_view(), small_um_per_pixel));
-    }
-  return {name, strip(pictures, 4, displacement_scale).file(title), caption, ""};
-}
-
-// Fig. 9: sections at 15 min.
-Figure sections(const Results& results) {
-  const Frame frame = frame_near(ReferenceRun(results.folder("main-pill")), 900);
-  const std::vector<double> values = displacements(frame);
-  const std::vector<std::pair<std::string, Svg>> pictures = {
-      {"across, x = 5 um", sketch_section(frame, values, displacement_scale, 0, 5, large_um_per_pixel)},
-      {"along, y = 0", sketch_section(frame, values, displacement_scale, 1, 0, large_um_per_pixel)}};
-  return {
-      "fig9-sections", strip(pictures, 2, displacement_scale).file("Sections of the pill at 15 min"),
-      "**Fig. 9.** The pill at 15 min, cut across its middle and along its axis (belly down), coloured by how far "
-      "nodes "
-      "have moved. The floor has moved in as a whole; in the chosen reading the middle has by then overtaken the ends.",
-      ""};
-}
-
-// Fig. 10: from below at four times.
-Figure ventral_strip(const Results& results) {
-  const ReferenceRun run(results.folder("main-pill"));
-  std::vector<std::pair<std::string, Svg>> pictures;
-  for (const double time_s : {60.0, 300.0, 600.0, 900.0, 1200.0}) {
-    const Frame frame = frame_near(run, time_s);
-    pictures.emplace_back(minutes(*frame.time_s), sketch_surface(frame, displacements(frame), displacement_scale,
-                                                                 ventral_view(), small_um_per_pixel));
-  }
-  return {
-      "fig10-ventral", strip(pictures, 3, displacement_scale).file("The pill from below"),
-      "**Fig. 10.** The pill from below at the paper's times, and at 1 min before them, coloured by how far nodes have "
-      "moved. At 1 min the ends of the strip have moved most; from 5 min on little changes but the depth of the "
-      "middle.",
-      ""};
 }
 
 Plot onset_plot(const Onsets& pill, const Onsets& sphere) {
@@ -142,22 +82,6 @@ std::optional<Plot> trade_off(const Measured& measured) {
   return plot.curves.empty() ? std::nullopt : std::optional(plot);
 }
 
-// Fig. 4: the three cells from the side, at the moments that the paper shows.
-Figure division_demo(const Results& results) {
-  const ReferenceRun run(results.folder("division-demo"));
-  const ColourScale scale{"displacement from rest, um", 0, 12};
-  std::vector<std::pair<std::string, Svg>> pictures;
-  for (const double time_s : {0.0, 60.0, 90.0, 180.0, 360.0, 1800.0}) {
-    const Frame frame = frame_near(run, time_s);
-    pictures.emplace_back(minutes(*frame.time_s), sketch_section(frame, displacements(frame), scale, 1, 0.01, 0.5));
-  }
-  return {
-      "fig4-division", strip(pictures, 3, scale).file("Division of one cell among three"),
-      "**Fig. 4.** The middle one of three cells is cut across the row at 1 min; its daughters share the new facet and "
-      "grow to what their mother was. Cut along the row, seen from the side.",
-      ""};
-}
-
 Figure division_volumes(const Results& results) {
   const Series cells = read_table(results.folder("division-demo") / "cells.csv");
   const std::size_t id = cells.column("cell_id").value(), volume = cells.column("volume_um3").value();
@@ -176,25 +100,6 @@ Figure division_volumes(const Results& results) {
       "fig4-volumes", plot,
       "**Fig. 4, volumes.** The daughters begin with half of their mother's volume each and end with the whole of "
       "it; the neighbours keep theirs.");
-}
-
-// Fig. 5: cross-sections with and without division, and the distance between the lips.
-Figure division_sections(const Results& results) {
-  std::vector<std::pair<std::string, Svg>> pictures;
-  const ColourScale scale{"displacement from rest, um", 0, 90};
-  for (const auto& [id, words] : {std::pair{"division", "with division"},
-                                  {"division-without", "without"},
-                                  {"division-twice", "with a second round"}}) {
-    if (!results.has(id)) continue;
-    const Frame frame = ReferenceRun(results.folder(id)).last_frame();
-    pictures.emplace_back(fmt::format("{}, {}", words, minutes(*frame.time_s)),
-                          sketch_section(frame, displacements(frame), scale, 0, 3, large_um_per_pixel));
-  }
-  return {"fig5-sections", strip(pictures, 3, scale).file("Cross-sections with and without division"),
-          "**Fig. 5.** Cross-sections beside the middle, belly down: where the cells of the floor have divided and "
-          "grown, and "
-          "where they have not.",
-          ""};
 }
 
 Figure division_lips(const Results& results) {
@@ -225,42 +130,36 @@ Figure division_push(const Results& results) {
 
 }  // namespace
 
-std::vector<Figure> reproduction_figures(const Results& results, const Measured& measured) {
+std::vector<Figure> reproduction_figures(const Results& results, const Measured& measured,
+                                         std::vector<std::string>& missing) {
   std::vector<Figure> figures;
-  // Pictures need frames, which a build without VTK neither writes nor reads.
-  const auto picture = [&](bool possible, const auto& make) {
+  const auto add = [&](const char* name, std::initializer_list<const char*> runs, const auto& make) {
+    if (!std::ranges::all_of(runs, [&](const char* run) { return results.has(run); })) return;
     try {
-      if (possible) figures.push_back(make());
-    } catch (const FileError&) {
+      figures.push_back(make());
+    } catch (const FileError& error) {
+      missing.push_back(fmt::format("{}: {}", name, error.what()));
     }
   };
-  picture(results.has("division-demo"), [&] { return division_demo(results); });
-  picture(results.has("division-demo"), [&] { return division_volumes(results); });
-  const bool divided = results.has("division") && results.has("division-without");
-  picture(divided, [&] { return division_sections(results); });
-  picture(divided, [&] { return division_lips(results); });
-  picture(divided, [&] { return division_push(results); });
-  picture(results.has("main-pill"), [&] {
-    return two_views(
-        results, "main-pill", "fig7-pill", "The pill invaginates",
-        "**Fig. 7.** The pill at four moments, seen from below and in front (upper row) and from below (lower "
-        "row; anterior is on the left), coloured by how far nodes have moved.");
+  ReproductionPictures pictures(results);
+  add("fig4-division", {"division-demo"}, [&] { return pictures.division_demo(); });
+  add("fig4-volumes", {"division-demo"}, [&] { return division_volumes(results); });
+  add("fig5-sections", {"division", "division-without"}, [&] { return pictures.division_sections(); });
+  add("fig5-lips", {"division", "division-without"}, [&] { return division_lips(results); });
+  add("fig5-push", {"division", "division-without"}, [&] { return division_push(results); });
+  add("fig7-pill", {"main-pill"}, [&] { return pictures.pill_from_two_sides(); });
+  add("fig8a-speeds", {"main-pill"}, [&] {
+    return speeds(results, "pill", "fig8a-speeds",
+                  "**Fig. 8a.** On the pill the end (VCE) sets off several times as fast as the middle (VML); the "
+                  "middle catches up, and overtakes. Both axes are logarithmic: the paper's are not.");
   });
-  if (results.has("main-pill"))
-    figures.push_back(
-        speeds(results, "pill", "fig8a-speeds",
-               "**Fig. 8a.** On the pill the end (VCE) sets off several times as fast as the middle (VML); the "
-               "middle catches up, and overtakes. Both axes are logarithmic: the paper's are not."));
-  if (results.has("main-sphere"))
-    figures.push_back(
-        speeds(results, "sphere", "fig8b-speeds",
-               "**Fig. 8b.** On the sphere, with the same springs, the two are close to each other throughout."));
-  picture(results.has("main-pill"), [&] { return sections(results); });
-  picture(results.has("main-pill"), [&] { return ventral_strip(results); });
-  picture(results.has("main-sphere"), [&] {
-    return two_views(results, "main-sphere", "fig11-sphere", "The sphere invaginates",
-                     "**Fig. 11.** The sphere at the same moments, from the same sides, in the same colours.");
+  add("fig8b-speeds", {"main-sphere"}, [&] {
+    return speeds(results, "sphere", "fig8b-speeds",
+                  "**Fig. 8b.** On the sphere, with the same springs, the two are close to each other throughout.");
   });
+  add("fig9-sections", {"main-pill"}, [&] { return pictures.pill_sections(); });
+  add("fig10-ventral", {"main-pill"}, [&] { return pictures.pill_from_below(); });
+  add("fig11-sphere", {"main-sphere"}, [&] { return pictures.sphere_from_two_sides(); });
   const Mechanism why = mechanism();
   figures.push_back(
       chart("mechanism", why.plot,

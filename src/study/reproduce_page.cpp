@@ -194,9 +194,11 @@ void add_error_bars(Document& page, const Measured& measured) {
   page.blocks.emplace_back(std::move(table));
 }
 
-void add_figures(Document& page, const Results& results, const Measured& measured) {
+void add_figures(Document& page, const Results& results, const Measured& measured, ReproduceOutcome& outcome) {
   page.blocks.emplace_back(Heading{2, "Figures"});
-  for (Figure& figure : reproduction_figures(results, measured)) page.blocks.emplace_back(std::move(figure));
+  std::vector<Figure> figures = reproduction_figures(results, measured, outcome.missing_figures);
+  for (const std::string& one : outcome.missing_figures) page.blocks.emplace_back(Paragraph{"Missing: " + one + "."});
+  for (Figure& figure : figures) page.blocks.emplace_back(std::move(figure));
 }
 
 }  // namespace
@@ -220,7 +222,7 @@ Document reproduction_document(const Results& results, const Measured& measured,
   for (const auto& [id, why] : plan.skipped)
     if (id.starts_with("division"))
       page.blocks.emplace_back(Paragraph{fmt::format("Not in this build: {}: {}.", id, why)});
-  add_figures(page, results, measured);
+  add_figures(page, results, measured, outcome);
   return page;
 }
 

@@ -7,10 +7,10 @@
 
 #include "core/errors.hpp"
 #include "measure/reference_run.hpp"
+#include "output/results.hpp"
 #include "scenario/load.hpp"
 #include "study/frame_surface.hpp"
 #include "study/reproduce_mechanism.hpp"
-#include "output/results.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;

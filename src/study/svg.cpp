@@ -31,13 +31,6 @@ std::string xml_escaped(const std::string& text) {
   return escaped;
 }
 
-void Svg::polygons(const std::vector<FilledPolygon>& polygons, const std::string& stroke, double stroke_width) {
-  shapes_ += fmt::format("<g stroke=\"{}\" stroke-width=\"{:.2g}\" stroke-linejoin=\"round\">\n", stroke, stroke_width);
-  for (const FilledPolygon& polygon : polygons)
-    shapes_ += fmt::format("<polygon points=\"{}\" fill=\"{}\"/>\n", joined(polygon.points), polygon.fill);
-  shapes_ += "</g>\n";
-}
-
 void Svg::polyline(const std::vector<Pixel>& points, const std::string& colour, double width,
                    const std::string& dashes) {
   const std::string pattern = dashes.empty() ? "" : fmt::format(" stroke-dasharray=\"{}\"", dashes);
@@ -61,10 +54,6 @@ void Svg::text(const Pixel& place, const std::string& words, const TextStyle& st
   shapes_ += fmt::format(
       "<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"{:.3g}\" text-anchor=\"{}\"{}{} fill=\"#111\">{}</text>\n", place[0],
       place[1], style.size, style.anchor, style.bold ? " font-weight=\"bold\"" : "", turn, xml_escaped(words));
-}
-
-void Svg::place(const Svg& picture, const Pixel& corner) {
-  shapes_ += fmt::format("<g transform=\"translate({:.1f} {:.1f})\">\n{}</g>\n", corner[0], corner[1], picture.shapes_);
 }
 
 std::string Svg::file(const std::string& title) const {

@@ -1,4 +1,4 @@
-// Vector pictures: the few shapes that plots and sketches need, written as SVG that any browser shows.
+// Vector pictures: the few shapes that plots need, written as SVG that any browser shows.
 #pragma once
 
 #include <array>
@@ -9,11 +9,6 @@ namespace plica {
 
 /// A place in a picture: pixels from its left and upper edge.
 using Pixel = std::array<double, 2>;
-
-struct FilledPolygon {
-  std::vector<Pixel> points;
-  std::string fill;
-};
 
 /// How text stands at its place.
 struct TextStyle {
@@ -28,16 +23,12 @@ class Svg {
  public:
   Svg(double width, double height) : width_(width), height_(height) {}
 
-  /// Filled polygons with a common outline, the later over the earlier.
-  void polygons(const std::vector<FilledPolygon>& polygons, const std::string& stroke, double stroke_width);
   /// `dashes` as SVG has them ("6 3"); empty for a whole line.
   void polyline(const std::vector<Pixel>& points, const std::string& colour, double width = 1.5,
                 const std::string& dashes = "");
   void circle(const Pixel& centre, double radius, const std::string& fill);
   void rectangle(const Pixel& corner, double width, double height, const std::string& fill);
   void text(const Pixel& place, const std::string& words, const TextStyle& style = {});
-  /// Another picture with its left upper corner at `corner`.
-  void place(const Svg& picture, const Pixel& corner);
 
   [[nodiscard]] double width() const { return width_; }
   [[nodiscard]] double height() const { return height_; }

@@ -1,4 +1,5 @@
 """`plica reproduce --quick`: the page, its verdicts and its files."""
+import base64
 import csv
 import math
 import re
@@ -43,16 +44,24 @@ class Reproduce(CommandLine):
         self.assertGreater(len(scores), 4)
         self.assertEqual(scores, sorted(scores))
 
-        for text in (page, html):
-            self.assertNotRegex(text, r"(?i)\bnan\b|\binf\b")
-        self.assertNotRegex(html, r"https?://|src=|href=|url\(")
-        self.assertEqual(html.count("<figure>"), html.count("</svg>"))
-        figures = re.findall(r"!\[.*?\]\((figures/.*?\.svg)\)", page)
-        for name in ("fig7-pill", "fig8a-speeds", "fig8b-speeds", "fig9-sections", "fig10-ventral", "fig11-sphere", "mechanism"):
+        for text in (page, re.sub(r"data:image/png;base64,[^\"]*", "", html)):
+            self.assertIsNone(re.search(r"(?i)\bnan\b|\binf\b", text))
+        self.assertNotIn("Missing:", page)
+        self.assertNotRegex(html, r"https?://|src=(?!\"data:image/png;base64,)|href=|url\(")
+        figures = re.findall(r"!\[.*?\]\((figures/.*?)\)", page)
+        for name in ("fig8a-speeds", "fig8b-speeds", "mechanism"):
             self.assertIn(f"figures/{name}.svg", figures)
+        for name in ("fig4-division", "fig7-pill", "fig9-sections", "fig10-ventral", "fig11-sphere"):
+            self.assertIn(f"figures/{name}.png", figures)
         for figure in figures:
-            root = xml.etree.ElementTree.parse(self.out / figure).getroot()
-            self.assertGreater(len(root), 3, figure)
+            content = (self.out / figure).read_bytes()
+            if figure.endswith(".png"):
+                self.assertTrue(content.startswith(b"\x89PNG"), figure)
+                self.assertGreater(len(content), 20000, figure)
+                self.assertIn(base64.b64encode(content).decode(), html)
+            else:
+                self.assertGreater(len(xml.etree.ElementTree.fromstring(content)), 3, figure)
+        self.assertEqual(html.count("<figure>"), len(figures))
         tables = list((self.out / "figures").glob("*.csv"))
         self.assertGreaterEqual(len(tables), 5)
         for path in tables:
@@ -62,6 +71,18 @@ class Reproduce(CommandLine):
         again = plica("reproduce", "--out", self.out, "--quick")
         self.assertEqual(again.returncode, 4)
         self.assertIn("--overwrite", self.assert_messages(again)[0])
+
+    def test_without_a_display_the_page_says_what_is_missing(self):
+        result = plica("reproduce", "--out", self.out, "--quick", "--quiet", timeout=280, env={"PATH": "/nonexistent"})
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        messages = self.assert_messages(result, 5)
+        page = (self.out / "reproduction.md").read_text()
+        for name, message in zip(("fig4", "fig7", "fig9", "fig10", "fig11"), messages):
+            self.assertIn(f"missing: {name}", message)
+            self.assertIn("apt-get install xvfb", message)
+            self.assertRegex(page, f"Missing: {name}-.*apt-get install xvfb")
+        self.assertIn("figures/fig8a-speeds.svg", page)
+        self.assertFalse(list((self.out / "figures").glob("*.png")))
 
     def test_an_interrupted_reproduction_ends_its_runs(self):
         process = support.start("reproduce", "--out", self.out, "--quick")

@@ -1,0 +1,228 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/interruption.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "output/run_pictures.hpp"
+#include "scenario/suggest.hpp"
+
+namespace plica {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RenderCommand {
+  std::string directory, out, colour = "displacement", range, size;
+  std::vector<std::string> views, times;
+  bool strip = false, movie = false, no_edges = false, shell = false, overwrite = false, quiet = false;
+};
+
+std::vector<std::string> names_of(const auto& things) {
+  std::vector<std::string> names;
+  for (const auto& thing : things) names.push_back(thing.name);
+  return names;
+}
+
+/// The view or quantity of that name.
+template <class Thing>
+const Thing& named(const char* option, const std::string& name, const std::vector<Thing>& things) {
+  const auto found = std::ranges::find(things, name, &Thing::name);
+  if (found != things.end()) return *found;
+  const std::vector<std::string> names = names_of(things);
+  const auto nearest = nearest_name(name, names);
+  throw UsageError(fmt::format("{} {}: there is none of that name; {}there are: {}", option, name,
+                               nearest ? fmt::format("did you mean {}? ", *nearest) : "", fmt::join(names, ", ")));
+}
+
+/// The number that `text` is and nothing else.
+std::optional<double> number_in(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+/// "5min", "300s" or "300" in seconds; nothing for "last".
+std::optional<double> seconds_in(const std::string& text) {
+  if (text == "last") return {};
+  const double unit_s = text.ends_with("min") ? 60 : 1;
+  const std::size_t unit_letters = text.ends_with("min") ? 3 : text.ends_with('s') ? 1 : 0;
+  const auto value = number_in(std::string_view(text).substr(0, text.size() - unit_letters));
+  if (!value) throw UsageError(fmt::format("--time {}: is no time; give 5min, 300s, 300 (seconds) or last", text));
+  return *value * unit_s;
+}
+
+ColourRange range_in(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const auto low = number_in(std::string_view(text).substr(0, colon));
+  const auto high = colon == std::string::npos ? std::nullopt : number_in(std::string_view(text).substr(colon + 1));
+  if (!low || !high || *low >= *high)
+    throw UsageError(fmt::format("--range {}: is no range; give LOW:HIGH, as in 0:30 or --range=-2:2", text));
+  return {*low, *high};
+}
+
+void read_size(const std::string& text, PictureOptions& options) {
+  const std::size_t by = text.find('x');
+  const auto width = number_in(std::string_view(text).substr(0, by));
+  const auto height = by == std::string::npos ? std::nullopt : number_in(std::string_view(text).substr(by + 1));
+  for (const auto side : {width, height})
+    if (!side || *side != std::floor(*side) || *side < smallest_picture_px || *side > largest_picture_px)
+      throw UsageError(fmt::format("--size {}: is no size; give WIDTHxHEIGHT in pixels, {} to {} each, as in 1200x800",
+                                   text, smallest_picture_px, largest_picture_px));
+  options.width_px = static_cast<int>(*width);
+  options.height_px = static_cast<int>(*height);
+}
+
+PictureOptions options_of(const RenderCommand& command) {
+  PictureOptions options;
+  std::vector<std::string> wanted = command.views;
+  if (wanted.empty()) wanted = {"antero-ventral"};
+  if (command.views.empty() && command.strip) wanted.emplace_back("cross-section");
+  for (const std::string& name : wanted) options.views.push_back(named("--view", name, views()));
+  options.field = named("--colour", command.colour, colour_fields());
+  if (!command.range.empty()) options.range = range_in(command.range);
+  if (!command.size.empty()) read_size(command.size, options);
+  options.edges = !command.no_edges;
+  options.shell = command.shell;
+  return options;
+}
+
+std::vector<double> times_of(const RenderCommand& command, const RunPictures& run) {
+  constexpr int panels_of_a_strip = 5;
+  if (command.times.empty())
+    return command.strip ? run.telling_times_s(panels_of_a_strip) : std::vector<double>{run.times_s().back()};
+  std::vector<double> times;
+  for (const std::string& text : command.times) {
+    const auto wanted_s = seconds_in(text);
+    const auto time_s = wanted_s ? run.nearest_time_s(*wanted_s) : run.times_s().back();
+    if (!time_s)
+      throw UsageError(fmt::format("--time {}: the frames of {} go from {} to {}", text, command.directory,
+                                   run.time_text(run.times_s().front()), run.time_text(run.times_s().back())));
+    times.push_back(*time_s);
+  }
+  return times;
+}
+
+void refuse_to_replace(const fs::path& file, bool overwrite) {
+  std::error_code error;
+  if (fs::is_directory(file, error)) throw FileError(file.string() + ": is a directory; give the name of a file");
+  if (!overwrite && fs::exists(file, error))
+    throw FileError(file.string() + ": is there already; give another --out, or --overwrite to replace it");
+}
+
+void write_picture(const fs::path& file, const std::string& png) {
+  std::error_code error;
+  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
+  write_file(file, png);
+}
+
+int draw_picture(const RenderCommand& command, const RunPictures& run) {
+  const std::vector<double> times_s = times_of(command, run);
+  Painter painter;
+  write_picture(command.out, painter.png(run.picture(times_s)));
+  if (command.quiet) return exit_done;
+  std::vector<std::string> moments;
+  for (const double time_s : times_s) moments.push_back(run.time_text(time_s));
+  fmt::print("{} ({})\n", command.out, fmt::join(moments, ", "));
+  return exit_done;
+}
+
+/// "NAME" of NAME.png.
+std::string stem_of(const std::string& out) { return out.substr(0, out.size() - 4); }
+
+std::string quoted(const std::string& name) {
+  std::string text = "'";
+  for (const char letter : name) text += letter == '\'' ? "'\\''" : std::string(1, letter);
+  return text + "'";
+}
+
+/// A command that makes a movie of the pictures.
+std::string movie_command(const std::string& stem, std::size_t count, bool even) {
+  std::string pattern;  // ffmpeg's: % is doubled
+  for (const char letter : stem) pattern += letter == '%' ? "%%" : std::string(1, letter);
+  return fmt::format("ffmpeg -framerate 10 -i {} -frames:v {}{} -pix_fmt yuv420p {}", quoted(pattern + "_%05d.png"),
+                     count, even ? "" : " -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white'", quoted(stem + ".mp4"));
+}
+
+/// All frames, numbered; on a terminal with a line that changes.
+int draw_movie(const RenderCommand& command, const RunPictures& run, bool even) {
+  const std::vector<double>& times_s = run.times_s();
+  const std::string stem = stem_of(command.out);
+  const auto file_of = [&](std::size_t i) { return fs::path(fmt::format("{}_{:05d}.png", stem, i)); };
+  for (std::size_t i = 0; i < times_s.size(); ++i) refuse_to_replace(file_of(i), command.overwrite);
+  const bool on_terminal = ::isatty(STDERR_FILENO) != 0;
+  catch_interruptions();
+  Painter painter;
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    write_picture(file_of(i), painter.png(run.picture({times_s[i]})));
+    const bool last = i + 1 == times_s.size() || interrupted();
+    if (!command.quiet && (on_terminal || last || (i + 1) % 20 == 0))
+      fmt::print(stderr, "{}{} of {} pictures{}", on_terminal ? "\r" : "", i + 1, times_s.size(),
+                 !on_terminal || last ? "\n" : "");
+    if (interrupted()) return interrupted_status();
+  }
+  if (!command.quiet)
+    fmt::print("{}_00000.png to {}\nTo make a movie of them:\n  {}\n", stem, file_of(times_s.size() - 1).string(),
+               movie_command(stem, times_s.size(), even));
+  return exit_done;
+}
+
+int render(const RenderCommand& command) {
+  if (!command.out.ends_with(".png") || fs::path(command.out).stem().empty())
+    throw UsageError("--out " + command.out + ": the file's name must end in .png");
+  if (command.movie && (command.strip || !command.times.empty()))
+    throw UsageError("--movie draws all frames; leave out --strip and --time");
+  const PictureOptions options = options_of(command);
+  for (const std::string& time : command.times) (void)seconds_in(time);
+  if (!command.movie) refuse_to_replace(command.out, command.overwrite);
+  const RunPictures run(command.directory, options);
+  const bool even = options.width_px % 2 == 0 && options.height_px % 2 == 0;
+  return command.movie ? draw_movie(command, run, even) : draw_picture(command, run);
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("render", "a picture of a run without a screen: one moment, several, or all");
+  auto options = std::make_shared<RenderCommand>();
+  command->add_option("DIR", options->directory, "results of a run")->required();
+  command->add_option("--out", options->out, "FILE.png to write; with --movie FILE_00000.png and so on")->required();
+  command
+      ->add_option("--view", options->views,
+                   fmt::format("from where: {}; several, a row each", fmt::join(names_of(views()), ", ")))
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  command->add_option("--time", options->times, "moments as 5min, 300s, 300 or last (default); several, a column each")
+      ->delimiter(',')
+      ->type_name("TIME,...");
+  command->add_flag("--strip", options->strip,
+                    "five moments from 0 to the end, from outside and cut across; --time and --view change that");
+  command->add_flag("--movie", options->movie, "every frame, a file each; says how to make a movie of them");
+  command
+      ->add_option("--colour", options->colour,
+                   fmt::format("coloured by: {}", fmt::join(names_of(colour_fields()), ", ")))
+      ->type_name("NAME")
+      ->capture_default_str();
+  command->add_option("--range", options->range, "ends of the colour scale (default: what all frames of the run need)")
+      ->type_name("LOW:HIGH");
+  command->add_option("--size", options->size, "in pixels (default: 1000 or more wide, as high as the content)")
+      ->type_name("WxH");
+  command->add_flag("--no-edges", options->no_edges, "without the outlines of cells");
+  command->add_flag("--shell", options->shell, "with the vitelline shell, where the run has one");
+  command->add_flag("--overwrite", options->overwrite, "replace FILE.png where it is there");
+  command->add_flag("--quiet", options->quiet, "say nothing but errors");
+  command->footer(
+      "Examples: plica render results/drosophila --out fold.png\n"
+      "          plica render results/drosophila --out strip.png --strip\n"
+      "          plica render results/drosophila --out rows.png --view ventral,side --time 30s,2min,last \\\n"
+      "            --colour pressure --range=-200:200");
+  command->callback([options, &status] { status = render(*options); });
+}
+
+}  // namespace plica

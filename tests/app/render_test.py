@@ -1,0 +1,177 @@
+"""`plica render`: what it writes, what it refuses, and what it leaves behind."""
+import os
+import re
+import signal
+import struct
+import time
+
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+import support
+from support import SPHERE, CommandLine, plica
+
+VIEWS = "antero-ventral ventral side cross-section sagittal-section".split()
+
+
+def size_of(path):
+    """Width and height from the header of a PNG file."""
+    head = path.read_bytes()[:24]
+    assert head[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", head[16:])
+
+
+def pixels_of(path):
+    """A PNG file as rows of (r, g, b), the lowest first."""
+    reader = vtkPNGReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    image = reader.GetOutput()
+    width, height, _ = image.GetDimensions()
+    values = image.GetPointData().GetScalars()
+    return [[tuple(map(int, values.GetTuple3(y * width + x))) for x in range(width)] for y in range(height)]
+
+
+def servers():
+    """Process ids of the X servers that run."""
+    found = set()
+    for process in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{process}/stat", encoding="utf-8") as stat:
+                name, state = re.match(r"\d+ \((.*)\) (\w)", stat.read()).groups()
+        except OSError:
+            continue
+        if name == "Xvfb" and state != "Z":
+            found.add(int(process))
+    return found
+
+
+class Render(CommandLine):
+    def setUp(self):
+        super().setUp()
+        self.picture = self.folder / "picture.png"
+        self.run_scenario(SPHERE + "[output]\nframe_every_s = 0.1\n", "--quiet")
+
+    def render(self, *arguments, status=0, **options):
+        result = plica("render", self.out, "--out", self.picture, *arguments, **options)
+        self.assertEqual(result.returncode, status, result.stdout + result.stderr)
+        return result
+
+    def refused(self, status, *arguments, **options):
+        """The one message of a call that fails and writes nothing."""
+        message = self.assert_messages(self.render(*arguments, status=status, **options))[0]
+        self.assertFalse(self.picture.exists())
+        return message
+
+    def test_a_picture_is_of_the_size_asked_for_and_shows_the_embryo(self):
+        result = self.render("--size", "420x300", "--view", "ventral")
+        self.assertIn(f"{self.picture} (0.3 s)", result.stdout)
+        self.assertEqual(result.stderr, "")
+        self.assertEqual(size_of(self.picture), (420, 300))
+        rows = pixels_of(self.picture)
+        coloured = sum(pixel != (255, 255, 255) for row in rows for pixel in row)
+        self.assertGreater(coloured, 420 * 300 / 5)
+        self.assertGreater(len({pixel for row in rows for pixel in row}), 200)
+
+    def test_the_same_picture_twice_is_the_same_file(self):
+        self.render("--size", "300x250")
+        first = self.picture.read_bytes()
+        self.render("--size", "300x250", "--overwrite")
+        self.assertEqual(self.picture.read_bytes(), first)
+
+    def test_rows_of_views_and_columns_of_times(self):
+        result = self.render("--view", "ventral,side", "--view", "cross-section", "--time", "0,0.1s,0.004min,last", "--shell")
+        self.assertIn("(0 s, 0.1 s, 0.2 s, 0.3 s)", result.stdout)  # 0.24 s has no frame
+        width, height = size_of(self.picture)
+        self.assertEqual(width, 1500)
+        self.assertGreater(height, 600)
+        self.render("--strip", "--quiet", "--colour", "pressure", "--no-edges", "--overwrite")
+        self.assertEqual(size_of(self.picture)[0], 1500)
+
+    def test_another_range_gives_other_colours(self):
+        blue = []
+        for limits in ("0:0.5", "0:500"):
+            self.render("--view", "cross-section", "--size", "300x300", "--no-edges", "--range", limits, "--overwrite")
+            panel = [pixel for row in pixels_of(self.picture) for pixel in row[:230]]
+            blue.append(sum(b > r + 30 for r, _, b in panel))
+        self.assertGreater(blue[0], 300)
+        self.assertEqual(blue[1], 0)
+
+    def test_what_it_does_not_know_is_refused(self):
+        for arguments, parts in (
+            (["--view", "ventrl"], ["did you mean ventral?", "cross-section"]),
+            (["--view", "zzz"], VIEWS),
+            (["--colour", "presure"], ["did you mean pressure?"]),
+            (["--time", "5h"], ["5h", "5min"]),
+            (["--time", "1min"], ["1min", "from 0 s to 0.3 s"]),
+            (["--time=-1"], ["-1", "from 0 s to 0.3 s"]),
+            (["--size", "10x10"], ["10x10", "1200x800"]),
+            (["--size", "big"], ["big"]),
+            (["--size", "200x200", "--view", "ventral,side,cross-section"], ["200x"]),
+            (["--range", "3"], ["LOW:HIGH"]),
+            (["--range", "3:3"], ["LOW:HIGH"]),
+            (["--range", "0:nan"], ["LOW:HIGH"]),
+            (["--movie", "--time", "0"], ["--movie"]),
+        ):
+            message = self.refused(2, *arguments)
+            for part in parts:
+                self.assertIn(part, message, arguments)
+
+    def test_a_directory_without_frames_is_refused(self):
+        for directory, part in ((self.folder, "frames.pvd"), (self.folder / "nowhere", "no such directory")):
+            result = plica("render", directory, "--out", self.picture)
+            self.assertEqual(result.returncode, 4)
+            self.assertIn(part, self.assert_messages(result)[0])
+        result = plica("render", self.out, "--out", self.folder / "picture.jpg")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn(".png", self.assert_messages(result)[0])
+
+    def test_a_file_that_is_there_is_kept(self):
+        self.picture.write_text("mine")
+        message = self.assert_messages(self.render(status=4))[0]
+        self.assertIn("--overwrite", message)
+        self.assertEqual(self.picture.read_text(), "mine")
+
+    def test_without_a_display_it_says_what_to_do(self):
+        for display in ("", ":97"):
+            message = self.refused(4, env={"PATH": "/nonexistent", "DISPLAY": display})
+            self.assertIn("apt-get install xvfb, or set DISPLAY", message)
+
+    def test_a_display_that_does_not_answer_is_not_used(self):
+        self.render("--size", "300x250", env=dict(os.environ, DISPLAY=":97"))
+        self.assertTrue(self.picture.exists())
+
+    def test_a_movie_is_all_frames(self):
+        before = servers()
+        result = self.render("--movie", "--size", "301x250")
+        frames = sorted(path.name for path in self.folder.glob("*.png"))
+        self.assertEqual(frames, [f"picture_{i:05d}.png" for i in range(4)])
+        self.assertIn("4 of 4 pictures", result.stderr)
+        self.assertRegex(result.stdout, r"ffmpeg .*picture_%05d.png' -frames:v 4 .*pad")
+        self.assertEqual(len({(self.folder / name).read_bytes() for name in frames}), 4)
+        self.assertIn("picture_00000.png", self.assert_messages(self.render("--movie", status=4))[0])
+        self.assertEqual(servers() - before, set())
+
+    def test_an_end_by_force_leaves_no_server_behind(self):
+        before = servers()
+        for how, status in ((signal.SIGTERM, 143), (signal.SIGINT, 130), (signal.SIGKILL, -9)):
+            process = support.start("render", self.out, "--out", self.picture, "--movie", "--size", "3000x3000", "--overwrite")
+            support.count_case()
+            for _ in range(200):
+                if servers() - before:
+                    break
+                time.sleep(0.02)
+            self.assertTrue(servers() - before, "no X server was started")
+            process.send_signal(how)
+            process.communicate(timeout=60)
+            self.assertEqual(process.returncode, status)
+            for _ in range(100):
+                if not servers() - before:
+                    break
+                time.sleep(0.02)
+            self.assertEqual(servers() - before, set())
+
+
+if __name__ == "__main__":
+    if os.environ.pop("DISPLAY", None):
+        print("DISPLAY is not looked at here")
+    support.main()
