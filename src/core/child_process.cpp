@@ -1,11 +1,13 @@
 #include "core/child_process.hpp"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <string_view>
 #include <system_error>
 
@@ -19,6 +21,7 @@ namespace {
 }
 
 [[noreturn]] void run_child(const std::function<std::string()>& work, int pipe_end) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with the parent, however that ends
   // The C library and the sanitizers tell of a crash on stderr; the parent says it better.
   const int nowhere = ::open("/dev/null", O_WRONLY);
   ::dup2(nowhere, STDERR_FILENO);
@@ -59,7 +62,10 @@ std::optional<std::string> output_of_child(const std::function<std::string()>& w
     for (const int end : ends) ::close(end);
     throw_unstarted(error);
   }
-  if (child == 0) run_child(work, ends[1]);
+  if (child == 0) {
+    ::close(ends[0]);  // else writing would wait for ever for a parent that is gone
+    run_child(work, ends[1]);
+  }
   ::close(ends[1]);
   std::optional<std::string> output = read_all(ends[0]);
   ::close(ends[0]);

@@ -8,8 +8,9 @@
 namespace plica {
 
 /// What `work` returns when it runs in a copy of this process (fork), so that nothing it does to memory matters here;
-/// empty when that process crashed, was killed or `work` threw. What it says on stderr is not shown. `work` must not
-/// start threads. FileError when no process can be started.
+/// empty when that process crashed, was killed or `work` threw. What it says on stderr is not shown. The process
+/// ends with this one, even when that is killed. `work` must not use threads that this process has started (OpenMP).
+/// FileError when no process can be started.
 std::optional<std::string> output_of_child(const std::function<std::string()>& work);
 
 }  // namespace plica

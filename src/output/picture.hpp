@@ -54,7 +54,8 @@ class Painter {
   Painter();
   ~Painter();
 
-  /// The bytes of a PNG file; of the same picture the same bytes. FileError when VTK could not draw it.
+  /// The bytes of a PNG file; of the same picture the same bytes. FileError when VTK could not draw it, or a
+  /// frame lacks what is to be shown; UsageError when the size asked for is too small.
   std::string png(const Picture& picture);
 
  private:

@@ -157,7 +157,7 @@ void add_dots(const Vectors& places, const View& view, double radius_um, vtkRend
 /// The window and what is in it, `scale` times as fine as the picture.
 class Stage {
  public:
-  Stage(const Picture& picture, const Layout& layout, int scale)
+  Stage(const Picture& picture, const Layout& layout, const std::vector<Scene>& scenes, int scale)
       : picture_(picture), layout_(layout), scale_(scale), table_(colour_table(picture)) {
     window_->SetOffScreenRendering(1);
     window_->SetSize(layout.width_px * scale, layout.height_px * scale);
@@ -166,7 +166,7 @@ class Stage {
     vtkNew<vtkRenderer> paper;
     paper->SetBackground(1, 1, 1);
     window_->AddRenderer(paper);
-    for (const Panel& panel : layout.panels) add_panel(panel);
+    for (std::size_t i = 0; i < scenes.size(); ++i) add_panel(layout.panels[i], scenes[i]);
     overlay_->SetLayer(1);
     window_->AddRenderer(overlay_);
     add_rectangles();
@@ -187,10 +187,8 @@ class Stage {
   }
 
  private:
-  void add_panel(const Panel& panel) {
+  void add_panel(const Panel& panel, const Scene& scene) {
     const View& view = picture_.rows[panel.row].view;
-    const PictureColumn& column = picture_.columns[panel.column];
-    const Scene scene = make_scene(picture_, column, view, band_em * layout_.font_px * layout_.um_per_px);
     vtkNew<vtkRenderer> renderer;
     renderer->SetBackground(1, 1, 1);
     const Box& box = panel.box;
@@ -202,7 +200,7 @@ class Stage {
     add_facets(scene, *table_, *renderer);
     add_lines(scene.outlines, -in_front_um * sight, ink, outline_px(scene, layout_) * scale_, *renderer);
     add_plain(*poly_data(scene.shell, 3, false, Vec3::Zero()), shell_grey, 0.6, 1, *renderer);
-    add_dots(column.dots, view, 0.3 * layout_.font_px * layout_.um_per_px, *renderer);
+    add_dots(picture_.columns[panel.column].dots, view, 0.3 * layout_.font_px * layout_.um_per_px, *renderer);
     vtkCamera& camera = *renderer->GetActiveCamera();
     camera.ParallelProjectionOn();
     camera.SetFocalPoint(0, 0, 0);
@@ -294,12 +292,13 @@ std::string png_bytes(vtkImageData& image) {
 }
 
 /// What the child process does.
-std::string draw(const Picture& picture, const Layout& layout, const std::string& display) {
+std::string draw(const Picture& picture, const Layout& layout, const std::vector<Scene>& scenes,
+                 const std::string& display) {
   ::setenv("DISPLAY", display.c_str(), 1);
   ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);  // Mesa's own drawing: the same picture on any screen
   const double pixels = static_cast<double>(layout.width_px) * layout.height_px;
   const int scale = pixels > most_pixels_averaged ? 1 : 2;
-  Stage stage(picture, layout, scale);
+  Stage stage(picture, layout, scenes, scale);
   const vtkSmartPointer<vtkImageData> image = stage.draw();
   return image == nullptr ? "" : png_bytes(*averaged(*image, scale));
 }
@@ -315,10 +314,13 @@ Painter::~Painter() = default;
 
 std::string Painter::png(const Picture& picture) {
   const Layout layout = make_layout(picture);
-  for (const PictureColumn& column : picture.columns) (void)field_values(column.frame, picture.field);
+  const double band_um = band_em * layout.font_px * layout.um_per_px;
+  std::vector<Scene> scenes;
+  for (const Panel& panel : layout.panels)
+    scenes.push_back(make_scene(picture, picture.columns[panel.column], picture.rows[panel.row].view, band_um));
   Display& display = screen_->display;
   while (true) {
-    const auto bytes = output_of_child([&] { return draw(picture, layout, display.name()); });
+    const auto bytes = output_of_child([&] { return draw(picture, layout, scenes, display.name()); });
     if (bytes && !bytes->empty()) return *bytes;
     if (display.is_ours())
       throw FileError("pictures cannot be drawn: VTK's OpenGL failed; apt-get install libgl1-mesa-dri");

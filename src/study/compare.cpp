@@ -8,8 +8,8 @@
 #include "core/errors.hpp"
 #include "measure/energy_norm.hpp"
 #include "output/mesh_writer.hpp"
-#include "scenario/load.hpp"
 #include "output/results.hpp"
+#include "scenario/load.hpp"
 #include "tissue/hexahedron.hpp"
 
 namespace plica {
