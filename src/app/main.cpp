@@ -23,8 +23,8 @@ int main(int argc, char** argv) {
   add_compare_command(app, status);
   add_calibrate_command(app, status);
   add_reproduce_command(app, status);
-  add_render_command(app, status);
   add_report_command(app, status);
+  add_render_command(app, status);
   add_check_command(app, status);
   add_mesh_command(app, status);
   add_scenarios_command(app, status);

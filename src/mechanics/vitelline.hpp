@@ -10,7 +10,7 @@
 namespace plica {
 
 /// The narrowest capsule along x around all nodes at rest: the shell of a mesh from a file, which is meant to be
-/// centred on the x axis. For a pill or a sphere it is the one that the nodes were laid on.
+/// centred on the x axis. (Of a pill or a sphere it is a little off: between two nodes their shell bulges.)
 Capsule enclosing_capsule(const Vectors& positions);
 
 class Vitelline {

@@ -1,4 +1,4 @@
-// Numbers as few bytes in a page of text: whole numbers coded so that they compress well, deflate, base64.
+// Numbers as few bytes in a page of text: whole numbers coded so that they compress well, deflate.
 // viewer/src/packed.ts reads them.
 #pragma once
 

@@ -10,9 +10,8 @@
 #include "measure/reference_run.hpp"
 #include "output/looks.hpp"
 #include "output/results.hpp"
-#include "output/run_shell.hpp"
+#include "output/run_scenario.hpp"
 #include "output/skin.hpp"
-#include "scenario/load.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;
@@ -146,12 +145,9 @@ std::vector<std::string> regions_of(const Frame& frame) {
   return names;
 }
 
-// The vitelline shell as the scenario's run had it.
 ordered_json shell_json(const fs::path& directory, const Frame& rest) {
-  const std::string text = text_of(directory / "scenario.toml");
-  if (text.empty()) return nullptr;
-  const Scenario scenario = load_scenario({"scenario", (directory / "scenario.toml").string(), text});
-  const std::optional<Capsule> shell = shell_of(scenario, rest.positions);
+  const std::optional<Scenario> scenario = scenario_of_run(directory);
+  const std::optional<Capsule> shell = scenario ? shell_of_run(*scenario, rest.positions) : std::nullopt;
   if (!shell) return nullptr;
   return {{"half_axis_um", shell->half_axis_um}, {"radius_um", shell->radius_um}};
 }

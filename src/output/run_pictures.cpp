@@ -7,26 +7,10 @@
 #include <limits>
 
 #include "core/errors.hpp"
-#include "core/files.hpp"
-#include "output/run_shell.hpp"
-#include "scenario/load.hpp"
+#include "output/run_scenario.hpp"
 
 namespace plica {
 namespace {
-
-namespace fs = std::filesystem;
-
-// As the run had it; nothing where the file is gone, or another version of plica wrote it.
-std::optional<Scenario> scenario_of(const fs::path& directory) {
-  const fs::path file = directory / "scenario.toml";
-  std::error_code error;
-  if (!fs::exists(file, error)) return {};
-  try {
-    return load_scenario({"scenario", file.string(), read_file(file)});
-  } catch (const ScenarioError&) {
-    return {};
-  }
-}
 
 double farthest_displacement_um(const Frame& frame) {
   const auto displacements = frame.node_vectors.find("displacement_um");
@@ -38,16 +22,16 @@ double farthest_displacement_um(const Frame& frame) {
 
 }  // namespace
 
-RunPictures::RunPictures(fs::path directory, PictureOptions options)
+RunPictures::RunPictures(std::filesystem::path directory, PictureOptions options)
     : run_(std::move(directory)), options_(std::move(options)), times_s_(run_.times_s()) {
   for (const View& view : options_.views) rows_.push_back({view, {0, 0}});
   look_through();
-  const std::optional<Scenario> scenario = scenario_of(run_.directory());
+  const std::optional<Scenario> scenario = scenario_of_run(run_.directory());
   is_embryo_ = !scenario || scenario->embryo.shape != "block";
   if (!options_.shell) return;
   if (!scenario)
     throw FileError(run_.directory().string() + ": holds no scenario.toml that says what the vitelline shell is");
-  shell_ = shell_of(*scenario, rest_.positions);
+  shell_ = shell_of_run(*scenario, rest_.positions);
   if (!shell_) throw FileError(run_.directory().string() + ": was run without a vitelline shell; leave out --shell");
   const double reach = shell_->half_axis_um + shell_->radius_um;
   for (PictureRow& row : rows_) {

@@ -42,8 +42,8 @@ class ReportRunTest : public testing::Test {
   }
   ~ReportRunTest() override { fs::remove_all(folder); }
 
-  // Frame i is the block moved by i um along x; from frame `divided_at` on it is another one, of more cells. As in a run,
-  // the row of series.csv at the time of the division still counts those before it.
+  // Frame i is the block moved by i um along x; from frame `divided_at` on it is another one, of more cells. As in a
+  // run, the row of series.csv at the time of the division still counts those before it.
   void write_frames(int count, int divided_at = 1000) const {
     std::vector<std::pair<double, std::string>> entries;
     std::ofstream series(folder / "series.csv");
