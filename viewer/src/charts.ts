@@ -7,6 +7,7 @@ import type { State } from "./state";
 import { number, words } from "./text";
 
 const plotHeight = 190;
+const readingTime = 250; // ms
 export const plotFont = "12px system-ui, sans-serif";
 const dashes: number[][] = [[], [7, 4], [2, 3], [9, 3, 2, 3]];
 
@@ -71,6 +72,7 @@ export class Chart {
   readonly box = element("figure", { class: "chart" });
   private readonly holder = element("div");
   private readonly values: HTMLElement[] = [];
+  private shownAt = 0; // ms
   private plot: uPlot | null = null;
   private line: TimeLine | null = null;
 
@@ -78,7 +80,7 @@ export class Chart {
     const unit = content.unit === "" ? "" : `, ${content.unit}`;
     this.box.append(element("figcaption", {}, content.title + unit), this.holder, this.legend());
     new ResizeObserver(() => this.fit()).observe(this.holder);
-    state.on(["time"], () => this.showTime());
+    state.on(["time", "playing"], () => this.showTime());
     this.rebuild();
   }
 
@@ -147,6 +149,10 @@ export class Chart {
 
   private showTime(): void {
     this.line?.show(this.state.now.time);
+    // While time runs, numbers change as fast as they can be read.
+    const now = performance.now();
+    if (this.state.now.playing && now - this.shownAt < readingTime) return;
+    this.shownAt = now;
     this.content.curves.forEach(({ points }, i) => {
       const { time } = this.state.now;
       let nearest = points[0];

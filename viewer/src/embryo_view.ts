@@ -11,6 +11,19 @@ import { time as timeText } from "./text";
 
 const clickTolerance = 4; // pixels between press and release
 const turnStep = 0.12; // rad a key press
+const settleTime = 200; // ms without a change after which a picture is drawn finely
+
+// Without a graphics card the processor draws. Smoothing edges then costs it half of its time: it is left out while the
+// picture moves, and a picture that stands still is drawn with four times the pixels instead.
+function drawsInSoftware(): boolean {
+  const context = document.createElement("canvas").getContext("webgl2");
+  const names = context?.getExtension("WEBGL_debug_renderer_info");
+  const renderer = names ? String(context!.getParameter(names.UNMASKED_RENDERER_WEBGL)) : "";
+  context?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(renderer);
+}
+
+const overlayRatio = Math.min(devicePixelRatio, 2);
 
 class RunView {
   readonly box = element("div", { class: "view" });
@@ -21,14 +34,14 @@ class RunView {
   private readonly renderer: three.WebGLRenderer;
   private readonly scene: EmbryoScene;
 
-  constructor(readonly run: Run, page: PageData, private readonly state: State) {
+  constructor(readonly run: Run, page: PageData, private readonly state: State, private readonly inSoftware: boolean) {
     this.canvas = element("canvas", {
       class: "picture", tabindex: "0", role: "img", "aria-label": `The embryo of ${run.title.slice(0, 200)}`,
     });
-    this.renderer = new three.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
+    this.renderer = new three.WebGLRenderer({ canvas: this.canvas, antialias: !inSoftware, alpha: true });
     this.renderer.setClearColor(0, 0);
     this.renderer.localClippingEnabled = true;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.setFine(false);
     this.scene = new EmbryoScene(run, page);
     this.box.append(this.canvas, this.overlay);
     this.controls = new TrackballControls(this.camera, this.canvas);
@@ -39,6 +52,11 @@ class RunView {
 
   get size(): { width: number; height: number } {
     return { width: this.box.clientWidth, height: this.box.clientHeight };
+  }
+
+  /** Whether the picture is drawn as it is to stand, or as it has to move. */
+  setFine(fine: boolean): void {
+    this.renderer.setPixelRatio(!this.inSoftware ? overlayRatio : fine ? 2 : 1);
   }
 
   /** `half`: of the picture's height at zoom 1, um. */
@@ -52,9 +70,8 @@ class RunView {
     this.camera.left = -this.camera.right;
     this.camera.updateProjectionMatrix();
     this.controls.handleResize();
-    const ratio = this.renderer.getPixelRatio();
-    this.overlay.width = width * ratio;
-    this.overlay.height = height * ratio;
+    this.overlay.width = width * overlayRatio;
+    this.overlay.height = height * overlayRatio;
   }
 
   update(): void {
@@ -69,8 +86,7 @@ class RunView {
     this.scene.lightFrom(this.camera);
     this.renderer.render(this.scene.scene, this.camera);
     const context = this.overlay.getContext("2d")!;
-    const ratio = this.renderer.getPixelRatio();
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.setTransform(overlayRatio, 0, 0, overlayRatio, 0, 0);
     context.clearRect(0, 0, this.overlay.width, this.overlay.height);
     const shown = Math.min(this.state.now.time, this.run.endTime);
     annotate(context, {
@@ -110,10 +126,13 @@ class RunView {
 
 /** Throws where the browser offers no WebGL. */
 export class EmbryoViews {
+  private readonly inSoftware: boolean;
   private readonly views: RunView[];
   private readonly radius: number; // um, of a ball around every run
   private stale = true; // the scenes no longer show the state
   private moved = true; // the cameras have moved
+  private isFine = false;
+  private changedAt = 0; // ms
   private width = 0; // of each picture
   private height = 0;
   private leader: RunView | null = null; // whose camera the hand moves; the others report changes, too
@@ -122,7 +141,8 @@ export class EmbryoViews {
     runs: Run[], private readonly page: PageData, private readonly state: State,
     holder: HTMLElement, private readonly legend: HTMLCanvasElement,
   ) {
-    this.views = runs.filter((run) => run.hasFrames).map((run) => new RunView(run, page, state));
+    this.inSoftware = drawsInSoftware();
+    this.views = runs.filter((run) => run.hasFrames).map((run) => new RunView(run, page, state, this.inSoftware));
     this.radius = Math.max(...this.views.map(({ run }) => Math.hypot(...run.halfSize)));
     holder.append(...this.views.map((view) => view.box));
     holder.dataset.count = String(this.views.length);
@@ -137,7 +157,11 @@ export class EmbryoViews {
   /** Draws what has changed; called before each picture of the screen. */
   draw(): void {
     for (const view of this.views) view.controls.update();
-    if (!this.stale && !this.moved) return;
+    const now = performance.now();
+    if (this.stale || this.moved) this.changedAt = now;
+    const settled = this.inSoftware && !this.isFine && now - this.changedAt > settleTime && !this.state.now.playing;
+    if (!this.stale && !this.moved && !settled) return;
+    this.setFine(settled);
     if (this.stale) for (const view of this.views) view.update();
     for (const view of this.views) view.render(this.views.length > 1);
     this.stale = this.moved = false;
@@ -163,6 +187,7 @@ export class EmbryoViews {
     canvas.width = finer * width;
     canvas.height = finer * (height + legendHeight);
     const context = canvas.getContext("2d")!;
+    this.setFine(true);
     context.scale(finer, finer);
     context.fillStyle = styleColour("paper");
     context.fillRect(0, 0, width, height + legendHeight);
@@ -174,6 +199,12 @@ export class EmbryoViews {
     context.translate(0, height);
     drawLegend(context, width, this.state.now.field, this.page);
     return new Promise((resolve) => canvas.toBlob((blob) => resolve(blob!), "image/png"));
+  }
+
+  private setFine(fine: boolean): void {
+    if (fine === this.isFine) return;
+    this.isFine = fine;
+    for (const view of this.views) view.setFine(fine);
   }
 
   private resize(): void {
