@@ -14,6 +14,8 @@ template <class... Takes>
 struct Overloaded : Takes... {
   using Takes::operator()...;
 };
+template <class... Takes>
+Overloaded(Takes...) -> Overloaded<Takes...>;  // C++20 needs no guide, clang-tidy 14 does
 
 // `|` would end a cell of a Markdown table.
 std::string cell_text(const std::string& text) {

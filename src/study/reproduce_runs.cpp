@@ -7,10 +7,10 @@
 
 #include "core/errors.hpp"
 #include "measure/reference_run.hpp"
+#include "output/results.hpp"
 #include "scenario/load.hpp"
 #include "study/frame_surface.hpp"
 #include "study/reproduce_mechanism.hpp"
-#include "output/results.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;
@@ -182,7 +182,7 @@ void measure_onsets(Measured& measured, const Results& results) {
   Figures& figures = measured.figures;
   const auto take = [&](const std::string& embryo, int along) {
     if (!results.has("onset-" + embryo) || !results.has("main-" + embryo)) return Onsets{};
-    const Onsets found = onsets(results.folder("onset-" + embryo), results.folder("main-" + embryo), along);
+    Onsets found = onsets(results.folder("onset-" + embryo), results.folder("main-" + embryo), along);
     add_prefixed(figures, "onset_" + embryo + ".", figures_of_onsets(found));
     return found;
   };
