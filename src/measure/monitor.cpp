@@ -143,6 +143,7 @@ std::vector<double> node_values(const Monitor& monitor, const Moment& moment) {
     }
     case Quantity::surface_distance: {
       std::vector<double> values;
+      values.reserve(nodes.size());
       for (const NodeId node : nodes) values.push_back(monitor.reference_surface->from(state.positions[node.index()]));
       return values;
     }

@@ -119,7 +119,7 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
     std::erase_if(model.growths, [&](const Growth& growth) { return growth.cell == plan.cut.cell; });
   }
 
-  const Division division = divide(model.tissue, cuts, state.time_s);
+  Division division = divide(model.tissue, cuts, state.time_s);
   state.positions = with_new_nodes(model.tissue, division, state.positions);
   state.velocities = with_new_nodes(model.tissue, division, state.velocities);
   state.pressures = inherited(division, state.pressures);

@@ -49,6 +49,7 @@ void check_monitor(const std::string& path, const MonitorInput& monitor, const S
 
 std::vector<std::string> names_of(const std::map<std::string, MonitorInput>& monitors) {
   std::vector<std::string> names;
+  names.reserve(monitors.size());
   for (const auto& [name, monitor] : monitors) names.push_back(name);
   return names;
 }

@@ -206,9 +206,10 @@ class Reader {
     const TableInfo* inner = table_with_stem(info.stem(), true);
     for (const auto& [key, node] : table) {
       const auto rows = rows_of(info.path);
-      const bool is_key = std::ranges::any_of(rows, [&](const Row* row) { return row->key == key.str(); });
+      const std::string_view word = key.str();
+      const bool is_key = std::ranges::any_of(rows, [&](const Row* row) { return row->key == word; });
       if (inner != nullptr && node.is_table() && !is_key) {
-        read_named_table(*inner, std::string(key.str()), key, node);
+        read_named_table(*inner, std::string(word), key, node);
       } else {
         read_key(path, "", "", key, node);
       }

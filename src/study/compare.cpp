@@ -68,7 +68,7 @@ NodeComparison compare_nodes(const Frame& a, const Frame& b, std::optional<doubl
     result.distances.rms += distance * distance;
     if (distance > result.distances.max) result.distances.max = distance, result.farthest = NodeId(n);
   }
-  const double count = static_cast<double>(a.positions.size());
+  const auto count = static_cast<double>(a.positions.size());
   result.distances.mean /= count;
   result.distances.rms = std::sqrt(result.distances.rms / count);
   if (poisson_ratio) result.relative_energy_norm = energy_norm(a, b, *poisson_ratio);

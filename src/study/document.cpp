@@ -15,6 +15,8 @@ template <class... Takes>
 struct Overloaded : Takes... {
   using Takes::operator()...;
 };
+template <class... Takes>
+Overloaded(Takes...) -> Overloaded<Takes...>;  // C++20 needs no guide, clang-tidy 14 does
 
 std::string file_name(const Figure& figure) { return figure.name + (figure.png.empty() ? ".svg" : ".png"); }
 

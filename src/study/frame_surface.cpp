@@ -136,6 +136,7 @@ std::vector<double> node_distances(const Frame& frame, const Frame& other) {
   }
   fill_between(frame, values);
   std::vector<double> result;
+  result.reserve(values.size());
   for (const std::optional<double>& value : values) result.push_back(value.value_or(0));
   return result;
 }

@@ -111,7 +111,8 @@ void draw_curve(Svg& svg, const Curve& curve, std::size_t number, const Scale& x
 // Names below the chart, two a row.
 void draw_legend(Svg& svg, const Plot& plot) {
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
-    const double x = left + (i % 2) * (width - left - right) / 2.0, y = height + 12 + 18.0 * static_cast<double>(i / 2);
+    const std::size_t row = i / 2;
+    const double x = left + (i % 2) * (width - left - right) / 2.0, y = height + 12 + 18.0 * static_cast<double>(row);
     svg.polyline({{x, y}, {x + 30, y}}, colours[i % colours.size()], 2, dashes[i % dashes.size()]);
     if (plot.curves[i].marks) svg.circle({x + 15, y}, 3.5, colours[i % colours.size()]);
     svg.text({x + 36, y + 4}, plot.curves[i].name);
@@ -146,7 +147,8 @@ Svg draw(const Plot& plot) {
   for (const Curve& curve : plot.curves) xs.push_back(&curve.x), ys.push_back(&curve.y);
   const Scale x = scale_of(plot.x, xs, plot.vertical, left, width - right);
   const Scale y = scale_of(plot.y, ys, plot.horizontal, height - bottom, top);
-  const double legend = 18.0 * static_cast<double>((plot.curves.size() + 1) / 2) + 10;
+  const std::size_t legend_rows = (plot.curves.size() + 1) / 2;
+  const double legend = 18.0 * static_cast<double>(legend_rows) + 10;
   Svg svg(width, height + legend);
   draw_axes(svg, plot, x, y);
   draw_guides(svg, plot, x, y);

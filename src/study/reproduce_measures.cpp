@@ -192,6 +192,7 @@ Onsets onsets(const fs::path& early, const fs::path& late, int along) {
   for (const auto& row : last.rows)
     if (*row.front() == end_s && row[ap] && row[depth]) final_depth_um[*row[ap]] = *row[depth];
   std::vector<double> places;
+  places.reserve(final_depth_um.size());
   for (const auto& [place, value] : final_depth_um) places.push_back(place);
   std::ranges::stable_sort(places, {}, [](double place) { return std::abs(place); });
   places.resize(std::min(places.size(), static_cast<std::size_t>(along)));

@@ -84,7 +84,7 @@ double mean_between(const Curve& curve, double low, double high) {
 
 // Inward force over the tension that causes it, on the caps (both directions) over on the cylinder (the hoop): 2 by
 // Laplace's law, 1/R + 1/R against 1/R.
-double cap_over_cylinder(Curve force) {
+double cap_over_cylinder(const Curve& force) {
   const Scenario scenario = load_scenario(find_scenario("drosophila"));
   const Tissue tissue = make_tissue(scenario);
   const NetworkTension tension = network_tension(tissue, make_furrow_sites(scenario, tissue));

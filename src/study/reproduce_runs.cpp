@@ -182,7 +182,7 @@ void measure_onsets(Measured& measured, const Results& results) {
   Figures& figures = measured.figures;
   const auto take = [&](const std::string& embryo, int along) {
     if (!results.has("onset-" + embryo) || !results.has("main-" + embryo)) return Onsets{};
-    const Onsets found = onsets(results.folder("onset-" + embryo), results.folder("main-" + embryo), along);
+    Onsets found = onsets(results.folder("onset-" + embryo), results.folder("main-" + embryo), along);
     add_prefixed(figures, "onset_" + embryo + ".", figures_of_onsets(found));
     return found;
   };

@@ -1,7 +1,7 @@
 #include "study/run_batch.hpp"
 
 #include <fcntl.h>
-#include <signal.h>
+#include <signal.h>  // NOLINT: kill() is POSIX, not of <csignal>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -36,6 +36,7 @@ pid_t start(const fs::path& directory, const BatchRun& run) {
                                     "--threads",
                                     "1"};
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
 
