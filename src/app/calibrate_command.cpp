@@ -11,6 +11,7 @@
 
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
+#include "app/output_file.hpp"
 #include "app/scenario_options.hpp"
 #include "app/threads.hpp"
 #include "core/errors.hpp"
@@ -39,8 +40,7 @@ void refuse_out(const CalibrateOptions& options, const ScenarioSource& source) {
   std::error_code error;
   if (fs::equivalent(options.out, source.file, error))
     throw UsageError("--out " + options.out + ": is the scenario itself; give another name");
-  if (fs::exists(options.out, error) && !options.overwrite)
-    throw FileError(options.out + ": is there already; give another --out, or --overwrite to replace it");
+  require_free(options.out, options.overwrite);
   if (fs::path folder = fs::absolute(options.out).parent_path(); !fs::is_directory(folder, error))
     throw FileError(options.out + ": its folder is not there; make it, or give another --out");
 }

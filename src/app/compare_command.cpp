@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/commands.hpp"
+#include "app/output_file.hpp"
 #include "core/errors.hpp"
 #include "study/compare_report.hpp"
 #include "tissue/hexahedral_mesh.hpp"
@@ -21,8 +22,7 @@ struct CompareOptions {
 void compare(const CompareOptions& options) {
   if (!options.out.empty() && !options.out.ends_with(".vtu"))
     throw UsageError("--out " + options.out + ": the file's name must end in .vtu");
-  if (!options.out.empty() && std::filesystem::exists(options.out) && !options.overwrite)
-    throw FileError(options.out + ": is there already; give another --out, or --overwrite to replace it");
+  if (!options.out.empty()) require_free(options.out, options.overwrite);
   const ReferenceRun run_a(options.a), run_b(options.b);
   const Frame a = frame_to_compare(run_a, options.time_s), b = frame_to_compare(run_b, options.time_s);
   const Comparison comparison = compare_runs(run_a, a, run_b, b);

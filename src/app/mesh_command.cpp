@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/output_file.hpp"
 #include "app/scenario_options.hpp"
 #include "core/errors.hpp"
 #include "output/mesh_writer.hpp"
@@ -42,8 +43,7 @@ void add_mesh_command(CLI::App& app, int&) {
   command->footer("Example: plica mesh drosophila --out rest.vtu");
   command->callback([options, out, overwrite] {
     if (!out->ends_with(".vtu")) throw UsageError("--out " + *out + ": the file's name must end in .vtu");
-    if (std::filesystem::exists(*out) && !*overwrite)
-      throw FileError(*out + ": is there already; give another --out, or --overwrite to replace it");
+    require_free(*out, *overwrite);
     const Tissue tissue = make_tissue(options->load());
     MeshArrays arrays;
     std::vector<int> ids;

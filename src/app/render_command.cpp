@@ -7,6 +7,7 @@
 
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
+#include "app/output_file.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "output/run_pictures.hpp"
@@ -110,13 +111,6 @@ std::vector<double> times_of(const RenderCommand& command, const RunPictures& ru
   return times;
 }
 
-void refuse_to_replace(const fs::path& file, bool overwrite) {
-  std::error_code error;
-  if (fs::is_directory(file, error)) throw FileError(file.string() + ": is a directory; give the name of a file");
-  if (!overwrite && fs::exists(file, error))
-    throw FileError(file.string() + ": is there already; give another --out, or --overwrite to replace it");
-}
-
 void write_picture(const fs::path& file, const std::string& png) {
   std::error_code error;
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
@@ -156,7 +150,7 @@ int draw_movie(const RenderCommand& command, const RunPictures& run, bool even) 
   const std::vector<double>& times_s = run.times_s();
   const std::string stem = stem_of(command.out);
   const auto file_of = [&](std::size_t i) { return fs::path(fmt::format("{}_{:05d}.png", stem, i)); };
-  for (std::size_t i = 0; i < times_s.size(); ++i) refuse_to_replace(file_of(i), command.overwrite);
+  for (std::size_t i = 0; i < times_s.size(); ++i) require_free(file_of(i), command.overwrite);
   const bool on_terminal = ::isatty(STDERR_FILENO) != 0;
   catch_interruptions();
   Painter painter;
@@ -181,7 +175,7 @@ int render(const RenderCommand& command) {
     throw UsageError("--movie draws all frames; leave out --strip and --time");
   const PictureOptions options = options_of(command);
   for (const std::string& time : command.times) (void)seconds_in(time);
-  if (!command.movie) refuse_to_replace(command.out, command.overwrite);
+  if (!command.movie) require_free(command.out, command.overwrite);
   const RunPictures run(command.directory, options);
   const bool even = options.width_px % 2 == 0 && options.height_px % 2 == 0;
   return command.movie ? draw_movie(command, run, even) : draw_picture(command, run);

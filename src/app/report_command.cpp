@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/commands.hpp"
+#include "app/output_file.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "output/report.hpp"
@@ -29,9 +30,7 @@ void report(const ReportOptions& options) {
   const std::filesystem::path file = options.out.empty()
                                          ? std::filesystem::path(options.directories.front()) / "report.html"
                                          : std::filesystem::path(options.out);
-  std::error_code error;
-  if (!options.out.empty() && std::filesystem::exists(file, error) && !options.overwrite)
-    throw FileError(file.string() + ": is there already; give another --out, or --overwrite to replace it");
+  require_free(file, options.overwrite || options.out.empty());
   const std::string page = report_page({options.directories.begin(), options.directories.end()});
   write_file(file, page);
   fmt::print("{} ({:.1f} MB): open it in a browser\n", file.string(), static_cast<double>(page.size()) / 1e6);

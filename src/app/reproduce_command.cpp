@@ -20,7 +20,7 @@ struct ReproduceCommand {
 };
 
 // Results are written over with --overwrite only; nothing is removed.
-void refuse_to_replace(const std::filesystem::path& out, bool overwrite) {
+void require_no_results(const std::filesystem::path& out, bool overwrite) {
   namespace fs = std::filesystem;
   if (out.empty()) throw UsageError("--out is empty; give the directory for the results");
   std::error_code error;
@@ -56,7 +56,7 @@ class BatchProgress {
 };
 
 int reproduce_paper(const ReproduceCommand& command) {
-  refuse_to_replace(command.out, command.overwrite);
+  require_no_results(command.out, command.overwrite);
   catch_interruptions();
   BatchProgress progress(command.quiet);
   const ReproduceOutcome outcome = reproduce(

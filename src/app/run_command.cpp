@@ -49,7 +49,7 @@ void print_result(const nlohmann::ordered_json& summary, const std::string& out)
 }
 
 // A scenario that lies in DIR under a name that plica writes there would be lost.
-void refuse_to_replace(const std::string& scenario_file, const std::filesystem::path& out) {
+void refuse_to_replace_scenario(const std::string& scenario_file, const std::filesystem::path& out) {
   if (out.empty()) throw UsageError("--out is empty; give the directory for the results");
   std::error_code error;
   for (const char* name : {"scenario.toml", "scenario.input.toml"})
@@ -85,7 +85,7 @@ int run_scenario(const RunOptions& options) {
     for (const std::string& line : advice(scenario, *model))
       if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
 
-  refuse_to_replace(source.file, options.out);
+  refuse_to_replace_scenario(source.file, options.out);
   refuse_to_replace_reference(observer.monitors(), options.out);
   prepare_directory(options.out, options.overwrite);
   const State rest = rest_state(*model);
