@@ -7,6 +7,7 @@
 
 #include "core/base64.hpp"
 #include "core/errors.hpp"
+#include "core/markup.hpp"
 #include "core/version.hpp"
 #include "output/looks.hpp"
 #include "output/report_run.hpp"
@@ -17,19 +18,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::string_view title_place = "<!--plica:title-->", data_place = "<!--plica:data-->";
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '<')
-      result += "&lt;";
-    else if (c == '&')
-      result += "&amp;";
-    else
-      result += c;
-  }
-  return result;
-}
 
 // JSON that may stand in a script element: "</script>" and "<!--" cannot occur. Bytes that are no UTF-8 become U+FFFD.
 std::string in_script(const ordered_json& json) {
@@ -138,7 +126,7 @@ std::string report_page(const std::vector<std::filesystem::path>& directories) {
   const std::string data =
       fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n{}", in_script(page), frames);
   // Data first: a title that holds the mark of another place does no harm.
-  return replaced(replaced(report_template(), data_place, data), title_place, escaped(title_of(runs)));
+  return replaced(replaced(report_template(), data_place, data), title_place, xml_escaped(title_of(runs)));
 }
 
 }  // namespace plica

@@ -5,7 +5,7 @@
 #include "core/base64.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "study/svg.hpp"
+#include "core/markup.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;

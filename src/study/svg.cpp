@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/markup.hpp"
+
 namespace plica {
 namespace {
 
@@ -13,23 +15,6 @@ std::string joined(const std::vector<Pixel>& points) {
 }
 
 }  // namespace
-
-std::string xml_escaped(const std::string& text) {
-  std::string escaped;
-  for (const char letter : text) {
-    if (letter == '&')
-      escaped += "&amp;";
-    else if (letter == '<')
-      escaped += "&lt;";
-    else if (letter == '>')
-      escaped += "&gt;";
-    else if (letter == '"')
-      escaped += "&quot;";
-    else
-      escaped += letter;
-  }
-  return escaped;
-}
 
 void Svg::polyline(const std::vector<Pixel>& points, const std::string& colour, double width,
                    const std::string& dashes) {

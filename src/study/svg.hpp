@@ -40,7 +40,4 @@ class Svg {
   std::string shapes_;
 };
 
-/// Text with &, <, > and quotes as XML and HTML want them.
-std::string xml_escaped(const std::string& text);
-
 }  // namespace plica

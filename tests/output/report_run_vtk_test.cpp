@@ -131,7 +131,7 @@ TEST_F(ReportRunTest, PageHoldsNoMarkupOfTheScenario) {
   const std::string page = report_page({folder});
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
   EXPECT_EQ(page.find("<!--plica:"), std::string::npos);
-  EXPECT_NE(page.find("<title>&lt;/script>&lt;b>&amp;"), std::string::npos);
+  EXPECT_NE(page.find("<title>&lt;/script&gt;&lt;b&gt;&amp;"), std::string::npos);
 }
 
 }  // namespace
