@@ -31,7 +31,7 @@ void report(const ReportOptions& options) {
                                          ? std::filesystem::path(options.directories.front()) / "report.html"
                                          : std::filesystem::path(options.out);
   require_free(file, options.overwrite || options.out.empty());
-  const std::string page = report_page({options.directories.begin(), options.directories.end()});
+  const std::string page = report_page_of({options.directories.begin(), options.directories.end()});
   write_file(file, page);
   fmt::print("{} ({:.1f} MB): open it in a browser\n", file.string(), static_cast<double>(page.size()) / 1e6);
 }

@@ -11,7 +11,6 @@
 #include "app/scenario_options.hpp"
 #include "app/threads.hpp"
 #include "core/errors.hpp"
-#include "core/files.hpp"
 #include "core/units.hpp"
 #include "output/recorder.hpp"
 #include "output/report.hpp"
@@ -114,7 +113,6 @@ int run_scenario(const RunOptions& options) {
   const double solver_s = seconds_since(run_start) - recording_s;
   progress.finish();
   const auto summary = recorder.finish(result, {seconds_since(start), solver_s});
-  if (can_report()) write_file(std::filesystem::path(options.out) / "report.html", report_page({options.out}));
 
   const std::vector<std::string> missed = result.status == RunStatus::failed || result.status == RunStatus::interrupted
                                               ? std::vector<std::string>{}

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "tissue/frame_file.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -26,6 +27,9 @@ struct MeshArrays {
 /// the wrong length or holds what is not finite: a NaN never reaches a file.
 void write_mesh(const std::filesystem::path& file, const Tissue& tissue, std::span<const Vec3> positions,
                 const MeshArrays& arrays, std::optional<double> time_s = {});
+
+/// What read_frame gives back of the mesh that write_mesh writes, but for its time.
+Frame frame_of(const Tissue& tissue, std::span<const Vec3> positions, const MeshArrays& arrays);
 
 /// Writes ParaView's collection file: times in s, and files relative to the collection's folder. Whole or not at all.
 /// FileError when it cannot be written, std::logic_error when a time is not finite.

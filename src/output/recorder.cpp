@@ -8,6 +8,7 @@
 #include "core/units.hpp"
 #include "measure/cells.hpp"
 #include "output/mesh_writer.hpp"
+#include "output/report.hpp"
 #include "scenario/print.hpp"
 
 namespace plica {
@@ -112,7 +113,8 @@ Recorder::Recorder(fs::path directory, const Scenario& scenario, const std::stri
       model_(model),
       observer_(observer),
       series_(table(directory_ / "series.csv", series_columns(observer))),
-      midline_(table(directory_ / "midline.csv", midline_header)) {
+      midline_(table(directory_ / "midline.csv", midline_header)),
+      report_(most_frame_bytes) {
   write_file(directory_ / "scenario.input.toml", input_toml);
   write_file(directory_ / "scenario.toml", resolved_toml(scenario));
   if (scenario.output.cells_csv.value_or(model.tissue.cells.size() <= most_cells_by_default))
@@ -139,6 +141,7 @@ nlohmann::ordered_json Recorder::finish(const RunResult& result, const WallTimes
   if (frames_.back().first != result.state.time_s) write_frame(result.state, result.state.velocities);
   nlohmann::ordered_json summary = make_summary(scenario_, model_, result, rows_, observer_.monitors(), wall);
   write_file(directory_ / "summary.json", summary.dump(2) + "\n");
+  if (can_report()) write_file(directory_ / "report.html", report_page({make_report_run(directory_, report_)}));
   return summary;
 }
 
@@ -184,6 +187,7 @@ void Recorder::write_frame(const State& state, const Vectors& velocities) {
                          {"activity", activities(model_, state.time_s)}};
   const std::string file = fmt::format("frames/frame_{:05}.vtu", frames_.size());
   write_mesh(directory_ / file, tissue, state.positions, arrays, state.time_s);
+  report_.add(frame_of(tissue, state.positions, arrays), state.time_s);
   frames_.emplace_back(state.time_s, file);
   write_collection(directory_ / "frames.pvd", frames_);
   if (cells_) append_cells(state);
@@ -204,18 +208,21 @@ void Recorder::append_cells(const State& state) {
   const auto volumes = model_.volumes.volumes(state.positions);
   const auto apical = apical_areas(tissue, state.positions), basal = basal_areas(tissue, state.positions);
   const auto activity = activities(model_, state.time_s), rest_areas = rest_apical_areas(tissue);
+  std::string rows;
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     const Cell& cell = tissue.cells[c];
     const Vec3 centre = cell_centre(cell, state.positions);
     const double rest_area = rest_areas[c];
     const std::optional<double> mother =
         cell.lineage.mother >= 0 ? std::optional<double>(cell.lineage.mother) : std::nullopt;
-    cells_->append(row_of(
-        {state.time_s, static_cast<double>(cell.lineage.id), mother, static_cast<double>(cell.lineage.generation),
-         centre.x(), centre.y(), centre.z(), volumes[c], apical[c], basal[c], cell_height(cell, state.positions),
-         rest_area > 0 ? std::optional(apical[c] / rest_area) : std::nullopt,
-         cell_centre(cell, state.velocities).norm(), state.pressures[c] / units::pascal, activity[c]}));
+    if (c > 0) rows += '\n';
+    rows += row_of({state.time_s, static_cast<double>(cell.lineage.id), mother,
+                    static_cast<double>(cell.lineage.generation), centre.x(), centre.y(), centre.z(), volumes[c],
+                    apical[c], basal[c], cell_height(cell, state.positions),
+                    rest_area > 0 ? std::optional(apical[c] / rest_area) : std::nullopt,
+                    cell_centre(cell, state.velocities).norm(), state.pressures[c] / units::pascal, activity[c]});
   }
+  cells_->append(rows);
 }
 
 void Recorder::append_midline(const State& state) {

@@ -8,6 +8,7 @@
 
 #include "core/files.hpp"
 #include "measure/observation.hpp"
+#include "output/report_frames.hpp"
 #include "output/summary.hpp"
 #include "scenario/scenario.hpp"
 
@@ -29,7 +30,7 @@ class Recorder {
   /// A frame that shows the daughters, and their lines in lineage.csv.
   void record_division(const Division& division, const State& state);
 
-  /// The last frame and summary.json.
+  /// The last frame, summary.json and report.html.
   nlohmann::ordered_json finish(const RunResult& result, const WallTimes& wall);
 
   [[nodiscard]] const std::vector<Observation>& rows() const { return rows_; }
@@ -49,6 +50,7 @@ class Recorder {
   std::optional<RowFile> cells_, lineage_;
   std::vector<Observation> rows_;
   std::vector<std::pair<double, std::string>> frames_;  // time, file
+  ReportFrames report_;
 };
 
 }  // namespace plica

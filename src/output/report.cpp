@@ -96,20 +96,18 @@ std::string replaced(std::string_view text, std::string_view place, const std::s
 
 }  // namespace
 
-bool can_report() {
-#ifdef PLICA_WITH_VTK
-  return !report_template().empty();
-#else
-  return false;
-#endif
-}
+bool can_report() { return !report_template().empty(); }
 
-std::string report_page(const std::vector<std::filesystem::path>& directories) {
-  if (report_template().empty())
-    throw FileError("no report can be made: plica was built without its viewer (PLICA_WITH_VIEWER=OFF)");
+std::string report_page_of(const std::vector<std::filesystem::path>& directories) {
   std::vector<ReportRun> runs;
   for (const auto& directory : directories)
     runs.push_back(read_report_run(directory, most_frame_bytes / static_cast<double>(directories.size())));
+  return report_page(runs);
+}
+
+std::string report_page(const std::vector<ReportRun>& runs) {
+  if (!can_report())
+    throw FileError("no report can be made: plica was built without its viewer (PLICA_WITH_VIEWER=OFF)");
   ordered_json page = {{"format", 1},
                        {"made_by", fmt::format("plica {} ({})", version(), commit())},
                        {"fields", fields_json(runs)},
