@@ -47,7 +47,7 @@ function showThinning(runs: Run[]): void {
   const thinned = runs.filter((run) => run.data.every > 1);
   byId("thinned").textContent = thinned
     .map((run) => `${run.name}: ${run.frames.length} of ${run.data.frames_saved} saved frames are in this page (every ` +
-      `${run.data.every}th, the last, and those on both sides of a division), so that it stays small.`)
+      `${run.data.every === 2 ? "2nd" : `${run.data.every}th`}, the last, and those on both sides of a division), so that it stays small.`)
     .join(" ");
 }
 
