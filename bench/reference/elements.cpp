@@ -148,9 +148,9 @@ void Elements<Real>::frame(const Lanes (&x)[8][3], Lanes (&R)[9]) {
 template <class Real>
 Elements<Real>::Elements(std::span<const double> rest, std::span<const std::array<int, 8>> hexes,
                          const Material& material)
-    : elements_(hexes.size()),
-      lambda_(static_cast<Real>(material.lambda())),
+    : lambda_(static_cast<Real>(material.lambda())),
       mu_(static_cast<Real>(material.mu())),
+      exact_rest_(rest.begin(), rest.end()),
       rest_(rest.begin(), rest.end()),
       batches_((hexes.size() + width - 1) / width) {
   for (std::size_t b = 0; b < batches_.size(); ++b) {

@@ -46,7 +46,7 @@ class Elements {
   /// (0,0), (1,0), (1,1), (2,0), ...
   void write_blocks(double scale, std::vector<Real>& blocks) const;
 
-  [[nodiscard]] std::size_t size() const { return elements_; }
+  [[nodiscard]] const std::vector<double>& rest() const { return exact_rest_; }
 
  private:
   typedef Real Lanes __attribute__((vector_size(64)));
@@ -66,8 +66,8 @@ class Elements {
   static void frame(const Lanes (&x)[8][3], Lanes (&R)[9]);
   static void turned_gradients(const Batch& batch, int point, Lanes (&g)[8][3]);
 
-  std::size_t elements_;
   Real lambda_, mu_;
+  std::vector<double> exact_rest_;
   std::vector<Real> rest_;
   std::vector<Batch> batches_;
 };

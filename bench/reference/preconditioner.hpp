@@ -19,7 +19,7 @@ class Preconditioner {
   [[nodiscard]] virtual double update_cost() const = 0;
 };
 
-/// Cholesky factor of the whole of A in single precision. Memory and time of small meshes only.
-std::unique_ptr<Preconditioner> make_factor(const Scene& scene);
+/// Geometric multigrid in single precision; on a mesh of few nodes a Cholesky factor of all of A.
+std::unique_ptr<Preconditioner> make_multigrid(const Scene& scene);
 
 }  // namespace plica::reference

@@ -72,7 +72,7 @@ void run(const Options& options) {
   {
     auto start = std::chrono::steady_clock::now();
     const auto lap = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-    Stepper stepper(mesh, Settings{}, options.tolerance, make_factor);
+    Stepper stepper(mesh, Settings{}, options.tolerance, make_multigrid);
     for (int step = 1; step <= options.steps; ++step) {
       stepper.step();
       if (const auto found = expected.find(step); found != expected.end()) {
