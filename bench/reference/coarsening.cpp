@@ -60,7 +60,8 @@ class Surface {
   // Straight on through the regular vertex v, coming from u: the neighbour that shares no quad with u.
   [[nodiscard]] int opposite(int u, int v) const {
     for (const int n : neighbours(v)) {
-      const bool shares = std::any_of(around_[v].begin(), around_[v].end(), [&](int q) { return has(q, u) && has(q, n); });
+      const bool shares =
+          std::any_of(around_[v].begin(), around_[v].end(), [&](int q) { return has(q, u) && has(q, n); });
       if (n != u && !shares) return n;
     }
     return -1;
@@ -113,7 +114,9 @@ std::optional<Quad> quad_about(const Surface& surface, const std::vector<Quad>& 
   const int away = (surface.corner(first, centre) + 2) % 4;
   const int start = quads[first][away], next = quads[first][(away + 1) % 4], last = quads[first][(away + 3) % 4];
   if (parents[start].size() != 1 || parents[next].size() != 2 || parents[last].size() != 2) return std::nullopt;
-  const auto other_end = [&](int middle, int v) { return parents[middle][0] == v ? parents[middle][1] : parents[middle][0]; };
+  const auto other_end = [&](int middle, int v) {
+    return parents[middle][0] == v ? parents[middle][1] : parents[middle][0];
+  };
   Quad quad{start, other_end(next, start), -1, other_end(last, start)};
   for (const int q : surface.around(centre)) {
     const int corner = quads[q][(surface.corner(q, centre) + 2) % 4];

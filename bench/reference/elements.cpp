@@ -8,9 +8,8 @@ namespace plica::reference {
 namespace {
 
 // Ends of the four edges along each local axis, in the order of the two other axes.
-constexpr int edges[3][4][2] = {{{0, 1}, {3, 2}, {4, 5}, {7, 6}},
-                                {{0, 3}, {1, 2}, {4, 7}, {5, 6}},
-                                {{0, 4}, {1, 5}, {3, 7}, {2, 6}}};
+constexpr int edges[3][4][2] = {
+    {{0, 1}, {3, 2}, {4, 5}, {7, 6}}, {{0, 3}, {1, 2}, {4, 7}, {5, 6}}, {{0, 4}, {1, 5}, {3, 7}, {2, 6}}};
 // Which of the four interpolated differences along axis k belongs to point p = xi + 2 eta + 4 zeta.
 constexpr int index_at(int k, int p) {
   const int xi = p & 1, eta = (p >> 1) & 1, zeta = p >> 2;
@@ -20,7 +19,7 @@ constexpr int index_at(int k, int p) {
 }  // namespace
 
 template <class Real>
-inline void Elements<Real>::gather(const Batch& batch, const Real* p, Lanes (&u)[8][3]) {
+[[gnu::always_inline]] inline void Elements<Real>::gather(const Batch& batch, const Real* p, Lanes (&u)[8][3]) {
   alignas(64) Real buffer[8][3][width];
   for (int a = 0; a < 8; ++a)
     for (int lane = 0; lane < width; ++lane)
@@ -30,15 +29,21 @@ inline void Elements<Real>::gather(const Batch& batch, const Real* p, Lanes (&u)
 }
 
 template <class Real>
-inline void Elements<Real>::scatter(const Batch& batch, const Lanes (&f)[8][3], Real* y) {
+[[gnu::always_inline]] inline void Elements<Real>::scatter(const Batch& batch, const Lanes (&f)[8][3], Real* y) {
   for (int a = 0; a < 8; ++a)
     for (int lane = 0; lane < width; ++lane)
       for (int c = 0; c < 3; ++c) y[batch.nodes[a][lane] + c] += f[a][c][lane];
 }
 
+// Batches are read once a product, from memory or a far cache: the next one's values are asked for in time.
+template <class Part>
+[[gnu::always_inline]] inline void fetch(const Part& part) {
+  for (std::size_t at = 0; at < sizeof(Part); at += 64) __builtin_prefetch(reinterpret_cast<const char*>(&part) + at);
+}
+
 // From the corners of a square to its four Gauss points; its own transpose.
 template <class Real>
-inline void Elements<Real>::interpolate(const Lanes (&v)[4], Lanes (&at_points)[4]) {
+[[gnu::always_inline]] inline void Elements<Real>::interpolate(const Lanes (&v)[4], Lanes (&at_points)[4]) {
   constexpr Real near = 0.78867513459481288225, far = 0.21132486540518711775;  // (1 +- 1/sqrt(3)) / 2
   const Lanes a = near * v[0] + far * v[1], b = far * v[0] + near * v[1];
   const Lanes c = near * v[2] + far * v[3], d = far * v[2] + near * v[3];
@@ -50,7 +55,8 @@ inline void Elements<Real>::interpolate(const Lanes (&v)[4], Lanes (&at_points)[
 
 // along[k][c]: twice the derivative of component c along local axis k.
 template <class Real>
-inline void Elements<Real>::reference_gradients(const Lanes (&u)[8][3], Lanes (&along)[3][3][4]) {
+[[gnu::always_inline]] inline void Elements<Real>::reference_gradients(const Lanes (&u)[8][3],
+                                                                       Lanes (&along)[3][3][4]) {
   for (int k = 0; k < 3; ++k)
     for (int c = 0; c < 3; ++c) {
       Lanes differences[4];
@@ -60,13 +66,14 @@ inline void Elements<Real>::reference_gradients(const Lanes (&u)[8][3], Lanes (&
 }
 
 template <class Real>
-inline void Elements<Real>::respond(const Batch& batch, Real lambda, Real mu, const Lanes (&u)[8][3],
-                                    Lanes (&f)[8][3]) {
+[[gnu::always_inline]] inline void Elements<Real>::respond(const Batch& batch, Real lambda, Real mu,
+                                                           const Lanes (&u)[8][3], Lanes (&f)[8][3]) {
   Lanes along[3][3][4], back[3][3][4] = {};
   reference_gradients(u, along);
 #pragma GCC unroll 8
   for (int p = 0; p < 8; ++p) {
     const Lanes(&G)[9] = batch.G[p];
+    fetch((&batch + 1)->G[p]);
     Lanes H[3][3];
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
@@ -96,7 +103,7 @@ inline void Elements<Real>::respond(const Batch& batch, Real lambda, Real mu, co
 }
 
 template <class Real>
-inline void Elements<Real>::to_rest(const Batch& batch, Lanes (&u)[8][3]) {
+[[gnu::always_inline]] inline void Elements<Real>::to_rest(const Batch& batch, Lanes (&u)[8][3]) {
   const Lanes(&Q)[9] = batch.Q;
   for (auto& v : u) {
     const Lanes x = v[0], y = v[1], z = v[2];
@@ -105,7 +112,7 @@ inline void Elements<Real>::to_rest(const Batch& batch, Lanes (&u)[8][3]) {
 }
 
 template <class Real>
-inline void Elements<Real>::to_current(const Batch& batch, Lanes (&u)[8][3]) {
+[[gnu::always_inline]] inline void Elements<Real>::to_current(const Batch& batch, Lanes (&u)[8][3]) {
   const Lanes(&Q)[9] = batch.Q;
   for (auto& v : u) {
     const Lanes x = v[0], y = v[1], z = v[2];
@@ -200,6 +207,8 @@ void Elements<Real>::add_product(Real scale, std::span<const Real> p, std::span<
   const Real lambda = scale * lambda_, mu = scale * mu_;
   for (const auto& batch : batches_) {
     Lanes u[8][3], f[8][3];
+    fetch((&batch + 1)->Q);
+    fetch((&batch + 1)->nodes);
     gather(batch, p.data(), u);
     to_rest(batch, u);
     respond(batch, lambda, mu, u, f);
@@ -213,6 +222,8 @@ void Elements<Real>::add_forces(std::span<const double> x, std::span<Real> force
   const std::vector<Real> rounded(x.begin(), x.end());
   for (const auto& batch : batches_) {
     Lanes u[8][3], X[8][3], f[8][3];
+    fetch((&batch + 1)->Q);
+    fetch((&batch + 1)->nodes);
     gather(batch, rounded.data(), u);
     gather(batch, rest_.data(), X);
     to_rest(batch, u);

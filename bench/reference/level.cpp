@@ -61,8 +61,7 @@ void Level::turn_to(std::span<const double> x, const Scene& scene) {
   elements_.turn_to(x);
   for (auto& pair : pairs_) std::fill_n(pair.block, 9, 0.0F);
   for (const auto& [spring, pair, weight] : shares_)
-    for (int k = 0; k < 9; ++k)
-      pairs_[pair].block[k] += weight * static_cast<float>(scene.springs()[spring].block[k]);
+    for (int k = 0; k < 9; ++k) pairs_[pair].block[k] += weight * static_cast<float>(scene.springs()[spring].block[k]);
 }
 
 void Level::multiply(std::span<const float> p, std::span<float> y) const {

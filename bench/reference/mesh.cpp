@@ -2,7 +2,6 @@
 
 #include <fstream>
 #include <sstream>
-#include <stdexcept>
 
 namespace plica::reference {
 namespace {
@@ -11,7 +10,7 @@ namespace {
 class Lines {
  public:
   explicit Lines(const std::filesystem::path& file) : file_(file), in_(file) {
-    if (!in_) throw std::runtime_error(file.string() + ": cannot be read");
+    if (!in_) throw FileError(file.string() + ": cannot be read");
   }
 
   bool next() {
@@ -40,7 +39,7 @@ class Lines {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw std::runtime_error(file_.string() + ":" + std::to_string(number_) + ": " + what);
+    throw FileError(file_.string() + ":" + std::to_string(number_) + ": " + what);
   }
 
  private:

@@ -3,9 +3,15 @@
 
 #include <array>
 #include <filesystem>
+#include <stdexcept>
 #include <vector>
 
 namespace plica::reference {
+
+/// A file that is not what it should be; the message names file and line.
+class FileError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 struct Spring {
   int i, j;
@@ -18,7 +24,7 @@ struct Mesh {
   std::vector<Spring> springs;
 };
 
-/// Throws std::runtime_error with file and line where the file is not such a mesh.
+/// Throws FileError with file and line where the file is not such a mesh.
 Mesh read_mesh(const std::filesystem::path& file);
 
 /// Positions of `count` nodes, x y z a line.

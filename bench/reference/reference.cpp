@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -54,11 +55,17 @@ double peak_MiB() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
+double cpu_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 double largest_distance(const std::vector<double>& a, const std::vector<double>& b) {
   double squared = 0;
   for (std::size_t n = 0; n < a.size(); n += 3)
-    squared = std::max(squared, std::pow(a[n] - b[n], 2) + std::pow(a[n + 1] - b[n + 1], 2) +
-                                    std::pow(a[n + 2] - b[n + 2], 2));
+    squared = std::max(squared,
+                       std::pow(a[n] - b[n], 2) + std::pow(a[n + 1] - b[n + 1], 2) + std::pow(a[n + 2] - b[n + 2], 2));
   return std::sqrt(squared);
 }
 
@@ -67,9 +74,10 @@ void run(const Options& options) {
   std::map<int, std::vector<double>> expected;
   for (const auto& [step, file] : options.positions) expected[step] = read_positions(file, mesh.nodes.size() / 3);
   // Before and after: a machine that others use does not keep its speed.
-  double yardstick = yardstick_us(mesh) / 2, position_error = 0, seconds = 0;
+  double yardstick = yardstick_us(mesh) / 2, position_error = 0, seconds = 0, cpu = 0;
   RunReport report;
   {
+    const double cpu_before = cpu_seconds();
     auto start = std::chrono::steady_clock::now();
     const auto lap = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
     Stepper stepper(mesh, Settings{}, options.tolerance, make_multigrid);
@@ -82,6 +90,7 @@ void run(const Options& options) {
       }
     }
     seconds += lap();
+    cpu = cpu_seconds() - cpu_before;
     report = stepper.report();
   }
   yardstick += yardstick_us(mesh) / 2;
@@ -94,6 +103,7 @@ void run(const Options& options) {
   result["steps"] = options.steps;
   result["tolerance"] = options.tolerance;
   result["ms_per_step"] = ms_per_step;
+  result["cpu_ms_per_step"] = 1e3 * cpu / options.steps;
   result["yardstick_us"] = yardstick;
   result["yardsticks_per_step"] = 1e3 * ms_per_step / yardstick;
   result["iterations_per_step"] = static_cast<double>(report.iterations) / options.steps;
@@ -110,6 +120,9 @@ int main(int argc, char** argv) {
   const Options options = read_options(argc, argv);
   try {
     run(options);
+  } catch (const FileError& error) {
+    std::cerr << error.what() << '\n';
+    return 4;
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 3;

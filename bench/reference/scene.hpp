@@ -18,7 +18,8 @@ struct SpringTangent {
   double block[9];
 };
 
-/// A dv = b at positions x: A = M + h (h + r) K, b = h (f - (h + r) K v), K the stiffness (minus the forces' derivative).
+/// A dv = b at positions x: A = M + h (h + r) K, b = h (f - (h + r) K v), K the stiffness (minus the forces'
+/// derivative).
 class Scene {
  public:
   Scene(const Mesh& mesh, const Settings& settings);

@@ -8,9 +8,9 @@ namespace plica::reference {
 namespace {
 
 constexpr int most_iterations = 2000;
-constexpr std::size_t remembered = 2;
+constexpr std::size_t remembered = 2;  // a line; one or three steps cost a tenth more iterations
 
-// Four running sums, so that the additions overlap; the order is fixed.
+// Sums in lanes, in an order that a build fixes.
 double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
 #pragma omp simd reduction(+ : sum)
@@ -43,9 +43,9 @@ void Stepper::update_preconditioner() {
   ++report_.updates;
 }
 
-// What the last steps' dv lead to, if they go on along a parabola (a line, the same again).
+// What the last steps' dv lead to, if they go on along a line.
 void Stepper::guess() {
-  constexpr double weights[3][3] = {{1, 0, 0}, {2, -1, 0}, {3, -3, 1}};
+  constexpr double weights[remembered][remembered] = {{1, 0}, {2, -1}};
   std::fill(dv_.begin(), dv_.end(), 0.0);
   for (std::size_t k = 0; k < history_.size(); ++k)
     for (std::size_t n = 0; n < dv_.size(); ++n) dv_[n] += weights[history_.size() - 1][k] * history_[k][n];

@@ -14,8 +14,8 @@ struct SolveReport {
 
 struct RunReport {
   long iterations = 0;
-  int updates = 0;       // of the preconditioner
-  double residual = 0;   // largest of any step
+  int updates = 0;      // of the preconditioner
+  double residual = 0;  // largest of any step
 };
 
 class Stepper {
@@ -40,8 +40,8 @@ class Stepper {
   std::vector<double> x_, v_, b_, dv_;
   std::vector<std::vector<double>> history_;  // of the last steps' dv, the newest first
   std::vector<double> r_, z_, p_, Ap_;
-  int fewest_iterations_ = 0;   // of a step since the last update
-  double excess_ = 0;           // iterations above them since then
+  int fewest_iterations_ = 0;  // of a step since the last update
+  double excess_ = 0;          // iterations above them since then
   RunReport report_;
 };
 

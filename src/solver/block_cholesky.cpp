@@ -77,7 +77,8 @@ std::vector<int> nested_dissection(const BlockPattern& pattern) {
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = 1;
-  if (METIS_NodeND(&n, starts.data(), adjacent.data(), nullptr, options, permutation.data(), position.data()) != METIS_OK)
+  if (METIS_NodeND(&n, starts.data(), adjacent.data(), nullptr, options, permutation.data(), position.data()) !=
+      METIS_OK)
     throw std::runtime_error("METIS could not order the matrix");
   return {position.begin(), position.end()};
 }
@@ -187,7 +188,8 @@ void BlockCholesky::place_blocks(const BlockPattern& pattern) {
   for (std::size_t s = 0; s < supernodes_.size(); ++s)
     for (int j = 0; j < supernodes_[s].columns; ++j) owner[supernodes_[s].first + j] = static_cast<int>(s);
   for (std::size_t s = 0; s < supernodes_.size(); ++s)
-    if (!supernodes_[s].rows.empty()) supernodes_[owner[supernodes_[s].rows.front()]].children.push_back(static_cast<int>(s));
+    if (!supernodes_[s].rows.empty())
+      supernodes_[owner[supernodes_[s].rows.front()]].children.push_back(static_cast<int>(s));
   for (int row = 0; row < pattern.nodes(); ++row)
     for (int at = pattern.starts[row]; at < pattern.starts[row + 1]; ++at) {
       const int i = position_[row], j = position_[pattern.columns[at]];
@@ -275,8 +277,7 @@ bool BlockCholesky::eliminate(const Supernode& node, float* panel, Update& front
   std::vector<float> inverse(std::size_t(own) * own);
   for (int j = 0; j < own; ++j) inverse[std::size_t(j) * (own + 1)] = 1;
   strsm_("L", "L", "N", "N", &own, &own, &one, panel, &height, inverse.data(), &own);
-  for (int j = 0; j < own; ++j)
-    std::copy_n(&inverse[std::size_t(j) * own], own, panel + std::size_t(j) * height);
+  for (int j = 0; j < own; ++j) std::copy_n(&inverse[std::size_t(j) * own], own, panel + std::size_t(j) * height);
   return true;
 }
 
@@ -307,7 +308,8 @@ void multiply(const float* P, int height, int width, const float* x, float* y) {
                 *f = e + height;
 #pragma omp simd
     for (int i = 0; i < height; ++i)
-      y[i] += (a[i] * x[j] + b[i] * x[j + 1]) + (c[i] * x[j + 2] + d[i] * x[j + 3]) + (e[i] * x[j + 4] + f[i] * x[j + 5]);
+      y[i] +=
+          (a[i] * x[j] + b[i] * x[j + 1]) + (c[i] * x[j + 2] + d[i] * x[j + 3]) + (e[i] * x[j + 4] + f[i] * x[j + 5]);
   }
   for (; j < width; j += 3) {
     const float *a = P + std::size_t(j) * height, *b = a + height, *c = b + height;

@@ -5,8 +5,8 @@
 // eliminated in a dense front, to which its children add their updates. A factor is applied much more often than it is
 // made, so each supernode's panel [L11; L21] is kept as P = [L11^-1; L21 L11^-1]: both triangular solves are then plain
 // products with P and its transpose, without dependencies inside, and their time is that of reading P twice.
-// Weighed: MUMPS (double precision; 2 ms a solve at 4500 unknowns, against 0.2 ms here), CHOLMOD (its supernodal part is
-// GPL), Eigen's SimplicialLLT (no supernodes).
+// Weighed: MUMPS (double precision; 2 ms a solve at 4500 unknowns, against 0.2 ms here), CHOLMOD (its supernodal part
+// is GPL), Eigen's SimplicialLLT (no supernodes).
 #pragma once
 
 #include <cstddef>
@@ -44,11 +44,11 @@ class BlockCholesky {
 
  private:
   struct Supernode {
-    int first = 0, columns = 0;         // nodes in elimination order
-    std::vector<int> rows;              // nodes below, ascending
-    std::size_t panel = 0;              // where its panel begins
-    std::vector<int> children;          // supernodes that update this one
-    std::vector<std::size_t> blocks;    // of the matrix that are assembled here
+    int first = 0, columns = 0;       // nodes in elimination order
+    std::vector<int> rows;            // nodes below, ascending
+    std::size_t panel = 0;            // where its panel begins
+    std::vector<int> children;        // supernodes that update this one
+    std::vector<std::size_t> blocks;  // of the matrix that are assembled here
   };
   struct Update {  // a child's contribution, lower triangle, column-major
     std::vector<float> values;
@@ -58,14 +58,15 @@ class BlockCholesky {
   void find_supernodes(const std::vector<std::vector<int>>& upper_neighbours);
   void place_blocks(const BlockPattern& pattern);
   void assemble(const Supernode& node, std::span<const float> values, float* panel) const;
-  void add_child(const Supernode& child, const Update& update, const Supernode& node, float* panel, Update& front) const;
+  void add_child(const Supernode& child, const Update& update, const Supernode& node, float* panel,
+                 Update& front) const;
   static bool eliminate(const Supernode& node, float* panel, Update& front);
 
   int nodes_ = 0;
-  std::vector<int> position_;            // of each node in the order of elimination
-  std::vector<Supernode> supernodes_;    // children before parents
+  std::vector<int> position_;                    // of each node in the order of elimination
+  std::vector<Supernode> supernodes_;            // children before parents
   std::vector<int> block_rows_, block_columns_;  // of each block, in elimination order, row >= column
-  std::vector<char> block_turned_;       // whether it is transposed there
+  std::vector<char> block_turned_;               // whether it is transposed there
   std::vector<float> panels_;
   mutable std::vector<float> x_, rows_;  // scratch of solve()
   std::size_t widest_rows_ = 0;
