@@ -1,0 +1,48 @@
+// Forces and the linear system of one step of the reference scene.
+#pragma once
+
+#include "elements.hpp"
+#include "mesh.hpp"
+
+namespace plica::reference {
+
+struct Settings {
+  double mass = 0.01, step = 0.1, damping_time = 0.1;  // damping_time: stiffness-proportional damping r
+  Material material;
+  [[nodiscard]] double stiffness_factor() const { return step * (step + damping_time); }
+};
+
+/// A spring's tangent, (k - t) u u^T + t I with t = k (d - l) / d, as A holds it: times h (h + r).
+struct SpringTangent {
+  int i, j;
+  double block[9];
+};
+
+/// A dv = b at positions x: A = M + h (h + r) K, b = h (f - (h + r) K v), K the stiffness (minus the forces'
+/// derivative).
+class Scene {
+ public:
+  Scene(const Mesh& mesh, const Settings& settings);
+
+  /// Turns elements and springs to positions `x`.
+  void turn_to(std::span<const double> x);
+  /// b at `x`, where turn_to() has been, and velocities `v`.
+  void right_hand_side(std::span<const double> x, std::span<const double> v, std::span<double> b) const;
+  /// y = A p.
+  void multiply(std::span<const double> p, std::span<double> y) const;
+
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+  [[nodiscard]] const Settings& settings() const { return settings_; }
+  [[nodiscard]] const std::vector<SpringTangent>& springs() const { return springs_; }
+  [[nodiscard]] const Elements<double>& elements() const { return elements_; }
+
+ private:
+  void add_stiffness(std::span<const double> p, std::span<double> y) const;  // y += h (h + r) K p
+
+  const Mesh& mesh_;
+  Settings settings_;
+  Elements<double> elements_;
+  std::vector<SpringTangent> springs_;
+};
+
+}  // namespace plica::reference

@@ -1,0 +1,75 @@
+// Cholesky factor of a sparse matrix of 3 x 3 blocks, one a node, kept in single precision: a preconditioner that is
+// cheap to apply many times.
+//
+// Multifrontal: nodes are ordered by nested dissection (METIS), columns of like structure form supernodes, and each is
+// eliminated in a dense front, to which its children add their updates. A factor is applied much more often than it is
+// made, so each supernode's panel [L11; L21] is kept as P = [L11^-1; L21 L11^-1]: both triangular solves are then plain
+// products with P and its transpose, without dependencies inside, and their time is that of reading P twice.
+// Weighed: MUMPS (double precision; 2 ms a solve at 4500 unknowns, against 0.2 ms here), CHOLMOD (its supernodal part
+// is GPL), Eigen's SimplicialLLT (no supernodes).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace plica {
+
+/// Places of the blocks of a symmetric matrix, diagonal and below, by rows: those of row n are columns[starts[n]] to
+/// columns[starts[n + 1] - 1], ascending, the last being n itself.
+struct BlockPattern {
+  std::vector<int> starts, columns;
+  [[nodiscard]] int nodes() const { return static_cast<int>(starts.size()) - 1; }
+  /// Number of the block at (row, column), column <= row; it must be there.
+  [[nodiscard]] int find(int row, int column) const;
+};
+
+/// The pattern in which any two nodes of a group are neighbours; `groups` holds `group_size` nodes after another.
+BlockPattern pattern_of_groups(int nodes, std::span<const int> groups, int group_size);
+
+class BlockCholesky {
+ public:
+  /// Orders the nodes and finds where the factor has entries. Once a topology.
+  explicit BlockCholesky(const BlockPattern& pattern);
+
+  /// Factorises; `values` are the pattern's blocks, nine numbers each, by rows. False when the matrix is not positive
+  /// definite in single precision: for condition numbers up to 1e6 it is, beyond 1e7 it hardly can be.
+  [[nodiscard]] bool factorise(std::span<const float> values);
+
+  /// Solves in place with the last factor: x = b in, x = A^-1 b out, to about 1e-7 times the condition number.
+  void solve(std::span<float> x) const;
+
+  /// Numbers kept in the factor, zeros inside panels included.
+  [[nodiscard]] std::size_t factor_size() const { return panels_.size(); }
+
+ private:
+  struct Supernode {
+    int first = 0, columns = 0;       // nodes in elimination order
+    std::vector<int> rows;            // nodes below, ascending
+    std::size_t panel = 0;            // where its panel begins
+    std::vector<int> children;        // supernodes that update this one
+    std::vector<std::size_t> blocks;  // of the matrix that are assembled here
+  };
+  struct Update {  // a child's contribution, lower triangle, column-major
+    std::vector<float> values;
+  };
+
+  void order(const BlockPattern& pattern);
+  void find_supernodes(const std::vector<std::vector<int>>& upper_neighbours);
+  void place_blocks(const BlockPattern& pattern);
+  void assemble(const Supernode& node, std::span<const float> values, float* panel) const;
+  void add_child(const Supernode& child, const Update& update, const Supernode& node, float* panel,
+                 Update& front) const;
+  static bool eliminate(const Supernode& node, float* panel, Update& front);
+
+  int nodes_ = 0;
+  std::vector<int> position_;                    // of each node in the order of elimination
+  std::vector<Supernode> supernodes_;            // children before parents
+  std::vector<int> block_rows_, block_columns_;  // of each block, in elimination order, row >= column
+  std::vector<char> block_turned_;               // whether it is transposed there
+  std::vector<float> panels_;
+  mutable std::vector<float> x_, rows_;  // scratch of solve()
+  std::size_t widest_rows_ = 0;
+};
+
+}  // namespace plica

@@ -1,0 +1,101 @@
+#include "solver/block_cholesky.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/tissues.hpp"
+
+namespace plica {
+namespace {
+
+/// A box of nodes, each a neighbour of those of its cubes, with random blocks: symmetric, positive definite.
+struct System {
+  System(int nx, int ny, int nz) {
+    const auto number = [&](int x, int y, int z) { return x + nx * (y + ny * z); };
+    std::vector<int> groups;
+    for (int z = 0; z + 1 < nz; ++z)
+      for (int y = 0; y + 1 < ny; ++y)
+        for (int x = 0; x + 1 < nx; ++x)
+          for (int corner = 0; corner < 8; ++corner)
+            groups.push_back(number(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)));
+    pattern = pattern_of_groups(nx * ny * nz, groups, 8);
+    support::Random random(7);
+    matrix.setZero(3 * pattern.nodes(), 3 * pattern.nodes());
+    for (int row = 0; row < pattern.nodes(); ++row)
+      for (int at = pattern.starts[row]; at < pattern.starts[row + 1]; ++at) {
+        Mat3 block;
+        for (int k = 0; k < 9; ++k) block.data()[k] = random.number();
+        if (pattern.columns[at] == row) block = (block + block.transpose() + 60 * Mat3::Identity()).eval();
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) values.push_back(static_cast<float>(block(i, j)));
+        matrix.block<3, 3>(3 * row, 3 * pattern.columns[at]) = block;
+        matrix.block<3, 3>(3 * pattern.columns[at], 3 * row) = block.transpose();
+      }
+    for (int n = 0; n < matrix.rows(); ++n) b.push_back(static_cast<float>(random.number()));
+  }
+
+  [[nodiscard]] double error(const std::vector<float>& x) const {
+    const Eigen::VectorXd exact =
+        matrix.llt().solve(Eigen::Map<const Eigen::VectorXf>(b.data(), matrix.rows()).cast<double>());
+    return (Eigen::Map<const Eigen::VectorXf>(x.data(), matrix.rows()).cast<double>() - exact).norm() / exact.norm();
+  }
+
+  BlockPattern pattern;
+  std::vector<float> values, b;
+  Eigen::MatrixXd matrix;
+};
+
+TEST(block_cholesky, agrees_with_a_dense_solve) {
+  const std::array<int, 3> sizes[] = {{2, 2, 2}, {9, 1, 1}, {4, 3, 2}, {12, 9, 2}, {7, 6, 8}, {20, 16, 2}};
+  int cases = 0;
+  for (const auto& [nx, ny, nz] : sizes) {
+    const System system(nx, ny, nz);
+    BlockCholesky cholesky(system.pattern);
+    ASSERT_TRUE(cholesky.factorise(system.values));
+    auto x = system.b;
+    cholesky.solve(x);
+    EXPECT_LT(system.error(x), 2e-6) << nx << " x " << ny << " x " << nz;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 6);
+}
+
+TEST(block_cholesky, gives_the_same_bits_again_and_after_another_matrix) {
+  const System system(12, 9, 3);
+  BlockCholesky cholesky(system.pattern), another(system.pattern);
+  ASSERT_TRUE(cholesky.factorise(system.values));
+  auto x = system.b, y = system.b;
+  cholesky.solve(x);
+  auto doubled = system.values;
+  for (float& value : doubled) value *= 2;
+  ASSERT_TRUE(another.factorise(doubled));
+  another.solve(y);
+  ASSERT_TRUE(another.factorise(system.values));
+  y = system.b;
+  another.solve(y);
+  EXPECT_EQ(x, y);
+}
+
+TEST(block_cholesky, keeps_less_than_the_dense_factor) {
+  const System system(24, 20, 2);
+  const BlockCholesky cholesky(system.pattern);
+  const auto rows = static_cast<std::size_t>(system.matrix.rows());
+  EXPECT_LT(cholesky.factor_size(), rows * rows / 5);
+}
+
+TEST(block_cholesky, says_when_a_matrix_is_not_positive_definite) {
+  System system(6, 5, 2);
+  BlockCholesky cholesky(system.pattern);
+  system.values[9 * static_cast<std::size_t>(system.pattern.find(17, 17)) + 4] = -60;
+  EXPECT_FALSE(cholesky.factorise(system.values));
+}
+
+TEST(block_cholesky, pattern_has_each_pair_of_a_group_once) {
+  const BlockPattern pattern = pattern_of_groups(4, std::vector<int>{0, 2, 2, 3, 0, 2}, 2);
+  EXPECT_EQ(pattern.starts, (std::vector<int>{0, 1, 2, 4, 6}));
+  EXPECT_EQ(pattern.columns, (std::vector<int>{0, 1, 0, 2, 2, 3}));
+  EXPECT_EQ(pattern.find(2, 0), 2);
+  EXPECT_THROW((void)pattern.find(3, 0), std::out_of_range);
+}
+
+}  // namespace
+}  // namespace plica
