@@ -15,7 +15,7 @@ constexpr std::size_t few_nodes =
     4000;                  // solved by the factor: a solve then takes less than a product of the fine mesh
 constexpr int degree = 4;  // products a smoothing; 3 and 5 take as long
 constexpr float smoothed_part =
-    40;  // eigenvalues from the largest down to it over this are smoothed; 5: twice as many iterations
+    40;  // eigenvalues from the largest down to it over this are smoothed; 5: a third more iterations
 
 using Blocks = std::vector<float>;
 

@@ -17,7 +17,7 @@ using namespace plica::reference;
 
 struct Options {
   std::filesystem::path mesh;
-  int steps = 10;
+  int steps = 10, rounds = 9;
   double tolerance = 1e-6;
   std::map<int, std::filesystem::path> positions;  // after how many steps
 };
@@ -32,6 +32,9 @@ Options read_options(int argc, char** argv) {
       ->check(CLI::Range(1e-14, 0.1))
       ->capture_default_str();
   app.add_option("--positions", positions, "FILE:STEP, repeatable: compare with these positions after STEP steps");
+  app.add_option("--rounds", options.rounds, "Rounds of the yardstick; its median counts")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.footer("Example: reference bench/data/pill756.txt --steps 10 --positions bench/data/pill756_step10.txt:10");
   try {
     app.parse(argc, argv);
@@ -74,7 +77,7 @@ void run(const Options& options) {
   std::map<int, std::vector<double>> expected;
   for (const auto& [step, file] : options.positions) expected[step] = read_positions(file, mesh.nodes.size() / 3);
   // Before and after: a machine that others use does not keep its speed.
-  double yardstick = yardstick_us(mesh) / 2, position_error = 0, seconds = 0, cpu = 0;
+  double yardstick = yardstick_us(mesh, options.rounds) / 2, position_error = 0, seconds = 0, cpu = 0;
   RunReport report;
   {
     const double cpu_before = cpu_seconds();
@@ -93,7 +96,7 @@ void run(const Options& options) {
     cpu = cpu_seconds() - cpu_before;
     report = stepper.report();
   }
-  yardstick += yardstick_us(mesh) / 2;
+  yardstick += yardstick_us(mesh, options.rounds) / 2;
 
   const double ms_per_step = 1e3 * seconds / options.steps;
   nlohmann::ordered_json result;

@@ -8,7 +8,7 @@ namespace plica::reference {
 namespace {
 
 constexpr int most_iterations = 2000;
-constexpr std::size_t remembered = 2;  // a line; one or three steps cost a tenth more iterations
+constexpr std::size_t remembered = 2;  // a line; one or three cost up to an eighth more iterations
 
 // Sums in lanes, in an order that a build fixes.
 double dot(std::span<const double> a, std::span<const double> b) {
