@@ -44,7 +44,7 @@ struct System {
   Eigen::MatrixXd matrix;
 };
 
-TEST(block_cholesky, agrees_with_a_dense_solve) {
+TEST(BlockCholesky, AgreesWithADenseSolve) {
   const std::array<int, 3> sizes[] = {{2, 2, 2}, {9, 1, 1}, {4, 3, 2}, {12, 9, 2}, {7, 6, 8}, {20, 16, 2}};
   int cases = 0;
   for (const auto& [nx, ny, nz] : sizes) {
@@ -59,7 +59,7 @@ TEST(block_cholesky, agrees_with_a_dense_solve) {
   EXPECT_EQ(cases, 6);
 }
 
-TEST(block_cholesky, gives_the_same_bits_again_and_after_another_matrix) {
+TEST(BlockCholesky, GivesTheSameBitsAgainAndAfterAnotherMatrix) {
   const System system(12, 9, 3);
   BlockCholesky cholesky(system.pattern), another(system.pattern);
   ASSERT_TRUE(cholesky.factorise(system.values));
@@ -75,21 +75,21 @@ TEST(block_cholesky, gives_the_same_bits_again_and_after_another_matrix) {
   EXPECT_EQ(x, y);
 }
 
-TEST(block_cholesky, keeps_less_than_the_dense_factor) {
+TEST(BlockCholesky, KeepsLessThanTheDenseFactor) {
   const System system(24, 20, 2);
   const BlockCholesky cholesky(system.pattern);
   const auto rows = static_cast<std::size_t>(system.matrix.rows());
   EXPECT_LT(cholesky.factor_size(), rows * rows / 5);
 }
 
-TEST(block_cholesky, says_when_a_matrix_is_not_positive_definite) {
+TEST(BlockCholesky, SaysWhenAMatrixIsNotPositiveDefinite) {
   System system(6, 5, 2);
   BlockCholesky cholesky(system.pattern);
   system.values[9 * static_cast<std::size_t>(system.pattern.find(17, 17)) + 4] = -60;
   EXPECT_FALSE(cholesky.factorise(system.values));
 }
 
-TEST(block_cholesky, pattern_has_each_pair_of_a_group_once) {
+TEST(BlockCholesky, PatternHasEachPairOfAGroupOnce) {
   const BlockPattern pattern = pattern_of_groups(4, std::vector<int>{0, 2, 2, 3, 0, 2}, 2);
   EXPECT_EQ(pattern.starts, (std::vector<int>{0, 1, 2, 4, 6}));
   EXPECT_EQ(pattern.columns, (std::vector<int>{0, 1, 0, 2, 2, 3}));
