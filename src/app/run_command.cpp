@@ -12,6 +12,7 @@
 #include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
+#include "output/mesh_writer.hpp"
 #include "output/recorder.hpp"
 #include "output/report.hpp"
 #include "scenario/advice.hpp"
@@ -84,6 +85,9 @@ int run_scenario(const RunOptions& options) {
     for (const std::string& line : advice(scenario, *model))
       if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
 
+  if (!can_write_meshes() && !options.quiet)
+    fmt::print(stderr,
+               "warning: this plica was built without VTK: the run leaves no frames for ParaView and plica render\n");
   refuse_to_replace_scenario(source.file, options.out);
   refuse_to_replace_reference(observer.monitors(), options.out);
   prepare_directory(options.out, options.overwrite);

@@ -21,6 +21,15 @@ struct MeshArrays {
   std::vector<std::pair<std::string, std::vector<double>>> node_scalars = {};  // nodes
 };
 
+/// Whether this build writes meshes: it has VTK.
+constexpr bool can_write_meshes() {
+#ifdef PLICA_WITH_VTK
+  return true;
+#else
+  return false;
+#endif
+}
+
 /// Writes the tissue's elements as VTK hexahedra at `positions` (nodes; um) to a `.vtu` file: VTK's XML format, binary,
 /// compressed by zlib. Whole or not at all. With `time_s` the file carries it as field data `TimeValue`.
 /// FileError when the file cannot be written, or when plica was built without VTK. std::logic_error when an array has

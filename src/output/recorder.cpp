@@ -138,7 +138,7 @@ void Recorder::record_division(const Division& division, const State& state) {
 }
 
 nlohmann::ordered_json Recorder::finish(const RunResult& result, const WallTimes& wall) {
-  if (frames_.back().first != result.state.time_s) write_frame(result.state, result.state.velocities);
+  if (last_frame_s_ != result.state.time_s) write_frame(result.state, result.state.velocities);
   nlohmann::ordered_json summary = make_summary(scenario_, model_, result, rows_, observer_.monitors(), wall);
   write_file(directory_ / "summary.json", summary.dump(2) + "\n");
   if (can_report()) write_file(directory_ / "report.html", report_page({make_report_run(directory_, report_)}));
@@ -185,11 +185,14 @@ void Recorder::write_frame(const State& state, const Vectors& velocities) {
                          {"apical_area_ratio", std::move(ratios)},
                          {"pressure_Pa", std::move(pressures)},
                          {"activity", activities(model_, state.time_s)}};
-  const std::string file = fmt::format("frames/frame_{:05}.vtu", frames_.size());
-  write_mesh(directory_ / file, tissue, state.positions, arrays, state.time_s);
+  if (can_write_meshes()) {
+    const std::string file = fmt::format("frames/frame_{:05}.vtu", frames_.size());
+    write_mesh(directory_ / file, tissue, state.positions, arrays, state.time_s);
+    frames_.emplace_back(state.time_s, file);
+    write_collection(directory_ / "frames.pvd", frames_);
+  }
+  last_frame_s_ = state.time_s;
   report_.add(frame_of(tissue, state.positions, arrays), state.time_s);
-  frames_.emplace_back(state.time_s, file);
-  write_collection(directory_ / "frames.pvd", frames_);
   if (cells_) append_cells(state);
   append_midline(state);
 }

@@ -50,6 +50,7 @@ class Recorder {
   std::optional<RowFile> cells_, lineage_;
   std::vector<Observation> rows_;
   std::vector<std::pair<double, std::string>> frames_;  // time, file
+  double last_frame_s_ = 0;
   ReportFrames report_;
 };
 
