@@ -149,7 +149,7 @@ export class EmbryoViews {
     for (const view of this.views) this.listen(view);
     state.on(["view"], () => this.lookFrom());
     state.on(["time", "field", "cut", "edges", "shell", "marks", "picked"], () => (this.stale = true));
-    state.on(["field"], () => this.drawLegend());
+    state.on(["field"], () => this.showLegend());
     new ResizeObserver(() => this.resize()).observe(holder);
     this.resize();
   }
@@ -170,7 +170,7 @@ export class EmbryoViews {
   /** Style or size has changed. */
   refresh(): void {
     this.stale = true;
-    this.drawLegend();
+    this.showLegend();
   }
 
   /** The eye's direction, from the eye into the picture. */
@@ -214,11 +214,11 @@ export class EmbryoViews {
     for (const view of this.views) view.resize(this.radius);
     this.lookFrom();
     this.stale = true;
-    this.drawLegend();
+    this.showLegend();
     this.draw();
   }
 
-  private drawLegend(): void {
+  private showLegend(): void {
     const ratio = Math.min(devicePixelRatio, 2);
     const width = this.legend.clientWidth;
     this.legend.width = width * ratio;
