@@ -50,6 +50,7 @@ export class CellPanel {
     const { picked, time } = this.state.now;
     if (!picked) {
       this.content.replaceChildren(element("p", { class: "note" }, "A click on a cell shows its values here."));
+      this.chart?.destroy();
       this.chart = null;
       this.chartOf = "";
       return;
@@ -91,6 +92,7 @@ export class CellPanel {
       name: `cell ${id}`, column: `cell_${id}.${field.name}`, run, points: run.history(field, id),
       colour: lineColours[3], dash: [],
     };
+    this.chart?.destroy();
     this.chart = new Chart({ title: field.label, unit: field.unit, curves: [curve] }, this.state);
     this.chartOf = wanted;
   }

@@ -72,6 +72,8 @@ export class Chart {
   readonly box = element("figure", { class: "chart" });
   private readonly holder = element("div");
   private readonly values: HTMLElement[] = [];
+  private readonly sizes = new ResizeObserver(() => this.fit());
+  private readonly forget: () => void;
   private shownAt = 0; // ms
   private plot: uPlot | null = null;
   private line: TimeLine | null = null;
@@ -79,9 +81,16 @@ export class Chart {
   constructor(readonly content: ChartContent, private readonly state: State, private logarithmicTime = false) {
     const unit = content.unit === "" ? "" : `, ${content.unit}`;
     this.box.append(element("figcaption", {}, content.title + unit), this.holder, this.legend());
-    new ResizeObserver(() => this.fit()).observe(this.holder);
-    state.on(["time", "playing"], () => this.showTime());
+    this.sizes.observe(this.holder);
+    this.forget = state.on(["time", "playing"], () => this.showTime());
     this.rebuild();
+  }
+
+  /** Ends the plot: it no longer follows the page. */
+  destroy(): void {
+    this.forget();
+    this.sizes.disconnect();
+    this.plot?.destroy();
   }
 
   setLogarithmicTime(on: boolean): void {

@@ -23,6 +23,7 @@ function drawsInSoftware(): boolean {
   return /swiftshader|llvmpipe|software|basic render/i.test(renderer);
 }
 
+const margins = { side: 30, top: 66 }; // pixels: for marks; for marks below time and title
 const overlayRatio = Math.min(devicePixelRatio, 2);
 
 class RunView {
@@ -83,11 +84,19 @@ class RunView {
   }
 
   render(showTitle: boolean): void {
-    this.scene.lightFrom(this.camera);
-    this.renderer.render(this.scene.scene, this.camera);
+    this.drawEmbryo();
     const context = this.overlay.getContext("2d")!;
     context.setTransform(overlayRatio, 0, 0, overlayRatio, 0, 0);
     context.clearRect(0, 0, this.overlay.width, this.overlay.height);
+    this.annotate(context, showTitle);
+  }
+
+  private drawEmbryo(): void {
+    this.scene.lightFrom(this.camera);
+    this.renderer.render(this.scene.scene, this.camera);
+  }
+
+  private annotate(context: CanvasRenderingContext2D, showTitle: boolean): void {
     const shown = Math.min(this.state.now.time, this.run.endTime);
     annotate(context, {
       ...this.size, camera: this.camera, centre: this.run.centre,
@@ -96,12 +105,15 @@ class RunView {
     });
   }
 
-  /** Paints picture and annotations into another canvas. */
-  paint(context: CanvasRenderingContext2D, x: number, showTitle: boolean): void {
-    this.render(showTitle);
+  /** Paints picture and annotations into another canvas, where a CSS pixel is `ratio` pixels. The own one is lost. */
+  paint(context: CanvasRenderingContext2D, ratio: number, showTitle: boolean): void {
     const { width, height } = this.size;
-    context.drawImage(this.canvas, x, 0, width, height);
-    context.drawImage(this.overlay, x, 0, width, height);
+    const own = this.renderer.getPixelRatio();
+    this.renderer.setPixelRatio(ratio);
+    this.drawEmbryo();
+    context.drawImage(this.canvas, 0, 0, width, height);
+    this.renderer.setPixelRatio(own);
+    this.annotate(context, showTitle);
   }
 
   /** The zoom at which the embryo, as it is and seen as now, fills the picture but for a margin for marks and bar. */
@@ -111,7 +123,9 @@ class RunView {
     const reach = (x: number, y: number) => this.scene.reach(right, up, new three.Vector2(x, y));
     const wide = Math.max(reach(1, 0), reach(-1, 0));
     const high = Math.max(reach(0, 1), reach(0, -1));
-    return Math.min(this.camera.right / (1.15 * wide), this.camera.top / (1.3 * high));
+    const { width, height } = this.size;
+    const part = (margin: number, side: number) => Math.max(1 - (2 * margin) / side, 0.3);
+    return Math.min((part(margins.side, width) * this.camera.right) / wide, (part(margins.top, height) * this.camera.top) / high);
   }
 
   cellAt(clientX: number, clientY: number): number {
@@ -187,15 +201,16 @@ export class EmbryoViews {
     canvas.width = finer * width;
     canvas.height = finer * (height + legendHeight);
     const context = canvas.getContext("2d")!;
-    this.setFine(true);
     context.scale(finer, finer);
     context.fillStyle = styleColour("paper");
     context.fillRect(0, 0, width, height + legendHeight);
-    let x = 0;
+    context.save();
     for (const view of this.views) {
-      view.paint(context, x, this.views.length > 1);
-      x += view.size.width;
+      view.paint(context, finer, this.views.length > 1);
+      context.translate(view.size.width, 0);
     }
+    context.restore();
+    this.moved = true;
     context.translate(0, height);
     drawLegend(context, width, this.state.now.field, this.page);
     return new Promise((resolve) => canvas.toBlob((blob) => resolve(blob!), "image/png"));
@@ -293,13 +308,13 @@ export class EmbryoViews {
 
   private turnByKey(view: RunView, key: string): boolean {
     const { camera, controls } = view;
+    // The axis of the picture that is turned about (0 to the right, 1 upwards), and which way.
     const turns: Record<string, [number, number]> = {
-      ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0],
+      ArrowLeft: [1, 1], ArrowRight: [1, -1], ArrowUp: [0, 1], ArrowDown: [0, -1],
     };
     if (key in turns) {
-      const [about, angle] = turns[key][1] !== 0 ? [1, turns[key][1]] : [0, turns[key][0]];
-      const axis = new three.Vector3().setFromMatrixColumn(camera.matrix, about === 1 ? 1 : 0);
-      const turn = new three.Quaternion().setFromAxisAngle(axis, -angle * turnStep);
+      const axis = new three.Vector3().setFromMatrixColumn(camera.matrix, turns[key][0]);
+      const turn = new three.Quaternion().setFromAxisAngle(axis, turns[key][1] * turnStep);
       camera.position.sub(controls.target).applyQuaternion(turn).add(controls.target);
       camera.up.applyQuaternion(turn);
       camera.lookAt(controls.target);

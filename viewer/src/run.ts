@@ -82,24 +82,18 @@ export class Topology {
 
   /** The field's value of a cell; of one on nodes, the mean over the cell's. */
   valueOfCell(field: Field, moment: number, cell: number): number {
-    const values = this.scratch(field);
-    this.values(field, moment, 0, values);
-    if (!field.on_nodes) return values[cell];
-    const nodes = this.nodesOfCell(cell);
-    return nodes.reduce((sum, node) => sum + values[node], 0) / nodes.length;
+    const { low, high } = this.data.fields[field.name];
+    const steps = this.array(field.name);
+    const places = field.on_nodes ? this.nodesOfCell(cell) : [cell];
+    const first = moment * (field.on_nodes ? this.nodes : this.cells);
+    const mean = places.reduce((sum, place) => sum + steps[first + place], 0) / places.length;
+    return low + ((high - low) * mean) / 65535;
   }
 
   private array(name: string): Uint16Array {
     let array = this.arrays.get(name);
     if (!array) this.arrays.set(name, (array = this.packed.get(`${this.index}/${name}`) as Uint16Array));
     return array;
-  }
-
-  private scratchValues = new Float32Array(0);
-  private scratch(field: Field): Float32Array {
-    const count = field.on_nodes ? this.nodes : this.cells;
-    if (this.scratchValues.length < count) this.scratchValues = new Float32Array(Math.max(this.nodes, this.cells));
-    return this.scratchValues;
   }
 }
 

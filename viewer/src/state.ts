@@ -42,8 +42,10 @@ export class State {
     for (const { keys, tell } of this.listeners) if (keys.some((key) => changed.includes(key))) tell();
   }
 
-  /** Calls `tell` at each change of one of these values. */
-  on(keys: Key[], tell: () => void): void {
-    this.listeners.push({ keys, tell });
+  /** Calls `tell` at each change of one of these values, until what it returns is called. */
+  on(keys: Key[], tell: () => void): () => void {
+    const listener = { keys, tell };
+    this.listeners.push(listener);
+    return () => void this.listeners.splice(this.listeners.indexOf(listener), 1);
   }
 }

@@ -368,6 +368,8 @@ test("the picture and the table are saved", async () => {
   const png = readFileSync(await picture.path());
   assert.equal(png.subarray(1, 4).toString(), "PNG");
   assert.ok(png.length > 50_000, `${png.length} bytes`);
+  const { width } = await page.locator(".view").boundingBox();
+  assert.equal(png.readUInt32BE(16), 2 * Math.round(width), "twice as fine as the screen");
   const [csv] = await Promise.all([page.waitForEvent("download"), page.click("#save-table")]);
   const [head, ...rows] = readFileSync(await csv.path(), "utf8").trim().split("\n");
   const series = table("drosophila/series.csv");
