@@ -13,21 +13,12 @@
 #include <span>
 #include <vector>
 
+#include "solver/block_pattern.hpp"
+#include "solver/preconditioner.hpp"
+
 namespace plica {
 
-/// Places of the blocks of a symmetric matrix, diagonal and below, by rows: those of row n are columns[starts[n]] to
-/// columns[starts[n + 1] - 1], ascending, the last being n itself.
-struct BlockPattern {
-  std::vector<int> starts, columns;
-  [[nodiscard]] int nodes() const { return static_cast<int>(starts.size()) - 1; }
-  /// Number of the block at (row, column), column <= row; it must be there.
-  [[nodiscard]] int find(int row, int column) const;
-};
-
-/// The pattern in which any two nodes of a group are neighbours; `groups` holds `group_size` nodes after another.
-BlockPattern pattern_of_groups(int nodes, std::span<const int> groups, int group_size);
-
-class BlockCholesky {
+class BlockCholesky final : public Preconditioner {
  public:
   /// Orders the nodes and finds where the factor has entries. Once a topology.
   explicit BlockCholesky(const BlockPattern& pattern);
@@ -35,9 +26,12 @@ class BlockCholesky {
   /// Factorises; `values` are the pattern's blocks, nine numbers each, by rows. False when the matrix is not positive
   /// definite in single precision: for condition numbers up to 1e6 it is, beyond 1e7 it hardly can be.
   [[nodiscard]] bool factorise(std::span<const float> values);
+  [[nodiscard]] bool factorise(std::span<const float> values, std::span<const float> /*near_kernel*/) override {
+    return factorise(values);
+  }
 
   /// Solves in place with the last factor: x = b in, x = A^-1 b out, to about 1e-7 times the condition number.
-  void solve(std::span<float> x) const;
+  void solve(std::span<float> x) const override;
 
   /// Numbers kept in the factor, zeros inside panels included.
   [[nodiscard]] std::size_t factor_size() const { return panels_.size(); }
