@@ -2,7 +2,11 @@
 // and sums are taken afterwards in a fixed order.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <span>
+#include <vector>
 
 namespace plica {
 
@@ -13,6 +17,28 @@ void parallel_for(std::size_t count, const Body& body) {
   constexpr std::size_t worth_sharing = 256;
 #pragma omp parallel for schedule(static) if (count >= worth_sharing)
   for (std::size_t i = 0; i < count; ++i) body(i);
+}
+
+/// The scalar product of two vectors, summed in parts whose bounds do not depend on the threads.
+inline double parallel_dot(std::span<const double> a, std::span<const double> b) {
+  constexpr std::size_t part = 4096;
+  const auto sum = [&](std::size_t first, std::size_t last) {
+    std::array<double, 8> lanes{};  // so that sums need not wait for each other
+    std::size_t i = first;
+    for (; i + lanes.size() <= last; i += lanes.size())
+      for (std::size_t lane = 0; lane < lanes.size(); ++lane) lanes[lane] += a[i + lane] * b[i + lane];
+    double total = 0;
+    for (; i < last; ++i) total += a[i] * b[i];
+    for (const double lane : lanes) total += lane;
+    return total;
+  };
+  if (a.size() <= part) return sum(0, a.size());
+  std::vector<double> sums((a.size() + part - 1) / part);
+#pragma omp parallel for schedule(static)
+  for (std::size_t k = 0; k < sums.size(); ++k) sums[k] = sum(k * part, std::min(a.size(), (k + 1) * part));
+  double total = 0;
+  for (const double one : sums) total += one;
+  return total;
 }
 
 }  // namespace plica

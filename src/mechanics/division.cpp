@@ -123,6 +123,7 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
   state.positions = with_new_nodes(model.tissue, division, state.positions);
   state.velocities = with_new_nodes(model.tissue, division, state.velocities);
   state.pressures = inherited(division, state.pressures);
+  state.trend = {};
 
   std::vector<double> targets = inherited(division, model.volumes.targets());
   model.volumes = CellVolumes(model.tissue);

@@ -60,6 +60,14 @@ struct State {
   std::vector<double> contact_forces;  // the vitelline's nodes; nN, >= 0
   std::vector<char> in_contact;        // the vitelline's nodes
   double divided_until_s = -1;         // divisions that were due up to here have been made
+
+  // How things last changed, from which the next step's end is forecast. Empty when that is not known: at the start and
+  // after a division.
+  struct Trend {
+    double step_s = 0;                   // the last step, over which the velocities are means
+    Vectors accelerations;               // nodes; um/s^2
+    std::vector<double> pressure_rates;  // cells; kPa/s
+  } trend;
 };
 
 /// The model at rest, before the first step.

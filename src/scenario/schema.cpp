@@ -272,6 +272,11 @@ const std::vector<Row>& rows() {
           {.instead_of = "end_s", .scale = 60}),
       row("time", "scheme", at(&S::time, &T::scheme), words({"newton", "linearly-implicit"}),
           "How a step is solved: Newton's method, or one linear system by conjugate gradients (the paper)."),
+      row("time", "linear_solver", at(&S::time, &T::linear_solver),
+          words({"automatic", "direct", "cholesky", "multigrid"}),
+          "How Newton's linear systems are solved: a factor of the whole system; or Krylov's method with a factor of "
+          "its "
+          "positive definite part, or with multigrid; automatic: by size. Results differ by less than the tolerances."),
       row("time", "cg_tolerance", at(&S::time, &T::cg_tolerance), {.low = 1e-14, .high = 0.1},
           "Residual of the conjugate gradients over the force (scheme linearly-implicit)."),
       row("time", "cg_max_iterations", at(&S::time, &T::cg_max_iterations), between(1, 1000000),

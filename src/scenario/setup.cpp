@@ -227,6 +227,11 @@ namespace {
 StepScheme make_scheme(const Scenario& scenario) {
   StepScheme scheme;
   if (scenario.time.scheme == "linearly-implicit") scheme.forces = StepScheme::Forces::linearly_implicit;
+  const std::string& linear = scenario.time.linear_solver;
+  scheme.linear_method = linear == "direct"      ? LinearMethod::direct
+                         : linear == "cholesky"  ? LinearMethod::cholesky
+                         : linear == "multigrid" ? LinearMethod::multigrid
+                                                 : LinearMethod::automatic;
   scheme.linear_tolerance = scenario.time.cg_tolerance;
   scheme.most_linear_iterations = scenario.time.cg_max_iterations;
   if (scenario.volume.method == "projection") {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/processor.hpp"
+
 extern "C" {  // BLAS
 void strsm_(const char* side, const char* triangle, const char* transposed, const char* diagonal, const int* m,
             const int* n, const float* alpha, const float* a, const int* lda, float* b, const int* ldb);
@@ -276,7 +278,7 @@ bool BlockCholesky::factorise(std::span<const float> values) {
 namespace {
 
 // y = P x; P has `height` rows, column-major.
-void multiply(const float* P, int height, int width, const float* x, float* y) {
+PLICA_FOR_NEWER_PROCESSORS_TOO void multiply(const float* P, int height, int width, const float* x, float* y) {
   std::fill_n(y, height, 0.0F);
   int j = 0;
   for (; j + 6 <= width; j += 6) {
@@ -295,7 +297,8 @@ void multiply(const float* P, int height, int width, const float* x, float* y) {
 }
 
 // x = P^T y.
-void multiply_transposed(const float* P, int height, int width, const float* y, float* x) {
+PLICA_FOR_NEWER_PROCESSORS_TOO void multiply_transposed(const float* P, int height, int width, const float* y,
+                                                        float* x) {
   for (int j = 0; j < width; j += 3) {
     const float *a = P + std::size_t(j) * height, *b = a + height, *c = b + height;
     float p = 0, q = 0, r = 0;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "core/parallel.hpp"
+
 namespace plica {
 
-StepMatrix::StepMatrix(const Model& model) : tissue_(model.tissue) {
+StepMatrix::StepMatrix(const Model& model) : tissue_(model.tissue), jacobian_(model) {
   const int nodes = static_cast<int>(tissue_.free_node_count());
   // Which blocks can be non-zero: pairs within the laws' groups of nodes, and every node with itself.
   std::vector<std::vector<int>> lower(nodes);
@@ -21,55 +23,30 @@ StepMatrix::StepMatrix(const Model& model) : tissue_(model.tissue) {
     for (const auto& group : law->node_groups()) join(group);
   if (model.volumes_are_held)
     for (const auto& element : tissue_.elements) join({element.begin(), element.end()});
-  row_start_.push_back(0);
+  layout_.starts.push_back(0);
   for (auto& row : lower) {
     std::sort(row.begin(), row.end());
     row.erase(std::unique(row.begin(), row.end()), row.end());
-    columns_.insert(columns_.end(), row.begin(), row.end());
-    row_start_.push_back(static_cast<int>(columns_.size()));
+    layout_.columns.insert(layout_.columns.end(), row.begin(), row.end());
+    layout_.starts.push_back(static_cast<int>(layout_.columns.size()));
   }
-  blocks_.resize(columns_.size());
-
-  // The nodes of each cell, for its volume's gradient.
-  gradient_start_.push_back(0);
-  element_slots_.resize(tissue_.elements.size());
-  for (const Cell& cell : tissue_.cells) {
-    if (!model.volumes_are_held) break;
-    std::vector<NodeId> members;
-    const auto first = cell.first_element.index();
-    for (std::size_t e = first; e < first + cell.element_count; ++e)
-      for (const NodeId node : tissue_.elements[e])
-        tissue_.for_free_nodes(node, [&](NodeId n, double) { members.push_back(n); });
-    std::sort(members.begin(), members.end());
-    members.erase(std::unique(members.begin(), members.end()), members.end());
-    const int offset = static_cast<int>(gradients_.size());
-    for (std::size_t e = first; e < first + cell.element_count; ++e)
-      for (int i = 0; i < 8; ++i)
-        tissue_.for_free_nodes(tissue_.elements[e][i], [&](NodeId n, double weight) {
-          const auto at = std::lower_bound(members.begin(), members.end(), n);
-          const int slot = offset + static_cast<int>(at - members.begin());
-          const bool hangs = n != tissue_.elements[e][i];
-          element_slots_[e][i] = hangs ? -1 : slot;
-          if (hangs) hanging_slots_.push_back({e, i, slot, weight});
-        });
-    for (const NodeId node : members) gradients_.push_back({node, Vec3::Zero()});
-    gradient_start_.push_back(static_cast<int>(gradients_.size()));
-  }
+  blocks_.resize(layout_.columns.size());
 
   // Scalar entries, in the order of write_values.
-  const int cells = static_cast<int>(gradient_start_.size()) - 1;
+  const int cells = static_cast<int>(jacobian_.cells());
   pattern_.size = 3 * nodes + cells;
   const auto entry = [&](int row, int column) {
     pattern_.rows.push_back(row);
     pattern_.columns.push_back(column);
   };
   for (int row = 0; row < nodes; ++row)
-    for (int k = row_start_[row]; k < row_start_[row + 1]; ++k)
+    for (int k = layout_.starts[row]; k < layout_.starts[row + 1]; ++k)
       for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < (columns_[k] == row ? i + 1 : 3); ++j) entry(3 * row + i, 3 * columns_[k] + j);
+        for (int j = 0; j < (layout_.columns[k] == row ? i + 1 : 3); ++j)
+          entry(3 * row + i, 3 * layout_.columns[k] + j);
   for (int cell = 0; cell < cells; ++cell) {
-    for (int k = gradient_start_[cell]; k < gradient_start_[cell + 1]; ++k)
-      for (int j = 0; j < 3; ++j) entry(3 * nodes + cell, 3 * gradients_[k].node.number() + j);
+    for (const auto& [node, value] : jacobian_.of_cell(cell))
+      for (int j = 0; j < 3; ++j) entry(3 * nodes + cell, 3 * node.number() + j);
     entry(3 * nodes + cell, 3 * nodes + cell);
   }
 }
@@ -87,43 +64,56 @@ void StepMatrix::add_block(NodeId row, NodeId column, const Mat3& block) {
 
 void StepMatrix::add_free_block(NodeId row, NodeId column, const Mat3& block) {
   if (column > row) return;
-  const auto first = columns_.begin() + row_start_[row.index()], last = columns_.begin() + row_start_[row.index() + 1];
-  blocks_[std::lower_bound(first, last, column.number()) - columns_.begin()] += block;
+  const auto first = layout_.columns.begin() + layout_.starts[row.index()],
+             last = layout_.columns.begin() + layout_.starts[row.index() + 1];
+  blocks_[std::lower_bound(first, last, column.number()) - layout_.columns.begin()] += block;
 }
 
-void StepMatrix::set_volume_gradients(const CellVolumes& volumes, std::span<const Vec3> positions) {
-  if (gradients_.empty()) return;
-  for (Gradient& gradient : gradients_) gradient.value.setZero();
-  const auto of_elements = volumes.element_gradients(positions);
-  for (std::size_t e = 0; e < of_elements.size(); ++e)
+void StepMatrix::assemble(const Model& model, const Step& step, const Iterate& at) {
+  set_zero();
+  for (const auto& law : model.laws) law->add_tangent(step, *this);
+  if (model.volumes_are_held) {
+    if (!step.semidefinite_tangent) model.volumes.add_tangent(at.positions, at.pressures, *this);
+    jacobian_.update(model.volumes, at.positions);
+  }
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k)
+    if (at.in_contact[k]) {
+      const NodeId node = model.vitelline->nodes()[k];
+      add_block(node, node, -at.contact_forces[k] * model.vitelline->gap(at.positions[node.index()]).hessian);
+    }
+}
+
+void StepMatrix::add_volume_stiffness(const Model& model, std::span<const Vec3> positions,
+                                      std::span<const double> weights) {
+  if (weights.empty()) return;
+  const auto gradients = model.volumes.element_gradients(positions);
+  for (std::size_t e = 0; e < gradients.size(); ++e) {
+    // sum_e 1/V_e (dV_e)^2 >= 1/V_c (sum_e dV_e)^2.
+    const std::size_t cell = model.volumes.cell_of(e).index();
+    const double weight = weights[cell] * model.tissue.cells[cell].element_count;
+    const auto& nodes = model.tissue.elements[e];
     for (int i = 0; i < 8; ++i)
-      if (element_slots_[e][i] >= 0) gradients_[element_slots_[e][i]].value += of_elements[e][i];
-  for (const auto& [element, corner, slot, weight] : hanging_slots_)
-    gradients_[slot].value += weight * of_elements[element][corner];
+      for (int j = 0; j < 8; ++j) add_block(nodes[i], nodes[j], weight * gradients[e][i] * gradients[e][j].transpose());
+  }
+}
+
+Mat3 StepMatrix::block(std::size_t row, std::size_t column) const {
+  if (column > row) return block(column, row).transpose();
+  const auto first = layout_.columns.begin() + layout_.starts[row],
+             last = layout_.columns.begin() + layout_.starts[row + 1];
+  const auto at = std::lower_bound(first, last, static_cast<int>(column));
+  if (at == last || *at != static_cast<int>(column)) return Mat3::Zero();
+  return blocks_[at - layout_.columns.begin()];
 }
 
 void StepMatrix::multiply(std::span<const Vec3> direction, std::span<Vec3> product) const {
   std::fill(product.begin(), product.end(), Vec3::Zero());
-  for (std::size_t row = 0; row + 1 < row_start_.size(); ++row)
-    for (int k = row_start_[row]; k < row_start_[row + 1]; ++k) {
-      const std::size_t column = columns_[k];
+  for (std::size_t row = 0; row + 1 < layout_.starts.size(); ++row)
+    for (int k = layout_.starts[row]; k < layout_.starts[row + 1]; ++k) {
+      const std::size_t column = layout_.columns[k];
       product[row] += blocks_[k] * direction[column];
       if (column != row) product[column] += blocks_[k].transpose() * direction[row];
     }
-}
-
-std::vector<double> StepMatrix::volume_rates(std::span<const Vec3> direction) const {
-  std::vector<double> rates(gradient_start_.size() - 1, 0.0);
-  for (std::size_t cell = 0; cell < rates.size(); ++cell)
-    for (int k = gradient_start_[cell]; k < gradient_start_[cell + 1]; ++k)
-      rates[cell] += gradients_[k].value.dot(direction[gradients_[k].node.index()]);
-  return rates;
-}
-
-void StepMatrix::add_pressure_forces(std::span<const double> pressures, std::span<Vec3> forces) const {
-  for (std::size_t cell = 0; cell + 1 < gradient_start_.size(); ++cell)
-    for (int k = gradient_start_[cell]; k < gradient_start_[cell + 1]; ++k)
-      forces[gradients_[k].node.index()] += pressures[cell] * gradients_[k].value;
 }
 
 namespace {
@@ -136,9 +126,9 @@ double pivot(double own) { return own != 0 ? own : 1; }
 void StepMatrix::write_values(std::span<const NodeFrame> frames, std::vector<double>& values) const {
   values.clear();
   values.reserve(pattern_.rows.size());
-  for (std::size_t row = 0; row + 1 < row_start_.size(); ++row)
-    for (int k = row_start_[row]; k < row_start_[row + 1]; ++k) {
-      const std::size_t column = columns_[k];
+  for (std::size_t row = 0; row + 1 < layout_.starts.size(); ++row)
+    for (int k = layout_.starts[row]; k < layout_.starts[row + 1]; ++k) {
+      const std::size_t column = layout_.columns[k];
       const NodeFrame &a = frames[row], &b = frames[column];
       Mat3 block = blocks_[k];
       if (a.fixed > 0) block = a.axes.transpose() * block;
@@ -149,11 +139,11 @@ void StepMatrix::write_values(std::span<const NodeFrame> frames, std::vector<dou
           values.push_back(!fixed ? block(i, j) : column == row && i == j ? pivot(block(i, i)) : 0.0);
         }
     }
-  for (std::size_t cell = 0; cell + 1 < gradient_start_.size(); ++cell) {
+  for (std::size_t cell = 0; cell < jacobian_.cells(); ++cell) {
     bool can_change = false;
-    for (int k = gradient_start_[cell]; k < gradient_start_[cell + 1]; ++k) {
-      const NodeFrame& frame = frames[gradients_[k].node.index()];
-      const Vec3 local = frame.axes.transpose() * gradients_[k].value;
+    for (const auto& [node, gradient] : jacobian_.of_cell(cell)) {
+      const NodeFrame& frame = frames[node.index()];
+      const Vec3 local = frame.axes.transpose() * gradient;
       for (int j = 0; j < 3; ++j) {
         values.push_back(j < frame.fixed ? 0.0 : -local[j]);
         can_change = can_change || (j >= frame.fixed && local[j] != 0);
@@ -162,6 +152,26 @@ void StepMatrix::write_values(std::span<const NodeFrame> frames, std::vector<dou
     // A cell all of whose nodes are held needs no pressure; a pivot keeps its row from being empty.
     values.push_back(can_change ? 0.0 : -1.0);
   }
+}
+
+void StepMatrix::write_projected_blocks(std::span<const NodeFrame> frames, std::vector<float>& values) const {
+  values.resize(9 * blocks_.size());
+  const auto fixed_part = [](const NodeFrame& frame) {
+    const auto axes = frame.axes.leftCols(frame.fixed);
+    return Mat3(axes * axes.transpose());
+  };
+  parallel_for(frames.size(), [&](std::size_t row) {
+    for (int k = layout_.starts[row]; k < layout_.starts[row + 1]; ++k) {
+      const std::size_t column = layout_.columns[k];
+      Mat3 block = blocks_[k];
+      const double size = block.trace() / 3;
+      if (frames[row].fixed > 0) block -= fixed_part(frames[row]) * block;
+      if (frames[column].fixed > 0) block -= block * fixed_part(frames[column]);
+      if (column == row && frames[row].fixed > 0) block += pivot(size) * fixed_part(frames[row]);
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) values[9 * k + 3 * i + j] = static_cast<float>(block(i, j));
+    }
+  });
 }
 
 }  // namespace plica

@@ -10,17 +10,12 @@
 #include <span>
 #include <vector>
 
-#include "mechanics/model.hpp"
+#include "solver/block_cholesky.hpp"
 #include "solver/linear_solver.hpp"
+#include "solver/newton.hpp"
+#include "solver/volume_jacobian.hpp"
 
 namespace plica {
-
-/// The frame of a node's unknowns. The first `fixed` columns of `axes` are fixed directions.
-struct NodeFrame {
-  Mat3 axes = Mat3::Identity();
-  int fixed = 0;
-  bool operator==(const NodeFrame&) const = default;
-};
 
 class StepMatrix final : public TangentSink {
  public:
@@ -30,39 +25,39 @@ class StepMatrix final : public TangentSink {
   [[nodiscard]] const SymmetricPattern& pattern() const { return pattern_; }
 
   void set_zero();
+  /// The tangent of all laws and constraints, and the volumes' gradients, at an iterate.
+  void assemble(const Model& model, const Step& step, const Iterate& at);
   void add_block(NodeId row, NodeId column, const Mat3& block) override;
-  void set_volume_gradients(const CellVolumes& volumes, std::span<const Vec3> positions);
+  void set_volume_gradients(const CellVolumes& volumes, std::span<const Vec3> positions) {
+    jacobian_.update(volumes, positions);
+  }
+  [[nodiscard]] const VolumeJacobian& jacobian() const { return jacobian_; }
+
+  /// Adds sum_c w_c dV_c dV_c^T, spread over the cells' elements so that it joins no more nodes than they do: elements
+  /// of one cell resist their own changes of volume.
+  void add_volume_stiffness(const Model& model, std::span<const Vec3> positions, std::span<const double> weights);
+
+  /// The block of A of two nodes; 0 where there is none.
+  [[nodiscard]] Mat3 block(std::size_t row, std::size_t column) const;
 
   /// A times a vector, in global axes, all rows.
   void multiply(std::span<const Vec3> direction, std::span<Vec3> product) const;
-  /// J times a vector; cells.
-  [[nodiscard]] std::vector<double> volume_rates(std::span<const Vec3> direction) const;
-  /// Adds J^T times pressures.
-  void add_pressure_forces(std::span<const double> pressures, std::span<Vec3> forces) const;
-
   /// Values in the pattern's order, turned into the frames, fixed unknowns replaced by the identity.
   void write_values(std::span<const NodeFrame> frames, std::vector<double>& values) const;
 
+  /// Which blocks there are.
+  [[nodiscard]] const BlockPattern& layout() const { return layout_; }
+  /// The blocks of A with fixed directions projected out, and in their place a diagonal of the block's own size; nine
+  /// numbers a block, by rows.
+  void write_projected_blocks(std::span<const NodeFrame> frames, std::vector<float>& values) const;
+
  private:
-  struct Gradient {  // of one cell's volume to one node's position
-    NodeId node;
-    Vec3 value;
-  };
   void add_free_block(NodeId row, NodeId column, const Mat3& block);
 
   const Tissue& tissue_;
-  // Lower triangle of blocks, row by row: columns_[row_start_[r] .. row_start_[r + 1]) are sorted, the last is r.
-  std::vector<int> row_start_, columns_;
+  BlockPattern layout_;  // lower triangle
   std::vector<Mat3> blocks_;
-  std::vector<int> gradient_start_;  // cells + 1
-  std::vector<Gradient> gradients_;
-  std::vector<std::array<int, 8>> element_slots_;  // elements: where their nodes' gradients are added; -1: node hangs
-  struct HangingSlot {
-    std::size_t element;
-    int corner, slot;
-    double weight;
-  };
-  std::vector<HangingSlot> hanging_slots_;  // the same for hanging nodes, one for each node that carries them
+  VolumeJacobian jacobian_;
   SymmetricPattern pattern_;
 };
 

@@ -5,75 +5,19 @@
 
 namespace plica {
 
-struct StepSolver::Iterate {
-  Vectors positions;
-  std::vector<double> pressures;       // cells
-  std::vector<double> contact_forces;  // the vitelline's nodes
-  std::vector<char> in_contact;
-};
-
-struct StepSolver::Residual {
-  Vectors forces;                      // unbalanced, all directions; nodes
-  std::vector<double> volume_deficit;  // target - V; cells
-  double force = 0;                    // norm over free directions, relative
-  double volume = 0;                   // largest relative error
-  double gap_um = 0;                   // largest distance of a node in contact from the shell
-
-  [[nodiscard]] bool finite() const { return std::isfinite(force) && std::isfinite(volume) && std::isfinite(gap_um); }
-  /// One number to descend on; each part in units of what matters.
-  [[nodiscard]] double merit() const { return force + 10 * volume + gap_um; }
-};
-
-struct StepSolver::Direction {
-  Vectors positions;
-  std::vector<double> pressures;
-  std::vector<double> contact_forces;
-};
-
-StepSolver::StepSolver(const Model& model, StepTolerances tolerances)
+StepSolver::StepSolver(const Model& model, StepTolerances tolerances, LinearMethod method)
     : model_(model),
       tolerances_(tolerances),
       force_scale_(model.force_scale()),
       force_rounding_(model.force_rounding()),
       volume_rounding_(model.volume_rounding()),
-      free_nodes_(model.tissue.free_node_count()),
-      matrix_(model),
-      linear_solver_(make_direct_solver()) {
-  linear_solver_->analyse(matrix_.pattern());
-}
+      directions_(make_directions(model, method, [this] { return stop_requested_ && stop_requested_(); })) {}
 
 StepSolver::~StepSolver() = default;
 
-void StepSolver::forget_factor() { factor_frames_.clear(); }
+void StepSolver::forget_factor() { directions_->forget_factor(); }
 
-Vec3 StepSolver::free_part(std::size_t node, Vec3 direction) const {
-  for (int axis = 0; axis < 3; ++axis)
-    if (model_.held[node][axis]) direction[axis] = 0;
-  return direction;
-}
-
-std::vector<NodeFrame> StepSolver::frames(const Iterate& at) const {
-  std::vector<NodeFrame> frames(free_nodes_);
-  // The fixed directions of each node, made orthonormal: held axes first, then the shell's normal.
-  const auto add_fixed = [](NodeFrame& frame, const Vec3& direction) {
-    frame.axes.col(frame.fixed++) = direction.normalized();
-  };
-  for (std::size_t n = 0; n < frames.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-      if (model_.held[n][axis]) add_fixed(frames[n], Vec3::Unit(axis));
-  for (std::size_t k = 0; k < at.in_contact.size(); ++k)
-    if (at.in_contact[k]) {
-      const std::size_t n = model_.vitelline->nodes()[k].index();
-      add_fixed(frames[n], free_part(n, model_.vitelline->gap(at.positions[n]).inward));
-    }
-  for (NodeFrame& frame : frames) {
-    if (frame.fixed == 1) frame.axes.col(1) = frame.axes.col(0).unitOrthogonal();
-    if (frame.fixed == 1 || frame.fixed == 2) frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
-  }
-  return frames;
-}
-
-StepSolver::Residual StepSolver::residual(const Step& step, const Iterate& at) const {
+Residual StepSolver::residual(const Step& step, Iterate& at) const {
   Residual r;
   r.forces.assign(at.positions.size(), Vec3::Zero());
   Vectors of_law(at.positions.size(), Vec3::Zero());
@@ -99,20 +43,23 @@ StepSolver::Residual StepSolver::residual(const Step& step, const Iterate& at) c
       r.volume = std::max(r.volume, std::abs(r.volume_deficit[c] / model_.volumes.targets()[c]));
     }
   }
+  // The shell bears what else would push nodes outward along their normals.
+  const std::vector<NodeFrame> frames = node_frames(model_, at);
   for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
     if (!at.in_contact[k]) continue;
     const std::size_t n = model_.vitelline->nodes()[k].index();
     const Vitelline::Gap gap = model_.vitelline->gap(at.positions[n]);
+    const Vec3 normal = frames[n].axes.col(frames[n].fixed - 1);
+    at.contact_forces[k] = -normal.dot(r.forces[n]) / normal.dot(gap.inward);
     of_law[n] = at.contact_forces[k] * gap.inward;
     r.gap_um = std::max(r.gap_um, std::abs(gap.value));
   }
   take();
 
-  const std::vector<NodeFrame> node_frames = frames(at);
   double free = 0;
-  for (std::size_t n = 0; n < free_nodes_; ++n) {
-    const Vec3 local = node_frames[n].axes.transpose() * r.forces[n];
-    for (int i = node_frames[n].fixed; i < 3; ++i) free += local[i] * local[i];
+  for (std::size_t n = 0; n < frames.size(); ++n) {
+    const Vec3 local = frames[n].axes.transpose() * r.forces[n];
+    for (int i = frames[n].fixed; i < 3; ++i) free += local[i] * local[i];
   }
   // Relative to the forces that balance; but where those are next to none, or as small as what rounding makes, to a
   // floor.
@@ -121,85 +68,13 @@ StepSolver::Residual StepSolver::residual(const Step& step, const Iterate& at) c
   return r;
 }
 
-bool StepSolver::refresh_factor(const Step& step, const Iterate& at) {
-  factor_frames_ = frames(at);
-  factor_contacts_ = at.in_contact;
-  factor_duration_s_ = step.duration_s;
-  matrix_.set_zero();
-  for (const auto& law : model_.laws) law->add_tangent(step, matrix_);
-  if (model_.volumes_are_held) {
-    model_.volumes.add_tangent(at.positions, at.pressures, matrix_);
-    matrix_.set_volume_gradients(model_.volumes, at.positions);
-  }
-  for (std::size_t k = 0; k < at.in_contact.size(); ++k)
-    if (at.in_contact[k]) {
-      const NodeId node = model_.vitelline->nodes()[k];
-      matrix_.add_block(node, node, -at.contact_forces[k] * model_.vitelline->gap(at.positions[node.index()]).hessian);
-    }
-  matrix_.write_values(factor_frames_, values_);
-  if (linear_solver_->factorise(values_)) return true;
-  forget_factor();
-  return false;
-}
-
-StepSolver::Direction StepSolver::direction(const Iterate& at, const Residual& r) {
-  const std::size_t nodes = free_nodes_;
-  // What the shell prescribes: every node in contact goes back to it along its normal.
-  Vectors prescribed(nodes, Vec3::Zero());
-  for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
-    if (!at.in_contact[k]) continue;
-    const std::size_t n = model_.vitelline->nodes()[k].index();
-    const NodeFrame& frame = factor_frames_[n];
-    const Vitelline::Gap gap = model_.vitelline->gap(at.positions[n]);
-    const Vec3 normal = frame.axes.col(frame.fixed - 1);
-    prescribed[n] = -gap.value / normal.dot(gap.inward) * normal;
-  }
-  Vectors right(nodes);
-  matrix_.multiply(prescribed, right);
-  for (std::size_t n = 0; n < nodes; ++n) right[n] = r.forces[n] - right[n];
-
-  std::vector<double> unknowns(matrix_.pattern().size, 0.0);
-  for (std::size_t n = 0; n < nodes; ++n) {
-    const Vec3 local = factor_frames_[n].axes.transpose() * right[n];
-    for (int i = factor_frames_[n].fixed; i < 3; ++i) unknowns[3 * n + i] = local[i];
-  }
-  const std::vector<double> rates = matrix_.volume_rates(prescribed);
-  for (std::size_t c = 0; c < rates.size(); ++c) unknowns[3 * nodes + c] = rates[c] - r.volume_deficit[c];
-  linear_solver_->solve(unknowns);
-
-  Direction d{prescribed, std::vector<double>(unknowns.begin() + 3 * nodes, unknowns.end()),
-              std::vector<double>(at.contact_forces.size(), 0.0)};
-  d.pressures.resize(at.pressures.size(), 0.0);
-  for (std::size_t n = 0; n < nodes; ++n)
-    d.positions[n] += factor_frames_[n].axes * Vec3(unknowns[3 * n], unknowns[3 * n + 1], unknowns[3 * n + 2]);
-  d.positions.resize(at.positions.size());
-  model_.tissue.place_hanging(d.positions);
-
-  // The shell's forces take up what is left along the normals: N dmu = A dx - J^T dlambda - forces.
-  if (model_.vitelline) {
-    Vectors left(nodes);
-    matrix_.multiply(d.positions, left);
-    std::vector<double> relieved = d.pressures;
-    for (double& pressure : relieved) pressure = -pressure;
-    matrix_.add_pressure_forces(relieved, left);
-    for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
-      if (!at.in_contact[k]) continue;
-      const std::size_t n = model_.vitelline->nodes()[k].index();
-      const Vec3 normal = factor_frames_[n].axes.col(factor_frames_[n].fixed - 1);
-      d.contact_forces[k] =
-          normal.dot(left[n] - r.forces[n]) / normal.dot(model_.vitelline->gap(at.positions[n]).inward);
-    }
-  }
-  return d;
-}
-
 bool StepSolver::revise_contacts(Iterate& at) const {
   bool changed = false;
   for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
     const std::size_t n = model_.vitelline->nodes()[k].index();
     const Vitelline::Gap gap = model_.vitelline->gap(at.positions[n]);
     // A node that is held where the shell would push it is the hold's business.
-    if (free_part(n, gap.inward).norm() < 1e-6) {
+    if (without_held(model_, n, gap.inward).norm() < 1e-6) {
       at.in_contact[k] = 0;
       at.contact_forces[k] = 0;
     } else if (at.in_contact[k]) {
@@ -231,7 +106,6 @@ bool StepSolver::search_line(const Step& step, const Direction& d, Iterate& at, 
     blocking = inverted_cell(model_.tissue, trial.positions);
     if (blocking) continue;
     for (std::size_t c = 0; c < trial.pressures.size(); ++c) trial.pressures[c] += part * d.pressures[c];
-    for (std::size_t k = 0; k < trial.contact_forces.size(); ++k) trial.contact_forces[k] += part * d.contact_forces[k];
     Step there = step;
     there.positions = trial.positions;
     Residual r = residual(there, trial);
@@ -248,12 +122,23 @@ bool StepSolver::search_line(const Step& step, const Direction& d, Iterate& at, 
   return true;
 }
 
-StepReport StepSolver::advance(const State& state, double duration_s, bool from_rest, State& next) {
+Iterate StepSolver::forecast(const State& state, double duration_s) const {
   Iterate at{state.positions, state.pressures, state.contact_forces, state.in_contact};
-  if (!from_rest) {
-    for (std::size_t n = 0; n < at.positions.size(); ++n) at.positions[n] += duration_s * state.velocities[n];
-    if (inverted_cell(model_.tissue, at.positions)) at.positions = state.positions;
+  const State::Trend& trend = state.trend;
+  // Mean velocities belong to the middles of steps.
+  const double later_s = 0.5 * (trend.step_s + duration_s);
+  for (std::size_t n = 0; n < at.positions.size(); ++n) {
+    at.positions[n] += duration_s * state.velocities[n];
+    if (!trend.accelerations.empty()) at.positions[n] += duration_s * later_s * trend.accelerations[n];
   }
+  for (std::size_t c = 0; c < trend.pressure_rates.size(); ++c) at.pressures[c] += duration_s * trend.pressure_rates[c];
+  if (inverted_cell(model_.tissue, at.positions)) at.positions = state.positions;
+  return at;
+}
+
+StepReport StepSolver::advance(const State& state, double duration_s, bool from_rest, State& next) {
+  Iterate at = from_rest ? Iterate{state.positions, state.pressures, state.contact_forces, state.in_contact}
+                         : forecast(state, duration_s);
   Step step{at.positions, state.positions, state.velocities, duration_s, state.time_s + duration_s};
   StepReport report;
   bool contacts_settled = !revise_contacts(at);
@@ -281,22 +166,24 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
       report.cell = cell_with_largest(model_.tissue, now.forces);
       return report;
     }
-    // A factor of a step of nearly this length converges nearly as fast; of other contacts it has the wrong unknowns.
-    constexpr double alike = 0.2;
-    const bool stale = factor_frames_.empty() || std::abs(factor_duration_s_ / duration_s - 1) > alike ||
-                       factor_contacts_ != at.in_contact;
-    if (stale || slow) {
-      step.positions = at.positions;
-      ++report.factorisations;
-      if (!refresh_factor(step, at)) {
-        report.outcome = StepReport::Outcome::singular_system;
-        report.cell = cell_with_largest(model_.tissue, now.forces);
-        return report;
-      }
+    step.positions = at.positions;
+    Direction direction;
+    NewtonDirections::Cost cost;
+    const double accuracy = 0.3 * std::min(tolerances_.force / now.force, tolerances_.volume / now.volume);
+    const auto outcome = directions_->find(step, at, now, {slow, accuracy}, direction, cost);
+    report.factorisations += cost.factorisations;
+    report.linear_solves += cost.linear_solves;
+    if (outcome == NewtonDirections::Outcome::interrupted) {
+      report.outcome = StepReport::Outcome::interrupted;
+      return report;
+    }
+    if (outcome == NewtonDirections::Outcome::singular) {
+      report.outcome = StepReport::Outcome::singular_system;
+      report.cell = cell_with_largest(model_.tissue, now.forces);
+      return report;
     }
     const double before = now.merit();
-    ++report.linear_solves;
-    if (!search_line(step, direction(at, now), at, now, report)) return report;
+    if (!search_line(step, direction, at, now, report)) return report;
     slow = now.merit() > 0.1 * before;
     slow_iterations = now.merit() > 0.5 * before ? slow_iterations + 1 : 0;
     contacts_settled = !revise_contacts(at);
@@ -308,6 +195,18 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
   next.velocities.resize(at.positions.size());
   for (std::size_t n = 0; n < at.positions.size(); ++n)
     next.velocities[n] = (at.positions[n] - state.positions[n]) / duration_s;
+  next.trend.step_s = duration_s;
+  next.trend.accelerations.clear();
+  next.trend.pressure_rates.clear();
+  if (!from_rest && state.trend.step_s > 0) {
+    next.trend.accelerations.resize(at.positions.size());
+    const double apart_s = 0.5 * (state.trend.step_s + duration_s);
+    for (std::size_t n = 0; n < at.positions.size(); ++n)
+      next.trend.accelerations[n] = (next.velocities[n] - state.velocities[n]) / apart_s;
+    next.trend.pressure_rates.resize(at.pressures.size());
+    for (std::size_t c = 0; c < at.pressures.size(); ++c)
+      next.trend.pressure_rates[c] = (at.pressures[c] - state.pressures[c]) / duration_s;
+  }
   next.time_s = state.time_s + duration_s;
   next.divided_until_s = state.divided_until_s;
   next.positions = std::move(at.positions);

@@ -2,7 +2,7 @@
 //
 // The step ends where  -dPhi/dx + J^T lambda + N mu = 0,  V_c = target,  0 <= g _|_ mu >= 0,  Phi being the sum of the
 // laws' energies. Newton's method on all of it at once, with line search; the shell by an active set that is revised
-// after each iteration. A factor is kept while it still converges fast (docs/decisions/0003-newton.md).
+// after each iteration. Theory: docs/theory/step.md.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "mechanics/model.hpp"
-#include "solver/step_matrix.hpp"
+#include "solver/newton.hpp"
 #include "solver/stepper.hpp"
 
 namespace plica {
@@ -23,10 +23,11 @@ struct StepTolerances {
   int max_iterations = 40;
 };
 
-/// Solves steps of one model; keeps pattern, factor and scratch between them.
+/// Solves steps of one model; keeps what its linear systems have in common between them.
 class StepSolver final : public Stepper {
  public:
-  explicit StepSolver(const Model& model, StepTolerances tolerances = {});
+  explicit StepSolver(const Model& model, StepTolerances tolerances = {},
+                      LinearMethod method = LinearMethod::automatic);
   ~StepSolver() override;
 
   /// Starts from the velocities' forecast unless `from_rest`.
@@ -35,15 +36,8 @@ class StepSolver final : public Stepper {
   void forget_factor() override;
 
  private:
-  struct Iterate;
-  struct Residual;
-  struct Direction;
-
-  [[nodiscard]] Residual residual(const Step& step, const Iterate& at) const;
-  [[nodiscard]] Vec3 free_part(std::size_t node, Vec3 direction) const;  // without the directions in which it is held
-  [[nodiscard]] std::vector<NodeFrame> frames(const Iterate& at) const;
-  bool refresh_factor(const Step& step, const Iterate& at);
-  [[nodiscard]] Direction direction(const Iterate& at, const Residual& residual);
+  [[nodiscard]] Iterate forecast(const State& state, double duration_s) const;
+  [[nodiscard]] Residual residual(const Step& step, Iterate& at) const;
   bool revise_contacts(Iterate& at) const;
   bool search_line(const Step& step, const Direction& direction, Iterate& at, Residual& now, StepReport& report) const;
 
@@ -52,16 +46,8 @@ class StepSolver final : public Stepper {
   double force_scale_;      // nN
   double force_rounding_;   // nN: what rounding of positions makes of forces
   double volume_rounding_;  // the same, of relative volumes
-  std::size_t free_nodes_;
-  StepMatrix matrix_;
-  std::unique_ptr<LinearSolver> linear_solver_;
-  std::vector<double> values_;
+  std::unique_ptr<NewtonDirections> directions_;
   std::function<bool()> stop_requested_;
-
-  // The factor at hand: for which step length and frames it was made. Empty frames: none.
-  std::vector<NodeFrame> factor_frames_;
-  std::vector<char> factor_contacts_;
-  double factor_duration_s_ = 0;
 };
 
 }  // namespace plica

@@ -35,13 +35,15 @@ std::string StepReport::reason() const {
 }
 
 std::unique_ptr<Stepper> make_stepper(const Model& model, const StepScheme& scheme) {
-  if (scheme.forces == StepScheme::Forces::newton && !scheme.projection) return std::make_unique<StepSolver>(model);
+  if (scheme.forces == StepScheme::Forces::newton && !scheme.projection)
+    return std::make_unique<StepSolver>(model, StepTolerances{}, scheme.linear_method);
   // Only Newton's step keeps nodes in the shell by itself.
   if (scheme.forces == StepScheme::Forces::linearly_implicit)
     return std::make_unique<ProjectedStepper>(
         model, std::make_unique<LinearlyImplicit>(model, scheme.linear_tolerance, scheme.most_linear_iterations),
         scheme.projection);
-  return std::make_unique<ProjectedStepper>(model, std::make_unique<StepSolver>(model), scheme.projection);
+  return std::make_unique<ProjectedStepper>(
+      model, std::make_unique<StepSolver>(model, StepTolerances{}, scheme.linear_method), scheme.projection);
 }
 
 std::optional<CellId> cell_with_largest(const Tissue& tissue, const Vectors& vectors) {

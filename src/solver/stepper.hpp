@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mechanics/model.hpp"
+#include "solver/newton.hpp"
 
 namespace plica {
 
@@ -70,6 +71,7 @@ struct ProjectionRule {
 /// What takes a step.
 struct StepScheme {
   enum class Forces { newton, linearly_implicit } forces = Forces::newton;
+  LinearMethod linear_method = LinearMethod::automatic;  // newton
   double linear_tolerance = 1e-6;     // linearly implicit: residual of the linear system over its right side
   int most_linear_iterations = 2000;  // linearly implicit
   std::optional<ProjectionRule> projection;

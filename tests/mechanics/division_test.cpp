@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/step_matrix.hpp"
 #include "solver/step_solver.hpp"
 #include "support/divided.hpp"
 
@@ -252,8 +253,11 @@ TEST(DividedSheet, AssemblesTheTangentOfItsFreeNodes) {
     for (std::size_t n = 0; n < positions.size(); ++n) positions[n] += part * direction[n];
     return model.volumes.volumes(positions);
   };
-  matrix.set_volume_gradients(model.volumes, state.positions);
-  const std::vector<double> rates = matrix.volume_rates(direction), ahead = volumes(1e-4), behind = volumes(-1e-4);
+  VolumeJacobian jacobian(model);
+  jacobian.update(model.volumes, state.positions);
+  std::vector<double> rates(jacobian.cells());
+  jacobian.rates(direction, rates);
+  const std::vector<double> ahead = volumes(1e-4), behind = volumes(-1e-4);
   for (std::size_t c = 0; c < rates.size(); ++c) EXPECT_NEAR(rates[c], (ahead[c] - behind[c]) / 2e-4, 1e-5 * 2000);
 }
 

@@ -235,7 +235,7 @@ TEST(StepSolver, AStepThatFailsSaysSoAndLeavesTheStateAlone) {
   EXPECT_TRUE(next.positions.empty());
 }
 
-// Asked before every iteration; a request that comes in the middle of a step is heard there.
+// Asked before every iteration, of Newton and Krylov; a request that comes in the middle of a step is heard there.
 TEST(StepSolver, AnInterruptedStepSaysSoAndLeavesTheStateAlone) {
   const Model model = dimpling_sheet();
   StepSolver solver(model);
@@ -249,7 +249,7 @@ TEST(StepSolver, AnInterruptedStepSaysSoAndLeavesTheStateAlone) {
     EXPECT_EQ(report.outcome, StepReport::Outcome::interrupted);
     EXPECT_FALSE(report.converged());
     EXPECT_FALSE(report.reason().empty());
-    EXPECT_EQ(report.newton_iterations, answers);
+    EXPECT_LE(report.newton_iterations, answers);
     EXPECT_EQ(next.time_s, 77);
     EXPECT_TRUE(next.positions.empty() && next.velocities.empty() && next.pressures.empty());
     ++cases;

@@ -1,0 +1,50 @@
+// Lets a factor serve while nodes leave the shell or come to it. The factor has the directions that were fixed when it
+// was made; each node that has changed since borders it with one more unknown (its free normal) or condition (its fixed
+// one), which costs a solve once:
+//   [ A0   B ] [ x  ]   [ f        ]     B: columns A n of nodes that have left, n of nodes that have come,
+//   [ B^T  D ] [ xi ] = [ n^T f, 0 ]     D: n^T A n among those that have left.
+#pragma once
+
+#include <Eigen/LU>
+#include <optional>
+
+#include "solver/preconditioner.hpp"
+#include "solver/step_matrix.hpp"
+
+namespace plica {
+
+class ContactBorder {
+ public:
+  /// The factor is new: of `matrix` (which stays as it is until the next call) with these frames and contacts.
+  void begin(const Model& model, const StepMatrix& matrix, std::vector<NodeFrame> frames, std::vector<char> in_contact);
+
+  /// Takes up the changes of contacts since. False when there are too many: the factor should be made anew.
+  [[nodiscard]] bool follow(const Iterate& at, const Preconditioner& factor);
+
+  /// Applies factor and border in place; free nodes.
+  void solve(const Preconditioner& factor, std::span<Vec3> x) const;
+
+ private:
+  struct Column {
+    std::size_t contact;
+    std::size_t node;
+    Vec3 normal;
+    bool leaves;
+    std::vector<std::pair<std::size_t, Vec3>> entries;  // of B: node, value
+    double diagonal = 0;                                // of D
+    Vectors solved;                                     // A0^-1 B
+  };
+  Column make_column(const Iterate& at, std::size_t contact, const Preconditioner& factor) const;
+  void solve_inner(const Preconditioner& factor, std::span<Vec3> x) const;
+
+  const Model* model_ = nullptr;
+  const StepMatrix* matrix_ = nullptr;
+  std::vector<NodeFrame> frames_;
+  std::vector<char> in_contact_;
+  std::vector<Column> columns_;      // of all changes since; some may have been undone
+  std::vector<std::size_t> active_;  // columns that hold now
+  Eigen::PartialPivLU<Eigen::MatrixXd> schur_;
+  mutable std::vector<float> single_;
+};
+
+}  // namespace plica

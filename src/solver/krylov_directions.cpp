@@ -1,0 +1,183 @@
+#include "solver/krylov_directions.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.hpp"
+#include "solver/block_cholesky.hpp"
+
+namespace plica {
+namespace {
+
+// gamma over Young's modulus: large, so that few iterations are left for the pressures; not so large that single
+// precision cannot carry A beside it. 30 and 300 take a fifth more (docs/performance.md).
+constexpr double regularisation = 100;
+
+}  // namespace
+
+KrylovDirections::KrylovDirections(const Model& model, Inverse inverse, std::function<bool()> stop_requested)
+    : model_(model),
+      stop_requested_(std::move(stop_requested)),
+      nodes_(model.tissue.node_count()),
+      matrix_(model),
+      preconditioner_(inverse == Inverse::multigrid ? make_multigrid(matrix_.layout())
+                                                    : std::make_unique<BlockCholesky>(matrix_.layout())),
+      price_of_factor_(25),
+      jacobian_(model) {
+  if (!model.volumes_are_held) return;
+  const double gamma = regularisation * model.stiffness_scale;
+  double volume = 0;
+  for (const double target : model.volumes.targets()) {
+    pressure_weights_.push_back(gamma / target);
+    volume += target;
+  }
+  volume_unit_ = gamma / std::cbrt(volume / static_cast<double>(model.volumes.count()));
+}
+
+std::span<Vec3> KrylovDirections::of_nodes(Vector& vector) const {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  return {reinterpret_cast<Vec3*>(vector.data()), nodes_};
+}
+std::span<const Vec3> KrylovDirections::of_nodes(const Vector& vector) const {
+  return {reinterpret_cast<const Vec3*>(vector.data()), nodes_};
+}
+std::span<double> KrylovDirections::of_cells(Vector& vector) const { return std::span(vector).subspan(3 * nodes_); }
+std::span<const double> KrylovDirections::of_cells(const Vector& vector) const {
+  return std::span(vector).subspan(3 * nodes_);
+}
+
+void KrylovDirections::project(std::span<Vec3> vectors) const {
+  for (const std::size_t n : fixed_nodes_) vectors[n] = frames_[n].free_part(vectors[n]);
+}
+
+void KrylovDirections::linearise(const Iterate& at) {
+  frames_ = node_frames(model_, at);
+  fixed_nodes_.clear();
+  for (std::size_t n = 0; n < frames_.size(); ++n)
+    if (frames_[n].fixed > 0) fixed_nodes_.push_back(n);
+  if (model_.volumes_are_held) jacobian_.update(model_.volumes, at.positions);
+}
+
+bool KrylovDirections::refresh(const Step& step, const Iterate& at) {
+  // The semidefinite part of the tangent serves where all of it is not definite.
+  for (const bool semidefinite : {false, true}) {
+    Step here = step;
+    here.semidefinite_tangent = semidefinite;
+    matrix_.assemble(model_, here, at);
+    matrix_.add_volume_stiffness(model_, at.positions, pressure_weights_);
+    matrix_.write_projected_blocks(frames_, values_);
+    has_factor_ = preconditioner_->factorise(values_, rigid_motions(at));
+    if (!has_factor_) continue;
+    border_.begin(model_, matrix_, frames_, at.in_contact);
+    return true;
+  }
+  return false;
+}
+
+std::vector<float> KrylovDirections::rigid_motions(const Iterate& at) const {
+  Vec3 middle = Vec3::Zero();
+  for (std::size_t n = 0; n < frames_.size(); ++n) middle += at.positions[n] / static_cast<double>(frames_.size());
+  double size = 0;
+  for (std::size_t n = 0; n < frames_.size(); ++n) size = std::max(size, (at.positions[n] - middle).norm());
+  std::vector<float> motions;
+  motions.reserve(18 * frames_.size());
+  for (std::size_t n = 0; n < frames_.size(); ++n) {
+    Eigen::Matrix<double, 3, 6> of_node;
+    of_node << Mat3::Identity(), -cross_matrix((at.positions[n] - middle) / size);
+    for (int j = 0; j < 6; ++j) of_node.col(j) = frames_[n].free_part(of_node.col(j));
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 6; ++j) motions.push_back(static_cast<float>(of_node(i, j)));
+  }
+  return motions;
+}
+
+void KrylovDirections::multiply(const Step& step, const Iterate& at, const Vector& direction, Vector& product) const {
+  const std::span<const Vec3> dx = of_nodes(direction);
+  const std::span<Vec3> forces = of_nodes(product);
+  std::fill(forces.begin(), forces.end(), Vec3::Zero());
+  for (const auto& law : model_.laws) law->add_tangent_product(step, dx, forces);
+  if (model_.volumes_are_held) model_.volumes.add_tangent_product(at.positions, at.pressures, dx, forces);
+  model_.tissue.carry_hanging(forces);
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k)
+    if (at.in_contact[k]) {
+      const std::size_t n = model_.vitelline->nodes()[k].index();
+      forces[n] -= at.contact_forces[k] * (model_.vitelline->gap(at.positions[n]).hessian * dx[n]);
+    }
+  jacobian_.add_forces(of_cells(direction), -1, forces);
+  project(forces);
+  jacobian_.rates(dx, of_cells(product));
+  for (double& rate : of_cells(product)) rate *= -volume_unit_;
+}
+
+void KrylovDirections::precondition(const Vector& residual, Vector& result) const {
+  // dlambda = -gamma W (g + J dx),  (A + gamma J^T W J) dx = f - gamma J^T W g.
+  const std::span<double> pressures = of_cells(result);
+  for (std::size_t c = 0; c < pressures.size(); ++c)
+    pressures[c] = -pressure_weights_[c] / volume_unit_ * of_cells(residual)[c];
+  const std::span<Vec3> dx = of_nodes(result);
+  std::ranges::copy(of_nodes(residual), dx.begin());
+  jacobian_.add_forces(pressures, 1, dx);
+  project(dx);
+  border_.solve(*preconditioner_, dx.first(frames_.size()));
+  project(dx);
+  model_.tissue.place_hanging(dx);
+  jacobian_.add_rates(dx, pressure_weights_, -1, pressures);
+}
+
+NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate& at, const Residual& residual,
+                                                 const Wish& wish, Direction& direction, Cost& cost) {
+  linearise(at);
+  bool is_new = false;
+  if (!has_factor_ || wasted_iterations_ > price_of_factor_ || !border_.follow(at, *preconditioner_)) {
+    ++cost.factorisations;
+    if (!refresh(step, at)) return Outcome::singular;
+    is_new = true;
+  }
+
+  // What is left to find once the way to the shell is gone.
+  const std::size_t size = 3 * nodes_ + jacobian_.cells();
+  direction.positions = way_to_shell(model_, at, frames_);
+  direction.positions.resize(nodes_);
+  model_.tissue.place_hanging(direction.positions);
+  solution_.assign(size, 0.0);
+  right_.resize(size);
+  std::ranges::copy(direction.positions, of_nodes(solution_).begin());
+  multiply(step, at, solution_, right_);
+  const std::span<Vec3> forces = of_nodes(right_);
+  for (std::size_t n = 0; n < nodes_; ++n) forces[n] = residual.forces[n] - forces[n];
+  project(forces);
+  const std::span<double> volumes = of_cells(right_);
+  for (std::size_t c = 0; c < volumes.size(); ++c) volumes[c] = -volume_unit_ * residual.volume_deficit[c] - volumes[c];
+
+  // Newton's own error is not far below 1e-5 of what it starts from.
+  const ConjugateResidualsRule rule{.tolerance = std::clamp(wish.accuracy, 1e-5, 0.1)};
+  const auto solve = [&] {
+    const auto report = solver_.solve([&](const Vector& p, Vector& q) { multiply(step, at, p, q); },
+                                      [&](const Vector& r, Vector& z) { precondition(r, z); }, right_, rule,
+                                      stop_requested_, solution_);
+    cost.linear_solves += report.iterations;
+    return report;
+  };
+  auto report = solve();
+  if (!report.converged && !report.interrupted && !is_new) {
+    ++cost.factorisations;
+    if (!refresh(step, at)) return Outcome::singular;
+    is_new = true;
+    report = solve();
+  }
+  // An inexact direction is still one; the line search judges it.
+  if (report.interrupted) return Outcome::interrupted;
+  if (!(report.residual < 0.5)) return Outcome::singular;
+  if (is_new) {
+    iterations_when_new_ = report.iterations;
+    wasted_iterations_ = 0;
+  } else {
+    wasted_iterations_ += std::max(0, report.iterations - iterations_when_new_);
+  }
+  for (std::size_t n = 0; n < nodes_; ++n) direction.positions[n] += of_nodes(solution_)[n];
+  direction.pressures.assign(of_cells(solution_).begin(), of_cells(solution_).end());
+  direction.pressures.resize(at.pressures.size(), 0.0);
+  return Outcome::found;
+}
+
+}  // namespace plica

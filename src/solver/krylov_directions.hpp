@@ -1,0 +1,63 @@
+// Newton directions by conjugate residuals on the products of the laws: the system is not assembled, only what
+// preconditions it. That is an approximate inverse of the regularised system
+//   [ A             -J^T          ]
+//   [ -J   -(gamma W)^-1          ],  W = 1/target volume,
+// in which pressures are eliminated: A + gamma J^T W J is positive definite, and its factor (or multigrid), in single
+// precision, is kept over steps while it serves. Derivation: docs/theory/step.md, Linear systems.
+#pragma once
+
+#include "solver/conjugate_residuals.hpp"
+#include "solver/contact_border.hpp"
+#include "solver/preconditioner.hpp"
+#include "solver/step_matrix.hpp"
+
+namespace plica {
+
+class KrylovDirections final : public NewtonDirections {
+ public:
+  enum class Inverse { cholesky, multigrid };
+
+  KrylovDirections(const Model& model, Inverse inverse, std::function<bool()> stop_requested);
+  [[nodiscard]] Outcome find(const Step& step, const Iterate& at, const Residual& residual, const Wish& wish,
+                             Direction& direction, Cost& cost) override;
+  void forget_factor() override { has_factor_ = false; }
+
+ private:
+  // Three numbers a node, then one a cell. Forces are 0 on hanging nodes, directions are where the free nodes say.
+  using Vector = ConjugateResiduals::Vector;
+  [[nodiscard]] std::span<Vec3> of_nodes(Vector& vector) const;
+  [[nodiscard]] std::span<const Vec3> of_nodes(const Vector& vector) const;
+  [[nodiscard]] std::span<double> of_cells(Vector& vector) const;
+  [[nodiscard]] std::span<const double> of_cells(const Vector& vector) const;
+
+  void linearise(const Iterate& at);
+  bool refresh(const Step& step, const Iterate& at);
+  [[nodiscard]] std::vector<float> rigid_motions(const Iterate& at) const;
+  void multiply(const Step& step, const Iterate& at, const Vector& direction, Vector& product) const;
+  void precondition(const Vector& residual, Vector& result) const;
+  void project(std::span<Vec3> vectors) const;
+
+  const Model& model_;
+  std::function<bool()> stop_requested_;
+  std::size_t nodes_;
+  StepMatrix matrix_;  // where the factor was made
+  std::unique_ptr<Preconditioner> preconditioner_;
+  ContactBorder border_;
+  bool has_factor_ = false;
+  int price_of_factor_;  // in iterations
+  int iterations_when_new_ = 0, wasted_iterations_ = 0;
+
+  std::vector<double> pressure_weights_;  // gamma W; cells, kPa/um^3
+  double volume_unit_ = 1;                // nN/um^3: makes the rows of volumes forces
+
+  // Where Newton's method stands.
+  VolumeJacobian jacobian_;
+  std::vector<NodeFrame> frames_;
+  std::vector<std::size_t> fixed_nodes_;
+
+  ConjugateResiduals solver_;
+  Vector right_, solution_;
+  std::vector<float> values_;
+};
+
+}  // namespace plica

@@ -1,0 +1,43 @@
+#include "solver/newton.hpp"
+
+namespace plica {
+
+Vec3 without_held(const Model& model, std::size_t node, Vec3 direction) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (model.held[node][axis]) direction[axis] = 0;
+  return direction;
+}
+
+std::vector<NodeFrame> node_frames(const Model& model, const Iterate& at) {
+  std::vector<NodeFrame> frames(model.tissue.free_node_count());
+  const auto add_fixed = [](NodeFrame& frame, const Vec3& direction) {
+    frame.axes.col(frame.fixed++) = direction.normalized();
+  };
+  for (std::size_t n = 0; n < frames.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      if (model.held[n][axis]) add_fixed(frames[n], Vec3::Unit(axis));
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k)
+    if (at.in_contact[k]) {
+      const std::size_t n = model.vitelline->nodes()[k].index();
+      add_fixed(frames[n], without_held(model, n, model.vitelline->gap(at.positions[n]).inward));
+    }
+  for (NodeFrame& frame : frames) {
+    if (frame.fixed == 1) frame.axes.col(1) = frame.axes.col(0).unitOrthogonal();
+    if (frame.fixed == 1 || frame.fixed == 2) frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
+  }
+  return frames;
+}
+
+Vectors way_to_shell(const Model& model, const Iterate& at, std::span<const NodeFrame> frames) {
+  Vectors way(frames.size(), Vec3::Zero());
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
+    if (!at.in_contact[k]) continue;
+    const std::size_t n = model.vitelline->nodes()[k].index();
+    const Vitelline::Gap gap = model.vitelline->gap(at.positions[n]);
+    const Vec3 normal = frames[n].axes.col(frames[n].fixed - 1);
+    way[n] = -gap.value / normal.dot(gap.inward) * normal;
+  }
+  return way;
+}
+
+}  // namespace plica

@@ -1,0 +1,64 @@
+#include "solver/volume_jacobian.hpp"
+
+#include <algorithm>
+
+#include "core/parallel.hpp"
+
+namespace plica {
+
+VolumeJacobian::VolumeJacobian(const Model& model) : start_{0} {
+  if (!model.volumes_are_held) return;
+  const Tissue& tissue = model.tissue;
+  element_slots_.resize(tissue.elements.size());
+  std::vector<NodeId> members;
+  for (const Cell& cell : tissue.cells) {
+    members.clear();
+    const auto first = cell.first_element.index();
+    for (std::size_t e = first; e < first + cell.element_count; ++e)
+      for (const NodeId node : tissue.elements[e])
+        tissue.for_free_nodes(node, [&](NodeId n, double) { members.push_back(n); });
+    std::sort(members.begin(), members.end());
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+    const int offset = static_cast<int>(gradients_.size());
+    for (std::size_t e = first; e < first + cell.element_count; ++e)
+      for (int i = 0; i < 8; ++i)
+        tissue.for_free_nodes(tissue.elements[e][i], [&](NodeId n, double weight) {
+          const auto at = std::lower_bound(members.begin(), members.end(), n);
+          const int slot = offset + static_cast<int>(at - members.begin());
+          const bool hangs = n != tissue.elements[e][i];
+          element_slots_[e][i] = hangs ? -1 : slot;
+          if (hangs) hanging_slots_.push_back({e, i, slot, weight});
+        });
+    for (const NodeId node : members) gradients_.push_back({node, Vec3::Zero()});
+    start_.push_back(gradients_.size());
+  }
+}
+
+void VolumeJacobian::update(const CellVolumes& volumes, std::span<const Vec3> positions) {
+  if (gradients_.empty()) return;
+  for (Gradient& gradient : gradients_) gradient.value.setZero();
+  const auto of_elements = volumes.element_gradients(positions);
+  for (std::size_t e = 0; e < of_elements.size(); ++e)
+    for (int i = 0; i < 8; ++i)
+      if (element_slots_[e][i] >= 0) gradients_[element_slots_[e][i]].value += of_elements[e][i];
+  for (const auto& [element, corner, slot, weight] : hanging_slots_)
+    gradients_[slot].value += weight * of_elements[element][corner];
+}
+
+void VolumeJacobian::rates(std::span<const Vec3> direction, std::span<double> rates) const {
+  parallel_for(cells(), [&](std::size_t cell) { rates[cell] = rate(cell, direction); });
+}
+
+void VolumeJacobian::add_rates(std::span<const Vec3> direction, std::span<const double> weights, double factor,
+                               std::span<double> to) const {
+  parallel_for(cells(), [&](std::size_t cell) { to[cell] += factor * weights[cell] * rate(cell, direction); });
+}
+
+void VolumeJacobian::add_forces(std::span<const double> pressures, double factor, std::span<Vec3> forces) const {
+  for (std::size_t cell = 0; cell < cells(); ++cell) {
+    const double pressure = factor * pressures[cell];
+    for (const Gradient& gradient : of_cell(cell)) forces[gradient.node.index()] += pressure * gradient.value;
+  }
+}
+
+}  // namespace plica

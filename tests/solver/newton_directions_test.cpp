@@ -1,0 +1,159 @@
+// All ways of finding Newton's directions find the same.
+#include <gtest/gtest.h>
+
+#include "solver/block_cholesky.hpp"
+#include "solver/contact_border.hpp"
+#include "solver/newton.hpp"
+#include "solver/step_solver.hpp"
+#include "support/models.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+/// An iterate somewhat off balance, with some nodes on the shell, and its residual.
+struct Case {
+  explicit Case(const Model& m, unsigned seed = 1) : model(m), random(seed) {
+    const State rest = rest_state(model);
+    at = {rest.positions, rest.pressures, rest.contact_forces, rest.in_contact};
+    previous = rest.positions;
+    const Vectors moves = random.vectors(previous.size());
+    for (std::size_t n = 0; n < moves.size(); ++n) at.positions[n] += 0.2 * moves[n];
+    model.tissue.place_hanging(at.positions);
+    for (double& pressure : at.pressures) pressure = 0.02 * random.number();
+    for (std::size_t k = 0; k < at.in_contact.size(); ++k) at.in_contact[k] = k % 3 != 0;
+    for (std::size_t k = 0; k < at.in_contact.size(); ++k) at.contact_forces[k] = at.in_contact[k] ? 0.5 : 0;
+    residual.forces = random.vectors(previous.size());
+    for (std::size_t n = model.tissue.free_node_count(); n < previous.size(); ++n) residual.forces[n].setZero();
+    for (std::size_t c = 0; c < at.pressures.size(); ++c) residual.volume_deficit.push_back(random.number());
+  }
+  [[nodiscard]] Step step() const { return {at.positions, previous, velocities, 5, 5}; }
+  [[nodiscard]] Direction direction(LinearMethod method) const {
+    Direction found;
+    NewtonDirections::Cost cost;
+    const auto outcome = make_directions(model, method, {})->find(step(), at, residual, {false, 0}, found, cost);
+    EXPECT_EQ(outcome, NewtonDirections::Outcome::found);
+    EXPECT_GE(cost.factorisations, 1);
+    EXPECT_GE(cost.linear_solves, 1);
+    return found;
+  }
+
+  const Model& model;
+  Random random;
+  Iterate at;
+  Residual residual;
+  Vectors previous, velocities = Vectors(previous.size(), Vec3::Zero());
+};
+
+double largest_difference(const Vectors& a, const Vectors& b) {
+  double most = 0;
+  for (std::size_t n = 0; n < a.size(); ++n) most = std::max(most, (a[n] - b[n]).norm());
+  return most;
+}
+
+TEST(NewtonDirections, AreTheSameWhicheverWayTheyAreFound) {
+  std::vector<Model> models;
+  models.push_back(dimpling_sheet());
+  models.push_back(dimpling_sheet({2, 1, 2}));
+  models.push_back(dimpling_sheet());
+  models.back().volumes_are_held = false;
+  models.push_back(dimpling_sheet());
+  for (std::size_t n = 0; n < 8; ++n) models.back().held[n] = {true, n % 2 == 0, false};
+  models.push_back(furrowing_sphere());
+  for (const Model& model : models) {
+    const Case given(model);
+    const Direction direct = given.direction(LinearMethod::direct);
+    for (const LinearMethod method : {LinearMethod::cholesky, LinearMethod::multigrid, LinearMethod::automatic}) {
+      const Direction found = given.direction(method);
+      EXPECT_LE(largest_difference(found.positions, direct.positions), 1e-3 * largest(direct.positions));
+      ASSERT_EQ(found.pressures.size(), direct.pressures.size());
+      const Eigen::Map<const Eigen::VectorXd> p(found.pressures.data(), found.pressures.size()),
+          q(direct.pressures.data(), direct.pressures.size());
+      EXPECT_LE((p - q).norm(), 1e-3 * q.norm());
+    }
+  }
+}
+
+TEST(NewtonDirections, EveryWayLeadsToTheSameState) {
+  const Model model = furrowing_sphere();
+  std::vector<State> ends;
+  for (const LinearMethod method :
+       {LinearMethod::direct, LinearMethod::cholesky, LinearMethod::multigrid, LinearMethod::automatic}) {
+    StepSolver solver(model, {}, method);
+    State state = rest_state(model), next;
+    for (int k = 0; k < 5; ++k) {
+      ASSERT_TRUE(solver.advance(state, 5, k == 0, next).converged());
+      std::swap(state, next);
+    }
+    ends.push_back(state);
+    EXPECT_LE(largest_difference(state.positions, ends.front().positions), 1e-6);
+    EXPECT_EQ(state.in_contact, ends.front().in_contact);
+  }
+}
+
+// Nodes leave the shell and others come to it: factor and border are the inverse of the new matrix.
+TEST(ContactBorder, SolvesForTheContactsOfNow) {
+  const Model model = furrowing_sphere();
+  Case given(model);
+  StepMatrix matrix(model);
+  Step step = given.step();
+  step.semidefinite_tangent = true;
+  matrix.assemble(model, step, given.at);
+  const auto factor = [&](const Iterate& at) {
+    auto cholesky = std::make_unique<BlockCholesky>(matrix.layout());
+    std::vector<float> values;
+    matrix.write_projected_blocks(node_frames(model, at), values);
+    EXPECT_TRUE(cholesky->factorise(values));
+    return cholesky;
+  };
+  const auto before = factor(given.at);
+  ContactBorder border;
+  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact);
+
+  Iterate now = given.at;
+  int changes = 0;
+  for (std::size_t k = 0; k < now.in_contact.size(); k += 17, ++changes) now.in_contact[k] ^= 1;
+  ASSERT_GT(changes, 20);
+  ASSERT_TRUE(border.follow(now, *before));
+  const auto after = factor(now);
+  const std::vector<NodeFrame> frames = node_frames(model, now);
+  Vectors x = given.random.vectors(frames.size());
+  for (std::size_t n = 0; n < x.size(); ++n) x[n] = frames[n].free_part(x[n]);
+  std::vector<float> expected;
+  for (const Vec3& v : x) expected.insert(expected.end(), {float(v.x()), float(v.y()), float(v.z())});
+  const Vectors forces = x;
+  border.solve(*before, x);
+  after->solve(expected);
+  double difference = 0, without = 0, length = 0;
+  Vectors alone = forces;
+  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact);
+  border.solve(*before, alone);
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    const Vec3 should_be(expected[3 * n], expected[3 * n + 1], expected[3 * n + 2]);
+    difference += (frames[n].free_part(x[n]) - should_be).squaredNorm();
+    without += (frames[n].free_part(alone[n]) - should_be).squaredNorm();
+    length += should_be.squaredNorm();
+  }
+  EXPECT_LE(std::sqrt(difference / length), 1e-4);
+  EXPECT_GE(std::sqrt(without / length), 1e-2) << "the changes should matter";
+}
+
+TEST(ContactBorder, TakesUpOnlySoManyChanges) {
+  const Model model = furrowing_sphere();
+  const Case given(model);
+  StepMatrix matrix(model);
+  matrix.assemble(model, given.step(), given.at);
+  BlockCholesky factor(matrix.layout());
+  std::vector<float> values;
+  matrix.write_projected_blocks(node_frames(model, given.at), values);
+  ASSERT_TRUE(factor.factorise(values));
+  ContactBorder border;
+  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact);
+  Iterate now = given.at;
+  for (char& contact : now.in_contact) contact ^= 1;
+  EXPECT_FALSE(border.follow(now, factor));
+}
+
+}  // namespace
+}  // namespace plica
