@@ -1,111 +1,157 @@
+// What an element is made of, and the way through all of them. The formulas of forces and tangents are in
+// corotational_lanes.hpp and corotational_kernels.cpp, which is compiled for several instruction sets.
 #include "mechanics/corotational.hpp"
 
-#include <cmath>
-
 #include "core/parallel.hpp"
+#include "mechanics/turning_elements.hpp"
 
 namespace plica {
 namespace {
 
-using Mat6x24 = Eigen::Matrix<double, 6, 24>;
-using Mat6x9 = Eigen::Matrix<double, 6, 9>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;
+constexpr std::size_t batch_size = ElementChunks::batch_size;
 
-const std::array<Vec3, 8>& gauss_points() {
-  static const std::array<Vec3, 8> points = [] {
-    std::array<Vec3, 8> p;
-    for (int i = 0; i < 8; ++i) p[i] = hex_reference_nodes[i] / std::sqrt(3.0);
-    return p;
-  }();
-  return points;
+const CorotationalKernels& kernels_for(Kernels kernels) {
+#ifdef PLICA_X86_KERNELS
+  if (kernels == Kernels::avx2) return avx2::corotational_kernels;
+  if (kernels == Kernels::avx512) return avx512::corotational_kernels;
+#endif
+  return generic::corotational_kernels;
 }
 
-// Columns of the strain-displacement matrix for a shape function with gradient g. Strain order: xx yy zz xy yz zx, with
-// engineering shears.
-Eigen::Matrix<double, 6, 3> strain_columns(const Vec3& g) {
-  Eigen::Matrix<double, 6, 3> b = Eigen::Matrix<double, 6, 3>::Zero();
-  b(0, 0) = g.x(), b(1, 1) = g.y(), b(2, 2) = g.z();
-  b(3, 0) = g.y(), b(3, 1) = g.x();
-  b(4, 1) = g.z(), b(4, 2) = g.y();
-  b(5, 0) = g.z(), b(5, 2) = g.x();
-  return b;
+void put_stiffness(const Mat12& H, int lane, double (&stiffness)[78][batch_size]) {
+  for (int row = 0; row < 12; ++row)
+    for (int column = 0; column <= row; ++column) stiffness[row * (row + 1) / 2 + column][lane] = H(row, column);
 }
 
-Mat6 stress_matrix(const ElasticModuli& moduli) {
-  Mat6 d = Mat6::Zero();
-  d.topLeftCorner<3, 3>().setConstant(moduli.lame_lambda);
-  for (int i = 0; i < 3; ++i) d(i, i) += 2 * moduli.shear_modulus;
-  for (int i = 3; i < 6; ++i) d(i, i) = moduli.shear_modulus;
-  return d;
+void put_vector(const Vec3& v, int lane, double (&vectors)[3][batch_size]) {
+  for (int axis = 0; axis < 3; ++axis) vectors[axis][lane] = v[axis];
 }
+
+const double* numbers(std::span<const Vec3> vectors) { return vectors.empty() ? nullptr : vectors.front().data(); }
+double* numbers(std::span<Vec3> vectors) { return vectors.empty() ? nullptr : vectors.front().data(); }
 
 }  // namespace
 
-ElasticModuli ElasticModuli::from_young(double young_modulus, double poisson_ratio) {
-  return {young_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio)),
-          young_modulus / (2 * (1 + poisson_ratio))};
+void nearest_rotation(const double (&F)[9], double (&R)[9]) {
+  Mat3 rotation, stretch;
+  polar(Mat3(F), rotation, stretch);
+  Eigen::Map<Mat3>{R} = rotation;
 }
 
-ElasticModuli viscous_moduli(double shear_viscosity) { return {-2 * shear_viscosity / 3, shear_viscosity}; }
-
-Mat24 incompatible_stiffness(const HexPoints& rest, const ElasticModuli& moduli) {
-  const Mat6 d = stress_matrix(moduli);
-  const Mat3 centre_jacobian = hex_jacobian(rest, Vec3::Zero());
-  const Mat3 centre_inverse = centre_jacobian.inverse();
-  const double centre_determinant = centre_jacobian.determinant();
-
-  Mat24 compatible = Mat24::Zero();
-  Eigen::Matrix<double, 9, 24> mixed = Eigen::Matrix<double, 9, 24>::Zero();
-  Eigen::Matrix<double, 9, 9> modes = Eigen::Matrix<double, 9, 9>::Zero();
-  for (const Vec3& point : gauss_points()) {
-    const Mat3 jacobian = hex_jacobian(rest, point);
-    const Mat3 inverse = jacobian.inverse();
-    const double weight = jacobian.determinant();
-    const std::array<Vec3, 8> gradients = hex_shape_gradients(point);
-    Mat6x24 b;
-    for (int i = 0; i < 8; ++i) b.middleCols<3>(3 * i) = strain_columns(inverse.transpose() * gradients[i]);
-    // Modes 1 - xi^2 and so on, their gradients taken with the centre's Jacobian so that they vanish in the mean.
-    Mat6x9 m;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 local = -2 * point[k] * Vec3::Unit(k);
-      m.middleCols<3>(3 * k) = strain_columns((centre_determinant / weight) * (centre_inverse.transpose() * local));
-    }
-    compatible += weight * b.transpose() * d * b;
-    mixed += weight * m.transpose() * d * b;
-    modes += weight * m.transpose() * d * m;
-  }
-  Mat24 stiffness = compatible - mixed.transpose() * modes.ldlt().solve(mixed);
-  return 0.5 * (stiffness + stiffness.transpose());
-}
-
-Corotational::Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity)
-    : TurningElements(tissue, shear_viscosity > 0),
-      moduli_(moduli),
+Corotational::Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity, Kernels kernels)
+    : moduli_(moduli),
       shear_viscosity_(shear_viscosity),
-      stiffness_(tissue.elements.size()) {
-  parallel_for(elements_.size(), [&](std::size_t e) { fit(tissue, e); });
+      kernels_(kernels),
+      chunks_(tissue.elements),
+      batches_(chunks_.batch_count()),
+      viscous_batches_(shear_viscosity > 0 ? chunks_.batch_count() : 0) {
+  require_upright_rest_shapes(tissue);
+  parallel_for(batches_.size() * batch_size, [&](std::size_t place) { fit(tissue, place); });
 }
 
-void Corotational::fit(const Tissue& tissue, std::size_t e) {
+void Corotational::fit(const Tissue& tissue, std::size_t place) {
+  // Places after the last element repeat it.
+  const std::size_t e = std::min(place, chunks_.element_count() - 1);
+  const int lane = static_cast<int>(place % batch_size);
+  CorotationalBatch& batch = batches_[place / batch_size];
+  for (int i = 0; i < 8; ++i) batch.nodes[i][lane] = 3 * tissue.elements[e][i].number();
+
   const HexPoints& rest = tissue.element_rest_shape[e];
-  elements_[e].frame = mean_gradients(rest);
-  Vec24 b;
-  for (int i = 0; i < 8; ++i) b.segment<3>(3 * i) = elements_[e].frame[i];
-  stiffness_[e] = incompatible_stiffness(rest, moduli_) - moduli_.bulk_modulus() * hex_volume(rest) * b * b.transpose();
-  if (shear_viscosity_ > 0) elements_[e].viscosity = incompatible_stiffness(rest, viscous_moduli(shear_viscosity_));
+  const std::array<Vec3, 8> gradients = mean_gradients(rest);
+  for (int mode = 0; mode < 6; ++mode) {
+    Vec3 b = Vec3::Zero();
+    for (int i = 0; i < 8; ++i) b += hex_modes[mode][i] / 8 * gradients[i];
+    put_vector(b, lane, batch.gradients[mode]);
+  }
+  for (int a = 0; a < 4; ++a) {
+    Vec3 X = Vec3::Zero();
+    for (int i = 0; i < 8; ++i) X += hex_modes[3 + a][i] * rest[i];
+    put_vector(X, lane, batch.hourglass[a]);
+  }
+  const double volume = hex_volume(rest);
+  batch.shear[lane] = 2 * moduli_.shear_modulus * volume;
+  put_stiffness(hourglass_stiffness(rest, moduli_), lane, batch.stiffness);
+  if (viscous_batches_.empty()) return;
+  ViscousBatch& viscous = viscous_batches_[place / batch_size];
+  viscous.shear[lane] = 2 * shear_viscosity_ * volume;
+  put_stiffness(hourglass_stiffness(rest, viscous_moduli(shear_viscosity_)), lane, viscous.stiffness);
+}
+
+void Corotational::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
+  const std::size_t last = chunks_.element_count() - 1;
+  for (const ElementId e : elements) {
+    fit(tissue, e.index());
+    for (std::size_t place = last + 1; e.index() == last && place < batches_.size() * batch_size; ++place)
+      fit(tissue, place);
+  }
+}
+
+CorotationalStep Corotational::kernel_step(const Step& step) const {
+  return {.batches = batches_.data(),
+          .viscous_batches = viscous_batches_.empty() ? nullptr : viscous_batches_.data(),
+          .elements = chunks_.element_count(),
+          .positions = numbers(step.positions),
+          .previous_positions = numbers(step.previous_positions),
+          .rate = 1 / step.duration_s,
+          .semidefinite_tangent = step.semidefinite_tangent};
+}
+
+double Corotational::energy(const Step& step) const {
+  const CorotationalStep at = kernel_step(step);
+  return chunks_.sum_over_batches(
+      [&](std::size_t first, std::size_t last) { return kernels_for(kernels_).energy(at, first, last); });
+}
+
+void Corotational::add_forces(const Step& step, std::span<Vec3> forces) const {
+  const CorotationalStep at = kernel_step(step);
+  chunks_.for_batches([&](std::size_t first, std::size_t last) {
+    kernels_for(kernels_).add_forces(at, first, last, numbers(forces));
+  });
+}
+
+void Corotational::add_tangent_product(const Step& step, std::span<const Vec3> direction,
+                                       std::span<Vec3> product) const {
+  const CorotationalStep at = kernel_step(step);
+  chunks_.for_batches([&](std::size_t first, std::size_t last) {
+    kernels_for(kernels_).add_product(at, first, last, numbers(direction), numbers(product));
+  });
+}
+
+void Corotational::add_tangent(const Step& step, TangentSink& tangent) const {
+  // Some batches at a time: computed by all threads, added in order.
+  constexpr std::size_t at_once = 128;
+  const auto blocks = std::make_unique_for_overwrite<CorotationalBlocks[]>(std::min(at_once, batches_.size()));
+  const CorotationalStep at = kernel_step(step);
+  for (std::size_t first = 0; first < batches_.size(); first += at_once) {
+    const std::size_t last = std::min(first + at_once, batches_.size());
+    parallel_for(last - first,
+                 [&](std::size_t k) { kernels_for(kernels_).write_blocks(at, first + k, blocks[k]); });
+    for (std::size_t e = first * batch_size; e < std::min(last * batch_size, chunks_.element_count()); ++e) {
+      const auto& of_batch = blocks[e / batch_size - first].blocks;
+      for (int i = 0, pair = 0; i < 8; ++i)
+        for (int j = 0; j <= i; ++j, ++pair) {
+          Mat3 block;
+          for (int k = 0; k < 9; ++k) block.data()[k] = of_batch[pair][k][e % batch_size];
+          tangent.add_block(node(e, i), node(e, j), block);
+          if (j < i) tangent.add_block(node(e, j), node(e, i), block.transpose());
+        }
+    }
+  }
+}
+
+NodeId Corotational::node(std::size_t e, int corner) const {
+  return NodeId(batches_[e / batch_size].nodes[corner][e % batch_size] / 3);
+}
+
+NodeGroups Corotational::node_groups() const {
+  NodeGroups groups(chunks_.element_count());
+  for (std::size_t e = 0; e < groups.size(); ++e)
+    for (int i = 0; i < 8; ++i) groups[e].push_back(node(e, i));
+  return groups;
 }
 
 std::unique_ptr<Law> Corotational::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
-  return std::make_unique<Corotational>(tissue, moduli_, shear_viscosity_);
-}
-
-double Corotational::respond(std::size_t element, const Vec24& u, Vec24& q) const {
-  q.noalias() = stiffness_[element] * u;
-  return 0.5 * u.dot(q);
-}
-
-const Mat24& Corotational::local_stiffness(std::size_t element, const Vec24&, Mat24&) const {
-  return stiffness_[element];
+  return std::make_unique<Corotational>(tissue, moduli_, shear_viscosity_, kernels_);
 }
 
 }  // namespace plica

@@ -17,13 +17,6 @@ using Mat3x24 = Eigen::Matrix<double, 3, 24>;
 
 }  // namespace
 
-std::array<Vec3, 8> mean_gradients(const HexPoints& rest) {
-  std::array<Vec3, 8> gradients = hex_volume_gradient(rest);
-  const double volume = hex_volume(rest);
-  for (Vec3& gradient : gradients) gradient /= volume;
-  return gradients;
-}
-
 // The nearest rotation R to F and the stretch S = R^T F. Newton's iteration for the polar factor, X <- (X + X^-T)/2
 // (Higham 1986), converges quadratically wherever det F > 0; elsewhere, on the way to being rejected, the SVD serves.
 void polar(const Mat3& F, Mat3& R, Mat3& S) {

@@ -8,17 +8,13 @@
 
 #include <Eigen/Dense>
 
+#include "mechanics/element_chunks.hpp"
+#include "mechanics/hexahedron_stiffness.hpp"
 #include "mechanics/law.hpp"
-#include "tissue/hexahedron.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
 
-using Mat24 = Eigen::Matrix<double, 24, 24>;
-using Vec24 = Eigen::Matrix<double, 24, 1>;
-
-/// Mean gradients b_i of the shape functions over the rest volume, 1/um: mean deformation gradient F = sum x_i b_i^T.
-std::array<Vec3, 8> mean_gradients(const HexPoints& rest);
 
 /// The nearest rotation R to F and the symmetric S = R^T F.
 void polar(const Mat3& F, Mat3& R, Mat3& S);

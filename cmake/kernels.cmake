@@ -1,0 +1,18 @@
+# Kernel sources are compiled once for each instruction set that they are worth it for, and all of that goes into
+# plica_core; the program chooses when it runs (src/mechanics/kernels.hpp). They may use fused multiply-add, and are
+# optimised alike in every build, so that a debug build's results are those of a release build.
+function(add_kernels name lanes)
+  add_library(plica_kernels_${name} OBJECT ${kernel_sources})
+  target_link_libraries(plica_kernels_${name} PRIVATE plica_options)
+  target_compile_definitions(plica_kernels_${name} PRIVATE PLICA_KERNELS=${name} PLICA_LANES=${lanes})
+  target_compile_options(plica_kernels_${name} PRIVATE -O3 ${ARGN})
+  target_sources(plica_core PRIVATE $<TARGET_OBJECTS:plica_kernels_${name}>)
+endfunction()
+
+set_source_files_properties(${kernel_sources} PROPERTIES COMPILE_OPTIONS -ffp-contract=fast)  # after plica_options'
+add_kernels(generic 2)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  add_kernels(avx2 4 -mavx2 -mfma)
+  add_kernels(avx512 8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512)
+  target_compile_definitions(plica_core PUBLIC PLICA_X86_KERNELS)
+endif()

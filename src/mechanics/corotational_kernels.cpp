@@ -1,0 +1,138 @@
+// Letters as in docs/theory/corotational.md: F = R S the mean deformation gradient, h_a the hourglasses of the local
+// displacement, T and q what answers S - I and h, t = G (sum h_a x q_a) with G = (tr(S) I - S)^-1, and
+// P = T - sum q_a X_a^T - [t]x the energy's gradient by F in the frame. A letter with a d: its change along a direction.
+#include "mechanics/corotational_lanes.hpp"
+
+namespace plica::PLICA_KERNELS {
+namespace {
+
+// Calls body(elements, lanes that count) for every register's worth of the batches.
+template <class Body>
+inline void for_elements(const CorotationalStep& step, std::size_t first, std::size_t last, const Body& body) {
+  for (std::size_t b = first; b < last; ++b) {
+    const std::size_t left = step.elements - b * batch_size;
+    const int count = left < batch_size ? static_cast<int>(left) : batch_size;
+    const ViscousBatch* viscous = step.viscous_batches ? step.viscous_batches + b : nullptr;
+    for (int lane = 0; lane < count; lane += width)
+      body(Elements{step.batches[b], viscous, step.rate, lane}, count - lane < width ? count - lane : width);
+  }
+}
+
+// What is added to the nodes when the gradients in the frame are P by F and r by the hourglasses.
+inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P, const Hourglass& r, double* vectors) {
+  const Mat RP = R * P;
+  Vec g[7];
+  for (int j = 0; j < 6; ++j) g[j] = RP * e.b(j);
+  for (int a = 0; a < 3; ++a) g[3 + a] = g[3 + a] + R * r[a];
+  g[6] = R * r[3];
+  Vec f[8];
+  from_modes(g, f);
+  scatter(e.batch.nodes, e.lane, count, f, vectors);
+}
+
+[[gnu::flatten]] double energy(const CorotationalStep& step, std::size_t first, std::size_t last) {
+  double sum = 0;
+  for_elements(step, first, last, [&](const Elements& e, int count) {
+    const Deformation now = deformation(e, step.positions);
+    Hourglass q;
+    multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
+    const Sym D = deviator(now.S);
+    Lanes energies = 0.5 * (e.shear() * contract(D, D) + dot(now.h, q));
+    Sym T = D;
+    if (e.viscous) energies += add_viscous(e, step, now, T, q);
+    for (int k = 0; k < count; ++k) sum += energies[k];
+  });
+  return sum;
+}
+
+[[gnu::flatten]] void add_forces(const CorotationalStep& step, std::size_t first, std::size_t last, double* forces) {
+  for_elements(step, first, last, [&](const Elements& e, int count) {
+    const Deformation now = deformation(e, step.positions);
+    Hourglass q;
+    multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
+    Sym T = e.shear() * deviator(now.S);
+    Vec torque = cross(now.h, q);
+    if (e.viscous) {
+      add_viscous(e, step, now, T, q);
+      torque = cross(now.h, q) + axial(full(now.S) * full(T));
+    }
+    const Vec t = inverse(turning(now.S)) * torque;
+    Mat P = cross_matrix(t) - full(T);
+    for (int a = 0; a < 4; ++a) P = P + outer(q[a], e.X(a));
+    for (Lanes& value : q.at) value = -value;
+    add_turned(e, count, now.R, P, q, forces);
+  });
+}
+
+// R K R^T: the frame does not turn.
+[[gnu::flatten]] void add_warped_product(const CorotationalStep& step, std::size_t first, std::size_t last,
+                                         const double* direction, double* product) {
+  for_elements(step, first, last, [&](const Elements& e, int count) {
+    Vec m[7], d[7];
+    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    const Mat R = rotation(gradient(e, m));
+    gather_modes(e.batch.nodes, e.lane, direction, d);
+    const Seen move = seen_from(e, R, gradient(e, d), d);
+    Hourglass dq;
+    multiply<1>(e.batch.stiffness, e.lane, {&move.w}, {&dq});
+    Lanes shear = e.shear();
+    if (e.viscous) {
+      Hourglass viscous;
+      multiply<1>(e.viscous->stiffness, e.lane, {&move.w}, {&viscous});
+      for (int i = 0; i < 12; ++i) dq.at[i] += e.rate * viscous.at[i];
+      shear += e.viscous_shear();
+    }
+    Mat dP = full(shear * deviator(symmetric_part(move.W)));
+    for (int a = 0; a < 4; ++a) dP = dP - outer(dq[a], e.X(a));
+    add_turned(e, count, R, dP, dq, product);
+  });
+}
+
+[[gnu::flatten]] void add_exact_product(const CorotationalStep& step, std::size_t first, std::size_t last,
+                                        const double* direction, double* product) {
+  for_elements(step, first, last, [&](const Elements& e, int count) {
+    const auto [R, S, h] = deformation(e, step.positions);
+    Vec d[7];
+    gather_modes(e.batch.nodes, e.lane, direction, d);
+    const Seen move = seen_from(e, R, gradient(e, d), d);
+    // How the frame turns, and what that leaves of the move as deformation.
+    const Sym G = inverse(turning(S));
+    const Vec omega = -(G * axial(move.W));
+    const Sym dS = upper_part(move.W - cross(omega, full(S)));
+    Hourglass dh;
+    for (int a = 0; a < 4; ++a) dh.set(a, move.w[a] - cross(omega, h[a]));
+    // What answers it.
+    Hourglass q, dq;
+    multiply<2>(e.batch.stiffness, e.lane, {&h, &dh}, {&q, &dq});
+    Sym T = e.shear() * deviator(S), dT = e.shear() * deviator(dS);
+    Vec torque = cross(h, q), dtorque = cross(dh, q) + cross(h, dq);
+    if (e.viscous) {
+      add_viscous(e, step, {R, S, h}, T, q);
+      Hourglass viscous;
+      multiply<1>(e.viscous->stiffness, e.lane, {&dh}, {&viscous});
+      for (int i = 0; i < 12; ++i) dq.at[i] += e.rate * viscous.at[i];
+      dT = dT + e.viscous_shear() * deviator(dS);
+      torque = cross(h, q) + axial(full(S) * full(T));
+      dtorque = cross(dh, q) + cross(h, dq) + axial(full(dS) * full(T) + full(S) * full(dT));
+    }
+    const Vec t = G * torque, dt = G * (dtorque + dS * t - trace(dS) * t);
+    // The turning of what was there, and the change.
+    Mat dP = cross(omega, full(T) - cross_matrix(t)) + full(dT) - cross_matrix(dt);
+    for (int a = 0; a < 4; ++a) {
+      dq.set(a, dq[a] + cross(omega, q[a]));
+      dP = dP - outer(dq[a], e.X(a));
+    }
+    add_turned(e, count, R, dP, dq, product);
+  });
+}
+
+void add_product(const CorotationalStep& step, std::size_t first, std::size_t last, const double* direction,
+                 double* product) {
+  (step.semidefinite_tangent ? add_warped_product : add_exact_product)(step, first, last, direction, product);
+}
+
+}  // namespace
+
+const CorotationalKernels corotational_kernels = {energy, add_forces, add_product, write_blocks};
+
+}  // namespace plica::PLICA_KERNELS

@@ -1,0 +1,85 @@
+// A way through all elements for any number of threads: chunks of consecutive elements, coloured so that chunks of one
+// colour have no node in common. Colours follow each other, the chunks of one are shared out among the threads. So
+// elements add to their nodes without more ado, and what a node gets is added up in the same order whoever does it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/ids.hpp"
+
+namespace plica {
+
+class ElementChunks {
+ public:
+  /// Elements that kernels take at once. Chunks begin at multiples of it.
+  static constexpr std::size_t batch_size = 8;
+  static constexpr std::size_t most_chunks = 256;
+
+  explicit ElementChunks(std::span<const std::array<NodeId, 8>> elements);
+
+  [[nodiscard]] std::size_t element_count() const { return elements_; }
+  [[nodiscard]] std::size_t batch_count() const { return (elements_ + batch_size - 1) / batch_size; }
+
+  /// Calls body(first batch, last batch) for every chunk. `last` is the one after.
+  template <class Body>
+  void for_batches(const Body& body) const {
+    for_chunks([&](std::size_t chunk) { body(first_batch(chunk), last_batch(chunk)); });
+  }
+
+  /// Calls body(element) for every element.
+  template <class Body>
+  void for_elements(const Body& body) const {
+    for_chunks([&](std::size_t chunk) {
+      for (std::size_t e = first_batch(chunk) * batch_size; e < last_element(chunk); ++e) body(e);
+    });
+  }
+
+  /// The sum of body(first batch, last batch) over all chunks.
+  template <class Body>
+  [[nodiscard]] double sum_over_batches(const Body& body) const {
+    std::array<double, most_chunks> parts;
+    for_chunks([&](std::size_t chunk) { parts[chunk] = body(first_batch(chunk), last_batch(chunk)); });
+    double sum = 0;
+    for (std::size_t chunk = 0; chunk < order_.size(); ++chunk) sum += parts[chunk];
+    return sum;
+  }
+
+  /// The sum of body(element) over all elements.
+  template <class Body>
+  [[nodiscard]] double sum_over_elements(const Body& body) const {
+    return sum_over_batches([&](std::size_t first, std::size_t last) {
+      double sum = 0;
+      for (std::size_t e = first * batch_size; e < std::min(last * batch_size, elements_); ++e) sum += body(e);
+      return sum;
+    });
+  }
+
+ private:
+  template <class Body>
+  void for_chunks(const Body& body) const {
+    constexpr std::size_t worth_sharing = 2048;  // elements; with fewer, waking other threads costs more than they save
+#pragma omp parallel if (elements_ >= worth_sharing)
+    for (std::size_t colour = 0; colour + 1 < colour_start_.size(); ++colour) {
+#pragma omp for schedule(dynamic)
+      for (std::size_t k = colour_start_[colour]; k < colour_start_[colour + 1]; ++k) body(order_[k]);
+    }
+  }
+
+  [[nodiscard]] std::size_t first_batch(std::size_t chunk) const { return chunk * batches_in_chunk_; }
+  [[nodiscard]] std::size_t last_batch(std::size_t chunk) const {
+    return std::min(first_batch(chunk + 1), batch_count());
+  }
+  [[nodiscard]] std::size_t last_element(std::size_t chunk) const {
+    return std::min(last_batch(chunk) * batch_size, elements_);
+  }
+
+  std::size_t elements_;
+  std::size_t batches_in_chunk_;
+  std::vector<std::size_t> order_;         // chunks, colour by colour
+  std::vector<std::size_t> colour_start_;  // colours + 1, in order_
+};
+
+}  // namespace plica

@@ -1,0 +1,103 @@
+// Hexahedra side by side, for kernel sources: nodes in and out, the seven modes of a trilinear hexahedron, its volume.
+//
+// The modes m_j = sum_i s_ji x_i have signs s_ji = xi, eta, zeta, xi eta, eta zeta, zeta xi and xi eta zeta at the
+// reference place of node i (VTK's order): three that are linear and four hourglasses. The eighth, the sum, is the
+// place of the element, on which nothing here depends. With a gradient in modes g_j, that of the nodes is sum_j s_ji
+// g_j (docs/theory/corotational.md).
+#pragma once
+
+#include "mechanics/lanes.hpp"
+
+namespace plica::PLICA_KERNELS {
+
+/// Three times the number of each corner: [corner][element].
+using BatchNodes = int[8][batch_size];
+
+/// One number of each element's node.
+inline Lanes pick(const double* vectors, const int* at) {
+#if PLICA_LANES == 8
+  return Lanes{vectors[at[0]], vectors[at[1]], vectors[at[2]], vectors[at[3]],
+               vectors[at[4]], vectors[at[5]], vectors[at[6]], vectors[at[7]]};
+#elif PLICA_LANES == 4
+  return Lanes{vectors[at[0]], vectors[at[1]], vectors[at[2]], vectors[at[3]]};
+#else
+  return Lanes{vectors[at[0]], vectors[at[1]]};
+#endif
+}
+
+inline void gather(const BatchNodes& nodes, int lane, const double* vectors, Vec (&x)[8]) {
+  for (int i = 0; i < 8; ++i) {
+    const int* at = nodes[i] + lane;
+    x[i] = {pick(vectors, at), pick(vectors + 1, at), pick(vectors + 2, at)};
+  }
+}
+
+/// Adds to the nodes of the first `count` lanes.
+inline void scatter(const BatchNodes& nodes, int lane, int count, const Vec (&f)[8], double* vectors) {
+  for (int i = 0; i < 8; ++i)
+    for (int k = 0; k < count; ++k) {
+      double* v = vectors + nodes[i][lane + k];
+      v[0] += f[i].x[k];
+      v[1] += f[i].y[k];
+      v[2] += f[i].z[k];
+    }
+}
+
+// Differences of neighbouring nodes first: what they have in common is lost without rounding.
+inline void to_modes(const Vec (&x)[8], Vec (&m)[7]) {
+  const Vec xi0 = x[1] - x[0], xi1 = x[2] - x[3], xi2 = x[5] - x[4], xi3 = x[6] - x[7];
+  const Vec low = xi0 + xi1, high = xi2 + xi3, low_twist = xi1 - xi0, high_twist = xi3 - xi2;
+  const Vec eta0 = (x[3] - x[0]) + (x[2] - x[1]), eta1 = (x[7] - x[4]) + (x[6] - x[5]);
+  m[0] = low + high;
+  m[1] = eta0 + eta1;
+  m[2] = ((x[4] - x[0]) + (x[5] - x[1])) + ((x[7] - x[3]) + (x[6] - x[2]));
+  m[3] = low_twist + high_twist;
+  m[4] = eta1 - eta0;
+  m[5] = high - low;
+  m[6] = high_twist - low_twist;
+}
+
+inline void gather_modes(const BatchNodes& nodes, int lane, const double* vectors, Vec (&m)[7]) {
+  Vec x[8];
+  gather(nodes, lane, vectors, x);
+  to_modes(x, m);
+}
+
+inline void from_modes(const Vec (&g)[7], Vec (&f)[8]) {
+  // Without xi, then with it, at (eta, zeta) = (-, -), (+, -), (-, +), (+, +).
+  const Vec up = g[2] + g[4], down = g[2] - g[4];
+  const Vec even[4] = {-(g[1] + down), g[1] - up, down - g[1], g[1] + up};
+  const Vec base_low = g[0] - g[3], base_high = g[0] + g[3], low = g[5] - g[6], high = g[5] + g[6];
+  const Vec odd[4] = {base_low - low, base_high - high, base_low + low, base_high + high};
+  const int corners[4][2] = {{0, 1}, {3, 2}, {4, 5}, {7, 6}};
+  for (int k = 0; k < 4; ++k) {
+    f[corners[k][0]] = even[k] - odd[k];
+    f[corners[k][1]] = even[k] + odd[k];
+  }
+}
+
+/// The sign of hourglass a, mode 3 + a, at corner i.
+inline double hourglass_sign(int a, int i) {
+  const int xi = ((i + 1) & 2) ? 1 : -1, eta = (i & 2) ? 1 : -1, zeta = (i & 4) ? 1 : -1;
+  const int signs[4] = {xi * eta, eta * zeta, zeta * xi, xi * eta * zeta};
+  return signs[a];
+}
+
+/// Volume of the trilinear hexahedron, a cubic polynomial of its modes (docs/theory/cell_volume.md).
+inline Lanes volume(const Vec (&m)[7]) {
+  const Lanes blended =
+      dot(m[0], cross(m[3], m[5])) + dot(m[1], cross(m[4], m[3])) + dot(m[2], cross(m[5], m[4]));
+  return (1.0 / 64) * dot(m[0], cross(m[1], m[2])) + (1.0 / 192) * blended;
+}
+
+/// 64 dV/dm; of the last mode it is zero.
+inline void volume_gradient(const Vec (&m)[7], Vec (&g)[6]) {
+  const Lanes third = Lanes{} + 1.0 / 3;
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, n = (k + 2) % 3;
+    g[k] = cross(m[l], m[n]) + third * cross(m[3 + k], m[3 + n]);
+    g[3 + k] = third * (cross(m[3 + n], m[k]) + cross(m[l], m[3 + l]));
+  }
+}
+
+}  // namespace plica::PLICA_KERNELS

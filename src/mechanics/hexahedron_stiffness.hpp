@@ -1,0 +1,44 @@
+// The stiffness of a hexahedral element in its rest frame: nine incompatible modes condensed
+// (docs/theory/corotational.md, Stiffness and Modes).
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "tissue/hexahedron.hpp"
+
+namespace plica {
+
+using Mat24 = Eigen::Matrix<double, 24, 24>;
+using Mat12 = Eigen::Matrix<double, 12, 12>;
+using Vec24 = Eigen::Matrix<double, 24, 1>;
+
+/// Isotropic linear elasticity. Stress = 2 G strain + lambda trace(strain) I, in kPa (nN/um^2).
+struct ElasticModuli {
+  double lame_lambda = 0;
+  double shear_modulus = 0;
+  [[nodiscard]] double bulk_modulus() const { return lame_lambda + 2 * shear_modulus / 3; }
+  /// From Young's modulus (same unit as the result) and Poisson's ratio in (-1, 1/2).
+  static ElasticModuli from_young(double young_modulus, double poisson_ratio);
+};
+
+/// The moduli (nN s/um^2) of a viscosity that resists shear only: deviatoric. Their stiffness is a damping.
+ElasticModuli viscous_moduli(double shear_viscosity);
+
+/// Mean gradients b_i of the shape functions over the rest volume, 1/um: mean deformation gradient F = sum x_i b_i^T.
+std::array<Vec3, 8> mean_gradients(const HexPoints& rest);
+
+/// The stiffness of one rest shape: 24 x 24, node by node, nN/um; nine incompatible modes condensed. Kept is the mean
+/// volumetric part. Exactly zero on rigid translations and small rotations; exact on constant strain (patch test).
+/// Source: Taylor, Beresford, Wilson 1976 for the correction of the modes.
+Mat24 incompatible_stiffness(const HexPoints& rest, const ElasticModuli& moduli);
+
+/// Signs at the nodes of the seven modes of a trilinear hexahedron: xi, eta, zeta, and the four hourglasses xi eta, eta
+/// zeta, zeta xi, xi eta zeta; [mode][node]. Together with the constant they are orthogonal.
+extern const std::array<std::array<double, 8>, 7> hex_modes;
+
+/// The part of that stiffness that no linear displacement feels, H: 12 x 12, hourglass by hourglass, nN/um. With
+/// h_a = sum_i (h_ai - b_i . X_a) u_i, h_ai the signs and X_a = sum_i h_ai X_i, the energy of a displacement u is that of its mean strain
+/// and h^T H h / 2.
+Mat12 hourglass_stiffness(const HexPoints& rest, const ElasticModuli& moduli);
+
+}  // namespace plica

@@ -1,0 +1,112 @@
+// Numbers side by side: what kernel sources calculate with. A Lanes is as many doubles as a register of the build
+// holds, each of another element; Vec, Mat and Sym are vectors and matrices of them.
+//
+// Kernel sources (*_kernels.cpp) are compiled once for each instruction set (cmake/kernels.cmake), each time in another
+// namespace PLICA_KERNELS with PLICA_LANES doubles a register, so no function of one build is ever taken for another's.
+// They include nothing whose inline functions other sources have too.
+#pragma once
+
+#include <cstddef>
+
+namespace plica::PLICA_KERNELS {
+
+constexpr int width = PLICA_LANES;
+constexpr int batch_size = 8;  // elements a batch: as many as the widest register holds
+
+typedef double Lanes __attribute__((vector_size(8 * PLICA_LANES), may_alias));  // NOLINT: no `using` for attributes
+
+inline Lanes load(const double* values) { return *reinterpret_cast<const Lanes*>(values); }
+
+/// Whether a comparison holds in any lane.
+template <class Mask>
+inline bool any(Mask mask) {
+  long long either = 0;
+  for (int k = 0; k < width; ++k) either |= mask[k];
+  return either != 0;
+}
+
+struct Vec {
+  Lanes x, y, z;
+};
+inline Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec operator-(const Vec& a) { return {-a.x, -a.y, -a.z}; }
+inline Vec operator*(Lanes s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Lanes dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec cross(const Vec& a, const Vec& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline Vec load(const double (&values)[3][batch_size], int lane) {
+  return {load(values[0] + lane), load(values[1] + lane), load(values[2] + lane)};
+}
+
+/// A matrix by its columns.
+struct Mat {
+  Vec x, y, z;
+};
+inline Mat operator+(const Mat& a, const Mat& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Mat operator-(const Mat& a, const Mat& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Mat operator*(Lanes s, const Mat& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Vec operator*(const Mat& a, const Vec& v) { return v.x * a.x + v.y * a.y + v.z * a.z; }
+inline Mat operator*(const Mat& a, const Mat& b) { return {a * b.x, a * b.y, a * b.z}; }
+inline Mat transpose(const Mat& a) {
+  return {{a.x.x, a.y.x, a.z.x}, {a.x.y, a.y.y, a.z.y}, {a.x.z, a.y.z, a.z.z}};
+}
+/// a^T v and a^T b.
+inline Vec turn_back(const Mat& a, const Vec& v) { return {dot(a.x, v), dot(a.y, v), dot(a.z, v)}; }
+inline Mat turn_back(const Mat& a, const Mat& b) { return {turn_back(a, b.x), turn_back(a, b.y), turn_back(a, b.z)}; }
+/// a b^T.
+inline Mat outer(const Vec& a, const Vec& b) { return {b.x * a, b.y * a, b.z * a}; }
+/// [a]x b, and a [b]x.
+inline Mat cross(const Vec& a, const Mat& b) { return {cross(a, b.x), cross(a, b.y), cross(a, b.z)}; }
+inline Mat cross(const Mat& a, const Vec& b) {
+  return {b.z * a.y - b.y * a.z, b.x * a.z - b.z * a.x, b.y * a.x - b.x * a.y};
+}
+inline Mat cross_matrix(const Vec& a) {
+  const Lanes zero = {};
+  return {{zero, a.z, -a.y}, {-a.z, zero, a.x}, {a.y, -a.x, zero}};
+}
+/// Of sum_i u_i v_i^T: sum_i u_i x v_i.
+inline Vec axial(const Mat& a) { return {a.z.y - a.y.z, a.x.z - a.z.x, a.y.x - a.x.y}; }
+
+/// A symmetric matrix.
+struct Sym {
+  Lanes xx, yy, zz, xy, yz, zx;
+};
+inline Sym operator+(const Sym& a, const Sym& b) {
+  return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.yz + b.yz, a.zx + b.zx};
+}
+inline Sym operator-(const Sym& a, const Sym& b) {
+  return {a.xx - b.xx, a.yy - b.yy, a.zz - b.zz, a.xy - b.xy, a.yz - b.yz, a.zx - b.zx};
+}
+inline Sym operator*(Lanes s, const Sym& a) { return {s * a.xx, s * a.yy, s * a.zz, s * a.xy, s * a.yz, s * a.zx}; }
+inline Lanes trace(const Sym& a) { return a.xx + a.yy + a.zz; }
+inline Mat full(const Sym& a) { return {{a.xx, a.xy, a.zx}, {a.xy, a.yy, a.yz}, {a.zx, a.yz, a.zz}}; }
+inline Vec operator*(const Sym& a, const Vec& v) {
+  return {a.xx * v.x + a.xy * v.y + a.zx * v.z, a.xy * v.x + a.yy * v.y + a.yz * v.z,
+          a.zx * v.x + a.yz * v.y + a.zz * v.z};
+}
+/// a : b.
+inline Lanes contract(const Sym& a, const Sym& b) {
+  const Lanes off = a.xy * b.xy + a.yz * b.yz + a.zx * b.zx;
+  return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + (off + off);
+}
+/// a - tr(a)/3 I.
+inline Sym deviator(const Sym& a) {
+  const Lanes mean = (1.0 / 3) * trace(a);
+  return {a.xx - mean, a.yy - mean, a.zz - mean, a.xy, a.yz, a.zx};
+}
+inline Sym symmetric_part(const Mat& a) {
+  return {a.x.x, a.y.y, a.z.z, 0.5 * (a.x.y + a.y.x), 0.5 * (a.y.z + a.z.y), 0.5 * (a.z.x + a.x.z)};
+}
+/// Whose result is known to be symmetric but for rounding.
+inline Sym upper_part(const Mat& a) { return {a.x.x, a.y.y, a.z.z, a.y.x, a.z.y, a.z.x}; }
+/// tr(S) I - S.
+inline Sym turning(const Sym& S) { return {S.yy + S.zz, S.zz + S.xx, S.xx + S.yy, -S.xy, -S.yz, -S.zx}; }
+inline Sym inverse(const Sym& a) {
+  const Sym cofactors = {a.yy * a.zz - a.yz * a.yz, a.zz * a.xx - a.zx * a.zx, a.xx * a.yy - a.xy * a.xy,
+                         a.yz * a.zx - a.xy * a.zz, a.zx * a.xy - a.yz * a.xx, a.xy * a.yz - a.zx * a.yy};
+  return 1 / (a.xx * cofactors.xx + a.xy * cofactors.xy + a.zx * cofactors.zx) * cofactors;
+}
+
+}  // namespace plica::PLICA_KERNELS
