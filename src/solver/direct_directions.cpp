@@ -36,7 +36,7 @@ NewtonDirections::Outcome DirectDirections::find(const Step& step, const Iterate
   direction.positions = way_to_shell(model_, at, factor_frames_);
   Vectors right(nodes);
   matrix_.multiply(direction.positions, right);
-  std::vector<double> unknowns(matrix_.pattern().size, 0.0);
+  std::vector<double> unknowns(3 * nodes + cells, 0.0);
   for (std::size_t n = 0; n < nodes; ++n) {
     const Vec3 local = factor_frames_[n].axes.transpose() * (residual.forces[n] - right[n]);
     for (int i = factor_frames_[n].fixed; i < 3; ++i) unknowns[3 * n + i] = local[i];

@@ -55,6 +55,12 @@ void KrylovDirections::linearise(const Iterate& at) {
   fixed_nodes_.clear();
   for (std::size_t n = 0; n < frames_.size(); ++n)
     if (frames_[n].fixed > 0) fixed_nodes_.push_back(n);
+  contact_tangents_.clear();
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k)
+    if (at.in_contact[k]) {
+      const std::size_t n = model_.vitelline->nodes()[k].index();
+      contact_tangents_.emplace_back(n, -at.contact_forces[k] * model_.vitelline->gap(at.positions[n]).hessian);
+    }
   if (model_.volumes_are_held) jacobian_.update(model_.volumes, at.positions);
 }
 
@@ -98,11 +104,7 @@ void KrylovDirections::multiply(const Step& step, const Iterate& at, const Vecto
   for (const auto& law : model_.laws) law->add_tangent_product(step, dx, forces);
   if (model_.volumes_are_held) model_.volumes.add_tangent_product(at.positions, at.pressures, dx, forces);
   model_.tissue.carry_hanging(forces);
-  for (std::size_t k = 0; k < at.in_contact.size(); ++k)
-    if (at.in_contact[k]) {
-      const std::size_t n = model_.vitelline->nodes()[k].index();
-      forces[n] -= at.contact_forces[k] * (model_.vitelline->gap(at.positions[n]).hessian * dx[n]);
-    }
+  for (const auto& [node, tangent] : contact_tangents_) forces[node] += tangent * dx[node];
   jacobian_.add_forces(of_cells(direction), -1, forces);
   project(forces);
   jacobian_.rates(dx, of_cells(product));

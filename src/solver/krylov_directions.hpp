@@ -54,6 +54,7 @@ class KrylovDirections final : public NewtonDirections {
   VolumeJacobian jacobian_;
   std::vector<NodeFrame> frames_;
   std::vector<std::size_t> fixed_nodes_;
+  std::vector<std::pair<std::size_t, Mat3>> contact_tangents_;  // by node
 
   ConjugateResiduals solver_;
   Vector right_, solution_;

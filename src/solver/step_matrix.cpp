@@ -31,13 +31,16 @@ StepMatrix::StepMatrix(const Model& model) : tissue_(model.tissue), jacobian_(mo
     layout_.starts.push_back(static_cast<int>(layout_.columns.size()));
   }
   blocks_.resize(layout_.columns.size());
+}
 
-  // Scalar entries, in the order of write_values.
+SymmetricPattern StepMatrix::pattern() const {
+  SymmetricPattern pattern;
+  const int nodes = layout_.nodes();
   const int cells = static_cast<int>(jacobian_.cells());
-  pattern_.size = 3 * nodes + cells;
+  pattern.size = 3 * nodes + cells;
   const auto entry = [&](int row, int column) {
-    pattern_.rows.push_back(row);
-    pattern_.columns.push_back(column);
+    pattern.rows.push_back(row);
+    pattern.columns.push_back(column);
   };
   for (int row = 0; row < nodes; ++row)
     for (int k = layout_.starts[row]; k < layout_.starts[row + 1]; ++k)
@@ -49,6 +52,7 @@ StepMatrix::StepMatrix(const Model& model) : tissue_(model.tissue), jacobian_(mo
       for (int j = 0; j < 3; ++j) entry(3 * nodes + cell, 3 * node.number() + j);
     entry(3 * nodes + cell, 3 * nodes + cell);
   }
+  return pattern;
 }
 
 void StepMatrix::set_zero() { std::fill(blocks_.begin(), blocks_.end(), Mat3::Zero()); }
@@ -125,7 +129,7 @@ double pivot(double own) { return own != 0 ? own : 1; }
 
 void StepMatrix::write_values(std::span<const NodeFrame> frames, std::vector<double>& values) const {
   values.clear();
-  values.reserve(pattern_.rows.size());
+  values.reserve(9 * blocks_.size());
   for (std::size_t row = 0; row + 1 < layout_.starts.size(); ++row)
     for (int k = layout_.starts[row]; k < layout_.starts[row + 1]; ++k) {
       const std::size_t column = layout_.columns[k];

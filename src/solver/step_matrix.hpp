@@ -21,8 +21,9 @@ class StepMatrix final : public TangentSink {
  public:
   explicit StepMatrix(const Model& model);
 
-  /// Unknowns: three a free node, then one a cell (when volumes are held).
-  [[nodiscard]] const SymmetricPattern& pattern() const { return pattern_; }
+  /// The numbers of the whole system, in the order of write_values. Unknowns: three a free node, then one a cell (when
+  /// volumes are held).
+  [[nodiscard]] SymmetricPattern pattern() const;
 
   void set_zero();
   /// The tangent of all laws and constraints, and the volumes' gradients, at an iterate.
@@ -58,7 +59,6 @@ class StepMatrix final : public TangentSink {
   BlockPattern layout_;  // lower triangle
   std::vector<Mat3> blocks_;
   VolumeJacobian jacobian_;
-  SymmetricPattern pattern_;
 };
 
 }  // namespace plica

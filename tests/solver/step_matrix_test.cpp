@@ -116,7 +116,7 @@ TEST(StepMatrix, WrittenValuesAreTheFramedSystem) {
 
   std::vector<double> values;
   matrix.write_values(frames, values);
-  const SymmetricPattern& pattern = matrix.pattern();
+  const SymmetricPattern pattern = matrix.pattern();
   ASSERT_EQ(pattern.size, size);
   ASSERT_EQ(values.size(), pattern.rows.size());
   Eigen::MatrixXd written = Eigen::MatrixXd::Zero(size, size);
@@ -147,7 +147,7 @@ TEST(StepMatrix, AFixedUnknownWithoutStiffnessHasAPivot) {
   for (NodeFrame& frame : frames) frame.fixed = 3;
   std::vector<double> values;
   matrix.write_values(frames, values);
-  const SymmetricPattern& pattern = matrix.pattern();
+  const SymmetricPattern pattern = matrix.pattern();
   for (std::size_t k = 0; k < values.size(); ++k)
     if (pattern.rows[k] == pattern.columns[k]) {
       EXPECT_GT(values[k], 0) << "row " << pattern.rows[k];
