@@ -9,12 +9,12 @@ declare -A packages=(
   [build]="cmake ninja-build g++"
   # OpenBLAS in its serial variant: one thread, so that results are the same to the bit.
   [libraries]="libeigen3-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
-               libmumps-seq-dev libmetis-dev libopenblas-serial-dev zlib1g-dev libvtk9-dev libx11-dev libnlopt-cxx-dev libboost-dev"
+               libmumps-seq-dev libmetis-dev libopenblas-serial-dev libdeflate-dev libvtk9-dev libx11-dev libnlopt-cxx-dev libboost-dev"
   # To bundle the report's page. Node 18 or newer from elsewhere does as well.
   [viewer]="nodejs npm"
   # To test that page.
   [browser]="chromium fonts-dejavu-core"
-  [tests]="libgtest-dev libbenchmark-dev"
+  [tests]="libgtest-dev libbenchmark-dev zlib1g-dev"
   [checks]="clang-format python3 python3-vtk9 python3-pandas python3-matplotlib"
   [tidy]="clang-tidy"
   # What plica render draws with where there is no screen: an X server without one, and OpenGL in software. (xauth: for

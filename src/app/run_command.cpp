@@ -12,7 +12,6 @@
 #include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
-#include "output/mesh_writer.hpp"
 #include "output/recorder.hpp"
 #include "output/report.hpp"
 #include "scenario/advice.hpp"
@@ -32,6 +31,27 @@ struct RunOptions {
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
+
+/// Wall time of the solver: what passes while nothing is recorded, less what the writing of files beside it takes of
+/// the core where there is only one.
+class SolverClock {
+ public:
+  explicit SolverClock(Recorder& recorder) : recorder_(recorder) { start(); }
+  void start() {
+    start_ = std::chrono::steady_clock::now();
+    writing_s_ = recorder_.writing_s();
+  }
+  void stop() {
+    solver_s_ += seconds_since(start_);
+    if (omp_get_num_procs() == 1) solver_s_ -= recorder_.writing_s() - writing_s_;
+  }
+  [[nodiscard]] double solver_s() const { return solver_s_; }
+
+ private:
+  Recorder& recorder_;
+  std::chrono::steady_clock::time_point start_;
+  double writing_s_ = 0, solver_s_ = 0;
+};
 
 void print_result(const nlohmann::ordered_json& summary, const std::string& out) {
   const auto value = [&](const char* key, const char* unit) {
@@ -85,9 +105,6 @@ int run_scenario(const RunOptions& options) {
     for (const std::string& line : advice(scenario, *model))
       if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
 
-  if (!can_write_meshes() && !options.quiet)
-    fmt::print(stderr,
-               "warning: this plica was built without VTK: the run leaves no frames for ParaView and plica render\n");
   refuse_to_replace_scenario(source.file, options.out);
   refuse_to_replace_reference(observer.monitors(), options.out);
   prepare_directory(options.out, options.overwrite);
@@ -96,27 +113,27 @@ int run_scenario(const RunOptions& options) {
   Progress progress(controls, options.quiet);
   catch_interruptions();
 
-  double recording_s = 0;
+  SolverClock solver_clock(recorder);
   const auto run_start = std::chrono::steady_clock::now();
   const RunResult result = run(
       *model, rest, controls,
       [&](const AcceptedStep& step) {
-        const auto recording_start = std::chrono::steady_clock::now();
+        solver_clock.stop();
         const Observation& row = recorder.record(step, seconds_since(run_start));
         progress.show(row);
-        recording_s += seconds_since(recording_start);
+        solver_clock.start();
         return StepAnswer(!interrupted(), row.is_over);
       },
-      interrupted,
+      [&] { return interrupted() || recorder.has_failed(); },
       [&](const Division& division, const State& state) {
-        const auto recording_start = std::chrono::steady_clock::now();
+        solver_clock.stop();
         observer.follow_division(division);
         recorder.record_division(division, state);
-        recording_s += seconds_since(recording_start);
+        solver_clock.start();
       });
-  const double solver_s = seconds_since(run_start) - recording_s;
+  solver_clock.stop();
   progress.finish();
-  const auto summary = recorder.finish(result, {seconds_since(start), solver_s});
+  const auto summary = recorder.finish(result, {seconds_since(start), solver_clock.solver_s()});
 
   const std::vector<std::string> missed = result.status == RunStatus::failed || result.status == RunStatus::interrupted
                                               ? std::vector<std::string>{}

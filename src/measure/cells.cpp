@@ -29,9 +29,16 @@ double mean_node_displacement(const Tissue& tissue, const MonitoredCells& cells,
   return sum / static_cast<double>(cells.size());
 }
 
-double mean_over(const MonitoredCells& cells, const std::vector<double>& values) {
+double mean_apical_area_ratio(const Tissue& tissue, const MonitoredCells& cells, std::span<const Vec3> positions) {
+  std::vector<double> now(cells.size(), 0.0), rest(cells.size(), 0.0);
+  for (const Facet& facet : tissue.apical_facets)
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (facet.cell == cells[i]) {
+        now[i] += facet_area(gather(positions, facet));
+        rest[i] += facet_area(rest_corners(tissue, facet));
+      }
   double sum = 0;
-  for (const CellId id : cells) sum += values[id.index()];
+  for (std::size_t i = 0; i < cells.size(); ++i) sum += now[i] / rest[i];
   return sum / static_cast<double>(cells.size());
 }
 

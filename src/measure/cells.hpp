@@ -20,8 +20,8 @@ double mean_speed(const Tissue& tissue, const MonitoredCells& cells, const Vecto
 /// Mean displacement from rest of the cells' corner nodes, um: "the displacement of the nodes" of the paper.
 double mean_node_displacement(const Tissue& tissue, const MonitoredCells& cells, const Vectors& positions);
 
-/// Mean of a value of cells.
-double mean_over(const MonitoredCells& cells, const std::vector<double>& values);
+/// Mean over the cells of apical area over apical area at rest.
+double mean_apical_area_ratio(const Tissue& tissue, const MonitoredCells& cells, std::span<const Vec3> positions);
 
 /// Activity of each cell: that of its program, delay included, in the first contraction that it belongs to; 0 outside.
 /// Profile and variation are no part of it.

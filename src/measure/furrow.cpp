@@ -145,14 +145,24 @@ FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::sp
   return shape;
 }
 
-std::optional<double> cell_depth_um(const Tissue& tissue, CellId cell, std::span<const Vec3> positions) {
-  std::vector<bool> wanted;
-  for (const Facet& facet : tissue.apical_facets) wanted.push_back(facet.cell == cell);
-  const auto points = cut_apical_surface(tissue, positions, axis_y, wanted);
-  if (points.empty()) return std::nullopt;
-  double sum = 0;
-  for (const SurfacePoint& point : points) sum += depth_of(tissue, point, positions);
-  return sum / static_cast<double>(points.size());
+std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, std::span<const CellId> cells,
+                                                  std::span<const Vec3> positions) {
+  CellSet wanted(tissue.cells.size(), false);
+  for (const CellId cell : cells) wanted[cell.index()] = true;
+  struct Sum {
+    double depth = 0;
+    int points = 0;
+  };
+  std::map<CellId, Sum> sums;
+  for (const SurfacePoint& point : cut_apical_surface(tissue, positions, axis_y, facets_of(tissue, wanted))) {
+    Sum& sum = sums[tissue.apical_facets[point.facet].cell];
+    sum.depth += depth_of(tissue, point, positions);
+    ++sum.points;
+  }
+  std::vector<std::optional<double>> depths(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (const auto sum = sums.find(cells[i]); sum != sums.end()) depths[i] = sum->second.depth / sum->second.points;
+  return depths;
 }
 
 }  // namespace plica

@@ -43,7 +43,9 @@ struct FurrowShape {
 
 FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions);
 
-/// Depth along z of one cell's apical midline, mean over its points on y = 0; as furrow_shape's for the whole furrow.
-std::optional<double> cell_depth_um(const Tissue& tissue, CellId cell, std::span<const Vec3> positions);
+/// Depth along z of each cell's apical midline, mean over its points on y = 0; as furrow_shape's for the whole furrow.
+/// Empty where a cell has none.
+std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, std::span<const CellId> cells,
+                                                  std::span<const Vec3> positions);
 
 }  // namespace plica

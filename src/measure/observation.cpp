@@ -28,11 +28,8 @@ void Observer::observe_state(const State& state, Observation& row) const {
   if (sites_.vml.empty()) return;
   row.vml_displacement_um = mean_node_displacement(tissue, sites_.vml, state.positions);
   row.vce_displacement_um = mean_node_displacement(tissue, sites_.vce, state.positions);
-  std::vector<double> ratios = apical_areas(tissue, state.positions);
-  const std::vector<double> rest_areas = rest_apical_areas(tissue);
-  for (std::size_t c = 0; c < ratios.size(); ++c) ratios[c] /= rest_areas[c];
-  row.vml_apical_area_ratio = mean_over(sites_.vml, ratios);
-  row.vce_apical_area_ratio = mean_over(sites_.vce, ratios);
+  row.vml_apical_area_ratio = mean_apical_area_ratio(tissue, sites_.vml, state.positions);
+  row.vce_apical_area_ratio = mean_apical_area_ratio(tissue, sites_.vce, state.positions);
 }
 
 void Observer::observe_monitors(const State& state, double wall_s, bool at_equilibrium, Observation& row) const {

@@ -4,35 +4,10 @@
 #include <stdexcept>
 
 #include "core/files.hpp"
+#include "core/markup.hpp"
 #include "output/mesh_writer.hpp"
 
 namespace plica {
-namespace {
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
-
-}  // namespace
 
 void write_collection(const std::filesystem::path& pvd,
                       const std::vector<std::pair<double, std::string>>& time_and_file) {
@@ -41,7 +16,7 @@ void write_collection(const std::filesystem::path& pvd,
       "<Collection>\n";
   for (const auto& [time_s, file] : time_and_file) {
     if (!std::isfinite(time_s)) throw std::logic_error("write_collection: a time is not finite");
-    text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", time_s, escaped(file));
+    text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", time_s, xml_escaped(file));
   }
   text += "  </Collection>\n</VTKFile>\n";
   write_file(pvd, text);

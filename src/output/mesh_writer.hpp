@@ -13,6 +13,19 @@
 
 namespace plica {
 
+/// The hexahedra of a mesh, and the plica cell of each.
+struct MeshElements {
+  std::span<const std::array<NodeId, 8>> elements;
+  std::span<const CellId> element_cell;  // elements
+  std::size_t cells = 0, nodes = 0;
+
+  MeshElements(std::span<const std::array<NodeId, 8>> all, std::span<const CellId> cell_of_each, std::size_t cell_count,
+               std::size_t node_count)
+      : elements(all), element_cell(cell_of_each), cells(cell_count), nodes(node_count) {}
+  MeshElements(const Tissue& tissue)  // NOLINT: meant to convert
+      : MeshElements(tissue.elements, tissue.element_cell, tissue.cells.size(), tissue.node_count()) {}
+};
+
 /// Named data of a mesh. Cell values are one a plica cell; the file repeats them for each element of the cell.
 struct MeshArrays {
   std::vector<std::pair<std::string, std::span<const Vec3>>> node_vectors;     // nodes
@@ -21,24 +34,15 @@ struct MeshArrays {
   std::vector<std::pair<std::string, std::vector<double>>> node_scalars = {};  // nodes
 };
 
-/// Whether this build writes meshes: it has VTK.
-constexpr bool can_write_meshes() {
-#ifdef PLICA_WITH_VTK
-  return true;
-#else
-  return false;
-#endif
-}
-
-/// Writes the tissue's elements as VTK hexahedra at `positions` (nodes; um) to a `.vtu` file: VTK's XML format, binary,
-/// compressed by zlib. Whole or not at all. With `time_s` the file carries it as field data `TimeValue`.
-/// FileError when the file cannot be written, or when plica was built without VTK. std::logic_error when an array has
-/// the wrong length or holds what is not finite: a NaN never reaches a file.
-void write_mesh(const std::filesystem::path& file, const Tissue& tissue, std::span<const Vec3> positions,
+/// Writes the elements as VTK hexahedra at `positions` (nodes; um) to a `.vtu` file: VTK's XML format, appended raw
+/// data, compressed as by zlib. Whole or not at all. With `time_s` the file carries it as field data `TimeValue`.
+/// FileError when the file cannot be written. std::logic_error when an array has the wrong length or holds what is not
+/// finite: a NaN never reaches a file.
+void write_mesh(const std::filesystem::path& file, const MeshElements& mesh, std::span<const Vec3> positions,
                 const MeshArrays& arrays, std::optional<double> time_s = {});
 
 /// What read_frame gives back of the mesh that write_mesh writes, but for its time.
-Frame frame_of(const Tissue& tissue, std::span<const Vec3> positions, const MeshArrays& arrays);
+Frame frame_of(const MeshElements& mesh, std::span<const Vec3> positions, const MeshArrays& arrays);
 
 /// Writes ParaView's collection file: times in s, and files relative to the collection's folder. Whole or not at all.
 /// FileError when it cannot be written, std::logic_error when a time is not finite.

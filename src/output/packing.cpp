@@ -1,11 +1,8 @@
 #include "output/packing.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <utility>
 
 namespace plica {
@@ -49,17 +46,7 @@ void Quantiser::include(double value) {
 
 std::uint16_t Quantiser::step_of(double value) const {
   if (!(high > low)) return 0;
-  return static_cast<std::uint16_t>(std::lround(std::clamp((value - low) / (high - low), 0.0, 1.0) * 65535));
-}
-
-std::string deflated(std::string_view bytes) {
-  uLongf size = compressBound(bytes.size());
-  std::string result(size, '\0');
-  const int outcome = compress2(reinterpret_cast<Bytef*>(result.data()), &size,
-                                reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_DEFAULT_COMPRESSION);
-  if (outcome != Z_OK) throw std::runtime_error("zlib cannot compress: out of memory");
-  result.resize(size);
-  return result;
+  return static_cast<std::uint16_t>(std::clamp((value - low) / (high - low), 0.0, 1.0) * 65535 + 0.5);
 }
 
 }  // namespace plica

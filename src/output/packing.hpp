@@ -1,4 +1,4 @@
-// Numbers as few bytes in a page of text: whole numbers coded so that they compress well, deflate.
+// Numbers as few bytes in a page of text: whole numbers coded so that they compress well.
 // viewer/src/packed.ts reads them.
 #pragma once
 
@@ -48,8 +48,5 @@ struct Quantiser {
  private:
   bool any_ = false;
 };
-
-/// zlib's format (RFC 1950). std::runtime_error when memory is short.
-std::string deflated(std::string_view bytes);
 
 }  // namespace plica

@@ -9,6 +9,7 @@
 #include "core/errors.hpp"
 #include "core/markup.hpp"
 #include "core/version.hpp"
+#include "output/deflate.hpp"
 #include "output/looks.hpp"
 #include "output/report_run.hpp"
 
@@ -23,7 +24,13 @@ constexpr std::string_view title_place = "<!--plica:title-->", data_place = "<!-
 std::string in_script(const ordered_json& json) {
   const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   std::string result;
-  for (const char c : text) result += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  result.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<')
+      result += "\\u003c";
+    else
+      result += c;
+  }
   return result;
 }
 
@@ -118,8 +125,9 @@ std::string report_page(const std::vector<ReportRun>& runs) {
   std::string frames;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     page["runs"].push_back(runs[r].json);
-    frames += fmt::format("<script type=\"text/plain\" id=\"frames-{}\">{}</script>\n", r,
-                          base64(deflated(runs[r].frames.bytes())));
+    std::string packed;
+    Deflater(Deflater::Effort::small).append(runs[r].frames.bytes(), packed);
+    frames += fmt::format("<script type=\"text/plain\" id=\"frames-{}\">{}</script>\n", r, base64(packed));
   }
   const std::string data =
       fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n{}", in_script(page), frames);

@@ -124,8 +124,9 @@ void pack_moments(const FrameTopology& topology, const std::string& prefix, cons
   for (std::size_t f = 0; f < colour_fields().size(); ++f) {
     const std::string& name = colour_fields()[f].name;
     steps.clear();
+    const Quantiser& range = run.fields.at(name);
     for (const FrameMoment& moment : topology.moments)
-      for (const float value : moment.fields[f]) steps.push_back(run.fields.at(name).step_of(value));
+      for (const float value : moment.fields[f]) steps.push_back(range.step_of(value));
     run.frames.add(prefix + name, std::span<const std::uint16_t>(steps), topology.moments.front().fields[f].size());
   }
 }
@@ -136,8 +137,10 @@ void pack_frames(const std::vector<FrameTopology>& topologies, ReportRun& run) {
     for (const FrameMoment& moment : topology.moments) {
       for (const auto& position : moment.positions)
         for (int i = 0; i < 3; ++i) box[i].include(position[i]);
-      for (std::size_t f = 0; f < colour_fields().size(); ++f)
-        for (const float value : moment.fields[f]) run.fields[colour_fields()[f].name].include(value);
+      for (std::size_t f = 0; f < colour_fields().size(); ++f) {
+        Quantiser& range = run.fields[colour_fields()[f].name];
+        for (const float value : moment.fields[f]) range.include(value);
+      }
     }
   run.json["box"] = {{"low", {box[0].low, box[1].low, box[2].low}}, {"high", {box[0].high, box[1].high, box[2].high}}};
   for (const auto& [name, range] : run.fields) run.json["fields"][name] = {{"low", range.low}, {"high", range.high}};

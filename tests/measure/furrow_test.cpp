@@ -113,8 +113,8 @@ TEST(Furrow, AtRestThereIsNone) {
   const FurrowShape shape = furrow_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
   EXPECT_NEAR(shape.depth_um.value(), 0, 1e-12);
   EXPECT_LT(shape.depth_below_lips_um.value(), 0) << "the belly is convex";
-  for (const CellId cell : pill.sites.midline)
-    EXPECT_NEAR(cell_depth_um(pill.tissue, cell, pill.tissue.rest_positions).value(), 0, 1e-12);
+  for (const auto& depth : cell_depths_um(pill.tissue, pill.sites.midline, pill.tissue.rest_positions))
+    EXPECT_NEAR(depth.value(), 0, 1e-12);
 }
 
 TEST(Furrow, DepthIsTheShiftOfTheMiddle) {
@@ -127,9 +127,10 @@ TEST(Furrow, DepthIsTheShiftOfTheMiddle) {
     EXPECT_NEAR(shape.depth_um.value(), shift, 1e-10);
     EXPECT_NEAR(shape.depth_below_lips_um.value(), rest.depth_below_lips_um.value() + shift, 1e-10);
     EXPECT_NEAR(shape.lip_distance_um.value(), rest.lip_distance_um.value(), 1e-12);
-    for (const CellId cell : pill.sites.vml)
-      EXPECT_NEAR(cell_depth_um(pill.tissue, cell, positions).value(), shift, 1e-10);
-    for (const CellId cell : pill.sites.vce) EXPECT_NEAR(cell_depth_um(pill.tissue, cell, positions).value(), 0, 1e-12);
+    for (const auto& depth : cell_depths_um(pill.tissue, pill.sites.vml, positions))
+      EXPECT_NEAR(depth.value(), shift, 1e-10);
+    for (const auto& depth : cell_depths_um(pill.tissue, pill.sites.vce, positions))
+      EXPECT_NEAR(depth.value(), 0, 1e-12);
     ++cases;
   }
   RecordProperty("cases", cases);

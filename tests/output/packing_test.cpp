@@ -1,22 +1,11 @@
 #include "output/packing.hpp"
 
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <nlohmann/json.hpp>
 
 namespace plica {
 namespace {
-
-std::string inflated(const std::string& bytes, std::size_t size) {
-  std::string result(size, '\0');
-  uLongf length = size;
-  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(result.data()), &length, reinterpret_cast<const Bytef*>(bytes.data()),
-                       bytes.size()),
-            Z_OK);
-  result.resize(length);
-  return result;
-}
 
 TEST(PackedArrays, KeepsDifferencesBytePlaneByBytePlane) {
   PackedArrays arrays;
@@ -44,12 +33,6 @@ TEST(Quantiser, IsExactAtItsEndsAndWithinHalfAStepBetween) {
     const double back = -2 + 7.0 * range.step_of(value) / 65535;
     EXPECT_NEAR(back, value, 0.5 * 7 / 65535 * (1 + 1e-9));
   }
-}
-
-TEST(Deflated, ComesBack) {
-  std::string bytes;
-  for (int i = 0; i < 10000; ++i) bytes += static_cast<char>(i * i % 251);
-  EXPECT_EQ(inflated(deflated(bytes), bytes.size()), bytes);
 }
 
 }  // namespace
