@@ -39,20 +39,19 @@ inline Mat gradient(const Elements& e, const Vec (&m)[7]) {
 }
 
 /// The nearest rotation to F: Newton's iteration for the polar factor, X <- (X + X^-T)/2, as in polar(), which serves
-/// the elements on which it fails.
+/// the elements on which it fails. From the first step on no singular value is below 1, so det X - 1 is at least the
+/// largest error; the next one is half its square.
 inline Mat rotation(const Mat& F) {
-  const Lanes half = Lanes{} + 0.5, tolerance = Lanes{} + 1e-18;
+  const Lanes half = Lanes{} + 0.5, one = Lanes{} + 1.0;
   Mat R = F;
   auto good = half == half;  // lanes that converge so far
   for (int iteration = 0; iteration < 20; ++iteration) {
     const Mat cofactors = {cross(R.y, R.z), cross(R.z, R.x), cross(R.x, R.y)};
     const Lanes determinant = dot(R.x, cofactors.x);
+    R = half * R + (half / determinant) * cofactors;
     good &= determinant > 1e-3;
-    const Mat next = half * R + (0.5 / determinant) * cofactors;
-    const Mat change = next - R;
-    R = next;
-    if (iteration < 3) continue;  // unless it was a rotation already, it is not yet one
-    const auto moving = good & (dot(change.x, change.x) + dot(change.y, change.y) + dot(change.z, change.z) > tolerance);
+    if (iteration < 2) continue;  // hardly any element is done so soon
+    const auto moving = good & (determinant - one > 1e-8);
     if (!any(moving)) break;
     if (iteration == 19) good &= ~moving;
   }

@@ -13,23 +13,27 @@ namespace plica::PLICA_KERNELS {
 /// Three times the number of each corner: [corner][element].
 using BatchNodes = int[8][batch_size];
 
-/// One number of each element's node.
-inline Lanes pick(const double* vectors, const int* at) {
+/// The vectors of some nodes side by side. x and y are read together and sorted afterwards.
+inline Vec gather(const double* vectors, const int* at) {
+  const auto pair = [&](int k) { return *reinterpret_cast<const Pair*>(vectors + at[k]); };
+  const auto z = [&](int k) { return vectors[at[k] + 2]; };
 #if PLICA_LANES == 8
-  return Lanes{vectors[at[0]], vectors[at[1]], vectors[at[2]], vectors[at[3]],
-               vectors[at[4]], vectors[at[5]], vectors[at[6]], vectors[at[7]]};
+  const Lanes even = join(join(pair(0), pair(2)), join(pair(4), pair(6)));
+  const Lanes odd = join(join(pair(1), pair(3)), join(pair(5), pair(7)));
+  return {low_of_pairs(even, odd), high_of_pairs(even, odd), Lanes{z(0), z(1), z(2), z(3), z(4), z(5), z(6), z(7)}};
 #elif PLICA_LANES == 4
-  return Lanes{vectors[at[0]], vectors[at[1]], vectors[at[2]], vectors[at[3]]};
+  const Lanes even = join(pair(0), pair(2)), odd = join(pair(1), pair(3));
+  return {low_of_pairs(even, odd), high_of_pairs(even, odd), Lanes{z(0), z(1), z(2), z(3)}};
+#elif PLICA_LANES == 2
+  return {low_of_pairs(pair(0), pair(1)), high_of_pairs(pair(0), pair(1)), Lanes{z(0), z(1)}};
 #else
-  return Lanes{vectors[at[0]], vectors[at[1]]};
+  return {Lanes{pair(0)[0]}, Lanes{pair(0)[1]}, Lanes{z(0)}};
 #endif
 }
 
 inline void gather(const BatchNodes& nodes, int lane, const double* vectors, Vec (&x)[8]) {
-  for (int i = 0; i < 8; ++i) {
-    const int* at = nodes[i] + lane;
-    x[i] = {pick(vectors, at), pick(vectors + 1, at), pick(vectors + 2, at)};
-  }
+#pragma GCC unroll 8
+  for (int i = 0; i < 8; ++i) x[i] = gather(vectors, nodes[i] + lane);
 }
 
 /// Adds to the nodes of the first `count` lanes.

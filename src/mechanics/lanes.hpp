@@ -13,7 +13,28 @@ namespace plica::PLICA_KERNELS {
 constexpr int width = PLICA_LANES;
 constexpr int batch_size = 8;  // elements a batch: as many as the widest register holds
 
+#if PLICA_LANES != 1  // else it is a number that counts what is done with it (bench/counted_kernels.cpp)
 typedef double Lanes __attribute__((vector_size(8 * PLICA_LANES), may_alias));  // NOLINT: no `using` for attributes
+#endif
+
+/// Two numbers anywhere in memory.
+typedef double Pair __attribute__((vector_size(16), aligned(8), may_alias));  // NOLINT
+
+#if PLICA_LANES == 8
+typedef double HalfLanes __attribute__((vector_size(32)));  // NOLINT
+inline HalfLanes join(Pair a, Pair b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3); }
+inline Lanes join(HalfLanes a, HalfLanes b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
+/// The first, or second, of each pair of neighbouring lanes of a and b, in turn: a0 b0 a2 b2 ..., a1 b1 a3 b3 ...
+inline Lanes low_of_pairs(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14); }
+inline Lanes high_of_pairs(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15); }
+#elif PLICA_LANES == 4
+inline Lanes join(Pair a, Pair b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3); }
+inline Lanes low_of_pairs(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, 0, 4, 2, 6); }
+inline Lanes high_of_pairs(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, 1, 5, 3, 7); }
+#elif PLICA_LANES == 2
+inline Lanes low_of_pairs(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, 0, 2); }
+inline Lanes high_of_pairs(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, 1, 3); }
+#endif
 
 inline Lanes load(const double* values) { return *reinterpret_cast<const Lanes*>(values); }
 
