@@ -122,6 +122,61 @@ TEST(Embryo, CellsAreEven) {
   EXPECT_NEAR(mesh_quality(tissue, tissue.rest_positions).volume_um3.mean, 16700, 100);
 }
 
+ShellShape scaled(double k, std::array<int, 3> cells) {
+  return {.length_um = 460 * k, .diameter_um = 280 * k, .cells = cells};
+}
+
+// The figures of the project hang on this mesh.
+TEST(Embryo, ThePapersPillStaysWhereItIs) {
+  const Vectors& x = build_shell(pill).rest_positions;
+  const std::vector<std::pair<std::size_t, Vec3>> known = {
+      {0, {-147.819000552090, -60.305776682224, -54.956132268484}},
+      {100, {-77.655578046345, 8.899125137128, -99.603240769534}},
+      {333, {-158.708664721198, 71.176449862637, -14.595628701140}},
+      {700, {160.522618543185, 21.531988769583, 67.549490993190}},
+      {758, {-170.946600772926, -84.428087355113, -76.938585175878}},
+      {1200, {-164.898082593785, 116.379352042072, 21.121639189276}},
+      {1515, {170.946600772926, 84.428087355113, 76.938585175878}},
+  };
+  for (const auto& [node, place] : known) EXPECT_LE((x[node] - place).norm(), 1e-10) << node;
+}
+
+// In proportion and not: between the coarse grids that the large ones begin with, too.
+TEST(Embryo, LargeOnesAreAsEvenAsThePapers) {
+  int cases = 0;
+  for (const ShellShape& shape :
+       {scaled(2, {36, 18, 16}), scaled(3, {54, 27, 24}), scaled(5, {90, 45, 40}), scaled(8, {144, 72, 64}),
+        scaled(5.1, {92, 46, 42}), scaled(2.25, {41, 20, 18}), scaled(5.5, {100, 50, 44}),
+        ShellShape{.length_um = 2800, .diameter_um = 2800, .cells = {90, 90, 80}},
+        ShellShape{.length_um = 4600, .diameter_um = 600, .cells = {200, 20, 18}}}) {
+    const Tissue tissue = build_shell(shape);
+    const MeshQuality quality = mesh_quality(tissue, tissue.rest_positions);
+    const double spread = quality.volume_um3.max / quality.volume_um3.min;
+    std::printf("%d x %d x %d: spread of volumes %.3f, worst scaled Jacobian %.3f\n", shape.cells[0], shape.cells[1],
+                shape.cells[2], spread, quality.min_scaled_jacobian);
+    EXPECT_LE(spread, 1.086);  // the paper's pill
+    EXPECT_GE(quality.min_scaled_jacobian, 0.83);
+    const bool in_proportion = shape.cells[0] == 2 * shape.cells[1] && shape.cells[1] * 8 == shape.cells[2] * 9;
+    if (in_proportion) {
+      EXPECT_GE(quality.min_scaled_jacobian, 0.856);
+    }
+    ++cases;
+  }
+  RecordProperty("cases", cases);
+}
+
+TEST(Embryo, GridsOutOfAllProportionDoNotFold) {
+  int cases = 0;
+  for (const ShellShape& shape :
+       {scaled(3, {60, 60, 4}), scaled(1, {40, 80, 10}), scaled(1, {5, 5, 200}), scaled(1, {100, 10, 10}),
+        scaled(1, {31, 3, 40}), ShellShape{.length_um = 12000, .diameter_um = 120, .cells = {600, 4, 4}}}) {
+    const Tissue tissue = build_shell(shape);
+    EXPECT_GT(mesh_quality(tissue, tissue.rest_positions).min_scaled_jacobian, 0) << shape.cells[0];
+    ++cases;
+  }
+  RecordProperty("cases", cases);
+}
+
 TEST(Embryo, NodesLieOnTheSurfacesOfTheirLayers) {
   int cases = 0;
   for (const ShellShape& shape : {pill, sphere, refined(pill, {2, 3, 2}), refined(sphere, {3, 3, 4})}) {
