@@ -5,8 +5,6 @@
 namespace plica {
 namespace {
 
-constexpr std::size_t most_columns = 32;
-
 double inner(const std::vector<std::pair<std::size_t, Vec3>>& sparse, std::span<const Vec3> full) {
   double sum = 0;
   for (const auto& [node, value] : sparse) sum += value.dot(full[node]);
@@ -16,11 +14,12 @@ double inner(const std::vector<std::pair<std::size_t, Vec3>>& sparse, std::span<
 }  // namespace
 
 void ContactBorder::begin(const Model& model, const StepMatrix& matrix, std::vector<NodeFrame> frames,
-                          std::vector<char> in_contact) {
+                          std::vector<char> in_contact, std::size_t most_changes) {
   model_ = &model;
   matrix_ = &matrix;
   frames_ = std::move(frames);
   in_contact_ = std::move(in_contact);
+  most_changes_ = most_changes;
   columns_.clear();
   active_.clear();
 }
@@ -62,14 +61,15 @@ ContactBorder::Column ContactBorder::make_column(const Iterate& at, std::size_t 
 }
 
 bool ContactBorder::follow(const Iterate& at, const Preconditioner& factor) {
-  std::vector<std::size_t> changed;
+  std::vector<std::size_t> changed, active;
   for (std::size_t k = 0; k < at.in_contact.size(); ++k)
     if (at.in_contact[k] != in_contact_[k]) changed.push_back(k);
-  std::vector<std::size_t> active;
+  const auto is_new = [&](std::size_t k) { return std::ranges::find(columns_, k, &Column::contact) == columns_.end(); };
+  if (changed.size() > most_changes_ || columns_.size() + std::ranges::count_if(changed, is_new) > most_changes_)
+    return false;
   for (const std::size_t k : changed) {
     const auto known = std::ranges::find(columns_, k, &Column::contact);
     if (known == columns_.end()) {
-      if (columns_.size() == most_columns) return false;
       columns_.push_back(make_column(at, k, factor));
       active.push_back(columns_.size() - 1);
     } else {

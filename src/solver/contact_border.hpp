@@ -16,7 +16,8 @@ namespace plica {
 class ContactBorder {
  public:
   /// The factor is new: of `matrix` (which stays as it is until the next call) with these frames and contacts.
-  void begin(const Model& model, const StepMatrix& matrix, std::vector<NodeFrame> frames, std::vector<char> in_contact);
+  void begin(const Model& model, const StepMatrix& matrix, std::vector<NodeFrame> frames, std::vector<char> in_contact,
+             std::size_t most_changes);
 
   /// Takes up the changes of contacts since. False when there are too many: the factor should be made anew.
   [[nodiscard]] bool follow(const Iterate& at, const Preconditioner& factor);
@@ -41,6 +42,7 @@ class ContactBorder {
   const StepMatrix* matrix_ = nullptr;
   std::vector<NodeFrame> frames_;
   std::vector<char> in_contact_;
+  std::size_t most_changes_ = 0;
   std::vector<Column> columns_;      // of all changes since; some may have been undone
   std::vector<std::size_t> active_;  // columns that hold now
   Eigen::PartialPivLU<Eigen::MatrixXd> schur_;

@@ -44,7 +44,8 @@ class KrylovDirections final : public NewtonDirections {
   std::unique_ptr<Preconditioner> preconditioner_;
   ContactBorder border_;
   bool has_factor_ = false;
-  int price_of_factor_;  // in iterations
+  std::size_t most_contact_changes_;  // before the factor is made anew
+  int price_of_factor_;               // in iterations
   int iterations_when_new_ = 0, wasted_iterations_ = 0;
 
   std::vector<double> pressure_weights_;  // gamma W; cells, kPa/um^3

@@ -32,7 +32,7 @@ struct Case {
   [[nodiscard]] Direction direction(LinearMethod method) const {
     Direction found;
     NewtonDirections::Cost cost;
-    const auto outcome = make_directions(model, method, {})->find(step(), at, residual, {false, 0}, found, cost);
+    const auto outcome = make_directions(model, method, {})->find(step(), at, residual, {false, 1e-5}, found, cost);
     EXPECT_EQ(outcome, NewtonDirections::Outcome::found);
     EXPECT_GE(cost.factorisations, 1);
     EXPECT_GE(cost.linear_solves, 1);
@@ -109,7 +109,7 @@ TEST(ContactBorder, SolvesForTheContactsOfNow) {
   };
   const auto before = factor(given.at);
   ContactBorder border;
-  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact);
+  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact, 32);
 
   Iterate now = given.at;
   int changes = 0;
@@ -127,7 +127,7 @@ TEST(ContactBorder, SolvesForTheContactsOfNow) {
   after->solve(expected);
   double difference = 0, without = 0, length = 0;
   Vectors alone = forces;
-  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact);
+  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact, 32);
   border.solve(*before, alone);
   for (std::size_t n = 0; n < x.size(); ++n) {
     const Vec3 should_be(expected[3 * n], expected[3 * n + 1], expected[3 * n + 2]);
@@ -149,7 +149,7 @@ TEST(ContactBorder, TakesUpOnlySoManyChanges) {
   matrix.write_projected_blocks(node_frames(model, given.at), values);
   ASSERT_TRUE(factor.factorise(values));
   ContactBorder border;
-  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact);
+  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact, 32);
   Iterate now = given.at;
   for (char& contact : now.in_contact) contact ^= 1;
   EXPECT_FALSE(border.follow(now, factor));
