@@ -1,121 +1,107 @@
 #include "ceilings.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <memory>
+#include <ctime>
 
 namespace plica::bench {
 namespace {
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// The loops, with vectors of one size. Twelve chains and more hide the latency of an operation on any machine there is.
 typedef double Lanes2 __attribute__((vector_size(16), may_alias));
 typedef double Lanes4 __attribute__((vector_size(32), may_alias));
 typedef double Lanes8 __attribute__((vector_size(64), may_alias));
 
-template <class Lanes>
+// As many chains as registers allow: more than enough to hide the latency of an operation.
+constexpr int chains_of(int lanes) { return lanes == 8 ? 20 : 12; }
+
+// The two loops for registers of one size. (Macros, because a function cannot be given its instruction set by a
+// template's argument, and GCC drops a vector's attributes from those.)
+#define PLICA_MULTIPLY_ADD(Lanes)                                                                   \
+  constexpr int lanes = sizeof(Lanes) / 8, chains = chains_of(lanes);                               \
+  Lanes sums[chains], factor = Lanes{} + 0.999999, summand = Lanes{} + 1e-6;                        \
+  for (int k = 0; k < chains; ++k) sums[k] = Lanes{} + k;                                           \
+  for (long round = 0; round < rounds; ++round)                                                     \
+    _Pragma("GCC unroll 20") for (int k = 0; k < chains; ++k) sums[k] = sums[k] * factor + summand; \
+  double total = 0;                                                                                 \
+  for (int k = 0; k < chains; ++k)                                                                  \
+    for (int lane = 0; lane < lanes; ++lane) total += sums[k][lane];                                \
+  return total;
+
+#define PLICA_SUM(Lanes)                                                    \
+  constexpr int lanes = sizeof(Lanes) / 8, chains = 8;                      \
+  Lanes sums[chains] = {};                                                  \
+  for (std::size_t i = 0; i + chains * lanes <= count; i += chains * lanes) \
+    _Pragma("GCC unroll 8") for (int k = 0; k < chains; ++k) sums[k] +=     \
+        *reinterpret_cast<const Lanes*>(values + i + k * lanes);            \
+  double total = 0;                                                         \
+  for (int k = 0; k < chains; ++k)                                          \
+    for (int lane = 0; lane < lanes; ++lane) total += sums[k][lane];        \
+  return total;
+
+double multiply_add_generic(long rounds) { PLICA_MULTIPLY_ADD(Lanes2) }
+double sum_generic(const double* values, std::size_t count) { PLICA_SUM(Lanes2) }
+#ifdef PLICA_X86_KERNELS
+[[gnu::target("avx2,fma")]] double multiply_add_avx2(long rounds) { PLICA_MULTIPLY_ADD(Lanes4) }
+[[gnu::target("avx2,fma")]] double sum_avx2(const double* values, std::size_t count) { PLICA_SUM(Lanes4) }
+[[gnu::target("avx512f,fma")]] double multiply_add_avx512(long rounds) { PLICA_MULTIPLY_ADD(Lanes8) }
+[[gnu::target("avx512f,fma")]] double sum_avx512(const double* values, std::size_t count) { PLICA_SUM(Lanes8) }
+#endif
+
 struct Loops {
-  static constexpr std::size_t lanes = sizeof(Lanes) / sizeof(double);
-  static constexpr int chains = lanes == 8 ? 20 : 12;
-
-  [[gnu::always_inline]] static inline double multiply_add(long rounds) {
-    Lanes sums[chains], factor = Lanes{} + 0.999999, summand = Lanes{} + 1e-6;
-    for (int k = 0; k < chains; ++k) sums[k] = Lanes{} + k;
-    for (long round = 0; round < rounds; ++round)
-#pragma GCC unroll 32
-      for (int k = 0; k < chains; ++k) sums[k] = sums[k] * factor + summand;
-    double total = 0;
-    for (int k = 0; k < chains; ++k)
-      for (std::size_t lane = 0; lane < lanes; ++lane) total += sums[k][lane];
-    return total;
-  }
-
-  [[gnu::always_inline]] static inline double sum(const double* values, std::size_t count) {
-    constexpr int parallel = 8;
-    Lanes sums[parallel] = {};
-    for (std::size_t i = 0; i + parallel * lanes <= count; i += parallel * lanes)
-#pragma GCC unroll 8
-      for (int k = 0; k < parallel; ++k) sums[k] += *reinterpret_cast<const Lanes*>(values + i + k * lanes);
-    double total = 0;
-    for (const Lanes& each : sums)
-      for (std::size_t lane = 0; lane < lanes; ++lane) total += each[lane];
-    return total;
-  }
+  int lanes;
+  double (*multiply_add)(long);
+  double (*sum)(const double*, std::size_t);
 };
 
-using MultiplyAdd = double (*)(long);
-using Sum = double (*)(const double*, std::size_t);
-
-double multiply_add_generic(long rounds) { return Loops<Lanes2>::multiply_add(rounds); }
-double sum_generic(const double* values, std::size_t count) { return Loops<Lanes2>::sum(values, count); }
+Loops loops_for(Kernels kernels) {
 #ifdef PLICA_X86_KERNELS
-[[gnu::target("avx2,fma")]] double multiply_add_avx2(long rounds) { return Loops<Lanes4>::multiply_add(rounds); }
-[[gnu::target("avx2,fma")]] double sum_avx2(const double* v, std::size_t count) { return Loops<Lanes4>::sum(v, count); }
-[[gnu::target("avx512f,fma")]] double multiply_add_avx512(long rounds) { return Loops<Lanes8>::multiply_add(rounds); }
-[[gnu::target("avx512f,fma")]] double sum_avx512(const double* v, std::size_t count) { return Loops<Lanes8>::sum(v, count); }
+  if (kernels == Kernels::avx2) return {4, multiply_add_avx2, sum_avx2};
+  if (kernels == Kernels::avx512) return {8, multiply_add_avx512, sum_avx512};
 #endif
-
-MultiplyAdd multiply_add_for(Kernels kernels) {
-#ifdef PLICA_X86_KERNELS
-  if (kernels == Kernels::avx2) return multiply_add_avx2;
-  if (kernels == Kernels::avx512) return multiply_add_avx512;
-#endif
-  return multiply_add_generic;
+  return {2, multiply_add_generic, sum_generic};
 }
 
-Sum sum_for(Kernels kernels) {
-#ifdef PLICA_X86_KERNELS
-  if (kernels == Kernels::avx2) return sum_avx2;
-  if (kernels == Kernels::avx512) return sum_avx512;
-#endif
-  return sum_generic;
-}
-
-// The most work a second that `work()` does, all threads at once, over some rounds.
+// Seconds of work(thread), all threads at once.
 template <class Work>
-double best_rate(double amount, int threads, const Work& work) {
-  double best = 0;
-  for (int round = 0; round < 25; ++round) {
-    const auto start = std::chrono::steady_clock::now();
+double seconds_of_all(int threads, const Work& work) {
+  return seconds(threads, [&] {
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int thread = 0; thread < threads; ++thread) {
       volatile double result = work(thread);
       (void)result;
     }
-    best = std::max(best, amount / seconds_since(start));
-  }
-  return best;
+  });
 }
 
 }  // namespace
 
-double multiply_add_rate(Kernels kernels, int threads) {
-  constexpr long rounds = 50'000;
-  const int lanes = kernels == Kernels::avx512 ? 8 : kernels == Kernels::avx2 ? 4 : 2;
-  const int chains = kernels == Kernels::avx512 ? Loops<Lanes8>::chains : Loops<Lanes4>::chains;
-  const double operations = 2.0 * lanes * chains * static_cast<double>(rounds) * threads;
-  return best_rate(operations, threads, [&](int) { return multiply_add_for(kernels)(rounds); });
+double now(int threads) {
+  timespec time;
+  clock_gettime(threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-double read_bandwidth(Kernels kernels, std::size_t bytes, int threads) {
-  constexpr std::size_t step = 64;  // numbers; reads are of whole steps
-  const std::size_t count = std::max(bytes / sizeof(double) / threads / step, std::size_t{1}) * step;
-  struct alignas(64) Line {
-    double values[8];
-  };
-  const auto values = std::make_unique<Line[]>(count / 8 * threads);
-  // Some milliseconds a round, so that starting threads does not matter.
-  const int repeats = static_cast<int>(std::max<std::size_t>(1, (8u << 20) / (count * sizeof(double) * threads)));
-  const double total = static_cast<double>(count * sizeof(double)) * threads * repeats;
-  return best_rate(total, threads, [&](int thread) {
-    const double* mine = values[count / 8 * thread].values;
-    double sum = 0;
-    for (int k = 0; k < repeats; ++k) sum += sum_for(kernels)(mine, count);
-    return sum;
-  });
+double multiply_add_rate(Kernels kernels, int threads) {
+  const Loops loops = loops_for(kernels);
+  constexpr long rounds = 100'000;
+  const double operations = 2.0 * loops.lanes * chains_of(loops.lanes) * static_cast<double>(rounds) * threads;
+  return operations / seconds_of_all(threads, [&](int) { return loops.multiply_add(rounds); });
+}
+
+Reading::Reading(Kernels kernels, std::size_t bytes, int threads)
+    : kernels_(kernels),
+      threads_(threads),
+      lines_(std::max<std::size_t>(8, bytes / sizeof(Line) / static_cast<std::size_t>(threads) / 8 * 8)),
+      values_(lines_ * static_cast<std::size_t>(threads)) {}
+
+double Reading::rate() const {
+  const auto repeats = std::max<std::size_t>(1, (32u << 20) / (values_.size() * sizeof(Line)));
+  const double bytes = static_cast<double>(repeats * values_.size() * sizeof(Line));
+  return bytes / seconds_of_all(threads_, [&](int thread) {
+           double sum = 0;
+           for (std::size_t k = 0; k < repeats; ++k)
+             sum += loops_for(kernels_).sum(values_[lines_ * static_cast<std::size_t>(thread)].values, 8 * lines_);
+           return sum;
+         });
 }
 
 }  // namespace plica::bench

@@ -20,27 +20,59 @@ void add_volume_hessian(const std::array<NodeId, 8>& nodes, const HexPoints& poi
       if (i != j) tangent.add_block(nodes[i], nodes[j], cross_matrix(scale * hessian[i][j]));
 }
 
-void add_volume_hessian_product(const std::array<NodeId, 8>& nodes, const HexPoints& points, double scale,
-                                std::span<const Vec3> direction, std::span<Vec3> product) {
-  std::array<Vec3, 8> d;
-  for (int i = 0; i < 8; ++i) d[i] = direction[nodes[i].index()];
-  const auto change = hex_volume_hessian_product(points, d);
-  for (int i = 0; i < 8; ++i) product[nodes[i].index()] += scale * change[i];
-}
-
 }  // namespace
 
-CellVolumes::CellVolumes(const Tissue& tissue)
-    : elements_(tissue.elements), element_cell_(tissue.element_cell), targets_(tissue.cells.size(), 0.0) {
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    targets_[element_cell_[e].index()] += hex_volume(tissue.element_rest_shape[e]);
+VolumeElements::VolumeElements(const Tissue& tissue, Kernels kernels)
+    : kernels_(kernels), chunks_(tissue.elements, tissue.element_cell), batches_(chunks_.batch_count()) {
+  parallel_for(batches_.size() * ElementChunks::batch_size, [&](std::size_t place) { fit(tissue, place); });
+}
+
+void VolumeElements::fit(const Tissue& tissue, std::size_t place) {
+  // Places after the last element repeat it.
+  const std::size_t e = std::min(place, chunks_.element_count() - 1), lane = place % ElementChunks::batch_size;
+  VolumeBatch& batch = batches_[place / ElementChunks::batch_size];
+  for (int i = 0; i < 8; ++i) batch.nodes[i][lane] = 3 * tissue.elements[e][i].number();
+  batch.cells[lane] = tissue.element_cell[e].number();
+  batch.rest_volumes[lane] = hex_volume(tissue.element_rest_shape[e]);
+}
+
+void VolumeElements::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
+  for (const ElementId e : elements)
+    for (std::size_t place : chunks_.places_of(e.index())) fit(tissue, place);
+}
+
+const VolumeKernels& VolumeElements::kernels() const {
+  return kernels_for(kernels_, generic::volume_kernels, avx2::volume_kernels, avx512::volume_kernels);
+}
+
+CellVolumes::CellVolumes(const Tissue& tissue, Kernels kernels)
+    : elements_(tissue.elements),
+      element_cell_(tissue.element_cell),
+      targets_(tissue.cells.size(), 0.0),
+      volumes_(tissue, kernels) {
+  for (std::size_t e = 0; e < elements_.size(); ++e) targets_[element_cell_[e].index()] += volumes_.rest_volume(e);
+}
+
+VolumeStep CellVolumes::kernel_step(std::span<const Vec3> positions, std::span<const double> pressures) const {
+  return {.batches = volumes_.batches(),
+          .elements = elements_.size(),
+          .positions = numbers(positions),
+          .pressures = pressures.data(),
+          .bulk_modulus = 0,
+          .semidefinite_tangent = false};
 }
 
 std::vector<double> CellVolumes::volumes(std::span<const Vec3> positions) const {
-  std::vector<double> of_elements(elements_.size()), of_cells(targets_.size(), 0.0);
-  parallel_for(elements_.size(), [&](std::size_t e) { of_elements[e] = hex_volume(gather(positions, elements_[e])); });
-  for (std::size_t e = 0; e < elements_.size(); ++e) of_cells[element_cell_[e].index()] += of_elements[e];
+  std::vector<double> of_cells(targets_.size());
+  volumes(positions, of_cells);
   return of_cells;
+}
+
+void CellVolumes::volumes(std::span<const Vec3> positions, std::span<double> of_cells) const {
+  std::fill(of_cells.begin(), of_cells.end(), 0.0);
+  const VolumeStep at = kernel_step(positions, {});
+  volumes_.chunks().for_batches(
+      [&](std::size_t first, std::size_t last) { volumes_.kernels().add_volumes(at, first, last, of_cells.data()); });
 }
 
 std::vector<double> CellVolumes::relative_errors(std::span<const Vec3> positions) const {
@@ -51,24 +83,30 @@ std::vector<double> CellVolumes::relative_errors(std::span<const Vec3> positions
 
 std::vector<std::array<Vec3, 8>> CellVolumes::element_gradients(std::span<const Vec3> positions) const {
   std::vector<std::array<Vec3, 8>> gradients(elements_.size());
-  parallel_for(elements_.size(),
-               [&](std::size_t e) { gradients[e] = hex_volume_gradient(gather(positions, elements_[e])); });
+  element_gradients(positions, gradients);
   return gradients;
+}
+
+void CellVolumes::element_gradients(std::span<const Vec3> positions, std::span<std::array<Vec3, 8>> gradients) const {
+  const VolumeStep at = kernel_step(positions, {});
+  volumes_.chunks().for_batches([&](std::size_t first, std::size_t last) {
+    volumes_.kernels().write_gradients(at, first, last, reinterpret_cast<double*>(gradients.data()));
+  });
 }
 
 void CellVolumes::add_forces(std::span<const Vec3> positions, std::span<const double> pressures,
                              std::span<Vec3> forces) const {
-  const auto gradients = element_gradients(positions);
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    for (int i = 0; i < 8; ++i)
-      forces[elements_[e][i].index()] += pressures[element_cell_[e].index()] * gradients[e][i];
+  const VolumeStep at = kernel_step(positions, pressures);
+  volumes_.chunks().for_batches(
+      [&](std::size_t first, std::size_t last) { volumes_.kernels().add_forces(at, first, last, numbers(forces)); });
 }
 
 void CellVolumes::add_tangent_product(std::span<const Vec3> positions, std::span<const double> pressures,
                                       std::span<const Vec3> direction, std::span<Vec3> product) const {
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    add_volume_hessian_product(elements_[e], gather(positions, elements_[e]), -pressures[element_cell_[e].index()],
-                               direction, product);
+  const VolumeStep at = kernel_step(positions, pressures);
+  volumes_.chunks().for_batches([&](std::size_t first, std::size_t last) {
+    volumes_.kernels().add_product(at, first, last, numbers(direction), numbers(product));
+  });
 }
 
 void CellVolumes::add_tangent(std::span<const Vec3> positions, std::span<const double> pressures,
@@ -77,52 +115,48 @@ void CellVolumes::add_tangent(std::span<const Vec3> positions, std::span<const d
     add_volume_hessian(elements_[e], gather(positions, elements_[e]), -pressures[element_cell_[e].index()], tangent);
 }
 
-Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus)
-    : elements_(tissue.elements), bulk_modulus_(bulk_modulus) {
-  for (const HexPoints& rest : tissue.element_rest_shape) rest_volumes_.push_back(hex_volume(rest));
+Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, Kernels kernels)
+    : elements_(tissue.elements), bulk_modulus_(bulk_modulus), kernels_(kernels), volumes_(tissue, kernels) {}
+
+VolumeStep Dilatation::kernel_step(const Step& step) const {
+  return {.batches = volumes_.batches(),
+          .elements = elements_.size(),
+          .positions = numbers(step.positions),
+          .pressures = nullptr,
+          .bulk_modulus = bulk_modulus_,
+          .semidefinite_tangent = step.semidefinite_tangent};
 }
 
 double Dilatation::energy(const Step& step) const {
-  double sum = 0;
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const double strain = hex_volume(gather(step.positions, elements_[e])) / rest_volumes_[e] - 1;
-    sum += 0.5 * bulk_modulus_ * rest_volumes_[e] * strain * strain;
-  }
-  return sum;
+  const VolumeStep at = kernel_step(step);
+  return volumes_.chunks().sum_over_batches(
+      [&](std::size_t first, std::size_t last) { return volumes_.kernels().energy(at, first, last); });
 }
 
 void Dilatation::add_forces(const Step& step, std::span<Vec3> forces) const {
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const HexPoints points = gather(step.positions, elements_[e]);
-    const double pressure = bulk_modulus_ * (1 - hex_volume(points) / rest_volumes_[e]);
-    const auto gradient = hex_volume_gradient(points);
-    for (int i = 0; i < 8; ++i) forces[elements_[e][i].index()] += pressure * gradient[i];
-  }
+  const VolumeStep at = kernel_step(step);
+  volumes_.chunks().for_batches(
+      [&](std::size_t first, std::size_t last) { volumes_.kernels().add_forces(at, first, last, numbers(forces)); });
 }
 
 void Dilatation::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const auto& nodes = elements_[e];
-    const HexPoints points = gather(step.positions, nodes);
-    const double pressure = bulk_modulus_ * (1 - hex_volume(points) / rest_volumes_[e]);
-    if (!step.semidefinite_tangent) add_volume_hessian_product(nodes, points, -pressure, direction, product);
-    const auto gradient = hex_volume_gradient(points);
-    double rate = 0;
-    for (int i = 0; i < 8; ++i) rate += gradient[i].dot(direction[nodes[i].index()]);
-    for (int i = 0; i < 8; ++i) product[nodes[i].index()] += bulk_modulus_ / rest_volumes_[e] * rate * gradient[i];
-  }
+  const VolumeStep at = kernel_step(step);
+  volumes_.chunks().for_batches([&](std::size_t first, std::size_t last) {
+    volumes_.kernels().add_product(at, first, last, numbers(direction), numbers(product));
+  });
 }
 
 void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const auto& nodes = elements_[e];
     const HexPoints points = gather(step.positions, nodes);
-    const double pressure = bulk_modulus_ * (1 - hex_volume(points) / rest_volumes_[e]);
+    const double rest_volume = volumes_.rest_volume(e);
+    const double pressure = bulk_modulus_ * (1 - hex_volume(points) / rest_volume);
     if (!step.semidefinite_tangent) add_volume_hessian(nodes, points, -pressure, tangent);
     const auto gradient = hex_volume_gradient(points);
     for (int i = 0; i < 8; ++i)
       for (int j = 0; j < 8; ++j)
-        tangent.add_block(nodes[i], nodes[j], bulk_modulus_ / rest_volumes_[e] * gradient[i] * gradient[j].transpose());
+        tangent.add_block(nodes[i], nodes[j], bulk_modulus_ / rest_volume * gradient[i] * gradient[j].transpose());
   }
 }
 
@@ -133,11 +167,11 @@ NodeGroups Dilatation::node_groups() const {
 }
 
 std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
-  return std::make_unique<Dilatation>(tissue, bulk_modulus_);
+  return std::make_unique<Dilatation>(tissue, bulk_modulus_, kernels_);
 }
 
 void Dilatation::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
-  for (const ElementId e : elements) rest_volumes_[e.index()] = hex_volume(tissue.element_rest_shape[e.index()]);
+  volumes_.take_rest_shapes(tissue, elements);
 }
 
 }  // namespace plica

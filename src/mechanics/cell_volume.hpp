@@ -5,17 +5,41 @@
 #include <span>
 #include <vector>
 
+#include "mechanics/element_chunks.hpp"
+#include "mechanics/kernels.hpp"
 #include "mechanics/law.hpp"
+#include "mechanics/volume_kernels.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
+
+/// Elements whose volume matters, eight side by side, and the way through them.
+class VolumeElements {
+ public:
+  VolumeElements(const Tissue& tissue, Kernels kernels);
+  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements);
+
+  [[nodiscard]] const VolumeKernels& kernels() const;
+  [[nodiscard]] const ElementChunks& chunks() const { return chunks_; }
+  [[nodiscard]] const VolumeBatch* batches() const { return batches_.data(); }
+  [[nodiscard]] double rest_volume(std::size_t element) const {
+    return batches_[element / 8].rest_volumes[element % 8];
+  }
+
+ private:
+  void fit(const Tissue& tissue, std::size_t element);
+
+  Kernels kernels_;
+  ElementChunks chunks_;
+  std::vector<VolumeBatch> batches_;
+};
 
 /// The constraints V_c(x) = target, one a cell. Their multipliers are the cells' pressures, kPa, positive in
 /// compression.
 class CellVolumes {
  public:
   /// Targets are the cells' rest volumes.
-  explicit CellVolumes(const Tissue& tissue);
+  explicit CellVolumes(const Tissue& tissue, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::size_t count() const { return targets_.size(); }
   [[nodiscard]] const std::vector<double>& targets() const { return targets_; }
@@ -23,12 +47,14 @@ class CellVolumes {
 
   /// V_c at the given positions, um^3; cells.
   [[nodiscard]] std::vector<double> volumes(std::span<const Vec3> positions) const;
+  void volumes(std::span<const Vec3> positions, std::span<double> of_cells) const;
 
   /// V_c / target - 1; cells.
   [[nodiscard]] std::vector<double> relative_errors(std::span<const Vec3> positions) const;
 
   /// dV/dx of every element, um^2; elements, in the order of their nodes.
   [[nodiscard]] std::vector<std::array<Vec3, 8>> element_gradients(std::span<const Vec3> positions) const;
+  void element_gradients(std::span<const Vec3> positions, std::span<std::array<Vec3, 8>> gradients) const;
 
   /// Adds sum_c pressure_c dV_c/dx.
   void add_forces(std::span<const Vec3> positions, std::span<const double> pressures, std::span<Vec3> forces) const;
@@ -44,9 +70,12 @@ class CellVolumes {
   [[nodiscard]] CellId cell_of(std::size_t element) const { return element_cell_[element]; }
 
  private:
+  [[nodiscard]] VolumeStep kernel_step(std::span<const Vec3> positions, std::span<const double> pressures) const;
+
   std::vector<std::array<NodeId, 8>> elements_;
   std::vector<CellId> element_cell_;
   std::vector<double> targets_;  // cells; um^3
+  VolumeElements volumes_;
 };
 
 /// The bulk modulus at work: energy kappa V0 (V/V0 - 1)^2 / 2 an element, with exact volumes. It replaces the mean
@@ -56,7 +85,7 @@ class CellVolumes {
 class Dilatation final : public Law {
  public:
   /// `bulk_modulus` in kPa.
-  Dilatation(const Tissue& tissue, double bulk_modulus);
+  Dilatation(const Tissue& tissue, double bulk_modulus, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "dilatation"; }
   [[nodiscard]] double energy(const Step& step) const override;
@@ -69,9 +98,12 @@ class Dilatation final : public Law {
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
 
  private:
+  [[nodiscard]] VolumeStep kernel_step(const Step& step) const;
+
   std::vector<std::array<NodeId, 8>> elements_;
-  std::vector<double> rest_volumes_;  // elements; um^3
   double bulk_modulus_;
+  Kernels kernels_;
+  VolumeElements volumes_;
 };
 
 }  // namespace plica

@@ -10,14 +10,6 @@ namespace {
 
 constexpr std::size_t batch_size = ElementChunks::batch_size;
 
-const CorotationalKernels& kernels_for(Kernels kernels) {
-#ifdef PLICA_X86_KERNELS
-  if (kernels == Kernels::avx2) return avx2::corotational_kernels;
-  if (kernels == Kernels::avx512) return avx512::corotational_kernels;
-#endif
-  return generic::corotational_kernels;
-}
-
 void put_stiffness(const Mat12& H, int lane, double (&stiffness)[78][batch_size]) {
   for (int row = 0; row < 12; ++row)
     for (int column = 0; column <= row; ++column) stiffness[row * (row + 1) / 2 + column][lane] = H(row, column);
@@ -26,9 +18,6 @@ void put_stiffness(const Mat12& H, int lane, double (&stiffness)[78][batch_size]
 void put_vector(const Vec3& v, int lane, double (&vectors)[3][batch_size]) {
   for (int axis = 0; axis < 3; ++axis) vectors[axis][lane] = v[axis];
 }
-
-const double* numbers(std::span<const Vec3> vectors) { return vectors.empty() ? nullptr : vectors.front().data(); }
-double* numbers(std::span<Vec3> vectors) { return vectors.empty() ? nullptr : vectors.front().data(); }
 
 }  // namespace
 
@@ -50,7 +39,7 @@ Corotational::Corotational(const Tissue& tissue, const ElasticModuli& moduli, do
 }
 
 void Corotational::fit(const Tissue& tissue, std::size_t place) {
-  // Places after the last element repeat it.
+  // Places after the last element repeat it: kernels calculate there too, and it must not be slow or fail.
   const std::size_t e = std::min(place, chunks_.element_count() - 1);
   const int lane = static_cast<int>(place % batch_size);
   CorotationalBatch& batch = batches_[place / batch_size];
@@ -78,12 +67,12 @@ void Corotational::fit(const Tissue& tissue, std::size_t place) {
 }
 
 void Corotational::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
-  const std::size_t last = chunks_.element_count() - 1;
-  for (const ElementId e : elements) {
-    fit(tissue, e.index());
-    for (std::size_t place = last + 1; e.index() == last && place < batches_.size() * batch_size; ++place)
-      fit(tissue, place);
-  }
+  for (const ElementId e : elements)
+    for (const std::size_t place : chunks_.places_of(e.index())) fit(tissue, place);
+}
+
+const CorotationalKernels& Corotational::kernels() const {
+  return kernels_for(kernels_, generic::corotational_kernels, avx2::corotational_kernels, avx512::corotational_kernels);
 }
 
 CorotationalStep Corotational::kernel_step(const Step& step) const {
@@ -99,21 +88,20 @@ CorotationalStep Corotational::kernel_step(const Step& step) const {
 double Corotational::energy(const Step& step) const {
   const CorotationalStep at = kernel_step(step);
   return chunks_.sum_over_batches(
-      [&](std::size_t first, std::size_t last) { return kernels_for(kernels_).energy(at, first, last); });
+      [&](std::size_t first, std::size_t last) { return kernels().energy(at, first, last); });
 }
 
 void Corotational::add_forces(const Step& step, std::span<Vec3> forces) const {
   const CorotationalStep at = kernel_step(step);
-  chunks_.for_batches([&](std::size_t first, std::size_t last) {
-    kernels_for(kernels_).add_forces(at, first, last, numbers(forces));
-  });
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) { kernels().add_forces(at, first, last, numbers(forces)); });
 }
 
 void Corotational::add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                        std::span<Vec3> product) const {
   const CorotationalStep at = kernel_step(step);
   chunks_.for_batches([&](std::size_t first, std::size_t last) {
-    kernels_for(kernels_).add_product(at, first, last, numbers(direction), numbers(product));
+    kernels().add_product(at, first, last, numbers(direction), numbers(product));
   });
 }
 
@@ -124,8 +112,7 @@ void Corotational::add_tangent(const Step& step, TangentSink& tangent) const {
   const CorotationalStep at = kernel_step(step);
   for (std::size_t first = 0; first < batches_.size(); first += at_once) {
     const std::size_t last = std::min(first + at_once, batches_.size());
-    parallel_for(last - first,
-                 [&](std::size_t k) { kernels_for(kernels_).write_blocks(at, first + k, blocks[k]); });
+    parallel_for(last - first, [&](std::size_t k) { kernels().write_blocks(at, first + k, blocks[k]); });
     for (std::size_t e = first * batch_size; e < std::min(last * batch_size, chunks_.element_count()); ++e) {
       const auto& of_batch = blocks[e / batch_size - first].blocks;
       for (int i = 0, pair = 0; i < 8; ++i)

@@ -1,13 +1,13 @@
 // Corotational elasticity and Kelvin-Voigt shear viscosity of hexahedral elements.
 //
 // Linear elasticity in each element's own rotating frame (docs/theory/corotational.md): with R the rotation and S the
-// stretch of the mean deformation gradient F = sum_i x_i b_i^T = R S, and h the hourglasses of what is not linear in the
-// local displacement u_i = R^T (x_i - c) - (X_i - C),
+// stretch of the mean deformation gradient F = sum_i x_i b_i^T = R S, and h the hourglasses of what is not linear in
+// the local displacement u_i = R^T (x_i - c) - (X_i - C),
 //   energy = V0 G |dev(S - I)|^2 + h^T H h / 2.
 // That is u^T K u / 2 with K the 24 x 24 stiffness of the rest shape with nine incompatible modes (Wilson-Taylor)
 // condensed, less its mean volumetric part, which belongs to cell_volume. R is differentiated too: the force is the
-// exact gradient, so angular momentum is exact and the tangent symmetric. The semidefinite tangent leaves the derivative
-// of R out: R K R^T, the warped stiffness.
+// exact gradient, so angular momentum is exact and the tangent symmetric. The semidefinite tangent leaves the
+// derivative of R out: R K R^T, the warped stiffness.
 #pragma once
 
 #include "mechanics/corotational_kernels.hpp"
@@ -39,13 +39,14 @@ class Corotational final : public Law {
  private:
   void fit(const Tissue& tissue, std::size_t element);  // makes what is kept of it from its rest shape
   [[nodiscard]] NodeId node(std::size_t element, int corner) const;
+  [[nodiscard]] const CorotationalKernels& kernels() const;
   [[nodiscard]] CorotationalStep kernel_step(const Step& step) const;
 
   ElasticModuli moduli_;
   double shear_viscosity_;
   Kernels kernels_;
   ElementChunks chunks_;
-  std::vector<CorotationalBatch> batches_;      // eight elements each
+  std::vector<CorotationalBatch> batches_;     // eight elements each
   std::vector<ViscousBatch> viscous_batches_;  // the same, when viscous
 };
 

@@ -64,7 +64,7 @@ inline Mat half_turning_stiffness(const Turned& x, Lanes shear, const Mat (&H)[4
     for (int b = 0; b < 4; ++b) C = C - cross(x.h[a], cross(H[a][b], x.h[b]));
   }
   const Mat G = full(x.G);
-  return G * (full(symmetric_part(C)) * (Lanes(0.5 + Lanes{}) * G));
+  return G * (full(symmetric_part(C)) * (broadcast(0.5) * G));
 }
 
 inline void store(const Mat& block, int lane, double (&numbers)[9][batch_size]) {

@@ -1,6 +1,7 @@
 // Letters as in docs/theory/corotational.md: F = R S the mean deformation gradient, h_a the hourglasses of the local
 // displacement, T and q what answers S - I and h, t = G (sum h_a x q_a) with G = (tr(S) I - S)^-1, and
-// P = T - sum q_a X_a^T - [t]x the energy's gradient by F in the frame. A letter with a d: its change along a direction.
+// P = T - sum q_a X_a^T - [t]x the energy's gradient by F in the frame. A letter with a d: its change along a
+// direction.
 #include "mechanics/corotational_lanes.hpp"
 
 namespace plica::PLICA_KERNELS {
@@ -10,8 +11,7 @@ namespace {
 template <class Body>
 inline void for_elements(const CorotationalStep& step, std::size_t first, std::size_t last, const Body& body) {
   for (std::size_t b = first; b < last; ++b) {
-    const std::size_t left = step.elements - b * batch_size;
-    const int count = left < batch_size ? static_cast<int>(left) : batch_size;
+    const int count = count_in_batch(step.elements, b);
     const ViscousBatch* viscous = step.viscous_batches ? step.viscous_batches + b : nullptr;
     for (int lane = 0; lane < count; lane += width)
       body(Elements{step.batches[b], viscous, step.rate, lane}, count - lane < width ? count - lane : width);

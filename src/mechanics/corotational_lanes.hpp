@@ -42,7 +42,7 @@ inline Mat gradient(const Elements& e, const Vec (&m)[7]) {
 /// the elements on which it fails. From the first step on no singular value is below 1, so det X - 1 is at least the
 /// largest error; the next one is half its square.
 inline Mat rotation(const Mat& F) {
-  const Lanes half = Lanes{} + 0.5, one = Lanes{} + 1.0;
+  const Lanes half = broadcast(0.5), one = broadcast(1);
   Mat R = F;
   auto good = half == half;  // lanes that converge so far
   for (int iteration = 0; iteration < 20; ++iteration) {
@@ -146,7 +146,8 @@ inline Vec cross(const Hourglass& a, const Hourglass& b) {
 }
 
 /// The viscosity's part: adds to T and q; returns the energy.
-inline Lanes add_viscous(const Elements& e, const CorotationalStep& step, const Deformation& now, Sym& T, Hourglass& q) {
+inline Lanes add_viscous(const Elements& e, const CorotationalStep& step, const Deformation& now, Sym& T,
+                         Hourglass& q) {
   const Strain change = strain(e, step, now);
   Hourglass viscous;
   multiply<1>(e.viscous->stiffness, e.lane, {&change.h}, {&viscous});

@@ -3,14 +3,22 @@
 // elements add to their nodes without more ado, and what a node gets is added up in the same order whoever does it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <ranges>
 #include <span>
 #include <vector>
 
 #include "core/ids.hpp"
+#include "core/vector.hpp"
 
 namespace plica {
+
+/// Vectors as kernels take them: x y z each.
+inline const double* numbers(std::span<const Vec3> vectors) { return reinterpret_cast<const double*>(vectors.data()); }
+inline double* numbers(std::span<Vec3> vectors) { return reinterpret_cast<double*>(vectors.data()); }
+static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
 class ElementChunks {
  public:
@@ -18,10 +26,16 @@ class ElementChunks {
   static constexpr std::size_t batch_size = 8;
   static constexpr std::size_t most_chunks = 256;
 
-  explicit ElementChunks(std::span<const std::array<NodeId, 8>> elements);
+  /// With the cells of elements, chunks of one colour have no cell in common either.
+  explicit ElementChunks(std::span<const std::array<NodeId, 8>> elements, std::span<const CellId> element_cell = {});
 
   [[nodiscard]] std::size_t element_count() const { return elements_; }
   [[nodiscard]] std::size_t batch_count() const { return (elements_ + batch_size - 1) / batch_size; }
+
+  /// Where an element lies among the batches: with the last one, also the places after it, which repeat it.
+  [[nodiscard]] auto places_of(std::size_t element) const {
+    return std::views::iota(element, element + 1 == elements_ ? batch_count() * batch_size : element + 1);
+  }
 
   /// Calls body(first batch, last batch) for every chunk. `last` is the one after.
   template <class Body>

@@ -13,6 +13,12 @@ namespace plica::PLICA_KERNELS {
 /// Three times the number of each corner: [corner][element].
 using BatchNodes = int[8][batch_size];
 
+/// How many elements of a batch there are: all, but for the last one.
+inline int count_in_batch(std::size_t elements, std::size_t batch) {
+  const std::size_t left = elements - batch * batch_size;
+  return left < batch_size ? static_cast<int>(left) : batch_size;
+}
+
 /// The vectors of some nodes side by side. x and y are read together and sorted afterwards.
 inline Vec gather(const double* vectors, const int* at) {
   const auto pair = [&](int k) { return *reinterpret_cast<const Pair*>(vectors + at[k]); };
@@ -89,19 +95,31 @@ inline double hourglass_sign(int a, int i) {
 
 /// Volume of the trilinear hexahedron, a cubic polynomial of its modes (docs/theory/cell_volume.md).
 inline Lanes volume(const Vec (&m)[7]) {
-  const Lanes blended =
-      dot(m[0], cross(m[3], m[5])) + dot(m[1], cross(m[4], m[3])) + dot(m[2], cross(m[5], m[4]));
+  const Lanes blended = dot(m[0], cross(m[3], m[5])) + dot(m[1], cross(m[4], m[3])) + dot(m[2], cross(m[5], m[4]));
   return (1.0 / 64) * dot(m[0], cross(m[1], m[2])) + (1.0 / 192) * blended;
 }
 
-/// 64 dV/dm; of the last mode it is zero.
-inline void volume_gradient(const Vec (&m)[7], Vec (&g)[6]) {
-  const Lanes third = Lanes{} + 1.0 / 3;
+/// dV/dm. The last mode does not change the volume.
+inline void volume_gradient(const Vec (&m)[7], Vec (&g)[7]) {
+  const Lanes linear = broadcast(1.0 / 64), blended = broadcast(1.0 / 192);
   for (int k = 0; k < 3; ++k) {
     const int l = (k + 1) % 3, n = (k + 2) % 3;
-    g[k] = cross(m[l], m[n]) + third * cross(m[3 + k], m[3 + n]);
-    g[3 + k] = third * (cross(m[3 + n], m[k]) + cross(m[l], m[3 + l]));
+    g[k] = linear * cross(m[l], m[n]) + blended * cross(m[3 + k], m[3 + n]);
+    g[3 + k] = blended * (cross(m[3 + n], m[k]) + cross(m[l], m[3 + l]));
   }
+  g[6] = Vec{};
+}
+
+/// How that changes with m by d.
+inline void volume_gradient_change(const Vec (&m)[7], const Vec (&d)[7], Vec (&change)[7]) {
+  const Lanes linear = broadcast(1.0 / 64), blended = broadcast(1.0 / 192);
+  const auto product = [&](int a, int b) { return cross(m[a], d[b]) + cross(d[a], m[b]); };
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, n = (k + 2) % 3;
+    change[k] = linear * product(l, n) + blended * product(3 + k, 3 + n);
+    change[3 + k] = blended * (product(3 + n, k) + product(l, 3 + l));
+  }
+  change[6] = Vec{};
 }
 
 }  // namespace plica::PLICA_KERNELS

@@ -48,8 +48,7 @@ Eigen::Matrix<double, 3 * n, 3 * n> condensed_stiffness(const HexPoints& rest, c
       }
   }
   for (int b = 0; b < all; ++b)
-    for (int a = 0; a < b; ++a)
-      K.template block<3, 3>(3 * a, 3 * b) = K.template block<3, 3>(3 * b, 3 * a).transpose();
+    for (int a = 0; a < b; ++a) K.template block<3, 3>(3 * a, 3 * b) = K.template block<3, 3>(3 * b, 3 * a).transpose();
   const Eigen::Matrix<double, 9, 3 * n> mixed = K.template bottomLeftCorner<9, 3 * n>();
   const Eigen::Matrix<double, 9, 9> modes = K.template bottomRightCorner<9, 9>();
   const Eigen::Matrix<double, 3 * n, 3 * n> stiffness =

@@ -37,8 +37,8 @@ Mat24 incompatible_stiffness(const HexPoints& rest, const ElasticModuli& moduli)
 extern const std::array<std::array<double, 8>, 7> hex_modes;
 
 /// The part of that stiffness that no linear displacement feels, H: 12 x 12, hourglass by hourglass, nN/um. With
-/// h_a = sum_i (h_ai - b_i . X_a) u_i, h_ai the signs and X_a = sum_i h_ai X_i, the energy of a displacement u is that of its mean strain
-/// and h^T H h / 2.
+/// h_a = sum_i (h_ai - b_i . X_a) u_i, h_ai the signs and X_a = sum_i h_ai X_i, the energy of a displacement u is that
+/// of its mean strain and h^T H h / 2.
 Mat12 hourglass_stiffness(const HexPoints& rest, const ElasticModuli& moduli);
 
 }  // namespace plica

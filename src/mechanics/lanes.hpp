@@ -15,6 +15,7 @@ constexpr int batch_size = 8;  // elements a batch: as many as the widest regist
 
 #if PLICA_LANES != 1  // else it is a number that counts what is done with it (bench/counted_kernels.cpp)
 typedef double Lanes __attribute__((vector_size(8 * PLICA_LANES), may_alias));  // NOLINT: no `using` for attributes
+inline Lanes broadcast(double value) { return Lanes{} + value; }
 #endif
 
 /// Two numbers anywhere in memory.
@@ -70,9 +71,7 @@ inline Mat operator-(const Mat& a, const Mat& b) { return {a.x - b.x, a.y - b.y,
 inline Mat operator*(Lanes s, const Mat& a) { return {s * a.x, s * a.y, s * a.z}; }
 inline Vec operator*(const Mat& a, const Vec& v) { return v.x * a.x + v.y * a.y + v.z * a.z; }
 inline Mat operator*(const Mat& a, const Mat& b) { return {a * b.x, a * b.y, a * b.z}; }
-inline Mat transpose(const Mat& a) {
-  return {{a.x.x, a.y.x, a.z.x}, {a.x.y, a.y.y, a.z.y}, {a.x.z, a.y.z, a.z.z}};
-}
+inline Mat transpose(const Mat& a) { return {{a.x.x, a.y.x, a.z.x}, {a.x.y, a.y.y, a.z.y}, {a.x.z, a.y.z, a.z.z}}; }
 /// a^T v and a^T b.
 inline Vec turn_back(const Mat& a, const Vec& v) { return {dot(a.x, v), dot(a.y, v), dot(a.z, v)}; }
 inline Mat turn_back(const Mat& a, const Mat& b) { return {turn_back(a, b.x), turn_back(a, b.y), turn_back(a, b.z)}; }

@@ -54,7 +54,7 @@ void require_upright_rest_shapes(const Tissue& tissue) {
 }
 
 TurningElements::TurningElements(const Tissue& tissue, bool viscous)
-    : elements_(tissue.elements.size()), viscous_(viscous) {
+    : elements_(tissue.elements.size()), chunks_(tissue.elements), viscous_(viscous) {
   require_upright_rest_shapes(tissue);
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     elements_[e].nodes = tissue.elements[e];
@@ -126,28 +126,20 @@ TurningElements::Frame TurningElements::frame(std::size_t e, const Step& step) c
 }
 
 double TurningElements::energy(const Step& step) const {
-  std::vector<double> energies(elements_.size());
-  parallel_for(elements_.size(), [&](std::size_t e) { energies[e] = frame(e, step).energy; });
-  double sum = 0;
-  for (const double energy : energies) sum += energy;
-  return sum;
+  return chunks_.sum_over_elements([&](std::size_t e) { return frame(e, step).energy; });
 }
 
 void TurningElements::add_forces(const Step& step, std::span<Vec3> forces) const {
-  std::vector<std::array<Vec3, 8>> gradients(elements_.size());
-  parallel_for(elements_.size(), [&](std::size_t e) {
+  chunks_.for_elements([&](std::size_t e) {
     const Frame f = frame(e, step);
-    for (int i = 0; i < 8; ++i) gradients[e][i] = f.R * f.g.segment<3>(3 * i);
+    for (int i = 0; i < 8; ++i) forces[elements_[e].nodes[i].index()] -= f.R * f.g.segment<3>(3 * i);
   });
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    for (int i = 0; i < 8; ++i) forces[elements_[e].nodes[i].index()] -= gradients[e][i];
 }
 
 // R K R^T times a vector: the tangent without the turning of R.
 void TurningElements::add_warped_product(const Step& step, std::span<const Vec3> direction,
                                          std::span<Vec3> product) const {
-  std::vector<std::array<Vec3, 8>> results(elements_.size());
-  parallel_for(elements_.size(), [&](std::size_t e) {
+  chunks_.for_elements([&](std::size_t e) {
     const Element& element = elements_[e];
     const Frame f = frame(e, step);
     Vec24 w;
@@ -155,17 +147,14 @@ void TurningElements::add_warped_product(const Step& step, std::span<const Vec3>
     Mat24 space;
     Vec24 q = local_stiffness(e, f.u, space) * w;
     if (viscous_) q += f.viscous_factor * (element.viscosity * w);
-    for (int i = 0; i < 8; ++i) results[e][i] = f.R * q.segment<3>(3 * i);
+    for (int i = 0; i < 8; ++i) product[element.nodes[i].index()] += f.R * q.segment<3>(3 * i);
   });
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    for (int i = 0; i < 8; ++i) product[elements_[e].nodes[i].index()] += results[e][i];
 }
 
 void TurningElements::add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                           std::span<Vec3> product) const {
   if (step.semidefinite_tangent) return add_warped_product(step, direction, product);
-  std::vector<std::array<Vec3, 8>> results(elements_.size());
-  parallel_for(elements_.size(), [&](std::size_t e) {
+  chunks_.for_elements([&](std::size_t e) {
     const Element& element = elements_[e];
     const Frame f = frame(e, step);
     const auto& b = element.frame;
@@ -192,10 +181,9 @@ void TurningElements::add_tangent_product(const Step& step, std::span<const Vec3
           Vec3(du.segment<3>(3 * i)).cross(Vec3(f.q.segment<3>(3 * i))) + f.y[i].cross(Vec3(dq.segment<3>(3 * i)));
     const Vec3 dt = f.H * dtorque;
     for (int i = 0; i < 8; ++i)
-      results[e][i] = f.R * (omega.cross(Vec3(f.g.segment<3>(3 * i))) + Vec3(dq.segment<3>(3 * i)) - dt.cross(b[i]));
+      product[element.nodes[i].index()] +=
+          f.R * (omega.cross(Vec3(f.g.segment<3>(3 * i))) + Vec3(dq.segment<3>(3 * i)) - dt.cross(b[i]));
   });
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    for (int i = 0; i < 8; ++i) product[elements_[e].nodes[i].index()] += results[e][i];
 }
 
 void TurningElements::add_tangent(const Step& step, TangentSink& tangent) const {

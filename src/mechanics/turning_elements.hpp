@@ -15,7 +15,6 @@
 
 namespace plica {
 
-
 /// The nearest rotation R to F and the symmetric S = R^T F.
 void polar(const Mat3& F, Mat3& R, Mat3& S);
 
@@ -60,6 +59,7 @@ class TurningElements : public Law {
   struct Frame;  // an element's rotation, local displacement and local force at given positions
   [[nodiscard]] Frame frame(std::size_t e, const Step& step) const;
 
+  ElementChunks chunks_;
   bool viscous_ = false;
 };
 

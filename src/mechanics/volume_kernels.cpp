@@ -1,0 +1,118 @@
+// Letters as in docs/theory/cell_volume.md: V the volume as a cubic polynomial of the modes m_j, g its gradient by
+// them.
+#include "mechanics/volume_kernels.hpp"
+
+#include "mechanics/hexahedron_lanes.hpp"
+
+namespace plica::PLICA_KERNELS {
+namespace {
+
+// A register's worth of a batch's elements, from `lane` on, of which the first `count` count.
+struct Elements {
+  const VolumeBatch& batch;
+  std::size_t first;  // element
+  int lane, count;
+
+  [[nodiscard]] Lanes rest_volume() const { return load(batch.rest_volumes + lane); }
+};
+
+template <class Body>
+inline void for_elements(const VolumeStep& step, std::size_t first, std::size_t last, const Body& body) {
+  for (std::size_t b = first; b < last; ++b) {
+    const int count = count_in_batch(step.elements, b);
+    for (int lane = 0; lane < count; lane += width)
+      body(Elements{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane,
+                    count - lane < width ? count - lane : width});
+  }
+}
+
+inline Lanes pressure(const VolumeStep& step, const Elements& e, const Vec (&m)[7]) {
+  if (!step.pressures) return step.bulk_modulus * (1.0 - volume(m) / e.rest_volume());
+  Lanes p = {};
+  for (int k = 0; k < width; ++k) p[k] = step.pressures[e.batch.cells[e.lane + k]];
+  return p;
+}
+
+inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
+  Vec f[8];
+  from_modes(g, f);
+  scatter(e.batch.nodes, e.lane, e.count, f, vectors);
+}
+
+[[gnu::flatten]] void add_volumes(const VolumeStep& step, std::size_t first, std::size_t last, double* volumes) {
+  for_elements(step, first, last, [&](const Elements& e) {
+    Vec m[7];
+    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    const Lanes V = volume(m);
+    for (int k = 0; k < e.count; ++k) volumes[e.batch.cells[e.lane + k]] += V[k];
+  });
+}
+
+[[gnu::flatten]] void write_gradients(const VolumeStep& step, std::size_t first, std::size_t last, double* gradients) {
+  for_elements(step, first, last, [&](const Elements& e) {
+    Vec m[7], g[7], f[8];
+    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    volume_gradient(m, g);
+    from_modes(g, f);
+    for (int k = 0; k < e.count; ++k)
+      for (int i = 0; i < 8; ++i) {
+        double* v = gradients + 24 * (e.first + static_cast<std::size_t>(k)) + 3 * i;
+        v[0] = f[i].x[k];
+        v[1] = f[i].y[k];
+        v[2] = f[i].z[k];
+      }
+  });
+}
+
+[[gnu::flatten]] double energy(const VolumeStep& step, std::size_t first, std::size_t last) {
+  double sum = 0;
+  for_elements(step, first, last, [&](const Elements& e) {
+    Vec m[7];
+    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    const Lanes strain = volume(m) / e.rest_volume() - 1.0;
+    const Lanes energies = (0.5 * step.bulk_modulus) * e.rest_volume() * strain * strain;
+    for (int k = 0; k < e.count; ++k) sum += energies[k];
+  });
+  return sum;
+}
+
+[[gnu::flatten]] void add_forces(const VolumeStep& step, std::size_t first, std::size_t last, double* forces) {
+  for_elements(step, first, last, [&](const Elements& e) {
+    Vec m[7], g[7];
+    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    volume_gradient(m, g);
+    const Lanes p = pressure(step, e, m);
+    for (Vec& v : g) v = p * v;
+    add_modes(e, g, forces);
+  });
+}
+
+[[gnu::flatten]] void add_product(const VolumeStep& step, std::size_t first, std::size_t last, const double* direction,
+                                  double* product) {
+  const bool dilatation = !step.pressures;
+  for_elements(step, first, last, [&](const Elements& e) {
+    Vec m[7], d[7], result[7] = {};
+    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    gather_modes(e.batch.nodes, e.lane, direction, d);
+    if (!dilatation || !step.semidefinite_tangent) {
+      volume_gradient_change(m, d, result);
+      const Lanes p = pressure(step, e, m);
+      for (Vec& v : result) v = -p * v;
+    }
+    if (dilatation) {
+      Vec g[7];
+      volume_gradient(m, g);
+      Lanes rate = dot(g[0], d[0]);
+      for (int j = 1; j < 6; ++j) rate += dot(g[j], d[j]);
+      const Lanes tension = step.bulk_modulus * rate / e.rest_volume();
+      for (int j = 0; j < 6; ++j) result[j] = result[j] + tension * g[j];
+    }
+    add_modes(e, result, product);
+  });
+}
+
+}  // namespace
+
+const VolumeKernels volume_kernels = {add_volumes, write_gradients, energy, add_forces, add_product};
+
+}  // namespace plica::PLICA_KERNELS
