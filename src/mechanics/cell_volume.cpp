@@ -115,8 +115,10 @@ void CellVolumes::add_tangent(std::span<const Vec3> positions, std::span<const d
     add_volume_hessian(elements_[e], gather(positions, elements_[e]), -pressures[element_cell_[e].index()], tangent);
 }
 
-Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, Kernels kernels)
-    : elements_(tissue.elements), bulk_modulus_(bulk_modulus), kernels_(kernels), volumes_(tissue, kernels) {}
+Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact, Kernels kernels)
+    : bulk_modulus_(bulk_modulus), cells_are_exact_(cells_are_exact), kernels_(kernels), volumes_(tissue, kernels) {
+  if (!cells_are_exact || tissue.elements.size() > tissue.cells.size()) elements_ = tissue.elements;
+}
 
 VolumeStep Dilatation::kernel_step(const Step& step) const {
   return {.batches = volumes_.batches(),
@@ -128,18 +130,21 @@ VolumeStep Dilatation::kernel_step(const Step& step) const {
 }
 
 double Dilatation::energy(const Step& step) const {
+  if (elements_.empty()) return 0;
   const VolumeStep at = kernel_step(step);
   return volumes_.chunks().sum_over_batches(
       [&](std::size_t first, std::size_t last) { return volumes_.kernels().energy(at, first, last); });
 }
 
 void Dilatation::add_forces(const Step& step, std::span<Vec3> forces) const {
+  if (elements_.empty()) return;
   const VolumeStep at = kernel_step(step);
   volumes_.chunks().for_batches(
       [&](std::size_t first, std::size_t last) { volumes_.kernels().add_forces(at, first, last, numbers(forces)); });
 }
 
 void Dilatation::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
+  if (elements_.empty()) return;
   const VolumeStep at = kernel_step(step);
   volumes_.chunks().for_batches([&](std::size_t first, std::size_t last) {
     volumes_.kernels().add_product(at, first, last, numbers(direction), numbers(product));
@@ -167,7 +172,7 @@ NodeGroups Dilatation::node_groups() const {
 }
 
 std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
-  return std::make_unique<Dilatation>(tissue, bulk_modulus_, kernels_);
+  return std::make_unique<Dilatation>(tissue, bulk_modulus_, cells_are_exact_, kernels_);
 }
 
 void Dilatation::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {

@@ -84,8 +84,10 @@ class CellVolumes {
 /// elasticity. Its semidefinite tangent leaves out the pressure times d2V/dx2.
 class Dilatation final : public Law {
  public:
-  /// `bulk_modulus` in kPa.
-  Dilatation(const Tissue& tissue, double bulk_modulus, Kernels kernels = chosen_kernels());
+  /// `bulk_modulus` in kPa. With `cells_are_exact` (cells' volumes are held) it is left out while every cell is one
+  /// element.
+  Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact = false,
+             Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "dilatation"; }
   [[nodiscard]] double energy(const Step& step) const override;
@@ -100,8 +102,9 @@ class Dilatation final : public Law {
  private:
   [[nodiscard]] VolumeStep kernel_step(const Step& step) const;
 
-  std::vector<std::array<NodeId, 8>> elements_;
+  std::vector<std::array<NodeId, 8>> elements_;  // none while it is left out
   double bulk_modulus_;
+  bool cells_are_exact_;
   Kernels kernels_;
   VolumeElements volumes_;
 };

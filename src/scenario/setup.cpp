@@ -79,7 +79,7 @@ void add_elasticity(const Scenario& scenario, Model& model) {
     return;
   }
   model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, viscosity));
-  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus()));
+  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus(), model.volumes_are_held));
 }
 
 ContractionPattern make_pattern(const ContractionInput& input) {

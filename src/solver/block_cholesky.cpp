@@ -249,7 +249,7 @@ bool BlockCholesky::eliminate(const Supernode& node, float* panel, Update& front
   if (!dense_cholesky(panel, own, height)) return false;
   if (rest > 0) {
     strsm_("R", "L", "T", "N", &rest, &own, &one, panel, &height, panel + own, &height);
-    ssyrk_("L", "N", &rest, &own, &minus, panel + own, &height, &one, front.values.data(), &rest);
+    ssyrk_("L", "N", &rest, &own, &minus, panel + own, &height, &one, front.values.get(), &rest);
     strsm_("R", "L", "N", "N", &rest, &own, &one, panel, &height, panel + own, &height);
   }
   std::vector<float> inverse(std::size_t(own) * own);
@@ -265,10 +265,12 @@ bool BlockCholesky::factorise(std::span<const float> values) {
     const auto& node = supernodes_[s];
     float* panel = &panels_[node.panel];
     assemble(node, values, panel);
-    updates[s].values.assign(9 * node.rows.size() * node.rows.size(), 0.0F);
+    const std::size_t rest = 3 * node.rows.size();
+    updates[s].values.reset(new float[rest * rest]);
+    for (std::size_t j = 0; j < rest; ++j) std::fill_n(&updates[s].values[j * rest + j], rest - j, 0.0F);
     for (const int child : node.children) {
       add_child(supernodes_[child], updates[child], node, panel, updates[s]);
-      std::vector<float>().swap(updates[child].values);
+      updates[child].values.reset();
     }
     if (!eliminate(node, panel, updates[s])) return false;
   }

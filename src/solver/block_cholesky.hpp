@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -45,7 +46,7 @@ class BlockCholesky final : public Preconditioner {
     std::vector<std::size_t> blocks;  // of the matrix that are assembled here
   };
   struct Update {  // a child's contribution, lower triangle, column-major
-    std::vector<float> values;
+    std::unique_ptr<float[]> values;
   };
 
   void order(const BlockPattern& pattern);
