@@ -8,62 +8,18 @@
 namespace plica {
 namespace {
 
-double chain_length(const std::vector<NodeId>& nodes, std::span<const Vec3> positions) {
+double chain_length(std::span<const NodeId> nodes, std::span<const Vec3> positions) {
   double length = 0;
   for (std::size_t s = 1; s < nodes.size(); ++s)
     length += (positions[nodes[s].index()] - positions[nodes[s - 1].index()]).norm();
   return length;
 }
 
-// The tension T(l) of a spring over a step, its derivative dT/dl, and the energy it derives from.
-struct Response {
-  double energy, tension, slope;
-};
-
-Response respond(const Spring& spring, const Step& step, double activity) {
-  const double length = chain_length(spring.nodes, step.positions);
-  const double stretch = std::max(0.0, length - spring.rest_length);
-  Response r{};
-  r.energy = activity * (0.5 * spring.stiffness * stretch * stretch + spring.preload * length);
-  r.tension = activity * (spring.stiffness * stretch + spring.preload);
-  r.slope = length > spring.rest_length ? activity * spring.stiffness : 0;
-  if (spring.damping > 0) {
-    const double change = length - chain_length(spring.nodes, step.previous_positions);
-    const double rate = spring.damping / step.duration_s;
-    r.energy += 0.5 * rate * change * change;
-    r.tension += rate * change;
-    r.slope += rate;
-  }
-  return r;
-}
-
-// What resists the turning of a spring: its tension. A spring under pressure (a negative preload) is unstable there.
-double turning_tension(const Response& response, const Step& step) {
-  return step.semidefinite_tangent ? std::max(0.0, response.tension) : response.tension;
-}
-
-// Segment s of a chain: its direction and length. A segment shrunk to a point has no direction and pulls nowhere.
+// Segment of a chain: its direction and length. One shrunk to a point has no direction and pulls nowhere.
 struct Segment {
   Vec3 direction;
   double length;
 };
-
-Segment segment(const Spring& spring, std::size_t s, std::span<const Vec3> positions) {
-  const Vec3 d = positions[spring.nodes[s + 1].index()] - positions[spring.nodes[s].index()];
-  const double length = d.norm();
-  return {length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero()), length};
-}
-
-// dl/dx of the chain's nodes.
-Vectors length_gradient(const Spring& spring, std::span<const Vec3> positions) {
-  Vectors gradient(spring.nodes.size(), Vec3::Zero());
-  for (std::size_t s = 0; s + 1 < spring.nodes.size(); ++s) {
-    const Vec3 direction = segment(spring, s, positions).direction;
-    gradient[s] -= direction;
-    gradient[s + 1] += direction;
-  }
-  return gradient;
-}
 
 // The block of d2l/dx2 that a segment gives: (I - e e^T)/length.
 Mat3 turning_stiffness(const Segment& s) {
@@ -132,56 +88,111 @@ std::vector<double> Contraction::points_s() const {
   return points;
 }
 
+// The tension T(l) of a spring over a step, its derivative dT/dl, and the energy it derives from.
+struct Contraction::Pulled {
+  std::span<const NodeId> nodes;
+  std::span<const Segment> segments;  // between them: where dl/dx and d2l/dx2 come from
+  double energy = 0, tension = 0, slope = 0;
+  // What resists the turning of the segments: the tension. A spring under pressure (a negative preload) is unstable
+  // there, and the semidefinite tangent leaves that out.
+  double turning_tension = 0;
+
+  void respond(const Spring& spring, const Step& step, double activity) {
+    double length = 0;
+    for (const Segment& segment : segments) length += segment.length;
+    const double stretch = std::max(0.0, length - spring.rest_length);
+    energy = activity * (0.5 * spring.stiffness * stretch * stretch + spring.preload * length);
+    tension = activity * (spring.stiffness * stretch + spring.preload);
+    slope = length > spring.rest_length ? activity * spring.stiffness : 0;
+    if (spring.damping > 0) {
+      const double change = length - chain_length(nodes, step.previous_positions);
+      const double rate = spring.damping / step.duration_s;
+      energy += 0.5 * rate * change * change;
+      tension += rate * change;
+      slope += rate;
+    }
+    turning_tension = step.semidefinite_tangent ? std::max(0.0, tension) : tension;
+  }
+
+  // dl/dx of node i.
+  [[nodiscard]] Vec3 length_gradient(std::size_t i) const {
+    Vec3 gradient = Vec3::Zero();
+    if (i > 0) gradient += segments[i - 1].direction;
+    if (i < segments.size()) gradient -= segments[i].direction;
+    return gradient;
+  }
+};
+
+Contraction::Contraction(std::vector<Spring> springs, Program program, std::vector<double> cell_delays_s)
+    : springs_(std::move(springs)), program_(std::move(program)), cell_delays_s_(std::move(cell_delays_s)) {
+  start_.push_back(0);
+  for (const Spring& spring : springs_) {
+    nodes_.insert(nodes_.end(), spring.nodes.begin(), spring.nodes.end());
+    start_.push_back(nodes_.size());
+    longest_ = std::max(longest_, spring.nodes.size());
+  }
+}
+
+template <class Take>
+void Contraction::for_springs(const Step& step, const Take& take) const {
+  std::vector<Segment> segments(longest_);
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    Pulled pulled;
+    pulled.nodes = std::span(nodes_).subspan(start_[k], start_[k + 1] - start_[k]);
+    for (std::size_t s = 0; s + 1 < pulled.nodes.size(); ++s) {
+      const Vec3 d = step.positions[pulled.nodes[s + 1].index()] - step.positions[pulled.nodes[s].index()];
+      const double length = d.norm();
+      segments[s] = {length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero()), length};
+    }
+    pulled.segments = std::span(segments).first(pulled.nodes.size() - 1);
+    pulled.respond(springs_[k], step, activity(springs_[k].delay_s, step.end_time_s));
+    take(pulled);
+  }
+}
+
 double Contraction::energy(const Step& step) const {
   double sum = 0;
-  for (const Spring& spring : springs_) sum += respond(spring, step, activity(spring.delay_s, step.end_time_s)).energy;
+  for_springs(step, [&](const Pulled& p) { sum += p.energy; });
   return sum;
 }
 
 void Contraction::add_forces(const Step& step, std::span<Vec3> forces) const {
-  for (const Spring& spring : springs_) {
-    const double tension = respond(spring, step, activity(spring.delay_s, step.end_time_s)).tension;
-    const Vectors gradient = length_gradient(spring, step.positions);
-    for (std::size_t i = 0; i < spring.nodes.size(); ++i) forces[spring.nodes[i].index()] -= tension * gradient[i];
-  }
+  for_springs(step, [&](const Pulled& p) {
+    for (std::size_t i = 0; i < p.nodes.size(); ++i) forces[p.nodes[i].index()] -= p.tension * p.length_gradient(i);
+  });
 }
 
 void Contraction::add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                       std::span<Vec3> product) const {
-  for (const Spring& spring : springs_) {
-    const Response r = respond(spring, step, activity(spring.delay_s, step.end_time_s));
-    const Vectors gradient = length_gradient(spring, step.positions);
+  for_springs(step, [&](const Pulled& p) {
     double lengthening = 0;
-    for (std::size_t i = 0; i < spring.nodes.size(); ++i)
-      lengthening += gradient[i].dot(direction[spring.nodes[i].index()]);
-    for (std::size_t i = 0; i < spring.nodes.size(); ++i)
-      product[spring.nodes[i].index()] += r.slope * lengthening * gradient[i];
-    for (std::size_t s = 0; s + 1 < spring.nodes.size(); ++s) {
-      const NodeId a = spring.nodes[s], b = spring.nodes[s + 1];
-      const Vec3 change = turning_tension(r, step) * turning_stiffness(segment(spring, s, step.positions)) *
-                          (direction[b.index()] - direction[a.index()]);
-      product[a.index()] -= change;
-      product[b.index()] += change;
+    for (std::size_t i = 0; i < p.nodes.size(); ++i)
+      lengthening += p.length_gradient(i).dot(direction[p.nodes[i].index()]);
+    for (std::size_t i = 0; i < p.nodes.size(); ++i)
+      product[p.nodes[i].index()] += p.slope * lengthening * p.length_gradient(i);
+    for (std::size_t s = 0; s < p.segments.size(); ++s) {
+      const std::size_t a = p.nodes[s].index(), b = p.nodes[s + 1].index();
+      const Vec3 change = p.turning_tension * turning_stiffness(p.segments[s]) * (direction[b] - direction[a]);
+      product[a] -= change;
+      product[b] += change;
     }
-  }
+  });
 }
 
 void Contraction::add_tangent(const Step& step, TangentSink& tangent) const {
-  for (const Spring& spring : springs_) {
-    const Response r = respond(spring, step, activity(spring.delay_s, step.end_time_s));
-    const Vectors gradient = length_gradient(spring, step.positions);
-    for (std::size_t i = 0; i < spring.nodes.size(); ++i)
-      for (std::size_t j = 0; j < spring.nodes.size(); ++j)
-        tangent.add_block(spring.nodes[i], spring.nodes[j], r.slope * gradient[i] * gradient[j].transpose());
-    for (std::size_t s = 0; s + 1 < spring.nodes.size(); ++s) {
-      const NodeId a = spring.nodes[s], b = spring.nodes[s + 1];
-      const Mat3 block = turning_tension(r, step) * turning_stiffness(segment(spring, s, step.positions));
+  for_springs(step, [&](const Pulled& p) {
+    for (std::size_t i = 0; i < p.nodes.size(); ++i)
+      for (std::size_t j = 0; j < p.nodes.size(); ++j)
+        tangent.add_block(p.nodes[i], p.nodes[j], p.slope * p.length_gradient(i) * p.length_gradient(j).transpose());
+    for (std::size_t s = 0; s < p.segments.size(); ++s) {
+      const NodeId a = p.nodes[s], b = p.nodes[s + 1];
+      const Mat3 block = p.turning_tension * turning_stiffness(p.segments[s]);
       tangent.add_block(a, a, block);
       tangent.add_block(b, b, block);
       tangent.add_block(a, b, -block);
       tangent.add_block(b, a, -block);
     }
-  }
+  });
 }
 
 NodeGroups Contraction::node_groups() const {

@@ -43,8 +43,7 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cel
 class Contraction final : public Law {
  public:
   /// `cell_delays_s`: cells, empty for none; for activity_of, the springs carry their own.
-  Contraction(std::vector<Spring> springs, Program program, std::vector<double> cell_delays_s = {})
-      : springs_(std::move(springs)), program_(std::move(program)), cell_delays_s_(std::move(cell_delays_s)) {}
+  Contraction(std::vector<Spring> springs, Program program, std::vector<double> cell_delays_s = {});
 
   [[nodiscard]] std::string_view name() const override { return "contraction"; }
   [[nodiscard]] double energy(const Step& step) const override;
@@ -68,7 +67,14 @@ class Contraction final : public Law {
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
 
  private:
+  struct Pulled;  // a spring at given positions
+  template <class Take>
+  void for_springs(const Step& step, const Take& take) const;
+
   std::vector<Spring> springs_;
+  std::vector<NodeId> nodes_;       // of all springs, one after the other: what the loops read
+  std::vector<std::size_t> start_;  // springs + 1, in nodes_
+  std::size_t longest_ = 0;         // nodes of the longest chain
   Program program_;
   std::vector<double> cell_delays_s_;
 };
