@@ -93,6 +93,10 @@ BlockCholesky::BlockCholesky(const BlockPattern& pattern) : nodes_(pattern.nodes
   std::size_t size = 0;
   for (auto& node : supernodes_) {
     node.panel = size;
+    for (const int row : node.rows) {
+      if (node.runs.empty() || row != node.runs.back().first + node.runs.back().second) node.runs.emplace_back(row, 0);
+      ++node.runs.back().second;
+    }
     size += std::size_t{9} * node.columns * (node.columns + node.rows.size());
     widest_rows_ = std::max(widest_rows_, 3 * (node.columns + node.rows.size()));
   }
@@ -138,7 +142,8 @@ void BlockCholesky::find_supernodes(const Neighbours& below) {
     rows.erase(rows.begin(), std::upper_bound(rows.begin(), rows.end(), j));
     for (const int child : children[j]) std::vector<int>().swap(rows_of[child]);
 
-    supernodes_.push_back({.first = j, .columns = 1, .rows = rows, .panel = 0, .children = {}, .blocks = {}});
+    supernodes_.push_back(
+        {.first = j, .columns = 1, .rows = rows, .runs = {}, .panel = 0, .children = {}, .blocks = {}});
     zeros.push_back(0);
     // Join with the supernode before while that wastes little: a wider panel is read and multiplied faster.
     while (supernodes_.size() > 1) {
@@ -327,16 +332,22 @@ void BlockCholesky::solve(std::span<float> x) const {
     multiply(&panels_[node.panel], height, own, &x_[3 * node.first], front);
     std::copy_n(front, own, &x_[3 * node.first]);
     const float* below = front + own;
-    for (const int i : node.rows)
-      for (int k = 0; k < 3; ++k) x_[3 * i + k] -= *below++;
+    for (const auto& [row, count] : node.runs) {
+      float* to = &x_[3 * row];
+      for (int k = 0; k < 3 * count; ++k) to[k] -= below[k];
+      below += 3 * count;
+    }
   }
   for (std::size_t s = supernodes_.size(); s-- > 0;) {
     const auto& node = supernodes_[s];
     const int own = 3 * node.columns, height = own + 3 * static_cast<int>(node.rows.size());
     std::copy_n(&x_[3 * node.first], own, front);
     float* below = front + own;
-    for (const int i : node.rows)
-      for (int k = 0; k < 3; ++k) *below++ = -x_[3 * i + k];
+    for (const auto& [row, count] : node.runs) {
+      const float* from = &x_[3 * row];
+      for (int k = 0; k < 3 * count; ++k) below[k] = -from[k];
+      below += 3 * count;
+    }
     multiply_transposed(&panels_[node.panel], height, own, front, &x_[3 * node.first]);
   }
   for (int n = 0; n < nodes_; ++n)

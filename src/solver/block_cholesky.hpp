@@ -39,11 +39,12 @@ class BlockCholesky final : public Preconditioner {
 
  private:
   struct Supernode {
-    int first = 0, columns = 0;       // nodes in elimination order
-    std::vector<int> rows;            // nodes below, ascending
-    std::size_t panel = 0;            // where its panel begins
-    std::vector<int> children;        // supernodes that update this one
-    std::vector<std::size_t> blocks;  // of the matrix that are assembled here
+    int first = 0, columns = 0;             // nodes in elimination order
+    std::vector<int> rows;                  // nodes below, ascending
+    std::vector<std::pair<int, int>> runs;  // the same as runs of consecutive ones: first, count
+    std::size_t panel = 0;                  // where its panel begins
+    std::vector<int> children;              // supernodes that update this one
+    std::vector<std::size_t> blocks;        // of the matrix that are assembled here
   };
   struct Update {  // a child's contribution, lower triangle, column-major
     std::unique_ptr<float[]> values;

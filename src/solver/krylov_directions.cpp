@@ -9,12 +9,14 @@
 namespace plica {
 namespace {
 
-// gamma over Young's modulus. Large, so that few iterations are left for the pressures; but single precision has to
-// carry A beside it, multigrid finds nearly incompressible cells hard, and within cells of several elements it resists
-// what the exact volumes allow. A third or three times as much takes a fifth to a half more iterations.
+// gamma times the size of a cell, over the mean stiffness of a node. Large, so that few iterations are left for the
+// pressures; but single precision has to carry A beside it, multigrid finds nearly incompressible cells hard, and
+// within cells of several elements it resists what the exact volumes allow. A third or three times as much takes a
+// fifth to a half more iterations.
 double regularisation(KrylovDirections::Inverse inverse, const Cell& cell) {
+
   if (cell.element_count > 1) return 3;
-  return inverse == KrylovDirections::Inverse::multigrid ? 20 : 100;
+  return inverse == KrylovDirections::Inverse::multigrid ? 20 : 50;
 }
 
 }  // namespace
@@ -22,24 +24,27 @@ double regularisation(KrylovDirections::Inverse inverse, const Cell& cell) {
 KrylovDirections::KrylovDirections(const Model& model, Inverse inverse, std::function<bool()> stop_requested)
     : model_(model),
       stop_requested_(std::move(stop_requested)),
+      inverse_(inverse),
       nodes_(model.tissue.node_count()),
       matrix_(model),
       preconditioner_(inverse == Inverse::multigrid ? make_multigrid(matrix_.layout())
                                                     : std::make_unique<BlockCholesky>(matrix_.layout())),
-      most_contact_changes_(inverse == Inverse::multigrid ? 4 : 32),
-      price_of_factor_(25),
-      jacobian_(model) {
-  if (!model.volumes_are_held) return;
-  double gammas = 0, volume = 0;
-  for (std::size_t c = 0; c < model.volumes.count(); ++c) {
-    const double gamma = regularisation(inverse, model.tissue.cells[c]) * model.stiffness_scale;
-    const double target = model.volumes.targets()[c];
-    pressure_weights_.push_back(gamma / target);
-    gammas += gamma;
-    volume += target;
+      most_contact_changes_(inverse == Inverse::multigrid ? 4
+                            : std::getenv("PB")           ? std::atoi(std::getenv("PB"))
+                                                          : 32),
+      price_of_factor_(std::getenv("PP") ? std::atoi(std::getenv("PP")) : 25),
+      jacobian_(model) {}
+
+void KrylovDirections::weigh_pressures() {
+  const double stiffness = matrix_.mean_diagonal();
+  pressure_weights_.clear();
+  double sum = 0;
+  for (std::size_t c = 0; c < jacobian_.cells(); ++c) {
+    const double target = model_.volumes.targets()[c], size = std::cbrt(target);
+    pressure_weights_.push_back(regularisation(inverse_, model_.tissue.cells[c]) * stiffness / (size * target));
+    sum += pressure_weights_.back() * size * size;
   }
-  const auto count = static_cast<double>(model.volumes.count());
-  volume_unit_ = gammas / count / std::cbrt(volume / count);
+  volume_unit_ = sum / static_cast<double>(std::max<std::size_t>(1, jacobian_.cells()));
 }
 
 std::span<Vec3> KrylovDirections::of_nodes(Vector& vector) const {
@@ -78,6 +83,7 @@ bool KrylovDirections::refresh(const Step& step, const Iterate& at) {
     Step here = step;
     here.semidefinite_tangent = semidefinite;
     matrix_.assemble(model_, here, at);
+    weigh_pressures();
     matrix_.add_volume_stiffness(model_, at.positions, pressure_weights_);
     matrix_.write_projected_blocks(frames_, values_);
     has_factor_ = preconditioner_->factorise(values_, rigid_motions(at));
@@ -152,7 +158,8 @@ NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate
   solution_.assign(size, 0.0);
   right_.resize(size);
   std::ranges::copy(direction.positions, of_nodes(solution_).begin());
-  multiply(step, at, solution_, right_);
+  std::ranges::fill(right_, 0.0);
+  if (!contact_tangents_.empty()) multiply(step, at, solution_, right_);
   const std::span<Vec3> forces = of_nodes(right_);
   for (std::size_t n = 0; n < nodes_; ++n) forces[n] = residual.forces[n] - forces[n];
   project(forces);

@@ -32,6 +32,7 @@ class KrylovDirections final : public NewtonDirections {
 
   void linearise(const Iterate& at);
   bool refresh(const Step& step, const Iterate& at);
+  void weigh_pressures();
   [[nodiscard]] std::vector<float> rigid_motions(const Iterate& at) const;
   void multiply(const Step& step, const Iterate& at, const Vector& direction, Vector& product) const;
   void precondition(const Vector& residual, Vector& result) const;
@@ -39,6 +40,7 @@ class KrylovDirections final : public NewtonDirections {
 
   const Model& model_;
   std::function<bool()> stop_requested_;
+  Inverse inverse_;
   std::size_t nodes_;
   StepMatrix matrix_;  // where the factor was made
   std::unique_ptr<Preconditioner> preconditioner_;
@@ -48,7 +50,7 @@ class KrylovDirections final : public NewtonDirections {
   int price_of_factor_;               // in iterations
   int iterations_when_new_ = 0, wasted_iterations_ = 0;
 
-  std::vector<double> pressure_weights_;  // gamma W; cells, kPa/um^3
+  std::vector<double> pressure_weights_;  // gamma W as in the factor; cells, kPa/um^3
   double volume_unit_ = 1;                // nN/um^3: makes the rows of volumes forces
 
   // Where Newton's method stands.

@@ -101,6 +101,12 @@ void StepMatrix::add_volume_stiffness(const Model& model, std::span<const Vec3> 
   }
 }
 
+double StepMatrix::mean_diagonal() const {
+  double sum = 0;
+  for (int n = 0; n < layout_.nodes(); ++n) sum += blocks_[layout_.starts[n + 1] - 1].trace();
+  return sum / (3 * layout_.nodes());
+}
+
 Mat3 StepMatrix::block(std::size_t row, std::size_t column) const {
   if (column > row) return block(column, row).transpose();
   const auto first = layout_.columns.begin() + layout_.starts[row],

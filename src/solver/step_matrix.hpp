@@ -38,6 +38,9 @@ class StepMatrix final : public TangentSink {
   /// of one cell resist their own changes of volume.
   void add_volume_stiffness(const Model& model, std::span<const Vec3> positions, std::span<const double> weights);
 
+  /// The mean of the diagonal of A, nN/um.
+  [[nodiscard]] double mean_diagonal() const;
+
   /// The block of A of two nodes; 0 where there is none.
   [[nodiscard]] Mat3 block(std::size_t row, std::size_t column) const;
 
