@@ -1,7 +1,6 @@
 #include "solver/multigrid_matrix.hpp"
 
 #include <Eigen/Dense>
-#include <cmath>
 
 #include "core/parallel.hpp"
 
@@ -63,72 +62,29 @@ bool Matrix<B>::invert_diagonal() {
     const Block diagonal =
         Eigen::Map<const Eigen::Matrix<float, B, B>>(block(rows_.starts[node] + own - 1)).template cast<double>();
     const Eigen::LLT<Block> factor(diagonal);
-    definite = definite && factor.info() == Eigen::Success && std::isfinite(diagonal.sum());
+    definite = definite && factor.info() == Eigen::Success;
     Eigen::Map<Eigen::Matrix<float, B, B>> inverse(&inverses_[std::size_t{B * B} * node]);
     inverse = factor.solve(Block::Identity()).template cast<float>();
   }
   return definite;
 }
 
-namespace {
-
-// In pieces of a fixed size, so that threads do not change the order of sums.
-double dot(std::span<const float> a, std::span<const float> b) {
-  constexpr std::size_t piece = 4096;
-  std::vector<double> sums((a.size() + piece - 1) / piece, 0.0);
-  parallel_for(sums.size(), [&](std::size_t p) {
-    for (std::size_t n = p * piece; n < std::min(a.size(), (p + 1) * piece); ++n) sums[p] += double(a[n]) * b[n];
+template <int B>
+void Matrix<B>::multiply(std::span<const float> x, std::span<float> y) const {
+  parallel_for(nodes(), [&](std::size_t node) {
+    float product[B];
+    multiply_row(static_cast<int>(node), x.data(), product);
+    for (int i = 0; i < B; ++i) y[B * node + i] = product[i];
   });
-  double sum = 0;
-  for (const double of_piece : sums) sum += of_piece;
-  return sum;
 }
 
-}  // namespace
-
-// Lanczos's tridiagonal matrix out of the coefficients of conjugate gradients, from a start that has a part of every
-// eigenvector. Its largest eigenvalue is found much sooner than by iterating D^-1 A.
 template <int B>
-double Matrix<B>::largest_eigenvalue() const {
-  constexpr int steps = 8;
-  std::vector<float> r(unknowns()), z(unknowns()), p(unknowns(), 0.0F), Ap(unknowns());
-  unsigned state = 1;
-  for (float& value : r) {
-    state = state * 1664525U + 1013904223U;
-    value = static_cast<float>(state >> 8) / static_cast<float>(1 << 24) - 0.5F;
-  }
-  Eigen::MatrixXd lanczos = Eigen::MatrixXd::Zero(steps, steps);
-  double rz = 0, alpha = 0, first = 0;
-  int made = 0;
-  for (; made < steps; ++made) {
-    parallel_for(nodes(), [&](std::size_t node) {
-      float product[B];
-      multiply_inverse(static_cast<int>(node), &r[B * node], product);
-      for (int i = 0; i < B; ++i) z[B * node + i] = product[i];
-    });
-    const double previous = rz;
-    rz = dot(r, z);
-    if (made == 0) first = rz;
-    if (!(rz > 1e-12 * first)) break;  // no eigenvectors are left
-    const double beta = made == 0 ? 0 : rz / previous;
-    parallel_for(p.size(), [&](std::size_t n) { p[n] = z[n] + static_cast<float>(beta) * p[n]; });
-    parallel_for(nodes(), [&](std::size_t node) {
-      float product[B];
-      multiply_row(static_cast<int>(node), p.data(), product);
-      for (int i = 0; i < B; ++i) Ap[B * node + i] = product[i];
-    });
-    if (made > 0) {
-      lanczos(made, made) = beta / alpha;
-      lanczos(made, made - 1) = lanczos(made - 1, made) = std::sqrt(beta) / alpha;
-    }
-    const double curvature = dot(p, Ap);
-    if (!(curvature > 0)) return -1;
-    alpha = rz / curvature;
-    lanczos(made, made) += 1 / alpha;
-    parallel_for(r.size(), [&](std::size_t n) { r[n] -= static_cast<float>(alpha) * Ap[n]; });
-  }
-  if (made == 0) return 1;
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(lanczos.topLeftCorner(made, made)).eigenvalues().maxCoeff();
+void Matrix<B>::multiply_inverses(std::span<const float> r, std::span<float> z) const {
+  parallel_for(nodes(), [&](std::size_t node) {
+    float product[B];
+    multiply_inverse(static_cast<int>(node), &r[B * node], product);
+    for (int i = 0; i < B; ++i) z[B * node + i] = product[i];
+  });
 }
 
 template class Matrix<3>;

@@ -61,9 +61,10 @@ class Matrix {
     for (int i = 0; i < B; ++i) product[i] = sums[i];
   }
 
-  /// About the largest eigenvalue of D^-1 A, D the diagonal blocks: a few per cent less. Not finite or not positive
-  /// where A is not positive definite.
-  [[nodiscard]] double largest_eigenvalue() const;
+  /// y = A x.
+  void multiply(std::span<const float> x, std::span<float> y) const;
+  /// z = D^-1 r, D the diagonal blocks.
+  void multiply_inverses(std::span<const float> r, std::span<float> z) const;
 
  private:
   [[nodiscard]] bool invert_diagonal();

@@ -1,6 +1,6 @@
 #include "solver/multigrid_transfer.hpp"
 
-#include <Eigen/Dense>
+#include <cmath>
 
 #include "core/parallel.hpp"
 
@@ -9,25 +9,51 @@ namespace {
 
 constexpr double damping = 4.0 / 3;  // w times the largest eigenvalue of D^-1 A
 
-// Gram-Schmidt in place: Q keeps orthonormal columns, or zero ones for those that depend on columns before; returns R.
-Eigen::Matrix<double, motions, motions> orthonormalise(Eigen::MatrixXd& Q) {
-  constexpr double dependent = 1e-5;  // of a column's length is left; single precision leaves 1e-7
-  Eigen::Matrix<double, motions, motions> R = Eigen::Matrix<double, motions, motions>::Zero();
-  for (int column = 0; column < motions; ++column) {
-    const double length = Q.col(column).norm();
-    for (int before = 0; before < column; ++before) {
-      R(before, column) = Q.col(before).dot(Q.col(column));
-      Q.col(column) -= R(before, column) * Q.col(before);
-    }
-    const double left = Q.col(column).norm();
-    if (left > dependent * length) {
-      R(column, column) = left;
-      Q.col(column) /= left;
-    } else {
-      Q.col(column).setZero();
-    }
+// Six columns of the same length, one after another.
+class Columns {
+ public:
+  explicit Columns(std::size_t length) : length_(length), values_(motions * length) {}
+  double& at(std::size_t row, int column) { return values_[length_ * column + row]; }
+
+  double dot(int a, int b) {
+    const double *u = &at(0, a), *v = &at(0, b);
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (std::size_t row = 0; row < length_; ++row) sum += u[row] * v[row];
+    return sum;
   }
-  return R;
+  void add(int to, double factor, int from) {
+    double* u = &at(0, to);
+    const double* v = &at(0, from);
+#pragma omp simd
+    for (std::size_t row = 0; row < length_; ++row) u[row] += factor * v[row];
+  }
+  void scale(int column, double factor) {
+    for (std::size_t row = 0; row < length_; ++row) at(row, column) *= factor;
+  }
+
+ private:
+  std::size_t length_;
+  std::vector<double> values_;
+};
+
+// Gram-Schmidt in place: Q keeps orthonormal columns, or zero ones for those that depend on columns before. Writes R,
+// 6 x 6 by rows: what Q R was.
+void orthonormalise(Columns& Q, float* R) {
+  constexpr double dependent = 1e-5;  // of a column's length is left; rounding of single precision leaves 1e-7
+  std::fill_n(R, motions * motions, 0.0F);
+  for (int column = 0; column < motions; ++column) {
+    const double length = std::sqrt(Q.dot(column, column));
+    for (int before = 0; before < column; ++before) {
+      const double part = Q.dot(before, column);
+      Q.add(column, -part, before);
+      R[motions * before + column] = static_cast<float>(part);
+    }
+    const double left = std::sqrt(Q.dot(column, column));
+    const bool independent = left > dependent * length;
+    Q.scale(column, independent ? 1 / left : 0);
+    R[(motions + 1) * column] = static_cast<float>(independent ? left : 0);
+  }
 }
 
 }  // namespace
@@ -49,16 +75,14 @@ std::vector<float> Transfer<B>::tentative(std::vector<float>& near_kernel) const
   std::vector<float> T(near_kernel.size() + spare, 0.0F), R(std::size_t{motions * motions} * aggregates_.count);
   parallel_for(aggregates_.count, [&](std::size_t aggregate) {
     const auto members = aggregates_.members.of(static_cast<int>(aggregate));
-    Eigen::MatrixXd Q(B * members.size(), motions);
+    Columns Q(B * members.size());
     for (std::size_t m = 0; m < members.size(); ++m)
       for (int i = 0; i < size; ++i)
-        Q(B * m + i / motions, i % motions) = near_kernel[std::size_t{size} * members[m] + i];
-    const auto of_aggregate = orthonormalise(Q);
+        Q.at(B * m + i / motions, i % motions) = near_kernel[std::size_t{size} * members[m] + i];
+    orthonormalise(Q, &R[motions * motions * aggregate]);
     for (std::size_t m = 0; m < members.size(); ++m)
       for (int i = 0; i < size; ++i)
-        T[std::size_t{size} * members[m] + i] = static_cast<float>(Q(B * m + i / motions, i % motions));
-    for (int i = 0; i < motions * motions; ++i)
-      R[motions * motions * aggregate + i] = static_cast<float>(of_aggregate(i / motions, i % motions));
+        T[std::size_t{size} * members[m] + i] = static_cast<float>(Q.at(B * m + i / motions, i % motions));
   });
   near_kernel.swap(R);
   return T;
