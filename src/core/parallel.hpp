@@ -2,6 +2,8 @@
 // and sums are taken afterwards in a fixed order.
 #pragma once
 
+#include <omp.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -15,7 +17,11 @@ namespace plica {
 template <class Body>
 void parallel_for(std::size_t count, const Body& body) {
   constexpr std::size_t worth_sharing = 256;
-#pragma omp parallel for schedule(static) if (count >= worth_sharing)
+  if (count < worth_sharing || omp_get_max_threads() == 1) {
+    for (std::size_t i = 0; i < count; ++i) body(i);
+    return;
+  }
+#pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < count; ++i) body(i);
 }
 
@@ -34,8 +40,7 @@ inline double parallel_dot(std::span<const double> a, std::span<const double> b)
   };
   if (a.size() <= part) return sum(0, a.size());
   std::vector<double> sums((a.size() + part - 1) / part);
-#pragma omp parallel for schedule(static)
-  for (std::size_t k = 0; k < sums.size(); ++k) sums[k] = sum(k * part, std::min(a.size(), (k + 1) * part));
+  parallel_for(sums.size(), [&](std::size_t k) { sums[k] = sum(k * part, std::min(a.size(), (k + 1) * part)); });
   double total = 0;
   for (const double one : sums) total += one;
   return total;

@@ -284,7 +284,7 @@ bool BlockCholesky::factorise(std::span<const float> values) {
 
 namespace {
 
-// y = P x; P has `height` rows, column-major.
+// y = P x; P has `height` rows, column-major, and zeros above the diagonal.
 PLICA_FOR_NEWER_PROCESSORS_TOO void multiply(const float* P, int height, int width, const float* x, float* y) {
   std::fill_n(y, height, 0.0F);
   int j = 0;
@@ -292,14 +292,14 @@ PLICA_FOR_NEWER_PROCESSORS_TOO void multiply(const float* P, int height, int wid
     const float *a = P + std::size_t(j) * height, *b = a + height, *c = b + height, *d = c + height, *e = d + height,
                 *f = e + height;
 #pragma omp simd
-    for (int i = 0; i < height; ++i)
+    for (int i = j; i < height; ++i)
       y[i] +=
           (a[i] * x[j] + b[i] * x[j + 1]) + (c[i] * x[j + 2] + d[i] * x[j + 3]) + (e[i] * x[j + 4] + f[i] * x[j + 5]);
   }
   for (; j < width; j += 3) {
     const float *a = P + std::size_t(j) * height, *b = a + height, *c = b + height;
 #pragma omp simd
-    for (int i = 0; i < height; ++i) y[i] += a[i] * x[j] + b[i] * x[j + 1] + c[i] * x[j + 2];
+    for (int i = j; i < height; ++i) y[i] += a[i] * x[j] + b[i] * x[j + 1] + c[i] * x[j + 2];
   }
 }
 
@@ -310,7 +310,7 @@ PLICA_FOR_NEWER_PROCESSORS_TOO void multiply_transposed(const float* P, int heig
     const float *a = P + std::size_t(j) * height, *b = a + height, *c = b + height;
     float p = 0, q = 0, r = 0;
 #pragma omp simd reduction(+ : p, q, r)
-    for (int i = 0; i < height; ++i) {
+    for (int i = j; i < height; ++i) {
       p += a[i] * y[i];
       q += b[i] * y[i];
       r += c[i] * y[i];

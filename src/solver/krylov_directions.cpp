@@ -14,7 +14,6 @@ namespace {
 // within cells of several elements it resists what the exact volumes allow. A third or three times as much takes a
 // fifth to a half more iterations.
 double regularisation(KrylovDirections::Inverse inverse, const Cell& cell) {
-
   if (cell.element_count > 1) return 3;
   return inverse == KrylovDirections::Inverse::multigrid ? 20 : 50;
 }

@@ -63,7 +63,7 @@ std::optional<CellId> cell_with_largest(const Tissue& tissue, const Vectors& vec
 
 std::optional<CellId> inverted_cell(const Tissue& tissue, const Vectors& positions) {
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
-    if (!(hex_scaled_jacobian(gather(positions, tissue.elements[e])) > 0)) return tissue.element_cell[e];
+    if (!hex_is_upright(gather(positions, tissue.elements[e]))) return tissue.element_cell[e];
   return std::nullopt;
 }
 

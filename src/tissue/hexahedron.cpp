@@ -133,6 +133,18 @@ double hex_scaled_jacobian(const HexPoints& points) {
   return worst;
 }
 
+bool hex_is_upright(const HexPoints& points) {
+  // The three nodes next to each corner, in the order in which their edges are right-handed.
+  static constexpr std::array<std::array<int, 3>, 8> corner_neighbours = {
+      {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}};
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto& [a, b, c] = corner_neighbours[corner];
+    const Vec3& p = points[corner];
+    if (!((points[a] - p).cross(points[b] - p).dot(points[c] - p) > 0)) return false;
+  }
+  return true;
+}
+
 double facet_area(const std::array<Vec3, 4>& points) {
   const double g = 1 / std::sqrt(3.0);
   const auto along = [&](double t) -> Vec3 {

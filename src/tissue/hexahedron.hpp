@@ -50,6 +50,9 @@ std::array<std::array<Vec3, 8>, 8> hex_volume_hessian(const HexPoints& points);
 /// 0 when a corner is flat or inverted. (The usual "scaled Jacobian".)
 double hex_scaled_jacobian(const HexPoints& points);
 
+/// Whether that is positive: no corner inside out or flat.
+bool hex_is_upright(const HexPoints& points);
+
 /// Area of the bilinear facet through four points, um^2 (2 x 2 Gauss points).
 double facet_area(const std::array<Vec3, 4>& points);
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "support/tissues.hpp"
 
 namespace plica {
@@ -180,6 +182,24 @@ TEST(Hexahedron, FacetAreaAndItsVector) {
     }
   EXPECT_NEAR(facet_area(saddle), fine, 5e-4);
   EXPECT_LE((facet_area_vector(saddle) - Vec3(-h / 2, -h / 2, 1)).norm(), 1e-14);
+}
+
+// A corner is pushed through the opposite face, little by little.
+TEST(Hexahedron, IsUprightAsLongAsItsScaledJacobianIsPositive) {
+  int upright = 0, cases = 0;
+  for (int corner = 0; corner < 8; ++corner)
+    for (double part = 0; part <= 1.5; part += 0.05, ++cases) {
+      HexPoints points;
+      for (int i = 0; i < 8; ++i) points[i] = hex_reference_nodes[i];
+      points[corner] *= 1 - 2 * part;
+      EXPECT_EQ(hex_is_upright(points), hex_scaled_jacobian(points) > 0) << "corner " << corner << ", " << part;
+      upright += hex_is_upright(points);
+    }
+  EXPECT_GT(upright, 8);
+  EXPECT_LT(upright, cases - 8);
+  HexPoints broken{};
+  broken[3].x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(hex_is_upright(broken));
 }
 
 }  // namespace

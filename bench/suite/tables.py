@@ -1,0 +1,137 @@
+"""What was measured, as tables in Markdown."""
+import math
+from pathlib import Path
+
+BEGIN, END = "<!-- Below: the output of bench/run. -->\n", "<!-- Above: the output of bench/run. -->\n"
+
+
+def number(value, digits=3):
+    """Three digits that count; spaces between thousands."""
+    if value is None:
+        return "–"
+    if isinstance(value, int) or value >= 100:
+        return f"{round(value):,}".replace(",", " ")
+    return f"{value:.{digits}g}"
+
+
+def seconds(value):
+    if value is None:
+        return "–"
+    for unit, size in (("s", 1), ("ms", 1e-3), ("µs", 1e-6)):
+        if value >= size:
+            return f"{number(value / size)} {unit}"
+    return f"{number(value / 1e-9)} ns"
+
+
+def table(header, rows):
+    lines = [header, ["---"] * len(header), *rows]
+    return "".join("| " + " | ".join(map(str, line)) + " |\n" for line in lines) + "\n"
+
+
+def machine_text(machine, arguments):
+    return (f"`bench/run{arguments}`, {machine['date']}: {machine['cpu']}, {machine['cores']} cores, load {machine['load']:.1f} "
+            f"when it began; {machine['program']}.\n\n")
+
+
+def kernels_text(results):
+    """A share: the time that the nearer ceiling would take over the time taken."""
+    text = ""
+    done = [result for result in results if "failed" not in result]
+    if done:
+        rows = [[number(r["elements"]), r["threads"], f"{r['multiply_add_rate'] / 1e9:.1f}", f"{r['reading_rate'] / 1e9:.1f}"]
+                for r in done]
+        text += "Ceilings, measured in turns with the kernels:\n\n"
+        text += table(["elements", "threads", "multiply-adds, GFlop/s", "reading as many bytes, GB/s"], rows)
+        rows = [[k["kernel"], number(r["elements"]), r["threads"], f"{k['ns_per_element']:.3g}",
+                 f"{100 * k['share']:.0f} % of {k['ceiling']}", number(k.get("yardsticks"))]
+                for r in done for k in r["kernels"]]
+        rows.sort(key=lambda row: row[0])
+        text += table(["kernel", "elements", "threads", "ns an element", "share of the nearer ceiling", "yardsticks"], rows)
+    return text + failures(results)
+
+
+def steps_text(results):
+    rows = []
+    for r in results:
+        if "failed" in r:
+            continue
+        rows.append([number(r["elements"]), r["embryo"], r["threads"], seconds(r["model_s"]), seconds(r["step_s"]),
+                     number(1e6 * r["step_s"] / r["elements"]), r["newton_iterations"], r["linear_iterations"],
+                     r["factorisations"], number(round(r["peak_MiB"])), number(r.get("instructions"))])
+    header = ["elements", "embryo", "threads", "model made in", "step", "µs an element", "Newton iterations",
+              "linear iterations", "factorisations", "peak, MiB", "instructions"]
+    return drop_empty(table, header, rows) + growth_text(results) + threads_text(results) + failures(results)
+
+
+def growth_text(results, small=10_000, large=200_000):
+    """Whether the cost grows with the number of elements: an element's on the large mesh over one's on the small."""
+    text = ""
+    for refined_by in ("elements a cell", "more cells"):
+        alike = [r for r in results if "failed" not in r and r["threads"] == 1 and r["refined_by"] == refined_by]
+        ends = [min(alike, key=lambda r: abs(math.log(r["elements"] / size)), default=None) for size in (small, large)]
+        if None in ends or not all(0.5 < r["elements"] / size < 2 for r, size in zip(ends, (small, large))):
+            continue
+        ratio = (ends[1]["step_s"] / ends[1]["elements"]) / (ends[0]["step_s"] / ends[0]["elements"])
+        text += (f"- Refined by {refined_by}: an element takes {ratio:.2f} times as long among {number(ends[1]['elements'])} "
+                 f"as among {number(ends[0]['elements'])}.\n")
+    return text
+
+
+def threads_text(results):
+    """How much faster with more threads, and whether to the same bits."""
+    text = ""
+    done = {(r["embryo"], r["threads"]): r for r in results if "failed" not in r}
+    for (embryo, threads), many in done.items():
+        one = done.get((embryo, 1))
+        if threads == 1 or one is None:
+            continue
+        same = "the same bits" if one["checksum"] == many["checksum"] else "**other bits**"
+        text += (f"- {number(many['elements'])} elements ({embryo}): {one['step_s'] / many['step_s']:.2f} times as fast on "
+                 f"{threads} threads, {same}.\n")
+    return text + ("\n" if text else "")
+
+
+def runs_text(results):
+    rows = []
+    for r in results:
+        if "failed" in r:
+            continue
+        rows.append([number(r["elements"]), r["embryo"], r["threads"], seconds(r["process_s"]), seconds(r["solver_s"]),
+                     r["steps"], r["newton_iterations"], r["linear_iterations"], number(round(r["process_peak_MiB"])),
+                     number(r.get("instructions"))])
+    header = ["elements", "embryo", "threads", "start to end", "solver", "steps", "Newton iterations", "linear iterations",
+              "peak, MiB", "instructions"]
+    return drop_empty(table, header, rows) + failures(results)
+
+
+def drop_empty(make, header, rows):
+    """The table without columns in which nothing was measured."""
+    kept = [i for i in range(len(header)) if any(row[i] != "–" for row in rows)]
+    return make([header[i] for i in kept], [[row[i] for i in kept] for row in rows])
+
+
+def failures(results):
+    lines = [f"- Not measured: {r['what']}, {r['embryo']}, {r['threads']} threads: {r['failed']}.\n"
+             for r in results if "failed" in r]
+    return "".join(lines) + ("\n" if lines else "")
+
+
+def page(measured, arguments):
+    text = machine_text(measured["machine"], arguments)
+    if measured["kernels"]:
+        text += "### Kernels\n\n" + kernels_text(measured["kernels"])
+    if measured["steps"]:
+        text += "### One step\n\n" + steps_text(measured["steps"])
+    if measured["runs"]:
+        text += "### The whole Drosophila run\n\n" + runs_text(measured["runs"])
+    return text
+
+
+def put_into(document, text):
+    """Replaces what stands between the two marks of the document."""
+    document = Path(document)
+    before = document.read_text(encoding="utf-8")
+    if BEGIN not in before or END not in before:
+        raise ValueError(f"{document} lacks the marks between which the tables stand")
+    head, rest = before.split(BEGIN, 1)
+    document.write_text(head + BEGIN + "\n" + text + END + rest.split(END, 1)[1], encoding="utf-8")

@@ -1,0 +1,74 @@
+#!/usr/bin/python3
+"""The benchmark suite, run briefly: it measures everything that it says and tells it in tables. Nothing is timed.
+
+Usage: bench_test.py ROOT BUILD
+"""
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+root, build = Path(sys.argv[1]), Path(sys.argv[2])
+sys.path.insert(0, str(root / "bench"))
+from suite import sizes, tables  # noqa: E402
+
+
+def bench(*arguments):
+    return subprocess.run([sys.executable, root / "bench/run", *map(str, arguments)], capture_output=True, text=True)
+
+
+# Embryos of about the sizes asked for.
+for size in (756, 10_000, 25_000, 200_000, 1_000_000):
+    for embryo in sizes.embryos(size):
+        assert abs(embryo.elements / size - 1) < 0.4, (size, embryo, embryo.elements)
+assert [embryo.elements for embryo in sizes.embryos(756)] == [756], "once"
+assert sizes.by_elements(25_000) == sizes.Embryo(1, 4, 2) and sizes.by_cells(200_000) == sizes.Embryo(16)
+
+with tempfile.TemporaryDirectory() as folder:
+    file = Path(folder) / "figures.json"
+    done = bench("--brief", "--build", build, "--json", file)
+    print(done.stdout, done.stderr)
+    assert done.returncode == 0, done.returncode
+    figures = json.loads(file.read_text())
+    steps, runs = figures["steps"], figures["runs"]
+    assert {step["elements"] for step in steps} == {756, 3024} and len(runs) == 1
+    for step in steps:
+        assert step["converged"] and step["step_s"] > 0 and step["peak_MiB"] > 1 and step["linear_iterations"] > 0
+        same = [other for other in steps if other["embryo"] == step["embryo"]]
+        assert {other["checksum"] for other in same} == {step["checksum"]}, "threads change the bits"
+    assert runs[0]["status"] == "equilibrium" and 0 < runs[0]["solver_s"] < runs[0]["process_s"]
+    for kernels in figures["kernels"]:
+        assert kernels["multiply_add_rate"] > 0 and kernels["reading_rate"] > 0 and kernels["kernels"]
+        assert all(kernel["ns_per_element"] > 0 and kernel["share"] > 0 for kernel in kernels["kernels"])
+    for words in ("### One step", "### The whole Drosophila run", "3 024", "linear iterations"):
+        assert words in done.stdout, words
+    assert "other bits" not in done.stdout
+
+    # Into the document, between the marks and nowhere else, however often.
+    page = Path(folder) / "page.md"
+    page.write_text(f"before\n{tables.BEGIN}old\n{tables.END}after\n")
+    for _ in range(2):
+        tables.put_into(page, tables.page(figures, " --brief"))
+    text = page.read_text()
+    assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text and text.count("### One step") == 1
+    # How the cost grows.
+    grown = [steps[0] | {"elements": 756 * k * k, "step_s": 0.001 * k**3, "embryo": f"{k}", "refined_by": "more cells"} for k in (4, 16)]
+    text = tables.page(figures | {"steps": grown}, "")
+    assert "- Refined by more cells: an element takes 4.00 times as long among 193 536 as among 12 096." in text, text
+    # Kernels, and what could not be measured.
+    example = {"elements": 756, "threads": 1, "multiply_add_rate": 7e10, "reading_rate": 2e10, "embryo": "the paper's",
+               "kernels": [{"kernel": "tangent product", "ns_per_element": 21.5, "ceiling": "arithmetic", "share": 0.65}]}
+    lost = {"what": "step", "embryo": "36 times as long", "threads": 1, "failed": "more than 3600 s"}
+    text = tables.page(figures | {"kernels": [example], "steps": [lost]}, "")
+    assert "| tangent product | 756 | 1 | 21.5 | 65 % of arithmetic | – |" in text, text
+    assert "- Not measured: step, 36 times as long, 1 threads: more than 3600 s." in text
+
+    # What is missing is said.
+    refused = bench("--brief", "--build", folder)
+    assert refused.returncode == 1 and "is missing; build it: cmake --preset release" in refused.stderr, refused.stderr
+refused = bench("--sizes", "3")
+assert refused.returncode == 2 and "756" in refused.stderr
+late = bench("--only", "steps", "--sizes", "756", "--threads", "1", "--timeout", "0.001", "--build", build)
+assert late.returncode == 1 and "Not measured: step, the paper's, 1 threads: more than 0.001 s" in late.stdout, late.stdout
+print("Benchmark suite: 4 runs")
