@@ -33,22 +33,18 @@ NewtonDirections::Outcome DirectDirections::find(const Step& step, const Iterate
   ++cost.linear_solves;
 
   const std::size_t nodes = factor_frames_.size(), cells = matrix_.jacobian().cells();
-  direction.positions = way_to_shell(model_, at, factor_frames_);
-  Vectors right(nodes);
-  matrix_.multiply(direction.positions, right);
+  direction.positions.assign(at.positions.size(), Vec3::Zero());
   std::vector<double> unknowns(3 * nodes + cells, 0.0);
   for (std::size_t n = 0; n < nodes; ++n) {
-    const Vec3 local = factor_frames_[n].axes.transpose() * (residual.forces[n] - right[n]);
+    const Vec3 local = factor_frames_[n].axes.transpose() * residual.forces[n];
     for (int i = factor_frames_[n].fixed; i < 3; ++i) unknowns[3 * n + i] = local[i];
   }
   const std::span<double> of_cells = std::span(unknowns).subspan(3 * nodes);
-  matrix_.jacobian().rates(direction.positions, of_cells);
-  for (std::size_t c = 0; c < cells; ++c) of_cells[c] -= residual.volume_deficit[c];
+  for (std::size_t c = 0; c < cells; ++c) of_cells[c] = -residual.volume_deficit[c];
   linear_solver_->solve(unknowns);
 
   for (std::size_t n = 0; n < nodes; ++n)
-    direction.positions[n] += factor_frames_[n].axes * Vec3(unknowns[3 * n], unknowns[3 * n + 1], unknowns[3 * n + 2]);
-  direction.positions.resize(at.positions.size());
+    direction.positions[n] = factor_frames_[n].axes * Vec3(unknowns[3 * n], unknowns[3 * n + 1], unknowns[3 * n + 2]);
   model_.tissue.place_hanging(direction.positions);
   direction.pressures.assign(of_cells.begin(), of_cells.end());
   direction.pressures.resize(at.pressures.size(), 0.0);

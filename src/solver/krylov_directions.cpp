@@ -149,26 +149,15 @@ NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate
     is_new = true;
   }
 
-  // What is left to find once the way to the shell is gone.
-  const std::size_t size = 3 * nodes_ + jacobian_.cells();
-  direction.positions = way_to_shell(model_, at, frames_);
-  direction.positions.resize(nodes_);
-  model_.tissue.place_hanging(direction.positions);
-  solution_.assign(size, 0.0);
-  right_.resize(size);
-  std::ranges::copy(direction.positions, of_nodes(solution_).begin());
-  std::ranges::fill(right_, 0.0);
-  if (!contact_tangents_.empty()) multiply(step, at, solution_, right_);
-  const std::span<Vec3> forces = of_nodes(right_);
-  for (std::size_t n = 0; n < nodes_; ++n) forces[n] = residual.forces[n] - forces[n];
-  project(forces);
-  const std::span<double> volumes = of_cells(right_);
-  for (std::size_t c = 0; c < volumes.size(); ++c) volumes[c] = -volume_unit_ * residual.volume_deficit[c] - volumes[c];
-
   // Newton's own error leaves a part of the residual that falls with the residual itself.
   const double useful = std::clamp(0.01 * residual.force, 1e-5, 1e-2);
   const ConjugateResidualsRule rule{.tolerance = std::clamp(wish.accuracy, useful, 0.1)};
   const auto solve = [&] {
+    right_.resize(3 * nodes_ + jacobian_.cells());
+    std::ranges::copy(residual.forces, of_nodes(right_).begin());
+    project(of_nodes(right_));
+    for (std::size_t c = 0; c < jacobian_.cells(); ++c)
+      of_cells(right_)[c] = -volume_unit_ * residual.volume_deficit[c];
     const auto report = solver_.solve([&](const Vector& p, Vector& q) { multiply(step, at, p, q); },
                                       [&](const Vector& r, Vector& z) { precondition(r, z); }, right_, rule,
                                       stop_requested_, solution_);
@@ -191,7 +180,7 @@ NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate
   } else {
     wasted_iterations_ += std::max(0, report.iterations - iterations_when_new_);
   }
-  for (std::size_t n = 0; n < nodes_; ++n) direction.positions[n] += of_nodes(solution_)[n];
+  direction.positions.assign(of_nodes(solution_).begin(), of_nodes(solution_).end());
   direction.pressures.assign(of_cells(solution_).begin(), of_cells(solution_).end());
   direction.pressures.resize(at.pressures.size(), 0.0);
   return Outcome::found;

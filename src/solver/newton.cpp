@@ -28,16 +28,19 @@ std::vector<NodeFrame> node_frames(const Model& model, const Iterate& at) {
   return frames;
 }
 
-Vectors way_to_shell(const Model& model, const Iterate& at, std::span<const NodeFrame> frames) {
-  Vectors way(frames.size(), Vec3::Zero());
+void return_to_shell(const Model& model, Iterate& at) {
   for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
     if (!at.in_contact[k]) continue;
     const std::size_t n = model.vitelline->nodes()[k].index();
-    const Vitelline::Gap gap = model.vitelline->gap(at.positions[n]);
-    const Vec3 normal = frames[n].axes.col(frames[n].fixed - 1);
-    way[n] = -gap.value / normal.dot(gap.inward) * normal;
+    // Where the way is not straight along the normal, because the node is partly held, it takes a few.
+    for (int attempt = 0; attempt < 4; ++attempt) {
+      const Vitelline::Gap gap = model.vitelline->gap(at.positions[n]);
+      const Vec3 way = without_held(model, n, gap.inward);
+      at.positions[n] -= gap.value / way.squaredNorm() * way;
+      if (way == gap.inward) break;
+    }
   }
-  return way;
+  model.tissue.place_hanging(at.positions);
 }
 
 }  // namespace plica

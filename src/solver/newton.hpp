@@ -26,11 +26,10 @@ struct Residual {
   std::vector<double> volume_deficit;  // target - V; cells, um^3
   double force = 0;                    // norm over free directions, relative
   double volume = 0;                   // largest relative error
-  double gap_um = 0;                   // largest distance of a node in contact from the shell
 
-  [[nodiscard]] bool finite() const { return std::isfinite(force) && std::isfinite(volume) && std::isfinite(gap_um); }
+  [[nodiscard]] bool finite() const { return std::isfinite(force) && std::isfinite(volume); }
   /// One number to descend on; each part in units of what matters.
-  [[nodiscard]] double merit() const { return force + 10 * volume + gap_um; }
+  [[nodiscard]] double merit() const { return force + 10 * volume; }
 };
 
 /// A change of the iterate.
@@ -56,12 +55,12 @@ std::vector<NodeFrame> node_frames(const Model& model, const Iterate& at);
 /// `direction` without the axes along which the node is held.
 Vec3 without_held(const Model& model, std::size_t node, Vec3 direction);
 
-/// How nodes in contact get back to the shell: each along its fixed normal; free nodes, um.
-Vectors way_to_shell(const Model& model, const Iterate& at, std::span<const NodeFrame> frames);
+/// Puts nodes in contact back on the shell, along the normals that they are free to move along.
+void return_to_shell(const Model& model, Iterate& at);
 
 /// Finds the direction of a Newton iteration: the solution of
 ///   [ A  -J^T ] [ dx      ]   [ forces          ]
-///   [ -J   0  ] [ dlambda ] = [ -volume_deficit ]   with dx = way_to_shell along fixed directions;
+///   [ -J   0  ] [ dlambda ] = [ -volume_deficit ]   with dx = 0 along fixed directions;
 /// A: tangent of all laws and constraints, J: gradients of the cells' volumes.
 class NewtonDirections {
  public:

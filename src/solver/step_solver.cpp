@@ -52,7 +52,6 @@ Residual StepSolver::residual(const Step& step, Iterate& at) const {
     const Vec3 normal = frames[n].axes.col(frames[n].fixed - 1);
     at.contact_forces[k] = -normal.dot(r.forces[n]) / normal.dot(gap.inward);
     of_law[n] = at.contact_forces[k] * gap.inward;
-    r.gap_um = std::max(r.gap_um, std::abs(gap.value));
   }
   take();
 
@@ -89,6 +88,7 @@ bool StepSolver::revise_contacts(Iterate& at) const {
       changed = true;
     }
   }
+  return_to_shell(model_, at);
   return changed;
 }
 
@@ -102,7 +102,7 @@ bool StepSolver::search_line(const Step& step, const Direction& d, Iterate& at, 
   for (int halving = 0; halving < 8; ++halving, part *= 0.5) {
     Iterate trial = at;
     for (std::size_t n = 0; n < trial.positions.size(); ++n) trial.positions[n] += part * d.positions[n];
-    model_.tissue.place_hanging(trial.positions);
+    return_to_shell(model_, trial);
     blocking = inverted_cell(model_.tissue, trial.positions);
     if (blocking) continue;
     for (std::size_t c = 0; c < trial.pressures.size(); ++c) trial.pressures[c] += part * d.pressures[c];
@@ -154,8 +154,7 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
       report.cell = cell_with_largest(model_.tissue, now.forces);
       return report;
     }
-    const bool solved = now.force <= tolerances_.force && now.gap_um <= tolerances_.gap_um &&
-                        now.volume <= std::max(tolerances_.volume, volume_rounding_);
+    const bool solved = now.force <= tolerances_.force && now.volume <= std::max(tolerances_.volume, volume_rounding_);
     if (contacts_settled && solved) break;
     if (stop_requested_ && stop_requested_()) {
       report.outcome = StepReport::Outcome::interrupted;

@@ -23,6 +23,7 @@ struct Case {
     model.tissue.place_hanging(at.positions);
     for (double& pressure : at.pressures) pressure = 0.02 * random.number();
     for (std::size_t k = 0; k < at.in_contact.size(); ++k) at.in_contact[k] = k % 3 != 0;
+    return_to_shell(model, at);
     for (std::size_t k = 0; k < at.in_contact.size(); ++k) at.contact_forces[k] = at.in_contact[k] ? 0.5 : 0;
     residual.forces = random.vectors(previous.size());
     for (std::size_t n = model.tissue.free_node_count(); n < previous.size(); ++n) residual.forces[n].setZero();
