@@ -24,7 +24,10 @@ class Preconditioner {
   virtual void solve(std::span<float> x) const = 0;
 };
 
-/// Algebraic multigrid: for large matrices, whose Krylov iterations it keeps from growing with size.
+/// Algebraic multigrid, for large matrices: keeps Krylov iterations from growing with size
+/// (docs/decisions/0007-multigrid.md). The pattern is analysed here, once; what `factorise` makes depends on its
+/// arguments alone. Symmetric and positive definite itself. Up to 2000 nodes it is a factor. Not for two solves at
+/// once.
 std::unique_ptr<Preconditioner> make_multigrid(const BlockPattern& pattern);
 
 }  // namespace plica
