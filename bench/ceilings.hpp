@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "mechanics/kernels.hpp"
+#include "mechanics/kernels/kernels.hpp"
 
 namespace plica::bench {
 

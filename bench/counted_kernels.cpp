@@ -37,8 +37,8 @@ inline Lanes broadcast(double value) { return value; }
 
 }  // namespace plica::counted
 
-#include "mechanics/corotational_blocks_kernels.cpp"
-#include "mechanics/corotational_kernels.cpp"
+#include "mechanics/kernels/corotational_blocks_kernels.cpp"
+#include "mechanics/kernels/corotational_kernels.cpp"
 
 namespace plica::counted {
 

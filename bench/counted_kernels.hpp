@@ -2,7 +2,7 @@
 // compiled with a number that counts what is done with it.
 #pragma once
 
-#include "mechanics/corotational_kernels.hpp"
+#include "mechanics/kernels/corotational_kernels.hpp"
 
 namespace plica::counted {
 

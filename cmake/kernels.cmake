@@ -1,5 +1,5 @@
 # Kernel sources are compiled once for each instruction set that they are worth it for, and all of that goes into
-# plica_core; the program chooses when it runs (src/mechanics/kernels.hpp). They may use fused multiply-add, and are
+# plica_core; the program chooses when it runs (src/mechanics/kernels/kernels.hpp). They may use fused multiply-add, and are
 # optimised alike in every build, so that a debug build's results are those of a release build.
 function(add_kernels name lanes)
   add_library(plica_kernels_${name} OBJECT ${kernel_sources})

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "mechanics/element_chunks.hpp"
-#include "mechanics/kernels.hpp"
+#include "mechanics/kernels/element_chunks.hpp"
+#include "mechanics/kernels/kernels.hpp"
+#include "mechanics/kernels/volume_kernels.hpp"
 #include "mechanics/law.hpp"
-#include "mechanics/volume_kernels.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {

@@ -10,10 +10,10 @@
 // derivative of R out: R K R^T, the warped stiffness.
 #pragma once
 
-#include "mechanics/corotational_kernels.hpp"
-#include "mechanics/element_chunks.hpp"
 #include "mechanics/hexahedron_stiffness.hpp"
-#include "mechanics/kernels.hpp"
+#include "mechanics/kernels/corotational_kernels.hpp"
+#include "mechanics/kernels/element_chunks.hpp"
+#include "mechanics/kernels/kernels.hpp"
 #include "mechanics/law.hpp"
 #include "tissue/tissue.hpp"
 

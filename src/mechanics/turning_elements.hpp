@@ -8,8 +8,8 @@
 
 #include <Eigen/Dense>
 
-#include "mechanics/element_chunks.hpp"
 #include "mechanics/hexahedron_stiffness.hpp"
+#include "mechanics/kernels/element_chunks.hpp"
 #include "mechanics/law.hpp"
 #include "tissue/tissue.hpp"
 

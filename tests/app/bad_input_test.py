@@ -68,9 +68,7 @@ class BadScenario(CommandLine):
         for height in ("100", "300", "1e300", "1e-300"):
             with self.subTest(height):
                 self.assert_refused(SPHERE.replace("cell_height_um = 30", f"cell_height_um = {height}"), "embryo.")
-        for old, new in (("[5, 5, 4]", "[1, 1, 100]"), ("diameter_um = 200", "diameter_um = 1e300")):
-            with self.subTest(new):
-                self.assert_refused(SPHERE.replace(old, new).replace("cells_along = 3\ncells_across = 3\n", ""), "embryo.")
+        self.assert_refused(SPHERE.replace("diameter_um = 200", "diameter_um = 1e300"), "embryo.")
 
     def test_hundreds_of_millions_of_cells_are_refused_before_any_is_made(self):
         for cells in ("[1000, 1000, 1000]", "[100000, 100000, 1]", "[100000, 100000, 100000]", "[20000, 20000, 1]"):

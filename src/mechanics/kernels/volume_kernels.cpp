@@ -1,8 +1,8 @@
 // Letters as in docs/theory/cell_volume.md: V the volume as a cubic polynomial of the modes m_j, g its gradient by
 // them.
-#include "mechanics/volume_kernels.hpp"
+#include "mechanics/kernels/volume_kernels.hpp"
 
-#include "mechanics/hexahedron_lanes.hpp"
+#include "mechanics/kernels/hexahedron_lanes.hpp"
 
 namespace plica::PLICA_KERNELS {
 namespace {

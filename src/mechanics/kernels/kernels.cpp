@@ -1,4 +1,4 @@
-#include "mechanics/kernels.hpp"
+#include "mechanics/kernels/kernels.hpp"
 
 #include <cstdlib>
 #include <stdexcept>

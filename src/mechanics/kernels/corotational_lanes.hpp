@@ -3,8 +3,8 @@
 // and q what answers S - I and h.
 #pragma once
 
-#include "mechanics/corotational_kernels.hpp"
-#include "mechanics/hexahedron_lanes.hpp"
+#include "mechanics/kernels/corotational_kernels.hpp"
+#include "mechanics/kernels/hexahedron_lanes.hpp"
 
 namespace plica::PLICA_KERNELS {
 

@@ -6,7 +6,7 @@
 // g_j (docs/theory/corotational.md).
 #pragma once
 
-#include "mechanics/lanes.hpp"
+#include "mechanics/kernels/lanes.hpp"
 
 namespace plica::PLICA_KERNELS {
 

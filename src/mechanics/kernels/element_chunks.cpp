@@ -1,4 +1,4 @@
-#include "mechanics/element_chunks.hpp"
+#include "mechanics/kernels/element_chunks.hpp"
 
 #include <algorithm>
 #include <bitset>

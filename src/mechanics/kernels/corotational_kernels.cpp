@@ -2,7 +2,7 @@
 // displacement, T and q what answers S - I and h, t = G (sum h_a x q_a) with G = (tr(S) I - S)^-1, and
 // P = T - sum q_a X_a^T - [t]x the energy's gradient by F in the frame. A letter with a d: its change along a
 // direction.
-#include "mechanics/corotational_lanes.hpp"
+#include "mechanics/kernels/corotational_lanes.hpp"
 
 namespace plica::PLICA_KERNELS {
 namespace {

@@ -2,7 +2,7 @@
 // what the element keeps in its frame is turned by R first. Then, with gamma_ai = h_ai - b_i . X_a,
 //   K_ij = shear ((b_i . b_j) I + b_j b_i^T)/2 - b_i b_j^T/3) + sum gamma_ai gamma_bj H_ab + U_i [b_j]x - [b_i]x U_j^T,
 // the last two from the turning of the frame, omega = G (b_i x dx_i): U_i = N_i G - [b_i]x G C G / 2.
-#include "mechanics/corotational_lanes.hpp"
+#include "mechanics/kernels/corotational_lanes.hpp"
 
 namespace plica::PLICA_KERNELS {
 namespace {
