@@ -43,7 +43,7 @@ std::unique_ptr<NewtonDirections> make_directions(const Model& model, LinearMeth
                                                   std::function<bool()> stop_requested) {
   // Where the factor of a sheet takes as long as multigrid, and where that of the indefinite system takes more room
   // than a usual machine has (docs/performance.md).
-  constexpr std::size_t most_nodes_of_cholesky = 25'000, most_nodes_of_direct = 60'000;
+  constexpr std::size_t most_nodes_of_cholesky = 5'000, most_nodes_of_direct = 60'000;
   const std::size_t nodes = model.tissue.free_node_count();
   const bool is_large = nodes > most_nodes_of_cholesky;
   if (method == LinearMethod::automatic) method = is_large ? LinearMethod::multigrid : LinearMethod::cholesky;
