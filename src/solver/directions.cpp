@@ -42,10 +42,11 @@ class GuardedDirections final : public NewtonDirections {
 std::unique_ptr<NewtonDirections> make_directions(const Model& model, LinearMethod method,
                                                   std::function<bool()> stop_requested) {
   // Where the factor of a sheet takes as long as multigrid, and where that of the indefinite system takes more room
-  // than a usual machine has (docs/performance.md).
-  constexpr std::size_t most_nodes_of_cholesky = 5'000, most_nodes_of_direct = 60'000;
+  // than a usual machine has (docs/performance.md). Multigrid finds the long thin elements of divided cells hard.
+  constexpr std::size_t most_nodes_of_cholesky = 5'000, most_nodes_when_divided = 50'000, most_nodes_of_direct = 60'000;
   const std::size_t nodes = model.tissue.free_node_count();
-  const bool is_large = nodes > most_nodes_of_cholesky;
+  const bool is_divided = !model.tissue.hanging.empty();
+  const bool is_large = nodes > (is_divided ? most_nodes_when_divided : most_nodes_of_cholesky);
   if (method == LinearMethod::automatic) method = is_large ? LinearMethod::multigrid : LinearMethod::cholesky;
   if (method == LinearMethod::direct) return std::make_unique<DirectDirections>(model);
   const auto inverse =
