@@ -6,6 +6,10 @@
 // g_j (docs/theory/corotational.md).
 #pragma once
 
+#if PLICA_LANES > 2
+#include <immintrin.h>
+#endif
+
 #include "mechanics/lanes.hpp"
 
 namespace plica::PLICA_KERNELS {
@@ -19,21 +23,27 @@ inline int count_in_batch(std::size_t elements, std::size_t batch) {
   return left < batch_size ? static_cast<int>(left) : batch_size;
 }
 
-/// The vectors of some nodes side by side. x and y are read together and sorted afterwards.
+/// The vectors of some nodes side by side.
 inline Vec gather(const double* vectors, const int* at) {
+#if PLICA_LANES == 8
+  const auto r = [&](int k) { return _mm256_maskz_loadu_pd(7, vectors + at[k]); };
+  const auto two = [&](int k, int l) { return _mm512_insertf64x4(_mm512_castpd256_pd512(r(k)), r(l), 1); };
+  const __m512d a = two(0, 2), b = two(1, 3), c = two(4, 6), d = two(5, 7);
+  const __m512d low = _mm512_unpacklo_pd(a, b), high = _mm512_unpacklo_pd(c, d);
+  return {_mm512_shuffle_f64x2(low, high, 0x88), _mm512_shuffle_f64x2(_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d), 0x88), _mm512_shuffle_f64x2(low, high, 0xdd)};
+#elif PLICA_LANES == 4
+  const auto r = [&](int k) { return _mm256_maskload_pd(vectors + at[k], _mm256_set_epi64x(0, -1, -1, -1)); };
+  const __m256d a = r(0), b = r(1), c = r(2), d = r(3);
+  const __m256d low = _mm256_unpacklo_pd(a, b), high = _mm256_unpacklo_pd(c, d);
+  return {_mm256_permute2f128_pd(low, high, 0x20), _mm256_permute2f128_pd(_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d), 0x20), _mm256_permute2f128_pd(low, high, 0x31)};
+#else
   const auto pair = [&](int k) { return *reinterpret_cast<const Pair*>(vectors + at[k]); };
   const auto z = [&](int k) { return vectors[at[k] + 2]; };
-#if PLICA_LANES == 8
-  const Lanes even = join(join(pair(0), pair(2)), join(pair(4), pair(6)));
-  const Lanes odd = join(join(pair(1), pair(3)), join(pair(5), pair(7)));
-  return {low_of_pairs(even, odd), high_of_pairs(even, odd), Lanes{z(0), z(1), z(2), z(3), z(4), z(5), z(6), z(7)}};
-#elif PLICA_LANES == 4
-  const Lanes even = join(pair(0), pair(2)), odd = join(pair(1), pair(3));
-  return {low_of_pairs(even, odd), high_of_pairs(even, odd), Lanes{z(0), z(1), z(2), z(3)}};
-#elif PLICA_LANES == 2
+#if PLICA_LANES == 2
   return {low_of_pairs(pair(0), pair(1)), high_of_pairs(pair(0), pair(1)), Lanes{z(0), z(1)}};
 #else
   return {Lanes{pair(0)[0]}, Lanes{pair(0)[1]}, Lanes{z(0)}};
+#endif
 #endif
 }
 
