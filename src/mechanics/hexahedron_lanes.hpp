@@ -6,10 +6,6 @@
 // g_j (docs/theory/corotational.md).
 #pragma once
 
-#if PLICA_LANES > 2
-#include <immintrin.h>
-#endif
-
 #include "mechanics/lanes.hpp"
 
 namespace plica::PLICA_KERNELS {
@@ -54,13 +50,21 @@ inline void gather(const BatchNodes& nodes, int lane, const double* vectors, Vec
 
 /// Adds to the nodes of the first `count` lanes.
 inline void scatter(const BatchNodes& nodes, int lane, int count, const Vec (&f)[8], double* vectors) {
-  for (int i = 0; i < 8; ++i)
-    for (int k = 0; k < count; ++k) {
+  const auto add = [&](int i, int k) {
       double* v = vectors + nodes[i][lane + k];
       v[0] += f[i].x[k];
       v[1] += f[i].y[k];
       v[2] += f[i].z[k];
-    }
+  };
+  if (count == width) {
+#pragma GCC unroll 1
+    for (int i = 0; i < 8; ++i)
+#pragma GCC unroll 8
+      for (int k = 0; k < width; ++k) add(i, k);
+  } else {
+    for (int i = 0; i < 8; ++i)
+      for (int k = 0; k < count; ++k) add(i, k);
+  }
 }
 
 // Differences of neighbouring nodes first: what they have in common is lost without rounding.

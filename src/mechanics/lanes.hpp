@@ -7,6 +7,9 @@
 #pragma once
 
 #include <cstddef>
+#if PLICA_LANES > 2
+#include <immintrin.h>
+#endif
 
 namespace plica::PLICA_KERNELS {
 
@@ -42,9 +45,15 @@ inline Lanes load(const double* values) { return *reinterpret_cast<const Lanes*>
 /// Whether a comparison holds in any lane.
 template <class Mask>
 inline bool any(Mask mask) {
+#if PLICA_LANES == 8
+  return _mm512_movepi64_mask(reinterpret_cast<__m512i>(mask)) != 0;
+#elif PLICA_LANES == 4
+  return _mm256_movemask_pd(reinterpret_cast<__m256d>(mask)) != 0;
+#else
   long long either = 0;
   for (int k = 0; k < width; ++k) either |= mask[k];
   return either != 0;
+#endif
 }
 
 struct Vec {
