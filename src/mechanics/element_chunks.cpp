@@ -38,8 +38,7 @@ ElementChunks::ElementChunks(std::span<const std::array<NodeId, 8>> elements, st
       order_.insert(order_.end(), of_one.begin(), of_one.end());
       phase_start_.push_back(order_.size());
     }
-    for (std::size_t chunk = first; chunk < last; ++chunk)
-      for_all(chunk, [](Colours& colours) { colours.reset(); });
+    for (std::size_t chunk = first; chunk < last; ++chunk) for_all(chunk, [](Colours& colours) { colours.reset(); });
   }
 }
 

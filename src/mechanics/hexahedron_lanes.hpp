@@ -19,27 +19,34 @@ inline int count_in_batch(std::size_t elements, std::size_t batch) {
   return left < batch_size ? static_cast<int>(left) : batch_size;
 }
 
-/// The vectors of some nodes side by side.
+/// The vectors of some nodes side by side: rows x y z are read, and columns taken from them.
 inline Vec gather(const double* vectors, const int* at) {
 #if PLICA_LANES == 8
-  const auto r = [&](int k) { return _mm256_maskz_loadu_pd(7, vectors + at[k]); };
-  const auto two = [&](int k, int l) { return _mm512_insertf64x4(_mm512_castpd256_pd512(r(k)), r(l), 1); };
-  const __m512d a = two(0, 2), b = two(1, 3), c = two(4, 6), d = two(5, 7);
-  const __m512d low = _mm512_unpacklo_pd(a, b), high = _mm512_unpacklo_pd(c, d);
-  return {_mm512_shuffle_f64x2(low, high, 0x88), _mm512_shuffle_f64x2(_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d), 0x88), _mm512_shuffle_f64x2(low, high, 0xdd)};
+  const auto rows = [&](int k, int l) { return join(load_row(vectors + at[k]), load_row(vectors + at[l])); };
+  const Lanes a = rows(0, 2), b = rows(1, 3), c = rows(4, 6), d = rows(5, 7);
+  // x and z of nodes 0 1 and 2 3, of 4 5 and 6 7; y the same.
+  const Lanes xz = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Lanes xz_on = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Lanes y = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Lanes y_on = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+  return {__builtin_shufflevector(xz, xz_on, 0, 1, 4, 5, 8, 9, 12, 13),
+          __builtin_shufflevector(y, y_on, 0, 1, 4, 5, 8, 9, 12, 13),
+          __builtin_shufflevector(xz, xz_on, 2, 3, 6, 7, 10, 11, 14, 15)};
 #elif PLICA_LANES == 4
-  const auto r = [&](int k) { return _mm256_maskload_pd(vectors + at[k], _mm256_set_epi64x(0, -1, -1, -1)); };
-  const __m256d a = r(0), b = r(1), c = r(2), d = r(3);
-  const __m256d low = _mm256_unpacklo_pd(a, b), high = _mm256_unpacklo_pd(c, d);
-  return {_mm256_permute2f128_pd(low, high, 0x20), _mm256_permute2f128_pd(_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d), 0x20), _mm256_permute2f128_pd(low, high, 0x31)};
+  const Lanes a = load_row(vectors + at[0]), b = load_row(vectors + at[1]);
+  const Lanes c = load_row(vectors + at[2]), d = load_row(vectors + at[3]);
+  const Lanes xz = __builtin_shufflevector(a, b, 0, 4, 2, 6), xz_on = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+  const Lanes y = __builtin_shufflevector(a, b, 1, 5, 3, 7), y_on = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return {__builtin_shufflevector(xz, xz_on, 0, 1, 4, 5), __builtin_shufflevector(y, y_on, 0, 1, 4, 5),
+          __builtin_shufflevector(xz, xz_on, 2, 3, 6, 7)};
 #else
-  const auto pair = [&](int k) { return *reinterpret_cast<const Pair*>(vectors + at[k]); };
-  const auto z = [&](int k) { return vectors[at[k] + 2]; };
-#if PLICA_LANES == 2
-  return {low_of_pairs(pair(0), pair(1)), high_of_pairs(pair(0), pair(1)), Lanes{z(0), z(1)}};
-#else
-  return {Lanes{pair(0)[0]}, Lanes{pair(0)[1]}, Lanes{z(0)}};
-#endif
+  Vec x;
+  for (int k = 0; k < width; ++k) {
+    x.x[k] = vectors[at[k]];
+    x.y[k] = vectors[at[k] + 1];
+    x.z[k] = vectors[at[k] + 2];
+  }
+  return x;
 #endif
 }
 
@@ -51,10 +58,10 @@ inline void gather(const BatchNodes& nodes, int lane, const double* vectors, Vec
 /// Adds to the nodes of the first `count` lanes.
 inline void scatter(const BatchNodes& nodes, int lane, int count, const Vec (&f)[8], double* vectors) {
   const auto add = [&](int i, int k) {
-      double* v = vectors + nodes[i][lane + k];
-      v[0] += f[i].x[k];
-      v[1] += f[i].y[k];
-      v[2] += f[i].z[k];
+    double* v = vectors + nodes[i][lane + k];
+    v[0] += f[i].x[k];
+    v[1] += f[i].y[k];
+    v[2] += f[i].z[k];
   };
   if (count == width) {
 #pragma GCC unroll 1
