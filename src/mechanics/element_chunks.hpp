@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <ranges>
 #include <span>
 #include <vector>
 
@@ -33,11 +32,6 @@ class ElementChunks {
 
   [[nodiscard]] std::size_t element_count() const { return elements_; }
   [[nodiscard]] std::size_t batch_count() const { return (elements_ + batch_size - 1) / batch_size; }
-
-  /// Where an element lies among the batches: with the last one, also the places after it, which repeat it.
-  [[nodiscard]] auto places_of(std::size_t element) const {
-    return std::views::iota(element, element + 1 == elements_ ? batch_count() * batch_size : element + 1);
-  }
 
   /// Calls body(first batch, last batch) for every chunk. `last` is the one after.
   template <class Body>
