@@ -1,15 +1,16 @@
-// How many floating-point operations the kernels of src/mechanics/ take, counted by running them: their own sources,
-// compiled with a number that counts what is done with it.
+// The kernels of src/mechanics/kernels/ once more, with numbers that count: how many floating-point operations they
+// take.
 #pragma once
 
 #include "mechanics/kernels/corotational_kernels.hpp"
+#include "mechanics/kernels/volume_kernels.hpp"
 
 namespace plica::counted {
 
-/// The kernels, an element after the other. They count for the thread that calls them.
 const CorotationalKernels& corotational();
+const VolumeKernels& volumes();
 
-/// Additions, subtractions, multiplications and divisions since the last call. A fused multiply-add is two.
+/// Operations of the two's kernels since the last call, by this thread. A fused multiply-add is two.
 long take_count();
 
 }  // namespace plica::counted

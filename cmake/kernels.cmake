@@ -11,12 +11,12 @@ endfunction()
 
 set_source_files_properties(${kernel_sources} PROPERTIES COMPILE_OPTIONS -ffp-contract=fast)  # after plica_options'
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  set(avx2 -mavx2 -mfma)
-  set(avx512 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512)
   target_compile_definitions(plica_core PUBLIC PLICA_X86_KERNELS)
+  add_kernels(generic 2)
+  add_kernels(avx2 4 -mavx2 -mfma)
+  add_kernels(avx512 8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512)
 else()
-  set(generic -Wno-psabi)  # the others are there and never chosen
+  add_kernels(generic 2)
+  add_kernels(avx2 2)  # there, but never chosen
+  add_kernels(avx512 2)
 endif()
-add_kernels(generic 2)
-add_kernels(avx2 4 ${avx2} ${generic})
-add_kernels(avx512 8 ${avx512} ${generic})

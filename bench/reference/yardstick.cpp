@@ -32,21 +32,26 @@ void product(const Mesh& mesh, const std::vector<Matrix24>& K, const double (&R)
 
 }  // namespace
 
-double yardstick_us(const Mesh& mesh, int rounds) {
-  std::vector<Matrix24> K(mesh.hexes.size());
-  for (std::size_t e = 0; e < K.size(); ++e)
+Yardstick::Yardstick(const Mesh& mesh) : mesh_(mesh), matrices_(mesh.hexes.size()), result_(mesh.nodes.size()) {
+  for (std::size_t e = 0; e < matrices_.size(); ++e)
     for (std::size_t i = 0; i < 24; ++i)
       for (std::size_t j = 0; j < 24; ++j)
-        K[e][24 * i + j] = (i == j ? 1.0 : 0.0) + 1.0 / static_cast<double>(1 + e % 7 + i + j);
+        matrices_[e][24 * i + j] = (i == j ? 1.0 : 0.0) + 1.0 / static_cast<double>(1 + e % 7 + i + j);
+}
+
+void Yardstick::product() {
   const double R[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6};
-  std::vector<double> y(mesh.nodes.size()), times;
+  reference::product(mesh_, matrices_, R, result_);
+  asm volatile("" : : "r"(result_.data()) : "memory");  // the product is wanted
+}
+
+double yardstick_us(const Mesh& mesh, int rounds) {
+  Yardstick yardstick(mesh);
+  std::vector<double> times;
   const std::size_t repeats = std::max<std::size_t>(3, 2'000'000 / mesh.hexes.size());
   for (int round = 0; round < rounds; ++round) {
     const auto start = std::chrono::steady_clock::now();
-    for (std::size_t k = 0; k < repeats; ++k) {
-      product(mesh, K, R, y);
-      asm volatile("" : : "r"(y.data()) : "memory");  // the product is wanted
-    }
+    for (std::size_t k = 0; k < repeats; ++k) yardstick.product();
     times.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count() /
                     static_cast<double>(repeats));
   }

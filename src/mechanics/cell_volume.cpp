@@ -37,8 +37,7 @@ void VolumeElements::fit(const Tissue& tissue, std::size_t place) {
 }
 
 void VolumeElements::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
-  for (const ElementId e : elements)
-    for (std::size_t place : chunks_.places_of(e.index())) fit(tissue, place);
+  for (const ElementId e : elements) fit(tissue, e.index());
 }
 
 const VolumeKernels& VolumeElements::kernels() const {

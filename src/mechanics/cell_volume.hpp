@@ -69,9 +69,10 @@ class CellVolumes {
   [[nodiscard]] const std::vector<std::array<NodeId, 8>>& elements() const { return elements_; }
   [[nodiscard]] CellId cell_of(std::size_t element) const { return element_cell_[element]; }
 
- private:
+  /// What the kernels are given.
   [[nodiscard]] VolumeStep kernel_step(std::span<const Vec3> positions, std::span<const double> pressures) const;
 
+ private:
   std::vector<std::array<NodeId, 8>> elements_;
   std::vector<CellId> element_cell_;
   std::vector<double> targets_;  // cells; um^3

@@ -67,8 +67,7 @@ void Corotational::fit(const Tissue& tissue, std::size_t place) {
 }
 
 void Corotational::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
-  for (const ElementId e : elements)
-    for (const std::size_t place : chunks_.places_of(e.index())) fit(tissue, place);
+  for (const ElementId e : elements) fit(tissue, e.index());
 }
 
 const CorotationalKernels& Corotational::kernels() const {

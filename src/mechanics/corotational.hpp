@@ -36,11 +36,13 @@ class Corotational final : public Law {
                                                     std::span<const Vec3> positions) const override;
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
 
+  /// What the kernels are given.
+  [[nodiscard]] CorotationalStep kernel_step(const Step& step) const;
+
  private:
   void fit(const Tissue& tissue, std::size_t element);  // makes what is kept of it from its rest shape
   [[nodiscard]] NodeId node(std::size_t element, int corner) const;
   [[nodiscard]] const CorotationalKernels& kernels() const;
-  [[nodiscard]] CorotationalStep kernel_step(const Step& step) const;
 
   ElasticModuli moduli_;
   double shear_viscosity_;

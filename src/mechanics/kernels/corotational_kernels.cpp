@@ -12,9 +12,9 @@ template <class Body>
 inline void for_elements(const CorotationalStep& step, std::size_t first, std::size_t last, const Body& body) {
   for (std::size_t b = first; b < last; ++b) {
     const int count = count_in_batch(step.elements, b);
-    const ViscousBatch* viscous = step.viscous_batches ? step.viscous_batches + b : nullptr;
+    const ViscousBatch* viscous_batch = step.viscous_batches ? step.viscous_batches + b : nullptr;
     for (int lane = 0; lane < count; lane += width)
-      body(Elements{step.batches[b], viscous, step.rate, lane}, count - lane < width ? count - lane : width);
+      body(Elements{step.batches[b], viscous_batch, step.rate, lane}, count - lane < width ? count - lane : width);
   }
 }
 
@@ -30,6 +30,7 @@ inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P,
   scatter(e.batch.nodes, e.lane, count, f, vectors);
 }
 
+template <bool viscous>
 [[gnu::flatten]] double energy(const CorotationalStep& step, std::size_t first, std::size_t last) {
   double sum = 0;
   for_elements(step, first, last, [&](const Elements& e, int count) {
@@ -39,12 +40,13 @@ inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P,
     const Sym D = deviator(now.S);
     Lanes energies = 0.5 * (e.shear() * contract(D, D) + dot(now.h, q));
     Sym T = D;
-    if (e.viscous) energies += add_viscous(e, step, now, T, q);
+    if (viscous) energies += add_viscous(e, step, now, T, q);
     for (int k = 0; k < count; ++k) sum += energies[k];
   });
   return sum;
 }
 
+template <bool viscous>
 [[gnu::flatten]] void add_forces(const CorotationalStep& step, std::size_t first, std::size_t last, double* forces) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
     const Deformation now = deformation(e, step.positions);
@@ -52,7 +54,7 @@ inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P,
     multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
     Sym T = e.shear() * deviator(now.S);
     Vec torque = cross(now.h, q);
-    if (e.viscous) {
+    if (viscous) {
       add_viscous(e, step, now, T, q);
       torque = cross(now.h, q) + axial(full(now.S) * full(T));
     }
@@ -65,6 +67,7 @@ inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P,
 }
 
 // R K R^T: the frame does not turn.
+template <bool viscous>
 [[gnu::flatten]] void add_warped_product(const CorotationalStep& step, std::size_t first, std::size_t last,
                                          const double* direction, double* product) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
@@ -76,10 +79,10 @@ inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P,
     Hourglass dq;
     multiply<1>(e.batch.stiffness, e.lane, {&move.w}, {&dq});
     Lanes shear = e.shear();
-    if (e.viscous) {
-      Hourglass viscous;
-      multiply<1>(e.viscous->stiffness, e.lane, {&move.w}, {&viscous});
-      for (int i = 0; i < 12; ++i) dq.at[i] += e.rate * viscous.at[i];
+    if (viscous) {
+      Hourglass damped;
+      multiply<1>(e.viscous->stiffness, e.lane, {&move.w}, {&damped});
+      for (int i = 0; i < 12; ++i) dq.at[i] += e.rate * damped.at[i];
       shear += e.viscous_shear();
     }
     Mat dP = full(shear * deviator(symmetric_part(move.W)));
@@ -88,6 +91,7 @@ inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P,
   });
 }
 
+template <bool viscous>
 [[gnu::flatten]] void add_exact_product(const CorotationalStep& step, std::size_t first, std::size_t last,
                                         const double* direction, double* product) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
@@ -106,11 +110,11 @@ inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P,
     multiply<2>(e.batch.stiffness, e.lane, {&h, &dh}, {&q, &dq});
     Sym T = e.shear() * deviator(S), dT = e.shear() * deviator(dS);
     Vec torque = cross(h, q), dtorque = cross(dh, q) + cross(h, dq);
-    if (e.viscous) {
+    if (viscous) {
       add_viscous(e, step, {R, S, h}, T, q);
-      Hourglass viscous;
-      multiply<1>(e.viscous->stiffness, e.lane, {&dh}, {&viscous});
-      for (int i = 0; i < 12; ++i) dq.at[i] += e.rate * viscous.at[i];
+      Hourglass damped;
+      multiply<1>(e.viscous->stiffness, e.lane, {&dh}, {&damped});
+      for (int i = 0; i < 12; ++i) dq.at[i] += e.rate * damped.at[i];
       dT = dT + e.viscous_shear() * deviator(dS);
       torque = cross(h, q) + axial(full(S) * full(T));
       dtorque = cross(dh, q) + cross(h, dq) + axial(full(dS) * full(T) + full(S) * full(dT));
@@ -126,9 +130,21 @@ inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P,
   });
 }
 
+// One kernel without viscosity, one with: most elements have none, and it must not cost them anything.
+double energy(const CorotationalStep& step, std::size_t first, std::size_t last) {
+  return (step.viscous_batches ? energy<true> : energy<false>)(step, first, last);
+}
+
+void add_forces(const CorotationalStep& step, std::size_t first, std::size_t last, double* forces) {
+  (step.viscous_batches ? add_forces<true> : add_forces<false>)(step, first, last, forces);
+}
+
 void add_product(const CorotationalStep& step, std::size_t first, std::size_t last, const double* direction,
                  double* product) {
-  (step.semidefinite_tangent ? add_warped_product : add_exact_product)(step, first, last, direction, product);
+  const auto add = step.semidefinite_tangent
+                       ? (step.viscous_batches ? add_warped_product<true> : add_warped_product<false>)
+                       : (step.viscous_batches ? add_exact_product<true> : add_exact_product<false>);
+  add(step, first, last, direction, product);
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
-// A way through all elements for any number of threads: chunks of consecutive elements, coloured so that chunks of one
-// colour have no node in common. Colours follow each other, the chunks of one are shared out among the threads. So
-// elements add to their nodes without more ado, and what a node gets is added up in the same order whoever does it.
+// A way through all elements for any number of threads: chunks of consecutive elements, some at a time (a window),
+// coloured so that chunks of one colour have no node in common. Windows and their colours follow each other, the chunks
+// of one colour are shared out among the threads. So elements add to their nodes without more ado, and what a node gets
+// is added up in the same order whoever does it. A window's nodes fit a cache, which all its colours find them in.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <ranges>
 #include <span>
 #include <vector>
 
@@ -24,18 +24,14 @@ class ElementChunks {
  public:
   /// Elements that kernels take at once. Chunks begin at multiples of it.
   static constexpr std::size_t batch_size = 8;
-  static constexpr std::size_t most_chunks = 256;
+  static constexpr std::size_t most_chunks = 1024;
+  static constexpr std::size_t chunks_in_window = 64;
 
   /// With the cells of elements, chunks of one colour have no cell in common either.
   explicit ElementChunks(std::span<const std::array<NodeId, 8>> elements, std::span<const CellId> element_cell = {});
 
   [[nodiscard]] std::size_t element_count() const { return elements_; }
   [[nodiscard]] std::size_t batch_count() const { return (elements_ + batch_size - 1) / batch_size; }
-
-  /// Where an element lies among the batches: with the last one, also the places after it, which repeat it.
-  [[nodiscard]] auto places_of(std::size_t element) const {
-    return std::views::iota(element, element + 1 == elements_ ? batch_count() * batch_size : element + 1);
-  }
 
   /// Calls body(first batch, last batch) for every chunk. `last` is the one after.
   template <class Body>
@@ -76,9 +72,9 @@ class ElementChunks {
   void for_chunks(const Body& body) const {
     constexpr std::size_t worth_sharing = 2048;  // elements; with fewer, waking other threads costs more than they save
 #pragma omp parallel if (elements_ >= worth_sharing)
-    for (std::size_t colour = 0; colour + 1 < colour_start_.size(); ++colour) {
+    for (std::size_t phase = 0; phase + 1 < phase_start_.size(); ++phase) {
 #pragma omp for schedule(dynamic)
-      for (std::size_t k = colour_start_[colour]; k < colour_start_[colour + 1]; ++k) body(order_[k]);
+      for (std::size_t k = phase_start_[phase]; k < phase_start_[phase + 1]; ++k) body(order_[k]);
     }
   }
 
@@ -92,8 +88,8 @@ class ElementChunks {
 
   std::size_t elements_;
   std::size_t batches_in_chunk_;
-  std::vector<std::size_t> order_;         // chunks, colour by colour
-  std::vector<std::size_t> colour_start_;  // colours + 1, in order_
+  std::vector<std::size_t> order_;        // chunks, window by window and colour by colour
+  std::vector<std::size_t> phase_start_;  // where each colour of each window starts in order_, and the end
 };
 
 }  // namespace plica

@@ -19,21 +19,34 @@ inline int count_in_batch(std::size_t elements, std::size_t batch) {
   return left < batch_size ? static_cast<int>(left) : batch_size;
 }
 
-/// The vectors of some nodes side by side. x and y are read together and sorted afterwards.
+/// The vectors of some nodes side by side: rows x y z are read, and columns taken from them.
 inline Vec gather(const double* vectors, const int* at) {
-  const auto pair = [&](int k) { return *reinterpret_cast<const Pair*>(vectors + at[k]); };
-  const auto z = [&](int k) { return vectors[at[k] + 2]; };
 #if PLICA_LANES == 8
-  const Lanes even = join(join(pair(0), pair(2)), join(pair(4), pair(6)));
-  const Lanes odd = join(join(pair(1), pair(3)), join(pair(5), pair(7)));
-  return {low_of_pairs(even, odd), high_of_pairs(even, odd), Lanes{z(0), z(1), z(2), z(3), z(4), z(5), z(6), z(7)}};
+  const auto rows = [&](int k, int l) { return join(load_row(vectors + at[k]), load_row(vectors + at[l])); };
+  const Lanes a = rows(0, 2), b = rows(1, 3), c = rows(4, 6), d = rows(5, 7);
+  // x and z of nodes 0 1 and 2 3, of 4 5 and 6 7; y the same.
+  const Lanes xz = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Lanes xz_on = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Lanes y = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Lanes y_on = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+  return {__builtin_shufflevector(xz, xz_on, 0, 1, 4, 5, 8, 9, 12, 13),
+          __builtin_shufflevector(y, y_on, 0, 1, 4, 5, 8, 9, 12, 13),
+          __builtin_shufflevector(xz, xz_on, 2, 3, 6, 7, 10, 11, 14, 15)};
 #elif PLICA_LANES == 4
-  const Lanes even = join(pair(0), pair(2)), odd = join(pair(1), pair(3));
-  return {low_of_pairs(even, odd), high_of_pairs(even, odd), Lanes{z(0), z(1), z(2), z(3)}};
-#elif PLICA_LANES == 2
-  return {low_of_pairs(pair(0), pair(1)), high_of_pairs(pair(0), pair(1)), Lanes{z(0), z(1)}};
+  const Lanes a = load_row(vectors + at[0]), b = load_row(vectors + at[1]);
+  const Lanes c = load_row(vectors + at[2]), d = load_row(vectors + at[3]);
+  const Lanes xz = __builtin_shufflevector(a, b, 0, 4, 2, 6), xz_on = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+  const Lanes y = __builtin_shufflevector(a, b, 1, 5, 3, 7), y_on = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return {__builtin_shufflevector(xz, xz_on, 0, 1, 4, 5), __builtin_shufflevector(y, y_on, 0, 1, 4, 5),
+          __builtin_shufflevector(xz, xz_on, 2, 3, 6, 7)};
 #else
-  return {Lanes{pair(0)[0]}, Lanes{pair(0)[1]}, Lanes{z(0)}};
+  Vec x;
+  for (int k = 0; k < width; ++k) {
+    x.x[k] = vectors[at[k]];
+    x.y[k] = vectors[at[k] + 1];
+    x.z[k] = vectors[at[k] + 2];
+  }
+  return x;
 #endif
 }
 
@@ -44,13 +57,21 @@ inline void gather(const BatchNodes& nodes, int lane, const double* vectors, Vec
 
 /// Adds to the nodes of the first `count` lanes.
 inline void scatter(const BatchNodes& nodes, int lane, int count, const Vec (&f)[8], double* vectors) {
-  for (int i = 0; i < 8; ++i)
-    for (int k = 0; k < count; ++k) {
-      double* v = vectors + nodes[i][lane + k];
-      v[0] += f[i].x[k];
-      v[1] += f[i].y[k];
-      v[2] += f[i].z[k];
-    }
+  const auto add = [&](int i, int k) {
+    double* v = vectors + nodes[i][lane + k];
+    v[0] += f[i].x[k];
+    v[1] += f[i].y[k];
+    v[2] += f[i].z[k];
+  };
+  if (count == width) {
+#pragma GCC unroll 1
+    for (int i = 0; i < 8; ++i)
+#pragma GCC unroll 8
+      for (int k = 0; k < width; ++k) add(i, k);
+  } else {
+    for (int i = 0; i < 8; ++i)
+      for (int k = 0; k < count; ++k) add(i, k);
+  }
 }
 
 // Differences of neighbouring nodes first: what they have in common is lost without rounding.

@@ -3,38 +3,33 @@
 //
 // Kernel sources (*_kernels.cpp) are compiled once for each instruction set (cmake/kernels.cmake), each time in another
 // namespace PLICA_KERNELS with PLICA_LANES doubles a register, so no function of one build is ever taken for another's.
-// They include nothing whose inline functions other sources have too.
+// They include nothing whose inline functions other sources have too, but for intrinsics.
 #pragma once
 
 #include <cstddef>
+#if PLICA_LANES > 2
+#include <immintrin.h>
+#endif
 
 namespace plica::PLICA_KERNELS {
 
 constexpr int width = PLICA_LANES;
 constexpr int batch_size = 8;  // elements a batch: as many as the widest register holds
 
-#if PLICA_LANES != 1  // else it is a number that counts what is done with it (bench/counted_kernels.cpp)
+#if PLICA_LANES != 1  // else it is a number that counts what is done with it (bench/counted_lanes.hpp)
 typedef double Lanes __attribute__((vector_size(8 * PLICA_LANES), may_alias));  // NOLINT: no `using` for attributes
 inline Lanes broadcast(double value) { return Lanes{} + value; }
 #endif
 
-/// Two numbers anywhere in memory.
-typedef double Pair __attribute__((vector_size(16), aligned(8), may_alias));  // NOLINT
-
+#if PLICA_LANES > 2
+/// Four numbers, of which memory holds the first three: the fourth is not looked at.
+typedef double Row __attribute__((vector_size(32)));  // NOLINT
 #if PLICA_LANES == 8
-typedef double HalfLanes __attribute__((vector_size(32)));  // NOLINT
-inline HalfLanes join(Pair a, Pair b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3); }
-inline Lanes join(HalfLanes a, HalfLanes b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
-/// The first, or second, of each pair of neighbouring lanes of a and b, in turn: a0 b0 a2 b2 ..., a1 b1 a3 b3 ...
-inline Lanes low_of_pairs(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14); }
-inline Lanes high_of_pairs(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15); }
-#elif PLICA_LANES == 4
-inline Lanes join(Pair a, Pair b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3); }
-inline Lanes low_of_pairs(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, 0, 4, 2, 6); }
-inline Lanes high_of_pairs(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, 1, 5, 3, 7); }
-#elif PLICA_LANES == 2
-inline Lanes low_of_pairs(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, 0, 2); }
-inline Lanes high_of_pairs(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, 1, 3); }
+inline Row load_row(const double* values) { return _mm256_maskz_loadu_pd(7, values); }
+inline Lanes join(Row a, Row b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
+#else
+inline Row load_row(const double* values) { return _mm256_maskload_pd(values, __m256i{-1, -1, -1, 0}); }
+#endif
 #endif
 
 inline Lanes load(const double* values) { return *reinterpret_cast<const Lanes*>(values); }
@@ -42,9 +37,15 @@ inline Lanes load(const double* values) { return *reinterpret_cast<const Lanes*>
 /// Whether a comparison holds in any lane.
 template <class Mask>
 inline bool any(Mask mask) {
+#if PLICA_LANES == 8
+  return _mm512_movepi64_mask(reinterpret_cast<__m512i>(mask)) != 0;
+#elif PLICA_LANES == 4
+  return _mm256_movemask_pd(reinterpret_cast<__m256d>(mask)) != 0;
+#else
   long long either = 0;
   for (int k = 0; k < width; ++k) either |= mask[k];
   return either != 0;
+#endif
 }
 
 struct Vec {
