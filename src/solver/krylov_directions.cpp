@@ -28,10 +28,8 @@ KrylovDirections::KrylovDirections(const Model& model, Inverse inverse, std::fun
       matrix_(model),
       preconditioner_(inverse == Inverse::multigrid ? make_multigrid(matrix_.layout())
                                                     : std::make_unique<BlockCholesky>(matrix_.layout())),
-      most_contact_changes_(inverse == Inverse::multigrid ? 4
-                            : std::getenv("PB")           ? std::atoi(std::getenv("PB"))
-                                                          : 32),
-      price_of_factor_(std::getenv("PP") ? std::atoi(std::getenv("PP")) : 25),
+      most_contact_changes_(inverse == Inverse::multigrid ? 4 : 32),
+      price_of_factor_(inverse == Inverse::multigrid ? 25 : 40),
       jacobian_(model) {}
 
 void KrylovDirections::weigh_pressures() {
