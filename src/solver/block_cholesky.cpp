@@ -7,6 +7,9 @@
 #include <stdexcept>
 
 extern "C" {  // BLAS
+void sgemm_(const char* transposed_a, const char* transposed_b, const int* m, const int* n, const int* k,
+            const float* alpha, const float* a, const int* lda, const float* b, const int* ldb, const float* beta,
+            float* c, const int* ldc);
 void strsm_(const char* side, const char* triangle, const char* transposed, const char* diagonal, const int* m,
             const int* n, const float* alpha, const float* a, const int* lda, float* b, const int* ldb);
 void ssyrk_(const char* triangle, const char* transposed, const int* n, const int* k, const float* alpha,
@@ -138,7 +141,8 @@ void BlockCholesky::find_supernodes(const Neighbours& below) {
     rows.erase(rows.begin(), std::upper_bound(rows.begin(), rows.end(), j));
     for (const int child : children[j]) std::vector<int>().swap(rows_of[child]);
 
-    supernodes_.push_back({.first = j, .columns = 1, .rows = rows, .panel = 0, .children = {}, .blocks = {}});
+    supernodes_.push_back(
+        {.first = j, .columns = 1, .rows = rows, .rows_in_parent = {}, .panel = 0, .children = {}, .blocks = {}});
     zeros.push_back(0);
     // Join with the supernode before while that wastes little: a wider panel is read and multiplied faster.
     while (supernodes_.size() > 1) {
@@ -165,54 +169,50 @@ void BlockCholesky::place_blocks(const BlockPattern& pattern) {
   std::vector<int> owner(nodes_);
   for (std::size_t s = 0; s < supernodes_.size(); ++s)
     for (int j = 0; j < supernodes_[s].columns; ++j) owner[supernodes_[s].first + j] = static_cast<int>(s);
-  for (std::size_t s = 0; s < supernodes_.size(); ++s)
-    if (!supernodes_[s].rows.empty())
-      supernodes_[owner[supernodes_[s].rows.front()]].children.push_back(static_cast<int>(s));
+  // Row of node i in the front of a supernode, which begins with its own columns.
+  const auto front_row = [](const Supernode& node, int i) {
+    if (i < node.first + node.columns) return i - node.first;
+    return node.columns + static_cast<int>(std::ranges::lower_bound(node.rows, i) - node.rows.begin());
+  };
+  for (std::size_t s = 0; s < supernodes_.size(); ++s) {
+    Supernode& child = supernodes_[s];
+    if (child.rows.empty()) continue;
+    Supernode& parent = supernodes_[owner[child.rows.front()]];
+    parent.children.push_back(static_cast<int>(s));
+    for (const int row : child.rows) child.rows_in_parent.push_back(front_row(parent, row));
+  }
+  std::size_t block = 0;
   for (int row = 0; row < pattern.nodes(); ++row)
-    for (int at = pattern.starts[row]; at < pattern.starts[row + 1]; ++at) {
+    for (int at = pattern.starts[row]; at < pattern.starts[row + 1]; ++at, ++block) {
       const int i = position_[row], j = position_[pattern.columns[at]];
-      supernodes_[owner[std::min(i, j)]].blocks.push_back(block_rows_.size());
-      block_rows_.push_back(std::max(i, j));
-      block_columns_.push_back(std::min(i, j));
-      block_turned_.push_back(i < j);
+      Supernode& node = supernodes_[owner[std::min(i, j)]];
+      node.blocks.push_back({block, front_row(node, std::max(i, j)), std::min(i, j) - node.first, i < j});
     }
 }
 
-namespace {
-
-// Row of node i in a front that begins with its own columns.
-int front_row(int first, int columns, const std::vector<int>& rows, int i) {
-  if (i < first + columns) return i - first;
-  return columns + static_cast<int>(std::lower_bound(rows.begin(), rows.end(), i) - rows.begin());
-}
-
-}  // namespace
-
-void BlockCholesky::assemble(const Supernode& node, std::span<const float> values, float* panel) const {
+void BlockCholesky::assemble(const Supernode& node, std::span<const float> values, float* panel) {
   const std::size_t height = node.height();
   std::fill_n(panel, height * node.width(), 0.0F);
-  for (const std::size_t block : node.blocks) {
-    const int row = front_row(node.first, node.columns, node.rows, block_rows_[block]);
-    const int column = block_columns_[block] - node.first;
+  for (const auto& [block, row, column, turned] : node.blocks) {
     const float* value = &values[9 * block];
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        panel[(3 * column + j) * height + 3 * row + i] = block_turned_[block] ? value[3 * j + i] : value[3 * i + j];
+    float* to = panel + 3 * (static_cast<std::size_t>(column) * height + static_cast<std::size_t>(row));
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t i = 0; i < 3; ++i) to[j * height + i] = turned ? value[3 * j + i] : value[3 * i + j];
   }
 }
 
-void BlockCholesky::add_child(const Supernode& child, const Update& update, const Supernode& node, float* panel,
-                              Update& front) const {
-  const std::size_t size = 3 * child.rows.size(), height = node.height(), own = node.width(), rest = height - own;
-  std::vector<std::size_t> places;
-  for (const int i : child.rows) {
-    const auto row = static_cast<std::size_t>(front_row(node.first, node.columns, node.rows, i));
-    for (std::size_t k = 0; k < 3; ++k) places.push_back(3 * row + k);
-  }
+void BlockCholesky::add_child(const Supernode& child, const float* update, const Supernode& node, float* panel,
+                              float* front) {
+  const std::size_t count = child.rows.size(), size = 3 * count;
+  const std::size_t height = node.height(), own = node.width(), rest = height - own;
   for (std::size_t j = 0; j < size; ++j) {
-    const float* from = &update.values[j * size];
-    float* to = places[j] < own ? panel + places[j] * height : &front.values[(places[j] - own) * rest] - own;
-    for (std::size_t i = j; i < size; ++i) to[places[i]] += from[i];
+    const float* from = update + j * size;
+    const std::size_t column = 3 * static_cast<std::size_t>(child.rows_in_parent[j / 3]) + j % 3;
+    float* to = column < own ? panel + column * height : front + (column - own) * rest - own;
+    for (std::size_t i = j / 3; i < count; ++i) {
+      float* row = to + 3 * static_cast<std::size_t>(child.rows_in_parent[i]);
+      for (std::size_t k = 0; k < 3; ++k) row[k] += from[3 * i + k];
+    }
   }
 }
 
@@ -242,37 +242,41 @@ bool dense_cholesky(float* A, int size, int stride) {
 }  // namespace
 
 // Panel [A11; A21] to [L11^-1; L21 L11^-1]; the front of what is left to -L21 L21^T + what it was.
-bool BlockCholesky::eliminate(const Supernode& node, float* panel, Update& front) {
-  const int own = 3 * node.columns, rest = 3 * static_cast<int>(node.rows.size()), height = own + rest;
-  const float one = 1, minus = -1;
+bool BlockCholesky::eliminate(const Supernode& node, float* panel, float* front) {
+  const int own = static_cast<int>(node.width()), height = static_cast<int>(node.height()), rest = height - own;
+  const float one = 1, minus = -1, zero = 0;
   if (!dense_cholesky(panel, own, height)) return false;
-  if (rest > 0) {
-    strsm_("R", "L", "T", "N", &rest, &own, &one, panel, &height, panel + own, &height);
-    ssyrk_("L", "N", &rest, &own, &minus, panel + own, &height, &one, front.values.get(), &rest);
-    strsm_("R", "L", "N", "N", &rest, &own, &one, panel, &height, panel + own, &height);
-  }
-  std::vector<float> inverse(std::size_t(own) * own);
-  for (int j = 0; j < own; ++j) inverse[std::size_t(j) * (own + 1)] = 1;
+  std::vector<float> inverse(node.width() * node.width());
+  for (std::size_t j = 0; j < node.width(); ++j) inverse[j * (node.width() + 1)] = 1;
   strsm_("L", "L", "N", "N", &own, &own, &one, panel, &height, inverse.data(), &own);
-  for (int j = 0; j < own; ++j) std::copy_n(&inverse[std::size_t(j) * own], own, panel + std::size_t(j) * height);
+  if (rest > 0) {
+    // Products, though half of the inverse is zero: BLAS is faster at them than at solves.
+    std::vector<float> L21(static_cast<std::size_t>(rest) * node.width());
+    sgemm_("N", "T", &rest, &own, &own, &one, panel + own, &height, inverse.data(), &own, &zero, L21.data(), &rest);
+    ssyrk_("L", "N", &rest, &own, &minus, L21.data(), &rest, &one, front, &rest);
+    sgemm_("N", "N", &rest, &own, &own, &one, L21.data(), &rest, inverse.data(), &own, &zero, panel + own, &height);
+  }
+  for (std::size_t j = 0; j < node.width(); ++j)
+    std::copy_n(&inverse[j * node.width()], own, panel + j * node.height());
   return true;
 }
 
 bool BlockCholesky::factorise(std::span<const float> values) {
-  std::vector<Update> updates(supernodes_.size());
+  std::vector<std::unique_ptr<float[]>> updates(supernodes_.size());  // fronts: lower triangles, column-major
   std::vector<float> panel;
   for (std::size_t s = 0; s < supernodes_.size(); ++s) {
     const auto& node = supernodes_[s];
     const std::size_t height = node.height(), rest = height - node.width();
     panel.resize(node.width() * height);
     assemble(node, values, panel.data());
-    updates[s].values.reset(new float[rest * rest]);
-    for (std::size_t j = 0; j < rest; ++j) std::fill_n(&updates[s].values[j * rest + j], rest - j, 0.0F);
+    updates[s].reset(new float[rest * rest]);
+    // From the diagonal's blocks on.
+    for (std::size_t j = 0; j < rest; ++j) std::fill_n(&updates[s][j * rest + j / 3 * 3], rest - j / 3 * 3, 0.0F);
     for (const int child : node.children) {
-      add_child(supernodes_[child], updates[child], node, panel.data(), updates[s]);
-      updates[child].values.reset();
+      add_child(supernodes_[child], updates[child].get(), node, panel.data(), updates[s].get());
+      updates[child].reset();
     }
-    if (!eliminate(node, panel.data(), updates[s])) return false;
+    if (!eliminate(node, panel.data(), updates[s].get())) return false;
     for (std::size_t j = 0; j < node.width(); ++j)
       std::copy_n(&panel[j * height], height, panels_[node.panel + j * chunks_for(height)].numbers);
   }

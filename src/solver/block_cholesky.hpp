@@ -39,37 +39,36 @@ class BlockCholesky final : public Preconditioner {
   [[nodiscard]] std::size_t factor_size() const { return factor_size_; }
 
  private:
+  struct Block {
+    std::size_t number;  // in the pattern
+    int row, column;     // in the front
+    bool turned;         // transposed there
+  };
   struct Supernode {
     int first = 0, columns = 0;       // nodes in elimination order
     std::vector<int> rows;            // nodes below, ascending
+    std::vector<int> rows_in_parent;  // where they are in the parent's front
     std::size_t panel = 0;            // where its panel begins
     std::vector<int> children;        // supernodes that update this one
-    std::vector<std::size_t> blocks;  // of the matrix that are assembled here
+    std::vector<Block> blocks;        // of the matrix that are assembled here
 
     // Of its panel, in numbers.
     [[nodiscard]] std::size_t width() const { return 3 * static_cast<std::size_t>(columns); }
     [[nodiscard]] std::size_t height() const { return 3 * (static_cast<std::size_t>(columns) + rows.size()); }
   };
-  struct Update {  // a child's contribution, lower triangle, column-major
-    std::unique_ptr<float[]> values;
-  };
-
   void order(const BlockPattern& pattern);
   void find_supernodes(const std::vector<std::vector<int>>& upper_neighbours);
   void place_blocks(const BlockPattern& pattern);
-  void assemble(const Supernode& node, std::span<const float> values, float* panel) const;
-  void add_child(const Supernode& child, const Update& update, const Supernode& node, float* panel,
-                 Update& front) const;
+  static void assemble(const Supernode& node, std::span<const float> values, float* panel);
+  static void add_child(const Supernode& child, const float* update, const Supernode& node, float* panel, float* front);
   [[nodiscard]] Panel panel_of(const Supernode& node) const {
     return {&panels_[node.panel], chunks_for(node.height()), 3 * node.columns};
   }
-  static bool eliminate(const Supernode& node, float* panel, Update& front);
+  static bool eliminate(const Supernode& node, float* panel, float* front);
 
   int nodes_ = 0;
-  std::vector<int> position_;                    // of each node in the order of elimination
-  std::vector<Supernode> supernodes_;            // children before parents
-  std::vector<int> block_rows_, block_columns_;  // of each block, in elimination order, row >= column
-  std::vector<char> block_turned_;               // whether it is transposed there
+  std::vector<int> position_;          // of each node in the order of elimination
+  std::vector<Supernode> supernodes_;  // children before parents
   std::vector<PanelChunk> panels_;
   std::size_t factor_size_ = 0;
 
