@@ -88,7 +88,7 @@ std::vector<int> nested_dissection(const BlockPattern& pattern) {
 
 }  // namespace
 
-BlockCholesky::BlockCholesky(const BlockPattern& pattern) : nodes_(pattern.nodes()), x_(pattern.nodes()) {
+BlockCholesky::BlockCholesky(const BlockPattern& pattern) : nodes_(pattern.nodes()) {
   order(pattern);
   place_blocks(pattern);
   std::size_t size = 0, widest = 0, longest = 0;
@@ -293,32 +293,44 @@ FourNumbers& four(float* numbers) { return *reinterpret_cast<FourNumbers*>(numbe
 }  // namespace
 
 void BlockCholesky::solve(std::span<float> x) const {
-  for (int n = 0; n < nodes_; ++n) std::copy_n(&x[3 * n], 3, x_[position_[n]].numbers);
+  const std::size_t size = 3 * static_cast<std::size_t>(nodes_), vectors = x.size() / size;
+  x_.resize(vectors * nodes_);
+  for (std::size_t v = 0; v < vectors; ++v)
+    for (int n = 0; n < nodes_; ++n) std::copy_n(&x[v * size + 3 * n], 3, x_[v * nodes_ + position_[n]].numbers);
+  // Panel by panel: each is read from far away once.
+  for (const auto& node : supernodes_)
+    for (std::size_t v = 0; v < vectors; ++v) solve_down(node, &x_[v * nodes_]);
+  for (std::size_t s = supernodes_.size(); s-- > 0;)
+    for (std::size_t v = 0; v < vectors; ++v) solve_up(supernodes_[s], &x_[v * nodes_]);
+  for (std::size_t v = 0; v < vectors; ++v)
+    for (int n = 0; n < nodes_; ++n) std::copy_n(x_[v * nodes_ + position_[n]].numbers, 3, &x[v * size + 3 * n]);
+}
+
+void BlockCholesky::solve_down(const Supernode& node, NodeNumbers* x) const {
   float* const own = own_.data();
   float* const front = front_.data()->numbers;
-  for (const auto& node : supernodes_) {
-    for (int k = 0; k < node.columns; ++k) four(own + 3 * k) = four(x_[node.first + k].numbers);
-    multiply(panel_of(node), own, front_.data());
-    for (int k = 0; k < node.columns; ++k) four(x_[node.first + k].numbers) = four(front + 3 * k);
-    float* below = front + node.width();
-    for (const int row : node.rows) {
-      four(x_[row].numbers) -= four(below);
-      below += 3;
-    }
+  for (int k = 0; k < node.columns; ++k) four(own + 3 * k) = four(x[node.first + k].numbers);
+  multiply(panel_of(node), own, front_.data());
+  for (int k = 0; k < node.columns; ++k) four(x[node.first + k].numbers) = four(front + 3 * k);
+  float* below = front + node.width();
+  for (const int row : node.rows) {
+    four(x[row].numbers) -= four(below);
+    below += 3;
   }
-  for (std::size_t s = supernodes_.size(); s-- > 0;) {
-    const auto& node = supernodes_[s];
-    for (int k = 0; k < node.columns; ++k) four(front + 3 * k) = four(x_[node.first + k].numbers);
-    float* below = front + node.width();
-    for (const int row : node.rows) {
-      four(below) = -four(x_[row].numbers);
-      below += 3;
-    }
-    std::fill(below, front + chunks_for(node.height()) * PanelChunk::size, 0.0F);  // after the last node
-    multiply_transposed(panel_of(node), front_.data(), own);
-    for (int k = 0; k < node.columns; ++k) four(x_[node.first + k].numbers) = four(own + 3 * k);
+}
+
+void BlockCholesky::solve_up(const Supernode& node, NodeNumbers* x) const {
+  float* const own = own_.data();
+  float* const front = front_.data()->numbers;
+  for (int k = 0; k < node.columns; ++k) four(front + 3 * k) = four(x[node.first + k].numbers);
+  float* below = front + node.width();
+  for (const int row : node.rows) {
+    four(below) = -four(x[row].numbers);
+    below += 3;
   }
-  for (int n = 0; n < nodes_; ++n) std::copy_n(x_[position_[n]].numbers, 3, &x[3 * n]);
+  std::fill(below, front + chunks_for(node.height()) * PanelChunk::size, 0.0F);  // after the last node
+  multiply_transposed(panel_of(node), front_.data(), own);
+  for (int k = 0; k < node.columns; ++k) four(x[node.first + k].numbers) = four(own + 3 * k);
 }
 
 }  // namespace plica

@@ -32,7 +32,8 @@ class BlockCholesky final : public Preconditioner {
     return factorise(values);
   }
 
-  /// Solves in place with the last factor: x = b in, x = A^-1 b out, to about 1e-7 times the condition number.
+  /// Solves in place with the last factor: x = b in, x = A^-1 b out, to about 1e-7 times the condition number. One
+  /// vector or several.
   void solve(std::span<float> x) const override;
 
   /// Numbers kept in the factor, zeros inside panels included.
@@ -66,15 +67,17 @@ class BlockCholesky final : public Preconditioner {
   }
   static bool eliminate(const Supernode& node, float* panel, float* front);
 
+  struct alignas(16) NodeNumbers {
+    float numbers[4];  // the last does not matter
+  };
+  void solve_down(const Supernode& node, NodeNumbers* x) const;  // from children to parents
+  void solve_up(const Supernode& node, NodeNumbers* x) const;
+
   int nodes_ = 0;
   std::vector<int> position_;          // of each node in the order of elimination
   std::vector<Supernode> supernodes_;  // children before parents
   std::vector<PanelChunk> panels_;
   std::size_t factor_size_ = 0;
-
-  struct alignas(16) NodeNumbers {
-    float numbers[4];  // the last does not matter
-  };
   mutable std::vector<NodeNumbers> x_;     // scratch of solve(): the nodes in elimination order,
   mutable std::vector<float> own_;         // a supernode's own,
   mutable std::vector<PanelChunk> front_;  // and what its panel is multiplied with, or gives

@@ -5,9 +5,13 @@
 namespace plica {
 namespace {
 
-double inner(const std::vector<std::pair<std::size_t, Vec3>>& sparse, std::span<const Vec3> full) {
+Vec3 at_node(std::span<const float> full, std::size_t node) {
+  return {full[3 * node], full[3 * node + 1], full[3 * node + 2]};
+}
+
+double inner(const std::vector<std::pair<std::size_t, Vec3>>& sparse, std::span<const float> full) {
   double sum = 0;
-  for (const auto& [node, value] : sparse) sum += value.dot(full[node]);
+  for (const auto& [node, value] : sparse) sum += value.dot(at_node(full, node));
   return sum;
 }
 
@@ -24,22 +28,17 @@ void ContactBorder::begin(const Model& model, const StepMatrix& matrix, std::vec
   active_.clear();
 }
 
-void ContactBorder::solve_inner(const Preconditioner& factor, std::span<Vec3> x) const {
-  single_.resize(3 * x.size());
-  for (std::size_t n = 0; n < x.size(); ++n) {
-    const Vec3 free = frames_[n].free_part(x[n]);
-    for (int i = 0; i < 3; ++i) single_[3 * n + i] = static_cast<float>(free[i]);
+void ContactBorder::append_free(std::span<const Vec3> vectors, std::vector<float>& to) const {
+  for (std::size_t n = 0; n < vectors.size(); ++n) {
+    const Vec3 free = frames_[n].free_part(vectors[n]);
+    for (int i = 0; i < 3; ++i) to.push_back(static_cast<float>(free[i]));
   }
-  factor.solve(single_);
-  for (std::size_t n = 0; n < x.size(); ++n)
-    for (int i = 0; i < 3; ++i) x[n][i] = single_[3 * n + i];
 }
 
-ContactBorder::Column ContactBorder::make_column(const Iterate& at, std::size_t contact,
-                                                 const Preconditioner& factor) const {
+ContactBorder::Column ContactBorder::make_column(const Iterate& at, std::size_t contact, Vectors& b) const {
   Column column{contact, model_->vitelline->nodes()[contact].index(), {}, !at.in_contact[contact], {}, 0, {}};
   const std::size_t node = column.node;
-  Vectors b(frames_.size(), Vec3::Zero());
+  b.assign(frames_.size(), Vec3::Zero());
   if (column.leaves) {
     column.normal = frames_[node].axes.col(frames_[node].fixed - 1);
     Vectors unit(b);
@@ -55,27 +54,34 @@ ContactBorder::Column ContactBorder::make_column(const Iterate& at, std::size_t 
     b[node] = column.normal;
     column.entries.emplace_back(node, column.normal);
   }
-  column.solved = std::move(b);
-  solve_inner(factor, column.solved);
   return column;
 }
 
+void ContactBorder::add_columns(const Iterate& at, std::span<const std::size_t> contacts,
+                                const Preconditioner& factor) {
+  if (contacts.empty()) return;
+  std::vector<float> solved;
+  Vectors b;
+  for (const std::size_t contact : contacts) {
+    columns_.push_back(make_column(at, contact, b));
+    append_free(b, solved);
+  }
+  factor.solve(solved);
+  const std::size_t size = 3 * frames_.size();
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    columns_[columns_.size() - contacts.size() + i].solved.assign(&solved[i * size], &solved[i * size] + size);
+}
+
 bool ContactBorder::follow(const Iterate& at, const Preconditioner& factor) {
-  std::vector<std::size_t> changed, active;
+  std::vector<std::size_t> changed, unknown, active;
   for (std::size_t k = 0; k < at.in_contact.size(); ++k)
     if (at.in_contact[k] != in_contact_[k]) changed.push_back(k);
-  const auto is_new = [&](std::size_t k) { return std::ranges::find(columns_, k, &Column::contact) == columns_.end(); };
-  if (changed.size() > most_changes_ || columns_.size() + std::ranges::count_if(changed, is_new) > most_changes_)
-    return false;
-  for (const std::size_t k : changed) {
-    const auto known = std::ranges::find(columns_, k, &Column::contact);
-    if (known == columns_.end()) {
-      columns_.push_back(make_column(at, k, factor));
-      active.push_back(columns_.size() - 1);
-    } else {
-      active.push_back(static_cast<std::size_t>(known - columns_.begin()));
-    }
-  }
+  const auto column_of = [&](std::size_t k) { return std::ranges::find(columns_, k, &Column::contact); };
+  std::ranges::copy_if(changed, std::back_inserter(unknown),
+                       [&](std::size_t k) { return column_of(k) == columns_.end(); });
+  if (changed.size() > most_changes_ || columns_.size() + unknown.size() > most_changes_) return false;
+  add_columns(at, unknown, factor);
+  for (const std::size_t k : changed) active.push_back(static_cast<std::size_t>(column_of(k) - columns_.begin()));
   if (active == active_) return true;
   active_ = std::move(active);
   const auto size = static_cast<Eigen::Index>(active_.size());
@@ -98,15 +104,21 @@ void ContactBorder::solve(const Preconditioner& factor, std::span<Vec3> x) const
     const Column& column = columns_[active_[i]];
     border[i] = column.leaves ? column.normal.dot(x[column.node]) : 0;
   }
-  solve_inner(factor, x);
-  if (size == 0) return;
-  for (Eigen::Index i = 0; i < size; ++i) border[i] -= inner(columns_[active_[i]].entries, x);
-  border = schur_.solve(border).eval();
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const Column& column = columns_[active_[i]];
-    for (std::size_t n = 0; n < x.size(); ++n) x[n] -= border[i] * column.solved[n];
-    if (column.leaves) x[column.node] += border[i] * column.normal;
+  single_.clear();
+  append_free(x, single_);
+  factor.solve(single_);
+  if (size > 0) {
+    for (Eigen::Index i = 0; i < size; ++i) border[i] -= inner(columns_[active_[i]].entries, single_);
+    border = schur_.solve(border).eval();
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const auto part = static_cast<float>(border[i]);
+      const std::vector<float>& solved = columns_[active_[i]].solved;
+      for (std::size_t k = 0; k < single_.size(); ++k) single_[k] -= part * solved[k];
+    }
   }
+  for (std::size_t n = 0; n < x.size(); ++n) x[n] = at_node(single_, n);
+  for (Eigen::Index i = 0; i < size; ++i)
+    if (const Column& column = columns_[active_[i]]; column.leaves) x[column.node] += border[i] * column.normal;
 }
 
 }  // namespace plica

@@ -33,10 +33,12 @@ class ContactBorder {
     bool leaves;
     std::vector<std::pair<std::size_t, Vec3>> entries;  // of B: node, value
     double diagonal = 0;                                // of D
-    Vectors solved;                                     // A0^-1 B
+    std::vector<float> solved;                          // A0^-1 B
   };
-  Column make_column(const Iterate& at, std::size_t contact, const Preconditioner& factor) const;
-  void solve_inner(const Preconditioner& factor, std::span<Vec3> x) const;
+  // Its right side B beside it.
+  [[nodiscard]] Column make_column(const Iterate& at, std::size_t contact, Vectors& b) const;
+  void add_columns(const Iterate& at, std::span<const std::size_t> contacts, const Preconditioner& factor);
+  void append_free(std::span<const Vec3> vectors, std::vector<float>& to) const;
 
   const Model* model_ = nullptr;
   const StepMatrix* matrix_ = nullptr;

@@ -151,7 +151,7 @@ NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate
   }
 
   // Newton's own error leaves a part of the residual that falls with the residual itself.
-  const double useful = std::clamp(0.01 * residual.force, 1e-5, 1e-2);
+  const double useful = std::clamp(0.05 * residual.force, 1e-4, 1e-2);
   const ConjugateResidualsRule rule{.tolerance = std::clamp(wish.accuracy, useful, 0.1)};
   const auto solve = [&] {
     right_.resize(3 * nodes_ + jacobian_.cells());

@@ -107,9 +107,11 @@ class Multigrid final : public Preconditioner {
   }
 
   void solve(std::span<float> x) const override {
-    std::copy(x.begin(), x.end(), finest_->r.begin());
-    cycle(*finest_, 0);
-    std::copy(finest_->x.begin(), finest_->x.end(), x.begin());
+    for (; !x.empty(); x = x.subspan(finest_->r.size())) {
+      std::copy_n(x.begin(), finest_->r.size(), finest_->r.begin());
+      cycle(*finest_, 0);
+      std::ranges::copy(finest_->x, x.begin());
+    }
   }
 
  private:
