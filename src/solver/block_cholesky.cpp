@@ -6,8 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/processor.hpp"
-
 extern "C" {  // BLAS
 void strsm_(const char* side, const char* triangle, const char* transposed, const char* diagonal, const int* m,
             const int* n, const float* alpha, const float* a, const int* lda, float* b, const int* ldb);
@@ -87,22 +85,20 @@ std::vector<int> nested_dissection(const BlockPattern& pattern) {
 
 }  // namespace
 
-BlockCholesky::BlockCholesky(const BlockPattern& pattern) : nodes_(pattern.nodes()) {
+BlockCholesky::BlockCholesky(const BlockPattern& pattern) : nodes_(pattern.nodes()), x_(pattern.nodes()) {
   order(pattern);
   place_blocks(pattern);
-  std::size_t size = 0;
+  std::size_t size = 0, widest = 0, longest = 0;
   for (auto& node : supernodes_) {
     node.panel = size;
-    for (const int row : node.rows) {
-      if (node.runs.empty() || row != node.runs.back().first + node.runs.back().second) node.runs.emplace_back(row, 0);
-      ++node.runs.back().second;
-    }
-    size += std::size_t{9} * node.columns * (node.columns + node.rows.size());
-    widest_rows_ = std::max(widest_rows_, 3 * (node.columns + node.rows.size()));
+    size += node.width() * chunks_for(node.height());
+    factor_size_ += node.width() * node.height();
+    widest = std::max(widest, node.width());
+    longest = std::max(longest, node.height());
   }
   panels_.resize(size);
-  x_.resize(3 * static_cast<std::size_t>(nodes_));
-  rows_.resize(2 * widest_rows_);
+  own_.resize(widest + 1);  // as vectors of four
+  front_.resize(chunks_for(longest + 1));
 }
 
 void BlockCholesky::order(const BlockPattern& pattern) {
@@ -142,8 +138,7 @@ void BlockCholesky::find_supernodes(const Neighbours& below) {
     rows.erase(rows.begin(), std::upper_bound(rows.begin(), rows.end(), j));
     for (const int child : children[j]) std::vector<int>().swap(rows_of[child]);
 
-    supernodes_.push_back(
-        {.first = j, .columns = 1, .rows = rows, .runs = {}, .panel = 0, .children = {}, .blocks = {}});
+    supernodes_.push_back({.first = j, .columns = 1, .rows = rows, .panel = 0, .children = {}, .blocks = {}});
     zeros.push_back(0);
     // Join with the supernode before while that wastes little: a wider panel is read and multiplied faster.
     while (supernodes_.size() > 1) {
@@ -194,8 +189,8 @@ int front_row(int first, int columns, const std::vector<int>& rows, int i) {
 }  // namespace
 
 void BlockCholesky::assemble(const Supernode& node, std::span<const float> values, float* panel) const {
-  const std::size_t height = 3 * (node.columns + node.rows.size());
-  std::fill_n(panel, height * 3 * node.columns, 0.0F);
+  const std::size_t height = node.height();
+  std::fill_n(panel, height * node.width(), 0.0F);
   for (const std::size_t block : node.blocks) {
     const int row = front_row(node.first, node.columns, node.rows, block_rows_[block]);
     const int column = block_columns_[block] - node.first;
@@ -208,8 +203,7 @@ void BlockCholesky::assemble(const Supernode& node, std::span<const float> value
 
 void BlockCholesky::add_child(const Supernode& child, const Update& update, const Supernode& node, float* panel,
                               Update& front) const {
-  const std::size_t size = 3 * child.rows.size(), height = 3 * (node.columns + node.rows.size());
-  const std::size_t own = 3 * static_cast<std::size_t>(node.columns), rest = height - own;
+  const std::size_t size = 3 * child.rows.size(), height = node.height(), own = node.width(), rest = height - own;
   std::vector<std::size_t> places;
   for (const int i : child.rows) {
     const auto row = static_cast<std::size_t>(front_row(node.first, node.columns, node.rows, i));
@@ -266,92 +260,61 @@ bool BlockCholesky::eliminate(const Supernode& node, float* panel, Update& front
 
 bool BlockCholesky::factorise(std::span<const float> values) {
   std::vector<Update> updates(supernodes_.size());
+  std::vector<float> panel;
   for (std::size_t s = 0; s < supernodes_.size(); ++s) {
     const auto& node = supernodes_[s];
-    float* panel = &panels_[node.panel];
-    assemble(node, values, panel);
-    const std::size_t rest = 3 * node.rows.size();
+    const std::size_t height = node.height(), rest = height - node.width();
+    panel.resize(node.width() * height);
+    assemble(node, values, panel.data());
     updates[s].values.reset(new float[rest * rest]);
     for (std::size_t j = 0; j < rest; ++j) std::fill_n(&updates[s].values[j * rest + j], rest - j, 0.0F);
     for (const int child : node.children) {
-      add_child(supernodes_[child], updates[child], node, panel, updates[s]);
+      add_child(supernodes_[child], updates[child], node, panel.data(), updates[s]);
       updates[child].values.reset();
     }
-    if (!eliminate(node, panel, updates[s])) return false;
+    if (!eliminate(node, panel.data(), updates[s])) return false;
+    for (std::size_t j = 0; j < node.width(); ++j)
+      std::copy_n(&panel[j * height], height, panels_[node.panel + j * chunks_for(height)].numbers);
   }
   return true;
 }
 
 namespace {
 
-// y = P x; P has `height` rows, column-major, and zeros above the diagonal.
-PLICA_FOR_NEWER_PROCESSORS_TOO void multiply(const float* P, int height, int width, const float* x, float* y) {
-  std::fill_n(y, height, 0.0F);
-  int j = 0;
-  for (; j + 6 <= width; j += 6) {
-    const float *a = P + std::size_t(j) * height, *b = a + height, *c = b + height, *d = c + height, *e = d + height,
-                *f = e + height;
-#pragma omp simd
-    for (int i = j; i < height; ++i)
-      y[i] +=
-          (a[i] * x[j] + b[i] * x[j + 1]) + (c[i] * x[j + 2] + d[i] * x[j + 3]) + (e[i] * x[j + 4] + f[i] * x[j + 5]);
-  }
-  for (; j < width; j += 3) {
-    const float *a = P + std::size_t(j) * height, *b = a + height, *c = b + height;
-#pragma omp simd
-    for (int i = j; i < height; ++i) y[i] += a[i] * x[j] + b[i] * x[j + 1] + c[i] * x[j + 2];
-  }
-}
-
-// x = P^T y.
-PLICA_FOR_NEWER_PROCESSORS_TOO void multiply_transposed(const float* P, int height, int width, const float* y,
-                                                        float* x) {
-  for (int j = 0; j < width; j += 3) {
-    const float *a = P + std::size_t(j) * height, *b = a + height, *c = b + height;
-    float p = 0, q = 0, r = 0;
-#pragma omp simd reduction(+ : p, q, r)
-    for (int i = j; i < height; ++i) {
-      p += a[i] * y[i];
-      q += b[i] * y[i];
-      r += c[i] * y[i];
-    }
-    x[j] = p;
-    x[j + 1] = q;
-    x[j + 2] = r;
-  }
-}
+// A node's three numbers, and one that does not matter: nodes are moved between arrays of three and of four numbers a
+// node four at a time, in ascending order, so that what is written too much is overwritten by the next.
+using FourNumbers = float __attribute__((vector_size(16), aligned(4), may_alias));
+FourNumbers& four(float* numbers) { return *reinterpret_cast<FourNumbers*>(numbers); }
 
 }  // namespace
 
 void BlockCholesky::solve(std::span<float> x) const {
-  for (int n = 0; n < nodes_; ++n)
-    for (int k = 0; k < 3; ++k) x_[3 * position_[n] + k] = x[3 * n + k];
-  float* front = rows_.data();
+  for (int n = 0; n < nodes_; ++n) std::copy_n(&x[3 * n], 3, x_[position_[n]].numbers);
+  float* const own = own_.data();
+  float* const front = front_.data()->numbers;
   for (const auto& node : supernodes_) {
-    const int own = 3 * node.columns, height = own + 3 * static_cast<int>(node.rows.size());
-    multiply(&panels_[node.panel], height, own, &x_[3 * node.first], front);
-    std::copy_n(front, own, &x_[3 * node.first]);
-    const float* below = front + own;
-    for (const auto& [row, count] : node.runs) {
-      float* to = &x_[3 * row];
-      for (int k = 0; k < 3 * count; ++k) to[k] -= below[k];
-      below += 3 * count;
+    for (int k = 0; k < node.columns; ++k) four(own + 3 * k) = four(x_[node.first + k].numbers);
+    multiply(panel_of(node), own, front_.data());
+    for (int k = 0; k < node.columns; ++k) four(x_[node.first + k].numbers) = four(front + 3 * k);
+    float* below = front + node.width();
+    for (const int row : node.rows) {
+      four(x_[row].numbers) -= four(below);
+      below += 3;
     }
   }
   for (std::size_t s = supernodes_.size(); s-- > 0;) {
     const auto& node = supernodes_[s];
-    const int own = 3 * node.columns, height = own + 3 * static_cast<int>(node.rows.size());
-    std::copy_n(&x_[3 * node.first], own, front);
-    float* below = front + own;
-    for (const auto& [row, count] : node.runs) {
-      const float* from = &x_[3 * row];
-      for (int k = 0; k < 3 * count; ++k) below[k] = -from[k];
-      below += 3 * count;
+    for (int k = 0; k < node.columns; ++k) four(front + 3 * k) = four(x_[node.first + k].numbers);
+    float* below = front + node.width();
+    for (const int row : node.rows) {
+      four(below) = -four(x_[row].numbers);
+      below += 3;
     }
-    multiply_transposed(&panels_[node.panel], height, own, front, &x_[3 * node.first]);
+    std::fill(below, front + chunks_for(node.height()) * PanelChunk::size, 0.0F);  // after the last node
+    multiply_transposed(panel_of(node), front_.data(), own);
+    for (int k = 0; k < node.columns; ++k) four(x_[node.first + k].numbers) = four(own + 3 * k);
   }
-  for (int n = 0; n < nodes_; ++n)
-    for (int k = 0; k < 3; ++k) x[3 * n + k] = x_[3 * position_[n] + k];
+  for (int n = 0; n < nodes_; ++n) std::copy_n(x_[position_[n]].numbers, 3, &x[3 * n]);
 }
 
 }  // namespace plica

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "solver/block_pattern.hpp"
+#include "solver/panel_products.hpp"
 #include "solver/preconditioner.hpp"
 
 namespace plica {
@@ -35,16 +36,19 @@ class BlockCholesky final : public Preconditioner {
   void solve(std::span<float> x) const override;
 
   /// Numbers kept in the factor, zeros inside panels included.
-  [[nodiscard]] std::size_t factor_size() const { return panels_.size(); }
+  [[nodiscard]] std::size_t factor_size() const { return factor_size_; }
 
  private:
   struct Supernode {
-    int first = 0, columns = 0;             // nodes in elimination order
-    std::vector<int> rows;                  // nodes below, ascending
-    std::vector<std::pair<int, int>> runs;  // the same as runs of consecutive ones: first, count
-    std::size_t panel = 0;                  // where its panel begins
-    std::vector<int> children;              // supernodes that update this one
-    std::vector<std::size_t> blocks;        // of the matrix that are assembled here
+    int first = 0, columns = 0;       // nodes in elimination order
+    std::vector<int> rows;            // nodes below, ascending
+    std::size_t panel = 0;            // where its panel begins
+    std::vector<int> children;        // supernodes that update this one
+    std::vector<std::size_t> blocks;  // of the matrix that are assembled here
+
+    // Of its panel, in numbers.
+    [[nodiscard]] std::size_t width() const { return 3 * static_cast<std::size_t>(columns); }
+    [[nodiscard]] std::size_t height() const { return 3 * (static_cast<std::size_t>(columns) + rows.size()); }
   };
   struct Update {  // a child's contribution, lower triangle, column-major
     std::unique_ptr<float[]> values;
@@ -56,6 +60,9 @@ class BlockCholesky final : public Preconditioner {
   void assemble(const Supernode& node, std::span<const float> values, float* panel) const;
   void add_child(const Supernode& child, const Update& update, const Supernode& node, float* panel,
                  Update& front) const;
+  [[nodiscard]] Panel panel_of(const Supernode& node) const {
+    return {&panels_[node.panel], chunks_for(node.height()), 3 * node.columns};
+  }
   static bool eliminate(const Supernode& node, float* panel, Update& front);
 
   int nodes_ = 0;
@@ -63,9 +70,15 @@ class BlockCholesky final : public Preconditioner {
   std::vector<Supernode> supernodes_;            // children before parents
   std::vector<int> block_rows_, block_columns_;  // of each block, in elimination order, row >= column
   std::vector<char> block_turned_;               // whether it is transposed there
-  std::vector<float> panels_;
-  mutable std::vector<float> x_, rows_;  // scratch of solve()
-  std::size_t widest_rows_ = 0;
+  std::vector<PanelChunk> panels_;
+  std::size_t factor_size_ = 0;
+
+  struct alignas(16) NodeNumbers {
+    float numbers[4];  // the last does not matter
+  };
+  mutable std::vector<NodeNumbers> x_;     // scratch of solve(): the nodes in elimination order,
+  mutable std::vector<float> own_;         // a supernode's own,
+  mutable std::vector<PanelChunk> front_;  // and what its panel is multiplied with, or gives
 };
 
 }  // namespace plica

@@ -11,11 +11,11 @@ namespace {
 
 // gamma times the size of a cell, over the mean stiffness of a node. Large, so that few iterations are left for the
 // pressures; but single precision has to carry A beside it, multigrid finds nearly incompressible cells hard, and
-// within cells of several elements it resists what the exact volumes allow. A third or three times as much takes a
-// fifth to a half more iterations.
+// within cells of several elements it resists what the exact volumes allow. With a factor, a third takes a fifth more
+// iterations, three times as much no fewer.
 double regularisation(KrylovDirections::Inverse inverse, const Cell& cell) {
   if (cell.element_count > 1) return 3;
-  return inverse == KrylovDirections::Inverse::multigrid ? 20 : 50;
+  return inverse == KrylovDirections::Inverse::multigrid ? 20 : 150;
 }
 
 }  // namespace
@@ -28,10 +28,9 @@ KrylovDirections::KrylovDirections(const Model& model, Inverse inverse, std::fun
       matrix_(model),
       preconditioner_(inverse == Inverse::multigrid ? make_multigrid(matrix_.layout())
                                                     : std::make_unique<BlockCholesky>(matrix_.layout())),
-      most_contact_changes_(inverse == Inverse::multigrid ? 4
-                            : std::getenv("PB")           ? std::atoi(std::getenv("PB"))
-                                                          : 32),
-      price_of_factor_(std::getenv("PP") ? std::atoi(std::getenv("PP")) : 25),
+      most_contact_changes_(inverse == Inverse::multigrid ? 4 : 32),
+      price_of_factor_(inverse == Inverse::multigrid ? 25 : 30),
+      factor_jacobian_(model),
       jacobian_(model) {}
 
 void KrylovDirections::weigh_pressures() {
@@ -87,6 +86,8 @@ bool KrylovDirections::refresh(const Step& step, const Iterate& at) {
     matrix_.write_projected_blocks(frames_, values_);
     has_factor_ = preconditioner_->factorise(values_, rigid_motions(at));
     if (!has_factor_) continue;
+    // J as in the factor: with another, gamma would carry the difference into directions that hardly resist.
+    factor_jacobian_ = jacobian_;
     border_.begin(model_, matrix_, frames_, at.in_contact, most_contact_changes_);
     return true;
   }
@@ -131,12 +132,12 @@ void KrylovDirections::precondition(const Vector& residual, Vector& result) cons
     pressures[c] = -pressure_weights_[c] / volume_unit_ * of_cells(residual)[c];
   const std::span<Vec3> dx = of_nodes(result);
   std::ranges::copy(of_nodes(residual), dx.begin());
-  jacobian_.add_forces(pressures, 1, dx);
+  factor_jacobian_.add_forces(pressures, 1, dx);
   project(dx);
   border_.solve(*preconditioner_, dx.first(frames_.size()));
   project(dx);
   model_.tissue.place_hanging(dx);
-  jacobian_.add_rates(dx, pressure_weights_, -1, pressures);
+  factor_jacobian_.add_rates(dx, pressure_weights_, -1, pressures);
 }
 
 NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate& at, const Residual& residual,

@@ -51,6 +51,7 @@ class KrylovDirections final : public NewtonDirections {
   int iterations_when_new_ = 0, wasted_iterations_ = 0;
 
   std::vector<double> pressure_weights_;  // gamma W as in the factor; cells, kPa/um^3
+  VolumeJacobian factor_jacobian_;        // J as in the factor
   double volume_unit_ = 1;                // nN/um^3: makes the rows of volumes forces
 
   // Where Newton's method stands.
