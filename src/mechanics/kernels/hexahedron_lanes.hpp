@@ -65,7 +65,14 @@ inline void prefetch(const BatchNodes& nodes, int lane, const Vectors*... vector
     for (int k = lane; k < lane + width; k += 4) (__builtin_prefetch(vectors + nodes[i][k]), ...);
 }
 
-#if PLICA_LANES > 1
+#if PLICA_LANES == 1
+inline void scatter(const Vec& f, const int* at, double* vectors) {
+  double* v = vectors + at[0];
+  v[0] += f.x[0];
+  v[1] += f.y[0];
+  v[2] += f.z[0];
+}
+#else
 // Adds lane k of z, and of x and y, which `xy` holds in turns, lane k & ~1 first. Two stores a vector, not three: stores
 // are what scattering waits for. (Not one: a later load of x y z cannot be had from a masked store.)
 template <int k>
@@ -98,22 +105,17 @@ inline void scatter(const Vec& f, const int* at, double* vectors) {
 }
 #endif
 
-/// Adds to the nodes of the first `count` lanes.
-inline void scatter(const BatchNodes& nodes, int lane, int count, const Vec (&f)[8], double* vectors) {
-#if PLICA_LANES > 1
-  if (count == width) {
+/// Adds to the nodes of the first `count` lanes; to those of the others, which exist, nothing.
+inline void scatter(const BatchNodes& nodes, int lane, int count, Vec (&f)[8], double* vectors) {
+  if (count < width) {
+    Lanes counts;
 #pragma GCC unroll 8
-    for (int i = 0; i < 8; ++i) scatter(f[i], nodes[i] + lane, vectors);
-    return;
+    for (int k = 0; k < width; ++k) counts[k] = k < count ? 1 : 0;
+#pragma GCC unroll 8
+    for (Vec& v : f) v = counts * v;
   }
-#endif
-  for (int i = 0; i < 8; ++i)
-    for (int k = 0; k < count; ++k) {
-      double* v = vectors + nodes[i][lane + k];
-      v[0] += f[i].x[k];
-      v[1] += f[i].y[k];
-      v[2] += f[i].z[k];
-    }
+#pragma GCC unroll 8
+  for (int i = 0; i < 8; ++i) scatter(f[i], nodes[i] + lane, vectors);
 }
 
 // Differences of neighbouring nodes first: what they have in common is lost without rounding.
