@@ -49,6 +49,7 @@ template <bool viscous>
 template <bool viscous>
 [[gnu::flatten]] void add_forces(const CorotationalStep& step, std::size_t first, std::size_t last, double* forces) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
+    prefetch(e.batch.nodes, e.lane, forces);
     const Deformation now = deformation(e, step.positions);
     Hourglass q;
     multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
@@ -58,7 +59,7 @@ template <bool viscous>
       add_viscous(e, step, now, T, q);
       torque = cross(now.h, q) + axial(full(now.S) * full(T));
     }
-    const Vec t = inverse(turning(now.S)) * torque;
+    const Vec t = now.G * torque;
     Mat P = cross_matrix(t) - full(T);
     for (int a = 0; a < 4; ++a) P = P + outer(q[a], e.X(a));
     for (Lanes& value : q.at) value = -value;
@@ -66,16 +67,33 @@ template <bool viscous>
   });
 }
 
+// Where the elements are and how they move: modes and gradients.
+struct Moving {
+  Vec m[7], d[7];
+  Mat F, dF;
+  Stretch stretched;
+};
+
+// The stretch comes of a chain of steps that wait for each other: meanwhile the direction is gathered.
+inline void gather_moving(const Elements& e, const double* positions, const double* direction, const double* product,
+                          Moving& at) {
+  gather_modes(e.batch.nodes, e.lane, positions, at.m);
+  at.F = gradient(e, at.m);
+  prefetch(e.batch.nodes, e.lane, direction, product);
+  at.stretched = stretch(at.F);
+  gather_modes(e.batch.nodes, e.lane, direction, at.d);
+  at.dF = gradient(e, at.d);
+}
+
 // R K R^T: the frame does not turn.
 template <bool viscous>
 [[gnu::flatten]] void add_warped_product(const CorotationalStep& step, std::size_t first, std::size_t last,
                                          const double* direction, double* product) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
-    Vec m[7], d[7];
-    gather_modes(e.batch.nodes, e.lane, step.positions, m);
-    const Mat R = rotation(gradient(e, m));
-    gather_modes(e.batch.nodes, e.lane, direction, d);
-    const Seen move = seen_from(e, R, gradient(e, d), d);
+    Moving at;
+    gather_moving(e, step.positions, direction, product, at);
+    const Mat R = frame(at.F, at.stretched).R;
+    const Seen move = seen_from(e, R, at.dF, at.d);
     Hourglass dq;
     multiply<1>(e.batch.stiffness, e.lane, {&move.w}, {&dq});
     Lanes shear = e.shear();
@@ -95,12 +113,11 @@ template <bool viscous>
 [[gnu::flatten]] void add_exact_product(const CorotationalStep& step, std::size_t first, std::size_t last,
                                         const double* direction, double* product) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
-    const auto [R, S, h] = deformation(e, step.positions);
-    Vec d[7];
-    gather_modes(e.batch.nodes, e.lane, direction, d);
-    const Seen move = seen_from(e, R, gradient(e, d), d);
+    Moving at;
+    gather_moving(e, step.positions, direction, product, at);
+    const auto [R, S, G, h] = deformation(e, at.m, at.F, at.stretched);
+    const Seen move = seen_from(e, R, at.dF, at.d);
     // How the frame turns, and what that leaves of the move as deformation.
-    const Sym G = inverse(turning(S));
     const Vec omega = -(G * axial(move.W));
     const Sym dS = upper_part(move.W - cross(omega, full(S)));
     Hourglass dh;
@@ -111,7 +128,7 @@ template <bool viscous>
     Sym T = e.shear() * deviator(S), dT = e.shear() * deviator(dS);
     Vec torque = cross(h, q), dtorque = cross(dh, q) + cross(h, dq);
     if (viscous) {
-      add_viscous(e, step, {R, S, h}, T, q);
+      add_viscous(e, step, {R, S, G, h}, T, q);
       Hourglass damped;
       multiply<1>(e.viscous->stiffness, e.lane, {&dh}, {&damped});
       for (int i = 0; i < 12; ++i) dq.at[i] += e.rate * damped.at[i];

@@ -38,34 +38,68 @@ inline Mat gradient(const Elements& e, const Vec (&m)[7]) {
   return F;
 }
 
-/// The nearest rotation to F: Newton's iteration for the polar factor, X <- (X + X^-T)/2, as in polar(), which serves
-/// the elements on which it fails. From the first step on no singular value is below 1, so det X - 1 is at least the
-/// largest error; the next one is half its square.
-inline Mat rotation(const Mat& F) {
-  const Lanes half = broadcast(0.5), one = broadcast(1);
-  Mat R = F;
-  auto good = half == half;  // lanes that converge so far
-  for (int iteration = 0; iteration < 20; ++iteration) {
-    const Mat cofactors = {cross(R.y, R.z), cross(R.z, R.x), cross(R.x, R.y)};
-    const Lanes determinant = dot(R.x, cofactors.x);
-    R = half * R + (half / determinant) * cofactors;
-    good &= determinant > 1e-3;
-    if (iteration < 2) continue;  // hardly any element is done so soon
-    const auto moving = good & (determinant - one > 1e-8);
-    if (!any(moving)) break;
-    if (iteration == 19) good &= ~moving;
+/// What F's rotation follows from, F = R S: cof F, C = F^T F = S^2, J = det F and s = tr S.
+struct Stretch {
+  Mat cofactors;
+  Sym C;
+  Lanes J, s;
+};
+
+/// s is the largest root of the quartic (s^2 - a)^2/4 - b - 2 J s, where a = tr S^2 and b = |cof S|^2 = |cof F|^2. All
+/// its roots are real, so Halley's iteration comes down to it from any larger number, cubically in the end.
+inline Stretch stretch(const Mat& F) {
+  const Mat K = {cross(F.y, F.z), cross(F.z, F.x), cross(F.x, F.y)};
+  const Sym C = {dot(F.x, F.x), dot(F.y, F.y), dot(F.z, F.z), dot(F.x, F.y), dot(F.y, F.z), dot(F.z, F.x)};
+  const Lanes J = dot(F.x, K.x), J2 = J + J;
+  const Lanes a = trace(C), b = dot(K.x, K.x) + dot(K.y, K.y) + dot(K.z, K.z);
+  Lanes s = 0.5 * a + 1.5;  // at least sqrt(3 a), and so at least the trace
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    const Lanes s2 = s * s, u = s2 - a;
+    const Lanes value = 0.25 * u * u - b - J2 * s, slope = s * u - J2, half_bend = s2 + 0.5 * u;
+    const Lanes step = value * slope / (slope * slope - value * half_bend);
+    s -= step;
+    if (iteration > 0 && !any(step > 1e-5 * s)) break;  // hardly any element is done after one
   }
-  if (!any(~good)) return R;
+  return {K, C, J, s};
+}
+
+/// R, and G = (s I - S)^-1.
+struct Frame {
+  Mat R;
+  Sym G;
+};
+
+// One element after the other, whatever they look like. Apart, so that those that need no such care do not pay for it.
+[[gnu::noinline, gnu::cold]] inline Mat nearest_rotation(const Mat& F) {
+  Mat R;
   for (int k = 0; k < width; ++k) {
-    if (good[k]) continue;
     const double from[9] = {F.x.x[k], F.x.y[k], F.x.z[k], F.y.x[k], F.y.y[k], F.y.z[k], F.z.x[k], F.z.y[k], F.z.z[k]};
     double to[9];
-    nearest_rotation(from, to);
+    plica::nearest_rotation(from, to);
     R.x.x[k] = to[0], R.x.y[k] = to[1], R.x.z[k] = to[2];
     R.y.x[k] = to[3], R.y.y[k] = to[4], R.y.z[k] = to[5];
     R.z.x[k] = to[6], R.z.y[k] = to[7], R.z.z[k] = to[8];
   }
   return R;
+}
+
+/// With c = (s^2 - tr C)/2, the second invariant of S, and D = s c - J = det(s I - S), the theorem of Cayley and
+/// Hamilton gives D G = C + c I and D R = F ((s^2 - c) I - C) + s cof F.
+inline Frame frame(const Mat& F, const Stretch& of) {
+  const auto& [K, C, J, s] = of;
+  const Lanes s2 = s * s, c = 0.5 * (s2 - trace(C)), D = s * c - J;
+  const Lanes scale = 1 / D, own = scale * c, rest = scale * (s2 - c);
+  const Sym part = scale * C;
+  Frame result = {F * Mat{{rest - part.xx, -part.xy, -part.zx},
+                          {-part.xy, rest - part.yy, -part.yz},
+                          {-part.zx, -part.yz, rest - part.zz}} + (scale * s) * K,
+                  {part.xx + own, part.yy + own, part.zz + own, part.xy, part.yz, part.zx}};
+  // Inverted elements, or nearly so, and very flat ones.
+  if (any(~((J > 1e-3) & (D > 1e-3 * s * s2)))) {
+    const Mat deformed = F, R = nearest_rotation(deformed);
+    result = {R, inverse(turning(upper_part(turn_back(R, F))))};
+  }
+  return result;
 }
 
 /// What moves with velocities or small displacements, seen in the frame: W = R^T sum m_j b_j^T and the hourglasses that
@@ -82,20 +116,24 @@ inline Seen seen_from(const Elements& e, const Mat& R, const Mat& F, const Vec (
   return s;
 }
 
-/// S and h.
+/// S and h, and the frame they are seen in.
 struct Deformation {
   Mat R;
-  Sym S;
+  Sym S, G;
   Hourglass h;
 };
+
+inline Deformation deformation(const Elements& e, const Vec (&m)[7], const Mat& F, const Stretch& of) {
+  const auto [R, G] = frame(F, of);
+  const Seen s = seen_from(e, R, F, m);
+  return {R, upper_part(s.W), G, s.w};
+}
 
 inline Deformation deformation(const Elements& e, const double* positions) {
   Vec m[7];
   gather_modes(e.batch.nodes, e.lane, positions, m);
   const Mat F = gradient(e, m);
-  const Mat R = rotation(F);
-  const Seen s = seen_from(e, R, F, m);
-  return {R, upper_part(s.W), s.w};
+  return deformation(e, m, F, stretch(F));
 }
 
 /// q = H h for each of `n`.

@@ -55,23 +55,67 @@ inline void gather(const BatchNodes& nodes, int lane, const double* vectors, Vec
   for (int i = 0; i < 8; ++i) x[i] = gather(vectors, nodes[i] + lane);
 }
 
-/// Adds to the nodes of the first `count` lanes.
-inline void scatter(const BatchNodes& nodes, int lane, int count, const Vec (&f)[8], double* vectors) {
-  const auto add = [&](int i, int k) {
-    double* v = vectors + nodes[i][lane + k];
-    v[0] += f[i].x[k];
-    v[1] += f[i].y[k];
-    v[2] += f[i].z[k];
-  };
-  if (count == width) {
-#pragma GCC unroll 1
-    for (int i = 0; i < 8; ++i)
+/// Asks memory for what is gathered from, or added to, a little later. About once a line: neighbouring lanes mostly have
+/// neighbouring nodes.
+template <class... Vectors>
+inline void prefetch(const BatchNodes& nodes, int lane, const Vectors*... vectors) {
 #pragma GCC unroll 8
-      for (int k = 0; k < width; ++k) add(i, k);
-  } else {
-    for (int i = 0; i < 8; ++i)
-      for (int k = 0; k < count; ++k) add(i, k);
+  for (int i = 0; i < 8; ++i)
+#pragma GCC unroll 2
+    for (int k = lane; k < lane + width; k += 4) (__builtin_prefetch(vectors + nodes[i][k]), ...);
+}
+
+#if PLICA_LANES == 1
+inline void scatter(const Vec& f, const int* at, double* vectors) {
+  double* v = vectors + at[0];
+  v[0] += f.x[0];
+  v[1] += f.y[0];
+  v[2] += f.z[0];
+}
+#else
+// Adds lane k of z, and of x and y, which `xy` holds in turns, lane k & ~1 first. Two stores a vector, not three: stores
+// are what scattering waits for. (Not one: a later load of x y z cannot be had from a masked store.)
+template <int k>
+inline void add_lane(const Lanes& xy, const Lanes& z, double* vector) {
+  *reinterpret_cast<Pair*>(vector) += pair<k / 2>(xy);
+  vector[2] += z[k];
+}
+
+inline void scatter(const Vec& f, const int* at, double* vectors) {
+#if PLICA_LANES == 8
+  const Lanes even = __builtin_shufflevector(f.x, f.y, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Lanes odd = __builtin_shufflevector(f.x, f.y, 1, 9, 3, 11, 5, 13, 7, 15);
+#elif PLICA_LANES == 4
+  const Lanes even = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6), odd = __builtin_shufflevector(f.x, f.y, 1, 5, 3, 7);
+#else
+  const Lanes even = __builtin_shufflevector(f.x, f.y, 0, 2), odd = __builtin_shufflevector(f.x, f.y, 1, 3);
+#endif
+  add_lane<0>(even, f.z, vectors + at[0]);
+  add_lane<1>(odd, f.z, vectors + at[1]);
+#if PLICA_LANES > 2
+  add_lane<2>(even, f.z, vectors + at[2]);
+  add_lane<3>(odd, f.z, vectors + at[3]);
+#endif
+#if PLICA_LANES > 4
+  add_lane<4>(even, f.z, vectors + at[4]);
+  add_lane<5>(odd, f.z, vectors + at[5]);
+  add_lane<6>(even, f.z, vectors + at[6]);
+  add_lane<7>(odd, f.z, vectors + at[7]);
+#endif
+}
+#endif
+
+/// Adds to the nodes of the first `count` lanes; to those of the others, which exist, nothing.
+inline void scatter(const BatchNodes& nodes, int lane, int count, Vec (&f)[8], double* vectors) {
+  if (count < width) {
+    Lanes counts;
+#pragma GCC unroll 8
+    for (int k = 0; k < width; ++k) counts[k] = k < count ? 1 : 0;
+#pragma GCC unroll 8
+    for (Vec& v : f) v = counts * v;
   }
+#pragma GCC unroll 8
+  for (int i = 0; i < 8; ++i) scatter(f[i], nodes[i] + lane, vectors);
 }
 
 // Differences of neighbouring nodes first: what they have in common is lost without rounding.

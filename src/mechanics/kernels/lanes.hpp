@@ -32,6 +32,21 @@ inline Row load_row(const double* values) { return _mm256_maskload_pd(values, __
 #endif
 #endif
 
+#if PLICA_LANES > 1
+/// Two of the lanes: 2 k and 2 k + 1.
+typedef double Pair __attribute__((vector_size(16), aligned(8), may_alias));  // NOLINT
+template <int k>
+inline Pair pair(const Lanes& a) {
+#if PLICA_LANES == 8
+  return _mm512_extractf64x2_pd(a, k);
+#elif PLICA_LANES == 4
+  return _mm256_extractf128_pd(a, k);
+#else
+  return a;
+#endif
+}
+#endif
+
 inline Lanes load(const double* values) { return *reinterpret_cast<const Lanes*>(values); }
 
 /// Whether a comparison holds in any lane.
