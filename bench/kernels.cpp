@@ -184,18 +184,18 @@ nlohmann::ordered_json measure(const Scene& scene, Kernels kernels, int threads,
 
 int run(int argc, const char* const* argv) {
   CLI::App app("Times of the element laws' kernels, and the machine's ceilings. Prints JSON.");
-  std::vector<int> elements_per_cell = {1, 1, 1};
+  std::vector<int> elements_per_cell = {1, 1};
   int threads = 1, rounds = 9;
-  app.add_option("--elements-per-cell", elements_per_cell, "1 1 1: 756 elements; 4 4 2: 24192; 8 8 4: 193536")
-      ->expected(3);
+  app.add_option("--elements-per-cell", elements_per_cell, "N M: along and across a cell, basal to apical")
+      ->expected(2);
   app.add_option("--threads", threads, "Of the kernels and ceilings")->check(CLI::PositiveNumber);
   app.add_option("--rounds", rounds, "Medians are taken over these")->check(CLI::PositiveNumber);
   std::string only;
   app.add_option("--kernel", only, "Time no other than this, as \"tangent product\"");
-  app.footer("Example: kernels --elements-per-cell 8 8 4 --threads 2");
+  app.footer("Example: kernels --elements-per-cell 8 4 --threads 2");
   CLI11_PARSE(app, argc, argv);
   omp_set_num_threads(threads);
-  const Scene scene({elements_per_cell[0], elements_per_cell[1], elements_per_cell[2]});
+  const Scene scene({elements_per_cell[0], elements_per_cell[0], elements_per_cell[1]});
   std::printf("%s\n", measure(scene, chosen_kernels(), threads, rounds, only).dump(2).c_str());
   return 0;
 }
