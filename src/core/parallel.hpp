@@ -12,11 +12,14 @@
 
 namespace plica {
 
-/// Calls body(i) for i in [0, count). Iterations must not write to the same place. Short loops stay on one thread:
-/// waking the others costs more than they save.
+/// For parallel_for's `worth_sharing`: of iterations that take microseconds.
+inline constexpr std::size_t long_bodies = 256;
+
+/// Calls body(i) for i in [0, count). Iterations must not write to the same place. Loops shorter than `worth_sharing`
+/// stay on one thread: waking the others costs more than they save, and on a machine that has other work, where one may
+/// have to wait for its turn, a hundred times as much.
 template <class Body>
-void parallel_for(std::size_t count, const Body& body) {
-  constexpr std::size_t worth_sharing = 256;
+void parallel_for(std::size_t count, const Body& body, std::size_t worth_sharing = 8192) {
   if (count < worth_sharing || omp_get_max_threads() == 1) {
     for (std::size_t i = 0; i < count; ++i) body(i);
     return;
@@ -40,7 +43,9 @@ inline double parallel_dot(std::span<const double> a, std::span<const double> b)
   };
   if (a.size() <= part) return sum(0, a.size());
   std::vector<double> sums((a.size() + part - 1) / part);
-  parallel_for(sums.size(), [&](std::size_t k) { sums[k] = sum(k * part, std::min(a.size(), (k + 1) * part)); });
+  constexpr std::size_t worth_sharing = 16;  // parts
+  parallel_for(
+      sums.size(), [&](std::size_t k) { sums[k] = sum(k * part, std::min(a.size(), (k + 1) * part)); }, worth_sharing);
   double total = 0;
   for (const double one : sums) total += one;
   return total;

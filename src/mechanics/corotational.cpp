@@ -35,7 +35,8 @@ Corotational::Corotational(const Tissue& tissue, const ElasticModuli& moduli, do
       batches_(chunks_.batch_count()),
       viscous_batches_(shear_viscosity > 0 ? chunks_.batch_count() : 0) {
   require_upright_rest_shapes(tissue);
-  parallel_for(batches_.size() * batch_size, [&](std::size_t place) { fit(tissue, place); });
+  parallel_for(
+      batches_.size() * batch_size, [&](std::size_t place) { fit(tissue, place); }, long_bodies);
 }
 
 void Corotational::fit(const Tissue& tissue, std::size_t place) {
@@ -111,7 +112,8 @@ void Corotational::add_tangent(const Step& step, TangentSink& tangent) const {
   const CorotationalStep at = kernel_step(step);
   for (std::size_t first = 0; first < batches_.size(); first += at_once) {
     const std::size_t last = std::min(first + at_once, batches_.size());
-    parallel_for(last - first, [&](std::size_t k) { kernels().write_blocks(at, first + k, blocks[k]); });
+    parallel_for(
+        last - first, [&](std::size_t k) { kernels().write_blocks(at, first + k, blocks[k]); }, long_bodies);
     for (std::size_t e = first * batch_size; e < std::min(last * batch_size, chunks_.element_count()); ++e) {
       const auto& of_batch = blocks[e / batch_size - first].blocks;
       for (int i = 0, pair = 0; i < 8; ++i)

@@ -55,7 +55,8 @@ ShapeMemory::ShapeMemory(const Tissue& tissue, const AttractorSprings& springs, 
       shear_viscosity_(shear_viscosity),
       stiffness_(tissue.elements.size()),
       preload_(tissue.elements.size()) {
-  parallel_for(elements_.size(), [&](std::size_t e) { fit(tissue, e); });
+  parallel_for(
+      elements_.size(), [&](std::size_t e) { fit(tissue, e); }, long_bodies);
 }
 
 void ShapeMemory::fit(const Tissue& tissue, std::size_t e) {
