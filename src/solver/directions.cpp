@@ -31,6 +31,10 @@ class GuardedDirections final : public NewtonDirections {
     gave_up_at_s_ = -1;
   }
 
+  // The second's factor serves one step only.
+  [[nodiscard]] FactorMemory memory() const override { return first_->memory(); }
+  void recall(const FactorMemory& memory) override { first_->recall(memory); }
+
  private:
   const Model& model_;
   std::unique_ptr<NewtonDirections> first_, second_;

@@ -89,9 +89,28 @@ bool KrylovDirections::refresh(const Step& step, const Iterate& at) {
     // J as in the factor: with another, gamma would carry the difference into directions that hardly resist.
     factor_jacobian_ = jacobian_;
     border_.begin(model_, matrix_, frames_, at.in_contact, most_contact_changes_);
+    made_from_ = factor_memory(step, at);
     return true;
   }
   return false;
+}
+
+FactorMemory KrylovDirections::memory() const {
+  if (!has_factor_) return {};
+  FactorMemory memory = made_from_;
+  border_.remember(memory);
+  memory.iterations_when_new = iterations_when_new_;
+  memory.wasted_iterations = wasted_iterations_;
+  return memory;
+}
+
+void KrylovDirections::recall(const FactorMemory& memory) {
+  if (memory.empty()) return;
+  linearise(memory.at);
+  if (!refresh(step_of(memory), memory.at)) return;
+  border_.recall(memory, *preconditioner_);
+  iterations_when_new_ = memory.iterations_when_new;
+  wasted_iterations_ = memory.wasted_iterations;
 }
 
 std::vector<float> KrylovDirections::rigid_motions(const Iterate& at) const {

@@ -21,6 +21,8 @@ class KrylovDirections final : public NewtonDirections {
   [[nodiscard]] Outcome find(const Step& step, const Iterate& at, const Residual& residual, const Wish& wish,
                              Direction& direction, Cost& cost) override;
   void forget_factor() override { has_factor_ = false; }
+  [[nodiscard]] FactorMemory memory() const override;
+  void recall(const FactorMemory& memory) override;
 
  private:
   // Three numbers a node, then one a cell. Forces are 0 on hanging nodes, directions are where the free nodes say.
@@ -46,6 +48,7 @@ class KrylovDirections final : public NewtonDirections {
   std::unique_ptr<Preconditioner> preconditioner_;
   ContactBorder border_;
   bool has_factor_ = false;
+  FactorMemory made_from_;             // without what came later
   std::size_t most_contact_changes_;  // before the factor is made anew
   int price_of_factor_;               // in iterations
   int iterations_when_new_ = 0, wasted_iterations_ = 0;
