@@ -12,9 +12,13 @@
 #include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
+#include "core/version.hpp"
+#include "output/archive.hpp"
+#include "output/checkpoint.hpp"
 #include "output/recorder.hpp"
 #include "output/report.hpp"
 #include "scenario/advice.hpp"
+#include "scenario/print.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/watch.hpp"
 
@@ -25,7 +29,7 @@ struct RunOptions {
   ScenarioOptions scenario;
   std::string out;
   int threads = 0;
-  bool quiet = false, overwrite = false;
+  bool quiet = false, overwrite = false, resume = false;
 };
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -52,6 +56,51 @@ class SolverClock {
   std::chrono::steady_clock::time_point start_;
   double writing_s_ = 0, solver_s_ = 0;
 };
+
+/// What there is to go on from in the directory of --out; nothing: begin. Refuses what is of another run.
+std::optional<Checkpoint> checkpoint_to_resume(const RunOptions& options, const Scenario& scenario,
+                                               const Model& at_rest) {
+  if (!can_archive()) throw UsageError("this plica was built without HDF5: it has no checkpoints to resume from");
+  std::string complaint;
+  std::optional<Checkpoint> checkpoint = read_checkpoint(options.out, complaint);
+  if (!complaint.empty()) fmt::print(stderr, "plica: {}; going on from the checkpoint before it\n", complaint);
+  if (!checkpoint) {
+    if (std::filesystem::exists(std::filesystem::path(options.out) / "summary.json"))
+      throw FileError(options.out + ": holds results without a checkpoint; begin anew with --overwrite");
+    return std::nullopt;
+  }
+  if (const auto other = other_scenario(checkpoint->scenario, resolved_toml(scenario)))
+    throw UsageError(
+        fmt::format("{}: the checkpoint is of another scenario: {}. Only [time], [stop] and [output] may change; give "
+                    "another --out",
+                    options.out, *other));
+  if (checkpoint->at_rest != fingerprint(at_rest.tissue))
+    throw UsageError(fmt::format("{}: the checkpoint is of another embryo ({}; this one has {}); has its mesh changed?",
+                                 options.out, checkpoint->at_rest, fingerprint(at_rest.tissue)));
+  if (checkpoint->program != version())
+    fmt::print(stderr, "plica: {} was written by version {}; what follows may differ from it in the last digits\n",
+               options.out, checkpoint->program);
+  return checkpoint;
+}
+
+bool is_finished(const RunMemory& run, const RunControls& controls) {
+  return run.criterion_met || (run.at_equilibrium && controls.stop_at_equilibrium) ||
+         run.state.time_s >= controls.end_s * (1 - 1e-12);
+}
+
+/// Brings model, observer and recorder to where the checkpoint is.
+RunMemory go_on_from(Checkpoint checkpoint, const RunOptions& options, Model& model, Observer& observer,
+                     Recorder& recorder, const std::string& input_toml) {
+  for (const auto& past : checkpoint.run.past_divisions) {
+    if (const auto why = why_unfit(*past, model)) throw FileError(options.out + ": the checkpoint is damaged: " + *why);
+    observer.follow_division(repeat(model, *past));
+    recorder.follow_division();
+  }
+  if (const auto why = why_unfit(checkpoint, model))
+    throw FileError(options.out + ": the checkpoint is damaged: " + *why);
+  recorder.go_on(input_toml, std::move(checkpoint.record));
+  return std::move(checkpoint.run);
+}
 
 void print_result(const nlohmann::ordered_json& summary, const std::string& out) {
   const auto value = [&](const char* key, const char* unit) {
@@ -107,19 +156,35 @@ int run_scenario(const RunOptions& options) {
 
   refuse_to_replace_scenario(source.file, options.out);
   refuse_to_replace_reference(observer.monitors(), options.out);
-  prepare_directory(options.out, options.overwrite);
-  const State rest = rest_state(*model);
-  Recorder recorder(options.out, scenario, source.text, *model, observer, rest);
+  std::optional<Checkpoint> checkpoint;
+  if (options.resume) checkpoint = checkpoint_to_resume(options, scenario, *model);
+  if (checkpoint && is_finished(checkpoint->run, controls) &&
+      std::filesystem::exists(std::filesystem::path(options.out) / "summary.json")) {
+    if (!options.quiet) fmt::print("{}: the run is finished; nothing is left to do\n", options.out);
+    return exit_done;
+  }
+  if (!checkpoint) prepare_directory(options.out, options.overwrite || options.resume);
+  Recorder recorder(options.out, scenario, *model, observer);
+  const WallTimes before = checkpoint ? WallTimes{checkpoint->record.wall_s, checkpoint->record.solver_s} : WallTimes{};
+  RunMemory memory;
+  if (checkpoint) {
+    memory = go_on_from(std::move(*checkpoint), options, *model, observer, recorder, source.text);
+  } else {
+    memory.state = rest_state(*model);
+    recorder.begin(source.text, memory.state);
+  }
   Progress progress(controls, options.quiet);
   catch_interruptions();
 
   SolverClock solver_clock(recorder);
-  const auto run_start = std::chrono::steady_clock::now();
+  const auto wall = [&] {
+    return WallTimes{before.total_s + seconds_since(start), before.solver_s + solver_clock.solver_s()};
+  };
   const RunResult result = run(
-      *model, rest, controls,
+      *model, std::move(memory), controls,
       [&](const AcceptedStep& step) {
         solver_clock.stop();
-        const Observation& row = recorder.record(step, seconds_since(run_start));
+        const Observation& row = recorder.record(step, wall());
         progress.show(row);
         solver_clock.start();
         return StepAnswer(!interrupted(), row.is_over);
@@ -133,7 +198,7 @@ int run_scenario(const RunOptions& options) {
       });
   solver_clock.stop();
   progress.finish();
-  const auto summary = recorder.finish(result, {seconds_since(start), solver_clock.solver_s()});
+  const auto summary = recorder.finish(result, wall());
 
   const std::vector<std::string> missed = result.status == RunStatus::failed || result.status == RunStatus::interrupted
                                               ? std::vector<std::string>{}
@@ -141,6 +206,8 @@ int run_scenario(const RunOptions& options) {
   for (const std::string& line : missed) fmt::print(stderr, "{}\n", line);
   if (!result.failure.empty())
     fmt::print(stderr, "plica: gave up: {}; the last good state is in {}\n", result.failure, options.out);
+  if (result.status == RunStatus::interrupted && can_archive())
+    fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");
   if (!options.quiet) print_result(summary, options.out);
   return exit_status(result, !missed.empty());
 }
@@ -155,7 +222,9 @@ void add_run_command(CLI::App& app, int& status) {
   command->add_option("--threads", options->threads, "threads to use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--quiet", options->quiet, "no progress and no result on the terminal");
-  command->add_flag("--overwrite", options->overwrite, "replace the results in DIR");
+  auto* overwrite = command->add_flag("--overwrite", options->overwrite, "replace the results in DIR");
+  command->add_flag("--resume", options->resume, "go on from the checkpoint in DIR; begin where there is none")
+      ->excludes(overwrite);
   command->footer("Example: plica run drosophila --out results --set contraction.apical.across_ratio=1");
   command->callback([options, &status] { status = run_scenario(*options); });
 }

@@ -46,7 +46,7 @@ RunResult run(Model& model, RunMemory now, RunControls controls, const StepObser
   const auto add_growth_ends = [&](const PastDivision& past) {
     for (const PlannedDivision& one : past.planned) controls.program_points_s.push_back(past.time_s + one.growth_s);
   };
-  for (const PastDivision& past : now.past_divisions) add_growth_ends(past);
+  for (const auto& past : now.past_divisions) add_growth_ends(*past);
   std::unique_ptr<Stepper> stepper;
   const auto renew_stepper = [&] {
     stepper = make_stepper(model, controls.scheme);
@@ -63,11 +63,12 @@ RunResult run(Model& model, RunMemory now, RunControls controls, const StepObser
   const auto divide = [&](const std::vector<PlannedDivision>& due) {
     state.divided_until_s = state.time_s;
     if (due.empty()) return;
-    now.past_divisions.push_back({state.time_s, state.positions, due});
+    now.past_divisions.push_back(
+        std::make_shared<const PastDivision>(PastDivision{state.time_s, state.positions, due}));
     const Division division = divide_cells(model, state, due);
     now.divisions += static_cast<int>(due.size());
     now.equilibrium_time_s.reset();  // it counts only after the last division
-    add_growth_ends(now.past_divisions.back());
+    add_growth_ends(*now.past_divisions.back());
     renew_stepper();
     step_length.restart();
     if (division_observer) division_observer(division, state);

@@ -37,7 +37,8 @@ struct PastDivision {
 
 /// How the length of steps goes on.
 struct StepLengthMemory {
-  double wanted_s = 0, previous_s = 0;
+  double wanted_s = 0;    // 0: no step yet
+  double previous_s = 0;  // 0: nothing is known of the next step's error
 };
 
 /// Where the loop is, between two steps: with the model of the scenario, in which the past divisions have been made
@@ -49,9 +50,9 @@ struct RunMemory {
   std::optional<double> equilibrium_time_s;  // first time that every node was slower than the limit
   bool at_equilibrium = false;               // now
   bool criterion_met = false;                // the observer says that the run is over
-  std::optional<StepLengthMemory> step_length;
+  StepLengthMemory step_length;
   FactorMemory factor;
-  std::vector<PastDivision> past_divisions;
+  std::vector<std::shared_ptr<const PastDivision>> past_divisions;
 };
 
 /// Makes a division of the past once more.
@@ -95,15 +96,15 @@ using StepObserver = std::function<StepAnswer(const AcceptedStep&)>;
 /// Called after cells have divided, with the state from which the run goes on.
 using DivisionObserver = std::function<void(const Division&, const State&)>;
 
-/// From `start` on, whose past divisions the model has behind it. Divisions change the model: every reference to it sees the new one. `stop_requested` is asked often, also within a
-/// step; once true, the run ends as interrupted with the last good state.
+/// From `start` on, whose past divisions the model has behind it. Divisions change the model: every reference to it
+/// sees the new one. `stop_requested` is asked often, also within a step; once true, the run ends as interrupted with
+/// the last good state.
 RunResult run(Model& model, RunMemory start, RunControls controls, const StepObserver& observer,
               const std::function<bool()>& stop_requested = {}, const DivisionObserver& division_observer = {});
 
 /// From the beginning.
 inline RunResult run(Model& model, State rest, RunControls controls, const StepObserver& observer,
-                     const std::function<bool()>& stop_requested = {},
-                     const DivisionObserver& division_observer = {}) {
+                     const std::function<bool()>& stop_requested = {}, const DivisionObserver& division_observer = {}) {
   RunMemory start;
   start.state = std::move(rest);
   return run(model, std::move(start), std::move(controls), observer, stop_requested, division_observer);

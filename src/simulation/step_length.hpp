@@ -8,7 +8,7 @@ namespace plica {
 
 class StepLength {
  public:
-  explicit StepLength(const RunControls& controls, const std::optional<StepLengthMemory>& memory = {});
+  explicit StepLength(const RunControls& controls, const StepLengthMemory& memory = {});
 
   /// The length of a step that starts at `time_s`.
   [[nodiscard]] double propose(double time_s) const;

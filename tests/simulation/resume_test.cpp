@@ -21,7 +21,7 @@ Trace trace(const std::string& name, const std::vector<std::string>& overrides, 
   memory.state = rest_state(*model);
   if (start != nullptr) {
     memory = *start;
-    for (const PastDivision& past : memory.past_divisions) repeat(*model, past);
+    for (const auto& past : memory.past_divisions) repeat(*model, *past);
   }
   Trace trace;
   trace.result = run(*model, memory, make_controls(scenario, *model), [&](const AcceptedStep& step) {
@@ -81,9 +81,7 @@ TEST(Resume, WithTheDirectMethod) {
   expect_resumable("drosophila", {"time.end_s=3", "time.linear_solver=\"direct\""}, 4);
 }
 
-TEST(Resume, WithMultigrid) {
-  expect_resumable("drosophila", {"time.end_s=2", "time.linear_solver=\"multigrid\""}, 5);
-}
+TEST(Resume, WithMultigrid) { expect_resumable("drosophila", {"time.end_s=2", "time.linear_solver=\"multigrid\""}, 5); }
 
 TEST(Resume, WithThePapersAlgorithm) { expect_resumable("drosophila-paper", {"time.end_s=40"}, 3); }
 
