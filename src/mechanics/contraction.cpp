@@ -33,13 +33,19 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cel
                                         const CellPattern& pattern) {
   std::vector<Spring> springs;
   double factor = 1, delay = 0;  // of the cell at hand
-  const auto add = [&](std::size_t cell, std::vector<NodeId> nodes, double ratio, double share) {
+  // One spring a segment, in series: a part of the chain is stiffer than the whole by as much as it is shorter.
+  const auto add = [&](std::size_t cell, const std::vector<NodeId>& chain, double ratio, double share) {
     if (ratio <= 0) return;
-    const double strength = factor * share * ratio;
-    Spring spring{std::move(nodes), strength * rule.stiffness, strength * rule.preload, share * rule.damping, 0, delay,
-                  CellId(cell)};
-    spring.rest_length = rule.rest_length_ratio * chain_length(spring.nodes, tissue.rest_positions);
-    springs.push_back(std::move(spring));
+    const double strength = factor * share * ratio, whole = chain_length(chain, tissue.rest_positions);
+    for (std::size_t s = 1; s < chain.size(); ++s) {
+      Spring spring{.nodes = {chain[s - 1], chain[s]}, .delay_s = delay, .cell = CellId(cell)};
+      const double length = chain_length(spring.nodes, tissue.rest_positions), shorter = whole / length;
+      spring.stiffness = shorter * (strength * rule.stiffness);
+      spring.preload = strength * rule.preload;
+      spring.damping = shorter * (share * rule.damping);
+      spring.rest_length = rule.rest_length_ratio * length;
+      springs.push_back(std::move(spring));
+    }
   };
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     if (!cells[c]) continue;

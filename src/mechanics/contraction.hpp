@@ -34,8 +34,9 @@ struct ContractionRule {
 };
 
 /// The springs of all cells of `cells`. Two contractile cells that share an edge have a spring each. In a cell of
-/// several elements the tension of its edges is spread over the lines of its face
-/// (docs/decisions/0005-spread-springs.md). A cell's factor of `pattern` scales k and P, its delay is its springs'.
+/// several elements the tension of its edges is spread over the lines of its face, and each element edge of a line is a
+/// spring (docs/decisions/0005-spread-springs.md). A cell's factor of `pattern` scales k and P, its delay is its
+/// springs'.
 std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule,
                                         const CellPattern& pattern = {});
 

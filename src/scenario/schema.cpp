@@ -91,7 +91,7 @@ const std::vector<Row>& rows() {
       row("embryo", "cells", at(&S::embryo, &E::cells), between(1, max_count),
           "Number of cells along the axis (x), across the belly (y), belly to back (z).",
           {.shapes = {"pill", "sphere", "block"}}),
-      row("embryo", "elements_per_cell", at(&S::embryo, &E::elements_per_cell), between(1, 8),
+      row("embryo", "elements_per_cell", at(&S::embryo, &E::elements_per_cell), between(1, 16),
           "Elements of a cell along, across, basal to apical: refines the elements, not the cells.",
           {.shapes = {"pill", "sphere", "block"}}),
       row("embryo", "file", at(&S::embryo, &E::file), anything,

@@ -9,13 +9,16 @@
 namespace plica {
 namespace {
 
+constexpr std::size_t most_contact_changes = 32;  // before the factor is made anew
+
 // gamma times the size of a cell, over the mean stiffness of a node. Large, so that few iterations are left for the
-// pressures; but single precision has to carry A beside it, multigrid finds nearly incompressible cells hard, and
-// within cells of several elements it resists what the exact volumes allow. With a factor, a third takes a fifth more
-// iterations, three times as much no fewer.
+// pressures; but single precision has to carry A beside it, multigrid finds nearly incompressible cells hard (and has
+// PressureFactor for the pressures: twice or half of gamma changes little), and within cells of several elements it
+// resists what the exact volumes allow. With a factor, a third takes a fifth more iterations, three times as much no
+// fewer.
 double regularisation(KrylovDirections::Inverse inverse, const Cell& cell) {
   if (cell.element_count > 1) return 3;
-  return inverse == KrylovDirections::Inverse::multigrid ? 20 : 150;
+  return inverse == KrylovDirections::Inverse::multigrid ? 5 : 150;
 }
 
 }  // namespace
@@ -28,10 +31,14 @@ KrylovDirections::KrylovDirections(const Model& model, Inverse inverse, std::fun
       matrix_(model),
       preconditioner_(inverse == Inverse::multigrid ? make_multigrid(matrix_.layout())
                                                     : std::make_unique<BlockCholesky>(matrix_.layout())),
-      most_contact_changes_(inverse == Inverse::multigrid ? 4 : 32),
-      price_of_factor_(inverse == Inverse::multigrid ? 25 : 30),
+      price_of_factor_(inverse == Inverse::multigrid ? 15 : 30),
       factor_jacobian_(model),
-      jacobian_(model) {}
+      jacobian_(model) {
+  // Cells of several elements have nodes inside that feel the difference of any two pressures.
+  const bool is_refined = model.tissue.elements.size() >= 2 * model.tissue.cells.size();
+  if (inverse == Inverse::multigrid && jacobian_.cells() > 0 && !is_refined)
+    pressures_.emplace(jacobian_, model.tissue.free_node_count());
+}
 
 void KrylovDirections::weigh_pressures() {
   const double stiffness = matrix_.mean_diagonal();
@@ -82,13 +89,14 @@ bool KrylovDirections::refresh(const Step& step, const Iterate& at) {
     here.semidefinite_tangent = semidefinite;
     matrix_.assemble(model_, here, at);
     weigh_pressures();
+    if (pressures_ && !pressures_->factorise(jacobian_, matrix_, frames_)) continue;
     matrix_.add_volume_stiffness(model_, at.positions, pressure_weights_);
     matrix_.write_projected_blocks(frames_, values_);
     has_factor_ = preconditioner_->factorise(values_, rigid_motions(at));
     if (!has_factor_) continue;
     // J as in the factor: with another, gamma would carry the difference into directions that hardly resist.
     factor_jacobian_ = jacobian_;
-    border_.begin(model_, matrix_, frames_, at.in_contact, most_contact_changes_);
+    if (inverse_ == Inverse::cholesky) border_.begin(model_, matrix_, frames_, at.in_contact, most_contact_changes);
     made_from_ = factor_memory(step, at);
     return true;
   }
@@ -98,7 +106,7 @@ bool KrylovDirections::refresh(const Step& step, const Iterate& at) {
 FactorMemory KrylovDirections::memory() const {
   if (!has_factor_) return {};
   FactorMemory memory = made_from_;
-  border_.remember(memory);
+  if (inverse_ == Inverse::cholesky) border_.remember(memory);
   memory.iterations_when_new = iterations_when_new_;
   memory.wasted_iterations = wasted_iterations_;
   return memory;
@@ -108,7 +116,7 @@ void KrylovDirections::recall(const FactorMemory& memory) {
   if (memory.empty()) return;
   linearise(memory.at);
   if (!refresh(step_of(memory), memory.at)) return;
-  border_.recall(memory, *preconditioner_);
+  if (inverse_ == Inverse::cholesky) border_.recall(memory, *preconditioner_);
   iterations_when_new_ = memory.iterations_when_new;
   wasted_iterations_ = memory.wasted_iterations;
 }
@@ -144,6 +152,16 @@ void KrylovDirections::multiply(const Step& step, const Iterate& at, const Vecto
   for (double& rate : of_cells(product)) rate *= -volume_unit_;
 }
 
+void KrylovDirections::apply_inverse(std::span<Vec3> x) const {
+  if (inverse_ == Inverse::cholesky) return border_.solve(*preconditioner_, x);
+  single_.resize(3 * x.size());
+  for (std::size_t n = 0; n < x.size(); ++n)
+    for (int i = 0; i < 3; ++i) single_[3 * n + i] = static_cast<float>(x[n][i]);
+  preconditioner_->solve(single_);
+  for (std::size_t n = 0; n < x.size(); ++n)
+    for (int i = 0; i < 3; ++i) x[n][i] = single_[3 * n + i];
+}
+
 void KrylovDirections::precondition(const Vector& residual, Vector& result) const {
   // dlambda = -gamma W (g + J dx),  (A + gamma J^T W J) dx = f - gamma J^T W g.
   const std::span<double> pressures = of_cells(result);
@@ -153,17 +171,39 @@ void KrylovDirections::precondition(const Vector& residual, Vector& result) cons
   std::ranges::copy(of_nodes(residual), dx.begin());
   factor_jacobian_.add_forces(pressures, 1, dx);
   project(dx);
-  border_.solve(*preconditioner_, dx.first(frames_.size()));
+  apply_inverse(dx.first(frames_.size()));
   project(dx);
   model_.tissue.place_hanging(dx);
   factor_jacobian_.add_rates(dx, pressure_weights_, -1, pressures);
+  if (!pressures_) return;
+  // What gamma W leaves of the volumes' rates: p = L^-1 (g + J dx), dlambda -= p, dx -= D^-1 J^T p.
+  chequered_.resize(pressures.size());
+  factor_jacobian_.rates(dx, chequered_);
+  for (std::size_t c = 0; c < pressures.size(); ++c) chequered_[c] += of_cells(residual)[c] / volume_unit_;
+  pressures_->solve(chequered_);
+  for (std::size_t c = 0; c < pressures.size(); ++c) pressures[c] -= chequered_[c];
+  moved_.assign(frames_.size(), Vec3::Zero());
+  factor_jacobian_.add_forces(chequered_, -1, moved_);
+  pressures_->displace(moved_);
+  for (std::size_t n = 0; n < moved_.size(); ++n) dx[n] += moved_[n];
+  project(dx);
+  model_.tissue.place_hanging(dx);
+}
+
+bool KrylovDirections::follow_contacts(const Iterate& at) {
+  if (inverse_ == Inverse::cholesky) return border_.follow(at, *preconditioner_);
+  // A solve for each that has changed is too much. The multigrid has the node's own stiffness along directions that
+  // were fixed, which is a preconditioner as long as they are few.
+  std::size_t changed = 0;
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k) changed += at.in_contact[k] != made_from_.at.in_contact[k];
+  return changed <= frames_.size() / 100;
 }
 
 NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate& at, const Residual& residual,
                                                  const Wish& wish, Direction& direction, Cost& cost) {
   linearise(at);
   bool is_new = false;
-  if (!has_factor_ || wasted_iterations_ > price_of_factor_ || !border_.follow(at, *preconditioner_)) {
+  if (!has_factor_ || wasted_iterations_ > price_of_factor_ || !follow_contacts(at)) {
     ++cost.factorisations;
     if (!refresh(step, at)) return Outcome::singular;
     is_new = true;

@@ -9,6 +9,7 @@
 #include "solver/conjugate_residuals.hpp"
 #include "solver/contact_border.hpp"
 #include "solver/preconditioner.hpp"
+#include "solver/pressure_factor.hpp"
 #include "solver/step_matrix.hpp"
 
 namespace plica {
@@ -33,10 +34,12 @@ class KrylovDirections final : public NewtonDirections {
   [[nodiscard]] std::span<const double> of_cells(const Vector& vector) const;
 
   void linearise(const Iterate& at);
+  bool follow_contacts(const Iterate& at);
   bool refresh(const Step& step, const Iterate& at);
   void weigh_pressures();
   [[nodiscard]] std::vector<float> rigid_motions(const Iterate& at) const;
   void multiply(const Step& step, const Iterate& at, const Vector& direction, Vector& product) const;
+  void apply_inverse(std::span<Vec3> x) const;
   void precondition(const Vector& residual, Vector& result) const;
   void project(std::span<Vec3> vectors) const;
 
@@ -47,10 +50,10 @@ class KrylovDirections final : public NewtonDirections {
   StepMatrix matrix_;  // where the factor was made
   std::unique_ptr<Preconditioner> preconditioner_;
   ContactBorder border_;
+  std::optional<PressureFactor> pressures_;  // for what gamma W does not see
   bool has_factor_ = false;
-  FactorMemory made_from_;             // without what came later
-  std::size_t most_contact_changes_;  // before the factor is made anew
-  int price_of_factor_;               // in iterations
+  FactorMemory made_from_;  // without what came later
+  int price_of_factor_;     // in iterations
   int iterations_when_new_ = 0, wasted_iterations_ = 0;
 
   std::vector<double> pressure_weights_;  // gamma W as in the factor; cells, kPa/um^3
@@ -65,6 +68,9 @@ class KrylovDirections final : public NewtonDirections {
 
   ConjugateResiduals solver_;
   Vector right_, solution_;
+  mutable std::vector<double> chequered_;  // scratch
+  mutable Vectors moved_;
+  mutable std::vector<float> single_;
   std::vector<float> values_;
 };
 

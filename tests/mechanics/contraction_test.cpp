@@ -44,7 +44,18 @@ TEST(Contraction, DerivativesAgreeWithFiniteDifferencesWithEverythingOn) {
                     tissue, 3);
 }
 
+// Chains: edges into which cuts have put nodes.
 TEST(Contraction, DerivativesAgreeWithFiniteDifferencesOnChains) {
+  const Tissue tissue = distorted_block(refined, 1, 3);
+  std::vector<Spring> springs;
+  for (const Cell& cell : tissue.cells)
+    for (const CellLine& line : cell.lines)
+      if (line.chain.nodes.size() > 2) springs.push_back({line.chain.nodes, 2, 3, 1, 10});
+  ASSERT_EQ(springs.size(), 24u);
+  check_derivatives(Contraction(std::move(springs), {}), tissue, 2, 2);
+}
+
+TEST(Contraction, DerivativesAgreeWithFiniteDifferencesInRefinedCells) {
   const Tissue tissue = distorted_block(refined, 1, 3);
   check_derivatives(law_of(tissue, {.stiffness = 2, .rest_length_ratio = 0.5, .preload = 3, .damping = 1}), tissue, 2,
                     2);
@@ -210,22 +221,39 @@ TEST(Contraction, RatiosScaleStiffnessAndPreloadByDirection) {
 }
 
 // Refinement changes the error and not the model: the tension of a face's edges is spread over its lines, those on the
-// rim with half a share, and adds up to the same.
-TEST(Contraction, RefinedElementsKeepTheTensionOfTheCells) {
-  const ContractionRule rule{.stiffness = 2, .across_ratio = 0.4, .rest_length_ratio = 0.3, .preload = 1, .damping = 1};
-  const auto coarse = contraction_springs(build_block(two_cells), CellSet(2, true), rule);
-  const auto fine = contraction_springs(build_block(refined), CellSet(2, true), rule);
-  const auto sum = [](const std::vector<Spring>& springs, double Spring::*what) {
-    double total = 0;
-    for (const Spring& spring : springs) total += spring.*what;
-    return total;
-  };
-  EXPECT_NEAR(sum(fine, &Spring::stiffness), sum(coarse, &Spring::stiffness), 1e-13);
-  EXPECT_NEAR(sum(fine, &Spring::preload), sum(coarse, &Spring::preload), 1e-13);
-  EXPECT_NEAR(sum(fine, &Spring::damping), sum(coarse, &Spring::damping), 1e-13);
-  ASSERT_EQ(coarse.size(), 8u);
-  ASSERT_EQ(fine.size(), 12u);
-  for (const Spring& spring : fine) EXPECT_EQ(spring.nodes.size(), 3u);
+// rim with half a share, and the segments of a line are springs in series. What all cells do together costs the same.
+TEST(Contraction, RefinedElementsKeepTheEnergyOfTheCells) {
+  BlockShape shape{.length_um = 60, .width_um = 30, .cell_height_um = 40, .cells = {3, 2, 1}};
+  int cases = 0;
+  for (const EdgeSide side : {EdgeSide::apical, EdgeSide::basal, EdgeSide::lateral}) {
+    const ContractionRule rule{side, 2, 1.5, 0.4, false, 0.3, 1, 3};
+    std::vector<double> energies;
+    for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 2, 2}, {4, 4, 4}, {5, 2, 3}}) {
+      shape.elements_per_cell = elements;
+      const Tissue tissue = build_block(shape);
+      Motion motion = at_rest(tissue);
+      for (Vec3& x : motion.positions) x = Vec3(0.8 * x.x() + 0.1 * x.y(), 0.7 * x.y() - 0.2 * x.x(), 0.6 * x.z());
+      energies.push_back(law_of(tissue, rule).energy(motion.step()));
+      EXPECT_GT(energies.front(), 0);
+      EXPECT_NEAR(energies.back(), energies.front(), 1e-12 * energies.front());
+      ++cases;
+    }
+  }
+  RecordProperty("cases", cases);
+}
+
+// The tension at a point of the face follows the stretch there: an element edge that has shrunk alone pulls less than
+// its neighbour. One tension all along would draw the elements where contractile cells end into nothing.
+TEST(Contraction, PartOfALineThatHasShrunkPullsLess) {
+  const Tissue tissue = build_block(
+      {.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 1}, .elements_per_cell = {2, 1, 1}});
+  Motion motion = at_rest(tissue);
+  std::size_t moved = 0;  // the middle of an apical edge: 4 um along, so that its parts are 14 and 6 um long
+  for (std::size_t n = 0; n < tissue.node_count(); ++n)
+    if (tissue.rest_positions[n].isApprox(Vec3(0, 10, 20))) moved = n;
+  motion.positions[moved].x() += 4;
+  const Vectors forces = forces_of(law_of(tissue, {.stiffness = 3, .across_ratio = 0}), motion.step());
+  EXPECT_NEAR(forces[moved].x(), 2 * 3 * (6 - 14), 1e-12);
 }
 
 // A sheet under uniform contraction pulls through every cut with one force, however its cells are divided.
