@@ -4,21 +4,21 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <new>
+#include <stdexcept>
 
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
 #include "app/progress.hpp"
+#include "app/resumption.hpp"
 #include "app/scenario_options.hpp"
 #include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
-#include "core/version.hpp"
 #include "output/archive.hpp"
-#include "output/checkpoint.hpp"
 #include "output/recorder.hpp"
 #include "output/report.hpp"
 #include "scenario/advice.hpp"
-#include "scenario/print.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/watch.hpp"
 
@@ -56,51 +56,6 @@ class SolverClock {
   std::chrono::steady_clock::time_point start_;
   double writing_s_ = 0, solver_s_ = 0;
 };
-
-/// What there is to go on from in the directory of --out; nothing: begin. Refuses what is of another run.
-std::optional<Checkpoint> checkpoint_to_resume(const RunOptions& options, const Scenario& scenario,
-                                               const Model& at_rest) {
-  if (!can_archive()) throw UsageError("this plica was built without HDF5: it has no checkpoints to resume from");
-  std::string complaint;
-  std::optional<Checkpoint> checkpoint = read_checkpoint(options.out, complaint);
-  if (!complaint.empty()) fmt::print(stderr, "plica: {}; going on from the checkpoint before it\n", complaint);
-  if (!checkpoint) {
-    if (std::filesystem::exists(std::filesystem::path(options.out) / "summary.json"))
-      throw FileError(options.out + ": holds results without a checkpoint; begin anew with --overwrite");
-    return std::nullopt;
-  }
-  if (const auto other = other_scenario(checkpoint->scenario, resolved_toml(scenario)))
-    throw UsageError(
-        fmt::format("{}: the checkpoint is of another scenario: {}. Only [time], [stop] and [output] may change; give "
-                    "another --out",
-                    options.out, *other));
-  if (checkpoint->at_rest != fingerprint(at_rest.tissue))
-    throw UsageError(fmt::format("{}: the checkpoint is of another embryo ({}; this one has {}); has its mesh changed?",
-                                 options.out, checkpoint->at_rest, fingerprint(at_rest.tissue)));
-  if (checkpoint->program != version())
-    fmt::print(stderr, "plica: {} was written by version {}; what follows may differ from it in the last digits\n",
-               options.out, checkpoint->program);
-  return checkpoint;
-}
-
-bool is_finished(const RunMemory& run, const RunControls& controls) {
-  return run.criterion_met || (run.at_equilibrium && controls.stop_at_equilibrium) ||
-         run.state.time_s >= controls.end_s * (1 - 1e-12);
-}
-
-/// Brings model, observer and recorder to where the checkpoint is.
-RunMemory go_on_from(Checkpoint checkpoint, const RunOptions& options, Model& model, Observer& observer,
-                     Recorder& recorder, const std::string& input_toml) {
-  for (const auto& past : checkpoint.run.past_divisions) {
-    if (const auto why = why_unfit(*past, model)) throw FileError(options.out + ": the checkpoint is damaged: " + *why);
-    observer.follow_division(repeat(model, *past));
-    recorder.follow_division();
-  }
-  if (const auto why = why_unfit(checkpoint, model))
-    throw FileError(options.out + ": the checkpoint is damaged: " + *why);
-  recorder.go_on(input_toml, std::move(checkpoint.record));
-  return std::move(checkpoint.run);
-}
 
 void print_result(const nlohmann::ordered_json& summary, const std::string& out) {
   const auto value = [&](const char* key, const char* unit) {
@@ -141,47 +96,34 @@ int exit_status(const RunResult& result, bool missed) {
   return missed ? exit_missed : exit_done;
 }
 
-int run_scenario(const RunOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
-  const ScenarioSource source = find_scenario(options.scenario.name_or_path);
-  const Scenario scenario = load_scenario(source, options.scenario.overrides);
-  const auto model = make_model(scenario);
-  omp_set_num_threads(threads_for(options.threads, model->tissue.elements.size()));
-  const RunControls controls = make_controls(scenario, *model);
-  Observer observer(*model, make_furrow_sites(scenario, model->tissue), make_watch(scenario, model->tissue));
+// What a run consists of beside its scenario.
+struct Setting {
+  std::unique_ptr<Model> model;
+  RunControls controls;
+  Observer observer;
 
-  if (!options.quiet)
-    for (const std::string& line : advice(scenario, *model))
-      if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
+  explicit Setting(const Scenario& scenario)
+      : model(make_model(scenario)),
+        controls(make_controls(scenario, *model)),
+        observer(*model, make_furrow_sites(scenario, model->tissue), make_watch(scenario, model->tissue)) {}
+};
 
-  refuse_to_replace_scenario(source.file, options.out);
-  refuse_to_replace_reference(observer.monitors(), options.out);
-  std::optional<Checkpoint> checkpoint;
-  if (options.resume) checkpoint = checkpoint_to_resume(options, scenario, *model);
-  if (checkpoint && is_finished(checkpoint->run, controls) &&
-      std::filesystem::exists(std::filesystem::path(options.out) / "summary.json")) {
-    if (!options.quiet) fmt::print("{}: the run is finished; nothing is left to do\n", options.out);
-    return exit_done;
-  }
-  if (!checkpoint) prepare_directory(options.out, options.overwrite || options.resume);
-  Recorder recorder(options.out, scenario, *model, observer);
-  const WallTimes before = checkpoint ? WallTimes{checkpoint->record.wall_s, checkpoint->record.solver_s} : WallTimes{};
-  RunMemory memory;
-  if (checkpoint) {
-    memory = go_on_from(std::move(*checkpoint), options, *model, observer, recorder, source.text);
-  } else {
-    memory.state = rest_state(*model);
-    recorder.begin(source.text, memory.state);
-  }
-  Progress progress(controls, options.quiet);
-  catch_interruptions();
+using Clock = std::chrono::steady_clock;
 
+// From where the memory is to the end. `before`: wall times until then, in earlier runs.
+struct Ending {
+  RunResult result;
+  nlohmann::ordered_json summary;
+};
+Ending simulate(Setting& setting, Recorder& recorder, RunMemory memory, const WallTimes& before,
+                Clock::time_point start, bool quiet) {
+  Progress progress(setting.controls, quiet);
   SolverClock solver_clock(recorder);
   const auto wall = [&] {
     return WallTimes{before.total_s + seconds_since(start), before.solver_s + solver_clock.solver_s()};
   };
-  const RunResult result = run(
-      *model, std::move(memory), controls,
+  RunResult result = run(
+      *setting.model, std::move(memory), setting.controls,
       [&](const AcceptedStep& step) {
         solver_clock.stop();
         const Observation& row = recorder.record(step, wall());
@@ -192,24 +134,78 @@ int run_scenario(const RunOptions& options) {
       [&] { return interrupted() || recorder.has_failed(); },
       [&](const Division& division, const State& state) {
         solver_clock.stop();
-        observer.follow_division(division);
+        setting.observer.follow_division(division);
         recorder.record_division(division, state);
         solver_clock.start();
       });
   solver_clock.stop();
   progress.finish();
-  const auto summary = recorder.finish(result, wall());
+  auto summary = recorder.finish(result, wall());
+  return {std::move(result), std::move(summary)};
+}
 
-  const std::vector<std::string> missed = result.status == RunStatus::failed || result.status == RunStatus::interrupted
-                                              ? std::vector<std::string>{}
-                                              : missed_expectations(scenario, summary);
+// Once a run has begun, what ends it can be mended, and nothing is lost.
+template <class Work>
+auto with_a_way_on(const Work& work) {
+  const std::string way_on = can_archive() ? "; once there is a remedy, the same command with --resume goes on" : "";
+  try {
+    return work();
+  } catch (const FileError& error) {
+    throw FileError(error.what() + way_on);
+  } catch (const std::bad_alloc&) {
+    throw std::runtime_error("out of memory" + way_on);
+  }
+}
+
+void report_ending(const Ending& ending, const std::vector<std::string>& missed, const RunOptions& options) {
   for (const std::string& line : missed) fmt::print(stderr, "{}\n", line);
-  if (!result.failure.empty())
-    fmt::print(stderr, "plica: gave up: {}; the last good state is in {}\n", result.failure, options.out);
-  if (result.status == RunStatus::interrupted && can_archive())
+  if (!ending.result.failure.empty())
+    fmt::print(stderr, "plica: gave up: {}; the last good state is in {}\n", ending.result.failure, options.out);
+  if (ending.result.status == RunStatus::interrupted && can_archive())
     fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");
-  if (!options.quiet) print_result(summary, options.out);
-  return exit_status(result, !missed.empty());
+  if (!options.quiet) print_result(ending.summary, options.out);
+}
+
+int run_scenario(const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
+  const ScenarioSource source = find_scenario(options.scenario.name_or_path);
+  const Scenario scenario = load_scenario(source, options.scenario.overrides);
+  Setting setting(scenario);
+  omp_set_num_threads(threads_for(options.threads, setting.model->tissue.elements.size()));
+
+  if (!options.quiet)
+    for (const std::string& line : advice(scenario, *setting.model))
+      if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
+
+  refuse_to_replace_scenario(source.file, options.out);
+  refuse_to_replace_reference(setting.observer.monitors(), options.out);
+  std::optional<Checkpoint> checkpoint;
+  if (options.resume) checkpoint = checkpoint_to_resume(options.out, scenario, *setting.model);
+  if (checkpoint && has_ended(checkpoint->run, setting.controls) && holds_ending(options.out)) {
+    if (!options.quiet) fmt::print("{}: the run is finished; nothing is left to do\n", options.out);
+    return exit_done;
+  }
+  if (!checkpoint) prepare_directory(options.out, options.overwrite || options.resume);
+  catch_interruptions();
+  Recorder recorder(options.out, scenario, *setting.model, setting.observer);
+  const Ending ending = with_a_way_on([&] {
+    WallTimes before;
+    RunMemory memory;
+    if (checkpoint) {
+      before = {checkpoint->record.wall_s, checkpoint->record.solver_s};
+      memory = go_on_from(std::move(*checkpoint), options.out, *setting.model, setting.observer, recorder, source.text);
+      if (!options.quiet) fmt::print("going on after step {}, t = {:g} s\n", memory.steps, memory.state.time_s);
+    } else {
+      memory.state = rest_state(*setting.model);
+      recorder.begin(source.text, memory);
+    }
+    return simulate(setting, recorder, std::move(memory), before, start, options.quiet);
+  });
+  std::vector<std::string> missed;
+  if (ending.result.status == RunStatus::equilibrium || ending.result.status == RunStatus::end_time)
+    missed = missed_expectations(scenario, ending.summary);
+  report_ending(ending, missed, options);
+  return exit_status(ending.result, !missed.empty());
 }
 
 }  // namespace

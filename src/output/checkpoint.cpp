@@ -4,22 +4,17 @@
 #include <libdeflate.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <functional>
 #include <sstream>
 
 #include "core/errors.hpp"
-#include "core/files.hpp"
-#include "core/version.hpp"
 #include "output/archive.hpp"
 
 namespace plica {
-namespace fs = std::filesystem;
 namespace {
 
 constexpr int format = 1;
-constexpr const char* newest_name = "checkpoint.h5";
-constexpr const char* previous_name = "checkpoint.previous.h5";
 constexpr std::size_t trailer_bytes = 64;
 
 std::uint32_t checksum(std::string_view bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }
@@ -281,8 +276,6 @@ std::vector<std::shared_ptr<const PastDivision>> load_divisions(const ArchiveRea
   return past;
 }
 
-double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 }  // namespace
 
 std::string fingerprint(const Tissue& tissue) {
@@ -316,8 +309,7 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
   constexpr std::string_view start = "\nplica checkpoint ";
   if (!end.starts_with(start)) throw FileError("it is no checkpoint, or cut off");
   if (end.substr(start.size(), 2) != fmt::format("{} ", format))
-    throw FileError(
-        fmt::format("another plica wrote it, in another format than this one's ({}); go on with that one", format));
+    throw FileError(fmt::format("another version of plica wrote it, in a format that is not this one's ({})", format));
   if (end != trailer(image)) throw FileError("it is damaged: its checksum is not that of its bytes");
   const ArchiveReader archive(image);
   Loading load(archive);
@@ -341,6 +333,9 @@ std::optional<std::string> why_unfit(const Checkpoint& checkpoint, const Model& 
            at.in_contact.size() == contacts;
   };
   const State& state = checkpoint.run.state;
+  const StepLengthMemory& step_length = checkpoint.run.step_length;
+  if (state.time_s < 0 || checkpoint.run.steps < 0 || step_length.wanted_s < 0 || step_length.previous_s < 0)
+    return "its time or its step is negative";
   if (!fits(state) || state.velocities.size() != nodes || !none_or(state.trend.accelerations.size(), nodes) ||
       !none_or(state.trend.pressure_rates.size(), cells))
     return "its state is not one of this embryo";
@@ -366,71 +361,41 @@ std::optional<std::string> why_unfit(const PastDivision& past, const Model& mode
   return std::nullopt;
 }
 
+namespace {
+
+// Whether a resume may change that table of a scenario.
+bool may_change(std::string_view table) {
+  return table == "[time]" || table == "[output]" || table == "[stop]" || table.starts_with("[stop.");
+}
+
+// The lines of a resolved scenario in the tables that `counts` says, each after the name of its table.
+std::vector<std::string> lines_in(const std::string& scenario, const std::function<bool(std::string_view)>& counts) {
+  std::vector<std::string> kept;
+  std::string table;
+  std::istringstream stream(scenario);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.starts_with('['))
+      table = line;
+    else if (counts(table) && !line.empty() && !line.starts_with('#'))
+      kept.push_back((table.empty() ? "" : table + " ") + line);
+  }
+  return kept;
+}
+
+}  // namespace
+
 std::optional<std::string> other_scenario(const std::string& before, const std::string& now) {
-  // The lines that count, each with its table.
-  const auto lines = [](const std::string& text) {
-    std::vector<std::string> kept;
-    std::string table;
-    std::istringstream stream(text);
-    for (std::string line; std::getline(stream, line);) {
-      if (line.starts_with('[')) {
-        table = line;
-        continue;
-      }
-      const bool may_change = table == "[time]" || table == "[output]" || table.starts_with("[stop");
-      if (!may_change && !line.empty() && !line.starts_with('#')) kept.push_back(table + " " + line);
-    }
-    return kept;
-  };
-  const std::vector<std::string> a = lines(before), b = lines(now);
+  const auto counts = [](std::string_view table) { return !may_change(table); };
+  const std::vector<std::string> a = lines_in(before, counts), b = lines_in(now, counts);
   const auto [in_a, in_b] = std::ranges::mismatch(a, b);
   if (in_a == a.end() && in_b == b.end()) return std::nullopt;
   const std::string was = in_a == a.end() ? "nothing" : *in_a, is = in_b == b.end() ? "nothing" : *in_b;
-  return fmt::format("it has {}, this one {}", was, is);
+  return fmt::format("it has {}, this one has {}", was, is);
 }
 
-CheckpointFiles::CheckpointFiles(const fs::path& directory)
-    : newest_(directory / newest_name), previous_(directory / previous_name) {}
-
-bool CheckpointFiles::sync_is_due() {
-  constexpr double between_syncs_s = 3;
-  if (last_sync_s_ != 0 && now_s() - last_sync_s_ < between_syncs_s) return false;
-  last_sync_s_ = now_s();
-  return true;
-}
-
-void CheckpointFiles::write(const Checkpoint& checkpoint, Sync sync) {
-  const fs::path temporary = write_beside(newest_, checkpoint_bytes(checkpoint), sync);
-  std::error_code ignored;
-  if (newest_is_on_disk_ || !fs::exists(previous_, ignored)) fs::rename(newest_, previous_, ignored);  // none at first
-  rename_file(temporary, newest_, sync);
-  newest_is_on_disk_ = sync == Sync::now;
-}
-
-std::optional<Checkpoint> read_checkpoint(const fs::path& directory, std::string& complaint) {
-  constexpr std::uintmax_t most_bytes = std::uintmax_t{16} << 30;
-  std::string complaints;
-  for (const char* name : {newest_name, previous_name}) {
-    const fs::path file = directory / name;
-    std::error_code error;
-    if (!fs::exists(file, error)) continue;
-    try {
-      Checkpoint checkpoint = read_checkpoint_bytes(read_file(file, most_bytes));
-      complaint = complaints;
-      return checkpoint;
-    } catch (const FileError& why) {
-      const std::string text = why.what();
-      complaints += (complaints.empty() ? "" : "; ") +
-                    (text.starts_with(file.string()) ? text : fmt::format("{}: {}", file.string(), text));
-    }
-  }
-  if (!complaints.empty()) throw FileError(complaints + "; begin anew with --overwrite");
-  return std::nullopt;
-}
-
-void remove_checkpoints(const fs::path& directory) {
-  std::error_code ignored;
-  for (const char* name : {newest_name, previous_name}) fs::remove(directory / name, ignored);
+bool other_stop(const std::string& before, const std::string& now) {
+  const auto counts = [](std::string_view table) { return table.starts_with("[stop"); };
+  return lines_in(before, counts) != lines_in(now, counts);
 }
 
 }  // namespace plica

@@ -1,14 +1,13 @@
-// checkpoint.h5: everything that a run needs to go on to the same bits. Written after every step, whole or not at all;
-// the one before it is kept, too (checkpoint.previous.h5). docs/checkpoints.md says what is in it.
+// What is in checkpoint.h5: everything that a run needs to go on to the same bits. docs/reliability.md says what is
+// promised of it.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "core/files.hpp"
 #include "measure/observation.hpp"
 #include "simulation/run.hpp"
 
@@ -48,29 +47,7 @@ std::optional<std::string> why_unfit(const PastDivision& past, const Model& mode
 /// first line that does, or nothing.
 std::optional<std::string> other_scenario(const std::string& before, const std::string& now);
 
-/// Writes the checkpoints of one directory. The one before stays as the previous one when it is on the disk itself
-/// (Sync::now): of the two, one outlives a power cut.
-class CheckpointFiles {
- public:
-  explicit CheckpointFiles(const std::filesystem::path& directory);
-
-  /// Whether the next one should go to the disk itself, and the files that go with it before it: every few seconds.
-  [[nodiscard]] bool sync_is_due();
-
-  /// FileError when it cannot be written; the ones before are as they were.
-  void write(const Checkpoint& checkpoint, Sync sync);
-
- private:
-  std::filesystem::path newest_, previous_;
-  double last_sync_s_ = 0;
-  bool newest_is_on_disk_ = false;
-};
-
-/// The newest checkpoint of a directory that can be read; nothing when there is none. `complaint` says why it is not
-/// the last one. FileError when there are some, and none can be read.
-std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& directory, std::string& complaint);
-
-/// Removes the checkpoints of a directory.
-void remove_checkpoints(const std::filesystem::path& directory);
+/// Whether they differ in [stop].
+bool other_stop(const std::string& before, const std::string& now);
 
 }  // namespace plica

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "core/errors.hpp"
@@ -65,7 +68,36 @@ bool holds_results(const fs::path& directory) {
   return fs::exists(directory / "frames");
 }
 
+// What was being written when a run was killed. Only temporary names of plica's own files (see temporary_beside).
+void remove_half_written(const fs::path& directory) {
+  std::error_code error;
+  const auto is_half_written = [](const fs::path& file) {
+    if (file.extension() != ".part") return false;
+    const fs::path own = file.stem().stem();  // without .PROCESS-NUMBER.part
+    return is_frame(own) || is_checkpoint(own) || std::ranges::find(own_files, own.string()) != own_files.end();
+  };
+  for (const fs::path& folder : {directory, directory / "frames"})
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (is_half_written(entry.path().filename())) fs::remove(entry.path(), error);
+}
+
 }  // namespace
+
+bool holds_steps(const fs::path& directory) {
+  const fs::path series = directory / "series.csv";
+  std::error_code error;
+  if (fs::exists(directory / "summary.json", error)) return true;
+  if (!fs::exists(series, error)) return false;
+  constexpr auto without_steps = 2;  // its header and the row at rest
+  std::ifstream rows(series);
+  return std::count(std::istreambuf_iterator<char>(rows), {}, '\n') > without_steps;
+}
+
+bool holds_ending(const fs::path& directory) {
+  std::error_code error;
+  return fs::exists(directory / "summary.json", error) &&
+         (!can_report() || fs::exists(directory / "report.html", error));
+}
 
 void prepare_directory(const fs::path& directory, bool overwrite) {
   std::error_code error;
@@ -77,6 +109,7 @@ void prepare_directory(const fs::path& directory, bool overwrite) {
                       ": holds results already; give another --out, or --overwrite to replace them");
     for (const std::string& file : own_files) fs::remove(directory / file, error);
     remove_checkpoints(directory);
+    remove_half_written(directory);
     // Frames only: whatever else lies there is not ours.
     for (const auto& entry : fs::directory_iterator(directory / "frames", error))
       if (is_frame(entry.path())) fs::remove(entry.path(), error);
@@ -113,18 +146,27 @@ void Recorder::open_tables(const RecordMemory& memory) {
   if (!scenario_.divisions.empty()) lineage_ = table(directory_ / "lineage.csv", lineage_header, memory.lineage_bytes);
 }
 
-void Recorder::begin(const std::string& input_toml, const State& rest) {
+std::shared_ptr<Recorder::StepRecord> Recorder::step_record(RunMemory run, const WallTimes& wall) const {
+  return std::make_shared<StepRecord>(
+      StepRecord{nullptr, rows_.back(), std::move(run), bytes_of(series_), bytes_of(lineage_), wall});
+}
+
+void Recorder::begin(const std::string& input_toml, const RunMemory& at_rest) {
   open_tables({});
   write_file(directory_ / "scenario.input.toml", input_toml);
   write_file(directory_ / "scenario.toml", checkpoint_.scenario);
-  rows_.push_back(observer_.observe_rest(rest));
-  checkpoint_.record.rows = rows_;
+  rows_.push_back(observer_.observe_rest(at_rest.state));
   append_series(rows_.back());
-  save_frame(rest);
+  save_frame(at_rest.state);
+  if (can_archive()) writing_.add([this, record = step_record(at_rest, {})] { write(*record); });
   writing_.finish();  // whoever cannot write hears of it before the first step
 }
 
 void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
+  for (const Observation& row : memory.rows)
+    if (row.monitors.size() != observer_.monitors().size())
+      throw FileError(directory_.string() + ": the checkpoint is damaged: its rows are not of these monitors");
+  remove_half_written(directory_);
   open_tables(memory);
   write_file(directory_ / "scenario.input.toml", input_toml);
   write_file(directory_ / "scenario.toml", checkpoint_.scenario);
@@ -152,8 +194,7 @@ const Observation& Recorder::record(const AcceptedStep& step, const WallTimes& w
     if (step.frame_is_due) save_frame(step.state);
     return row;
   }
-  const auto record = std::make_shared<StepRecord>(
-      StepRecord{nullptr, row, step.memory(), bytes_of(series_), bytes_of(lineage_), wall});
+  const auto record = step_record(step.memory(), wall);
   record->run.criterion_met = row.is_over;
   if (step.frame_is_due) {
     last_frame_s_ = step.state.time_s;

@@ -13,7 +13,7 @@
 #include "core/background.hpp"
 #include "core/files.hpp"
 #include "measure/observation.hpp"
-#include "output/checkpoint.hpp"
+#include "output/checkpoint_files.hpp"
 #include "output/frame_record.hpp"
 #include "output/report_frames.hpp"
 #include "output/summary.hpp"
@@ -25,15 +25,22 @@ namespace plica {
 /// and `overwrite` is false. With `overwrite`, removes the files that plica writes and nothing else.
 void prepare_directory(const std::filesystem::path& directory, bool overwrite);
 
+/// Whether it holds more than what a run leaves that ended before its first checkpoint, which is of no use to anyone.
+bool holds_steps(const std::filesystem::path& directory);
+
+/// Whether everything is there that the end of a run leaves.
+bool holds_ending(const std::filesystem::path& directory);
+
 class Recorder {
  public:
   /// Of a model at rest. Writes nothing: `begin` or `go_on` does.
   Recorder(std::filesystem::path directory, const Scenario& scenario, const Model& model, const Observer& observer);
 
-  /// Writes both scenario files (`input_toml`: as given) and the frame at rest.
-  void begin(const std::string& input_toml, const State& rest);
+  /// Writes both scenario files (`input_toml`: as given), the frame at rest and the first checkpoint.
+  void begin(const std::string& input_toml, const RunMemory& at_rest);
 
-  /// Cuts every file back to what the checkpoint knows of. FileError when one is missing or too short.
+  /// Cuts every file back to what the checkpoint knows of, and removes what a killed run has left half written.
+  /// FileError when one is missing or too short.
   void go_on(const std::string& input_toml, RecordMemory memory);
 
   /// A row of series.csv, a frame when one is due, and the checkpoint. Returns the row. Throws what went wrong with the
@@ -59,6 +66,7 @@ class Recorder {
 
  private:
   struct StepRecord;  // what a step leaves to be written
+  [[nodiscard]] std::shared_ptr<StepRecord> step_record(RunMemory run, const WallTimes& wall) const;
   void open_tables(const RecordMemory& memory);
   void append_series(const Observation& row);
   void append_lineage(const Division& division);

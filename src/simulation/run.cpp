@@ -31,7 +31,16 @@ std::string failure_text(StepReport report, const Model& model, const State& sta
   return fmt::format("{} at t = {:g} s, with steps down to {:g} s", report.reason(), state.time_s, duration_s);
 }
 
+// Before the end of its time.
+bool is_over(const RunMemory& run, const RunControls& controls) {
+  return run.criterion_met || (run.at_equilibrium && controls.stop_at_equilibrium);
+}
+
 }  // namespace
+
+bool has_ended(const RunMemory& run, const RunControls& controls) {
+  return is_over(run, controls) || has_come(controls.end_s, run.state.time_s);
+}
 
 Division repeat(Model& model, const PastDivision& past) {
   State then = rest_state(model);
@@ -79,13 +88,12 @@ RunResult run(Model& model, RunMemory now, RunControls controls, const StepObser
     copy.factor = stepper->memory();
     return copy;
   };
-  const auto is_over = [&] { return now.criterion_met || (now.at_equilibrium && controls.stop_at_equilibrium); };
   divide(due_divisions(model, state, controls.divisions));
 
   RunResult result;
   State next;
   int wasted_iterations = 0, wasted_solves = 0;
-  while (!is_over() && state.time_s < controls.end_s * (1 - 1e-12)) {
+  while (!has_ended(now, controls)) {
     const double duration_s = step_length.propose(state.time_s);
     grow(model, state.time_s + duration_s);
     StepReport report = stepper->advance(state, duration_s, now.steps == 0, next);
@@ -122,13 +130,13 @@ RunResult run(Model& model, RunMemory now, RunControls controls, const StepObser
     const StepAnswer answer =
         observer({state, next, duration_s, report, speed, frame_is_due, now.at_equilibrium, memory});
     now.criterion_met = answer.criterion_met;
-    if (!answer.go_on) {
+    if (!answer.go_on && !has_ended(now, controls)) {
       result.status = RunStatus::interrupted;
       break;
     }
     divide(due);
   }
-  if (is_over() && now.at_equilibrium && result.status != RunStatus::interrupted)
+  if (is_over(now, controls) && now.at_equilibrium && result.status != RunStatus::interrupted)
     result.status = RunStatus::equilibrium;
   grow(model, state.time_s);
   result.state = std::move(state);

@@ -55,6 +55,9 @@ struct RunMemory {
   std::vector<std::shared_ptr<const PastDivision>> past_divisions;
 };
 
+/// Whether nothing is left to do.
+bool has_ended(const RunMemory& run, const RunControls& controls);
+
 /// Makes a division of the past once more.
 Division repeat(Model& model, const PastDivision& past);
 
