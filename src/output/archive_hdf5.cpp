@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "core/memory.hpp"
 #include "output/archive.hpp"
 
 namespace plica {
@@ -36,12 +37,26 @@ void must(herr_t result, const std::string& what) {
   if (result < 0) throw FileError(what);
 }
 
-// HDF5 tells of errors by what its functions return; its own words on stderr are for those who wrote it.
-void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+// Where memory ends, HDF5 (1.10) ends the process, or crashes: it must not come to that. Room for what it needs beside
+// `bytes` of arrays.
+void make_sure_of_room(std::size_t bytes) {
+  constexpr std::size_t own_bytes = std::size_t{8} << 20;
+  make_sure_of_memory(own_bytes + 2 * bytes);
+}
+
+// HDF5 tells of errors by what its functions return; its own words on stderr are for those who wrote it. What is not
+// closed when the process ends needs no closing: its files are in memory.
+void prepare_library() {
+  constexpr std::size_t library_bytes = std::size_t{32} << 20;
+  make_sure_of_memory(library_bytes);
+  [[maybe_unused]] static const herr_t ignored = H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 // Files in memory, of which nothing is written by HDF5 itself.
 hid_t in_memory(const void* image, std::size_t size) {
-  be_quiet();
+  prepare_library();
+  make_sure_of_room(size);
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   if (access < 0) return access;
   constexpr std::size_t growth = std::size_t{1} << 20;
@@ -66,6 +81,7 @@ struct ArchiveWriter::File {
   }
 
   void put(const std::string& name, hid_t type, const void* values, std::size_t count, std::size_t columns) const {
+    make_sure_of_room(count * H5Tget_size(type));
     const std::array<hsize_t, 2> shape = {columns > 0 ? count / columns : count, columns};
     const Handle space(H5Screate_simple(columns > 0 ? 2 : 1, shape.data(), nullptr), H5Sclose, cannot_make);
     const Handle set(H5Dcreate2(file, name.c_str(), type, space, links, datasets, H5P_DEFAULT), H5Dclose, cannot_make);
@@ -90,6 +106,7 @@ std::string ArchiveWriter::image() {
   must(H5Fflush(file_->file, H5F_SCOPE_GLOBAL), cannot_make);
   const ssize_t size = H5Fget_file_image(file_->file, nullptr, 0);
   if (size <= 0) throw FileError(cannot_make);
+  make_sure_of_room(static_cast<std::size_t>(size));
   std::string image(static_cast<std::size_t>(size), '\0');
   if (H5Fget_file_image(file_->file, image.data(), image.size()) != size) throw FileError(cannot_make);
   return image;
@@ -106,6 +123,7 @@ struct ArchiveReader::File {
 
   template <class Number>
   [[nodiscard]] std::vector<Number> get(const std::string& name, H5T_class_t kind, hid_t type) const {
+    make_sure_of_room(0);
     const std::string damaged = fmt::format("it is damaged: {} is missing or not what it should be", name);
     const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, damaged);
     const Handle stored(H5Dget_type(set), H5Tclose, damaged);

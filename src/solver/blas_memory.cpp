@@ -3,8 +3,8 @@
 #include <omp.h>
 
 #include <cstddef>
-#include <memory>
-#include <vector>
+
+#include "core/memory.hpp"
 
 extern "C" void sgemm_(const char* transposed_a, const char* transposed_b, const int* m, const int* n, const int* k,
                        const float* alpha, const float* a, const int* lda, const float* b, const int* ldb,
@@ -18,11 +18,7 @@ bool take_memory() {
   // OpenBLAS asks for 128 MiB of address space at its first call, and again for each call at the same time. Most of it
   // is never touched.
   constexpr std::size_t buffer_bytes = (std::size_t{128} << 20) + (std::size_t{64} << 10);
-  {
-    std::vector<std::unique_ptr<char[]>> buffers;
-    for (int thread = 0; thread < omp_get_max_threads(); ++thread)
-      buffers.push_back(std::make_unique_for_overwrite<char[]>(buffer_bytes));
-  }
+  make_sure_of_memory(buffer_bytes * static_cast<std::size_t>(omp_get_max_threads()));
   const int one = 1;
   const float number = 1;
   float result = 0;
