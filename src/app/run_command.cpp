@@ -4,14 +4,18 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <new>
+#include <stdexcept>
 
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
 #include "app/progress.hpp"
+#include "app/resumption.hpp"
 #include "app/scenario_options.hpp"
 #include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
+#include "output/archive.hpp"
 #include "output/recorder.hpp"
 #include "output/report.hpp"
 #include "scenario/advice.hpp"
@@ -25,7 +29,7 @@ struct RunOptions {
   ScenarioOptions scenario;
   std::string out;
   int threads = 0;
-  bool quiet = false, overwrite = false;
+  bool quiet = false, overwrite = false, resume = false;
 };
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -92,34 +96,37 @@ int exit_status(const RunResult& result, bool missed) {
   return missed ? exit_missed : exit_done;
 }
 
-int run_scenario(const RunOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
-  const ScenarioSource source = find_scenario(options.scenario.name_or_path);
-  const Scenario scenario = load_scenario(source, options.scenario.overrides);
-  const auto model = make_model(scenario);
-  omp_set_num_threads(threads_for(options.threads, model->tissue.elements.size()));
-  const RunControls controls = make_controls(scenario, *model);
-  Observer observer(*model, make_furrow_sites(scenario, model->tissue), make_watch(scenario, model->tissue));
+// What a run consists of beside its scenario.
+struct Setting {
+  std::unique_ptr<Model> model;
+  RunControls controls;
+  Observer observer;
 
-  if (!options.quiet)
-    for (const std::string& line : advice(scenario, *model))
-      if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
+  explicit Setting(const Scenario& scenario)
+      : model(make_model(scenario)),
+        controls(make_controls(scenario, *model)),
+        observer(*model, make_furrow_sites(scenario, model->tissue), make_watch(scenario, model->tissue)) {}
+};
 
-  refuse_to_replace_scenario(source.file, options.out);
-  refuse_to_replace_reference(observer.monitors(), options.out);
-  prepare_directory(options.out, options.overwrite);
-  const State rest = rest_state(*model);
-  Recorder recorder(options.out, scenario, source.text, *model, observer, rest);
-  Progress progress(controls, options.quiet);
-  catch_interruptions();
+using Clock = std::chrono::steady_clock;
 
+// From where the memory is to the end. `before`: wall times until then, in earlier runs.
+struct Ending {
+  RunResult result;
+  nlohmann::ordered_json summary;
+};
+Ending simulate(Setting& setting, Recorder& recorder, RunMemory memory, const WallTimes& before,
+                Clock::time_point start, bool quiet) {
+  Progress progress(setting.controls, quiet);
   SolverClock solver_clock(recorder);
-  const auto run_start = std::chrono::steady_clock::now();
-  const RunResult result = run(
-      *model, rest, controls,
+  const auto wall = [&] {
+    return WallTimes{before.total_s + seconds_since(start), before.solver_s + solver_clock.solver_s()};
+  };
+  RunResult result = run(
+      *setting.model, std::move(memory), setting.controls,
       [&](const AcceptedStep& step) {
         solver_clock.stop();
-        const Observation& row = recorder.record(step, seconds_since(run_start));
+        const Observation& row = recorder.record(step, wall());
         progress.show(row);
         solver_clock.start();
         return StepAnswer(!interrupted(), row.is_over);
@@ -127,22 +134,78 @@ int run_scenario(const RunOptions& options) {
       [&] { return interrupted() || recorder.has_failed(); },
       [&](const Division& division, const State& state) {
         solver_clock.stop();
-        observer.follow_division(division);
+        setting.observer.follow_division(division);
         recorder.record_division(division, state);
         solver_clock.start();
       });
   solver_clock.stop();
   progress.finish();
-  const auto summary = recorder.finish(result, {seconds_since(start), solver_clock.solver_s()});
+  auto summary = recorder.finish(result, wall());
+  return {std::move(result), std::move(summary)};
+}
 
-  const std::vector<std::string> missed = result.status == RunStatus::failed || result.status == RunStatus::interrupted
-                                              ? std::vector<std::string>{}
-                                              : missed_expectations(scenario, summary);
+// Once a run has begun, what ends it can be mended, and nothing is lost.
+template <class Work>
+auto with_a_way_on(const Work& work) {
+  const std::string way_on = can_archive() ? "; once there is a remedy, the same command with --resume goes on" : "";
+  try {
+    return work();
+  } catch (const FileError& error) {
+    throw FileError(error.what() + way_on);
+  } catch (const std::bad_alloc&) {
+    throw std::runtime_error("out of memory" + way_on);
+  }
+}
+
+void report_ending(const Ending& ending, const std::vector<std::string>& missed, const RunOptions& options) {
   for (const std::string& line : missed) fmt::print(stderr, "{}\n", line);
-  if (!result.failure.empty())
-    fmt::print(stderr, "plica: gave up: {}; the last good state is in {}\n", result.failure, options.out);
-  if (!options.quiet) print_result(summary, options.out);
-  return exit_status(result, !missed.empty());
+  if (!ending.result.failure.empty())
+    fmt::print(stderr, "plica: gave up: {}; the last good state is in {}\n", ending.result.failure, options.out);
+  if (ending.result.status == RunStatus::interrupted && can_archive())
+    fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");
+  if (!options.quiet) print_result(ending.summary, options.out);
+}
+
+int run_scenario(const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
+  const ScenarioSource source = find_scenario(options.scenario.name_or_path);
+  const Scenario scenario = load_scenario(source, options.scenario.overrides);
+  Setting setting(scenario);
+  omp_set_num_threads(threads_for(options.threads, setting.model->tissue.elements.size()));
+
+  if (!options.quiet)
+    for (const std::string& line : advice(scenario, *setting.model))
+      if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
+
+  refuse_to_replace_scenario(source.file, options.out);
+  refuse_to_replace_reference(setting.observer.monitors(), options.out);
+  std::optional<Checkpoint> checkpoint;
+  if (options.resume) checkpoint = checkpoint_to_resume(options.out, scenario, *setting.model);
+  if (checkpoint && has_ended(checkpoint->run, setting.controls) && holds_ending(options.out)) {
+    if (!options.quiet) fmt::print("{}: the run is finished; nothing is left to do\n", options.out);
+    return exit_done;
+  }
+  if (!checkpoint) prepare_directory(options.out, options.overwrite || options.resume);
+  catch_interruptions();
+  Recorder recorder(options.out, scenario, *setting.model, setting.observer);
+  const Ending ending = with_a_way_on([&] {
+    WallTimes before;
+    RunMemory memory;
+    if (checkpoint) {
+      before = {checkpoint->record.wall_s, checkpoint->record.solver_s};
+      memory = go_on_from(std::move(*checkpoint), options.out, *setting.model, setting.observer, recorder, source.text);
+      if (!options.quiet) fmt::print("going on after step {}, t = {:g} s\n", memory.steps, memory.state.time_s);
+    } else {
+      memory.state = rest_state(*setting.model);
+      recorder.begin(source.text, memory);
+    }
+    return simulate(setting, recorder, std::move(memory), before, start, options.quiet);
+  });
+  std::vector<std::string> missed;
+  if (ending.result.status == RunStatus::equilibrium || ending.result.status == RunStatus::end_time)
+    missed = missed_expectations(scenario, ending.summary);
+  report_ending(ending, missed, options);
+  return exit_status(ending.result, !missed.empty());
 }
 
 }  // namespace
@@ -155,7 +218,9 @@ void add_run_command(CLI::App& app, int& status) {
   command->add_option("--threads", options->threads, "threads to use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--quiet", options->quiet, "no progress and no result on the terminal");
-  command->add_flag("--overwrite", options->overwrite, "replace the results in DIR");
+  auto* overwrite = command->add_flag("--overwrite", options->overwrite, "replace the results in DIR");
+  command->add_flag("--resume", options->resume, "go on from the checkpoint in DIR; begin where there is none")
+      ->excludes(overwrite);
   command->footer("Example: plica run drosophila --out results --set contraction.apical.across_ratio=1");
   command->callback([options, &status] { status = run_scenario(*options); });
 }

@@ -60,9 +60,9 @@ int sync_descriptor(int descriptor) {
 }
 
 /// Writes, syncs and closes; a full disk may show in any of the three. Returns 0 or the first error.
-int write_and_close(int descriptor, std::string_view content) {
+int write_and_close(int descriptor, std::string_view content, Sync sync = Sync::now) {
   int error = write_all(descriptor, content);
-  if (error == 0) error = sync_descriptor(descriptor);
+  if (error == 0 && sync == Sync::now) error = sync_descriptor(descriptor);
   if (::close(descriptor) != 0 && error == 0 && errno != EINTR) error = errno;
   return error;
 }
@@ -77,15 +77,6 @@ int sync_path(const fs::path& path, int flags) {
 [[noreturn]] void remove_and_throw(const fs::path& temporary, const fs::path& path, int error) {
   ::unlink(temporary.c_str());
   throw_unwritten(path, reason(error));
-}
-
-/// The rename of a file that is on the disk already, and of the folder's entry.
-void rename_synced(const fs::path& temporary, const fs::path& path) {
-  if (::rename(temporary.c_str(), path.c_str()) != 0) remove_and_throw(temporary, path, errno);
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  // A folder that may be written but not read cannot be opened; the file is there all the same.
-  const int error = sync_path(folder, O_DIRECTORY);
-  if (error != 0 && error != EACCES) throw_unwritten(path, reason(error));
 }
 
 /// The file that `path` stands for: a link is followed, so that it stays a link.
@@ -104,13 +95,31 @@ bool exists_and_is_no_regular_file(const fs::path& path) {
 
 }  // namespace
 
-std::string read_file(const fs::path& path) {
+void rename_file(const fs::path& temporary, const fs::path& path, Sync sync) {
+  if (::rename(temporary.c_str(), path.c_str()) != 0) remove_and_throw(temporary, path, errno);
+  if (sync == Sync::later) return;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  // A folder that may be written but not read cannot be opened; the file is there all the same.
+  const int error = sync_path(folder, O_DIRECTORY);
+  if (error != 0 && error != EACCES) throw_unwritten(path, reason(error));
+}
+
+fs::path write_beside(const fs::path& path, std::string_view content, Sync sync) {
+  const fs::path temporary = temporary_beside(path);
+  const int descriptor = open_file(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW);
+  if (descriptor < 0) throw_unwritten(path, reason(errno));
+  const int error = write_and_close(descriptor, content, sync);
+  if (error != 0) remove_and_throw(temporary, path, error);
+  return temporary;
+}
+
+std::string read_file(const fs::path& path, std::uintmax_t most_bytes) {
   const int descriptor = open_file(path, O_RDONLY);
   if (descriptor < 0) throw_unread(path, reason(errno));
   std::string content, why;
   struct stat status {};
   if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0 &&
-      static_cast<std::uintmax_t>(status.st_size) <= largest_file_read_bytes)
+      static_cast<std::uintmax_t>(status.st_size) <= most_bytes)
     content.reserve(static_cast<std::size_t>(status.st_size));
   // The limit holds for what is read, not for the size in the folder: a device has none.
   std::string block(1 << 16, '\0');
@@ -122,7 +131,7 @@ std::string read_file(const fs::path& path) {
       continue;
     }
     content.append(block, 0, static_cast<std::size_t>(count));
-    if (content.size() > largest_file_read_bytes) why = "it is larger than 256 MiB";
+    if (content.size() > most_bytes) why = fmt::format("it is larger than {} MiB", most_bytes >> 20);
   }
   ::close(descriptor);
   if (!why.empty()) throw_unread(path, why);
@@ -136,12 +145,8 @@ void write_file(const fs::path& path, std::string_view content) {
     if (error != 0) throw_unwritten(path, reason(error));
     return;
   }
-  const fs::path target = link_target(path), temporary = temporary_beside(target);
-  const int descriptor = open_file(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW);
-  if (descriptor < 0) throw_unwritten(path, reason(errno));
-  const int error = write_and_close(descriptor, content);
-  if (error != 0) remove_and_throw(temporary, path, error);
-  rename_synced(temporary, target);
+  const fs::path target = link_target(path);
+  rename_file(write_beside(target, content, Sync::now), target, Sync::now);
 }
 
 fs::path temporary_beside(const fs::path& path) {
@@ -159,7 +164,7 @@ void replace_file(const fs::path& temporary, const fs::path& path) {
   }
   const int error = sync_path(temporary, 0);
   if (error != 0) remove_and_throw(temporary, path, error);
-  rename_synced(temporary, link_target(path));
+  rename_file(temporary, link_target(path), Sync::now);
 }
 
 RowFile::RowFile(fs::path path, std::uint64_t keep_bytes) : path_(std::move(path)), size_bytes_(keep_bytes) {

@@ -13,8 +13,8 @@ namespace plica {
 /// Largest file that `read_file` takes.
 inline constexpr std::uintmax_t largest_file_read_bytes = std::uintmax_t{256} << 20;
 
-/// The content of a file. FileError when it cannot be read, is a directory, or is larger than 256 MiB.
-std::string read_file(const std::filesystem::path& path);
+/// The content of a file. FileError when it cannot be read, is a directory, or is larger than `most_bytes`.
+std::string read_file(const std::filesystem::path& path, std::uintmax_t most_bytes = largest_file_read_bytes);
 
 /// Writes a file whole or not at all: into a temporary file beside it, to the disk (fsync), then renamed. At any moment
 /// `path` holds its former content or the new one. What is not a regular file (a pipe, a device) is written in place.
@@ -28,6 +28,15 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path);
 /// Puts the finished file `temporary` in the place of `path`: fsync, rename, fsync of the folder. FileError when that
 /// fails; `temporary` is then removed.
 void replace_file(const std::filesystem::path& temporary, const std::filesystem::path& path);
+
+/// Whether a file is to be on the disk at once (fsync), or when the system comes to it: what is not outlives the
+/// program, but not a power cut.
+enum class Sync { now, later };
+
+/// The two halves of write_file, for a file whose former content is to be kept under another name: a temporary file
+/// beside `path`, and its rename.
+std::filesystem::path write_beside(const std::filesystem::path& path, std::string_view content, Sync sync);
+void rename_file(const std::filesystem::path& temporary, const std::filesystem::path& path, Sync sync);
 
 /// A text file that grows by whole rows and can be read meanwhile.
 class RowFile {

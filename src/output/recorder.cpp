@@ -2,9 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "core/errors.hpp"
+#include "core/version.hpp"
+#include "measure/reference_run.hpp"
+#include "output/archive.hpp"
 #include "output/csv.hpp"
 #include "output/mesh_writer.hpp"
 #include "output/report.hpp"
@@ -15,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t most_cells_by_default = 2000;  // with a row a cell a frame in cells.csv
-constexpr std::size_t most_frames_waiting = 1;       // beside the one being written
+constexpr std::size_t most_waiting = 1;              // frames and steps, beside the one being written
 constexpr const char* series_header =
     "time_s,furrow_depth_um,furrow_depth_below_lips_um,lip_distance_um,vml_speed_um_per_s,vce_speed_um_per_s,"
     "speed_ratio,vml_displacement_um,vce_displacement_um,vml_apical_area_ratio,vce_apical_area_ratio,"
@@ -32,11 +38,14 @@ std::string row_of(const std::vector<std::optional<double>>& values) {
   return csv_rows(numbers, numbers.size());
 }
 
-// A table that begins with its header, whole or not at all.
-RowFile table(const fs::path& file, const std::string& header) {
+// A table that begins with its header, whole or not at all; or one cut back to what it had.
+RowFile table(const fs::path& file, const std::string& header, std::uint64_t keep_bytes) {
+  if (keep_bytes > 0) return RowFile(file, keep_bytes);
   write_file(file, header + "\n");
   return RowFile(file, header.size() + 1);
 }
+
+std::uint64_t bytes_of(const std::optional<RowFile>& table) { return table ? table->size_bytes() : 0; }
 
 std::string series_columns(const Observer& observer) {
   std::string header = series_header;
@@ -44,7 +53,9 @@ std::string series_columns(const Observer& observer) {
   return header;
 }
 
-// frame_00042.vtu and the like: what write_frame names.
+std::string frame_file(std::size_t number) { return fmt::format("frames/frame_{:05}.vtu", number); }
+
+// What that names.
 bool is_frame(const fs::path& file) {
   const std::string name = file.stem().string();
   return file.extension() == ".vtu" && name.starts_with("frame_") && name.size() >= 11 &&
@@ -57,7 +68,36 @@ bool holds_results(const fs::path& directory) {
   return fs::exists(directory / "frames");
 }
 
+// What was being written when a run was killed. Only temporary names of plica's own files (see temporary_beside).
+void remove_half_written(const fs::path& directory) {
+  std::error_code error;
+  const auto is_half_written = [](const fs::path& file) {
+    if (file.extension() != ".part") return false;
+    const fs::path own = file.stem().stem();  // without .PROCESS-NUMBER.part
+    return is_frame(own) || is_checkpoint(own) || std::ranges::find(own_files, own.string()) != own_files.end();
+  };
+  for (const fs::path& folder : {directory, directory / "frames"})
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (is_half_written(entry.path().filename())) fs::remove(entry.path(), error);
+}
+
 }  // namespace
+
+bool holds_steps(const fs::path& directory) {
+  const fs::path series = directory / "series.csv";
+  std::error_code error;
+  if (fs::exists(directory / "summary.json", error)) return true;
+  if (!fs::exists(series, error)) return false;
+  constexpr auto without_steps = 2;  // its header and the row at rest
+  std::ifstream rows(series);
+  return std::count(std::istreambuf_iterator<char>(rows), {}, '\n') > without_steps;
+}
+
+bool holds_ending(const fs::path& directory) {
+  std::error_code error;
+  return fs::exists(directory / "summary.json", error) &&
+         (!can_report() || fs::exists(directory / "report.html", error));
+}
 
 void prepare_directory(const fs::path& directory, bool overwrite) {
   std::error_code error;
@@ -68,6 +108,8 @@ void prepare_directory(const fs::path& directory, bool overwrite) {
       throw FileError(directory.string() +
                       ": holds results already; give another --out, or --overwrite to replace them");
     for (const std::string& file : own_files) fs::remove(directory / file, error);
+    remove_checkpoints(directory);
+    remove_half_written(directory);
     // Frames only: whatever else lies there is not ours.
     for (const auto& entry : fs::directory_iterator(directory / "frames", error))
       if (is_frame(entry.path())) fs::remove(entry.path(), error);
@@ -77,34 +119,109 @@ void prepare_directory(const fs::path& directory, bool overwrite) {
   if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
 }
 
-Recorder::Recorder(fs::path directory, const Scenario& scenario, const std::string& input_toml, const Model& model,
-                   const Observer& observer, const State& rest)
+struct Recorder::StepRecord {
+  std::shared_ptr<const FrameRecord> frame;  // or none
+  Observation row;
+  RunMemory run;
+  std::uint64_t series_bytes, lineage_bytes;
+  WallTimes wall;
+};
+
+Recorder::Recorder(fs::path directory, const Scenario& scenario, const Model& model, const Observer& observer)
     : directory_(std::move(directory)),
       scenario_(scenario),
       model_(model),
       observer_(observer),
       frame_taker_(model, observer.sites(),
                    scenario.output.cells_csv.value_or(model.tissue.cells.size() <= most_cells_by_default)),
-      series_(table(directory_ / "series.csv", series_columns(observer))),
-      midline_(table(directory_ / "midline.csv", midline_header)),
+      checkpoint_{version(), resolved_toml(scenario), fingerprint(model.tissue), {}, {}},
+      checkpoints_(directory_),
       report_(most_frame_bytes),
-      writing_(most_frames_waiting) {
+      writing_(most_waiting) {}
+
+void Recorder::open_tables(const RecordMemory& memory) {
+  series_ = table(directory_ / "series.csv", series_columns(observer_), memory.series_bytes);
+  midline_ = table(directory_ / "midline.csv", midline_header, memory.midline_bytes);
+  if (frame_taker_.with_cell_rows()) cells_ = table(directory_ / "cells.csv", cells_header, memory.cells_bytes);
+  if (!scenario_.divisions.empty()) lineage_ = table(directory_ / "lineage.csv", lineage_header, memory.lineage_bytes);
+}
+
+std::shared_ptr<Recorder::StepRecord> Recorder::step_record(RunMemory run, const WallTimes& wall) const {
+  return std::make_shared<StepRecord>(
+      StepRecord{nullptr, rows_.back(), std::move(run), bytes_of(series_), bytes_of(lineage_), wall});
+}
+
+void Recorder::begin(const std::string& input_toml, const RunMemory& at_rest) {
+  open_tables({});
   write_file(directory_ / "scenario.input.toml", input_toml);
-  write_file(directory_ / "scenario.toml", resolved_toml(scenario));
-  if (frame_taker_.with_cell_rows()) cells_ = table(directory_ / "cells.csv", cells_header);
-  if (!scenario.divisions.empty()) lineage_ = table(directory_ / "lineage.csv", lineage_header);
-  rows_.push_back(observer.observe_rest(rest));
+  write_file(directory_ / "scenario.toml", checkpoint_.scenario);
+  rows_.push_back(observer_.observe_rest(at_rest.state));
   append_series(rows_.back());
-  save_frame(rest);
+  save_frame(at_rest.state);
+  if (can_archive()) writing_.add([this, record = step_record(at_rest, {})] { write(*record); });
   writing_.finish();  // whoever cannot write hears of it before the first step
 }
 
-const Observation& Recorder::record(const AcceptedStep& step, double wall_s) {
-  writing_.check();
-  rows_.push_back(observer_.observe(step, wall_s));
-  append_series(rows_.back());
-  if (step.frame_is_due) save_frame(step.state);
-  return rows_.back();
+void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
+  for (const Observation& row : memory.rows)
+    if (row.monitors.size() != observer_.monitors().size())
+      throw FileError(directory_.string() + ": the checkpoint is damaged: its rows are not of these monitors");
+  remove_half_written(directory_);
+  open_tables(memory);
+  write_file(directory_ / "scenario.input.toml", input_toml);
+  write_file(directory_ / "scenario.toml", checkpoint_.scenario);
+  rows_ = memory.rows;
+  for (const double time_s : memory.frame_times_s) frames_.emplace_back(time_s, frame_file(frames_.size()));
+  if (!frames_.empty()) last_frame_s_ = frames_.back().first;
+  write_collection(directory_ / "frames.pvd", frames_);
+  // Frames that the checkpoint does not know of, and what told of the end.
+  std::error_code ignored;
+  for (std::size_t k = frames_.size(); fs::remove(directory_ / frame_file(k), ignored); ++k) continue;
+  for (const char* file : {"summary.json", "report.html"}) fs::remove(directory_ / file, ignored);
+  if (can_report() && !frames_.empty()) {
+    const ReferenceRun run(directory_);
+    for (std::size_t i = 0; i < frames_.size(); ++i) report_.add(run.frame(i), frames_[i].first);
+  }
+  checkpoint_.record = std::move(memory);
+}
+
+const Observation& Recorder::record(const AcceptedStep& step, const WallTimes& wall) {
+  writing_.finish();
+  rows_.push_back(observer_.observe(step, wall.total_s));
+  const Observation& row = rows_.back();
+  append_series(row);
+  if (!can_archive()) {
+    if (step.frame_is_due) save_frame(step.state);
+    return row;
+  }
+  const auto record = step_record(step.memory(), wall);
+  record->run.criterion_met = row.is_over;
+  if (step.frame_is_due) {
+    last_frame_s_ = step.state.time_s;
+    record->frame = std::make_shared<const FrameRecord>(frame_taker_.take(step.state));
+  }
+  writing_.add([this, record] { write(*record); });
+  return row;
+}
+
+void Recorder::write(const StepRecord& step) {
+  if (step.frame) write(*step.frame);
+  RecordMemory& record = checkpoint_.record;
+  record.rows.push_back(step.row);
+  record.series_bytes = step.series_bytes;
+  record.lineage_bytes = step.lineage_bytes;
+  record.midline_bytes = bytes_of(midline_);
+  record.cells_bytes = bytes_of(cells_);
+  record.frame_times_s.clear();
+  for (const auto& [time_s, file] : frames_) record.frame_times_s.push_back(time_s);
+  record.wall_s = step.wall.total_s;
+  record.solver_s = step.wall.solver_s;
+  checkpoint_.run = step.run;
+  const Sync sync = checkpoints_.sync_is_due() ? Sync::now : Sync::later;
+  if (sync == Sync::now)
+    for (std::optional<RowFile>* file : {&series_, &lineage_, &midline_, &cells_})
+      if (*file) (*file)->sync();
+  checkpoints_.write(checkpoint_, sync);
 }
 
 void Recorder::record_division(const Division& division, const State& state) {
@@ -142,7 +259,7 @@ void Recorder::append_series(const Observation& row) {
                                                static_cast<double>(row.newton_iterations),
                                                static_cast<double>(row.linear_solves)};
   values.insert(values.end(), row.monitors.begin(), row.monitors.end());
-  series_.append(row_of(values));
+  series_->append(row_of(values));
 }
 
 void Recorder::save_frame(const State& state) {
@@ -152,13 +269,13 @@ void Recorder::save_frame(const State& state) {
 
 void Recorder::write(const FrameRecord& frame) {
   const MeshArrays arrays = frame.arrays();
-  const std::string file = fmt::format("frames/frame_{:05}.vtu", frames_.size());
+  const std::string file = frame_file(frames_.size());
   write_mesh(directory_ / file, frame.mesh(), frame.positions, arrays, frame.time_s);
   frames_.emplace_back(frame.time_s, file);
   write_collection(directory_ / "frames.pvd", frames_);
   report_.add(frame_of(frame.mesh(), frame.positions, arrays), frame.time_s);
   if (!frame.cell_rows.empty()) cells_->append(csv_rows(frame.cell_rows, cells_columns));
-  if (!frame.midline_rows.empty()) midline_.append(csv_rows(frame.midline_rows, midline_columns));
+  if (!frame.midline_rows.empty()) midline_->append(csv_rows(frame.midline_rows, midline_columns));
 }
 
 void Recorder::append_lineage(const Division& division) {

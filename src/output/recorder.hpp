@@ -1,7 +1,8 @@
 // Everything that a run leaves in its directory, written while it goes on. Files appear whole or not at all.
 //
 // series.csv and lineage.csv grow at once. A frame (its file, cells.csv, midline.csv, the report's share) is taken from
-// the state at once and then compressed and written beside the computation, in order; three at most are in memory.
+// the state at once and then compressed and written beside the computation, and after it the step's checkpoint. What
+// one step leaves is written before the next step is recorded.
 #pragma once
 
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include "core/background.hpp"
 #include "core/files.hpp"
 #include "measure/observation.hpp"
+#include "output/checkpoint_files.hpp"
 #include "output/frame_record.hpp"
 #include "output/report_frames.hpp"
 #include "output/summary.hpp"
@@ -23,15 +25,30 @@ namespace plica {
 /// and `overwrite` is false. With `overwrite`, removes the files that plica writes and nothing else.
 void prepare_directory(const std::filesystem::path& directory, bool overwrite);
 
+/// Whether it holds more than what a run leaves that ended before its first checkpoint, which is of no use to anyone.
+bool holds_steps(const std::filesystem::path& directory);
+
+/// Whether everything is there that the end of a run leaves.
+bool holds_ending(const std::filesystem::path& directory);
+
 class Recorder {
  public:
-  /// `input_toml` is the scenario as given. Writes both scenario files and the frame at rest.
-  Recorder(std::filesystem::path directory, const Scenario& scenario, const std::string& input_toml, const Model& model,
-           const Observer& observer, const State& rest);
+  /// Of a model at rest. Writes nothing: `begin` or `go_on` does.
+  Recorder(std::filesystem::path directory, const Scenario& scenario, const Model& model, const Observer& observer);
 
-  /// A row of series.csv, and a frame when one is due. Returns the row. `wall_s`: as of Observer::observe. Throws what
-  /// went wrong with the writing of an earlier frame.
-  const Observation& record(const AcceptedStep& step, double wall_s = 0);
+  /// Writes both scenario files (`input_toml`: as given), the frame at rest and the first checkpoint.
+  void begin(const std::string& input_toml, const RunMemory& at_rest);
+
+  /// Cuts every file back to what the checkpoint knows of, and removes what a killed run has left half written.
+  /// FileError when one is missing or too short.
+  void go_on(const std::string& input_toml, RecordMemory memory);
+
+  /// A row of series.csv, a frame when one is due, and the checkpoint. Returns the row. Throws what went wrong with the
+  /// writing of an earlier step.
+  const Observation& record(const AcceptedStep& step, const WallTimes& wall = {});
+
+  /// After one of the past divisions has been made again.
+  void follow_division() { frame_taker_.follow_division(); }
 
   /// A frame that shows the daughters, and their lines in lineage.csv.
   void record_division(const Division& division, const State& state);
@@ -48,25 +65,29 @@ class Recorder {
   [[nodiscard]] const std::vector<Observation>& rows() const { return rows_; }
 
  private:
+  struct StepRecord;  // what a step leaves to be written
+  [[nodiscard]] std::shared_ptr<StepRecord> step_record(RunMemory run, const WallTimes& wall) const;
+  void open_tables(const RecordMemory& memory);
   void append_series(const Observation& row);
   void append_lineage(const Division& division);
   void save_frame(const State& state);
   void write(const FrameRecord& frame);
+  void write(const StepRecord& step);
 
   std::filesystem::path directory_;
   const Scenario& scenario_;
   const Model& model_;
   const Observer& observer_;
   FrameTaker frame_taker_;
-  RowFile series_;
-  std::optional<RowFile> lineage_;
+  std::optional<RowFile> series_, lineage_;
   std::vector<Observation> rows_;
   double last_frame_s_ = 0;
 
   // Of `write`, while frames are being written.
-  RowFile midline_;
-  std::optional<RowFile> cells_;
+  std::optional<RowFile> midline_, cells_;
   std::vector<std::pair<double, std::string>> frames_;  // time, file
+  Checkpoint checkpoint_;                               // the last one, but for the run's memory
+  CheckpointFiles checkpoints_;
   ReportFrames report_;
   Background writing_;  // the last member: it ends before what it writes with
 };

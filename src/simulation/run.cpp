@@ -31,37 +31,72 @@ std::string failure_text(StepReport report, const Model& model, const State& sta
   return fmt::format("{} at t = {:g} s, with steps down to {:g} s", report.reason(), state.time_s, duration_s);
 }
 
+// Before the end of its time.
+bool is_over(const RunMemory& run, const RunControls& controls) {
+  return run.criterion_met || (run.at_equilibrium && controls.stop_at_equilibrium);
+}
+
 }  // namespace
 
-RunResult run(Model& model, State state, RunControls controls, const StepObserver& observer,
+bool has_ended(const RunMemory& run, const RunControls& controls) {
+  return is_over(run, controls) || has_come(controls.end_s, run.state.time_s);
+}
+
+Division repeat(Model& model, const PastDivision& past) {
+  State then = rest_state(model);
+  then.time_s = past.time_s;
+  then.positions = past.positions;
+  return divide_cells(model, then, past.planned);
+}
+
+RunResult run(Model& model, RunMemory now, RunControls controls, const StepObserver& observer,
               const std::function<bool()>& stop_requested, const DivisionObserver& division_observer) {
-  RunResult result;
+  State& state = now.state;
+  const auto add_growth_ends = [&](const PastDivision& past) {
+    for (const PlannedDivision& one : past.planned) controls.program_points_s.push_back(past.time_s + one.growth_s);
+  };
+  for (const auto& past : now.past_divisions) add_growth_ends(*past);
   std::unique_ptr<Stepper> stepper;
   const auto renew_stepper = [&] {
     stepper = make_stepper(model, controls.scheme);
     stepper->stop_when(stop_requested);
   };
   renew_stepper();
-  StepLength step_length(controls);
+  if (!now.factor.empty()) {
+    grow(model, now.factor.end_time_s);
+    stepper->recall(now.factor);
+    now.factor = {};
+    grow(model, state.time_s);
+  }
+  StepLength step_length(controls, now.step_length);
   const auto divide = [&](const std::vector<PlannedDivision>& due) {
     state.divided_until_s = state.time_s;
     if (due.empty()) return;
+    now.past_divisions.push_back(
+        std::make_shared<const PastDivision>(PastDivision{state.time_s, state.positions, due}));
     const Division division = divide_cells(model, state, due);
-    result.divisions += static_cast<int>(due.size());
-    result.equilibrium_time_s.reset();  // it counts only after the last division
-    for (const PlannedDivision& one : due) controls.program_points_s.push_back(state.time_s + one.growth_s);
+    now.divisions += static_cast<int>(due.size());
+    now.equilibrium_time_s.reset();  // it counts only after the last division
+    add_growth_ends(*now.past_divisions.back());
     renew_stepper();
     step_length.restart();
     if (division_observer) division_observer(division, state);
   };
+  const auto memory = [&] {
+    RunMemory copy = now;
+    copy.step_length = step_length.memory();
+    copy.factor = stepper->memory();
+    return copy;
+  };
   divide(due_divisions(model, state, controls.divisions));
 
+  RunResult result;
   State next;
   int wasted_iterations = 0, wasted_solves = 0;
-  while (state.time_s < controls.end_s * (1 - 1e-12)) {
+  while (!has_ended(now, controls)) {
     const double duration_s = step_length.propose(state.time_s);
     grow(model, state.time_s + duration_s);
-    StepReport report = stepper->advance(state, duration_s, result.steps == 0, next);
+    StepReport report = stepper->advance(state, duration_s, now.steps == 0, next);
     if (report.outcome == StepReport::Outcome::interrupted) {
       result.status = RunStatus::interrupted;
       break;
@@ -83,29 +118,32 @@ RunResult run(Model& model, State state, RunControls controls, const StepObserve
       continue;
     }
     std::swap(state, next);
-    ++result.steps;
+    ++now.steps;
 
     const double speed = max_speed(state);
     const std::vector<PlannedDivision> due = due_divisions(model, state, controls.divisions);
-    const bool at_equilibrium = speed < controls.equilibrium_speed_um_per_s && due.empty() &&
-                                has_come(last_of(controls.program_points_s), state.time_s);
-    if (at_equilibrium && !result.equilibrium_time_s) result.equilibrium_time_s = state.time_s;
+    now.at_equilibrium = speed < controls.equilibrium_speed_um_per_s && due.empty() &&
+                         has_come(last_of(controls.program_points_s), state.time_s);
+    if (now.at_equilibrium && !now.equilibrium_time_s) now.equilibrium_time_s = state.time_s;
     // At a division, the frame shows the daughters.
     const bool frame_is_due = due.empty() && passes_frame(next.time_s, state.time_s, controls.frame_every_s);
-    const StepAnswer answer = observer({state, next, duration_s, report, speed, frame_is_due, at_equilibrium});
-    if (!answer.go_on) {
+    const StepAnswer answer =
+        observer({state, next, duration_s, report, speed, frame_is_due, now.at_equilibrium, memory});
+    now.criterion_met = answer.criterion_met;
+    if (!answer.go_on && !has_ended(now, controls)) {
       result.status = RunStatus::interrupted;
       break;
     }
     divide(due);
-    result.criterion_met = answer.criterion_met;
-    if (answer.criterion_met || (at_equilibrium && controls.stop_at_equilibrium)) {
-      if (at_equilibrium) result.status = RunStatus::equilibrium;
-      break;
-    }
   }
+  if (is_over(now, controls) && now.at_equilibrium && result.status != RunStatus::interrupted)
+    result.status = RunStatus::equilibrium;
   grow(model, state.time_s);
   result.state = std::move(state);
+  result.steps = now.steps;
+  result.divisions = now.divisions;
+  result.criterion_met = now.criterion_met;
+  result.equilibrium_time_s = now.equilibrium_time_s;
   return result;
 }
 

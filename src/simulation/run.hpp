@@ -28,6 +28,39 @@ struct RunControls {
   std::vector<DivisionRule> divisions;   // their times are among the program points
 };
 
+/// A division that has been made, and what the model's part in it depended on.
+struct PastDivision {
+  double time_s = 0;
+  Vectors positions;  // nodes, before it; um
+  std::vector<PlannedDivision> planned;
+};
+
+/// How the length of steps goes on.
+struct StepLengthMemory {
+  double wanted_s = 0;    // 0: no step yet
+  double previous_s = 0;  // 0: nothing is known of the next step's error
+};
+
+/// Where the loop is, between two steps: with the model of the scenario, in which the past divisions have been made
+/// again (`repeat`), enough to go on to the same bits.
+struct RunMemory {
+  State state;
+  int steps = 0;
+  int divisions = 0;                         // cells that divided
+  std::optional<double> equilibrium_time_s;  // first time that every node was slower than the limit
+  bool at_equilibrium = false;               // now
+  bool criterion_met = false;                // the observer says that the run is over
+  StepLengthMemory step_length;
+  FactorMemory factor;
+  std::vector<std::shared_ptr<const PastDivision>> past_divisions;
+};
+
+/// Whether nothing is left to do.
+bool has_ended(const RunMemory& run, const RunControls& controls);
+
+/// Makes a division of the past once more.
+Division repeat(Model& model, const PastDivision& past);
+
 /// What the loop tells about an accepted step.
 struct AcceptedStep {
   const State& state;     // at its end
@@ -37,6 +70,7 @@ struct AcceptedStep {
   double max_node_speed_um_per_s;
   bool frame_is_due;
   bool at_equilibrium = false;
+  std::function<RunMemory()> memory = {};  // from which to go on after this step
 };
 
 /// What the observer answers. From a bool: true goes on, false interrupts the run.
@@ -65,9 +99,18 @@ using StepObserver = std::function<StepAnswer(const AcceptedStep&)>;
 /// Called after cells have divided, with the state from which the run goes on.
 using DivisionObserver = std::function<void(const Division&, const State&)>;
 
-/// Divisions change the model: every reference to it sees the new one. `stop_requested` is asked often, also within a
-/// step; once true, the run ends as interrupted with the last good state.
-RunResult run(Model& model, State state, RunControls controls, const StepObserver& observer,
+/// From `start` on, whose past divisions the model has behind it. Divisions change the model: every reference to it
+/// sees the new one. `stop_requested` is asked often, also within a step; once true, the run ends as interrupted with
+/// the last good state.
+RunResult run(Model& model, RunMemory start, RunControls controls, const StepObserver& observer,
               const std::function<bool()>& stop_requested = {}, const DivisionObserver& division_observer = {});
+
+/// From the beginning.
+inline RunResult run(Model& model, State rest, RunControls controls, const StepObserver& observer,
+                     const std::function<bool()>& stop_requested = {}, const DivisionObserver& division_observer = {}) {
+  RunMemory start;
+  start.state = std::move(rest);
+  return run(model, std::move(start), std::move(controls), observer, stop_requested, division_observer);
+}
 
 }  // namespace plica

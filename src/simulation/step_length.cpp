@@ -13,8 +13,10 @@ double next_multiple(double time, double period) {
 
 }  // namespace
 
-StepLength::StepLength(const RunControls& controls)
-    : controls_(controls), wanted_s_(controls.fixed_step_s.value_or(controls.first_step_s)) {}
+StepLength::StepLength(const RunControls& controls, const StepLengthMemory& memory)
+    : controls_(controls),
+      wanted_s_(controls.fixed_step_s.value_or(memory.wanted_s > 0 ? memory.wanted_s : controls.first_step_s)),
+      previous_s_(memory.previous_s) {}
 
 double StepLength::propose(double time_s) const {
   double stop = controls_.end_s;

@@ -8,7 +8,7 @@ namespace plica {
 
 class StepLength {
  public:
-  explicit StepLength(const RunControls& controls);
+  explicit StepLength(const RunControls& controls, const StepLengthMemory& memory = {});
 
   /// The length of a step that starts at `time_s`.
   [[nodiscard]] double propose(double time_s) const;
@@ -22,6 +22,8 @@ class StepLength {
 
   /// The step could not be solved. False when the next would be too short to be worth it.
   [[nodiscard]] bool halve(double failed_s);
+
+  [[nodiscard]] StepLengthMemory memory() const { return {wanted_s_, previous_s_}; }
 
  private:
   const RunControls& controls_;

@@ -35,52 +35,71 @@ void ContactBorder::append_free(std::span<const Vec3> vectors, std::vector<float
   }
 }
 
-ContactBorder::Column ContactBorder::make_column(const Iterate& at, std::size_t contact, Vectors& b) const {
-  Column column{contact, model_->vitelline->nodes()[contact].index(), {}, !at.in_contact[contact], {}, 0, {}};
-  const std::size_t node = column.node;
+ContactBorder::Column ContactBorder::make_column(const Change& change, Vectors& b) const {
+  Column column{change, model_->vitelline->nodes()[change.contact].index(), {}, 0, {}};
   b.assign(frames_.size(), Vec3::Zero());
   if (column.leaves) {
-    column.normal = frames_[node].axes.col(frames_[node].fixed - 1);
     Vectors unit(b);
-    unit[node] = column.normal;
+    unit[column.node] = column.normal;
     matrix_->multiply(unit, b);
-    column.diagonal = column.normal.dot(b[node]);
+    column.diagonal = column.normal.dot(b[column.node]);
     for (std::size_t n = 0; n < b.size(); ++n) {
       b[n] = frames_[n].free_part(b[n]);
       if (b[n] != Vec3::Zero()) column.entries.emplace_back(n, b[n]);
     }
   } else {
-    column.normal = without_held(*model_, node, model_->vitelline->gap(at.positions[node]).inward).normalized();
-    b[node] = column.normal;
-    column.entries.emplace_back(node, column.normal);
+    b[column.node] = column.normal;
+    column.entries.emplace_back(column.node, column.normal);
   }
   return column;
 }
 
-void ContactBorder::add_columns(const Iterate& at, std::span<const std::size_t> contacts,
-                                const Preconditioner& factor) {
-  if (contacts.empty()) return;
+void ContactBorder::add_columns(std::span<const Change> changes, const Preconditioner& factor) {
+  if (changes.empty()) return;
   std::vector<float> solved;
   Vectors b;
-  for (const std::size_t contact : contacts) {
-    columns_.push_back(make_column(at, contact, b));
+  for (const Change& change : changes) {
+    columns_.push_back(make_column(change, b));
     append_free(b, solved);
   }
   factor.solve(solved);
   const std::size_t size = 3 * frames_.size();
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    columns_[columns_.size() - contacts.size() + i].solved.assign(&solved[i * size], &solved[i * size] + size);
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    columns_[columns_.size() - changes.size() + i].solved.assign(&solved[i * size], &solved[i * size] + size);
+}
+
+void ContactBorder::remember(FactorMemory& memory) const {
+  for (const Column& column : columns_) {
+    memory.changed_contacts.push_back(static_cast<int>(column.contact));
+    memory.has_left.push_back(column.leaves);
+    memory.normals.push_back(column.normal);
+  }
+}
+
+void ContactBorder::recall(const FactorMemory& memory, const Preconditioner& factor) {
+  std::vector<Change> changes;
+  for (std::size_t k = 0; k < memory.changed_contacts.size(); ++k)
+    changes.push_back(
+        {static_cast<std::size_t>(memory.changed_contacts[k]), memory.has_left[k] != 0, memory.normals[k]});
+  add_columns(changes, factor);
 }
 
 bool ContactBorder::follow(const Iterate& at, const Preconditioner& factor) {
-  std::vector<std::size_t> changed, unknown, active;
+  std::vector<std::size_t> changed, active;
+  std::vector<Change> unknown;
   for (std::size_t k = 0; k < at.in_contact.size(); ++k)
     if (at.in_contact[k] != in_contact_[k]) changed.push_back(k);
   const auto column_of = [&](std::size_t k) { return std::ranges::find(columns_, k, &Column::contact); };
-  std::ranges::copy_if(changed, std::back_inserter(unknown),
-                       [&](std::size_t k) { return column_of(k) == columns_.end(); });
+  for (const std::size_t k : changed) {
+    if (column_of(k) != columns_.end()) continue;
+    const std::size_t n = model_->vitelline->nodes()[k].index();
+    const bool leaves = !at.in_contact[k];
+    unknown.push_back({k, leaves,
+                       leaves ? Vec3(frames_[n].axes.col(frames_[n].fixed - 1))
+                              : without_held(*model_, n, model_->vitelline->gap(at.positions[n]).inward).normalized()});
+  }
   if (changed.size() > most_changes_ || columns_.size() + unknown.size() > most_changes_) return false;
-  add_columns(at, unknown, factor);
+  add_columns(unknown, factor);
   for (const std::size_t k : changed) active.push_back(static_cast<std::size_t>(column_of(k) - columns_.begin()));
   if (active == active_) return true;
   active_ = std::move(active);

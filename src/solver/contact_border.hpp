@@ -22,22 +22,28 @@ class ContactBorder {
   /// Takes up the changes of contacts since. False when there are too many: the factor should be made anew.
   [[nodiscard]] bool follow(const Iterate& at, const Preconditioner& factor);
 
+  /// Adds the changes that have been taken up to a factor's memory; takes up those of one after `begin`.
+  void remember(FactorMemory& memory) const;
+  void recall(const FactorMemory& memory, const Preconditioner& factor);
+
   /// Applies factor and border in place; free nodes.
   void solve(const Preconditioner& factor, std::span<Vec3> x) const;
 
  private:
-  struct Column {
+  struct Change {
     std::size_t contact;
-    std::size_t node;
-    Vec3 normal;
     bool leaves;
+    Vec3 normal;
+  };
+  struct Column : Change {
+    std::size_t node;
     std::vector<std::pair<std::size_t, Vec3>> entries;  // of B: node, value
     double diagonal = 0;                                // of D
     std::vector<float> solved;                          // A0^-1 B
   };
   // Its right side B beside it.
-  [[nodiscard]] Column make_column(const Iterate& at, std::size_t contact, Vectors& b) const;
-  void add_columns(const Iterate& at, std::span<const std::size_t> contacts, const Preconditioner& factor);
+  [[nodiscard]] Column make_column(const Change& change, Vectors& b) const;
+  void add_columns(std::span<const Change> changes, const Preconditioner& factor);
   void append_free(std::span<const Vec3> vectors, std::vector<float>& to) const;
 
   const Model* model_ = nullptr;

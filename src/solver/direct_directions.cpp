@@ -15,9 +15,14 @@ bool DirectDirections::refresh(const Step& step, const Iterate& at) {
   factor_duration_s_ = step.duration_s;
   matrix_.assemble(model_, step, at);
   matrix_.write_values(factor_frames_, values_);
+  made_from_ = factor_memory(step, at);
   if (linear_solver_->factorise(values_)) return true;
   forget_factor();
   return false;
+}
+
+void DirectDirections::recall(const FactorMemory& memory) {
+  if (!memory.empty()) (void)refresh(step_of(memory), memory.at);
 }
 
 NewtonDirections::Outcome DirectDirections::find(const Step& step, const Iterate& at, const Residual& residual,

@@ -12,6 +12,8 @@ class DirectDirections final : public NewtonDirections {
   [[nodiscard]] Outcome find(const Step& step, const Iterate& at, const Residual& residual, const Wish& wish,
                              Direction& direction, Cost& cost) override;
   void forget_factor() override { factor_frames_.clear(); }
+  [[nodiscard]] FactorMemory memory() const override { return factor_frames_.empty() ? FactorMemory{} : made_from_; }
+  void recall(const FactorMemory& memory) override;
 
  private:
   bool refresh(const Step& step, const Iterate& at);
@@ -25,6 +27,7 @@ class DirectDirections final : public NewtonDirections {
   std::vector<NodeFrame> factor_frames_;
   std::vector<char> factor_contacts_;
   double factor_duration_s_ = 0;
+  FactorMemory made_from_;
 };
 
 }  // namespace plica

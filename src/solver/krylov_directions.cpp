@@ -96,11 +96,29 @@ bool KrylovDirections::refresh(const Step& step, const Iterate& at) {
     if (!has_factor_) continue;
     // J as in the factor: with another, gamma would carry the difference into directions that hardly resist.
     factor_jacobian_ = jacobian_;
-    factor_contacts_ = at.in_contact;
     if (inverse_ == Inverse::cholesky) border_.begin(model_, matrix_, frames_, at.in_contact, most_contact_changes);
+    made_from_ = factor_memory(step, at);
     return true;
   }
   return false;
+}
+
+FactorMemory KrylovDirections::memory() const {
+  if (!has_factor_) return {};
+  FactorMemory memory = made_from_;
+  if (inverse_ == Inverse::cholesky) border_.remember(memory);
+  memory.iterations_when_new = iterations_when_new_;
+  memory.wasted_iterations = wasted_iterations_;
+  return memory;
+}
+
+void KrylovDirections::recall(const FactorMemory& memory) {
+  if (memory.empty()) return;
+  linearise(memory.at);
+  if (!refresh(step_of(memory), memory.at)) return;
+  if (inverse_ == Inverse::cholesky) border_.recall(memory, *preconditioner_);
+  iterations_when_new_ = memory.iterations_when_new;
+  wasted_iterations_ = memory.wasted_iterations;
 }
 
 std::vector<float> KrylovDirections::rigid_motions(const Iterate& at) const {
@@ -177,7 +195,7 @@ bool KrylovDirections::follow_contacts(const Iterate& at) {
   // A solve for each that has changed is too much. The multigrid has the node's own stiffness along directions that
   // were fixed, which is a preconditioner as long as they are few.
   std::size_t changed = 0;
-  for (std::size_t k = 0; k < at.in_contact.size(); ++k) changed += at.in_contact[k] != factor_contacts_[k];
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k) changed += at.in_contact[k] != made_from_.at.in_contact[k];
   return changed <= frames_.size() / 100;
 }
 

@@ -22,6 +22,8 @@ class KrylovDirections final : public NewtonDirections {
   [[nodiscard]] Outcome find(const Step& step, const Iterate& at, const Residual& residual, const Wish& wish,
                              Direction& direction, Cost& cost) override;
   void forget_factor() override { has_factor_ = false; }
+  [[nodiscard]] FactorMemory memory() const override;
+  void recall(const FactorMemory& memory) override;
 
  private:
   // Three numbers a node, then one a cell. Forces are 0 on hanging nodes, directions are where the free nodes say.
@@ -50,8 +52,8 @@ class KrylovDirections final : public NewtonDirections {
   ContactBorder border_;
   std::optional<PressureFactor> pressures_;  // for what gamma W does not see
   bool has_factor_ = false;
-  std::vector<char> factor_contacts_;  // when the factor was made
-  int price_of_factor_;                // in iterations
+  FactorMemory made_from_;  // without what came later
+  int price_of_factor_;     // in iterations
   int iterations_when_new_ = 0, wasted_iterations_ = 0;
 
   std::vector<double> pressure_weights_;  // gamma W as in the factor; cells, kPa/um^3

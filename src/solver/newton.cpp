@@ -2,6 +2,23 @@
 
 namespace plica {
 
+FactorMemory factor_memory(const Step& step, const Iterate& at) {
+  const auto copy = [](std::span<const Vec3> vectors) { return Vectors(vectors.begin(), vectors.end()); };
+  return {.at = at,
+          .previous_positions = copy(step.previous_positions),
+          .previous_velocities = copy(step.previous_velocities),
+          .duration_s = step.duration_s,
+          .end_time_s = step.end_time_s,
+          .changed_contacts = {},
+          .has_left = {},
+          .normals = {}};
+}
+
+Step step_of(const FactorMemory& memory) {
+  return {memory.at.positions, memory.previous_positions, memory.previous_velocities, memory.duration_s,
+          memory.end_time_s};
+}
+
 Vec3 without_held(const Model& model, std::size_t node, Vec3 direction) {
   for (int axis = 0; axis < 3; ++axis)
     if (model.held[node][axis]) direction[axis] = 0;

@@ -20,6 +20,25 @@ struct Iterate {
   std::vector<char> in_contact;        // the vitelline's nodes
 };
 
+/// What a factor that is kept over steps was made from: enough to make it again, to the same bits. Without positions:
+/// none is kept.
+struct FactorMemory {
+  Iterate at;
+  Vectors previous_positions, previous_velocities;  // nodes; of the step in which it was made
+  double duration_s = 0, end_time_s = 0;            // of that step
+  // Contacts that have changed since, in the order in which it learnt of them.
+  std::vector<int> changed_contacts;  // the vitelline's nodes
+  std::vector<char> has_left;         // or come
+  Vectors normals;
+  int iterations_when_new = 0, wasted_iterations = 0;
+
+  [[nodiscard]] bool empty() const { return at.positions.empty(); }
+};
+
+/// The memory of a factor made now, and the step that it tells of (which refers to it).
+FactorMemory factor_memory(const Step& step, const Iterate& at);
+Step step_of(const FactorMemory& memory);
+
 /// What is left to balance there.
 struct Residual {
   Vectors forces;                      // unbalanced, all directions; nodes, nN
@@ -80,6 +99,11 @@ class NewtonDirections {
 
   /// Forgets a factor that was kept, so that the next step does not depend on what was solved before.
   virtual void forget_factor() = 0;
+
+  /// What the factor that is kept was made from; `recall` makes it again. The model must have the rest shapes that it
+  /// had then (see grow()).
+  [[nodiscard]] virtual FactorMemory memory() const = 0;
+  virtual void recall(const FactorMemory& memory) = 0;
 };
 
 /// How that system is solved: by a factor of all of it; or by Krylov's method with a factor of its positive definite

@@ -54,6 +54,10 @@ class Stepper {
 
   /// Forgets a factor that was kept, so that the next step does not depend on what was solved before.
   virtual void forget_factor() {}
+
+  /// What is kept between steps, and the same taken up again by a stepper that has just been made (NewtonDirections).
+  [[nodiscard]] virtual FactorMemory memory() const { return {}; }
+  virtual void recall(const FactorMemory& /*memory*/) {}
 };
 
 /// How volumes are projected after the force step.

@@ -90,8 +90,10 @@ RESULTS = {
     "summary.json", "series.csv", "cells.csv", "midline.csv", "frames", "frames.pvd", "scenario.toml",
     "scenario.input.toml", "report.html",
 }
+CHECKPOINTS = {"checkpoint.h5", "checkpoint.previous.h5"}
+RESULTS |= CHECKPOINTS
 
-WITH_WALL_TIMES = {"summary.json", "report.html"}  # everything else is the same to the byte whenever it is run
+WITH_WALL_TIMES = {"summary.json", "report.html"} | CHECKPOINTS  # everything else is the same to the byte whenever it is run
 
 
 def count_case():

@@ -1,0 +1,20 @@
+// `plica run --resume`: what there is to go on from, and bringing a run to there.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "output/recorder.hpp"
+#include "simulation/run.hpp"
+
+namespace plica {
+
+/// The checkpoint in the directory `out`; nothing: begin. UsageError when it is of another run; FileError when it is
+/// damaged, or when there are results that belong to none.
+std::optional<Checkpoint> checkpoint_to_resume(const std::string& out, const Scenario& scenario, const Model& at_rest);
+
+/// Brings model, observer and recorder from rest to where the checkpoint is.
+RunMemory go_on_from(Checkpoint checkpoint, const std::string& out, Model& model, Observer& observer,
+                     Recorder& recorder, const std::string& input_toml);
+
+}  // namespace plica

@@ -1,0 +1,53 @@
+// What is in checkpoint.h5: everything that a run needs to go on to the same bits. docs/reliability.md says what is
+// promised of it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "measure/observation.hpp"
+#include "simulation/run.hpp"
+
+namespace plica {
+
+/// What had been written when the checkpoint was: files are cut back to it.
+struct RecordMemory {
+  std::vector<Observation> rows;                                                          // of series.csv
+  std::uint64_t series_bytes = 0, lineage_bytes = 0, midline_bytes = 0, cells_bytes = 0;  // 0: no such file
+  std::vector<double> frame_times_s;  // of the frames, in their order
+  double wall_s = 0, solver_s = 0;    // of the run so far
+};
+
+struct Checkpoint {
+  std::string program;   // which plica wrote it
+  std::string scenario;  // as resolved
+  std::string at_rest;   // fingerprint of the embryo before the first step
+  RunMemory run;
+  RecordMemory record;
+};
+
+/// Tells embryos apart: nodes, elements and cells at rest.
+std::string fingerprint(const Tissue& tissue);
+
+/// The checkpoint as the bytes of its file, and back. FileError, without a path, when the bytes are none, or damaged,
+/// or of a newer plica.
+std::string checkpoint_bytes(const Checkpoint& checkpoint);
+Checkpoint read_checkpoint_bytes(std::string_view bytes);
+
+/// Whether it fits the model, which has the past divisions behind it: sizes, and numbers of nodes and cells. What is
+/// wrong, or nothing.
+std::optional<std::string> why_unfit(const Checkpoint& checkpoint, const Model& model);
+/// The same of a division that is to be made again.
+std::optional<std::string> why_unfit(const PastDivision& past, const Model& model);
+
+/// Whether two resolved scenarios differ in more than [time], [stop] and [output], which may change at a resume: the
+/// first line that does, or nothing.
+std::optional<std::string> other_scenario(const std::string& before, const std::string& now);
+
+/// Whether they differ in [stop].
+bool other_stop(const std::string& before, const std::string& now);
+
+}  // namespace plica

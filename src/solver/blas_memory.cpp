@@ -1,0 +1,33 @@
+#include "solver/blas_memory.hpp"
+
+#include <omp.h>
+
+#include <cstddef>
+
+#include "core/memory.hpp"
+
+extern "C" void sgemm_(const char* transposed_a, const char* transposed_b, const int* m, const int* n, const int* k,
+                       const float* alpha, const float* a, const int* lda, const float* b, const int* ldb,
+                       const float* beta, float* c, const int* ldc);
+
+namespace plica {
+
+namespace {
+
+bool take_memory() {
+  // OpenBLAS asks for 128 MiB of address space at its first call, and again for each call at the same time. Most of it
+  // is never touched.
+  constexpr std::size_t buffer_bytes = (std::size_t{128} << 20) + (std::size_t{64} << 10);
+  make_sure_of_memory(buffer_bytes * static_cast<std::size_t>(omp_get_max_threads()));
+  const int one = 1;
+  const float number = 1;
+  float result = 0;
+  sgemm_("N", "N", &one, &one, &one, &number, &number, &one, &number, &one, &number, &result, &one);
+  return true;
+}
+
+}  // namespace
+
+void reserve_blas_memory() { [[maybe_unused]] static const bool is_taken = take_memory(); }
+
+}  // namespace plica

@@ -1,0 +1,65 @@
+"""What tests of `plica run --resume` share: a scenario with divisions, what must be the same, runs that are signalled."""
+import json
+import shutil
+import time
+from pathlib import Path
+
+import support
+from support import CHECKPOINTS, CommandLine, plica, start, tree
+
+# Two divisions, growth after each, frames; 137 steps or so.
+DIVIDING = ["drosophila-division-twice"]
+for setting in ("division.floor.at_min=0.2", "division.floor.growth_min=0.3", "division.borders.at_min=0.7",
+                "division.borders.growth_min=0.3", "time.end_min=1.5", "output.frame_every_s=5"):
+    DIVIDING += ["--set", setting]
+
+
+def results(out):
+    """What must be the same: every file but checkpoints and the report, wall times and provenance aside."""
+    files = {name: content for name, content in tree(out).items() if name not in CHECKPOINTS | {"report.html"}}
+    summary = json.loads(files["summary.json"])
+    for key in [key for key in summary if key.startswith("wall_") or key == "provenance"]:
+        del summary[key]
+    return files | {"summary.json": summary}
+
+
+def rows_in(out):
+    """Whole rows of series.csv after the one at rest: steps that have been told of."""
+    series = Path(out) / "series.csv"
+    return max(series.read_bytes().count(b"\n") - 2, 0) if series.exists() else 0
+
+
+class Resuming(CommandLine):
+    def assert_same(self, out, whole):
+        found = results(out)
+        self.assertEqual(sorted(found), sorted(whole))
+        for name in whole:
+            if found[name] != whole[name]:
+                self.fail(f"{name} is not the same; kept in {shutil.copytree(out, self.folder.with_suffix('.kept'))}")
+
+    def whole_run(self, arguments, *more):
+        result = plica("run", *arguments, "--out", self.folder / "whole", *more, timeout=300)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return results(self.folder / "whole")
+
+    def resumed(self, arguments, *more, status=0, out=None):
+        result = plica("run", *arguments, "--out", out or self.out, "--resume", *more, timeout=300)
+        self.assertEqual(result.returncode, status, result.stdout + result.stderr)
+        return result
+
+    def after_rows(self, arguments, rows, number, delay_s=0.0):
+        """Starts or goes on, and signals once series.csv has so many rows and some time has passed. The process, ended."""
+        support.count_case()
+        process = start("run", *arguments, "--out", self.out, "--resume")
+        try:
+            deadline = time.monotonic() + 120
+            while process.poll() is None and rows_in(self.out) < rows and time.monotonic() < deadline:
+                time.sleep(0.002)
+            time.sleep(delay_s)
+            if process.poll() is None:
+                process.send_signal(number)
+            process.stdout_text, process.stderr_text = process.communicate(timeout=60)
+        finally:
+            process.kill()
+            process.communicate()
+        return process

@@ -1,0 +1,99 @@
+// A run that goes on from a memory of itself ends in the same bits as one that was never interrupted.
+#include <gtest/gtest.h>
+
+#include "scenario/load.hpp"
+#include "scenario/setup.hpp"
+#include "simulation/run.hpp"
+
+namespace plica {
+namespace {
+
+// What a run leaves behind: everything that happened after each step.
+struct Trace {
+  std::vector<RunMemory> memories;  // after each step
+  RunResult result;
+};
+
+Trace trace(const std::string& name, const std::vector<std::string>& overrides, const RunMemory* start = nullptr) {
+  const Scenario scenario = load_scenario(find_scenario(name), overrides);
+  const auto model = make_model(scenario);
+  RunMemory memory;
+  memory.state = rest_state(*model);
+  if (start != nullptr) {
+    memory = *start;
+    for (const auto& past : memory.past_divisions) repeat(*model, *past);
+  }
+  Trace trace;
+  trace.result = run(*model, memory, make_controls(scenario, *model), [&](const AcceptedStep& step) {
+    trace.memories.push_back(step.memory());
+    return true;
+  });
+  return trace;
+}
+
+void expect_same(const FactorMemory& a, const FactorMemory& b) {
+  EXPECT_EQ(a.at.positions, b.at.positions);
+  EXPECT_EQ(a.at.pressures, b.at.pressures);
+  EXPECT_EQ(a.end_time_s, b.end_time_s);
+  EXPECT_EQ(a.changed_contacts, b.changed_contacts);
+  EXPECT_EQ(a.has_left, b.has_left);
+  EXPECT_EQ(a.normals, b.normals);
+  EXPECT_EQ(a.iterations_when_new, b.iterations_when_new);
+  EXPECT_EQ(a.wasted_iterations, b.wasted_iterations);
+}
+
+void expect_same(const State& a, const State& b) {
+  EXPECT_EQ(a.time_s, b.time_s);
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.velocities, b.velocities);
+  EXPECT_EQ(a.pressures, b.pressures);
+  EXPECT_EQ(a.contact_forces, b.contact_forces);
+  EXPECT_EQ(a.in_contact, b.in_contact);
+  EXPECT_EQ(a.divided_until_s, b.divided_until_s);
+  EXPECT_EQ(a.trend.accelerations, b.trend.accelerations);
+  EXPECT_EQ(a.trend.pressure_rates, b.trend.pressure_rates);
+}
+
+// Goes on from every `every`th step of the run.
+void expect_resumable(const std::string& name, const std::vector<std::string>& overrides, std::size_t every) {
+  const Trace whole = trace(name, overrides);
+  ASSERT_GT(whole.memories.size(), every);
+  for (std::size_t k = 0; k < whole.memories.size(); k += every) {
+    SCOPED_TRACE(testing::Message() << name << " from step " << k + 1 << " of " << whole.memories.size());
+    const Trace rest = trace(name, overrides, &whole.memories[k]);
+    ASSERT_EQ(rest.memories.size(), whole.memories.size() - k - 1);
+    for (std::size_t i = 0; i < rest.memories.size(); ++i) {
+      expect_same(rest.memories[i].state, whole.memories[k + 1 + i].state);
+      expect_same(rest.memories[i].factor, whole.memories[k + 1 + i].factor);
+      EXPECT_EQ(rest.memories[i].steps, whole.memories[k + 1 + i].steps);
+      ASSERT_FALSE(testing::Test::HasFailure()) << "at step " << k + 2 + i;
+    }
+    expect_same(rest.result.state, whole.result.state);
+    EXPECT_EQ(rest.result.status, whole.result.status);
+    EXPECT_EQ(rest.result.equilibrium_time_s, whole.result.equilibrium_time_s);
+    EXPECT_EQ(rest.result.divisions, whole.result.divisions);
+  }
+}
+
+TEST(Resume, GoesOnToTheSameBits) { expect_resumable("drosophila", {"time.end_min=2"}, 13); }
+
+TEST(Resume, WithTheDirectMethod) {
+  expect_resumable("drosophila", {"time.end_s=3", "time.linear_solver=\"direct\""}, 4);
+}
+
+TEST(Resume, WithMultigrid) { expect_resumable("drosophila", {"time.end_s=2", "time.linear_solver=\"multigrid\""}, 5); }
+
+TEST(Resume, WithThePapersAlgorithm) { expect_resumable("drosophila-paper", {"time.end_s=40"}, 3); }
+
+TEST(Resume, WithShapeMemory) { expect_resumable("drosophila-shape-memory", {"time.end_s=5"}, 9); }
+
+// Divisions lie behind some memories and before others; growth is under way in many.
+TEST(Resume, AcrossDivisions) {
+  expect_resumable("drosophila-division-twice",
+                   {"division.floor.at_min=0.2", "division.floor.growth_min=0.3", "division.borders.at_min=0.7",
+                    "division.borders.growth_min=0.3", "time.end_min=1.5"},
+                   11);
+}
+
+}  // namespace
+}  // namespace plica
