@@ -87,6 +87,11 @@ class BadScenario(CommandLine):
     def test_nesting_without_end_is_refused(self):
         self.assert_refused("[" + ".".join(["a"] * 100000) + "]\n")
 
+    def test_a_message_is_one_line_whatever_the_scenario_holds(self):
+        for text, part in (('base = "a\\nb\\u001B[2J"\n', "a\\nb\\u001B[2J"), (BLOCK + '"\\u009B\\r" = 1\n', "\\u009B\\u000D")):
+            with self.subTest(text):
+                self.assert_refused(text, part)
+
     def test_all_errors_at_once_in_the_order_of_their_lines(self):
         text = """\
 format = 1
