@@ -159,7 +159,7 @@ class Drawer:
     def make_small(self):
         """What bounds the work: few cells and elements, a short time."""
         r, draft = self.random, self.draft
-        if draft.get("embryo.shape") != "file":
+        if draft.get("base") or draft.get("embryo.shape") != "file":
             cells = draft.get("embryo.cells") or [r.randint(1, 5) for _ in range(3)]
             per_cell = draft.get("embryo.elements_per_cell", [1, 1, 1])
             a, b, c = cells
@@ -178,8 +178,9 @@ class Drawer:
         for key, least in (("time.tolerance_um", 1e-3), ("time.max_step_s", draft.get("time.end_s") / MOST_STEPS)):
             if draft.get(key) is not None:
                 draft.put("time", key.split(".")[1], max(draft.get(key), least))
-        for name in self.names["division"]:
-            draft.put(f"division.{name}", "max_generation", min(draft.get(f"division.{name}.max_generation", 1), 2))
+        for address in [a for a in draft.values if a.startswith("division.") and a.endswith(".region")]:
+            table = address.removesuffix(".region")
+            draft.put(table, "max_generation", min(draft.get(f"{table}.max_generation", 1), 2))
 
 
 # The extremes of the reliability page, each on whatever has been drawn.

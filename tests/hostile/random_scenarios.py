@@ -17,7 +17,9 @@ import collections
 import os
 import random
 import re
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -29,7 +31,8 @@ import support  # noqa: E402
 from random_scenario import Drawer  # noqa: E402
 from scenario_table import read_table  # noqa: E402
 
-LONGEST_S = 120  # for one run; the slowest takes a tenth of it
+LONGEST_S = 60  # of the processor, for one run; the slowest takes a fraction of it
+LONGEST_WAIT_S = 600  # by the clock: a run that waits for ever
 GAVE_UP = re.compile(r"plica: gave up: .*(cell \d+|whole surface).* at t = [\d.e+-]+ s, with steps down to [\d.e+-]+ s; ")
 REFUSED = re.compile(r"(?P<where>[^:\n]+):(?:\d+: )?\s?(?P<key>[^:]*): (?P<problem>.+)")
 
@@ -38,11 +41,19 @@ class Broken(Exception):
     """A promise that was not kept."""
 
 
+def limit_time():
+    resource.setrlimit(resource.RLIMIT_CPU, (LONGEST_S, LONGEST_S + 5))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
 def plica(*arguments):
     try:
-        return support.plica(*arguments, timeout=LONGEST_S)
+        result = support.plica(*arguments, timeout=LONGEST_WAIT_S, preexec_fn=limit_time)
     except subprocess.TimeoutExpired:
-        raise Broken(f"is not over after {LONGEST_S} s") from None
+        raise Broken(f"waits for ever: {' '.join(map(str, arguments))}") from None
+    if result.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        raise Broken(f"is not over after {LONGEST_S} s of the processor: plica {arguments[0]}")
+    return result
 
 
 def refused_keys(result):
@@ -97,8 +108,9 @@ def judge(result, out):
     return ends[summary["status"]]
 
 
-def mended(draft, scenario, chance):
+def mended(drawer, scenario, chance):
     """Takes out what `plica check` refuses, while there is anything, or mostly. The number of refusals."""
+    draft = drawer.draft
     for refusals in range(8):
         scenario.write_text(draft.text())
         result = plica("check", scenario)
@@ -111,6 +123,7 @@ def mended(draft, scenario, chance):
             # What is missing cannot be taken out; then the table goes.
             if not draft.drop(key):
                 draft.drop(key.rsplit(".", 1)[0])
+        drawer.make_small()
     return refusals
 
 
@@ -135,8 +148,9 @@ def run_one(number, seed, table, files, folder):
     chance = random.Random(f"{seed}/{number}")
     scenario, out = folder / "scenario.toml", folder / "out"
     shutil.rmtree(out, ignore_errors=True)
-    draft = Drawer(chance, *table, files).draw()
-    refusals = mended(draft, scenario, chance)
+    drawer = Drawer(chance, *table, files)
+    drawer.draw()
+    refusals = mended(drawer, scenario, chance)
     started = time.monotonic()
     kind = judge(plica("run", scenario, "--out", out, "--quiet"), out)
     return kind, refusals, time.monotonic() - started
@@ -170,6 +184,8 @@ def main():
                 shutil.copy(folder / "scenario.toml", kept)
                 print(f"scenario {number} of seed {given.seed}: {error}\n  kept in {kept}", flush=True)
             counts[kind] += 1
+            if sum(counts.values()) % 100 == 0 and given.count > 100:
+                print(f"{sum(counts.values())} scenarios after {time.monotonic() - started:.0f} s", flush=True)
     print(f"{given.count} scenarios of seed {given.seed} in {time.monotonic() - started:.0f} s; {refusals} more were refused and "
           f"mended; the slowest took {slowest[0]:.1f} s (number {slowest[1]})")
     for kind, count in counts.most_common():
