@@ -37,10 +37,10 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}\n", error.what());
     return exit_usage;
   } catch (const UsageError& error) {
-    fmt::print(stderr, "plica: {}\n", error.what());
+    fmt::print(stderr, "plica: {}\n", printable(error.what()));
     return exit_usage;
   } catch (const FileError& error) {
-    fmt::print(stderr, "plica: {}\n", error.what());
+    fmt::print(stderr, "plica: {}\n", printable(error.what()));
     return exit_files;
   } catch (const std::system_error& error) {  // fmt::print to a full disk or a closed pipe
     fmt::print(stderr, "plica: standard output cannot be written: {}\n", error.code().message());

@@ -1,5 +1,7 @@
 #include "core/errors.hpp"
 
+#include <fmt/format.h>
+
 namespace plica {
 namespace {
 
@@ -14,6 +16,25 @@ std::string joined(const std::vector<Diagnostic>& diagnostics) {
 
 }  // namespace
 
+std::string printable(const std::string& text) {
+  std::string line;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto code = static_cast<unsigned char>(text[i]);
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+    if (code == '\n') {
+      line += "\\n";
+    } else if (code < 0x20 || code == 0x7f) {
+      line += fmt::format("\\u{:04X}", code);
+    } else if (code == 0xc2 && next >= 0x80 && next < 0xa0) {  // the second set of control characters, in UTF-8
+      line += fmt::format("\\u{:04X}", next);
+      ++i;
+    } else {
+      line += text[i];
+    }
+  }
+  return line;
+}
+
 std::string Diagnostic::text() const {
   std::string text = file;
   if (line > 0) text += ':' + std::to_string(line);
@@ -21,7 +42,7 @@ std::string Diagnostic::text() const {
   if (!key.empty()) text += key + ": ";
   text += problem;
   if (!remedy.empty()) text += "; " + remedy;
-  return text;
+  return printable(text);
 }
 
 ScenarioError::ScenarioError(std::vector<Diagnostic> diagnostics)

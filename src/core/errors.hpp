@@ -7,6 +7,10 @@
 
 namespace plica {
 
+/// Text for one line of a terminal: control characters, which a scenario may hold in its texts and names, as in TOML
+/// ("\\n", "\\u001B").
+std::string printable(const std::string& text);
+
 /// One thing that is wrong in a scenario, printed as `FILE:LINE: key: problem; remedy`.
 struct Diagnostic {
   std::string file;     // path, built-in name, or "--set" for the command line
@@ -15,7 +19,7 @@ struct Diagnostic {
   std::string problem;  // what is wrong
   std::string remedy;   // what would be right
 
-  [[nodiscard]] std::string text() const;
+  [[nodiscard]] std::string text() const;  // one line
 };
 
 /// Everything that is wrong with a scenario, all at once. Exit status 2.

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 
+#include "core/files.hpp"
 #include "scenario/builtin.hpp"
+#include "scenario/nesting.hpp"
 #include "scenario/read_layer.hpp"
 #include "scenario/suggest.hpp"
 #include "scenario/validate.hpp"
@@ -57,19 +57,6 @@ std::optional<ScenarioSource> find_base(const Document& document, const std::vec
   return {};
 }
 
-/// The line of a key with absurdly many parts, or 0: the TOML library would recurse once a part.
-int line_of_too_deep_key(const std::string& text) {
-  constexpr int most_dots = 64;
-  int line = 1, dots = 0;
-  bool in_key = true;
-  for (const char c : text) {
-    if (c == '\n') ++line, dots = 0, in_key = true;
-    if (c == '=') in_key = false;
-    if (in_key && c == '.' && ++dots > most_dots) return line;
-  }
-  return 0;
-}
-
 /// The scenario and its bases, the deepest first. Incomplete where anything was reported.
 std::vector<Document> read_documents(const ScenarioSource& source, std::vector<Diagnostic>& diagnostics) {
   std::vector<Document> chain;
@@ -81,6 +68,11 @@ std::vector<Document> read_documents(const ScenarioSource& source, std::vector<D
     try {
       chain.push_back({*next, toml::parse(next->text)});
       next = find_base(chain.back(), chain, diagnostics);
+      if (next && chain.size() == most_bases) {
+        diagnostics.push_back({chain.back().source.file, 0, "base", "too many scenarios inherit from each other",
+                               fmt::format("at most {} may", most_bases)});
+        break;
+      }
     } catch (const toml::parse_error& error) {
       const int line = static_cast<int>(error.source().begin.line);
       diagnostics.push_back({next->file, line, "", std::string(error.description()), "write it in TOML syntax"});
@@ -99,7 +91,7 @@ std::string trimmed(const std::string& text) {
 /// The TOML document that says the same as "dotted.key=value", or nothing where it cannot be understood.
 std::optional<toml::table> parse_override(const std::string& text) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) return {};
+  if (equals == std::string::npos || line_of_too_deep_key(text) > 0) return {};
   const std::string key = trimmed(text.substr(0, equals)), value = trimmed(text.substr(equals + 1));
   toml::table document;
   try {
@@ -164,11 +156,7 @@ ScenarioSource find_scenario(const std::string& name_or_path) {
     throw UsageError(fmt::format("\"{}\" is neither a built-in scenario nor a file; {}", name_or_path,
                                  did_you_mean(path.stem().string(), builtin_names())));
   }
-  std::ifstream stream(path, std::ios::binary);
-  if (fs::is_directory(path, error) || !stream) throw FileError(fmt::format("{}: cannot be read", name_or_path));
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (stream.bad()) throw FileError(fmt::format("{}: cannot be read", name_or_path));
-  return {path.stem().string(), name_or_path, std::move(text)};
+  return {path.stem().string(), name_or_path, read_file(path, largest_scenario_bytes)};
 }
 
 Scenario load_scenario(const ScenarioSource& source, const std::vector<std::string>& overrides) {

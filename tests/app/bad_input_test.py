@@ -85,7 +85,32 @@ class BadScenario(CommandLine):
                 self.assert_refused(text, line=line)
 
     def test_nesting_without_end_is_refused(self):
-        self.assert_refused("[" + ".".join(["a"] * 100000) + "]\n")
+        deep = ".".join(["a"] * 200000)
+        for text in (f"[{deep}]\n", f"{deep} = 1\n", f"x = {{{deep} = 1}}\n", f"x = [1, {{ y = {{{deep} = 1}} }}]\n"):
+            with self.subTest(text[:10]):
+                self.assert_refused(BLOCK + text, "too many parts", line=1 + BLOCK.count("\n"))
+        self.assert_refused(BLOCK, "--set", arguments=["--set", deep[:60000] + "=1"])
+        self.assert_refused(BLOCK.replace("A small block", "." * 1000) + "wrong = 1\n", "output.wrong")
+
+    def test_a_file_without_end_is_refused(self):
+        for name in ("/dev/zero", "long.toml"):
+            with self.subTest(name):
+                self.write("#" * (5 << 20), "long.toml")
+                self.assert_refused(f'base = "{name}"\n', "base", "MiB")
+                result = plica("check", self.folder / name)
+                self.assertEqual(result.returncode, 4)
+                self.assertIn("cannot be read", self.assert_messages(result)[0])
+
+    def test_a_chain_of_bases_has_an_end(self):
+        for i in range(40):
+            self.write(f'base = "{i + 1}.toml"\n', f"{i}.toml")
+        self.write("", "40.toml")
+        self.assert_refused('base = "1.toml"\n', "base", "too many")
+
+    def test_a_message_is_one_line_whatever_the_scenario_holds(self):
+        for text, part in (('base = "a\\nb\\u001B[2J"\n', "a\\nb\\u001B[2J"), (BLOCK + '"\\u009B\\r" = 1\n', "\\u009B\\u000D")):
+            with self.subTest(text):
+                self.assert_refused(text, part)
 
     def test_all_errors_at_once_in_the_order_of_their_lines(self):
         text = """\

@@ -1,0 +1,45 @@
+#include "output/checkpoint.hpp"
+
+#include <fmt/format.h>
+#include <libdeflate.h>
+
+#include <cmath>
+
+#include "core/errors.hpp"
+#include "targets.hpp"
+
+namespace plica {
+namespace {
+
+void require(bool holds) {
+  if (!holds) __builtin_trap();
+}
+
+/// The HDF5 file with the end of a checkpoint behind it: docs/checkpoints.md.
+std::string with_checksum(std::string_view image) {
+  std::string end = fmt::format("\nplica checkpoint 1 bytes {} crc32 {:08x}", image.size(),
+                                libdeflate_crc32(0, image.data(), image.size()));
+  end.resize(63, ' ');
+  return std::string(image) + end + "\n";
+}
+
+void check(const Checkpoint& checkpoint) {
+  for (const Vec3& position : checkpoint.run.state.positions) require(position.allFinite());
+  require(std::isfinite(checkpoint.run.state.time_s));
+  require(!checkpoint.record.rows.empty());
+  for (const Observation& row : checkpoint.record.rows) require(std::isfinite(row.time_s));
+}
+
+}  // namespace
+
+bool fuzz_checkpoint(std::string_view bytes) try {
+  if (bytes.empty()) return false;
+  const bool is_whole = bytes.front() == 'f';
+  bytes.remove_prefix(1);
+  check(is_whole ? read_checkpoint_bytes(bytes) : read_checkpoint_bytes(with_checksum(bytes)));
+  return true;
+} catch (const FileError&) {
+  return false;
+}
+
+}  // namespace plica

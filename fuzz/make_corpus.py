@@ -1,0 +1,130 @@
+"""Makes the seeds of fuzz/corpus anew: small scenarios, meshes and checkpoints from which the fuzzers start.
+
+Usage: make_corpus.py PROGRAM. Needed when a format has changed: checkpoints of another format are refused at once, and
+tests/hostile/corpus_test.cpp says so. What a fuzzer found is put beside by hand, and stays.
+"""
+import itertools
+import random
+import struct
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+root = Path(__file__).resolve().parent
+sys.path.insert(0, str(root.parent / "tests/hostile"))
+from random_scenario import Drawer  # noqa: E402
+from scenario_table import read_table  # noqa: E402
+
+program = str(Path(sys.argv[1]).resolve())
+
+OVERRIDES = """\
+base = "drosophila"
+#! embryo.cells=[3, 3, 3]
+#! contraction.apical.across_ratio = 2
+#! time.linear_solver=direct
+#! region.a.ids=[1,2]
+"""
+BLOCK = """\
+[embryo]
+shape = "block"
+length_um = 40
+cells = [2, 2, 1]
+[vitelline]
+enabled = false
+[contraction.all]
+region = "all"
+stiffness_nN_per_um = 1
+[division.d]
+region = "all"
+at_s = 0.1
+growth_s = 1
+[furrow]
+vce_cell = 1
+[time]
+step_s = 0.1
+end_s = 0.4
+"""
+SHELL = """\
+[embryo]
+shape = "sphere"
+diameter_um = 200
+cell_height_um = 30
+cells = [1, 1, 1]
+[furrow]
+vce_cell = 1
+[contraction.all]
+region = "all"
+stiffness_nN_per_um = 1
+[monitor.m]
+quantity = "volume"
+[stop.s]
+monitor = "m"
+above = -1
+[time]
+step_s = 0.1
+end_s = 0.3
+"""
+
+
+def write(target, name, content):
+    folder = root / "corpus" / target
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_bytes(content)
+
+
+def scenarios():
+    table = read_table(program)
+    files = {"base": ["drosophila", "xenopus"], "embryo.file": ["mesh.vtu"], "monitor.reference": ["run"]}
+    for number in range(16):
+        write("scenario", f"drawn_{number}.toml", Drawer(random.Random(number), *table, files).draw().text().encode())
+    write("scenario", "overrides.toml", OVERRIDES.encode())
+    write("scenario", "block.toml", BLOCK.encode())
+    write("scenario", "shell.toml", SHELL.encode())
+    write("scenario", "strings.toml", b'title = """\na "quoted" \\u00b5 """""\n["region".\'a\']\nids = [0x1, 1_0]\n# "\n')
+
+
+def items(form, values):
+    return struct.pack("<Q", len(values)) + b"".join(struct.pack("<" + form, *value) for value in values)
+
+
+def mesh(points, cells, faces, arrays=()):
+    """As tissue/mesh_bytes.cpp writes it."""
+    data = items("3d", points) + items("8i", cells) + items("i", [(face,) for face in faces])
+    for name, flags in arrays:
+        data += struct.pack("<Q", len(name)) + name + struct.pack("<Q", len(flags)) + flags
+    return data
+
+
+def meshes():
+    corners = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    one = mesh([tuple(10.0 * c for c in corner) for corner in corners], [tuple(range(8))], [5], [(b"marked", b"\1")])
+    write("mesh", "one_cell", b"\0" + one)
+    write("mesh", "one_cell_of_eight_elements", b"\5" + one)
+    grid = [(10.0 * x, 10.0 * y, 20.0 * z) for z, y, x in itertools.product((0, 1), (0, 1, 2), (0, 1, 2))]
+    index = lambda x, y, z: x + 3 * y + 9 * z
+    four = [tuple(index(x + a, y + b, z) for z in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)))
+            for x, y in itertools.product((0, 1), (0, 1))]
+    write("mesh", "four_cells", b"\0" + mesh(grid, four, [5] * 4, [(b"left", b"\1\1\0\0")]))
+    # A cube with a hollow cube in it: six cells around, and what is outside is found.
+    shell = [tuple(size * (2 * c - 1.0) for c in corner) for size in (10, 20) for corner in corners]
+    sides = ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0))
+    hollow = [tuple(reversed(side)) + tuple(8 + corner for corner in reversed(side)) for side in sides]
+    write("mesh", "hollow_cube", b"\0" + mesh(shell, hollow, []))
+
+
+def checkpoints():
+    for name, text in (("divided", BLOCK), ("shell", SHELL)):
+        with tempfile.TemporaryDirectory() as folder:
+            scenario = Path(folder) / "scenario.toml"
+            scenario.write_text(text)
+            subprocess.run([program, "run", scenario, "--out", Path(folder) / "out", "--quiet"], check=True)
+            whole = (Path(folder) / "out/checkpoint.h5").read_bytes()
+        write("checkpoint", f"{name}.whole", b"f" + whole)
+        write("checkpoint", f"{name}.hdf5", b"h" + whole[:-64])
+
+
+scenarios()
+meshes()
+checkpoints()
+print(f"{sum(f.stat().st_size for f in (root / 'corpus').rglob('*') if f.is_file())} bytes in {root / 'corpus'}")
