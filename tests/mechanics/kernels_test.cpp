@@ -138,6 +138,20 @@ TEST(Kernels, ElementsWithoutARotationDoNotHarmTheOthers) {
   }
 }
 
+// Stretched or flattened along one of its edges, far beyond what an embryo's element is: still the same rotation.
+TEST(Kernels, ElementsOfAnyStretchHaveTheirRotation) {
+  const Tissue tissue = row(11);
+  for (const double factor : {0.02, 0.2, 0.6, 2.0, 5.0, 50.0})
+    for (int axis = 0; axis < 3; ++axis) {
+      Motion motion = random_motion(tissue, 2, 3);
+      for (Vec3& x : motion.positions) x[axis] *= factor;
+      for (const Kernels kernels : available_kernels()) {
+        SCOPED_TRACE(::testing::Message() << name(kernels) << ", times " << factor << " along axis " << axis);
+        expect_same_law(Corotational(tissue, moduli, 0, kernels), DenseCorotational(tissue, 0), motion, 1e-10);
+      }
+    }
+}
+
 TEST(Kernels, VolumesAreThoseOfEachElement) {
   for (const Kernels kernels : available_kernels())
     for (const int elements : {1, 8, 11}) {

@@ -51,7 +51,7 @@ struct CorotationalKernels {
   void (*write_blocks)(const CorotationalStep&, std::size_t batch, CorotationalBlocks& blocks);
 };
 
-/// The rotation nearest to F, matrices by columns: polar(), for elements whose F is far from one.
+/// The rotation nearest to F, matrices by columns: polar(), for elements that are inverted or very flat.
 void nearest_rotation(const double (&F)[9], double (&R)[9]);
 
 namespace generic {

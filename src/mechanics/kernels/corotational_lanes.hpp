@@ -92,7 +92,8 @@ inline Frame frame(const Mat& F, const Stretch& of) {
   const Sym part = scale * C;
   Frame result = {F * Mat{{rest - part.xx, -part.xy, -part.zx},
                           {-part.xy, rest - part.yy, -part.yz},
-                          {-part.zx, -part.yz, rest - part.zz}} + (scale * s) * K,
+                          {-part.zx, -part.yz, rest - part.zz}} +
+                      (scale * s) * K,
                   {part.xx + own, part.yy + own, part.zz + own, part.xy, part.yz, part.zx}};
   // Inverted elements, or nearly so, and very flat ones.
   if (any(~((J > 1e-3) & (D > 1e-3 * s * s2)))) {

@@ -4,6 +4,8 @@
 // is added up in the same order whoever does it. A window's nodes fit a cache, which all its colours find them in.
 #pragma once
 
+#include <omp.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -71,7 +73,11 @@ class ElementChunks {
   template <class Body>
   void for_chunks(const Body& body) const {
     constexpr std::size_t worth_sharing = 2048;  // elements; with fewer, waking other threads costs more than they save
-#pragma omp parallel if (elements_ >= worth_sharing)
+    if (elements_ < worth_sharing || omp_get_max_threads() == 1) {
+      for (const std::size_t chunk : order_) body(chunk);
+      return;
+    }
+#pragma omp parallel
     for (std::size_t phase = 0; phase + 1 < phase_start_.size(); ++phase) {
 #pragma omp for schedule(dynamic)
       for (std::size_t k = phase_start_[phase]; k < phase_start_[phase + 1]; ++k) body(order_[k]);

@@ -55,8 +55,8 @@ inline void gather(const BatchNodes& nodes, int lane, const double* vectors, Vec
   for (int i = 0; i < 8; ++i) x[i] = gather(vectors, nodes[i] + lane);
 }
 
-/// Asks memory for what is gathered from, or added to, a little later. About once a line: neighbouring lanes mostly have
-/// neighbouring nodes.
+/// Asks memory for what is gathered from, or added to, a little later. About once a line: neighbouring lanes mostly
+/// have neighbouring nodes.
 template <class... Vectors>
 inline void prefetch(const BatchNodes& nodes, int lane, const Vectors*... vectors) {
 #pragma GCC unroll 8
@@ -73,8 +73,8 @@ inline void scatter(const Vec& f, const int* at, double* vectors) {
   v[2] += f.z[0];
 }
 #else
-// Adds lane k of z, and of x and y, which `xy` holds in turns, lane k & ~1 first. Two stores a vector, not three: stores
-// are what scattering waits for. (Not one: a later load of x y z cannot be had from a masked store.)
+// Adds lane k of z, and of x and y, which `xy` holds in turns, lane k & ~1 first. Two stores a vector, not three:
+// stores are what scattering waits for. (Not one: a later load of x y z cannot be had from a masked store.)
 template <int k>
 inline void add_lane(const Lanes& xy, const Lanes& z, double* vector) {
   *reinterpret_cast<Pair*>(vector) += pair<k / 2>(xy);

@@ -80,6 +80,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7], g[7];
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    prefetch(e.batch.nodes, e.lane, forces);
     volume_gradient(m, g);
     const Lanes p = pressure(step, e, m);
     for (Vec& v : g) v = p * v;
@@ -93,6 +94,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7], d[7], result[7] = {};
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    prefetch(e.batch.nodes, e.lane, product);
     gather_modes(e.batch.nodes, e.lane, direction, d);
     if (!dilatation || !step.semidefinite_tangent) {
       volume_gradient_change(m, d, result);
