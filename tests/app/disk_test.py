@@ -12,8 +12,8 @@ import unittest
 from pathlib import Path
 
 import support
-from support import BLOCK, SPHERE, plica, start, table, tree
 from resuming import DIVIDING, Resuming, rows_in
+from support import BLOCK, SPHERE, plica, start
 
 SHORT = [("time.end_s", "1.2"), ("division.all.region", '"all"'), ("division.all.at_s", "0.5"), ("division.all.growth_s", "0.3")]
 EVERY, LONG = 10, False
