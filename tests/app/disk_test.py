@@ -1,6 +1,7 @@
 """Disks that fail in the middle of a run, at any call: it ends with status 4 and says why, and --resume loses nothing.
 
-By hand, every N-th call of a long run with divisions: disk_test.py PROGRAM --every 10 [--long]
+By hand, every N-th call of a longer run with divisions, for some of the tests:
+disk_test.py PROGRAM --long --every 10 FailingDisk.test_full_from_any_write_on
 """
 import os
 import re
@@ -164,5 +165,5 @@ if __name__ == "__main__":
     if "--every" in sys.argv:
         at = sys.argv.index("--every")
         EVERY = int(sys.argv[at + 1])
-        sys.argv[at:] = ["FailingDisk", *sys.argv[at + 2 :]]
+        del sys.argv[at : at + 2]
     support.main()
