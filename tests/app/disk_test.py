@@ -35,10 +35,17 @@ def tearDownModule():
         shutil.rmtree(SHIM.parent, ignore_errors=True)
 
 
+def is_sanitized():
+    program = Path(support.PROGRAM).read_bytes()
+    return b"__asan_init" in program or b"__tsan_init" in program
+
+
 @unittest.skipIf(shutil.which("cc") is None, "needs a C compiler")
 class FailingDisk(Resuming):
     def setUp(self):
         super().setUp()
+        if is_sanitized():
+            self.skipTest("a sanitizer must be loaded before all else")
         self.scenario = DIVIDING if LONG else [self.write(BLOCK), *(word for key, value in SHORT for word in ("--set", f"{key}={value}"))]
         self.whole = self.whole_run(self.scenario)
 
@@ -136,6 +143,8 @@ class Directory(Resuming):
 
 class Memory(Resuming):
     def test_out_of_memory_is_a_clear_end_from_which_to_go_on(self):
+        if is_sanitized():
+            self.skipTest("a sanitizer takes all the address space")
         sphere = [self.write(SPHERE)]
         whole = self.whole_run(sphere)
         ends = {}
