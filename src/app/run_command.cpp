@@ -13,6 +13,7 @@
 #include "app/resumption.hpp"
 #include "app/scenario_options.hpp"
 #include "app/threads.hpp"
+#include "core/directory_lock.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
 #include "output/archive.hpp"
@@ -179,13 +180,18 @@ int run_scenario(const RunOptions& options) {
 
   refuse_to_replace_scenario(source.file, options.out);
   refuse_to_replace_reference(setting.observer.monitors(), options.out);
+  auto lock = std::make_unique<DirectoryLock>(options.out);
   std::optional<Checkpoint> checkpoint;
   if (options.resume) checkpoint = checkpoint_to_resume(options.out, scenario, *setting.model);
   if (checkpoint && has_ended(checkpoint->run, setting.controls) && holds_ending(options.out)) {
     if (!options.quiet) fmt::print("{}: the run is finished; nothing is left to do\n", options.out);
     return exit_done;
   }
-  if (!checkpoint) prepare_directory(options.out, options.overwrite || options.resume);
+  if (!checkpoint) {
+    prepare_directory(options.out, options.overwrite || options.resume);
+    lock.reset();
+    lock = std::make_unique<DirectoryLock>(options.out);  // it may have been made only now
+  }
   catch_interruptions();
   Recorder recorder(options.out, scenario, *setting.model, setting.observer);
   const Ending ending = with_a_way_on([&] {

@@ -1,6 +1,7 @@
 """Disks that fail in the middle of a run, at any call: it ends with status 4 and says why, and --resume loses nothing.
 
-By hand, every N-th call of a long run with divisions: disk_test.py PROGRAM --every 10 [--long]
+By hand, every N-th call of a longer run with divisions, for some of the tests:
+disk_test.py PROGRAM --long --every 10 FailingDisk.test_full_from_any_write_on
 """
 import os
 import re
@@ -12,8 +13,8 @@ import unittest
 from pathlib import Path
 
 import support
-from support import BLOCK, SPHERE, plica, start, table, tree
 from resuming import DIVIDING, Resuming, rows_in
+from support import BLOCK, SPHERE, plica, start
 
 SHORT = [("time.end_s", "1.2"), ("division.all.region", '"all"'), ("division.all.at_s", "0.5"), ("division.all.growth_s", "0.3")]
 EVERY, LONG = 10, False
@@ -34,10 +35,17 @@ def tearDownModule():
         shutil.rmtree(SHIM.parent, ignore_errors=True)
 
 
+def is_sanitized():
+    program = Path(support.PROGRAM).read_bytes()
+    return b"__asan_init" in program or b"__tsan_init" in program
+
+
 @unittest.skipIf(shutil.which("cc") is None, "needs a C compiler")
 class FailingDisk(Resuming):
     def setUp(self):
         super().setUp()
+        if is_sanitized():
+            self.skipTest("a sanitizer must be loaded before all else")
         self.scenario = DIVIDING if LONG else [self.write(BLOCK), *(word for key, value in SHORT for word in ("--set", f"{key}={value}"))]
         self.whole = self.whole_run(self.scenario)
 
@@ -135,6 +143,8 @@ class Directory(Resuming):
 
 class Memory(Resuming):
     def test_out_of_memory_is_a_clear_end_from_which_to_go_on(self):
+        if is_sanitized():
+            self.skipTest("a sanitizer takes all the address space")
         sphere = [self.write(SPHERE)]
         whole = self.whole_run(sphere)
         ends = {}
@@ -164,5 +174,5 @@ if __name__ == "__main__":
     if "--every" in sys.argv:
         at = sys.argv.index("--every")
         EVERY = int(sys.argv[at + 1])
-        sys.argv[at:] = ["FailingDisk", *sys.argv[at + 2 :]]
+        del sys.argv[at : at + 2]
     support.main()
