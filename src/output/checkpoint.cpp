@@ -12,6 +12,7 @@
 #include "core/files.hpp"
 #include "core/version.hpp"
 #include "output/archive.hpp"
+#include "output/reading_trial.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;
@@ -319,17 +320,21 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
     throw FileError(
         fmt::format("another plica wrote it, in another format than this one's ({}); go on with that one", format));
   if (end != trailer(image)) throw FileError("it is damaged: its checksum is not that of its bytes");
-  const ArchiveReader archive(image);
-  Loading load(archive);
-  Checkpoint checkpoint;
-  load("program", checkpoint.program);
-  load("scenario", checkpoint.scenario);
-  load("at_rest", checkpoint.at_rest);
-  visit_run(load, checkpoint.run);
-  visit_record(load, checkpoint.record);
-  checkpoint.run.past_divisions = load_divisions(archive);
-  checkpoint.record.rows = load_rows(archive);
-  return checkpoint;
+  const auto read = [&] {
+    const ArchiveReader archive(image);
+    Loading load(archive);
+    Checkpoint checkpoint;
+    load("program", checkpoint.program);
+    load("scenario", checkpoint.scenario);
+    load("at_rest", checkpoint.at_rest);
+    visit_run(load, checkpoint.run);
+    visit_record(load, checkpoint.record);
+    checkpoint.run.past_divisions = load_divisions(archive);
+    checkpoint.record.rows = load_rows(archive);
+    return checkpoint;
+  };
+  read_on_trial([&] { (void)read(); }, image.size());
+  return read();
 }
 
 std::optional<std::string> why_unfit(const Checkpoint& checkpoint, const Model& model) {
