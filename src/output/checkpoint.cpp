@@ -10,6 +10,7 @@
 
 #include "core/errors.hpp"
 #include "output/archive.hpp"
+#include "output/reading_trial.hpp"
 
 namespace plica {
 namespace {
@@ -311,17 +312,21 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
   if (end.substr(start.size(), 2) != fmt::format("{} ", format))
     throw FileError(fmt::format("another version of plica wrote it, in a format that is not this one's ({})", format));
   if (end != trailer(image)) throw FileError("it is damaged: its checksum is not that of its bytes");
-  const ArchiveReader archive(image);
-  Loading load(archive);
-  Checkpoint checkpoint;
-  load("program", checkpoint.program);
-  load("scenario", checkpoint.scenario);
-  load("at_rest", checkpoint.at_rest);
-  visit_run(load, checkpoint.run);
-  visit_record(load, checkpoint.record);
-  checkpoint.run.past_divisions = load_divisions(archive);
-  checkpoint.record.rows = load_rows(archive);
-  return checkpoint;
+  const auto read = [&] {
+    const ArchiveReader archive(image);
+    Loading load(archive);
+    Checkpoint checkpoint;
+    load("program", checkpoint.program);
+    load("scenario", checkpoint.scenario);
+    load("at_rest", checkpoint.at_rest);
+    visit_run(load, checkpoint.run);
+    visit_record(load, checkpoint.record);
+    checkpoint.run.past_divisions = load_divisions(archive);
+    checkpoint.record.rows = load_rows(archive);
+    return checkpoint;
+  };
+  read_on_trial([&] { (void)read(); }, image.size());
+  return read();
 }
 
 std::optional<std::string> why_unfit(const Checkpoint& checkpoint, const Model& model) {

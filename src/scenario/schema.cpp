@@ -214,7 +214,7 @@ const std::vector<Row>& rows() {
           "Where the region's wave starts at time 0; without it in the middle. Low is the anterior end, or the left "
           "side."),
       row("contraction.*", "variation.spread", at(&S::contractions, &C::variation, &VariationInput::spread),
-          not_negative,
+          between(0, 100),
           "Relative standard deviation of a log-normal factor with mean 1 on each cell's stiffness and preload."),
       row("contraction.*", "variation.seed", at(&S::contractions, &C::variation, &VariationInput::seed), not_negative,
           "Another seed gives other factors; a cell's factor depends on seed and cell number only."),

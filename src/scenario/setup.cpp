@@ -157,6 +157,25 @@ void add_holds(const Scenario& scenario, Model& model, std::vector<Diagnostic>& 
   }
 }
 
+/// Forces at rest that are no finite numbers, of springs stronger than numbers are: there would be nothing to begin
+/// with.
+void check_forces_at_rest(const Scenario& scenario, const Model& model) {
+  const State rest = rest_state(model);
+  Vectors forces(rest.positions.size(), Vec3::Zero());
+  const Step still{rest.positions, rest.positions, rest.velocities, 1, 0};
+  for (const auto& law : model.laws) law->add_forces(still, forces);
+  const auto bad = std::ranges::find_if(forces, [](const Vec3& force) { return !force.allFinite(); });
+  if (bad == forces.end()) return;
+  const NodeId node(static_cast<std::size_t>(bad - forces.begin()));
+  const auto holds_it = [&](const auto& nodes) { return std::ranges::find(nodes, node) != nodes.end(); };
+  const auto element = std::ranges::find_if(model.tissue.elements, holds_it) - model.tissue.elements.begin();
+  const std::string key = scenario.contractions.empty() ? "elasticity" : "contraction";
+  throw ScenarioError({diagnostic_at(scenario, key,
+                                     fmt::format("the force in cell {} is not a finite number at rest",
+                                                 model.tissue.element_cell[static_cast<std::size_t>(element)].number()),
+                                     "give weaker springs, smaller preloads or pressures")});
+}
+
 DivisionRule make_division_rule(const DivisionInput& input) {
   DivisionRule rule;
   rule.region = input.region;
@@ -219,6 +238,7 @@ std::unique_ptr<Model> make_model(const Scenario& scenario) {
                                    "take one element a cell and one layer of cells"));
   if (scenario.volume.projection_surface == "embryo") check_encloses(scenario, tissue, errors);
   if (!errors.empty()) throw ScenarioError(std::move(errors));
+  check_forces_at_rest(scenario, *model);
   return model;
 }
 

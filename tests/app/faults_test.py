@@ -119,6 +119,13 @@ class Endings(CommandLine):
         self.assertEqual(self.summary()["status"], "failed")
         self.assert_whole(self.out)
 
+    def test_forces_beyond_all_numbers_at_rest_are_refused(self):
+        for setting in ("contraction.all.stiffness_nN_per_um=1.7e308", "contraction.all.preload_nN=-1.7e308"):
+            with self.subTest(setting):
+                result = self.run_scenario(BLOCK, "--set", setting, "--set", "contraction.all.diagonals=true", status=2)
+                self.assertRegex(self.assert_messages(result)[0], r"force in cell \d+ is not a finite number at rest; give ")
+                self.assertFalse(self.out.exists())
+
     def test_a_run_that_is_interrupted_keeps_what_it_has(self):
         for name, number, status in (("INT", signal.SIGINT, 130), ("TERM", signal.SIGTERM, 143)):
             with self.subTest(name):

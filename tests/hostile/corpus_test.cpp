@@ -1,5 +1,5 @@
-// The inputs of fuzz/corpus, through the same functions that the fuzzers feed, and each with some of its bytes changed:
-// what a fuzzer found stays mended, and the seeds are still of today's formats.
+// The inputs of fuzz/corpus, through the same functions that the fuzzers feed: what a fuzzer found (found_*) stays
+// mended, and the seeds are still of today's formats. Each seed also with some of its bytes changed.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -25,6 +25,7 @@ Counts replay(const std::string& target, bool (*feed)(std::string_view), int cha
     const std::string bytes = read_file(entry.path());
     ++counts.seeds;
     counts.taken += feed(bytes) ? 1 : 0;
+    if (entry.path().filename().string().starts_with("found_")) continue;
     for (int i = 0; i < changes && !bytes.empty(); ++i, ++counts.changed) {
       std::string changed = bytes;
       for (int k = 0; k < 3; ++k) changed[random() % changed.size()] = static_cast<char>(random());
@@ -50,7 +51,7 @@ TEST(FuzzCorpus, Meshes) {
 
 TEST(FuzzCorpus, Checkpoints) {
   if (!can_archive()) GTEST_SKIP() << "built without HDF5";
-  const Counts counts = replay("checkpoint", fuzz_checkpoint, 20);
+  const Counts counts = replay("checkpoint", fuzz_checkpoint, 200);
   EXPECT_GE(counts.taken, 4);
 }
 
