@@ -257,7 +257,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {program + "delay = { speed_um_per_s = -1 }",
        "test.toml:3: contraction.a.delay.speed_um_per_s: -1 is out of range; give a number > 0 or \"none\""},
       {program + "variation = { spread = -0.1 }",
-       "test.toml:3: contraction.a.variation.spread: -0.1 is out of range; give a number >= 0"},
+       "test.toml:3: contraction.a.variation.spread: -0.1 is out of range; give a number, 0 to 100"},
       {program + "variation = { sead = 2 }",
        "test.toml:3: contraction.a.variation.sead: unknown key; did you mean \"variation.seed\"?"},
       // Regions.
