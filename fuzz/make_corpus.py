@@ -1,7 +1,8 @@
 """Makes the seeds of fuzz/corpus anew: small scenarios, meshes and checkpoints from which the fuzzers start.
 
 Usage: make_corpus.py PROGRAM. Needed when a format has changed: checkpoints of another format are refused at once, and
-tests/hostile/corpus_test.cpp says so. What a fuzzer found is put beside by hand, and stays.
+tests/hostile/corpus_test.cpp says so. What a fuzzer found is put into
+fuzz/found/TARGET by hand, once it is mended, and stays there.
 """
 import itertools
 import random

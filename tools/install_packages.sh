@@ -21,7 +21,7 @@ declare -A packages=(
   # xvfb-run, by which ParaView's test does so.)
   [pictures]="xvfb xauth libgl1-mesa-dri"
   # To fuzz the readers by hand: fuzz/run. (Clang 14 with libFuzzer and the sanitizers; not installed without asking.)
-  [fuzz]="clang libclang-rt-14-dev"
+  [fuzz]="clang libclang-rt-14-dev libomp-14-dev"
 )
 
 groups=("$@")

@@ -1,5 +1,5 @@
-// The inputs of fuzz/corpus, through the same functions that the fuzzers feed: what a fuzzer found (found_*) stays
-// mended, and the seeds are still of today's formats. Each seed also with some of its bytes changed.
+// The seeds of the fuzzers (fuzz/corpus), each also with some of its bytes changed, and what they found (fuzz/found),
+// through the same functions: seeds are of today's formats, and what was found stays mended.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Counts {
-  int seeds = 0, taken = 0, changed = 0;
+  int seeds = 0, taken = 0, changed = 0, found = 0;
 };
 
 Counts replay(const std::string& target, bool (*feed)(std::string_view), int changes) {
@@ -25,7 +25,6 @@ Counts replay(const std::string& target, bool (*feed)(std::string_view), int cha
     const std::string bytes = read_file(entry.path());
     ++counts.seeds;
     counts.taken += feed(bytes) ? 1 : 0;
-    if (entry.path().filename().string().starts_with("found_")) continue;
     for (int i = 0; i < changes && !bytes.empty(); ++i, ++counts.changed) {
       std::string changed = bytes;
       for (int k = 0; k < 3; ++k) changed[random() % changed.size()] = static_cast<char>(random());
@@ -33,8 +32,14 @@ Counts replay(const std::string& target, bool (*feed)(std::string_view), int cha
       (void)feed(changed);
     }
   }
-  std::printf("%s: %d inputs, %d of them taken, %d changed ones\n", target.c_str(), counts.seeds, counts.taken,
-              counts.changed);
+  const fs::path found = fs::path(PLICA_SOURCE_DIR) / "fuzz" / "found" / target;
+  if (fs::exists(found))
+    for (const auto& entry : fs::directory_iterator(found)) {
+      (void)feed(read_file(entry.path()));
+      ++counts.found;
+    }
+  std::printf("%s: %d inputs, %d of them taken, %d changed ones, %d found ones\n", target.c_str(), counts.seeds,
+              counts.taken, counts.changed, counts.found);
   return counts;
 }
 
@@ -51,8 +56,9 @@ TEST(FuzzCorpus, Meshes) {
 
 TEST(FuzzCorpus, Checkpoints) {
   if (!can_archive()) GTEST_SKIP() << "built without HDF5";
-  const Counts counts = replay("checkpoint", fuzz_checkpoint, 200);
+  const Counts counts = replay("checkpoint", fuzz_checkpoint, 50);
   EXPECT_GE(counts.taken, 4);
+  EXPECT_GE(counts.found, 1);
 }
 
 }  // namespace
