@@ -293,20 +293,27 @@ FourNumbers& four(float* numbers) { return *reinterpret_cast<FourNumbers*>(numbe
 }  // namespace
 
 void BlockCholesky::solve(std::span<float> x) const {
-  const std::size_t size = 3 * static_cast<std::size_t>(nodes_), vectors = x.size() / size;
-  x_.resize(vectors * nodes_);
-  for (std::size_t v = 0; v < vectors; ++v)
-    for (int n = 0; n < nodes_; ++n) std::copy_n(&x[v * size + 3 * n], 3, x_[v * nodes_ + position_[n]].numbers);
-  // Panel by panel: each is read from far away once.
-  for (const auto& node : supernodes_)
-    for (std::size_t v = 0; v < vectors; ++v) solve_down(node, &x_[v * nodes_]);
-  for (std::size_t s = supernodes_.size(); s-- > 0;)
-    for (std::size_t v = 0; v < vectors; ++v) solve_up(supernodes_[s], &x_[v * nodes_]);
-  for (std::size_t v = 0; v < vectors; ++v)
-    for (int n = 0; n < nodes_; ++n) std::copy_n(x_[v * nodes_ + position_[n]].numbers, 3, &x[v * size + 3 * n]);
+  solve_down(x, z_);
+  solve_up(z_, x);
 }
 
-void BlockCholesky::solve_down(const Supernode& node, NodeNumbers* x) const {
+void BlockCholesky::solve_down(std::span<const float> b, Halfway& z) const {
+  z.resize(nodes_);
+  for (int n = 0; n < nodes_; ++n) std::copy_n(&b[3 * n], 3, z[position_[n]].numbers);
+  for (const Supernode& node : supernodes_) {
+    const auto is_zero = [](const NodeNumbers& x) {
+      return x.numbers[0] == 0 && x.numbers[1] == 0 && x.numbers[2] == 0;
+    };
+    if (!std::all_of(&z[node.first], &z[node.first] + node.columns, is_zero)) solve_down(node, z);
+  }
+}
+
+void BlockCholesky::solve_up(Halfway& z, std::span<float> x) const {
+  for (std::size_t s = supernodes_.size(); s-- > 0;) solve_up(supernodes_[s], z);
+  for (int n = 0; n < nodes_; ++n) std::copy_n(z[position_[n]].numbers, 3, &x[3 * n]);
+}
+
+void BlockCholesky::solve_down(const Supernode& node, Halfway& x) const {
   float* const own = own_.data();
   float* const front = front_.data()->numbers;
   for (int k = 0; k < node.columns; ++k) four(own + 3 * k) = four(x[node.first + k].numbers);
@@ -319,7 +326,7 @@ void BlockCholesky::solve_down(const Supernode& node, NodeNumbers* x) const {
   }
 }
 
-void BlockCholesky::solve_up(const Supernode& node, NodeNumbers* x) const {
+void BlockCholesky::solve_up(const Supernode& node, Halfway& x) const {
   float* const own = own_.data();
   float* const front = front_.data()->numbers;
   for (int k = 0; k < node.columns; ++k) four(front + 3 * k) = four(x[node.first + k].numbers);

@@ -32,9 +32,19 @@ class BlockCholesky final : public Preconditioner {
     return factorise(values);
   }
 
-  /// Solves in place with the last factor: x = b in, x = A^-1 b out, to about 1e-7 times the condition number. One
-  /// vector or several.
+  /// Solves in place with the last factor: x = b in, x = A^-1 b out, to about 1e-7 times the condition number.
   void solve(std::span<float> x) const override;
+
+  struct alignas(16) NodeNumbers {
+    float numbers[4];  // the last does not matter
+  };
+  /// The numbers of each node in the order of elimination.
+  using Halfway = std::vector<NodeNumbers>;
+
+  /// The halves of a solve with A = L L^T: z = L^-1 b, and x = L^-T z, which uses z up. Where b is zero in most nodes
+  /// the first takes a part of the time, and z is zero where no path in the tree of elimination leads from b's others.
+  void solve_down(std::span<const float> b, Halfway& z) const;
+  void solve_up(Halfway& z, std::span<float> x) const;
 
   /// Numbers kept in the factor, zeros inside panels included.
   [[nodiscard]] std::size_t factor_size() const { return factor_size_; }
@@ -67,18 +77,15 @@ class BlockCholesky final : public Preconditioner {
   }
   static bool eliminate(const Supernode& node, float* panel, float* front);
 
-  struct alignas(16) NodeNumbers {
-    float numbers[4];  // the last does not matter
-  };
-  void solve_down(const Supernode& node, NodeNumbers* x) const;  // from children to parents
-  void solve_up(const Supernode& node, NodeNumbers* x) const;
+  void solve_down(const Supernode& node, Halfway& x) const;  // from children to parents
+  void solve_up(const Supernode& node, Halfway& x) const;
 
   int nodes_ = 0;
   std::vector<int> position_;          // of each node in the order of elimination
   std::vector<Supernode> supernodes_;  // children before parents
   std::vector<PanelChunk> panels_;
   std::size_t factor_size_ = 0;
-  mutable std::vector<NodeNumbers> x_;     // scratch of solve(): the nodes in elimination order,
+  mutable Halfway z_;                      // scratch of solve(),
   mutable std::vector<float> own_;         // a supernode's own,
   mutable std::vector<PanelChunk> front_;  // and what its panel is multiplied with, or gives
 };

@@ -5,14 +5,20 @@
 namespace plica {
 namespace {
 
-Vec3 at_node(std::span<const float> full, std::size_t node) {
-  return {full[3 * node], full[3 * node + 1], full[3 * node + 2]};
+using Halfway = BlockCholesky::Halfway;
+
+double inner(const std::vector<std::pair<int, Vec3>>& sparse, const Halfway& full) {
+  double sum = 0;
+  for (const auto& [place, value] : sparse) {
+    const float* numbers = full[place].numbers;
+    sum += value[0] * numbers[0] + value[1] * numbers[1] + value[2] * numbers[2];
+  }
+  return sum;
 }
 
-double inner(const std::vector<std::pair<std::size_t, Vec3>>& sparse, std::span<const float> full) {
-  double sum = 0;
-  for (const auto& [node, value] : sparse) sum += value.dot(at_node(full, node));
-  return sum;
+void subtract(double factor, const std::vector<std::pair<int, Vec3>>& sparse, Halfway& from) {
+  for (const auto& [place, value] : sparse)
+    for (int i = 0; i < 3; ++i) from[place].numbers[i] -= static_cast<float>(factor * value[i]);
 }
 
 }  // namespace
@@ -24,48 +30,50 @@ void ContactBorder::begin(const Model& model, const StepMatrix& matrix, std::vec
   frames_ = std::move(frames);
   in_contact_ = std::move(in_contact);
   most_changes_ = most_changes;
+  const auto size = static_cast<Eigen::Index>(most_changes);
+  complement_.resize(size, size);
   columns_.clear();
   active_.clear();
 }
 
-void ContactBorder::append_free(std::span<const Vec3> vectors, std::vector<float>& to) const {
+void ContactBorder::write_free(std::span<const Vec3> vectors) const {
+  single_.resize(3 * vectors.size());
   for (std::size_t n = 0; n < vectors.size(); ++n) {
     const Vec3 free = frames_[n].free_part(vectors[n]);
-    for (int i = 0; i < 3; ++i) to.push_back(static_cast<float>(free[i]));
+    for (int i = 0; i < 3; ++i) single_[3 * n + i] = static_cast<float>(free[i]);
   }
 }
 
-ContactBorder::Column ContactBorder::make_column(const Change& change, Vectors& b) const {
-  Column column{change, model_->vitelline->nodes()[change.contact].index(), {}, 0, {}};
-  b.assign(frames_.size(), Vec3::Zero());
+void ContactBorder::add_column(const Change& change, const BlockCholesky& factor) {
+  Column column{change, model_->vitelline->nodes()[change.contact].index(), {}};
+  Vectors b(frames_.size(), Vec3::Zero());
+  b[column.node] = column.normal;
+  double diagonal = 0;
   if (column.leaves) {
-    Vectors unit(b);
-    unit[column.node] = column.normal;
+    const Vectors unit = b;
     matrix_->multiply(unit, b);
-    column.diagonal = column.normal.dot(b[column.node]);
-    for (std::size_t n = 0; n < b.size(); ++n) {
-      b[n] = frames_[n].free_part(b[n]);
-      if (b[n] != Vec3::Zero()) column.entries.emplace_back(n, b[n]);
-    }
+    diagonal = column.normal.dot(b[column.node]);
+    write_free(b);
   } else {
-    b[column.node] = column.normal;
-    column.entries.emplace_back(column.node, column.normal);
+    single_.assign(3 * b.size(), 0.0F);
+    for (int i = 0; i < 3; ++i) single_[3 * column.node + i] = static_cast<float>(column.normal[i]);
   }
-  return column;
-}
+  factor.solve_down(single_, z_);
+  for (std::size_t place = 0; place < z_.size(); ++place)
+    if (const Vec3 value = Eigen::Map<const Eigen::Vector3f>(z_[place].numbers).cast<double>(); value != Vec3::Zero())
+      column.halfway.emplace_back(static_cast<int>(place), value);
 
-void ContactBorder::add_columns(std::span<const Change> changes, const Preconditioner& factor) {
-  if (changes.empty()) return;
-  std::vector<float> solved;
-  Vectors b;
-  for (const Change& change : changes) {
-    columns_.push_back(make_column(change, b));
-    append_free(b, solved);
+  columns_.push_back(std::move(column));
+  const Column& last = columns_.back();
+  const auto i = static_cast<Eigen::Index>(columns_.size()) - 1;
+  complement_(i, i) = diagonal - inner(last.halfway, z_);
+  for (Eigen::Index j = 0; j < i; ++j) {
+    const Column& other = columns_[j];
+    // D between two nodes that have left; that of neighbours is in the matrix.
+    const double between =
+        last.leaves && other.leaves ? last.normal.dot(matrix_->block(last.node, other.node) * other.normal) : 0;
+    complement_(i, j) = complement_(j, i) = between - inner(other.halfway, z_);
   }
-  factor.solve(solved);
-  const std::size_t size = 3 * frames_.size();
-  for (std::size_t i = 0; i < changes.size(); ++i)
-    columns_[columns_.size() - changes.size() + i].solved.assign(&solved[i * size], &solved[i * size] + size);
 }
 
 void ContactBorder::remember(FactorMemory& memory) const {
@@ -76,15 +84,13 @@ void ContactBorder::remember(FactorMemory& memory) const {
   }
 }
 
-void ContactBorder::recall(const FactorMemory& memory, const Preconditioner& factor) {
-  std::vector<Change> changes;
+void ContactBorder::recall(const FactorMemory& memory, const BlockCholesky& factor) {
   for (std::size_t k = 0; k < memory.changed_contacts.size(); ++k)
-    changes.push_back(
-        {static_cast<std::size_t>(memory.changed_contacts[k]), memory.has_left[k] != 0, memory.normals[k]});
-  add_columns(changes, factor);
+    add_column({static_cast<std::size_t>(memory.changed_contacts[k]), memory.has_left[k] != 0, memory.normals[k]},
+               factor);
 }
 
-bool ContactBorder::follow(const Iterate& at, const Preconditioner& factor) {
+bool ContactBorder::follow(const Iterate& at, const BlockCholesky& factor) {
   std::vector<std::size_t> changed, active;
   std::vector<Change> unknown;
   for (std::size_t k = 0; k < at.in_contact.size(); ++k)
@@ -99,43 +105,30 @@ bool ContactBorder::follow(const Iterate& at, const Preconditioner& factor) {
                               : without_held(*model_, n, model_->vitelline->gap(at.positions[n]).inward).normalized()});
   }
   if (changed.size() > most_changes_ || columns_.size() + unknown.size() > most_changes_) return false;
-  add_columns(unknown, factor);
+  for (const Change& change : unknown) add_column(change, factor);
   for (const std::size_t k : changed) active.push_back(static_cast<std::size_t>(column_of(k) - columns_.begin()));
   if (active == active_) return true;
   active_ = std::move(active);
-  const auto size = static_cast<Eigen::Index>(active_.size());
-  Eigen::MatrixXd schur(size, size);
-  for (Eigen::Index i = 0; i < size; ++i)
-    for (Eigen::Index j = 0; j < size; ++j) {
-      const Column &a = columns_[active_[i]], &b = columns_[active_[j]];
-      schur(i, j) = (i == j ? a.diagonal : 0) - inner(a.entries, b.solved);
-      // D between two nodes that have left; that of neighbours is in the matrix.
-      if (i != j && a.leaves && b.leaves) schur(i, j) += a.normal.dot(matrix_->block(a.node, b.node) * b.normal);
-    }
-  if (size > 0) schur_.compute(schur);
+  if (!active_.empty()) active_complement_.compute(complement_(active_, active_));
   return true;
 }
 
-void ContactBorder::solve(const Preconditioner& factor, std::span<Vec3> x) const {
+void ContactBorder::solve(const BlockCholesky& factor, std::span<Vec3> x) const {
   const auto size = static_cast<Eigen::Index>(active_.size());
   Eigen::VectorXd border(size);
   for (Eigen::Index i = 0; i < size; ++i) {
     const Column& column = columns_[active_[i]];
     border[i] = column.leaves ? column.normal.dot(x[column.node]) : 0;
   }
-  single_.clear();
-  append_free(x, single_);
-  factor.solve(single_);
+  write_free(x);
+  factor.solve_down(single_, z_);
   if (size > 0) {
-    for (Eigen::Index i = 0; i < size; ++i) border[i] -= inner(columns_[active_[i]].entries, single_);
-    border = schur_.solve(border).eval();
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const auto part = static_cast<float>(border[i]);
-      const std::vector<float>& solved = columns_[active_[i]].solved;
-      for (std::size_t k = 0; k < single_.size(); ++k) single_[k] -= part * solved[k];
-    }
+    for (Eigen::Index i = 0; i < size; ++i) border[i] -= inner(columns_[active_[i]].halfway, z_);
+    border = active_complement_.solve(border).eval();
+    for (Eigen::Index i = 0; i < size; ++i) subtract(border[i], columns_[active_[i]].halfway, z_);
   }
-  for (std::size_t n = 0; n < x.size(); ++n) x[n] = at_node(single_, n);
+  factor.solve_up(z_, single_);
+  for (std::size_t n = 0; n < x.size(); ++n) x[n] = Eigen::Map<const Eigen::Vector3f>(&single_[3 * n]).cast<double>();
   for (Eigen::Index i = 0; i < size; ++i)
     if (const Column& column = columns_[active_[i]]; column.leaves) x[column.node] += border[i] * column.normal;
 }

@@ -29,11 +29,16 @@ KrylovDirections::KrylovDirections(const Model& model, Inverse inverse, std::fun
       inverse_(inverse),
       nodes_(model.tissue.node_count()),
       matrix_(model),
-      preconditioner_(inverse == Inverse::multigrid ? make_multigrid(matrix_.layout())
-                                                    : std::make_unique<BlockCholesky>(matrix_.layout())),
       price_of_factor_(inverse == Inverse::multigrid ? 15 : 30),
       factor_jacobian_(model),
       jacobian_(model) {
+  if (inverse == Inverse::multigrid) {
+    preconditioner_ = make_multigrid(matrix_.layout());
+  } else {
+    auto factor = std::make_unique<BlockCholesky>(matrix_.layout());
+    factor_ = factor.get();
+    preconditioner_ = std::move(factor);
+  }
   // Cells of several elements have nodes inside that feel the difference of any two pressures.
   const bool is_refined = model.tissue.elements.size() >= 2 * model.tissue.cells.size();
   if (inverse == Inverse::multigrid && jacobian_.cells() > 0 && !is_refined)
@@ -96,7 +101,7 @@ bool KrylovDirections::refresh(const Step& step, const Iterate& at) {
     if (!has_factor_) continue;
     // J as in the factor: with another, gamma would carry the difference into directions that hardly resist.
     factor_jacobian_ = jacobian_;
-    if (inverse_ == Inverse::cholesky) border_.begin(model_, matrix_, frames_, at.in_contact, most_contact_changes);
+    if (factor_ != nullptr) border_.begin(model_, matrix_, frames_, at.in_contact, most_contact_changes);
     made_from_ = factor_memory(step, at);
     return true;
   }
@@ -106,7 +111,7 @@ bool KrylovDirections::refresh(const Step& step, const Iterate& at) {
 FactorMemory KrylovDirections::memory() const {
   if (!has_factor_) return {};
   FactorMemory memory = made_from_;
-  if (inverse_ == Inverse::cholesky) border_.remember(memory);
+  if (factor_ != nullptr) border_.remember(memory);
   memory.iterations_when_new = iterations_when_new_;
   memory.wasted_iterations = wasted_iterations_;
   return memory;
@@ -116,7 +121,7 @@ void KrylovDirections::recall(const FactorMemory& memory) {
   if (memory.empty()) return;
   linearise(memory.at);
   if (!refresh(step_of(memory), memory.at)) return;
-  if (inverse_ == Inverse::cholesky) border_.recall(memory, *preconditioner_);
+  if (factor_ != nullptr) border_.recall(memory, *factor_);
   iterations_when_new_ = memory.iterations_when_new;
   wasted_iterations_ = memory.wasted_iterations;
 }
@@ -153,7 +158,7 @@ void KrylovDirections::multiply(const Step& step, const Iterate& at, const Vecto
 }
 
 void KrylovDirections::apply_inverse(std::span<Vec3> x) const {
-  if (inverse_ == Inverse::cholesky) return border_.solve(*preconditioner_, x);
+  if (factor_ != nullptr) return border_.solve(*factor_, x);
   single_.resize(3 * x.size());
   for (std::size_t n = 0; n < x.size(); ++n)
     for (int i = 0; i < 3; ++i) single_[3 * n + i] = static_cast<float>(x[n][i]);
@@ -191,7 +196,7 @@ void KrylovDirections::precondition(const Vector& residual, Vector& result) cons
 }
 
 bool KrylovDirections::follow_contacts(const Iterate& at) {
-  if (inverse_ == Inverse::cholesky) return border_.follow(at, *preconditioner_);
+  if (factor_ != nullptr) return border_.follow(at, *factor_);
   // A solve for each that has changed is too much. The multigrid has the node's own stiffness along directions that
   // were fixed, which is a preconditioner as long as they are few.
   std::size_t changed = 0;

@@ -49,6 +49,7 @@ class KrylovDirections final : public NewtonDirections {
   std::size_t nodes_;
   StepMatrix matrix_;  // where the factor was made
   std::unique_ptr<Preconditioner> preconditioner_;
+  const BlockCholesky* factor_ = nullptr;  // it, where it is one; with its border
   ContactBorder border_;
   std::optional<PressureFactor> pressures_;  // for what gamma W does not see
   bool has_factor_ = false;

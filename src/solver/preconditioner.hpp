@@ -20,7 +20,7 @@ class Preconditioner {
   /// False when the matrix is not positive definite, as far as seen.
   [[nodiscard]] virtual bool factorise(std::span<const float> values, std::span<const float> near_kernel) = 0;
 
-  /// Applies the last approximate inverse in place, to one vector or to several, one after the other in memory.
+  /// Applies the last approximate inverse in place.
   virtual void solve(std::span<float> x) const = 0;
 };
 

@@ -75,6 +75,30 @@ TEST(BlockCholesky, GivesTheSameBitsAgainAndAfterAnotherMatrix) {
   EXPECT_EQ(x, y);
 }
 
+// y^T z = b^T A^-1 c, also where most of b is zero, which makes most of y zero.
+TEST(BlockCholesky, HalvesOfASolveMakeProducts) {
+  const System system(20, 16, 2);
+  BlockCholesky cholesky(system.pattern);
+  ASSERT_TRUE(cholesky.factorise(system.values));
+  std::vector<float> b(system.b.size(), 0.0F);
+  for (int i = 300; i < 303; ++i) b[i] = 1;
+  BlockCholesky::Halfway y, z;
+  cholesky.solve_down(b, y);
+  cholesky.solve_down(system.b, z);
+  double product = 0;
+  int nodes = 0;
+  for (std::size_t n = 0; n < y.size(); ++n) {
+    const Eigen::Map<const Eigen::Vector3f> of_y(y[n].numbers), of_z(z[n].numbers);
+    product += of_y.cast<double>().dot(of_z.cast<double>());
+    nodes += of_y != Eigen::Vector3f::Zero();
+  }
+  auto x = system.b;
+  cholesky.solve(x);
+  EXPECT_NEAR(product, double(x[300]) + x[301] + x[302], 1e-6);
+  EXPECT_GT(nodes, 0);
+  EXPECT_LT(nodes, system.pattern.nodes() / 2);
+}
+
 TEST(BlockCholesky, KeepsLessThanTheDenseFactor) {
   const System system(24, 20, 2);
   const BlockCholesky cholesky(system.pattern);
