@@ -12,8 +12,9 @@ namespace plica {
 /// Whether this build has HDF5.
 bool can_archive();
 
-/// Puts arrays into a file that is made in memory. Names are paths: "state/positions". FileError when HDF5 cannot (no
-/// memory), or is not there.
+/// Puts arrays into a file that is made in memory. Names are paths: "state/positions". An array of a name that is there
+/// already takes its place: where it is as long as the one before that costs no more than copying it. FileError when
+/// HDF5 cannot (no memory), or is not there; begin anew then.
 class ArchiveWriter {
  public:
   ArchiveWriter();
@@ -26,7 +27,7 @@ class ArchiveWriter {
   void put(const std::string& name, std::span<const int> values);
   void put(const std::string& name, std::span<const char> bytes);
 
-  /// The file. The same arrays give the same bytes.
+  /// The file as it is now. Put once, the same arrays give the same bytes.
   [[nodiscard]] std::string image();
 
  private:

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <map>
 
 #include "core/errors.hpp"
 #include "core/memory.hpp"
@@ -32,6 +34,12 @@ class Handle {
 constexpr const char* no_file = "/dev/null/checkpoint";
 
 constexpr const char* cannot_make = "HDF5 cannot make a checkpoint; is there memory left?";
+
+// Nor has it two files of one name open, even in memory.
+std::string new_name() {
+  static std::atomic<int> count = 0;
+  return fmt::format("checkpoint {}", ++count);
+}
 
 void must(herr_t result, const std::string& what) {
   if (result < 0) throw FileError(what);
@@ -73,20 +81,38 @@ struct ArchiveWriter::File {
   Handle access{in_memory(nullptr, 0), H5Pclose, cannot_make};
   Handle links{H5Pcreate(H5P_LINK_CREATE), H5Pclose, cannot_make};
   Handle datasets{H5Pcreate(H5P_DATASET_CREATE), H5Pclose, cannot_make};
-  Handle file{H5Fcreate("checkpoint", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, cannot_make};
+  Handle file{H5Fcreate(new_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, cannot_make};
 
   File() {
     must(H5Pset_create_intermediate_group(links, 1), cannot_make);
     must(H5Pset_obj_track_times(datasets, false), cannot_make);
   }
 
-  void put(const std::string& name, hid_t type, const void* values, std::size_t count, std::size_t columns) const {
-    make_sure_of_room(count * H5Tget_size(type));
-    const std::array<hsize_t, 2> shape = {columns > 0 ? count / columns : count, columns};
-    const Handle space(H5Screate_simple(columns > 0 ? 2 : 1, shape.data(), nullptr), H5Sclose, cannot_make);
-    const Handle set(H5Dcreate2(file, name.c_str(), type, space, links, datasets, H5P_DEFAULT), H5Dclose, cannot_make);
-    if (count > 0) must(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), cannot_make);
+  void put(const std::string& name, hid_t type, const void* values, std::size_t count, std::size_t columns) {
+    auto at = sets.find(name);
+    if (at != sets.end() && (at->second.count != count || at->second.columns != columns)) {
+      sets.erase(at);
+      must(H5Ldelete(file, name.c_str(), H5P_DEFAULT), cannot_make);
+      at = sets.end();
+    }
+    if (at == sets.end()) {
+      make_sure_of_room(count * H5Tget_size(type));
+      const std::array<hsize_t, 2> shape = {columns > 0 ? count / columns : count, columns};
+      const Handle space(H5Screate_simple(columns > 0 ? 2 : 1, shape.data(), nullptr), H5Sclose, cannot_make);
+      const hid_t set = H5Dcreate2(file, name.c_str(), type, space, links, datasets, H5P_DEFAULT);
+      at = sets.try_emplace(name, set, count, columns).first;
+    }
+    if (count > 0) must(H5Dwrite(at->second.set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), cannot_make);
   }
+
+ private:
+  struct Set {
+    Set(hid_t id, std::size_t its_count, std::size_t its_columns)
+        : set(id, H5Dclose, cannot_make), count(its_count), columns(its_columns) {}
+    Handle set;
+    std::size_t count, columns;
+  };
+  std::map<std::string, Set> sets;
 };
 
 ArchiveWriter::ArchiveWriter() : file_(std::make_unique<File>()) {}

@@ -289,20 +289,27 @@ std::string fingerprint(const Tissue& tissue) {
                      tissue.cells.size(), sum);
 }
 
-std::string checkpoint_bytes(const Checkpoint& checkpoint) {
-  ArchiveWriter archive;
-  Saving save(archive);
+CheckpointBytes::CheckpointBytes() = default;
+CheckpointBytes::~CheckpointBytes() = default;
+
+std::string CheckpointBytes::operator()(const Checkpoint& checkpoint) {
+  constexpr std::size_t most_kept_bytes = std::size_t{32} << 20;
+  auto archive = archive_ ? std::move(archive_) : std::make_unique<ArchiveWriter>();  // none is kept after errors
+  Saving save(*archive);
   save("format", format);
   save("program", checkpoint.program);
   save("scenario", checkpoint.scenario);
   save("at_rest", checkpoint.at_rest);
   visit_run(save, checkpoint.run);
   visit_record(save, checkpoint.record);
-  save_divisions(archive, checkpoint.run.past_divisions);
-  save_rows(archive, checkpoint.record.rows);
-  std::string bytes = archive.image();
+  save_divisions(*archive, checkpoint.run.past_divisions);
+  save_rows(*archive, checkpoint.record.rows);
+  std::string bytes = archive->image();
+  if (bytes.size() <= most_kept_bytes) archive_ = std::move(archive);
   return bytes += trailer(bytes);
 }
+
+std::string checkpoint_bytes(const Checkpoint& checkpoint) { return CheckpointBytes()(checkpoint); }
 
 Checkpoint read_checkpoint_bytes(std::string_view bytes) {
   if (bytes.size() < trailer_bytes) throw FileError("it is no checkpoint, or cut off");

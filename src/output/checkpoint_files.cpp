@@ -28,7 +28,7 @@ bool CheckpointFiles::sync_is_due() {
 }
 
 void CheckpointFiles::write(const Checkpoint& checkpoint, Sync sync) {
-  const fs::path temporary = write_beside(newest_, checkpoint_bytes(checkpoint), sync);
+  const fs::path temporary = write_beside(newest_, bytes_of_(checkpoint), sync);
   std::error_code ignored;
   if (newest_is_on_disk_ || !fs::exists(previous_, ignored)) fs::rename(newest_, previous_, ignored);  // none at first
   rename_file(temporary, newest_, sync);

@@ -25,6 +25,7 @@ class CheckpointFiles {
 
  private:
   std::filesystem::path newest_, previous_;
+  CheckpointBytes bytes_of_;
   double last_sync_s_ = 0;
   bool newest_is_on_disk_ = false;
 };

@@ -117,7 +117,7 @@ struct TimeInput {
   std::optional<double> step_s;             // empty: "adaptive"
   double first_step_s = 0.05;               // adaptive
   double max_step_s = 30;                   // adaptive
-  double tolerance_um = 0.02;               // adaptive: error of a step, on positions
+  double tolerance_um = 0.05;               // adaptive: error of a step, on positions
   double end_s = 3600;                      // TOML: end_s or end_min
   std::string scheme = "newton";            // newton | linearly-implicit
   std::string linear_solver = "automatic";  // newton: automatic | direct | cholesky | multigrid

@@ -19,7 +19,7 @@ struct RunControls {
   std::optional<double> fixed_step_s;   // empty: adaptive
   double first_step_s = 0.05;           // adaptive
   double max_step_s = 30;               // adaptive
-  double position_tolerance_um = 0.02;  // adaptive: largest error of a step at any node
+  double position_tolerance_um = 0.05;  // adaptive: largest error of a step at any node
   double end_s = 3600;
   double equilibrium_speed_um_per_s = 0.2 / 60;
   bool stop_at_equilibrium = true;
