@@ -44,7 +44,10 @@ class Blocks final : public TangentSink {
  public:
   explicit Blocks(const BlockPattern& pattern) : pattern_(pattern), blocks_(pattern.columns.size(), Mat3::Zero()) {}
   void add_block(NodeId row, NodeId column, const Mat3& block) override {
-    if (column <= row) blocks_[pattern_.find(row.number(), column.number())] += block;
+    if (column <= row)
+      blocks_[pattern_.find(row.number(), column.number())] += block;
+    else
+      blocks_[pattern_.find(column.number(), row.number())] += block.transpose();
   }
   std::vector<Mat3>& all() { return blocks_; }
 
@@ -60,7 +63,7 @@ void add_volumes(const Model& model, double bulk_modulus, Blocks& blocks) {
     double volume = 0;  // a third of sum x . dV/dx: V is cubic
     for (int a = 0; a < 8; ++a) volume += model.tissue.rest_positions[elements[e][a].index()].dot(gradients[e][a]) / 3;
     for (int a = 0; a < 8; ++a)
-      for (int b = 0; b < 8; ++b)
+      for (int b = 0; b <= a; ++b)
         blocks.add_block(elements[e][a], elements[e][b],
                          bulk_modulus / volume * gradients[e][a] * gradients[e][b].transpose());
   }

@@ -16,8 +16,7 @@ void add_volume_hessian(const std::array<NodeId, 8>& nodes, const HexPoints& poi
                         TangentSink& tangent) {
   const auto hessian = hex_volume_hessian(points);
   for (int i = 0; i < 8; ++i)
-    for (int j = 0; j < 8; ++j)
-      if (i != j) tangent.add_block(nodes[i], nodes[j], cross_matrix(scale * hessian[i][j]));
+    for (int j = 0; j < i; ++j) tangent.add_block(nodes[i], nodes[j], cross_matrix(scale * hessian[i][j]));
 }
 
 }  // namespace
@@ -159,7 +158,7 @@ void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
     if (!step.semidefinite_tangent) add_volume_hessian(nodes, points, -pressure, tangent);
     const auto gradient = hex_volume_gradient(points);
     for (int i = 0; i < 8; ++i)
-      for (int j = 0; j < 8; ++j)
+      for (int j = 0; j <= i; ++j)
         tangent.add_block(nodes[i], nodes[j], bulk_modulus_ / rest_volume * gradient[i] * gradient[j].transpose());
   }
 }

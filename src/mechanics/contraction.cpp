@@ -188,7 +188,7 @@ void Contraction::add_tangent_product(const Step& step, std::span<const Vec3> di
 void Contraction::add_tangent(const Step& step, TangentSink& tangent) const {
   for_springs(step, [&](const Pulled& p) {
     for (std::size_t i = 0; i < p.nodes.size(); ++i)
-      for (std::size_t j = 0; j < p.nodes.size(); ++j)
+      for (std::size_t j = 0; j <= i; ++j)
         tangent.add_block(p.nodes[i], p.nodes[j], p.slope * p.length_gradient(i) * p.length_gradient(j).transpose());
     for (std::size_t s = 0; s < p.segments.size(); ++s) {
       const NodeId a = p.nodes[s], b = p.nodes[s + 1];
@@ -196,7 +196,6 @@ void Contraction::add_tangent(const Step& step, TangentSink& tangent) const {
       tangent.add_block(a, a, block);
       tangent.add_block(b, b, block);
       tangent.add_block(a, b, -block);
-      tangent.add_block(b, a, -block);
     }
   });
 }

@@ -121,7 +121,6 @@ void Corotational::add_tangent(const Step& step, TangentSink& tangent) const {
           Mat3 block;
           for (int k = 0; k < 9; ++k) block.data()[k] = of_batch[pair][k][e % batch_size];
           tangent.add_block(node(e, i), node(e, j), block);
-          if (j < i) tangent.add_block(node(e, j), node(e, i), block.transpose());
         }
     }
   }

@@ -28,8 +28,8 @@ struct Step {
   bool semidefinite_tangent = false;
 };
 
-/// Collects 3 x 3 blocks of a symmetric tangent. `add_block(a, b, K)` adds K to the rows of a and columns of b; every
-/// pair of different nodes is given in both orders.
+/// Collects 3 x 3 blocks of a symmetric tangent. `add_block(a, b, K)` adds K to the rows of a and columns of b and, for
+/// two different nodes, its transpose to the rows of b and columns of a: each pair is given in one order only.
 class TangentSink {
  public:
   virtual ~TangentSink() = default;

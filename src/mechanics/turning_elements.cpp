@@ -231,7 +231,7 @@ void TurningElements::add_tangent(const Step& step, TangentSink& tangent) const 
       const auto& nodes = elements_[first + k].nodes;
       const Mat3& R = rotations[k];
       for (int i = 0; i < 8; ++i)
-        for (int j = 0; j < 8; ++j)
+        for (int j = 0; j <= i; ++j)
           tangent.add_block(nodes[i], nodes[j], R * blocks[k].block<3, 3>(3 * i, 3 * j) * R.transpose());
     }
   }

@@ -59,18 +59,26 @@ void StepMatrix::set_zero() { std::fill(blocks_.begin(), blocks_.end(), Mat3::Ze
 
 void StepMatrix::add_block(NodeId row, NodeId column, const Mat3& block) {
   const std::size_t free = tissue_.free_node_count();
-  if (row.index() < free && column.index() < free) return add_free_block(row, column, block);
+  if (row.index() < free && column.index() < free) {
+    if (column <= row)
+      lower_block(row, column) += block;
+    else
+      lower_block(column, row) += block.transpose();
+    return;
+  }
   tissue_.for_free_nodes(row, [&](NodeId r, double weight_r) {
-    tissue_.for_free_nodes(column,
-                           [&](NodeId c, double weight_c) { add_free_block(r, c, weight_r * weight_c * block); });
+    tissue_.for_free_nodes(column, [&](NodeId c, double weight_c) {
+      // Both orders of a pair; nodes that carry both of them are in it twice.
+      if (c <= r) lower_block(r, c) += weight_r * weight_c * block;
+      if (r <= c && row != column) lower_block(c, r) += weight_r * weight_c * block.transpose();
+    });
   });
 }
 
-void StepMatrix::add_free_block(NodeId row, NodeId column, const Mat3& block) {
-  if (column > row) return;
+Mat3& StepMatrix::lower_block(NodeId row, NodeId column) {
   const auto first = layout_.columns.begin() + layout_.starts[row.index()],
              last = layout_.columns.begin() + layout_.starts[row.index() + 1];
-  blocks_[std::lower_bound(first, last, column.number()) - layout_.columns.begin()] += block;
+  return blocks_[std::lower_bound(first, last, column.number()) - layout_.columns.begin()];
 }
 
 void StepMatrix::assemble(const Model& model, const Step& step, const Iterate& at) {
@@ -97,7 +105,8 @@ void StepMatrix::add_volume_stiffness(const Model& model, std::span<const Vec3> 
     const double weight = weights[cell] * model.tissue.cells[cell].element_count;
     const auto& nodes = model.tissue.elements[e];
     for (int i = 0; i < 8; ++i)
-      for (int j = 0; j < 8; ++j) add_block(nodes[i], nodes[j], weight * gradients[e][i] * gradients[e][j].transpose());
+      for (int j = 0; j <= i; ++j)
+        add_block(nodes[i], nodes[j], weight * gradients[e][i] * gradients[e][j].transpose());
   }
 }
 

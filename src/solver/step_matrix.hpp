@@ -56,7 +56,7 @@ class StepMatrix final : public TangentSink {
   void write_projected_blocks(std::span<const NodeFrame> frames, std::vector<float>& values) const;
 
  private:
-  void add_free_block(NodeId row, NodeId column, const Mat3& block);
+  [[nodiscard]] Mat3& lower_block(NodeId row, NodeId column);  // column <= row, both free
 
   const Tissue& tissue_;
   BlockPattern layout_;  // lower triangle

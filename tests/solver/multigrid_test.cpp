@@ -28,7 +28,10 @@ class System final : public TangentSink {
   }
 
   void add_block(NodeId row, NodeId column, const Mat3& block) override {
-    if (column <= row) blocks_[pattern.find(row.number(), column.number())] += block;
+    if (column <= row)
+      blocks_[pattern.find(row.number(), column.number())] += block;
+    else
+      blocks_[pattern.find(column.number(), row.number())] += block.transpose();
   }
 
   /// After `normals`, unit vectors or zero, are as they should be.

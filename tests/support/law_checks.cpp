@@ -18,6 +18,7 @@ DenseTangent::DenseTangent(const Law& law, const Step& step)
 
 void DenseTangent::add_block(NodeId row, NodeId column, const Mat3& block) {
   matrix.block<3, 3>(3 * row.number(), 3 * column.number()) += block;
+  if (row != column) matrix.block<3, 3>(3 * column.number(), 3 * row.number()) += block.transpose();
 }
 
 Eigen::VectorXd flat(const Vectors& vectors) {

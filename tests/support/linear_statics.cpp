@@ -13,7 +13,10 @@ namespace {
 struct Triplets final : TangentSink {
   void add_block(NodeId row, NodeId column, const Mat3& block) override {
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) entries.emplace_back(3 * row.number() + i, 3 * column.number() + j, block(i, j));
+      for (int j = 0; j < 3; ++j) {
+        entries.emplace_back(3 * row.number() + i, 3 * column.number() + j, block(i, j));
+        if (row != column) entries.emplace_back(3 * column.number() + j, 3 * row.number() + i, block(i, j));
+      }
   }
   std::vector<Eigen::Triplet<double>> entries;
 };
@@ -54,7 +57,7 @@ LinearStatics LinearStatics::of_elements(const Tissue& tissue, const ElasticModu
   for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
     const Mat24 K = incompatible_stiffness(tissue.element_rest_shape[e], moduli);
     for (int i = 0; i < 8; ++i)
-      for (int j = 0; j < 8; ++j)
+      for (int j = 0; j <= i; ++j)
         triplets.add_block(tissue.elements[e][i], tissue.elements[e][j], K.block<3, 3>(3 * i, 3 * j));
   }
   statics.stiffness_ = std::make_unique<Stiffness>(statics.size_, triplets);
