@@ -111,6 +111,10 @@ struct Setting {
 
 using Clock = std::chrono::steady_clock;
 
+// A step under way at an interruption is finished if it can be within this. What ends processes (Docker, Slurm) waits
+// for 10 s and more.
+constexpr double step_patience_s = 3;
+
 // From where the memory is to the end. `before`: wall times until then, in earlier runs.
 struct Ending {
   RunResult result;
@@ -132,7 +136,7 @@ Ending simulate(Setting& setting, Recorder& recorder, RunMemory memory, const Wa
         solver_clock.start();
         return StepAnswer(!interrupted(), row.is_over);
       },
-      [&] { return interrupted() || recorder.has_failed(); },
+      [&] { return interrupted_for(step_patience_s) || recorder.has_failed(); },
       [&](const Division& division, const State& state) {
         solver_clock.stop();
         setting.observer.follow_division(division);

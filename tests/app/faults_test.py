@@ -137,6 +137,25 @@ class Endings(CommandLine):
                 self.assertEqual(self.summary(out)["steps"], len(rows) - 1)
                 self.assert_whole(out)
 
+    def test_an_interrupted_step_is_finished_if_that_takes_no_longer_than_3_s(self):
+        support.count_case()
+        process = start("run", "drosophila", "--set", "embryo.elements_per_cell=[2,2,2]", "--out", self.out)
+        try:
+            series = self.out / "series.csv"
+            # Its header, the embryo at rest.
+            while process.poll() is None and (not series.exists() or len(series.read_text().splitlines()) < 2):
+                time.sleep(0.01)
+            process.send_signal(signal.SIGINT)
+            signalled = time.monotonic()
+            process.communicate(timeout=60)
+        finally:
+            process.kill()
+            process.communicate()
+        self.assertEqual(process.returncode, 130)
+        if self.summary(self.out)["steps"] == 0:
+            self.assertGreater(time.monotonic() - signalled, 3, "the step was given up at once")
+        self.assert_whole(self.out)
+
     def test_an_interrupted_step_is_given_up_within_seconds(self):
         # An embryo so thin that Newton's method struggles for minutes within one step: the signal must be heard there.
         support.count_case()
