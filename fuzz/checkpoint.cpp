@@ -15,7 +15,7 @@ void require(bool holds) {
   if (!holds) __builtin_trap();
 }
 
-/// The HDF5 file with the end of a checkpoint behind it: docs/checkpoints.md.
+/// The HDF5 file with the end of a checkpoint behind it: docs/reliability.md.
 std::string with_checksum(std::string_view image) {
   std::string end = fmt::format("\nplica checkpoint 1 bytes {} crc32 {:08x}", image.size(),
                                 libdeflate_crc32(0, image.data(), image.size()));

@@ -25,6 +25,7 @@ namespace {
   // The C library and the sanitizers tell of a crash on stderr; the parent says it better.
   const int nowhere = ::open("/dev/null", O_WRONLY);
   ::dup2(nowhere, STDERR_FILENO);
+  for (const int fatal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(fatal, SIG_DFL);
   int status = 1;
   try {
     const std::string output = work();
