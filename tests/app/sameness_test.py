@@ -1,0 +1,84 @@
+"""The same scenario gives the same results: to the bit for any number of threads and again and again, and with any kernels
+but for what rounding does.
+
+By hand, a debug or another build beside this one: sameness_test.py PROGRAM --beside OTHER_PROGRAM Sameness.test_another_build
+"""
+import os
+import subprocess
+import sys
+
+import support
+from resuming import DIVIDING, Resuming, results
+from support import plica, table
+
+# So many elements that every loop is shared between threads.
+LARGE = ["drosophila", "--set", "embryo.elements_per_cell=[2,2,2]", "--set", "time.end_s=0.1", "--set", "output.frame_every_s=0.05"]
+# A whole run of one element a cell, and one with two divisions.
+RUNS = {"drosophila": ["drosophila"], "dividing": DIVIDING}
+# Columns of series.csv and how far kernels may be apart, of the largest value of each: rounding, carried through a whole run.
+KERNELS_AGREE = 1e-7
+OTHER_PROGRAM = None
+
+
+class Sameness(Resuming):
+    def test_any_number_of_threads_and_again(self):
+        expected = None
+        for threads in (1, 2, 4, 2):
+            out = self.folder / f"threads_{threads}"
+            support.count_case()
+            # What is set for all tests would win.
+            environment = {key: value for key, value in os.environ.items() if key != "OMP_NUM_THREADS"}
+            result = plica("run", *LARGE, "--threads", threads, "--out", out, "--overwrite", env=environment, timeout=280)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            found = results(out)
+            expected = expected or found
+            with self.subTest(threads=threads):
+                self.assertEqual(sorted(found), sorted(expected))
+                self.assertEqual([name for name in found if found[name] != expected[name]], [])
+
+    def available_kernels(self):
+        refusal = plica("run", "drosophila", "--out", self.out, env=os.environ | {"PLICA_KERNELS": "?"})
+        return refusal.stderr.split("this machine has ")[1].strip().split(", ")
+
+    def test_any_kernels_but_for_rounding(self):
+        series = {}
+        for kernels in self.available_kernels():
+            support.count_case()
+            out = self.folder / kernels
+            result = plica("run", *RUNS["drosophila"], "--out", out, env=os.environ | {"PLICA_KERNELS": kernels}, timeout=120)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            series[kernels] = table(out / "series.csv")
+        largest = 0
+        first = series["generic"]
+        for kernels, rows in series.items():
+            self.assertEqual(len(rows), len(first))
+            for column in first[0]:
+                if column in ("max_volume_error", "newton_iterations", "linear_iterations"):
+                    continue  # of how it is computed
+                values = [[float(row[column] or "nan") for row in of] for of in (first, rows)]
+                self.assertEqual([value == value for value in values[0]], [value == value for value in values[1]], column)
+                scale = max(abs(value) for value in values[0] if value == value)
+                difference = max(abs(a - b) for a, b in zip(*values) if a == a)
+                with self.subTest(kernels=kernels, column=column):
+                    self.assertLessEqual(difference, KERNELS_AGREE * scale)
+                largest = max(largest, difference / scale if scale else 0)
+        print(f"kernels {', '.join(series)}: series agree to {largest:.1e} of the largest value of a column")
+
+    def test_another_build(self):
+        if OTHER_PROGRAM is None:
+            self.skipTest("by hand, with --beside")
+        for name, scenario in RUNS.items():
+            expected = self.whole_run(scenario, "--overwrite")
+            result = subprocess.run([OTHER_PROGRAM, "run", *scenario, "--out", self.out, "--overwrite"], capture_output=True, text=True)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            with self.subTest(name):
+                found = results(self.out)
+                self.assertEqual([file for file in expected if found.get(file) != expected[file]], [])
+
+
+if __name__ == "__main__":
+    if "--beside" in sys.argv:
+        at = sys.argv.index("--beside")
+        OTHER_PROGRAM = sys.argv[at + 1]
+        del sys.argv[at : at + 2]
+    support.main()
