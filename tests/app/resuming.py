@@ -7,10 +7,10 @@ from pathlib import Path
 import support
 from support import CHECKPOINTS, CommandLine, plica, start, tree
 
-# Two divisions, growth after each, frames; 137 steps or so.
+# Two divisions, growth after each, frames; 168 steps or so.
 DIVIDING = ["drosophila-division-twice"]
 for setting in ("division.floor.at_min=0.2", "division.floor.growth_min=0.3", "division.borders.at_min=0.7",
-                "division.borders.growth_min=0.3", "time.end_min=1.5", "output.frame_every_s=5"):
+                "division.borders.growth_min=0.3", "time.end_min=1.5", "time.tolerance_um=0.02", "output.frame_every_s=5"):
     DIVIDING += ["--set", setting]
 
 
