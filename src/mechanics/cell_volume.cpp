@@ -109,8 +109,12 @@ void CellVolumes::add_tangent_product(std::span<const Vec3> positions, std::span
 
 void CellVolumes::add_tangent(std::span<const Vec3> positions, std::span<const double> pressures,
                               TangentSink& tangent) const {
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    add_volume_hessian(elements_[e], gather(positions, elements_[e]), -pressures[element_cell_[e].index()], tangent);
+  for_elements(
+      [&](std::size_t e) {
+        const double pressure = pressures[element_cell_[e].index()];
+        add_volume_hessian(elements_[e], gather(positions, elements_[e]), -pressure, tangent);
+      },
+      tangent.takes_apart());
 }
 
 Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact, Kernels kernels)
@@ -150,17 +154,20 @@ void Dilatation::add_tangent_product(const Step& step, std::span<const Vec3> dir
 }
 
 void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const auto& nodes = elements_[e];
-    const HexPoints points = gather(step.positions, nodes);
-    const double rest_volume = volumes_.rest_volume(e);
-    const double pressure = bulk_modulus_ * (1 - hex_volume(points) / rest_volume);
-    if (!step.semidefinite_tangent) add_volume_hessian(nodes, points, -pressure, tangent);
-    const auto gradient = hex_volume_gradient(points);
-    for (int i = 0; i < 8; ++i)
-      for (int j = 0; j <= i; ++j)
-        tangent.add_block(nodes[i], nodes[j], bulk_modulus_ / rest_volume * gradient[i] * gradient[j].transpose());
-  }
+  if (elements_.empty()) return;
+  volumes_.chunks().for_elements(
+      [&](std::size_t e) {
+        const auto& nodes = elements_[e];
+        const HexPoints points = gather(step.positions, nodes);
+        const double rest_volume = volumes_.rest_volume(e);
+        const double pressure = bulk_modulus_ * (1 - hex_volume(points) / rest_volume);
+        if (!step.semidefinite_tangent) add_volume_hessian(nodes, points, -pressure, tangent);
+        const auto gradient = hex_volume_gradient(points);
+        for (int i = 0; i < 8; ++i)
+          for (int j = 0; j <= i; ++j)
+            tangent.add_block(nodes[i], nodes[j], bulk_modulus_ / rest_volume * gradient[i] * gradient[j].transpose());
+      },
+      tangent.takes_apart());
 }
 
 NodeGroups Dilatation::node_groups() const {

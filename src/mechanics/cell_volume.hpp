@@ -67,6 +67,12 @@ class CellVolumes {
   void add_tangent(std::span<const Vec3> positions, std::span<const double> pressures, TangentSink& tangent) const;
 
   [[nodiscard]] const std::vector<std::array<NodeId, 8>>& elements() const { return elements_; }
+  /// Calls body(element) for every element; with `shared`, for elements that have no node in common at once.
+  template <class Body>
+  void for_elements(const Body& body, bool shared) const {
+    volumes_.chunks().for_elements(body, shared);
+  }
+
   [[nodiscard]] CellId cell_of(std::size_t element) const { return element_cell_[element]; }
 
   /// What the kernels are given.

@@ -106,24 +106,24 @@ void Corotational::add_tangent_product(const Step& step, std::span<const Vec3> d
 }
 
 void Corotational::add_tangent(const Step& step, TangentSink& tangent) const {
-  // Some batches at a time: computed by all threads, added in order.
-  constexpr std::size_t at_once = 128;
-  const auto blocks = std::make_unique_for_overwrite<CorotationalBlocks[]>(std::min(at_once, batches_.size()));
   const CorotationalStep at = kernel_step(step);
-  for (std::size_t first = 0; first < batches_.size(); first += at_once) {
-    const std::size_t last = std::min(first + at_once, batches_.size());
-    parallel_for(
-        last - first, [&](std::size_t k) { kernels().write_blocks(at, first + k, blocks[k]); }, long_bodies);
-    for (std::size_t e = first * batch_size; e < std::min(last * batch_size, chunks_.element_count()); ++e) {
-      const auto& of_batch = blocks[e / batch_size - first].blocks;
+  const auto add_batch = [&](std::size_t batch) {
+    CorotationalBlocks of_batch;
+    kernels().write_blocks(at, batch, of_batch);
+    const std::size_t first = batch * batch_size;
+    for (std::size_t e = first; e < std::min(first + batch_size, chunks_.element_count()); ++e)
       for (int i = 0, pair = 0; i < 8; ++i)
         for (int j = 0; j <= i; ++j, ++pair) {
           Mat3 block;
-          for (int k = 0; k < 9; ++k) block.data()[k] = of_batch[pair][k][e % batch_size];
+          for (int k = 0; k < 9; ++k) block.data()[k] = of_batch.blocks[pair][k][e - first];
           tangent.add_block(node(e, i), node(e, j), block);
         }
-    }
-  }
+  };
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) {
+        for (std::size_t batch = first; batch < last; ++batch) add_batch(batch);
+      },
+      tangent.takes_apart());
 }
 
 NodeId Corotational::node(std::size_t e, int corner) const {

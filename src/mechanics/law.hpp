@@ -34,6 +34,9 @@ class TangentSink {
  public:
   virtual ~TangentSink() = default;
   virtual void add_block(NodeId row, NodeId column, const Mat3& block) = 0;
+
+  /// Whether several threads may add blocks at once, of nodes of which none is another's.
+  [[nodiscard]] virtual bool takes_apart() const { return false; }
 };
 
 /// Groups of nodes whose tangent blocks may be non-zero: the sparsity pattern of a law.

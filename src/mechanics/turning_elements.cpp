@@ -187,54 +187,43 @@ void TurningElements::add_tangent_product(const Step& step, std::span<const Vec3
 }
 
 void TurningElements::add_tangent(const Step& step, TangentSink& tangent) const {
-  // A batch at a time: computed by all threads, added in order.
-  constexpr std::size_t batch = 1024;
-  std::vector<Mat24> blocks(std::min(batch, elements_.size()));
-  std::vector<Mat3> rotations(blocks.size());
-  for (std::size_t first = 0; first < elements_.size(); first += batch) {
-    const std::size_t count = std::min(batch, elements_.size() - first);
-    parallel_for(
-        count,
-        [&](std::size_t k) {
-          const Element& element = elements_[first + k];
-          const Frame f = frame(first + k, step);
-          rotations[k] = f.R;
-          Mat24 space;
-          Mat24 K = local_stiffness(first + k, f.u, space);
-          if (viscous_) K += f.viscous_factor * element.viscosity;
-          if (step.semidefinite_tangent) {
-            blocks[k] = K;
-            return;
-          }
-          // The product above as matrices: omega = G w, du = (I + Y G) w with Y_i = [y_i]x.
-          Mat3x24 G, Q, D;
-          Mat24x3 Y, g;
-          for (int i = 0; i < 8; ++i) {
-            const Vec3& b = element.frame[i];
-            G.middleCols<3>(3 * i) = f.H * cross_matrix(b);
-            Q.middleCols<3>(3 * i) = -cross_matrix(f.q.segment<3>(3 * i));
-            D.middleCols<3>(3 * i) = b.dot(f.t) * Mat3::Identity() - f.t * b.transpose();
-            Y.middleRows<3>(3 * i) = cross_matrix(f.y[i]);
-            g.middleRows<3>(3 * i) = cross_matrix(f.g.segment<3>(3 * i));
-          }
-          // lazyProduct: these products are too small for Eigen's blocked kernels.
-          const Mat24x3 W = K.lazyProduct(Y);
-          const Mat3 middle = Y.transpose().lazyProduct(W) - Q.lazyProduct(Y) - cross_matrix(f.S * f.t);
-          const Mat24x3 left = W - g;
-          const Mat3x24 right = W.transpose() - Q - D + middle.lazyProduct(G);
-          K += left.lazyProduct(G);
-          K += G.transpose().lazyProduct(right);
-          blocks[k] = 0.5 * (K + K.transpose());  // symmetric but for rounding
-        },
-        long_bodies);
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto& nodes = elements_[first + k].nodes;
-      const Mat3& R = rotations[k];
-      for (int i = 0; i < 8; ++i)
-        for (int j = 0; j <= i; ++j)
-          tangent.add_block(nodes[i], nodes[j], R * blocks[k].block<3, 3>(3 * i, 3 * j) * R.transpose());
-    }
-  }
+  const auto add = [&](const Element& element, const Mat3& R, const Mat24& K) {
+    for (int i = 0; i < 8; ++i)
+      for (int j = 0; j <= i; ++j)
+        tangent.add_block(element.nodes[i], element.nodes[j], R * K.block<3, 3>(3 * i, 3 * j) * R.transpose());
+  };
+  chunks_.for_elements(
+      [&](std::size_t e) {
+        const Element& element = elements_[e];
+        const Frame f = frame(e, step);
+        Mat24 space;
+        Mat24 K = local_stiffness(e, f.u, space);
+        if (viscous_) K += f.viscous_factor * element.viscosity;
+        if (step.semidefinite_tangent) {
+          add(element, f.R, K);
+          return;
+        }
+        // The product above as matrices: omega = G w, du = (I + Y G) w with Y_i = [y_i]x.
+        Mat3x24 G, Q, D;
+        Mat24x3 Y, g;
+        for (int i = 0; i < 8; ++i) {
+          const Vec3& b = element.frame[i];
+          G.middleCols<3>(3 * i) = f.H * cross_matrix(b);
+          Q.middleCols<3>(3 * i) = -cross_matrix(f.q.segment<3>(3 * i));
+          D.middleCols<3>(3 * i) = b.dot(f.t) * Mat3::Identity() - f.t * b.transpose();
+          Y.middleRows<3>(3 * i) = cross_matrix(f.y[i]);
+          g.middleRows<3>(3 * i) = cross_matrix(f.g.segment<3>(3 * i));
+        }
+        // lazyProduct: these products are too small for Eigen's blocked kernels.
+        const Mat24x3 W = K.lazyProduct(Y);
+        const Mat3 middle = Y.transpose().lazyProduct(W) - Q.lazyProduct(Y) - cross_matrix(f.S * f.t);
+        const Mat24x3 left = W - g;
+        const Mat3x24 right = W.transpose() - Q - D + middle.lazyProduct(G);
+        K += left.lazyProduct(G);
+        K += G.transpose().lazyProduct(right);
+        add(element, f.R, 0.5 * (K + K.transpose()));  // symmetric but for rounding
+      },
+      tangent.takes_apart());
 }
 
 NodeGroups TurningElements::node_groups() const {

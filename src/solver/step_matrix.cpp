@@ -99,15 +99,17 @@ void StepMatrix::add_volume_stiffness(const Model& model, std::span<const Vec3> 
                                       std::span<const double> weights) {
   if (weights.empty()) return;
   const auto gradients = model.volumes.element_gradients(positions);
-  for (std::size_t e = 0; e < gradients.size(); ++e) {
-    // sum_e 1/V_e (dV_e)^2 >= 1/V_c (sum_e dV_e)^2.
-    const std::size_t cell = model.volumes.cell_of(e).index();
-    const double weight = weights[cell] * model.tissue.cells[cell].element_count;
-    const auto& nodes = model.tissue.elements[e];
-    for (int i = 0; i < 8; ++i)
-      for (int j = 0; j <= i; ++j)
-        add_block(nodes[i], nodes[j], weight * gradients[e][i] * gradients[e][j].transpose());
-  }
+  model.volumes.for_elements(
+      [&](std::size_t e) {
+        // sum_e 1/V_e (dV_e)^2 >= 1/V_c (sum_e dV_e)^2.
+        const std::size_t cell = model.volumes.cell_of(e).index();
+        const double weight = weights[cell] * model.tissue.cells[cell].element_count;
+        const auto& nodes = model.tissue.elements[e];
+        for (int i = 0; i < 8; ++i)
+          for (int j = 0; j <= i; ++j)
+            add_block(nodes[i], nodes[j], weight * gradients[e][i] * gradients[e][j].transpose());
+      },
+      takes_apart());
 }
 
 double StepMatrix::mean_diagonal() const {

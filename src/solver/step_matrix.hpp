@@ -29,6 +29,8 @@ class StepMatrix final : public TangentSink {
   /// The tangent of all laws and constraints, and the volumes' gradients, at an iterate.
   void assemble(const Model& model, const Step& step, const Iterate& at);
   void add_block(NodeId row, NodeId column, const Mat3& block) override;
+  /// What acts on a hanging node acts on others.
+  [[nodiscard]] bool takes_apart() const override { return tissue_.free_node_count() == tissue_.node_count(); }
   void set_volume_gradients(const CellVolumes& volumes, std::span<const Vec3> positions) {
     jacobian_.update(volumes, positions);
   }

@@ -35,18 +35,20 @@ class ElementChunks {
   [[nodiscard]] std::size_t element_count() const { return elements_; }
   [[nodiscard]] std::size_t batch_count() const { return (elements_ + batch_size - 1) / batch_size; }
 
-  /// Calls body(first batch, last batch) for every chunk. `last` is the one after.
+  /// Calls body(first batch, last batch) for every chunk. `last` is the one after. On one thread unless `shared`.
   template <class Body>
-  void for_batches(const Body& body) const {
-    for_chunks([&](std::size_t chunk) { body(first_batch(chunk), last_batch(chunk)); });
+  void for_batches(const Body& body, bool shared = true) const {
+    for_chunks([&](std::size_t chunk) { body(first_batch(chunk), last_batch(chunk)); }, shared);
   }
 
   /// Calls body(element) for every element.
   template <class Body>
-  void for_elements(const Body& body) const {
-    for_chunks([&](std::size_t chunk) {
-      for (std::size_t e = first_batch(chunk) * batch_size; e < last_element(chunk); ++e) body(e);
-    });
+  void for_elements(const Body& body, bool shared = true) const {
+    for_chunks(
+        [&](std::size_t chunk) {
+          for (std::size_t e = first_batch(chunk) * batch_size; e < last_element(chunk); ++e) body(e);
+        },
+        shared);
   }
 
   /// The sum of body(first batch, last batch) over all chunks.
@@ -71,9 +73,9 @@ class ElementChunks {
 
  private:
   template <class Body>
-  void for_chunks(const Body& body) const {
+  void for_chunks(const Body& body, bool shared = true) const {
     constexpr std::size_t worth_sharing = 2048;  // elements; with fewer, waking other threads costs more than they save
-    if (elements_ < worth_sharing || omp_get_max_threads() == 1) {
+    if (!shared || elements_ < worth_sharing || omp_get_max_threads() == 1) {
       for (const std::size_t chunk : order_) body(chunk);
       return;
     }
