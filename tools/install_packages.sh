@@ -1,7 +1,7 @@
 #!/bin/bash
 # Installs the Debian 12 packages that plica needs: with root or sudo, and only when some are missing.
 # Usage: tools/install_packages.sh [GROUP...], of: build libraries viewer browser tests checks tidy pictures fuzz. Without a
-# group: all of them but fuzz.
+# group: all of them.
 set -euo pipefail
 
 # The one list of packages. docs/dependencies.md says why each library is here.
@@ -20,12 +20,12 @@ declare -A packages=(
   # What plica render draws with where there is no screen: an X server without one, and OpenGL in software. (xauth: for
   # xvfb-run, by which ParaView's test does so.)
   [pictures]="xvfb xauth libgl1-mesa-dri"
-  # To fuzz the readers by hand: fuzz/run. (Clang 14 with libFuzzer and the sanitizers; not installed without asking.)
+  # To fuzz the readers: fuzz/run. (Clang 14 with libFuzzer and the sanitizers.)
   [fuzz]="clang libclang-rt-14-dev libomp-14-dev"
 )
 
 groups=("$@")
-[ ${#groups[@]} -gt 0 ] || groups=(build libraries viewer browser tests checks tidy pictures)
+[ ${#groups[@]} -gt 0 ] || groups=(build libraries viewer browser tests checks tidy pictures fuzz)
 
 wanted=()
 for group in "${groups[@]}"; do

@@ -101,6 +101,21 @@ TEST_F(CheckpointTest, ComesBackAsItWas) {
   EXPECT_EQ(made_right(bytes), bytes) << "this test's own checksum";
 }
 
+// Rows, contacts and divisions come and go between them: what is in one is not in the next unless it should be.
+TEST_F(CheckpointTest, OneAfterTheOtherHoldTheSameAsEachAlone) {
+  CheckpointBytes bytes_of;
+  std::size_t largest = 0, largest_alone = 0;
+  const auto& checkpoints = block_run().checkpoints;
+  for (int round = 0; round < 2; ++round)  // from the last to the first: rows become fewer
+    for (const Checkpoint& checkpoint : checkpoints) {
+      const std::string bytes = bytes_of(checkpoint), alone = checkpoint_bytes(checkpoint);
+      EXPECT_EQ(checkpoint_bytes(read_checkpoint_bytes(bytes)), alone);
+      largest = std::max(largest, bytes.size()), largest_alone = std::max(largest_alone, alone.size());
+    }
+  EXPECT_GT(checkpoints.size(), 5U);
+  EXPECT_LT(largest, 2 * largest_alone) << "room that was given up is used again";
+}
+
 TEST_F(CheckpointTest, EveryDamageIsRefused) {
   const std::string whole = checkpoint_bytes(block_run().last());
   int cases = 0;
