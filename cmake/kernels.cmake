@@ -1,11 +1,16 @@
 # Kernel sources are compiled once for each instruction set that they are worth it for, and all of that goes into
 # plica_core; the program chooses when it runs (src/mechanics/kernels/kernels.hpp). They may use fused multiply-add, and are
-# optimised alike in every build, so that a debug build's results are those of a release build.
+# optimised alike in every build, so that a debug build's results are those of a release build; but not under sanitizers,
+# whose checks make that take minutes a file.
+set(kernel_optimisation -O3)
+if(PLICA_SANITIZE)
+  set(kernel_optimisation -O1)
+endif()
 function(add_kernels name lanes)
   add_library(plica_kernels_${name} OBJECT ${kernel_sources})
   target_link_libraries(plica_kernels_${name} PRIVATE plica_options)
   target_compile_definitions(plica_kernels_${name} PRIVATE PLICA_KERNELS=${name} PLICA_LANES=${lanes})
-  target_compile_options(plica_kernels_${name} PRIVATE -O3 ${ARGN})
+  target_compile_options(plica_kernels_${name} PRIVATE ${kernel_optimisation} ${ARGN})
   target_sources(plica_core PRIVATE $<TARGET_OBJECTS:plica_kernels_${name}>)
 endfunction()
 
