@@ -30,8 +30,6 @@ void ContactBorder::begin(const Model& model, const StepMatrix& matrix, std::vec
   frames_ = std::move(frames);
   in_contact_ = std::move(in_contact);
   most_changes_ = most_changes;
-  const auto size = static_cast<Eigen::Index>(most_changes);
-  complement_.resize(size, size);
   columns_.clear();
   active_.clear();
 }
@@ -66,6 +64,7 @@ void ContactBorder::add_column(const Change& change, const BlockCholesky& factor
   columns_.push_back(std::move(column));
   const Column& last = columns_.back();
   const auto i = static_cast<Eigen::Index>(columns_.size()) - 1;
+  complement_.conservativeResize(i + 1, i + 1);
   complement_(i, i) = diagonal - inner(last.halfway, z_);
   for (Eigen::Index j = 0; j < i; ++j) {
     const Column& other = columns_[j];

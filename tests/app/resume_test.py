@@ -200,6 +200,19 @@ class Directories(Resuming):
                 self.assertIn(name, self.assert_messages(self.resumed(block, status=4))[0])
 
 
+    def test_another_way_to_solve_may_go_on(self):
+        """[time] may change at a resume; the factor in the checkpoint is then of no use, and does no harm."""
+        sphere = [self.write(SPHERE), "--set", "stop.at_equilibrium=false"]
+        for solver in ("direct", "cholesky", "multigrid"):
+            with self.subTest(solver):
+                shutil.rmtree(self.out, ignore_errors=True)
+                result = plica("run", *sphere, "--set", "time.end_s=3", "--out", self.out)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                more = ("--set", "time.end_s=6", "--set", f'time.linear_solver="{solver}"')
+                self.assertIn("going on after step", self.resumed(sphere, *more).stdout)
+                self.assertEqual(self.summary()["time_s"], 6)
+
+
 class Damage(Resuming):
     """Checkpoints that are not what they were."""
 
