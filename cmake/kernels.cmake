@@ -1,6 +1,6 @@
 # Kernel sources are compiled once for each instruction set that they are worth it for, and all of that goes into
 # plica_core; the program chooses when it runs (src/mechanics/kernels/kernels.hpp). They may use fused multiply-add, and are
-# optimised alike in every build, so that a debug build's results are those of a release build; but not under sanitizers,
+# optimised alike in every build, so that a debug build is fast where it matters; but not under sanitizers,
 # whose checks make that take minutes a file.
 set(kernel_optimisation -O3)
 if(PLICA_SANITIZE)
