@@ -140,45 +140,47 @@ TEST(ContactBorder, SolvesForTheContactsOfNow) {
   EXPECT_GE(std::sqrt(without / length), 1e-2) << "the changes should matter";
 }
 
+// A factor of a case, and its border before any contact has changed.
+struct Bordered {
+  explicit Bordered(const Case& given, const Model& model) : matrix(model), factor(matrix.layout()) {
+    matrix.assemble(model, given.step(), given.at);
+    std::vector<float> values;
+    matrix.write_projected_blocks(node_frames(model, given.at), values);
+    EXPECT_TRUE(factor.factorise(values));
+    border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact, 32);
+  }
+  StepMatrix matrix;
+  BlockCholesky factor;
+  ContactBorder border;
+};
+
 // A memory is read from a file.
 TEST(ContactBorder, RecallsAnyNumberOfChanges) {
   const Model model = furrowing_sphere();
   const Case given(model);
-  StepMatrix matrix(model);
-  matrix.assemble(model, given.step(), given.at);
-  BlockCholesky factor(matrix.layout());
-  std::vector<float> values;
-  matrix.write_projected_blocks(node_frames(model, given.at), values);
-  ASSERT_TRUE(factor.factorise(values));
+  Bordered now(given, model);
   FactorMemory memory;
   for (int k = 0; k < 40; ++k) {
     memory.changed_contacts.push_back(k);
     memory.has_left.push_back(false);
     memory.normals.push_back(Vec3::UnitX());
   }
-  ContactBorder border;
-  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact, 32);
-  border.recall(memory, factor);
-  EXPECT_FALSE(border.follow(given.at, factor)) << "too many to go on with";
+  now.border.recall(memory, now.factor);
+  Iterate changed = given.at;
+  changed.in_contact[41] ^= 1;
+  EXPECT_FALSE(now.border.follow(changed, now.factor)) << "too many to go on with";
   FactorMemory again;
-  border.remember(again);
+  now.border.remember(again);
   EXPECT_EQ(again.changed_contacts, memory.changed_contacts);
 }
 
 TEST(ContactBorder, TakesUpOnlySoManyChanges) {
   const Model model = furrowing_sphere();
   const Case given(model);
-  StepMatrix matrix(model);
-  matrix.assemble(model, given.step(), given.at);
-  BlockCholesky factor(matrix.layout());
-  std::vector<float> values;
-  matrix.write_projected_blocks(node_frames(model, given.at), values);
-  ASSERT_TRUE(factor.factorise(values));
-  ContactBorder border;
-  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact, 32);
-  Iterate now = given.at;
-  for (char& contact : now.in_contact) contact ^= 1;
-  EXPECT_FALSE(border.follow(now, factor));
+  Bordered now(given, model);
+  Iterate changed = given.at;
+  for (char& contact : changed.in_contact) contact ^= 1;
+  EXPECT_FALSE(now.border.follow(changed, now.factor));
 }
 
 }  // namespace
