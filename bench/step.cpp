@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/errors.hpp"
+#include "core/memory.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
 
@@ -130,7 +131,10 @@ int run(const Options& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) try { return run(read_options(argc, argv)); } catch (const ScenarioError& error) {
+int main(int argc, char** argv) try {
+  keep_freed_memory();  // as plica does
+  return run(read_options(argc, argv));
+} catch (const ScenarioError& error) {
   std::cerr << error.what() << "\n";
   return exit_usage;
 } catch (const std::exception& error) {

@@ -7,10 +7,12 @@
 
 #include "app/commands.hpp"
 #include "core/errors.hpp"
+#include "core/memory.hpp"
 #include "core/version.hpp"
 
 int main(int argc, char** argv) {
   using namespace plica;
+  keep_freed_memory();
   // A reader that goes away (`plica check ... | head`) is an error of writing, not a reason to die.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // likewise a file that reaches its limit

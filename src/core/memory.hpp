@@ -1,4 +1,4 @@
-// Room in memory, asked for ahead of libraries that cannot bear to be refused it.
+// Room in memory: asked for ahead of libraries that cannot bear to be refused it, and kept for the next who needs it.
 #pragma once
 
 #include <cstddef>
@@ -7,5 +7,10 @@ namespace plica {
 
 /// std::bad_alloc when there is no room for so many bytes now. Takes none of it.
 void make_sure_of_memory(std::size_t bytes);
+
+/// From now on the C library (glibc) keeps freed memory of any size instead of giving it back to the system, which
+/// would clear it each time it is asked for again: for programs that take and free the same large arrays all the time.
+/// To be called at the start of a program.
+void keep_freed_memory();
 
 }  // namespace plica
