@@ -39,7 +39,7 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint);
 Checkpoint read_checkpoint_bytes(std::string_view bytes);
 
 /// The same for the checkpoints of a run, one after the other: of each only what is new is made anew, which takes a
-/// third of the time. The first one's bytes are those of checkpoint_bytes.
+/// fifth of the time. The first one's bytes are those of checkpoint_bytes.
 class CheckpointBytes {
  public:
   CheckpointBytes();

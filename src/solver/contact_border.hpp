@@ -5,7 +5,7 @@
 //   [ B^T  D ] [ xi ] = [ n^T f, 0 ]     D: n^T A n among those that have left.
 // With A0 = L L^T and Y = L^-1 B this is, between the two halves of a solve with the factor,
 //   z = L^-1 f,   (D - Y^T Y) xi = [ n^T f, 0 ] - Y^T z,   x = L^-T (z - Y xi).
-// Y is sparse: a column of it costs a tenth of a solve, once.
+// Y is sparse: a column of it costs a part of half a solve, once.
 #pragma once
 
 #include <Eigen/LU>
