@@ -1,8 +1,21 @@
 // libFuzzer's way in, compiled once a target.
+#include <sanitizer/common_interface_defs.h>
+#include <unistd.h>
+
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 
 #include "targets.hpp"
+
+/// A child process whose time is up tells where it was.
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  std::signal(SIGXCPU, [](int) {
+    __sanitizer_print_stack_trace();
+    ::_exit(1);
+  });
+  return 0;
+}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   plica::PLICA_FUZZ_TARGET({reinterpret_cast<const char*>(data), size});
