@@ -20,7 +20,8 @@ declare -A packages=(
   # What plica render draws with where there is no screen: an X server without one, and OpenGL in software. (xauth: for
   # xvfb-run, by which ParaView's test does so.)
   [pictures]="xvfb xauth libgl1-mesa-dri"
-  # To fuzz the readers: fuzz/run. (Clang 14 with libFuzzer and the sanitizers.)
+  # To fuzz the readers, fuzz/run, and for the preset tsan. (Clang 14 with libFuzzer and the sanitizers; its OpenMP with
+  # Archer.)
   [fuzz]="clang libclang-rt-14-dev libomp-14-dev"
 )
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 extern "C" {  // BLAS
@@ -287,8 +288,13 @@ namespace {
 
 // A node's three numbers, and one that does not matter: nodes are moved between arrays of three and of four numbers a
 // node four at a time, in ascending order, so that what is written too much is overwritten by the next.
-using FourNumbers = float __attribute__((vector_size(16), aligned(4), may_alias));
-FourNumbers& four(float* numbers) { return *reinterpret_cast<FourNumbers*>(numbers); }
+typedef float FourNumbers __attribute__((vector_size(16)));  // NOLINT: no `using` for attributes
+FourNumbers read(const float* numbers) {
+  FourNumbers four;
+  std::memcpy(&four, numbers, sizeof four);
+  return four;
+}
+void write(float* numbers, FourNumbers four) { std::memcpy(numbers, &four, sizeof four); }
 
 }  // namespace
 
@@ -316,12 +322,12 @@ void BlockCholesky::solve_up(Halfway& z, std::span<float> x) const {
 void BlockCholesky::solve_down(const Supernode& node, Halfway& x) const {
   float* const own = own_.data();
   float* const front = front_.data()->numbers;
-  for (int k = 0; k < node.columns; ++k) four(own + 3 * k) = four(x[node.first + k].numbers);
+  for (int k = 0; k < node.columns; ++k) write(own + 3 * k, read(x[node.first + k].numbers));
   multiply(panel_of(node), own, front_.data());
-  for (int k = 0; k < node.columns; ++k) four(x[node.first + k].numbers) = four(front + 3 * k);
+  for (int k = 0; k < node.columns; ++k) write(x[node.first + k].numbers, read(front + 3 * k));
   float* below = front + node.width();
   for (const int row : node.rows) {
-    four(x[row].numbers) -= four(below);
+    write(x[row].numbers, read(x[row].numbers) - read(below));
     below += 3;
   }
 }
@@ -329,15 +335,15 @@ void BlockCholesky::solve_down(const Supernode& node, Halfway& x) const {
 void BlockCholesky::solve_up(const Supernode& node, Halfway& x) const {
   float* const own = own_.data();
   float* const front = front_.data()->numbers;
-  for (int k = 0; k < node.columns; ++k) four(front + 3 * k) = four(x[node.first + k].numbers);
+  for (int k = 0; k < node.columns; ++k) write(front + 3 * k, read(x[node.first + k].numbers));
   float* below = front + node.width();
   for (const int row : node.rows) {
-    four(below) = -four(x[row].numbers);
+    write(below, -read(x[row].numbers));
     below += 3;
   }
   std::fill(below, front + chunks_for(node.height()) * PanelChunk::size, 0.0F);  // after the last node
   multiply_transposed(panel_of(node), front_.data(), own);
-  for (int k = 0; k < node.columns; ++k) four(x[node.first + k].numbers) = four(own + 3 * k);
+  for (int k = 0; k < node.columns; ++k) write(x[node.first + k].numbers, read(own + 3 * k));
 }
 
 }  // namespace plica

@@ -70,7 +70,10 @@ std::span<const double> KrylovDirections::of_cells(const Vector& vector) const {
 }
 
 void KrylovDirections::project(std::span<Vec3> vectors) const {
-  for (const std::size_t n : fixed_nodes_) vectors[n] = frames_[n].free_part(vectors[n]);
+  parallel_for(fixed_nodes_.size(), [&](std::size_t k) {
+    const std::size_t n = fixed_nodes_[k];
+    vectors[n] = frames_[n].free_part(vectors[n]);
+  });
 }
 
 void KrylovDirections::linearise(const Iterate& at) {
@@ -146,7 +149,7 @@ std::vector<float> KrylovDirections::rigid_motions(const Iterate& at) const {
 void KrylovDirections::multiply(const Step& step, const Iterate& at, const Vector& direction, Vector& product) const {
   const std::span<const Vec3> dx = of_nodes(direction);
   const std::span<Vec3> forces = of_nodes(product);
-  std::fill(forces.begin(), forces.end(), Vec3::Zero());
+  parallel_for(forces.size(), [&](std::size_t n) { forces[n].setZero(); });
   for (const auto& law : model_.laws) law->add_tangent_product(step, dx, forces);
   if (model_.volumes_are_held) model_.volumes.add_tangent_product(at.positions, at.pressures, dx, forces);
   model_.tissue.carry_hanging(forces);
@@ -154,24 +157,27 @@ void KrylovDirections::multiply(const Step& step, const Iterate& at, const Vecto
   jacobian_.add_forces(of_cells(direction), -1, forces);
   project(forces);
   jacobian_.rates(dx, of_cells(product));
-  for (double& rate : of_cells(product)) rate *= -volume_unit_;
+  parallel_for(of_cells(product).size(), [&](std::size_t c) { of_cells(product)[c] *= -volume_unit_; });
 }
 
 void KrylovDirections::apply_inverse(std::span<Vec3> x) const {
   if (factor_ != nullptr) return border_.solve(*factor_, x);
   single_.resize(3 * x.size());
-  for (std::size_t n = 0; n < x.size(); ++n)
+  parallel_for(x.size(), [&](std::size_t n) {
     for (int i = 0; i < 3; ++i) single_[3 * n + i] = static_cast<float>(x[n][i]);
+  });
   preconditioner_->solve(single_);
-  for (std::size_t n = 0; n < x.size(); ++n)
+  parallel_for(x.size(), [&](std::size_t n) {
     for (int i = 0; i < 3; ++i) x[n][i] = single_[3 * n + i];
+  });
 }
 
 void KrylovDirections::precondition(const Vector& residual, Vector& result) const {
   // dlambda = -gamma W (g + J dx),  (A + gamma J^T W J) dx = f - gamma J^T W g.
   const std::span<double> pressures = of_cells(result);
-  for (std::size_t c = 0; c < pressures.size(); ++c)
-    pressures[c] = -pressure_weights_[c] / volume_unit_ * of_cells(residual)[c];
+  const std::span<const double> volumes = of_cells(residual);
+  parallel_for(pressures.size(),
+               [&](std::size_t c) { pressures[c] = -pressure_weights_[c] / volume_unit_ * volumes[c]; });
   const std::span<Vec3> dx = of_nodes(result);
   std::ranges::copy(of_nodes(residual), dx.begin());
   factor_jacobian_.add_forces(pressures, 1, dx);
@@ -184,13 +190,13 @@ void KrylovDirections::precondition(const Vector& residual, Vector& result) cons
   // What gamma W leaves of the volumes' rates: p = L^-1 (g + J dx), dlambda -= p, dx -= D^-1 J^T p.
   chequered_.resize(pressures.size());
   factor_jacobian_.rates(dx, chequered_);
-  for (std::size_t c = 0; c < pressures.size(); ++c) chequered_[c] += of_cells(residual)[c] / volume_unit_;
+  parallel_for(pressures.size(), [&](std::size_t c) { chequered_[c] += volumes[c] / volume_unit_; });
   pressures_->solve(chequered_);
-  for (std::size_t c = 0; c < pressures.size(); ++c) pressures[c] -= chequered_[c];
+  parallel_for(pressures.size(), [&](std::size_t c) { pressures[c] -= chequered_[c]; });
   moved_.assign(frames_.size(), Vec3::Zero());
   factor_jacobian_.add_forces(chequered_, -1, moved_);
   pressures_->displace(moved_);
-  for (std::size_t n = 0; n < moved_.size(); ++n) dx[n] += moved_[n];
+  parallel_for(moved_.size(), [&](std::size_t n) { dx[n] += moved_[n]; });
   project(dx);
   model_.tissue.place_hanging(dx);
 }

@@ -8,24 +8,14 @@
 namespace plica {
 
 PressureFactor::PressureFactor(const VolumeJacobian& jacobian, std::size_t free_nodes)
-    : starts_(free_nodes + 1, 0), places_(jacobian.cells(), {-1, 0}), compliances_(free_nodes, 0.0) {
-  const int cells = static_cast<int>(jacobian.cells());
-  for (int cell = 0; cell < cells; ++cell)
-    for (const auto& gradient : jacobian.of_cell(cell)) ++starts_[gradient.node.index() + 1];
-  for (std::size_t n = 0; n < free_nodes; ++n) starts_[n + 1] += starts_[n];
-  touches_.resize(starts_.back());
-  std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
-  for (int cell = 0; cell < cells; ++cell) {
-    int slot = 0;
-    for (const auto& gradient : jacobian.of_cell(cell)) touches_[next[gradient.node.index()]++] = {cell, slot++};
-  }
+    : places_(jacobian.cells(), {-1, 0}), compliances_(free_nodes, 0.0) {
   gather_blocks(jacobian);
   multigrid::Rows rows = multigrid::collect_rows(static_cast<int>(blocks_.size()), [&](int block, const auto& take) {
     for (const int cell : blocks_[block]) {
       if (cell < 0) continue;
       for (const auto& [node, value] : jacobian.of_cell(cell))
-        for (std::size_t t = starts_[node.index()]; t < starts_[node.index() + 1]; ++t)
-          if (const int other = places_[touches_[t].cell].block; other <= block) take(other);
+        for (const auto& touch : jacobian.around(node.index()))
+          if (const int other = places_[touch.cell].block; other <= block) take(other);
     }
   });
   pattern_ = {std::move(rows.starts), std::move(rows.columns)};
@@ -43,8 +33,8 @@ void PressureFactor::gather_blocks(const VolumeJacobian& jacobian) {
     for (int row = 1; row < cells_a_block; ++row) {
       std::vector<int> around;
       for (const auto& [node, value] : jacobian.of_cell(members[row - 1]))
-        for (std::size_t t = starts_[node.index()]; t < starts_[node.index() + 1]; ++t)
-          if (places_[touches_[t].cell].block < 0) around.push_back(touches_[t].cell);
+        for (const auto& touch : jacobian.around(node.index()))
+          if (places_[touch.cell].block < 0) around.push_back(touch.cell);
       if (around.empty()) break;
       std::ranges::sort(around);
       int best = around.front();
@@ -69,8 +59,7 @@ void PressureFactor::write_rows(const VolumeJacobian& jacobian, std::span<const 
     if (cell < 0) continue;
     for (const auto& [node, value] : jacobian.of_cell(cell)) {
       const Vec3 moved = compliances_[node.index()] * frames[node.index()].free_part(value);
-      for (std::size_t t = starts_[node.index()]; t < starts_[node.index() + 1]; ++t) {
-        const auto [other, slot] = touches_[t];
+      for (const auto& [other, slot] : jacobian.around(node.index())) {
         if (places_[other].block > block) continue;
         const std::size_t at = 9 * static_cast<std::size_t>(pattern_.find(block, places_[other].block)) +
                                3 * places_[cell].row + places_[other].row;
@@ -107,9 +96,9 @@ void PressureFactor::solve(std::span<double> rates) const {
   const auto at = [&](std::size_t cell) -> float& {
     return single_[cells_a_block * static_cast<std::size_t>(places_[cell].block) + places_[cell].row];
   };
-  for (std::size_t cell = 0; cell < rates.size(); ++cell) at(cell) = static_cast<float>(rates[cell]);
+  parallel_for(rates.size(), [&](std::size_t cell) { at(cell) = static_cast<float>(rates[cell]); });
   factor_->solve(single_);
-  for (std::size_t cell = 0; cell < rates.size(); ++cell) rates[cell] = at(cell);
+  parallel_for(rates.size(), [&](std::size_t cell) { rates[cell] = at(cell); });
 }
 
 void PressureFactor::displace(std::span<Vec3> forces) const {

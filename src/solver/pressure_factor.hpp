@@ -38,11 +38,6 @@ class PressureFactor {
   void write_rows(const VolumeJacobian& jacobian, std::span<const NodeFrame> frames, int block,
                   std::span<float> values) const;
 
-  std::vector<std::size_t> starts_;  // free nodes + 1
-  struct Touch {
-    int cell, slot;  // slot: which of the cell's gradients
-  };
-  std::vector<Touch> touches_;              // cells around each node
   std::vector<Place> places_;               // cells
   std::vector<std::array<int, 3>> blocks_;  // their cells; -1: none
   BlockPattern pattern_;

@@ -6,7 +6,7 @@
 
 namespace plica {
 
-VolumeJacobian::VolumeJacobian(const Model& model) : start_{0} {
+VolumeJacobian::VolumeJacobian(const Model& model) : start_{0}, node_start_(model.tissue.free_node_count() + 1, 0) {
   if (!model.volumes_are_held) return;
   const Tissue& tissue = model.tissue;
   element_slots_.resize(tissue.elements.size());
@@ -32,6 +32,14 @@ VolumeJacobian::VolumeJacobian(const Model& model) : start_{0} {
     for (const NodeId node : members) gradients_.push_back({node, Vec3::Zero()});
     start_.push_back(gradients_.size());
   }
+  for (const Gradient& gradient : gradients_) ++node_start_[gradient.node.index() + 1];
+  for (std::size_t n = 0; n + 1 < node_start_.size(); ++n) node_start_[n + 1] += node_start_[n];
+  touches_.resize(gradients_.size());
+  std::vector<std::size_t> next(node_start_.begin(), node_start_.end() - 1);
+  for (int cell = 0; cell < static_cast<int>(cells()); ++cell) {
+    int slot = 0;
+    for (const Gradient& gradient : of_cell(cell)) touches_[next[gradient.node.index()]++] = {cell, slot++};
+  }
 }
 
 void VolumeJacobian::update(const CellVolumes& volumes, std::span<const Vec3> positions) {
@@ -54,11 +62,23 @@ void VolumeJacobian::add_rates(std::span<const Vec3> direction, std::span<const 
   parallel_for(cells(), [&](std::size_t cell) { to[cell] += factor * weights[cell] * rate(cell, direction); });
 }
 
+// A node gets the forces of its cells in their order, either way, so that threads change no bit.
 void VolumeJacobian::add_forces(std::span<const double> pressures, double factor, std::span<Vec3> forces) const {
-  for (std::size_t cell = 0; cell < cells(); ++cell) {
-    const double pressure = factor * pressures[cell];
-    for (const Gradient& gradient : of_cell(cell)) forces[gradient.node.index()] += pressure * gradient.value;
+  const std::size_t nodes = node_start_.size() - 1;
+  constexpr std::size_t worth_sharing = 8192;  // nodes; cell by cell is faster on one thread
+  if (nodes < worth_sharing || omp_get_max_threads() == 1) {
+    for (std::size_t cell = 0; cell < cells(); ++cell) {
+      const double pressure = factor * pressures[cell];
+      for (const Gradient& gradient : of_cell(cell)) forces[gradient.node.index()] += pressure * gradient.value;
+    }
+    return;
   }
+  parallel_for(nodes, [&](std::size_t node) {
+    for (const auto& [cell, slot] : around(node)) {
+      const double pressure = factor * pressures[cell];
+      forces[node] += pressure * of_cell(cell)[slot].value;
+    }
+  });
 }
 
 }  // namespace plica

@@ -36,6 +36,15 @@ class VolumeJacobian {
     return {gradients_.data() + start_[cell], gradients_.data() + start_[cell + 1]};
   }
 
+  /// A cell whose volume a node changes, and which of that cell's gradients is the node's.
+  struct Touch {
+    int cell, slot;
+  };
+  /// The cells around one free node, in ascending order.
+  [[nodiscard]] std::span<const Touch> around(std::size_t node) const {
+    return {touches_.data() + node_start_[node], touches_.data() + node_start_[node + 1]};
+  }
+
  private:
   [[nodiscard]] double rate(std::size_t cell, std::span<const Vec3> direction) const {
     double sum = 0;
@@ -45,6 +54,8 @@ class VolumeJacobian {
 
   std::vector<std::size_t> start_;  // cells + 1
   std::vector<Gradient> gradients_;
+  std::vector<std::size_t> node_start_;  // free nodes + 1
+  std::vector<Touch> touches_;
   std::vector<std::array<int, 8>> element_slots_;  // elements: where their nodes' gradients are added; -1: node hangs
   struct HangingSlot {
     std::size_t element;

@@ -2,6 +2,7 @@
 import base64
 import csv
 import math
+import os
 import re
 import xml.etree.ElementTree
 
@@ -74,7 +75,9 @@ class Reproduce(CommandLine):
         self.assertIn("--overwrite", self.assert_messages(again)[0])
 
     def test_without_a_display_the_page_says_what_is_missing(self):
-        result = plica("reproduce", "--out", self.out, "--quick", "--quiet", timeout=280, env={"PATH": "/nonexistent"})
+        bare = {**os.environ, "PATH": "/nonexistent"}
+        bare.pop("DISPLAY", None)
+        result = plica("reproduce", "--out", self.out, "--quick", "--quiet", timeout=280, env=bare)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         messages = self.assert_messages(result, 5)
         page = (self.out / "reproduction.md").read_text()

@@ -31,7 +31,6 @@ import support  # noqa: E402
 from random_scenario import Drawer  # noqa: E402
 from scenario_table import read_table  # noqa: E402
 
-LONGEST_S = 60  # of the processor, for one run; the slowest takes a fraction of it
 LONGEST_WAIT_S = 600  # by the clock: a run that waits for ever
 GAVE_UP = re.compile(r"plica: gave up: .*(cell \d+|whole surface).* at t = [\d.e+-]+ s, with steps down to [\d.e+-]+ s; ")
 REFUSED = re.compile(r"(?P<where>[^:\n]+):(?:\d+: )?\s?(?P<key>[^:]*): (?P<problem>.+)")
@@ -41,8 +40,11 @@ class Broken(Exception):
     """A promise that was not kept."""
 
 
+longest_s = 60  # of the processor, for one run; the slowest takes a fraction of it
+
+
 def limit_time():
-    resource.setrlimit(resource.RLIMIT_CPU, (LONGEST_S, LONGEST_S + 5))
+    resource.setrlimit(resource.RLIMIT_CPU, (longest_s, longest_s + 5))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
@@ -52,7 +54,7 @@ def plica(*arguments):
     except subprocess.TimeoutExpired:
         raise Broken(f"waits for ever: {' '.join(map(str, arguments))}") from None
     if result.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
-        raise Broken(f"is not over after {LONGEST_S} s of the processor: plica {arguments[0]}")
+        raise Broken(f"is not over after {longest_s} s of the processor: plica {arguments[0]}")
     return result
 
 
@@ -157,13 +159,17 @@ def run_one(number, seed, table, files, folder):
 
 
 def main():
+    global longest_s
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("program", type=Path)
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="number of the first scenario: to repeat one")
     parser.add_argument("--keep", type=Path, default=Path("random_scenarios_failed"), help="where failures' scenarios go")
+    parser.add_argument("--longest", type=int, default=longest_s, metavar="S", help="of the processor, for one run; "
+                        "sanitizers take far longer")
     given = parser.parse_args()
+    longest_s = given.longest
     support.PROGRAM = str(given.program.resolve())
     table = read_table(support.PROGRAM)
     counts, failures, refusals, slowest = collections.Counter(), 0, 0, (0, 0)

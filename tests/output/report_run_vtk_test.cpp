@@ -74,7 +74,7 @@ TEST_F(ReportRunTest, HoldsPositionsAndValuesOfEveryFrame) {
   write_frames(3);
   const ReportRun run = read_report_run(folder, most_frame_bytes);
   ASSERT_EQ(run.json["topologies"].size(), 1u);
-  EXPECT_EQ(run.json["topologies"][0]["times_s"], nlohmann::json({0, 10, 20}));
+  EXPECT_EQ(run.json["topologies"][0]["times_s"], nlohmann::ordered_json({0, 10, 20}));
   const auto steps = unpacked(run, "0/positions");
   const std::size_t nodes = block.rest_positions.size();
   ASSERT_EQ(steps.size(), 3 * 3 * nodes);
@@ -90,7 +90,7 @@ TEST_F(ReportRunTest, HoldsPositionsAndValuesOfEveryFrame) {
   EXPECT_EQ(pressures.front(), 0u);
   EXPECT_EQ(pressures.back(), 65535u);
   EXPECT_DOUBLE_EQ(run.fields.at("pressure").high, 0.5);
-  EXPECT_EQ(run.json["regions"], nlohmann::json({"some"}));
+  EXPECT_EQ(run.json["regions"], nlohmann::ordered_json({"some"}));
 }
 
 TEST_F(ReportRunTest, NewCellsAreANewTopology) {
@@ -99,7 +99,7 @@ TEST_F(ReportRunTest, NewCellsAreANewTopology) {
   ASSERT_EQ(run.json["topologies"].size(), 2u);
   EXPECT_EQ(run.json["topologies"][0]["cells"], 6);
   EXPECT_EQ(run.json["topologies"][1]["cells"], 9);
-  EXPECT_EQ(run.json["topologies"][1]["times_s"], nlohmann::json({30, 40}));
+  EXPECT_EQ(run.json["topologies"][1]["times_s"], nlohmann::ordered_json({30, 40}));
 }
 
 TEST_F(ReportRunTest, ThinsFramesByItsRuleAndSaysSo) {
@@ -109,12 +109,12 @@ TEST_F(ReportRunTest, ThinsFramesByItsRuleAndSaysSo) {
   EXPECT_EQ(run.json["every"], 4);
   EXPECT_EQ(run.json["frames_saved"], 20);
   // Every 4th, the last, and the two on both sides of the division at 110 s.
-  EXPECT_EQ(run.json["topologies"][0]["times_s"], nlohmann::json({0, 40, 80, 100}));
-  EXPECT_EQ(run.json["topologies"][1]["times_s"], nlohmann::json({110, 120, 160, 190}));
+  EXPECT_EQ(run.json["topologies"][0]["times_s"], nlohmann::ordered_json({0, 40, 80, 100}));
+  EXPECT_EQ(run.json["topologies"][1]["times_s"], nlohmann::ordered_json({110, 120, 160, 190}));
   EXPECT_EQ(read_report_run(folder, 100 * bytes_a_frame).json["every"], 1);
   // However little there is room for, the ends and the division stay.
-  EXPECT_EQ(read_report_run(folder, 1).json["topologies"][0]["times_s"], nlohmann::json({0, 100}));
-  EXPECT_EQ(read_report_run(folder, 1).json["topologies"][1]["times_s"], nlohmann::json({110, 190}));
+  EXPECT_EQ(read_report_run(folder, 1).json["topologies"][0]["times_s"], nlohmann::ordered_json({0, 100}));
+  EXPECT_EQ(read_report_run(folder, 1).json["topologies"][1]["times_s"], nlohmann::ordered_json({110, 190}));
 }
 
 TEST_F(ReportRunTest, RefusesWhatIsNoRun) {

@@ -1,11 +1,13 @@
 #include "solver/step_matrix.hpp"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <set>
 
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
+#include "tissue/embryo.hpp"
 
 namespace plica {
 namespace {
@@ -81,6 +83,27 @@ TEST(StepMatrix, PressureForcesAreThoseOfTheVolumes) {
   model.volumes.add_forces(motion.positions, pressures, direct);
   for (std::size_t n = 0; n < direct.size(); ++n)
     EXPECT_LE((through_matrix[n] - direct[n]).norm(), 1e-13 * largest(direct));
+}
+
+// On one thread cells scatter them, on two nodes gather them.
+TEST(StepMatrix, PressureForcesAreTheSameBitsOnOneAndTwoThreads) {
+  const Model model(build_shell({.elements_per_cell = {3, 3, 2}}));
+  ASSERT_GT(model.tissue.node_count(), 10'000u);  // worth sharing
+  VolumeJacobian jacobian(model);
+  jacobian.update(model.volumes, model.tissue.rest_positions);
+  Random random(8);
+  std::vector<double> pressures(jacobian.cells());
+  for (double& pressure : pressures) pressure = random.number();
+  const int threads = omp_get_max_threads();
+  const auto forces_on = [&](int count) {
+    omp_set_num_threads(count);
+    Vectors forces(model.tissue.node_count(), Vec3::Ones());
+    jacobian.add_forces(pressures, 0.3, forces);
+    return forces;
+  };
+  const Vectors on_one = forces_on(1), on_two = forces_on(2);
+  omp_set_num_threads(threads);
+  EXPECT_EQ(on_one, on_two);
 }
 
 // The written values are Q^T [A -J^T; -J 0] Q with Q the frames, rows and columns of fixed unknowns emptied.

@@ -20,13 +20,16 @@ inline void for_elements(const CorotationalStep& step, std::size_t first, std::s
 
 // What is added to the nodes when the gradients in the frame are P by F and r by the hourglasses.
 inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P, const Hourglass& r, double* vectors) {
+  e.ask_for_next();
   const Mat RP = R * P;
   Vec g[7];
   for (int j = 0; j < 6; ++j) g[j] = RP * e.b(j);
   for (int a = 0; a < 3; ++a) g[3 + a] = g[3 + a] + R * r[a];
   g[6] = R * r[3];
+  e.ask_for_next();
   Vec f[8];
   from_modes(g, f);
+  e.ask_for_next();
   scatter(e.batch.nodes, e.lane, count, f, vectors);
 }
 
@@ -36,6 +39,7 @@ template <bool viscous>
   for_elements(step, first, last, [&](const Elements& e, int count) {
     const Deformation now = deformation(e, step.positions);
     Hourglass q;
+    e.ask_for_next();
     multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
     const Sym D = deviator(now.S);
     Lanes energies = 0.5 * (e.shear() * contract(D, D) + dot(now.h, q));
@@ -52,6 +56,7 @@ template <bool viscous>
     prefetch(e.batch.nodes, e.lane, forces);
     const Deformation now = deformation(e, step.positions);
     Hourglass q;
+    e.ask_for_next();
     multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
     Sym T = e.shear() * deviator(now.S);
     Vec torque = cross(now.h, q);
@@ -77,10 +82,12 @@ struct Moving {
 // The stretch comes of a chain of steps that wait for each other: meanwhile the direction is gathered.
 inline void gather_moving(const Elements& e, const double* positions, const double* direction, const double* product,
                           Moving& at) {
+  e.ask_for_next();
   gather_modes(e.batch.nodes, e.lane, positions, at.m);
   at.F = gradient(e, at.m);
   prefetch(e.batch.nodes, e.lane, direction, product);
   at.stretched = stretch(at.F);
+  e.ask_for_next();
   gather_modes(e.batch.nodes, e.lane, direction, at.d);
   at.dF = gradient(e, at.d);
 }
@@ -95,6 +102,7 @@ template <bool viscous>
     const Mat R = frame(at.F, at.stretched).R;
     const Seen move = seen_from(e, R, at.dF, at.d);
     Hourglass dq;
+    e.ask_for_next();
     multiply<1>(e.batch.stiffness, e.lane, {&move.w}, {&dq});
     Lanes shear = e.shear();
     if (viscous) {
@@ -124,7 +132,9 @@ template <bool viscous>
     for (int a = 0; a < 4; ++a) dh.set(a, move.w[a] - cross(omega, h[a]));
     // What answers it.
     Hourglass q, dq;
+    e.ask_for_next();
     multiply<2>(e.batch.stiffness, e.lane, {&h, &dh}, {&q, &dq});
+    e.ask_for_next();
     Sym T = e.shear() * deviator(S), dT = e.shear() * deviator(dS);
     Vec torque = cross(h, q), dtorque = cross(dh, q) + cross(h, dq);
     if (viscous) {
@@ -136,9 +146,11 @@ template <bool viscous>
       torque = cross(h, q) + axial(full(S) * full(T));
       dtorque = cross(dh, q) + cross(h, dq) + axial(full(dS) * full(T) + full(S) * full(dT));
     }
+    e.ask_for_next();
     const Vec t = G * torque, dt = G * (dtorque + dS * t - trace(dS) * t);
     // The turning of what was there, and the change.
     Mat dP = cross(omega, full(T) - cross_matrix(t)) + full(dT) - cross_matrix(dt);
+    e.ask_for_next();
     for (int a = 0; a < 4; ++a) {
       dq.set(a, dq[a] + cross(omega, q[a]));
       dP = dP - outer(dq[a], e.X(a));

@@ -14,11 +14,23 @@ struct Elements {
   const ViscousBatch* viscous;  // null: not viscous
   double rate;
   int lane;
+  mutable int asked = 0;  // lines of the next batch
 
   [[nodiscard]] Vec b(int mode) const { return load(batch.gradients[mode], lane); }
   [[nodiscard]] Vec X(int a) const { return load(batch.hourglass[a], lane); }
   [[nodiscard]] Lanes shear() const { return load(batch.shear + lane); }
   [[nodiscard]] Lanes viscous_shear() const { return rate * load(viscous->shear + lane); }
+
+  /// Asks memory for some more of the next batch. A kernel that does so all the way through calculates while memory
+  /// answers; when it asks for much at once, which fills the processor's line buffers, or not at all, it waits.
+  void ask_for_next() const {
+    constexpr int lines = sizeof(CorotationalBatch) / 64 * width / batch_size, at_once = 9;
+    const char* next = reinterpret_cast<const char*>(&batch + 1) + 64 * (lane / width * lines);
+    // Compilers would put all requests of a kernel together, but for the statements that touch "memory".
+    asm volatile("" ::: "memory");
+    for (int k = 0; k < at_once && asked < lines; ++k) __builtin_prefetch(next + 64 * asked++, 0, 2);
+    asm volatile("" ::: "memory");
+  }
 };
 
 /// See CorotationalKernels.
@@ -33,6 +45,7 @@ struct Hourglass {
 
 /// sum_j m_j b_j^T.
 inline Mat gradient(const Elements& e, const Vec (&m)[7]) {
+  e.ask_for_next();
   Mat F = outer(m[0], e.b(0));
   for (int j = 1; j < 6; ++j) F = F + outer(m[j], e.b(j));
   return F;
@@ -111,6 +124,7 @@ struct Seen {
 };
 
 inline Seen seen_from(const Elements& e, const Mat& R, const Mat& F, const Vec (&m)[7]) {
+  e.ask_for_next();
   Seen s;
   s.W = turn_back(R, F);
   for (int a = 0; a < 4; ++a) s.w.set(a, turn_back(R, m[3 + a] - F * e.X(a)));
@@ -131,6 +145,7 @@ inline Deformation deformation(const Elements& e, const Vec (&m)[7], const Mat& 
 }
 
 inline Deformation deformation(const Elements& e, const double* positions) {
+  e.ask_for_next();
   Vec m[7];
   gather_modes(e.batch.nodes, e.lane, positions, m);
   const Mat F = gradient(e, m);
