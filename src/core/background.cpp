@@ -6,11 +6,15 @@
 #include <system_error>
 #include <utility>
 
+#include "core/child_process.hpp"
+
 namespace plica {
 
 Background::Background(std::size_t most_waiting) : most_waiting_(most_waiting) {
   try {
     thread_ = std::thread([this] { work(); });
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return started_; });
   } catch (const std::system_error&) {
     // No thread to be had: jobs are done at once.
   }
@@ -75,9 +79,12 @@ void Background::throw_fault(std::unique_lock<std::mutex>& lock) {
 
 void Background::work() {
   std::unique_lock lock(mutex_);
+  started_ = true;
+  changed_.notify_all();
   while (true) {
     changed_.wait(lock, [&] { return !waiting_.empty() || ending_; });
     if (waiting_.empty()) return;
+    const std::shared_lock busy(work_beside());
     std::function<void()> job = std::exchange(waiting_.front(), {});
     waiting_.pop_front();
     at_work_ = true;

@@ -11,8 +11,8 @@
 namespace plica {
 
 /// Does jobs one after another, in the order given, on a thread of its own. (Where no thread can be had, each is done
-/// at once.) What a job throws is thrown again by the next `add`, `check` or `finish`, once; jobs after it are not
-/// done.
+/// at once.) No job may start a child process (child_process.hpp). What a job throws is thrown again by the next `add`,
+/// `check` or `finish`, once; jobs after it are not done.
 class Background {
  public:
   /// At most `most_waiting` jobs wait beside the one being done: memory stays bounded.
@@ -46,7 +46,7 @@ class Background {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> waiting_;
-  bool at_work_ = false, ending_ = false, failed_ = false;
+  bool started_ = false, at_work_ = false, ending_ = false, failed_ = false;
   std::exception_ptr fault_;  // not yet told
   std::thread thread_;
 };

@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <mutex>
 #include <string_view>
 #include <system_error>
 
@@ -56,9 +57,15 @@ std::optional<std::string> read_all(int pipe_end) {
 
 }  // namespace
 
+std::shared_mutex& work_beside() {
+  static std::shared_mutex mutex;
+  return mutex;
+}
+
 std::optional<std::string> output_of_child(const std::function<std::string()>& work) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw_unstarted(errno);
+  std::unique_lock nobody_works(work_beside());
   const pid_t child = ::fork();
   if (child < 0) {
     const int error = errno;
@@ -69,6 +76,7 @@ std::optional<std::string> output_of_child(const std::function<std::string()>& w
     ::close(ends[0]);  // else writing would wait for ever for a parent that is gone
     run_child(work, ends[1]);
   }
+  nobody_works.unlock();
   ::close(ends[1]);
   std::optional<std::string> output = read_all(ends[0]);
   ::close(ends[0]);

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <shared_mutex>
 #include <string>
 
 namespace plica {
@@ -12,5 +13,9 @@ namespace plica {
 /// ends with this one, even when that is killed. `work` must not use threads that this process has started (OpenMP).
 /// FileError when no process can be started.
 std::optional<std::string> output_of_child(const std::function<std::string()>& work);
+
+/// Held, shared, by each thread of this process's own while it works: a child process starts when none does. It would
+/// inherit whatever lock such a thread is holding, for ever.
+std::shared_mutex& work_beside();
 
 }  // namespace plica

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/child_process.hpp"
+
 namespace plica {
 namespace {
 
@@ -44,6 +46,21 @@ TEST(Background, DoesJobsInTheirOrderOnAnotherThread) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(done[i], i);
   EXPECT_NE(worker, std::this_thread::get_id());
   EXPECT_GT(background.processor_s(), 0);
+}
+
+// In the midst of a job its thread may hold a lock, which a child process would find locked for ever.
+TEST(Background, ChildProcessesStartBetweenJobs) {
+  std::atomic<bool> is_at_work = false;
+  Background background(50);
+  for (int i = 0; i < 50; ++i)
+    background.add([&] {
+      is_at_work = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      is_at_work = false;
+    });
+  for (int i = 0; i < 5; ++i)
+    EXPECT_EQ(output_of_child([&] { return std::string(is_at_work ? "at work" : "at rest"); }), "at rest");
+  background.finish();
 }
 
 TEST(Background, TakesNoMoreThanItMayHold) {
