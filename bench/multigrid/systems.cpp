@@ -26,8 +26,10 @@ BlockPattern pattern_of(const Model& model) {
       for (const NodeId b : group)
         if (b < a) below[a.index()].push_back(b.number());
   };
-  for (const auto& law : model.laws)
-    for (const auto& group : law->node_groups()) join(group);
+  for (const auto& law : model.laws) {
+    const NodeGroups groups = law->node_groups();
+    for (std::size_t k = 0; k < groups.size(); ++k) join(groups[k]);
+  }
   for (const auto& element : model.tissue.elements) join(element);
   BlockPattern pattern{{0}, {}};
   for (auto& row : below) {

@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <span>
 #include <vector>
+
+#include "core/vector.hpp"
 
 namespace plica {
 
@@ -26,6 +29,18 @@ void parallel_for(std::size_t count, const Body& body, std::size_t worth_sharing
   }
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < count; ++i) body(i);
+}
+
+/// The least i in [0, count) for which is_one(i) holds; `count` when there is none.
+template <class Predicate>
+std::size_t parallel_find(std::size_t count, const Predicate& is_one) {
+  std::atomic<std::size_t> least = count;
+  parallel_for(count, [&](std::size_t i) {
+    if (i >= least.load(std::memory_order_relaxed) || !is_one(i)) return;
+    for (std::size_t before = least; i < before && !least.compare_exchange_weak(before, i);) {
+    }
+  });
+  return least;
 }
 
 /// The scalar product of two vectors, summed in parts whose bounds do not depend on the threads.
@@ -49,6 +64,13 @@ inline double parallel_dot(std::span<const double> a, std::span<const double> b)
   double total = 0;
   for (const double one : sums) total += one;
   return total;
+}
+
+/// The sum of the vectors' squared lengths, in the same way.
+inline double parallel_squared_norm(std::span<const Vec3> vectors) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  const std::span numbers(reinterpret_cast<const double*>(vectors.data()), 3 * vectors.size());
+  return parallel_dot(numbers, numbers);
 }
 
 }  // namespace plica

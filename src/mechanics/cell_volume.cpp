@@ -172,7 +172,7 @@ void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
 
 NodeGroups Dilatation::node_groups() const {
   NodeGroups groups;
-  for (const auto& nodes : elements_) groups.emplace_back(nodes.begin(), nodes.end());
+  for (const auto& nodes : elements_) groups.add(nodes);
   return groups;
 }
 

@@ -202,7 +202,7 @@ void Contraction::add_tangent(const Step& step, TangentSink& tangent) const {
 
 NodeGroups Contraction::node_groups() const {
   NodeGroups groups;
-  for (const Spring& spring : springs_) groups.push_back(spring.nodes);
+  for (const Spring& spring : springs_) groups.add(spring.nodes);
   return groups;
 }
 

@@ -131,9 +131,12 @@ NodeId Corotational::node(std::size_t e, int corner) const {
 }
 
 NodeGroups Corotational::node_groups() const {
-  NodeGroups groups(chunks_.element_count());
-  for (std::size_t e = 0; e < groups.size(); ++e)
-    for (int i = 0; i < 8; ++i) groups[e].push_back(node(e, i));
+  NodeGroups groups;
+  for (std::size_t e = 0; e < chunks_.element_count(); ++e) {
+    std::array<NodeId, 8> nodes;
+    for (int i = 0; i < 8; ++i) nodes[i] = node(e, i);
+    groups.add(nodes);
+  }
   return groups;
 }
 

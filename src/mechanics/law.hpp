@@ -40,7 +40,23 @@ class TangentSink {
 };
 
 /// Groups of nodes whose tangent blocks may be non-zero: the sparsity pattern of a law.
-using NodeGroups = std::vector<std::vector<NodeId>>;
+class NodeGroups {
+ public:
+  void add(std::span<const NodeId> group) {
+    nodes_.insert(nodes_.end(), group.begin(), group.end());
+    starts_.push_back(nodes_.size());
+  }
+  [[nodiscard]] std::size_t size() const { return starts_.size() - 1; }
+  [[nodiscard]] bool empty() const { return size() == 0; }
+  [[nodiscard]] std::span<const NodeId> operator[](std::size_t group) const {
+    return std::span(nodes_).subspan(starts_[group], starts_[group + 1] - starts_[group]);
+  }
+  bool operator==(const NodeGroups&) const = default;
+
+ private:
+  std::vector<std::size_t> starts_ = {0};
+  std::vector<NodeId> nodes_;
+};
 
 /// One law. Vectors are a Vec3 a node; forces in nN, tangents in nN/um, energies in nN um.
 class Law {

@@ -228,7 +228,7 @@ void TurningElements::add_tangent(const Step& step, TangentSink& tangent) const 
 
 NodeGroups TurningElements::node_groups() const {
   NodeGroups groups;
-  for (const Element& element : elements_) groups.emplace_back(element.nodes.begin(), element.nodes.end());
+  for (const Element& element : elements_) groups.add(element.nodes);
   return groups;
 }
 

@@ -31,7 +31,8 @@ NewtonDirections::Outcome DirectDirections::find(const Step& step, const Iterate
   constexpr double alike = 0.2;
   const bool stale = factor_frames_.empty() || std::abs(factor_duration_s_ / step.duration_s - 1) > alike ||
                      factor_contacts_ != at.in_contact;
-  if (stale || wish.slow) {
+  const bool slow = wish.left > 0.1;  // less than Newton's method can
+  if (stale || slow) {
     ++cost.factorisations;
     if (!refresh(step, at)) return Outcome::singular;
   }

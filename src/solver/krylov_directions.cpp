@@ -29,8 +29,7 @@ KrylovDirections::KrylovDirections(const Model& model, Inverse inverse, std::fun
       inverse_(inverse),
       nodes_(model.tissue.node_count()),
       matrix_(model),
-      price_of_factor_(inverse == Inverse::multigrid ? 15 : 30),
-      factor_jacobian_(model),
+      price_of_factor_(inverse == Inverse::multigrid ? 5 : 30),
       jacobian_(model) {
   if (inverse == Inverse::multigrid) {
     preconditioner_ = make_multigrid(matrix_.layout());
@@ -102,8 +101,6 @@ bool KrylovDirections::refresh(const Step& step, const Iterate& at) {
     matrix_.write_projected_blocks(frames_, values_);
     has_factor_ = preconditioner_->factorise(values_, rigid_motions(at));
     if (!has_factor_) continue;
-    // J as in the factor: with another, gamma would carry the difference into directions that hardly resist.
-    factor_jacobian_ = jacobian_;
     if (factor_ != nullptr) border_.begin(model_, matrix_, frames_, at.in_contact, most_contact_changes);
     made_from_ = factor_memory(step, at);
     return true;
@@ -129,20 +126,19 @@ void KrylovDirections::recall(const FactorMemory& memory) {
   wasted_iterations_ = memory.wasted_iterations;
 }
 
-std::vector<float> KrylovDirections::rigid_motions(const Iterate& at) const {
+UninitialisedVector<float> KrylovDirections::rigid_motions(const Iterate& at) const {
   Vec3 middle = Vec3::Zero();
   for (std::size_t n = 0; n < frames_.size(); ++n) middle += at.positions[n] / static_cast<double>(frames_.size());
   double size = 0;
   for (std::size_t n = 0; n < frames_.size(); ++n) size = std::max(size, (at.positions[n] - middle).norm());
-  std::vector<float> motions;
-  motions.reserve(18 * frames_.size());
-  for (std::size_t n = 0; n < frames_.size(); ++n) {
+  UninitialisedVector<float> motions(18 * frames_.size());
+  parallel_for(frames_.size(), [&](std::size_t n) {
     Eigen::Matrix<double, 3, 6> of_node;
     of_node << Mat3::Identity(), -cross_matrix((at.positions[n] - middle) / size);
     for (int j = 0; j < 6; ++j) of_node.col(j) = frames_[n].free_part(of_node.col(j));
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 6; ++j) motions.push_back(static_cast<float>(of_node(i, j)));
-  }
+      for (int j = 0; j < 6; ++j) motions[18 * n + 6 * i + j] = static_cast<float>(of_node(i, j));
+  });
   return motions;
 }
 
@@ -178,23 +174,27 @@ void KrylovDirections::precondition(const Vector& residual, Vector& result) cons
   const std::span<const double> volumes = of_cells(residual);
   parallel_for(pressures.size(),
                [&](std::size_t c) { pressures[c] = -pressure_weights_[c] / volume_unit_ * volumes[c]; });
+  // J as in the factor: with another, gamma would carry the difference into directions that hardly resist.
+  const VolumeJacobian& J = matrix_.jacobian();
   const std::span<Vec3> dx = of_nodes(result);
-  std::ranges::copy(of_nodes(residual), dx.begin());
-  factor_jacobian_.add_forces(pressures, 1, dx);
+  const std::span<const Vec3> forces = of_nodes(residual);
+  parallel_for(dx.size(), [&](std::size_t n) { dx[n] = forces[n]; });
+  J.add_forces(pressures, 1, dx);
   project(dx);
   apply_inverse(dx.first(frames_.size()));
   project(dx);
   model_.tissue.place_hanging(dx);
-  factor_jacobian_.add_rates(dx, pressure_weights_, -1, pressures);
+  J.add_rates(dx, pressure_weights_, -1, pressures);
   if (!pressures_) return;
   // What gamma W leaves of the volumes' rates: p = L^-1 (g + J dx), dlambda -= p, dx -= D^-1 J^T p.
   chequered_.resize(pressures.size());
-  factor_jacobian_.rates(dx, chequered_);
+  J.rates(dx, chequered_);
   parallel_for(pressures.size(), [&](std::size_t c) { chequered_[c] += volumes[c] / volume_unit_; });
   pressures_->solve(chequered_);
   parallel_for(pressures.size(), [&](std::size_t c) { pressures[c] -= chequered_[c]; });
-  moved_.assign(frames_.size(), Vec3::Zero());
-  factor_jacobian_.add_forces(chequered_, -1, moved_);
+  moved_.resize(frames_.size());
+  parallel_for(moved_.size(), [&](std::size_t n) { moved_[n].setZero(); });
+  J.add_forces(chequered_, -1, moved_);
   pressures_->displace(moved_);
   parallel_for(moved_.size(), [&](std::size_t n) { dx[n] += moved_[n]; });
   project(dx);
@@ -220,8 +220,9 @@ NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate
     is_new = true;
   }
 
-  // Newton's own error leaves a part of the residual that falls with the residual itself.
-  const double useful = std::clamp(0.05 * residual.force, 1e-4, 1e-2);
+  // Newton's own error leaves a part of the residual that falls with the residual itself; more where it has been seen
+  // to converge slowly (Eisenstat and Walker 1996, choice 2).
+  const double useful = std::clamp(std::max(0.05 * residual.force, 0.5 * wish.left * wish.left), 1e-4, 1e-2);
   const ConjugateResidualsRule rule{.tolerance = std::clamp(wish.accuracy, useful, 0.1)};
   const auto solve = [&] {
     right_.resize(3 * nodes_ + jacobian_.cells());

@@ -6,6 +6,7 @@
 // precision, is kept over steps while it serves. Derivation: docs/theory/step.md, Linear systems.
 #pragma once
 
+#include "core/uninitialised.hpp"
 #include "solver/conjugate_residuals.hpp"
 #include "solver/contact_border.hpp"
 #include "solver/preconditioner.hpp"
@@ -37,7 +38,7 @@ class KrylovDirections final : public NewtonDirections {
   bool follow_contacts(const Iterate& at);
   bool refresh(const Step& step, const Iterate& at);
   void weigh_pressures();
-  [[nodiscard]] std::vector<float> rigid_motions(const Iterate& at) const;
+  [[nodiscard]] UninitialisedVector<float> rigid_motions(const Iterate& at) const;
   void multiply(const Step& step, const Iterate& at, const Vector& direction, Vector& product) const;
   void apply_inverse(std::span<Vec3> x) const;
   void precondition(const Vector& residual, Vector& result) const;
@@ -47,18 +48,17 @@ class KrylovDirections final : public NewtonDirections {
   std::function<bool()> stop_requested_;
   Inverse inverse_;
   std::size_t nodes_;
-  StepMatrix matrix_;  // where the factor was made
+  StepMatrix matrix_;  // with its J, where the factor was made
   std::unique_ptr<Preconditioner> preconditioner_;
   const BlockCholesky* factor_ = nullptr;  // it, where it is one; with its border
   ContactBorder border_;
   std::optional<PressureFactor> pressures_;  // for what gamma W does not see
   bool has_factor_ = false;
   FactorMemory made_from_;  // without what came later
-  int price_of_factor_;     // in iterations
+  int price_of_factor_;     // in iterations that take as long, with the assembly
   int iterations_when_new_ = 0, wasted_iterations_ = 0;
 
   std::vector<double> pressure_weights_;  // gamma W as in the factor; cells, kPa/um^3
-  VolumeJacobian factor_jacobian_;        // J as in the factor
   double volume_unit_ = 1;                // nN/um^3: makes the rows of volumes forces
 
   // Where Newton's method stands.
@@ -72,7 +72,7 @@ class KrylovDirections final : public NewtonDirections {
   mutable std::vector<double> chequered_;  // scratch
   mutable Vectors moved_;
   mutable std::vector<float> single_;
-  std::vector<float> values_;
+  UninitialisedVector<float> values_;
 };
 
 }  // namespace plica

@@ -3,8 +3,10 @@
 // figures: docs/decisions/0007-multigrid.md.
 #include <optional>
 
+#include "core/parallel.hpp"
 #include "solver/block_cholesky.hpp"
 #include "solver/multigrid_galerkin.hpp"
+#include "solver/multigrid_order.hpp"
 #include "solver/multigrid_smoother.hpp"
 #include "solver/preconditioner.hpp"
 
@@ -16,8 +18,8 @@ constexpr std::size_t few_unknowns = 6000;  // solved by the factor: that takes 
 
 template <int B>
 struct Level {
-  explicit Level(const BlockPattern& pattern)
-      : matrix(pattern),
+  explicit Level(const BlockPattern& pattern, std::span<const int> places = {})
+      : matrix(pattern, places),
         smoother(matrix),
         transfer(matrix.rows()),
         galerkin(matrix.rows(), transfer),
@@ -26,8 +28,8 @@ struct Level {
         correction(matrix.unknowns()) {}
 
   /// Takes values of this level's matrix and leaves those of the coarser one's. The same for the near kernel.
-  [[nodiscard]] bool update(std::vector<float>& coarse_values, std::span<const float> values,
-                            std::vector<float>& near_kernel) {
+  [[nodiscard]] bool update(UninitialisedVector<float>& coarse_values, std::span<const float> values,
+                            UninitialisedVector<float>& near_kernel) {
     if (!matrix.set(values) || !smoother.update()) return false;
     transfer.update(matrix, smoother.largest_eigenvalue(), near_kernel);
     coarse_values = galerkin.values(matrix, transfer);
@@ -84,7 +86,8 @@ class Coarsest {
 
 class Multigrid final : public Preconditioner {
  public:
-  explicit Multigrid(const BlockPattern& pattern) : finest_(std::make_unique<Level<3>>(pattern)) {
+  explicit Multigrid(const BlockPattern& pattern)
+      : places_(places_by_distance(pattern)), finest_(std::make_unique<Level<3>>(pattern, places_)) {
     const BlockPattern* next = &finest_->galerkin.pattern();
     while (6 * static_cast<std::size_t>(next->nodes()) > few_unknowns) {
       auto level = std::make_unique<Level<6>>(*next);
@@ -97,7 +100,10 @@ class Multigrid final : public Preconditioner {
   }
 
   [[nodiscard]] bool factorise(std::span<const float> values, std::span<const float> near_kernel) override {
-    std::vector<float> motions_of_level(near_kernel.begin(), near_kernel.end()), next, finer;
+    UninitialisedVector<float> motions_of_level(near_kernel.size()), next, finer;
+    parallel_for(places_.size(), [&](std::size_t node) {
+      std::copy_n(&near_kernel[18 * node], 18, &motions_of_level[18 * std::size_t(places_[node])]);
+    });
     if (!finest_->update(next, values, motions_of_level)) return false;
     for (auto& level : coarser_) {
       finer.swap(next);
@@ -108,9 +114,13 @@ class Multigrid final : public Preconditioner {
 
   void solve(std::span<float> x) const override {
     for (; !x.empty(); x = x.subspan(finest_->r.size())) {
-      std::copy_n(x.begin(), finest_->r.size(), finest_->r.begin());
+      parallel_for(places_.size(), [&](std::size_t node) {
+        std::copy_n(&x[3 * node], 3, &finest_->r[3 * std::size_t(places_[node])]);
+      });
       cycle(*finest_, 0);
-      std::ranges::copy(finest_->x, x.begin());
+      parallel_for(places_.size(), [&](std::size_t node) {
+        std::copy_n(&finest_->x[3 * std::size_t(places_[node])], 3, &x[3 * node]);
+      });
     }
   }
 
@@ -129,6 +139,7 @@ class Multigrid final : public Preconditioner {
     level.smoother.finish(level.correction, level.r, level.x);
   }
 
+  std::vector<int> places_;  // of the nodes in the finest level
   std::unique_ptr<Level<3>> finest_;
   std::vector<std::unique_ptr<Level<6>>> coarser_;
   std::optional<Coarsest> coarsest_;

@@ -29,8 +29,8 @@ Galerkin<B>::Galerkin(const Rows& matrix, const Transfer<B>& transfer)
 
 // Rows of A P, B x 6 a block, by rows.
 template <int B>
-std::vector<float> Galerkin<B>::times_transfer(const Matrix<B>& matrix, const Transfer<B>& transfer) const {
-  std::vector<float> values(std::size_t{B * motions} * product_.columns.size() + spare);
+UninitialisedVector<float> Galerkin<B>::times_transfer(const Matrix<B>& matrix, const Transfer<B>& transfer) const {
+  UninitialisedVector<float> values(std::size_t{B * motions} * product_.columns.size() + spare);
 #pragma omp parallel
   {
     std::vector<float> sums;  // of a row, with room for the lanes
@@ -61,9 +61,9 @@ std::vector<float> Galerkin<B>::times_transfer(const Matrix<B>& matrix, const Tr
 }
 
 template <int B>
-std::vector<float> Galerkin<B>::values(const Matrix<B>& matrix, const Transfer<B>& transfer) const {
-  const std::vector<float> product = times_transfer(matrix, transfer);
-  std::vector<float> values(std::size_t{motions * motions} * pattern_.columns.size());
+UninitialisedVector<float> Galerkin<B>::values(const Matrix<B>& matrix, const Transfer<B>& transfer) const {
+  const auto product = times_transfer(matrix, transfer);
+  UninitialisedVector<float> values(std::size_t{motions * motions} * pattern_.columns.size());
   const auto& of_aggregates = transfer.columns();
 #pragma omp parallel
   {

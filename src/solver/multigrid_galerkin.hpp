@@ -12,10 +12,10 @@ class Galerkin {
 
   [[nodiscard]] const BlockPattern& pattern() const { return pattern_; }
   /// Values of the pattern's blocks, 6 x 6 each by rows. An unknown that has no part in P gets the diagonal 1.
-  [[nodiscard]] std::vector<float> values(const Matrix<B>& matrix, const Transfer<B>& transfer) const;
+  [[nodiscard]] UninitialisedVector<float> values(const Matrix<B>& matrix, const Transfer<B>& transfer) const;
 
  private:
-  [[nodiscard]] std::vector<float> times_transfer(const Matrix<B>& matrix, const Transfer<B>& transfer) const;
+  [[nodiscard]] UninitialisedVector<float> times_transfer(const Matrix<B>& matrix, const Transfer<B>& transfer) const;
 
   Rows product_;  // A P, as far as the blocks on and below the diagonal of P^T A P need it
   BlockPattern pattern_;

@@ -7,28 +7,32 @@
 namespace plica::multigrid {
 
 template <int B>
-Matrix<B>::Matrix(const BlockPattern& pattern) : pattern_starts_(pattern.starts) {
+Matrix<B>::Matrix(const BlockPattern& pattern, std::span<const int> places) {
   const int nodes = pattern.nodes();
+  const auto place_of = [&](int node) { return places.empty() ? node : places[node]; };
+  const auto for_blocks = [&](const auto& take) {  // those above the diagonal too
+    for (int node = 0; node < nodes; ++node)
+      for (int block = pattern.starts[node]; block < pattern.starts[node + 1]; ++block) {
+        const int row = place_of(node), column = place_of(pattern.columns[block]);
+        take(row, column, block);
+        if (row != column) take(column, row, ~block);
+      }
+  };
   rows_.starts.assign(nodes + 1, 0);
-  for (int row = 0; row < nodes; ++row)
-    for (int place = pattern.starts[row]; place < pattern.starts[row + 1]; ++place) {
-      ++rows_.starts[row + 1];
-      if (pattern.columns[place] != row) ++rows_.starts[pattern.columns[place] + 1];
-    }
+  for_blocks([&](int row, int, int) { ++rows_.starts[row + 1]; });
   for (int row = 0; row < nodes; ++row) rows_.starts[row + 1] += rows_.starts[row];
   rows_.columns.resize(rows_.starts.back());
-  mirrored_.resize(rows_.columns.size() - pattern.columns.size());
-  // The pattern's rows in their order: what a row mirrors comes after its own blocks, and ascending too.
+  sources_.resize(rows_.starts.back());
   std::vector<int> next(rows_.starts.begin(), rows_.starts.end() - 1);
-  for (int row = 0; row < nodes; ++row)
-    for (int place = pattern.starts[row]; place < pattern.starts[row + 1]; ++place) {
-      const int column = pattern.columns[place];
-      rows_.columns[next[row]++] = column;
-      if (column == row) continue;
-      const int at = next[column]++;
-      rows_.columns[at] = row;
-      mirrored_[at - pattern.starts[column + 1]] = place;  // so many blocks of the pattern come before it
+  for_blocks([&](int row, int column, int source) {
+    int at = next[row]++;  // ascending: those that are greater make room
+    for (; at > rows_.starts[row] && rows_.columns[at - 1] > column; --at) {
+      rows_.columns[at] = rows_.columns[at - 1];
+      sources_[at] = sources_[at - 1];
     }
+    rows_.columns[at] = column;
+    sources_[at] = source;
+  });
   values_.resize(std::size_t{B * B} * rows_.columns.size() + spare);
   inverses_.resize(B * unknowns() + spare);
 }
@@ -36,17 +40,15 @@ Matrix<B>::Matrix(const BlockPattern& pattern) : pattern_starts_(pattern.starts)
 template <int B>
 bool Matrix<B>::set(std::span<const float> values) {
   parallel_for(nodes(), [&](std::size_t row) {
-    const int own = pattern_starts_[row + 1] - pattern_starts_[row];
     for (int place = rows_.starts[row]; place < rows_.starts[row + 1]; ++place) {
-      const int k = place - rows_.starts[row];
+      const int source = sources_[place];
+      const float* from = &values[std::size_t{B * B} * (source < 0 ? ~source : source)];
       float* to = &values_[std::size_t{B * B} * place];
-      if (k < own) {
-        const float* from = &values[std::size_t{B * B} * (pattern_starts_[row] + k)];
+      if (source < 0)
+        std::copy_n(from, B * B, to);
+      else
         for (int i = 0; i < B; ++i)
           for (int j = 0; j < B; ++j) to[B * j + i] = from[B * i + j];
-      } else {
-        std::copy_n(&values[std::size_t{B * B} * mirrored_[place - pattern_starts_[row + 1]]], B * B, to);
-      }
     }
   });
   return invert_diagonal();
@@ -58,9 +60,11 @@ bool Matrix<B>::invert_diagonal() {
   bool definite = true;
 #pragma omp parallel for schedule(static) reduction(&& : definite)
   for (int node = 0; node < nodes(); ++node) {
-    const int own = pattern_starts_[node + 1] - pattern_starts_[node];
+    const auto columns = rows_.of(node);
+    const auto own = std::ranges::lower_bound(columns, node) - columns.begin();
     const Block diagonal =
-        Eigen::Map<const Eigen::Matrix<float, B, B>>(block(rows_.starts[node] + own - 1)).template cast<double>();
+        Eigen::Map<const Eigen::Matrix<float, B, B>>(block(rows_.starts[node] + static_cast<int>(own)))
+            .template cast<double>();
     const Eigen::LLT<Block> factor(diagonal);
     definite = definite && factor.info() == Eigen::Success;
     Eigen::Map<Eigen::Matrix<float, B, B>> inverse(&inverses_[std::size_t{B * B} * node]);

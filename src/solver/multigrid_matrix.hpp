@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/uninitialised.hpp"
 #include "solver/block_pattern.hpp"
 #include "solver/multigrid_rows.hpp"
 
@@ -23,7 +24,8 @@ inline constexpr std::size_t spare = 8;
 template <int B>
 class Matrix {
  public:
-  explicit Matrix(const BlockPattern& pattern);
+  /// `places` says which row of this matrix each node of the pattern is; without, nodes keep their order.
+  explicit Matrix(const BlockPattern& pattern, std::span<const int> places = {});
 
   /// Takes values of the pattern's blocks, B x B each by rows. False when a diagonal block is not positive definite.
   [[nodiscard]] bool set(std::span<const float> values);
@@ -71,9 +73,8 @@ class Matrix {
   [[nodiscard]] bool invert_diagonal();
 
   Rows rows_;
-  std::vector<int> pattern_starts_;  // a row begins with the pattern's blocks, diagonal and below
-  std::vector<int> mirrored_;        // for the others, row by row: which of the pattern's they are, transposed
-  std::vector<float> values_, inverses_;
+  std::vector<int> sources_;  // of rows_.columns: the pattern's block, or ~ of it where it is to be transposed
+  UninitialisedVector<float> values_, inverses_;
 };
 
 extern template class Matrix<3>;

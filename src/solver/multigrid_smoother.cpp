@@ -7,23 +7,31 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "solver/multigrid_order.hpp"
 
 namespace plica::multigrid {
 namespace {
 
-constexpr int degree = 4;       // products a smoothing
-constexpr double reach = 40;    // eigenvalues from the largest down to this part of it are smoothed
-constexpr double margin = 1.1;  // the largest eigenvalue is found from below
+constexpr int rows_a_group = 2048;  // so that those that are at work at once stay in a cache
+constexpr double reach = 40;        // eigenvalues from the largest down to this part of it are smoothed
+constexpr double margin = 1.1;      // the largest eigenvalue is found from below
 
 constexpr double half = (1 - 1 / reach) / 2, middle = (1 + 1 / reach) / 2;  // of the range, over the largest
 
 // In pieces of a fixed size, so that threads do not change the order of sums.
 double dot(std::span<const float> a, std::span<const float> b) {
-  constexpr std::size_t piece = 4096;
-  std::vector<double> sums((a.size() + piece - 1) / piece, 0.0);
-  parallel_for(sums.size(), [&](std::size_t p) {
-    for (std::size_t n = p * piece; n < std::min(a.size(), (p + 1) * piece); ++n) sums[p] += double(a[n]) * b[n];
-  });
+  constexpr std::size_t piece = 4096, worth_sharing = 16;
+  std::vector<double> sums((a.size() + piece - 1) / piece);
+  parallel_for(
+      sums.size(),
+      [&](std::size_t p) {
+        double sum = 0;
+        const std::size_t last = std::min(a.size(), (p + 1) * piece);
+#pragma omp simd reduction(+ : sum)
+        for (std::size_t n = p * piece; n < last; ++n) sum += double(a[n]) * b[n];
+        sums[p] = sum;
+      },
+      worth_sharing);
   double sum = 0;
   for (const double of_piece : sums) sum += of_piece;
   return sum;
@@ -68,63 +76,83 @@ double largest_eigenvalue(const Matrix<B>& matrix) {
   return solver.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
 
+// Calls sweep(k, row) for every row and every k, in an order in which sweep k finds what sweep k - 1 wrote for the row
+// and its neighbours: group after group of rows, each sweep one group behind the last. So the matrix comes from memory
+// once for all of them. Rows do not depend on others of the same sweep, hence no bit on the threads.
+template <class Sweep>
+void for_sweeps(std::span<const int> groups, int sweeps, const Sweep& sweep) {
+  constexpr int worth_sharing = 4096;  // rows
+  const int count = static_cast<int>(groups.size()) - 1;
+#pragma omp parallel if (groups.back() >= worth_sharing)
+  for (int front = 0; front < count + sweeps - 1; ++front)
+    for (int k = std::max(0, front - count + 1); k <= std::min(front, sweeps - 1); ++k)
+#pragma omp for schedule(static)
+      for (int row = groups[front - k]; row < groups[front - k + 1]; ++row) sweep(k, row);
+}
+
 }  // namespace
 
 template <int B>
 Smoother<B>::Smoother(const Matrix<B>& matrix)
-    : matrix_(matrix), direction_(matrix.unknowns()), next_(matrix.unknowns()) {}
+    : matrix_(matrix),
+      groups_(groups_of_rows(matrix.rows(), rows_a_group)),
+      directions_{UninitialisedVector<float>(matrix.unknowns()), UninitialisedVector<float>(matrix.unknowns())} {}
 
 template <int B>
 bool Smoother<B>::update() {
   largest_ = margin * plica::multigrid::largest_eigenvalue(matrix_);
+  constexpr double sigma = middle / half;
+  double rho = 1 / sigma;
+  terms_[0] = {0, static_cast<float>(1 / (middle * largest_))};
+  for (int k = 1; k < degree; ++k) {
+    const double next = 1 / (2 * sigma - rho);
+    terms_[k] = {static_cast<float>(next * rho), static_cast<float>(2 * next / (half * largest_))};
+    rho = next;
+  }
   return largest_ > 0 && std::isfinite(largest_);
 }
 
-// r -= A direction; next = keep direction + step D^-1 r; x += next.
+// r -= A direction; next = keep direction + step D^-1 r; x += next. Of one node.
 template <int B>
-void Smoother<B>::advance(std::span<const float> direction, double keep, double step, std::span<float> r,
-                          std::span<float> x, std::span<float> next) const {
-  const auto k = static_cast<float>(keep), s = static_cast<float>(step);
-  parallel_for(matrix_.nodes(), [&](std::size_t node) {
-    float product[B];
-    matrix_.multiply_row(static_cast<int>(node), direction.data(), product);
-    for (int i = 0; i < B; ++i) r[B * node + i] -= product[i];
-    matrix_.multiply_inverse(static_cast<int>(node), &r[B * node], product);
-    for (int i = 0; i < B; ++i) {
-      next[B * node + i] = k * direction[B * node + i] + s * product[i];
-      x[B * node + i] += next[B * node + i];
-    }
-  });
-}
-
-// All steps of the polynomial after the first.
-template <int B>
-void Smoother<B>::run(std::span<float> r, std::span<float> x) {
-  constexpr double sigma = middle / half;
-  double rho = 1 / sigma;
-  for (int k = 1; k < degree; ++k) {
-    const double next = 1 / (2 * sigma - rho);
-    advance(direction_, next * rho, 2 * next / (half * largest_), r, x, next_);
-    direction_.swap(next_);
-    rho = next;
+void Smoother<B>::advance(int node, Term term, const float* direction, float* r, float* x, float* next) const {
+  const std::size_t at = std::size_t{B} * node;
+  float product[B];
+  matrix_.multiply_row(node, direction, product);
+  for (int i = 0; i < B; ++i) r[at + i] -= product[i];
+  matrix_.multiply_inverse(node, r + at, product);
+  for (int i = 0; i < B; ++i) {
+    next[at + i] = term.keep * direction[at + i] + term.step * product[i];
+    x[at + i] += next[at + i];
   }
 }
 
 template <int B>
 void Smoother<B>::start(std::span<float> r, std::span<float> x) {
-  const auto step = static_cast<float>(1 / (middle * largest_));
-  matrix_.multiply_inverses(r, direction_);
-  parallel_for(x.size(), [&](std::size_t n) { x[n] = direction_[n] *= step; });
-  run(r, x);
-  matrix_.multiply(direction_, next_);
-  parallel_for(r.size(), [&](std::size_t n) { r[n] -= next_[n]; });
+  for_sweeps(groups_, degree + 1, [&](int k, int node) {
+    const std::size_t at = std::size_t{B} * node;
+    const float* before = directions_[(k + 1) % 2].data();
+    float product[B];
+    if (k == 0) {
+      matrix_.multiply_inverse(node, &r[at], product);
+      for (int i = 0; i < B; ++i) x[at + i] = directions_[0][at + i] = terms_[0].step * product[i];
+    } else if (k < degree) {
+      advance(node, terms_[k], before, r.data(), x.data(), directions_[k % 2].data());
+    } else {
+      matrix_.multiply_row(node, before, product);
+      for (int i = 0; i < B; ++i) r[at + i] -= product[i];
+    }
+  });
 }
 
 template <int B>
 void Smoother<B>::finish(std::span<const float> correction, std::span<float> r, std::span<float> x) {
-  parallel_for(x.size(), [&](std::size_t n) { x[n] += correction[n]; });
-  advance(correction, 0, 1 / (middle * largest_), r, x, direction_);
-  run(r, x);
+  for_sweeps(groups_, degree, [&](int k, int node) {
+    const std::size_t at = std::size_t{B} * node;
+    if (k == 0)
+      for (int i = 0; i < B; ++i) x[at + i] += correction[at + i];
+    const float* before = k == 0 ? correction.data() : directions_[(k + 1) % 2].data();
+    advance(node, terms_[k], before, r.data(), x.data(), directions_[k % 2].data());
+  });
 }
 
 template class Smoother<3>;

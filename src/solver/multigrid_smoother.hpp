@@ -1,6 +1,8 @@
 // Chebyshev smoothing with the inverses of the diagonal blocks.
 #pragma once
 
+#include <array>
+
 #include "solver/multigrid_matrix.hpp"
 
 namespace plica::multigrid {
@@ -20,13 +22,17 @@ class Smoother {
   void finish(std::span<const float> correction, std::span<float> r, std::span<float> x);
 
  private:
-  void advance(std::span<const float> direction, double keep, double step, std::span<float> r, std::span<float> x,
-               std::span<float> next) const;
-  void run(std::span<float> r, std::span<float> x);
+  static constexpr int degree = 4;  // products a smoothing
+  struct Term {
+    float keep, step;
+  };
+  void advance(int node, Term term, const float* direction, float* r, float* x, float* next) const;
 
   const Matrix<B>& matrix_;
+  std::vector<int> groups_;
   double largest_ = 0;
-  std::vector<float> direction_, next_;
+  std::array<Term, degree> terms_{};
+  std::array<UninitialisedVector<float>, 2> directions_;  // in turns
 };
 
 extern template class Smoother<3>;

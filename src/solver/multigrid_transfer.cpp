@@ -70,9 +70,9 @@ Transfer<B>::Transfer(const Rows& matrix)
       values_(std::size_t{B * motions} * rows_.columns.size() + spare) {}
 
 template <int B>
-std::vector<float> Transfer<B>::tentative(std::vector<float>& near_kernel) const {
+UninitialisedVector<float> Transfer<B>::tentative(UninitialisedVector<float>& near_kernel) const {
   constexpr int size = B * motions;
-  std::vector<float> T(near_kernel.size() + spare, 0.0F), R(std::size_t{motions * motions} * aggregates_.count);
+  UninitialisedVector<float> T(near_kernel.size() + spare), R(std::size_t{motions * motions} * aggregates_.count);
   parallel_for(aggregates_.count, [&](std::size_t aggregate) {
     const auto members = aggregates_.members.of(static_cast<int>(aggregate));
     Columns Q(B * members.size());
@@ -89,8 +89,8 @@ std::vector<float> Transfer<B>::tentative(std::vector<float>& near_kernel) const
 }
 
 template <int B>
-void Transfer<B>::update(const Matrix<B>& matrix, double largest_eigenvalue, std::vector<float>& near_kernel) {
-  const std::vector<float> T = tentative(near_kernel);
+void Transfer<B>::update(const Matrix<B>& matrix, double largest_eigenvalue, UninitialisedVector<float>& near_kernel) {
+  const auto T = tentative(near_kernel);
   const auto weight = static_cast<float>(damping / largest_eigenvalue);
   constexpr int wide = lanes<motions>;
   parallel_for(matrix.nodes(), [&](std::size_t node) {

@@ -19,7 +19,7 @@ class Transfer {
 
   /// Finds P anew. `near_kernel`: B x 6 numbers a node, by rows; becomes that of the coarser level, 6 x 6 a node. Where
   /// an aggregate has fewer than six motions of its own, the unknowns that are over have no part in P.
-  void update(const Matrix<B>& matrix, double largest_eigenvalue, std::vector<float>& near_kernel);
+  void update(const Matrix<B>& matrix, double largest_eigenvalue, UninitialisedVector<float>& near_kernel);
 
   [[nodiscard]] int coarse_nodes() const { return aggregates_.count; }
   [[nodiscard]] const Rows& rows() const { return rows_; }
@@ -33,12 +33,12 @@ class Transfer {
   void prolong(std::span<const float> coarse, std::span<float> fine) const;
 
  private:
-  [[nodiscard]] std::vector<float> tentative(std::vector<float>& near_kernel) const;
+  [[nodiscard]] UninitialisedVector<float> tentative(UninitialisedVector<float>& near_kernel) const;
 
   Aggregates aggregates_;
   Rows rows_;
   Transposed columns_;
-  std::vector<float> values_;
+  UninitialisedVector<float> values_;
 };
 
 extern template class Transfer<3>;

@@ -1,5 +1,7 @@
 #include "solver/newton.hpp"
 
+#include "core/parallel.hpp"
+
 namespace plica {
 
 FactorMemory factor_memory(const Step& step, const Iterate& at) {
@@ -25,29 +27,32 @@ Vec3 without_held(const Model& model, std::size_t node, Vec3 direction) {
   return direction;
 }
 
+NodeFrame node_frame(const Model& model, std::size_t node, const Vec3* inward) {
+  NodeFrame frame;
+  const auto add_fixed = [&](const Vec3& direction) { frame.axes.col(frame.fixed++) = direction.normalized(); };
+  for (int axis = 0; axis < 3; ++axis)
+    if (model.held[node][axis]) add_fixed(Vec3::Unit(axis));
+  if (inward != nullptr) add_fixed(without_held(model, node, *inward));
+  if (frame.fixed == 1) frame.axes.col(1) = frame.axes.col(0).unitOrthogonal();
+  if (frame.fixed == 1 || frame.fixed == 2) frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
+  return frame;
+}
+
 std::vector<NodeFrame> node_frames(const Model& model, const Iterate& at) {
   std::vector<NodeFrame> frames(model.tissue.free_node_count());
-  const auto add_fixed = [](NodeFrame& frame, const Vec3& direction) {
-    frame.axes.col(frame.fixed++) = direction.normalized();
-  };
-  for (std::size_t n = 0; n < frames.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-      if (model.held[n][axis]) add_fixed(frames[n], Vec3::Unit(axis));
-  for (std::size_t k = 0; k < at.in_contact.size(); ++k)
-    if (at.in_contact[k]) {
-      const std::size_t n = model.vitelline->nodes()[k].index();
-      add_fixed(frames[n], without_held(model, n, model.vitelline->gap(at.positions[n]).inward));
-    }
-  for (NodeFrame& frame : frames) {
-    if (frame.fixed == 1) frame.axes.col(1) = frame.axes.col(0).unitOrthogonal();
-    if (frame.fixed == 1 || frame.fixed == 2) frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
-  }
+  parallel_for(frames.size(), [&](std::size_t n) { frames[n] = node_frame(model, n, nullptr); });
+  parallel_for(at.in_contact.size(), [&](std::size_t k) {
+    if (!at.in_contact[k]) return;
+    const std::size_t n = model.vitelline->nodes()[k].index();
+    const Vec3 inward = model.vitelline->gap(at.positions[n]).inward;
+    frames[n] = node_frame(model, n, &inward);
+  });
   return frames;
 }
 
 void return_to_shell(const Model& model, Iterate& at) {
-  for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
-    if (!at.in_contact[k]) continue;
+  parallel_for(at.in_contact.size(), [&](std::size_t k) {
+    if (!at.in_contact[k]) return;
     const std::size_t n = model.vitelline->nodes()[k].index();
     // Where the way is not straight along the normal, because the node is partly held, it takes a few.
     for (int attempt = 0; attempt < 4; ++attempt) {
@@ -56,7 +61,7 @@ void return_to_shell(const Model& model, Iterate& at) {
       at.positions[n] -= gap.value / way.squaredNorm() * way;
       if (way == gap.inward) break;
     }
-  }
+  });
   model.tissue.place_hanging(at.positions);
 }
 

@@ -68,7 +68,9 @@ struct NodeFrame {
   }
 };
 
-/// Frames of the free nodes: held axes first, then the shell's normal where a node touches it.
+/// Frame of a free node: held axes first, then the shell's normal where it touches that, else nullptr.
+NodeFrame node_frame(const Model& model, std::size_t node, const Vec3* inward);
+/// Frames of the free nodes.
 std::vector<NodeFrame> node_frames(const Model& model, const Iterate& at);
 
 /// `direction` without the axes along which the node is held.
@@ -90,7 +92,7 @@ class NewtonDirections {
     int linear_solves = 0;
   };
   struct Wish {
-    bool slow;        // the last direction brought less than Newton's method can
+    double left;      // of the residual, by the last direction; 0 before the first
     double accuracy;  // relative, of the linear system: what would end the step
   };
   enum class Outcome { found, singular, interrupted };

@@ -78,13 +78,8 @@ void PressureFactor::write_rows(const VolumeJacobian& jacobian, std::span<const 
 
 bool PressureFactor::factorise(const VolumeJacobian& jacobian, const StepMatrix& matrix,
                                std::span<const NodeFrame> frames) {
-  bool stiff = true;
-  for (std::size_t n = 0; n < compliances_.size(); ++n) {
-    const double stiffness = matrix.block(n, n).trace() / 3;
-    stiff = stiff && stiffness > 0;
-    compliances_[n] = 1 / stiffness;
-  }
-  if (!stiff) return false;
+  parallel_for(compliances_.size(), [&](std::size_t n) { compliances_[n] = 3 / matrix.block(n, n).trace(); });
+  if (!std::ranges::all_of(compliances_, [](double c) { return c > 0; })) return false;
   std::vector<float> values(9 * pattern_.columns.size(), 0.0F);
   parallel_for(blocks_.size(),
                [&](std::size_t block) { write_rows(jacobian, frames, static_cast<int>(block), values); });

@@ -3,35 +3,52 @@
 #include <algorithm>
 
 #include "core/parallel.hpp"
+#include "solver/multigrid_rows.hpp"
 
 namespace plica {
 
-StepMatrix::StepMatrix(const Model& model) : tissue_(model.tissue), jacobian_(model) {
-  const int nodes = static_cast<int>(tissue_.free_node_count());
-  // Which blocks can be non-zero: pairs within the laws' groups of nodes, and every node with itself.
-  std::vector<std::vector<int>> lower(nodes);
-  for (int n = 0; n < nodes; ++n) lower[n].push_back(n);
-  std::vector<NodeId> free;
-  const auto join = [&](const std::vector<NodeId>& group) {
-    free.clear();
-    for (const NodeId node : group) tissue_.for_free_nodes(node, [&](NodeId n, double) { free.push_back(n); });
-    for (const NodeId a : free)
-      for (const NodeId b : free)
-        if (b < a) lower[a.index()].push_back(b.number());
+namespace {
+
+// The free nodes of every group that a law or the volumes join; laws that join the same groups once.
+multigrid::Rows joined_nodes(const Model& model) {
+  std::vector<NodeGroups> lists;
+  const auto take = [&](NodeGroups groups) {
+    if (std::ranges::find(lists, groups) == lists.end()) lists.push_back(std::move(groups));
   };
-  for (const auto& law : model.laws)
-    for (const auto& group : law->node_groups()) join(group);
-  if (model.volumes_are_held)
-    for (const auto& element : tissue_.elements) join({element.begin(), element.end()});
-  layout_.starts.push_back(0);
-  for (auto& row : lower) {
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-    layout_.columns.insert(layout_.columns.end(), row.begin(), row.end());
-    layout_.starts.push_back(static_cast<int>(layout_.columns.size()));
+  for (const auto& law : model.laws) take(law->node_groups());
+  if (model.volumes_are_held) {
+    NodeGroups elements;
+    for (const auto& element : model.tissue.elements) elements.add(element);
+    take(std::move(elements));
   }
-  blocks_.resize(layout_.columns.size());
+  multigrid::Rows joined;
+  for (const NodeGroups& groups : lists)
+    for (std::size_t k = 0; k < groups.size(); ++k) {
+      for (const NodeId node : groups[k])
+        model.tissue.for_free_nodes(node, [&](NodeId n, double) { joined.columns.push_back(n.number()); });
+      joined.starts.push_back(static_cast<int>(joined.columns.size()));
+    }
+  return joined;
 }
+
+// The blocks that can be non-zero: of pairs within a group, and of every node with itself.
+BlockPattern pattern_of(const Model& model) {
+  const int nodes = static_cast<int>(model.tissue.free_node_count());
+  const multigrid::Rows groups = joined_nodes(model);
+  const multigrid::Transposed of_node = multigrid::transpose(groups, nodes);
+  multigrid::Rows lower = multigrid::collect_rows(nodes, [&](int node, const auto& take) {
+    take(node);
+    for (int at = of_node.starts[node]; at < of_node.starts[node + 1]; ++at)
+      for (const int other : groups.of(of_node.rows[at]))
+        if (other < node) take(other);
+  });
+  return {std::move(lower.starts), std::move(lower.columns)};
+}
+
+}  // namespace
+
+StepMatrix::StepMatrix(const Model& model)
+    : tissue_(model.tissue), layout_(pattern_of(model)), blocks_(layout_.columns.size()), jacobian_(model) {}
 
 SymmetricPattern StepMatrix::pattern() const {
   SymmetricPattern pattern;
@@ -55,7 +72,9 @@ SymmetricPattern StepMatrix::pattern() const {
   return pattern;
 }
 
-void StepMatrix::set_zero() { std::fill(blocks_.begin(), blocks_.end(), Mat3::Zero()); }
+void StepMatrix::set_zero() {
+  parallel_for(blocks_.size(), [&](std::size_t k) { blocks_[k].setZero(); });
+}
 
 void StepMatrix::add_block(NodeId row, NodeId column, const Mat3& block) {
   const std::size_t free = tissue_.free_node_count();
@@ -175,7 +194,7 @@ void StepMatrix::write_values(std::span<const NodeFrame> frames, std::vector<dou
   }
 }
 
-void StepMatrix::write_projected_blocks(std::span<const NodeFrame> frames, std::vector<float>& values) const {
+void StepMatrix::write_projected_blocks(std::span<const NodeFrame> frames, UninitialisedVector<float>& values) const {
   values.resize(9 * blocks_.size());
   const auto fixed_part = [](const NodeFrame& frame) {
     const auto axes = frame.axes.leftCols(frame.fixed);

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "core/uninitialised.hpp"
 #include "solver/block_cholesky.hpp"
 #include "solver/linear_solver.hpp"
 #include "solver/newton.hpp"
@@ -55,7 +56,7 @@ class StepMatrix final : public TangentSink {
   [[nodiscard]] const BlockPattern& layout() const { return layout_; }
   /// The blocks of A with fixed directions projected out, and in their place a diagonal of the block's own size; nine
   /// numbers a block, by rows.
-  void write_projected_blocks(std::span<const NodeFrame> frames, std::vector<float>& values) const;
+  void write_projected_blocks(std::span<const NodeFrame> frames, UninitialisedVector<float>& values) const;
 
  private:
   [[nodiscard]] Mat3& lower_block(NodeId row, NodeId column);  // column <= row, both free

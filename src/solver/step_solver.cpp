@@ -1,7 +1,10 @@
 #include "solver/step_solver.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+
+#include "core/parallel.hpp"
 
 namespace plica {
 
@@ -24,11 +27,11 @@ Residual StepSolver::residual(const Step& step, Iterate& at) const {
   double balanced = 0;  // squared norm of the forces that have to balance
   const auto take = [&] {
     model_.tissue.carry_hanging(of_law);
-    for (std::size_t n = 0; n < of_law.size(); ++n) {
-      balanced += of_law[n].squaredNorm();
+    balanced += parallel_squared_norm(of_law);
+    parallel_for(of_law.size(), [&](std::size_t n) {
       r.forces[n] += of_law[n];
-    }
-    std::fill(of_law.begin(), of_law.end(), Vec3::Zero());
+      of_law[n].setZero();
+    });
   };
   for (const auto& law : model_.laws) {
     law->add_forces(step, of_law);
@@ -44,32 +47,35 @@ Residual StepSolver::residual(const Step& step, Iterate& at) const {
     }
   }
   // The shell bears what else would push nodes outward along their normals.
-  const std::vector<NodeFrame> frames = node_frames(model_, at);
-  for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
-    if (!at.in_contact[k]) continue;
-    const std::size_t n = model_.vitelline->nodes()[k].index();
-    const Vitelline::Gap gap = model_.vitelline->gap(at.positions[n]);
-    const Vec3 normal = frames[n].axes.col(frames[n].fixed - 1);
-    at.contact_forces[k] = -normal.dot(r.forces[n]) / normal.dot(gap.inward);
-    of_law[n] = at.contact_forces[k] * gap.inward;
-  }
+  const auto in_contact = [&](const auto& body) {
+    parallel_for(at.in_contact.size(), [&](std::size_t k) {
+      if (!at.in_contact[k]) return;
+      const std::size_t n = model_.vitelline->nodes()[k].index();
+      const Vec3 inward = model_.vitelline->gap(at.positions[n]).inward;
+      body(k, n, inward, node_frame(model_, n, &inward));
+    });
+  };
+  in_contact([&](std::size_t k, std::size_t n, const Vec3& inward, const NodeFrame& frame) {
+    const Vec3 normal = frame.axes.col(frame.fixed - 1);
+    at.contact_forces[k] = -normal.dot(r.forces[n]) / normal.dot(inward);
+    of_law[n] = at.contact_forces[k] * inward;
+  });
   take();
 
-  double free = 0;
-  for (std::size_t n = 0; n < frames.size(); ++n) {
-    const Vec3 local = frames[n].axes.transpose() * r.forces[n];
-    for (int i = frames[n].fixed; i < 3; ++i) free += local[i] * local[i];
-  }
+  Vectors& free = of_law;
+  parallel_for(model_.tissue.free_node_count(), [&](std::size_t n) { free[n] = without_held(model_, n, r.forces[n]); });
+  in_contact(
+      [&](std::size_t, std::size_t n, const Vec3&, const NodeFrame& frame) { free[n] = frame.free_part(r.forces[n]); });
   // Relative to the forces that balance; but where those are next to none, or as small as what rounding makes, to a
   // floor.
   const double floor = std::max(1e-4 * force_scale_, force_rounding_ / tolerances_.force);
-  r.force = std::sqrt(free) / (std::sqrt(balanced) + floor);
+  r.force = std::sqrt(parallel_squared_norm(free)) / (std::sqrt(balanced) + floor);
   return r;
 }
 
 bool StepSolver::revise_contacts(Iterate& at) const {
-  bool changed = false;
-  for (std::size_t k = 0; k < at.in_contact.size(); ++k) {
+  std::atomic<bool> changed = false;
+  parallel_for(at.in_contact.size(), [&](std::size_t k) {
     const std::size_t n = model_.vitelline->nodes()[k].index();
     const Vitelline::Gap gap = model_.vitelline->gap(at.positions[n]);
     // A node that is held where the shell would push it is the hold's business.
@@ -87,7 +93,7 @@ bool StepSolver::revise_contacts(Iterate& at) const {
       at.in_contact[k] = 1;
       changed = true;
     }
-  }
+  });
   return_to_shell(model_, at);
   return changed;
 }
@@ -101,7 +107,7 @@ bool StepSolver::search_line(const Step& step, const Direction& d, Iterate& at, 
   double part = 1;
   for (int halving = 0; halving < 8; ++halving, part *= 0.5) {
     Iterate trial = at;
-    for (std::size_t n = 0; n < trial.positions.size(); ++n) trial.positions[n] += part * d.positions[n];
+    parallel_for(trial.positions.size(), [&](std::size_t n) { trial.positions[n] += part * d.positions[n]; });
     return_to_shell(model_, trial);
     blocking = inverted_cell(model_.tissue, trial.positions);
     if (blocking) continue;
@@ -144,7 +150,7 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
   bool contacts_settled = !revise_contacts(at);
   Residual now = residual(step, at);
   constexpr int most_slow_iterations = 12;  // in a row, none of which halves the residual
-  bool slow = false;
+  double left = 0;
   int slow_iterations = 0;
   for (;; ++report.newton_iterations) {
     report.residual = now.force;
@@ -169,7 +175,7 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
     Direction direction;
     NewtonDirections::Cost cost;
     const double accuracy = 0.3 * std::min(tolerances_.force / now.force, tolerances_.volume / now.volume);
-    const auto outcome = directions_->find(step, at, now, {slow, accuracy}, direction, cost);
+    const auto outcome = directions_->find(step, at, now, {left, accuracy}, direction, cost);
     report.factorisations += cost.factorisations;
     report.linear_solves += cost.linear_solves;
     if (outcome == NewtonDirections::Outcome::interrupted) {
@@ -183,8 +189,8 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
     }
     const double before = now.merit();
     if (!search_line(step, direction, at, now, report)) return report;
-    slow = now.merit() > 0.1 * before;
-    slow_iterations = now.merit() > 0.5 * before ? slow_iterations + 1 : 0;
+    left = now.merit() / before;
+    slow_iterations = left > 0.5 ? slow_iterations + 1 : 0;
     contacts_settled = !revise_contacts(at);
     if (!contacts_settled) {
       step.positions = at.positions;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/parallel.hpp"
 #include "solver/linearly_implicit.hpp"
 #include "solver/projected_stepper.hpp"
 #include "solver/step_solver.hpp"
@@ -62,9 +63,9 @@ std::optional<CellId> cell_with_largest(const Tissue& tissue, const Vectors& vec
 }
 
 std::optional<CellId> inverted_cell(const Tissue& tissue, const Vectors& positions) {
-  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
-    if (!hex_is_upright(gather(positions, tissue.elements[e]))) return tissue.element_cell[e];
-  return std::nullopt;
+  const std::size_t element = parallel_find(
+      tissue.elements.size(), [&](std::size_t e) { return !hex_is_upright(gather(positions, tissue.elements[e])); });
+  return element < tissue.elements.size() ? std::optional(tissue.element_cell[element]) : std::nullopt;
 }
 
 }  // namespace plica

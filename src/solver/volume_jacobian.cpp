@@ -44,11 +44,14 @@ VolumeJacobian::VolumeJacobian(const Model& model) : start_{0}, node_start_(mode
 
 void VolumeJacobian::update(const CellVolumes& volumes, std::span<const Vec3> positions) {
   if (gradients_.empty()) return;
-  for (Gradient& gradient : gradients_) gradient.value.setZero();
+  parallel_for(gradients_.size(), [&](std::size_t slot) { gradients_[slot].value.setZero(); });
   const auto of_elements = volumes.element_gradients(positions);
-  for (std::size_t e = 0; e < of_elements.size(); ++e)
-    for (int i = 0; i < 8; ++i)
-      if (element_slots_[e][i] >= 0) gradients_[element_slots_[e][i]].value += of_elements[e][i];
+  volumes.for_elements(
+      [&](std::size_t e) {
+        for (int i = 0; i < 8; ++i)
+          if (element_slots_[e][i] >= 0) gradients_[element_slots_[e][i]].value += of_elements[e][i];
+      },
+      true);
   for (const auto& [element, corner, slot, weight] : hanging_slots_)
     gradients_[slot].value += weight * of_elements[element][corner];
 }

@@ -103,7 +103,7 @@ TEST(ContactBorder, SolvesForTheContactsOfNow) {
   matrix.assemble(model, step, given.at);
   const auto factor = [&](const Iterate& at) {
     auto cholesky = std::make_unique<BlockCholesky>(matrix.layout());
-    std::vector<float> values;
+    UninitialisedVector<float> values;
     matrix.write_projected_blocks(node_frames(model, at), values);
     EXPECT_TRUE(cholesky->factorise(values));
     return cholesky;
@@ -144,7 +144,7 @@ TEST(ContactBorder, SolvesForTheContactsOfNow) {
 struct Bordered {
   explicit Bordered(const Case& given, const Model& model) : matrix(model), factor(matrix.layout()) {
     matrix.assemble(model, given.step(), given.at);
-    std::vector<float> values;
+    UninitialisedVector<float> values;
     matrix.write_projected_blocks(node_frames(model, given.at), values);
     EXPECT_TRUE(factor.factorise(values));
     border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact, 32);

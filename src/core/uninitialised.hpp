@@ -1,0 +1,31 @@
+// Vectors whose new elements are left as memory is: for large arrays that are written as a whole, by several threads,
+// right after. Zeros first would go through all of their memory once more, on one thread.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace plica {
+
+template <class T>
+struct UninitialisedAllocator : std::allocator<T> {
+  template <class U>
+  struct rebind {
+    using other = UninitialisedAllocator<U>;
+  };
+  template <class U>
+  void construct(U* place) {
+    ::new (static_cast<void*>(place)) U;
+  }
+  template <class U, class... Arguments>
+  void construct(U* place, Arguments&&... arguments) {
+    ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
+  }
+};
+
+/// resize() and the constructor with a size leave numbers unset.
+template <class T>
+using UninitialisedVector = std::vector<T, UninitialisedAllocator<T>>;
+
+}  // namespace plica
