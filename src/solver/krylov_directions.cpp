@@ -246,11 +246,12 @@ NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate
   // An inexact direction is still one; the line search judges it.
   if (report.interrupted) return Outcome::interrupted;
   if (!(report.residual < 0.5)) return Outcome::singular;
+  const double share = std::clamp(std::log10(report.residual) / -4, 0.1, 4.0);  // of iterations to 1e-4
   if (is_new) {
-    iterations_when_new_ = report.iterations;
+    iterations_when_new_ = static_cast<int>(std::lround(report.iterations / share));
     wasted_iterations_ = 0;
   } else {
-    wasted_iterations_ += std::max(0, report.iterations - iterations_when_new_);
+    wasted_iterations_ += std::max(0, report.iterations - static_cast<int>(std::lround(iterations_when_new_ * share)));
   }
   direction.positions.assign(of_nodes(solution_).begin(), of_nodes(solution_).end());
   direction.pressures.assign(of_cells(solution_).begin(), of_cells(solution_).end());

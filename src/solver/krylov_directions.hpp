@@ -54,9 +54,10 @@ class KrylovDirections final : public NewtonDirections {
   ContactBorder border_;
   std::optional<PressureFactor> pressures_;  // for what gamma W does not see
   bool has_factor_ = false;
-  FactorMemory made_from_;  // without what came later
-  int price_of_factor_;     // in iterations that take as long, with the assembly
-  int iterations_when_new_ = 0, wasted_iterations_ = 0;
+  FactorMemory made_from_;       // without what came later
+  int price_of_factor_;          // in iterations that take as long, with the assembly
+  int iterations_when_new_ = 0;  // to 1e-4
+  int wasted_iterations_ = 0;
 
   std::vector<double> pressure_weights_;  // gamma W as in the factor; cells, kPa/um^3
   double volume_unit_ = 1;                // nN/um^3: makes the rows of volumes forces
