@@ -57,7 +57,7 @@ def check_includes():
                 breach(path, f"includes {name}, which is not in src/; paths are from src/", number)
             elif quoted and FOLDERS.index(other) > FOLDERS.index(folder):
                 breach(path, f"{folder} may not include {other}: {other} comes after it", number)
-            if other.startswith("vtk") and not path.name.endswith("_vtk.cpp"):
+            if (other.startswith("vtk") or name.endswith("_vtk.hpp")) and not path.stem.endswith("_vtk"):
                 breach(path, f"includes {name}: VTK is for files named *_vtk.cpp", number)
 
 

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "core/one_thread_vtk.hpp"
 #include "measure/surface_distance.hpp"
 
 namespace plica {

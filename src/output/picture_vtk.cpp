@@ -31,6 +31,7 @@
 
 #include "core/child_process.hpp"
 #include "core/errors.hpp"
+#include "core/one_thread_vtk.hpp"
 #include "output/display.hpp"
 #include "output/picture_layout.hpp"
 #include "output/picture_scene.hpp"

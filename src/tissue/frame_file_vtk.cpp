@@ -19,6 +19,7 @@
 #include "core/bytes.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/one_thread_vtk.hpp"
 #include "tissue/frame_file.hpp"
 #include "tissue/grid_reading.hpp"
 

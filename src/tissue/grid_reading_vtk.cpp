@@ -26,6 +26,7 @@
 
 #include "core/child_process.hpp"
 #include "core/errors.hpp"
+#include "core/one_thread_vtk.hpp"
 #include "tissue/grid_reading.hpp"
 
 namespace plica {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "core/one_thread_vtk.hpp"
 #include "tissue/grid_reading.hpp"
 #include "tissue/mesh_bytes.hpp"
 #include "tissue/mesh_file.hpp"

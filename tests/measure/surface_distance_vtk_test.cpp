@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 
 #include "measure/surface_distance.hpp"
@@ -49,6 +50,22 @@ TEST(SurfaceDistance, ToASingleFlatTriangle) {
   EXPECT_NEAR(distance.from({0.2, 0.2, 3}), 3, 1e-12);
   EXPECT_NEAR(distance.from({0.2, 0.2, -3}), 3, 1e-12);
   EXPECT_NEAR(distance.from({4, 0, 4}), 5, 1e-12);
+}
+
+// Else a child process that starts meanwhile may wait for a lock that only its parent's thread could open. (Threads
+// that tests before this one have started are counted too; the suite runs each test in a process of its own.)
+TEST(SurfaceDistance, StartsNoThreads) {
+  const auto threads = [] {
+    const std::filesystem::directory_iterator tasks("/proc/self/task");
+    return std::distance(begin(tasks), end(tasks));
+  };
+  const auto before = threads();
+  Random random(12);
+  TriangleSurface surface;
+  surface.points = random.vectors(3000, 100);
+  for (int t = 0; t < 1000; ++t) surface.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  EXPECT_GT(SurfaceDistance(surface).from({1000, 0, 0}), 0);
+  EXPECT_EQ(threads(), before);
 }
 
 }  // namespace

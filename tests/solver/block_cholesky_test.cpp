@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/cubes.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {
@@ -10,14 +11,7 @@ namespace {
 /// A box of nodes, each a neighbour of those of its cubes, with random blocks: symmetric, positive definite.
 struct System {
   System(int nx, int ny, int nz) {
-    const auto number = [&](int x, int y, int z) { return x + nx * (y + ny * z); };
-    std::vector<int> groups;
-    for (int z = 0; z + 1 < nz; ++z)
-      for (int y = 0; y + 1 < ny; ++y)
-        for (int x = 0; x + 1 < nx; ++x)
-          for (int corner = 0; corner < 8; ++corner)
-            groups.push_back(number(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)));
-    pattern = pattern_of_groups(nx * ny * nz, groups, 8);
+    pattern = pattern_of_groups(nx * ny * nz, support::cubes_of_box(nx, ny, nz), 8);
     support::Random random(7);
     matrix.setZero(3 * pattern.nodes(), 3 * pattern.nodes());
     for (int row = 0; row < pattern.nodes(); ++row)

@@ -7,19 +7,15 @@
 #include <numeric>
 
 #include "solver/multigrid_smoother.hpp"
+#include "support/cubes.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {
 namespace {
 
 BlockPattern box(int nx, int ny, int nz, const std::vector<int>& names) {
-  const auto number = [&](int x, int y, int z) { return names[x + nx * (y + ny * z)]; };
-  std::vector<int> groups;
-  for (int z = 0; z + 1 < nz; ++z)
-    for (int y = 0; y + 1 < ny; ++y)
-      for (int x = 0; x + 1 < nx; ++x)
-        for (int corner = 0; corner < 8; ++corner)
-          groups.push_back(number(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)));
+  std::vector<int> groups = support::cubes_of_box(nx, ny, nz);
+  for (int& node : groups) node = names[node];
   return pattern_of_groups(nx * ny * nz, groups, 8);
 }
 
