@@ -82,6 +82,7 @@ TEST(MultigridOrder, SweepsGroupByGroupLeaveTheResidualOfWhatTheyFound) {
   std::vector<float> b(matrix.unknowns());
   for (float& value : b) value = static_cast<float>(random.number());
   std::vector<float> first;
+  const int usual = omp_get_max_threads();
   for (const int threads : {1, 2, 4}) {
     omp_set_num_threads(threads);
     std::vector<float> r = b, x(b.size()), Ax(b.size());
@@ -96,7 +97,7 @@ TEST(MultigridOrder, SweepsGroupByGroupLeaveTheResidualOfWhatTheyFound) {
     if (first.empty()) first = r;
     EXPECT_EQ(r, first) << threads << " threads";
   }
-  omp_set_num_threads(1);
+  omp_set_num_threads(usual);
 }
 
 }  // namespace
