@@ -27,6 +27,9 @@ Vec3 without_held(const Model& model, std::size_t node, Vec3 direction) {
   return direction;
 }
 
+namespace {
+
+// Frame of a free node: held axes first, then the shell's normal where it touches that, else nullptr.
 NodeFrame node_frame(const Model& model, std::size_t node, const Vec3* inward) {
   NodeFrame frame;
   const auto add_fixed = [&](const Vec3& direction) { frame.axes.col(frame.fixed++) = direction.normalized(); };
@@ -37,6 +40,8 @@ NodeFrame node_frame(const Model& model, std::size_t node, const Vec3* inward) {
   if (frame.fixed == 1 || frame.fixed == 2) frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
   return frame;
 }
+
+}  // namespace
 
 std::vector<NodeFrame> node_frames(const Model& model, const Iterate& at) {
   std::vector<NodeFrame> frames(model.tissue.free_node_count());

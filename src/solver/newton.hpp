@@ -68,8 +68,6 @@ struct NodeFrame {
   }
 };
 
-/// Frame of a free node: held axes first, then the shell's normal where it touches that, else nullptr.
-NodeFrame node_frame(const Model& model, std::size_t node, const Vec3* inward);
 /// Frames of the free nodes.
 std::vector<NodeFrame> node_frames(const Model& model, const Iterate& at);
 

@@ -52,11 +52,10 @@ Residual StepSolver::residual(const Step& step, Iterate& at) const {
       if (!at.in_contact[k]) return;
       const std::size_t n = model_.vitelline->nodes()[k].index();
       const Vec3 inward = model_.vitelline->gap(at.positions[n]).inward;
-      body(k, n, inward, node_frame(model_, n, &inward));
+      body(k, n, inward, Vec3(without_held(model_, n, inward).normalized()));
     });
   };
-  in_contact([&](std::size_t k, std::size_t n, const Vec3& inward, const NodeFrame& frame) {
-    const Vec3 normal = frame.axes.col(frame.fixed - 1);
+  in_contact([&](std::size_t k, std::size_t n, const Vec3& inward, const Vec3& normal) {
     at.contact_forces[k] = -normal.dot(r.forces[n]) / normal.dot(inward);
     of_law[n] = at.contact_forces[k] * inward;
   });
@@ -65,7 +64,7 @@ Residual StepSolver::residual(const Step& step, Iterate& at) const {
   Vectors& free = of_law;
   parallel_for(model_.tissue.free_node_count(), [&](std::size_t n) { free[n] = without_held(model_, n, r.forces[n]); });
   in_contact(
-      [&](std::size_t, std::size_t n, const Vec3&, const NodeFrame& frame) { free[n] = frame.free_part(r.forces[n]); });
+      [&](std::size_t, std::size_t n, const Vec3&, const Vec3& normal) { free[n] -= normal.dot(free[n]) * normal; });
   // Relative to the forces that balance; but where those are next to none, or as small as what rounding makes, to a
   // floor.
   const double floor = std::max(1e-4 * force_scale_, force_rounding_ / tolerances_.force);
