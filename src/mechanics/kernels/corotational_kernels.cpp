@@ -14,7 +14,8 @@ inline void for_elements(const CorotationalStep& step, std::size_t first, std::s
     const int count = count_in_batch(step.elements, b);
     const ViscousBatch* viscous_batch = step.viscous_batches ? step.viscous_batches + b : nullptr;
     for (int lane = 0; lane < count; lane += width)
-      body(Elements{step.batches[b], viscous_batch, step.rate, lane}, count - lane < width ? count - lane : width);
+      body(Elements{step.batches[b], step.batches[b + 1 < last ? b + 1 : b], viscous_batch, step.rate, lane},
+           count - lane < width ? count - lane : width);
   }
 }
 
@@ -41,6 +42,7 @@ template <bool viscous>
     Hourglass q;
     e.ask_for_next();
     multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
+    e.ask_for_next_corners(step.positions);
     const Sym D = deviator(now.S);
     Lanes energies = 0.5 * (e.shear() * contract(D, D) + dot(now.h, q));
     Sym T = D;
@@ -53,11 +55,11 @@ template <bool viscous>
 template <bool viscous>
 [[gnu::flatten]] void add_forces(const CorotationalStep& step, std::size_t first, std::size_t last, double* forces) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
-    prefetch(e.batch.nodes, e.lane, forces);
     const Deformation now = deformation(e, step.positions);
     Hourglass q;
     e.ask_for_next();
     multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
+    e.ask_for_next_corners(step.positions, forces);
     Sym T = e.shear() * deviator(now.S);
     Vec torque = cross(now.h, q);
     if (viscous) {
@@ -80,12 +82,10 @@ struct Moving {
 };
 
 // The stretch comes of a chain of steps that wait for each other: meanwhile the direction is gathered.
-inline void gather_moving(const Elements& e, const double* positions, const double* direction, const double* product,
-                          Moving& at) {
+inline void gather_moving(const Elements& e, const double* positions, const double* direction, Moving& at) {
   e.ask_for_next();
   gather_modes(e.batch.nodes, e.lane, positions, at.m);
   at.F = gradient(e, at.m);
-  prefetch(e.batch.nodes, e.lane, direction, product);
   at.stretched = stretch(at.F);
   e.ask_for_next();
   gather_modes(e.batch.nodes, e.lane, direction, at.d);
@@ -98,12 +98,13 @@ template <bool viscous>
                                          const double* direction, double* product) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
     Moving at;
-    gather_moving(e, step.positions, direction, product, at);
+    gather_moving(e, step.positions, direction, at);
     const Mat R = frame(at.F, at.stretched).R;
     const Seen move = seen_from(e, R, at.dF, at.d);
     Hourglass dq;
     e.ask_for_next();
     multiply<1>(e.batch.stiffness, e.lane, {&move.w}, {&dq});
+    e.ask_for_next_corners(step.positions, direction, product);
     Lanes shear = e.shear();
     if (viscous) {
       Hourglass damped;
@@ -122,7 +123,7 @@ template <bool viscous>
                                         const double* direction, double* product) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
     Moving at;
-    gather_moving(e, step.positions, direction, product, at);
+    gather_moving(e, step.positions, direction, at);
     const auto [R, S, G, h] = deformation(e, at.m, at.F, at.stretched);
     const Seen move = seen_from(e, R, at.dF, at.d);
     // How the frame turns, and what that leaves of the move as deformation.
@@ -134,6 +135,7 @@ template <bool viscous>
     Hourglass q, dq;
     e.ask_for_next();
     multiply<2>(e.batch.stiffness, e.lane, {&h, &dh}, {&q, &dq});
+    e.ask_for_next_corners(step.positions, direction, product);
     e.ask_for_next();
     Sym T = e.shear() * deviator(S), dT = e.shear() * deviator(dS);
     Vec torque = cross(h, q), dtorque = cross(dh, q) + cross(h, dq);

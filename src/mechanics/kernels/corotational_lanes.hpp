@@ -11,7 +11,8 @@ namespace plica::PLICA_KERNELS {
 /// A register's worth of a batch's elements, from `lane` on.
 struct Elements {
   const CorotationalBatch& batch;
-  const ViscousBatch* viscous;  // null: not viscous
+  const CorotationalBatch& next_batch;  // or the same, where there is none
+  const ViscousBatch* viscous;          // null: not viscous
   double rate;
   int lane;
   mutable int asked = 0;  // lines of the next batch
@@ -29,6 +30,15 @@ struct Elements {
     // Compilers would put all requests of a kernel together, but for the statements that touch "memory".
     asm volatile("" ::: "memory");
     for (int k = 0; k < at_once && asked < lines; ++k) __builtin_prefetch(next + 64 * asked++, 0, 2);
+    asm volatile("" ::: "memory");
+  }
+
+  /// Asks memory for what the next elements will look at, or add to, at their corners. To be called when the numbers of
+  /// these have come by ask_for_next: about in the middle.
+  template <class... Vectors>
+  void ask_for_next_corners(const Vectors*... vectors) const {
+    asm volatile("" ::: "memory");
+    prefetch_next(batch, next_batch, lane, vectors...);
     asm volatile("" ::: "memory");
   }
 };

@@ -55,14 +55,17 @@ inline void gather(const BatchNodes& nodes, int lane, const double* vectors, Vec
   for (int i = 0; i < 8; ++i) x[i] = gather(vectors, nodes[i] + lane);
 }
 
-/// Asks memory for what is gathered from, or added to, a little later. About once a line: neighbouring lanes mostly
-/// have neighbouring nodes.
-template <class... Vectors>
-inline void prefetch(const BatchNodes& nodes, int lane, const Vectors*... vectors) {
+/// Asks memory for what will be gathered from, or added to, the corners of the elements after those of `batch` from
+/// `lane` on. At about every line: neighbouring lanes mostly have neighbouring nodes, of which a line holds 2 2/3.
+template <class Batch, class... Vectors>
+inline void prefetch_next(const Batch& batch, const Batch& next_batch, int lane, const Vectors*... vectors) {
+  const bool here = lane + width < batch_size;
+  const BatchNodes& nodes = here ? batch.nodes : next_batch.nodes;
+  const int from = here ? lane + width : 0;
 #pragma GCC unroll 8
   for (int i = 0; i < 8; ++i)
-#pragma GCC unroll 2
-    for (int k = lane; k < lane + width; k += 4) (__builtin_prefetch(vectors + nodes[i][k]), ...);
+#pragma GCC unroll 3
+    for (int k = 0; k < width; k += 3) (__builtin_prefetch(vectors + nodes[i][from + k]), ...);
 }
 
 #if PLICA_LANES == 1

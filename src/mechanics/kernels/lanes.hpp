@@ -26,7 +26,7 @@ inline Lanes broadcast(double value) { return Lanes{} + value; }
 typedef double Row __attribute__((vector_size(32)));  // NOLINT
 #if PLICA_LANES == 8
 inline Row load_row(const double* values) { return _mm256_maskz_loadu_pd(7, values); }
-inline Lanes join(Row a, Row b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
+inline Lanes join(Row a, Row b) { return _mm512_insertf64x4(_mm512_castpd256_pd512(a), b, 1); }
 #else
 inline Row load_row(const double* values) { return _mm256_maskload_pd(values, __m256i{-1, -1, -1, 0}); }
 #endif

@@ -10,7 +10,8 @@ namespace {
 // A register's worth of a batch's elements, from `lane` on, of which the first `count` count.
 struct Elements {
   const VolumeBatch& batch;
-  std::size_t first;  // element
+  const VolumeBatch& next_batch;  // or the same, where there is none
+  std::size_t first;              // element
   int lane, count;
 
   [[nodiscard]] Lanes rest_volume() const { return load(batch.rest_volumes + lane); }
@@ -21,7 +22,8 @@ inline void for_elements(const VolumeStep& step, std::size_t first, std::size_t 
   for (std::size_t b = first; b < last; ++b) {
     const int count = count_in_batch(step.elements, b);
     for (int lane = 0; lane < count; lane += width)
-      body(Elements{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane,
+      body(Elements{step.batches[b], step.batches[b + 1 < last ? b + 1 : b],
+                    b * batch_size + static_cast<std::size_t>(lane), lane,
                     count - lane < width ? count - lane : width});
   }
 }
@@ -42,6 +44,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
 [[gnu::flatten]] void add_volumes(const VolumeStep& step, std::size_t first, std::size_t last, double* volumes) {
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7];
+    prefetch_next(e.batch, e.next_batch, e.lane, step.positions);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     const Lanes V = volume(m);
     for (int k = 0; k < e.count; ++k) volumes[e.batch.cells[e.lane + k]] += V[k];
@@ -51,6 +54,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
 [[gnu::flatten]] void write_gradients(const VolumeStep& step, std::size_t first, std::size_t last, double* gradients) {
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7], g[7], f[8];
+    prefetch_next(e.batch, e.next_batch, e.lane, step.positions);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     volume_gradient(m, g);
     from_modes(g, f);
@@ -68,6 +72,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
   double sum = 0;
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7];
+    prefetch_next(e.batch, e.next_batch, e.lane, step.positions);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     const Lanes strain = volume(m) / e.rest_volume() - 1.0;
     const Lanes energies = (0.5 * step.bulk_modulus) * e.rest_volume() * strain * strain;
@@ -79,8 +84,8 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
 [[gnu::flatten]] void add_forces(const VolumeStep& step, std::size_t first, std::size_t last, double* forces) {
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7], g[7];
+    prefetch_next(e.batch, e.next_batch, e.lane, step.positions, forces);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
-    prefetch(e.batch.nodes, e.lane, forces);
     volume_gradient(m, g);
     const Lanes p = pressure(step, e, m);
     for (Vec& v : g) v = p * v;
@@ -93,8 +98,8 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
   const bool dilatation = !step.pressures;
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7], d[7], result[7] = {};
+    prefetch_next(e.batch, e.next_batch, e.lane, step.positions, direction, product);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
-    prefetch(e.batch.nodes, e.lane, product);
     gather_modes(e.batch.nodes, e.lane, direction, d);
     if (!dilatation || !step.semidefinite_tangent) {
       volume_gradient_change(m, d, result);
