@@ -1,7 +1,7 @@
 """The same scenario gives the same results: to the bit for any number of threads and again and again; with any kernels, and from
 another build, but for what rounding does.
 
-By hand, a debug or another build beside this one: sameness_test.py PROGRAM --beside OTHER_PROGRAM Sameness.test_another_build
+By hand, a debug build (which is the same to the bit) or another one beside this: sameness_test.py PROGRAM --beside OTHER_PROGRAM Sameness.test_another_build
 """
 import os
 import subprocess
@@ -71,7 +71,10 @@ class Sameness(Resuming):
         result = subprocess.run([OTHER_PROGRAM, "run", "drosophila", "--out", self.out], capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, result.stderr)
         apart = self.assert_same_but_for_rounding(table(self.out / "series.csv"), table(self.folder / "whole" / "series.csv"))
-        print(f"the other build's series is {apart:.1e} of the largest value of a column apart")
+        expected = results(self.folder / "whole")
+        differing = [name for name, found in results(self.out).items() if found != expected.get(name)]
+        print(f"the other build's series is {apart:.1e} of the largest value of a column apart; "
+              f"files that differ: {', '.join(differing) or 'none'}")
 
 
 if __name__ == "__main__":
