@@ -7,6 +7,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "solver/blas.hpp"
+
 extern "C" {  // BLAS
 void sgemm_(const char* transposed_a, const char* transposed_b, const int* m, const int* n, const int* k,
             const float* alpha, const float* a, const int* lda, const float* b, const int* ldb, const float* beta,
@@ -90,6 +92,7 @@ std::vector<int> nested_dissection(const BlockPattern& pattern) {
 }  // namespace
 
 BlockCholesky::BlockCholesky(const BlockPattern& pattern) : nodes_(pattern.nodes()) {
+  prepare_blas();
   order(pattern);
   place_blocks(pattern);
   std::size_t size = 0, widest = 0, longest = 0;

@@ -1,5 +1,4 @@
 // Which way of finding Newton's directions serves which model.
-#include "solver/blas_memory.hpp"
 #include "solver/block_cholesky.hpp"
 #include "solver/direct_directions.hpp"
 #include "solver/krylov_directions.hpp"
@@ -46,7 +45,6 @@ class GuardedDirections final : public NewtonDirections {
 
 std::unique_ptr<NewtonDirections> make_directions(const Model& model, LinearMethod method,
                                                   std::function<bool()> stop_requested) {
-  reserve_blas_memory();
   // Where the factor of a sheet takes as long as multigrid, and where that of the indefinite system takes more room
   // than a usual machine has (docs/performance.md). Multigrid finds the long thin elements of divided cells hard.
   constexpr std::size_t most_nodes_of_cholesky = 5'000, most_nodes_when_divided = 50'000, most_nodes_of_direct = 60'000;

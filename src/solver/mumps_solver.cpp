@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "solver/blas.hpp"
 #include "solver/linear_solver.hpp"
 
 namespace plica {
@@ -49,6 +50,7 @@ std::vector<int> elimination_order(const SymmetricPattern& pattern) {
 class MumpsSolver final : public LinearSolver {
  public:
   MumpsSolver() {
+    prepare_blas();
     id_.sym = 2;  // symmetric, indefinite
     id_.par = 1;
     id_.comm_fortran = use_default_communicator;

@@ -1,4 +1,4 @@
-#include "solver/blas_memory.hpp"
+#include "solver/blas.hpp"
 
 #include <omp.h>
 
@@ -9,12 +9,13 @@
 extern "C" void sgemm_(const char* transposed_a, const char* transposed_b, const int* m, const int* n, const int* k,
                        const float* alpha, const float* a, const int* lda, const float* b, const int* ldb,
                        const float* beta, float* c, const int* ldc);
+extern "C" [[gnu::weak]] void openblas_set_num_threads(int number);  // other libraries do not have it
 
 namespace plica {
-
 namespace {
 
-bool take_memory() {
+bool prepare() {
+  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
   // OpenBLAS asks for 128 MiB of address space at its first call, and again for each call at the same time. Most of it
   // is never touched.
   constexpr std::size_t buffer_bytes = (std::size_t{128} << 20) + (std::size_t{64} << 10);
@@ -28,6 +29,6 @@ bool take_memory() {
 
 }  // namespace
 
-void reserve_blas_memory() { [[maybe_unused]] static const bool is_taken = take_memory(); }
+void prepare_blas() { [[maybe_unused]] static const bool is_prepared = prepare(); }
 
 }  // namespace plica
