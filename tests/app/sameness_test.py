@@ -1,7 +1,8 @@
 """The same scenario gives the same results: to the bit for any number of threads and again and again; with any kernels, and from
 another build, but for what rounding does.
 
-By hand, a debug build (which is the same to the bit) or another one beside this: sameness_test.py PROGRAM --beside OTHER_PROGRAM Sameness.test_another_build
+By hand, beside another build: sameness_test.py PROGRAM --beside OTHER_PROGRAM with Sameness.test_debug_build and
+Sameness.test_debug_build_with_multigrid (the same bits), or Sameness.test_another_build (but for rounding).
 """
 import os
 import subprocess
@@ -64,17 +65,27 @@ class Sameness(Resuming):
             largest = max(largest, difference / scale if scale else 0)
         return largest
 
-    def test_another_build(self):
+    def run_other(self, arguments):
+        """Runs a scenario with this program, into folder/whole, and with the other one, into out."""
         if OTHER_PROGRAM is None:
             self.skipTest("by hand, with --beside")
-        self.whole_run(["drosophila"])
-        result = subprocess.run([OTHER_PROGRAM, "run", "drosophila", "--out", self.out], capture_output=True, text=True)
+        support.count_case()
+        self.whole_run(arguments)
+        result = subprocess.run([OTHER_PROGRAM, "run", *arguments, "--out", self.out], capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_debug_build(self):
+        self.run_other(["drosophila"])
+        self.assert_same(self.out, results(self.folder / "whole"))
+
+    def test_debug_build_with_multigrid(self):
+        self.run_other(LARGE)
+        self.assert_same(self.out, results(self.folder / "whole"))
+
+    def test_another_build(self):
+        self.run_other(["drosophila"])
         apart = self.assert_same_but_for_rounding(table(self.out / "series.csv"), table(self.folder / "whole" / "series.csv"))
-        expected = results(self.folder / "whole")
-        differing = [name for name, found in results(self.out).items() if found != expected.get(name)]
-        print(f"the other build's series is {apart:.1e} of the largest value of a column apart; "
-              f"files that differ: {', '.join(differing) or 'none'}")
+        print(f"the other build's series is {apart:.1e} of the largest value of a column apart")
 
 
 if __name__ == "__main__":
