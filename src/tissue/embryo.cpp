@@ -48,7 +48,9 @@ Tissue build_shell(const ShellShape& shape) {
     for (std::size_t vertex = 0; vertex < mid.size(); ++vertex)
       positions[w * mid.size() + vertex] = surface.point(surface.project(mid[vertex]), offset);
   }
-  Tissue tissue = tissue_from_lattices(shell_lattices(coarse, fine, shape.elements_per_cell), std::move(positions));
+  std::vector<CellLattice> lattices = shell_lattices(coarse, fine, shape.elements_per_cell);
+  if (along * across * layers > 1) number_as_elements_come(lattices, positions);
+  Tissue tissue = tissue_from_lattices(lattices, std::move(positions));
   tissue.outer_shape = Capsule{half_axis, shape.diameter_um / 2};
   return tissue;
 }

@@ -79,7 +79,9 @@ void set_walls(const Vectors& rest_positions, Cell& cell) {
     }
 }
 
-void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue) {
+// Calls take(nodes of the element, w) for each element of the cell, u fastest.
+template <class Take>
+void for_elements(const CellLattice& lattice, const Take& take) {
   const auto [nu, nv, nw] = lattice.elements;
   for (int w = 0; w < nw; ++w)
     for (int v = 0; v < nv; ++v)
@@ -92,18 +94,43 @@ void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tiss
                                                lattice.node(u + 1, v, w + 1),
                                                lattice.node(u + 1, v + 1, w + 1),
                                                lattice.node(u, v + 1, w + 1)};
-        tissue.elements.push_back(element);
-        tissue.element_cell.push_back(id);
-        tissue.element_rest_shape.push_back(gather(tissue.rest_positions, element));
-        const ElementId element_id(tissue.elements.size() - 1);
-        if (w == 0 && lattice.has_basal)
-          tissue.basal_facets.push_back({{element[0], element[3], element[2], element[1]}, id, element_id});
-        if (w == nw - 1 && lattice.has_apical)
-          tissue.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id, element_id});
+        take(element, w);
       }
 }
 
+void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue) {
+  for_elements(lattice, [&](const std::array<NodeId, 8>& element, int w) {
+    tissue.elements.push_back(element);
+    tissue.element_cell.push_back(id);
+    tissue.element_rest_shape.push_back(gather(tissue.rest_positions, element));
+    const ElementId element_id(tissue.elements.size() - 1);
+    if (w == 0 && lattice.has_basal)
+      tissue.basal_facets.push_back({{element[0], element[3], element[2], element[1]}, id, element_id});
+    if (w == lattice.elements[2] - 1 && lattice.has_apical)
+      tissue.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id, element_id});
+  });
+}
+
 }  // namespace
+
+void number_as_elements_come(std::vector<CellLattice>& cells, Vectors& rest_positions) {
+  std::vector<NodeId> number(rest_positions.size());
+  std::vector<char> has_number(rest_positions.size(), 0);
+  Vectors in_order;
+  in_order.reserve(rest_positions.size());
+  for (const CellLattice& lattice : cells)
+    for_elements(lattice, [&](const std::array<NodeId, 8>& element, int) {
+      for (const NodeId node : element) {
+        if (has_number[node.index()]) continue;
+        has_number[node.index()] = 1;
+        number[node.index()] = NodeId(in_order.size());
+        in_order.push_back(rest_positions[node.index()]);
+      }
+    });
+  for (CellLattice& lattice : cells)
+    for (NodeId& node : lattice.nodes) node = number[node.index()];
+  rest_positions = std::move(in_order);
+}
 
 Tissue tissue_from_lattices(const std::vector<CellLattice>& cells, Vectors rest_positions) {
   Tissue tissue;

@@ -24,6 +24,10 @@ struct CellLattice {
   }
 };
 
+/// Numbers the nodes anew, in the order in which the elements come to them. So what a loop over elements looks at lies
+/// close together; layer by layer it would be far apart where cells are cut into many elements.
+void number_as_elements_come(std::vector<CellLattice>& cells, Vectors& rest_positions);
+
 /// Builds the tissue of the given cells. Of the directions u and v, a cell's edges along the one that lies closer to x
 /// at rest are `along`, the others `across`. Region "all" is set. Takes time in proportion to the elements.
 Tissue tissue_from_lattices(const std::vector<CellLattice>& cells, Vectors rest_positions);

@@ -53,6 +53,29 @@ TEST(Embryo, CountsFollowTheGridForOtherShapesAndRefinements) {
   RecordProperty("cases", cases);
 }
 
+TEST(Embryo, NodesOfCutCellsAreNumberedAsElementsCome) {
+  for (const std::array<int, 3>& elements : {std::array<int, 3>{2, 1, 1}, {2, 2, 3}}) {
+    const Tissue tissue = build_shell(refined(pill, elements));
+    std::size_t next = 0;
+    for (const auto& element : tissue.elements)
+      for (const NodeId node : element) {
+        ASSERT_LE(node.index(), next);
+        if (node.index() == next) ++next;
+      }
+    EXPECT_EQ(next, tissue.node_count());
+  }
+}
+
+TEST(Embryo, NodesOfWholeCellsAreNumberedLayerByLayer) {
+  const Tissue tissue = build_shell(pill);
+  const std::size_t nodes_a_layer = tissue.node_count() / 2;
+  for (const auto& element : tissue.elements)
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_LT(element[i].index(), nodes_a_layer);
+      EXPECT_EQ(element[i + 4].index(), element[i].index() + nodes_a_layer);
+    }
+}
+
 TEST(Embryo, PositionsAreSymmetricAboutThreePlanesToTheBit) {
   int cases = 0;
   for (const ShellShape& shape : {pill, sphere, refined(pill, {2, 2, 1}), refined(sphere, {1, 3, 2})}) {
