@@ -74,7 +74,7 @@ SymmetricPattern StepMatrix::pattern() const {
 
 void StepMatrix::set_zero() {
   // More than a core's caches hold. With 756 cells it would be the only shared loop of a step, and cost a run on two
-  // cores a sixth of its solver's time.
+  // cores a seventh of its solver's time.
   constexpr std::size_t worth_sharing = 100'000;
   parallel_for(
       blocks_.size(), [&](std::size_t k) { blocks_[k].setZero(); }, worth_sharing);

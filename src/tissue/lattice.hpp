@@ -25,7 +25,8 @@ struct CellLattice {
 };
 
 /// Numbers the nodes anew, in the order in which the elements come to them. So what a loop over elements looks at lies
-/// close together; layer by layer it would be far apart where cells are cut into many elements.
+/// close together; layer by layer it would be far apart where cells are cut into many elements. Every node has to be
+/// one of a cell's.
 void number_as_elements_come(std::vector<CellLattice>& cells, Vectors& rest_positions);
 
 /// Builds the tissue of the given cells. Of the directions u and v, a cell's edges along the one that lies closer to x
