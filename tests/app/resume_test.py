@@ -76,6 +76,8 @@ class Signals(Resuming):
                 block = [self.write(BLOCK), "--set", "time.end_s=30"]
                 whole = self.whole_run(block)
                 for rows in (0, 20, 150):  # 0: perhaps before the first step
+                    if rows > 0:  # one of its own at least: it has begun, however many the one before has left
+                        rows = max(rows, rows_in(self.out) + 1)
                     process = self.after_rows(block, rows, number, 0.05 if rows == 0 else 0)
                     if rows == 0 and process.returncode == -number:
                         continue  # it had not begun
