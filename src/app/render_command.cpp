@@ -27,6 +27,7 @@ struct RenderCommand {
 
 std::vector<std::string> names_of(const auto& things) {
   std::vector<std::string> names;
+  names.reserve(things.size());
   for (const auto& thing : things) names.push_back(thing.name);
   return names;
 }
@@ -123,6 +124,7 @@ int draw_picture(const RenderCommand& command, const RunPictures& run) {
   write_picture(command.out, painter.png(run.picture(times_s)));
   if (command.quiet) return exit_done;
   std::vector<std::string> moments;
+  moments.reserve(times_s.size());
   for (const double time_s : times_s) moments.push_back(run.time_text(time_s));
   fmt::print("{} ({})\n", command.out, fmt::join(moments, ", "));
   return exit_done;

@@ -105,7 +105,7 @@ void rename_file(const fs::path& temporary, const fs::path& path, Sync sync) {
 }
 
 fs::path write_beside(const fs::path& path, std::string_view content, Sync sync) {
-  const fs::path temporary = temporary_beside(path);
+  fs::path temporary = temporary_beside(path);
   const int descriptor = open_file(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW);
   if (descriptor < 0) throw_unwritten(path, reason(errno));
   const int error = write_and_close(descriptor, content, sync);

@@ -89,18 +89,18 @@ struct ArchiveWriter::File {
   }
 
   void put(const std::string& name, hid_t type, const void* values, std::size_t count, std::size_t columns) {
-    auto at = sets.find(name);
-    if (at != sets.end() && (at->second.count != count || at->second.columns != columns)) {
-      sets.erase(at);
+    auto at = sets_.find(name);
+    if (at != sets_.end() && (at->second.count != count || at->second.columns != columns)) {
+      sets_.erase(at);
       must(H5Ldelete(file, name.c_str(), H5P_DEFAULT), cannot_make);
-      at = sets.end();
+      at = sets_.end();
     }
-    if (at == sets.end()) {
+    if (at == sets_.end()) {
       make_sure_of_room(count * H5Tget_size(type));
       const std::array<hsize_t, 2> shape = {columns > 0 ? count / columns : count, columns};
       const Handle space(H5Screate_simple(columns > 0 ? 2 : 1, shape.data(), nullptr), H5Sclose, cannot_make);
       const hid_t set = H5Dcreate2(file, name.c_str(), type, space, links, datasets, H5P_DEFAULT);
-      at = sets.try_emplace(name, set, count, columns).first;
+      at = sets_.try_emplace(name, set, count, columns).first;
     }
     if (count > 0) must(H5Dwrite(at->second.set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), cannot_make);
   }
@@ -112,7 +112,7 @@ struct ArchiveWriter::File {
     Handle set;
     std::size_t count, columns;
   };
-  std::map<std::string, Set> sets;
+  std::map<std::string, Set> sets_;
 };
 
 ArchiveWriter::ArchiveWriter() : file_(std::make_unique<File>()) {}

@@ -389,7 +389,7 @@ std::vector<std::string> lines_in(const std::string& scenario, const std::functi
     if (line.starts_with('['))
       table = line;
     else if (counts(table) && !line.empty() && !line.starts_with('#'))
-      kept.push_back((table.empty() ? "" : table + " ") + line);
+      kept.push_back(table.empty() ? line : fmt::format("{} {}", table, line));
   }
   return kept;
 }

@@ -16,6 +16,7 @@ std::vector<Vec3> apical_normals(const Tissue& tissue, const std::vector<CellId>
   for (const Facet& facet : tissue.apical_facets)
     of_all[facet.cell.index()] += facet_area_vector(gather(tissue.rest_positions, facet));
   std::vector<Vec3> normals;
+  normals.reserve(cells.size());
   for (const CellId cell : cells) normals.push_back(of_all[cell.index()].normalized());
   return normals;
 }

@@ -46,7 +46,7 @@ void Quantiser::include(double value) {
 
 std::uint16_t Quantiser::step_of(double value) const {
   if (!(high > low)) return 0;
-  return static_cast<std::uint16_t>(std::clamp((value - low) / (high - low), 0.0, 1.0) * 65535 + 0.5);
+  return static_cast<std::uint16_t>(std::lround(std::clamp((value - low) / (high - low), 0.0, 1.0) * 65535));
 }
 
 }  // namespace plica

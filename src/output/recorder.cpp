@@ -33,6 +33,7 @@ const std::vector<std::string> own_files = {"summary.json",  "series.csv",      
 
 std::string row_of(const std::vector<std::optional<double>>& values) {
   std::vector<double> numbers;
+  numbers.reserve(values.size());
   for (const std::optional<double>& value : values)
     numbers.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
   return csv_rows(numbers, numbers.size());

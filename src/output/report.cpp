@@ -107,6 +107,7 @@ bool can_report() { return !report_template().empty(); }
 
 std::string report_page_of(const std::vector<std::filesystem::path>& directories) {
   std::vector<ReportRun> runs;
+  runs.reserve(directories.size());
   for (const auto& directory : directories)
     runs.push_back(read_report_run(directory, most_frame_bytes / static_cast<double>(directories.size())));
   return report_page(runs);

@@ -54,10 +54,10 @@ inline Turned turned(const Elements& e, const CorotationalStep& step, const Defo
 // G C G / 2: half of what the turning costs by itself, as it acts on b_i x dx_i.
 inline Mat half_turning_stiffness(const Turned& x, Lanes shear, const Mat (&H)[4][4]) {
   const Mat S = full(x.S), S2 = S * S, A = S * full(x.T);
-  const Lanes trS = trace(x.S), trS2 = contract(x.S, x.S);
-  const auto identity = [](Lanes s) { return Mat{{s, {}, {}}, {{}, s, {}}, {{}, {}, s}}; };
+  const Lanes s = trace(x.S), squares = contract(x.S, x.S);  // tr S and tr S^2
+  const auto identity = [](Lanes d) { return Mat{{d, {}, {}}, {{}, d, {}}, {{}, {}, d}}; };
   // cof S = S^2 - tr(S) S + (tr(S)^2 - tr(S^2)) I / 2
-  Mat C = 0.5 * shear * (identity(trS2 + trS2 - trS * trS) + (trS + trS) * S - (S2 + S2 + S2));
+  Mat C = 0.5 * shear * (identity(squares + squares - s * s) + (s + s) * S - (S2 + S2 + S2));
   C = C + A - identity(A.x.x + A.y.y + A.z.z) + cross(x.t, S);
   for (int a = 0; a < 4; ++a) {
     C = C + outer(x.q[a], x.h[a]) - identity(dot(x.h[a], x.q[a]));

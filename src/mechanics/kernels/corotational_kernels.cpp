@@ -24,7 +24,9 @@ inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P,
   e.ask_for_next();
   const Mat RP = R * P;
   Vec g[7];
+#pragma GCC unroll copies
   for (int j = 0; j < 6; ++j) g[j] = RP * e.b(j);
+#pragma GCC unroll copies
   for (int a = 0; a < 3; ++a) g[3 + a] = g[3 + a] + R * r[a];
   g[6] = R * r[3];
   e.ask_for_next();
@@ -68,6 +70,7 @@ template <bool viscous>
     }
     const Vec t = now.G * torque;
     Mat P = cross_matrix(t) - full(T);
+#pragma GCC unroll copies
     for (int a = 0; a < 4; ++a) P = P + outer(q[a], e.X(a));
     for (Lanes& value : q.at) value = -value;
     add_turned(e, count, now.R, P, q, forces);
@@ -100,19 +103,20 @@ template <bool viscous>
     Moving at;
     gather_moving(e, step.positions, direction, at);
     const Mat R = frame(at.F, at.stretched).R;
-    const Seen move = seen_from(e, R, at.dF, at.d);
-    Hourglass dq;
+    Hourglass w, dq;
+    const Mat W = seen_from(e, R, at.dF, at.d, w);
     e.ask_for_next();
-    multiply<1>(e.batch.stiffness, e.lane, {&move.w}, {&dq});
+    multiply<1>(e.batch.stiffness, e.lane, {&w}, {&dq});
     e.ask_for_next_corners(step.positions, direction, product);
     Lanes shear = e.shear();
     if (viscous) {
       Hourglass damped;
-      multiply<1>(e.viscous->stiffness, e.lane, {&move.w}, {&damped});
+      multiply<1>(e.viscous->stiffness, e.lane, {&w}, {&damped});
       for (int i = 0; i < 12; ++i) dq.at[i] += e.rate * damped.at[i];
       shear += e.viscous_shear();
     }
-    Mat dP = full(shear * deviator(symmetric_part(move.W)));
+    Mat dP = full(shear * deviator(symmetric_part(W)));
+#pragma GCC unroll copies
     for (int a = 0; a < 4; ++a) dP = dP - outer(dq[a], e.X(a));
     add_turned(e, count, R, dP, dq, product);
   });
@@ -124,13 +128,15 @@ template <bool viscous>
   for_elements(step, first, last, [&](const Elements& e, int count) {
     Moving at;
     gather_moving(e, step.positions, direction, at);
-    const auto [R, S, G, h] = deformation(e, at.m, at.F, at.stretched);
-    const Seen move = seen_from(e, R, at.dF, at.d);
-    // How the frame turns, and what that leaves of the move as deformation.
-    const Vec omega = -(G * axial(move.W));
-    const Sym dS = upper_part(move.W - cross(omega, full(S)));
+    const Deformation now = deformation(e, at.m, at.F, at.stretched);
+    const auto& [R, S, G, h] = now;
     Hourglass dh;
-    for (int a = 0; a < 4; ++a) dh.set(a, move.w[a] - cross(omega, h[a]));
+    const Mat W = seen_from(e, R, at.dF, at.d, dh);
+    // How the frame turns, and what that leaves of the move as deformation.
+    const Vec omega = -(G * axial(W));
+    const Sym dS = upper_part(W - cross(omega, full(S)));
+#pragma GCC unroll copies
+    for (int a = 0; a < 4; ++a) dh.set(a, dh[a] - cross(omega, h[a]));
     // What answers it.
     Hourglass q, dq;
     e.ask_for_next();
@@ -140,7 +146,7 @@ template <bool viscous>
     Sym T = e.shear() * deviator(S), dT = e.shear() * deviator(dS);
     Vec torque = cross(h, q), dtorque = cross(dh, q) + cross(h, dq);
     if (viscous) {
-      add_viscous(e, step, {R, S, G, h}, T, q);
+      add_viscous(e, step, now, T, q);
       Hourglass damped;
       multiply<1>(e.viscous->stiffness, e.lane, {&dh}, {&damped});
       for (int i = 0; i < 12; ++i) dq.at[i] += e.rate * damped.at[i];
@@ -153,6 +159,7 @@ template <bool viscous>
     // The turning of what was there, and the change.
     Mat dP = cross(omega, full(T) - cross_matrix(t)) + full(dT) - cross_matrix(dt);
     e.ask_for_next();
+#pragma GCC unroll copies
     for (int a = 0; a < 4; ++a) {
       dq.set(a, dq[a] + cross(omega, q[a]));
       dP = dP - outer(dq[a], e.X(a));

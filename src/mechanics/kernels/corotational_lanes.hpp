@@ -57,6 +57,7 @@ struct Hourglass {
 inline Mat gradient(const Elements& e, const Vec (&m)[7]) {
   e.ask_for_next();
   Mat F = outer(m[0], e.b(0));
+#pragma GCC unroll copies
   for (int j = 1; j < 6; ++j) F = F + outer(m[j], e.b(j));
   return F;
 }
@@ -128,17 +129,11 @@ inline Frame frame(const Mat& F, const Stretch& of) {
 
 /// What moves with velocities or small displacements, seen in the frame: W = R^T sum m_j b_j^T and the hourglasses that
 /// are not part of it, w_a = R^T m_a - W X_a.
-struct Seen {
-  Mat W;
-  Hourglass w;
-};
-
-inline Seen seen_from(const Elements& e, const Mat& R, const Mat& F, const Vec (&m)[7]) {
+inline Mat seen_from(const Elements& e, const Mat& R, const Mat& F, const Vec (&m)[7], Hourglass& w) {
   e.ask_for_next();
-  Seen s;
-  s.W = turn_back(R, F);
-  for (int a = 0; a < 4; ++a) s.w.set(a, turn_back(R, m[3 + a] - F * e.X(a)));
-  return s;
+#pragma GCC unroll copies
+  for (int a = 0; a < 4; ++a) w.set(a, turn_back(R, m[3 + a] - F * e.X(a)));
+  return turn_back(R, F);
 }
 
 /// S and h, and the frame they are seen in.
@@ -150,8 +145,10 @@ struct Deformation {
 
 inline Deformation deformation(const Elements& e, const Vec (&m)[7], const Mat& F, const Stretch& of) {
   const auto [R, G] = frame(F, of);
-  const Seen s = seen_from(e, R, F, m);
-  return {R, upper_part(s.W), G, s.w};
+  Deformation now;
+  now.R = R, now.G = G;
+  now.S = upper_part(seen_from(e, R, F, m, now.h));
+  return now;
 }
 
 inline Deformation deformation(const Elements& e, const double* positions) {
@@ -162,25 +159,31 @@ inline Deformation deformation(const Elements& e, const double* positions) {
   return deformation(e, m, F, stretch(F));
 }
 
-/// q = H h for each of `n`.
+/// q = H h for each of `n`, by blocks of 3 x 3: row by row every entry would cost each of them two loads and a store.
 template <int n>
 inline void multiply(const double (&H)[78][batch_size], int lane, const Hourglass* const (&h)[n],
                      Hourglass* const (&q)[n]) {
+#pragma GCC unroll copies
   for (int k = 0; k < n; ++k)
-    for (Lanes& value : q[k]->at) value = Lanes{};
-#pragma GCC unroll 12
-  for (int row = 0; row < 12; ++row) {
-#pragma GCC unroll 12
-    for (int column = 0; column < row; ++column) {
-      const Lanes entry = load(H[row * (row + 1) / 2 + column] + lane);
-      for (int k = 0; k < n; ++k) {
-        q[k]->at[row] += entry * h[k]->at[column];
-        q[k]->at[column] += entry * h[k]->at[row];
+#pragma GCC unroll copies
+    for (int a = 0; a < 4; ++a) {
+      const auto entry = [&](int i, int j) { return load(H[i * (i + 1) / 2 + j] + lane); };
+      const int i = 3 * a;
+      const Sym own = {entry(i, i),     entry(i + 1, i + 1), entry(i + 2, i + 2),
+                       entry(i + 1, i), entry(i + 2, i + 1), entry(i + 2, i)};
+      const Vec ha = (*h[k])[a];
+      Vec qa = own * ha;
+#pragma GCC unroll copies
+      for (int b = 0; b < a; ++b) {
+        const int j = 3 * b;
+        const Mat H_ab = {{entry(i, j), entry(i + 1, j), entry(i + 2, j)},
+                          {entry(i, j + 1), entry(i + 1, j + 1), entry(i + 2, j + 1)},
+                          {entry(i, j + 2), entry(i + 1, j + 2), entry(i + 2, j + 2)}};
+        qa = qa + H_ab * (*h[k])[b];
+        q[k]->set(b, (*q[k])[b] + turn_back(H_ab, ha));
       }
+      q[k]->set(a, qa);
     }
-    const Lanes entry = load(H[row * (row + 3) / 2] + lane);
-    for (int k = 0; k < n; ++k) q[k]->at[row] += entry * h[k]->at[row];
-  }
 }
 
 /// How a viscous element has deformed during the step.

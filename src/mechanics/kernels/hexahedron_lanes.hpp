@@ -51,7 +51,7 @@ inline Vec gather(const double* vectors, const int* at) {
 }
 
 inline void gather(const BatchNodes& nodes, int lane, const double* vectors, Vec (&x)[8]) {
-#pragma GCC unroll 8
+#pragma GCC unroll copies
   for (int i = 0; i < 8; ++i) x[i] = gather(vectors, nodes[i] + lane);
 }
 
@@ -62,10 +62,10 @@ inline void prefetch_next(const Batch& batch, const Batch& next_batch, int lane,
   const bool here = lane + width < batch_size;
   const BatchNodes& nodes = here ? batch.nodes : next_batch.nodes;
   const int from = here ? lane + width : 0;
-#pragma GCC unroll 8
-  for (int i = 0; i < 8; ++i)
+#pragma GCC unroll copies
+  for (const auto& corner : nodes)
 #pragma GCC unroll 3
-    for (int k = 0; k < width; k += 3) (__builtin_prefetch(vectors + nodes[i][from + k]), ...);
+    for (int k = 0; k < width; k += 3) (__builtin_prefetch(vectors + corner[from + k]), ...);
 }
 
 #if PLICA_LANES == 1
@@ -117,22 +117,27 @@ inline void scatter(const BatchNodes& nodes, int lane, int count, Vec (&f)[8], d
 #pragma GCC unroll 8
     for (Vec& v : f) v = counts * v;
   }
-#pragma GCC unroll 8
+#pragma GCC unroll copies
   for (int i = 0; i < 8; ++i) scatter(f[i], nodes[i] + lane, vectors);
 }
 
 // Differences of neighbouring nodes first: what they have in common is lost without rounding.
 inline void to_modes(const Vec (&x)[8], Vec (&m)[7]) {
-  const Vec xi0 = x[1] - x[0], xi1 = x[2] - x[3], xi2 = x[5] - x[4], xi3 = x[6] - x[7];
-  const Vec low = xi0 + xi1, high = xi2 + xi3, low_twist = xi1 - xi0, high_twist = xi3 - xi2;
-  const Vec eta0 = (x[3] - x[0]) + (x[2] - x[1]), eta1 = (x[7] - x[4]) + (x[6] - x[5]);
-  m[0] = low + high;
-  m[1] = eta0 + eta1;
-  m[2] = ((x[4] - x[0]) + (x[5] - x[1])) + ((x[7] - x[3]) + (x[6] - x[2]));
-  m[3] = low_twist + high_twist;
-  m[4] = eta1 - eta0;
-  m[5] = high - low;
-  m[6] = high_twist - low_twist;
+#pragma GCC unroll copies
+  for (int c = 0; c < 3; ++c) {
+    const auto at = [&](int i) { return component(x[i], c); };
+    const auto mode = [&](int j) -> Lanes& { return component(m[j], c); };
+    const Lanes xi0 = at(1) - at(0), xi1 = at(2) - at(3), xi2 = at(5) - at(4), xi3 = at(6) - at(7);
+    const Lanes low = xi0 + xi1, high = xi2 + xi3, low_twist = xi1 - xi0, high_twist = xi3 - xi2;
+    const Lanes eta0 = (at(3) - at(0)) + (at(2) - at(1)), eta1 = (at(7) - at(4)) + (at(6) - at(5));
+    mode(0) = low + high;
+    mode(1) = eta0 + eta1;
+    mode(2) = ((at(4) - at(0)) + (at(5) - at(1))) + ((at(7) - at(3)) + (at(6) - at(2)));
+    mode(3) = low_twist + high_twist;
+    mode(4) = eta1 - eta0;
+    mode(5) = high - low;
+    mode(6) = high_twist - low_twist;
+  }
 }
 
 inline void gather_modes(const BatchNodes& nodes, int lane, const double* vectors, Vec (&m)[7]) {
@@ -142,15 +147,20 @@ inline void gather_modes(const BatchNodes& nodes, int lane, const double* vector
 }
 
 inline void from_modes(const Vec (&g)[7], Vec (&f)[8]) {
-  // Without xi, then with it, at (eta, zeta) = (-, -), (+, -), (-, +), (+, +).
-  const Vec up = g[2] + g[4], down = g[2] - g[4];
-  const Vec even[4] = {-(g[1] + down), g[1] - up, down - g[1], g[1] + up};
-  const Vec base_low = g[0] - g[3], base_high = g[0] + g[3], low = g[5] - g[6], high = g[5] + g[6];
-  const Vec odd[4] = {base_low - low, base_high - high, base_low + low, base_high + high};
-  const int corners[4][2] = {{0, 1}, {3, 2}, {4, 5}, {7, 6}};
-  for (int k = 0; k < 4; ++k) {
-    f[corners[k][0]] = even[k] - odd[k];
-    f[corners[k][1]] = even[k] + odd[k];
+#pragma GCC unroll copies
+  for (int c = 0; c < 3; ++c) {
+    const auto mode = [&](int j) { return component(g[j], c); };
+    // Without xi, then with it, at (eta, zeta) = (-, -), (+, -), (-, +), (+, +).
+    const Lanes up = mode(2) + mode(4), down = mode(2) - mode(4);
+    const Lanes even[4] = {-(mode(1) + down), mode(1) - up, down - mode(1), mode(1) + up};
+    const Lanes base_low = mode(0) - mode(3), base_high = mode(0) + mode(3);
+    const Lanes low = mode(5) - mode(6), high = mode(5) + mode(6);
+    const Lanes odd[4] = {base_low - low, base_high - high, base_low + low, base_high + high};
+    const int corners[4][2] = {{0, 1}, {3, 2}, {4, 5}, {7, 6}};
+    for (int k = 0; k < 4; ++k) {
+      component(f[corners[k][0]], c) = even[k] - odd[k];
+      component(f[corners[k][1]], c) = even[k] + odd[k];
+    }
   }
 }
 

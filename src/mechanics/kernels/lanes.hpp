@@ -16,6 +16,11 @@ namespace plica::PLICA_KERNELS {
 constexpr int width = PLICA_LANES;
 constexpr int batch_size = 8;  // elements a batch: as many as the widest register holds
 
+/// How often loops over an element's corners, modes and blocks are unrolled: all the way where there are 32 registers.
+/// Where there are 16, every other instruction would move something between these and memory, and there would be more
+/// of them than processors keep decoded.
+constexpr int copies = width == 8 ? 8 : 1;
+
 #if PLICA_LANES != 1  // else it is a number that counts what is done with it (bench/counted_lanes.hpp)
 typedef double Lanes __attribute__((vector_size(8 * PLICA_LANES), may_alias));  // NOLINT: no `using` for attributes
 inline Lanes broadcast(double value) { return Lanes{} + value; }
@@ -66,6 +71,9 @@ inline bool any(Mask mask) {
 struct Vec {
   Lanes x, y, z;
 };
+/// x, y or z.
+inline Lanes& component(Vec& a, int c) { return reinterpret_cast<Lanes*>(&a)[c]; }
+inline Lanes component(const Vec& a, int c) { return reinterpret_cast<const Lanes*>(&a)[c]; }
 inline Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline Vec operator-(const Vec& a) { return {-a.x, -a.y, -a.z}; }
