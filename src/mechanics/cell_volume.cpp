@@ -79,8 +79,8 @@ std::vector<double> CellVolumes::relative_errors(std::span<const Vec3> positions
   return errors;
 }
 
-std::vector<std::array<Vec3, 8>> CellVolumes::element_gradients(std::span<const Vec3> positions) const {
-  std::vector<std::array<Vec3, 8>> gradients(elements_.size());
+UninitialisedVector<std::array<Vec3, 8>> CellVolumes::element_gradients(std::span<const Vec3> positions) const {
+  UninitialisedVector<std::array<Vec3, 8>> gradients(elements_.size());
   element_gradients(positions, gradients);
   return gradients;
 }

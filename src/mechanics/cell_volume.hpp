@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/uninitialised.hpp"
 #include "mechanics/kernels/element_chunks.hpp"
 #include "mechanics/kernels/kernels.hpp"
 #include "mechanics/kernels/volume_kernels.hpp"
@@ -53,7 +54,7 @@ class CellVolumes {
   [[nodiscard]] std::vector<double> relative_errors(std::span<const Vec3> positions) const;
 
   /// dV/dx of every element, um^2; elements, in the order of their nodes.
-  [[nodiscard]] std::vector<std::array<Vec3, 8>> element_gradients(std::span<const Vec3> positions) const;
+  [[nodiscard]] UninitialisedVector<std::array<Vec3, 8>> element_gradients(std::span<const Vec3> positions) const;
   void element_gradients(std::span<const Vec3> positions, std::span<std::array<Vec3, 8>> gradients) const;
 
   /// Adds sum_c pressure_c dV_c/dx.

@@ -1,10 +1,13 @@
 #include "solver/block_cholesky.hpp"
 
 #include <metis.h>
+#include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
+#include <exception>
 #include <stdexcept>
 
 #include "solver/blas.hpp"
@@ -100,6 +103,10 @@ BlockCholesky::BlockCholesky(const BlockPattern& pattern) : nodes_(pattern.nodes
     node.panel = size;
     size += node.width() * chunks_for(node.height());
     factor_size_ += node.width() * node.height();
+    node.subtree = static_cast<int>(&node - supernodes_.data());
+    if (!node.children.empty()) node.subtree = supernodes_[node.children.front()].subtree;
+    node.work = static_cast<double>(node.width()) * static_cast<double>(node.height() * node.height());
+    for (const int child : node.children) node.work += supernodes_[child].work;
     widest = std::max(widest, node.width());
     longest = std::max(longest, node.height());
   }
@@ -247,6 +254,7 @@ bool dense_cholesky(float* A, int size, int stride) {
 
 // Panel [A11; A21] to [L11^-1; L21 L11^-1]; the front of what is left to -L21 L21^T + what it was.
 bool BlockCholesky::eliminate(const Supernode& node, float* panel, float* front) {
+  const BlasUse use;
   const int own = static_cast<int>(node.width()), height = static_cast<int>(node.height()), rest = height - own;
   const float one = 1, minus = -1, zero = 0;
   if (!dense_cholesky(panel, own, height)) return false;
@@ -265,26 +273,67 @@ bool BlockCholesky::eliminate(const Supernode& node, float* panel, float* front)
   return true;
 }
 
+// What threads share. Each has a panel to eliminate in.
+struct BlockCholesky::Fronts {
+  Fronts(std::size_t supernodes, int threads) : updates(supernodes), panels(threads) {}
+
+  std::vector<std::unique_ptr<float[]>> updates;  // of each supernode to its parent: lower triangles, column-major
+  std::vector<std::vector<float>> panels;
+  std::atomic<bool> has_failed = false;
+  std::exception_ptr error;  // of the thread that has set has_failed; null: not positive definite
+};
+
 bool BlockCholesky::factorise(std::span<const float> values) {
-  std::vector<std::unique_ptr<float[]>> updates(supernodes_.size());  // fronts: lower triangles, column-major
-  std::vector<float> panel;
-  for (std::size_t s = 0; s < supernodes_.size(); ++s) {
-    const auto& node = supernodes_[s];
+  const int threads = omp_get_max_threads();
+  Fronts fronts(supernodes_.size(), threads);
+#pragma omp parallel num_threads(threads) if (threads > 1)
+#pragma omp single
+  for (int s = 0; s < static_cast<int>(supernodes_.size()); ++s)
+    if (supernodes_[s].rows.empty()) factorise_subtree(s, values, fronts);
+  if (fronts.error) std::rethrow_exception(fronts.error);
+  return !fronts.has_failed;
+}
+
+// Whoever eliminates a supernode: its children are added in their order, so the sums are the same.
+void BlockCholesky::factorise_subtree(int root, std::span<const float> values, Fronts& fronts) {
+  constexpr double worth_sharing = 1e6;
+  const Supernode& node = supernodes_[root];
+  if (node.work < worth_sharing) {
+    for (int s = node.subtree; s < root; ++s) factorise_front(s, values, fronts);
+  } else {
+    for (const int child : node.children) {
+#pragma omp task shared(fronts)
+      factorise_subtree(child, values, fronts);
+    }
+#pragma omp taskwait
+  }
+  factorise_front(root, values, fronts);
+}
+
+void BlockCholesky::factorise_front(int s, std::span<const float> values, Fronts& fronts) {
+  if (fronts.has_failed) return;
+  try {
+    const Supernode& node = supernodes_[s];
     const std::size_t height = node.height(), rest = height - node.width();
+    std::vector<float>& panel = fronts.panels[omp_get_thread_num()];
     panel.resize(node.width() * height);
     assemble(node, values, panel.data());
-    updates[s].reset(new float[rest * rest]);
+    std::unique_ptr<float[]>& update = fronts.updates[s];
+    update.reset(new float[rest * rest]);
     // From the diagonal's blocks on.
-    for (std::size_t j = 0; j < rest; ++j) std::fill_n(&updates[s][j * rest + j / 3 * 3], rest - j / 3 * 3, 0.0F);
+    for (std::size_t j = 0; j < rest; ++j) std::fill_n(&update[j * rest + j / 3 * 3], rest - j / 3 * 3, 0.0F);
     for (const int child : node.children) {
-      add_child(supernodes_[child], updates[child].get(), node, panel.data(), updates[s].get());
-      updates[child].reset();
+      add_child(supernodes_[child], fronts.updates[child].get(), node, panel.data(), update.get());
+      fronts.updates[child].reset();
     }
-    if (!eliminate(node, panel.data(), updates[s].get())) return false;
-    for (std::size_t j = 0; j < node.width(); ++j)
-      std::copy_n(&panel[j * height], height, panels_[node.panel + j * chunks_for(height)].numbers);
+    if (!eliminate(node, panel.data(), update.get())) fronts.has_failed = true;
+    for (std::size_t j = 0; j < node.width(); ++j) {
+      float* column = panels_[node.panel + j * chunks_for(height)].numbers;
+      std::fill(std::copy_n(&panel[j * height], height, column), column + chunks_for(height) * PanelChunk::size, 0.0F);
+    }
+  } catch (...) {  // may not leave a task
+    if (!fronts.has_failed.exchange(true)) fronts.error = std::current_exception();
   }
-  return true;
 }
 
 namespace {

@@ -2,11 +2,11 @@
 // cheap to apply many times.
 //
 // Multifrontal: nodes are ordered by nested dissection (METIS), columns of like structure form supernodes, and each is
-// eliminated in a dense front, to which its children add their updates. A factor is applied much more often than it is
-// made, so each supernode's panel [L11; L21] is kept as P = [L11^-1; L21 L11^-1]: both triangular solves are then plain
-// products with P and its transpose, without dependencies inside, and their time is that of reading P twice.
-// Weighed: MUMPS (double precision; 2 ms a solve at 4500 unknowns, against 0.2 ms here), CHOLMOD (its supernodal part
-// is GPL), Eigen's SimplicialLLT (no supernodes).
+// eliminated in a dense front, to which its children add their updates; subtrees are shared out among the threads. A
+// factor is applied much more often than it is made, so each supernode's panel [L11; L21] is kept as P = [L11^-1; L21
+// L11^-1]: both triangular solves are then plain products with P and its transpose, without dependencies inside, and
+// their time is that of reading P twice. Weighed: MUMPS (double precision; 2 ms a solve at 4500 unknowns, against 0.2
+// ms here), CHOLMOD (its supernodal part is GPL), Eigen's SimplicialLLT (no supernodes).
 #pragma once
 
 #include <cstddef>
@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "core/uninitialised.hpp"
 #include "solver/block_pattern.hpp"
 #include "solver/panel_products.hpp"
 #include "solver/preconditioner.hpp"
@@ -62,6 +63,8 @@ class BlockCholesky final : public Preconditioner {
     std::size_t panel = 0;            // where its panel begins
     std::vector<int> children;        // supernodes that update this one
     std::vector<Block> blocks;        // of the matrix that are assembled here
+    int subtree = 0;                  // the first supernode of those from which paths lead here; all are between
+    double work = 0;                  // to eliminate these and it, multiply-adds or so
 
     // Of its panel, in numbers.
     [[nodiscard]] std::size_t width() const { return 3 * static_cast<std::size_t>(columns); }
@@ -76,6 +79,9 @@ class BlockCholesky final : public Preconditioner {
     return {&panels_[node.panel], chunks_for(node.height()), 3 * node.columns};
   }
   static bool eliminate(const Supernode& node, float* panel, float* front);
+  struct Fronts;
+  void factorise_subtree(int root, std::span<const float> values, Fronts& fronts);
+  void factorise_front(int s, std::span<const float> values, Fronts& fronts);
 
   void solve_down(const Supernode& node, Halfway& x) const;  // from children to parents
   void solve_up(const Supernode& node, Halfway& x) const;
@@ -83,7 +89,7 @@ class BlockCholesky final : public Preconditioner {
   int nodes_ = 0;
   std::vector<int> position_;          // of each node in the order of elimination
   std::vector<Supernode> supernodes_;  // children before parents
-  std::vector<PanelChunk> panels_;
+  UninitialisedVector<PanelChunk> panels_;
   std::size_t factor_size_ = 0;
   mutable Halfway z_;                      // scratch of solve(),
   mutable std::vector<float> own_;         // a supernode's own,

@@ -30,7 +30,7 @@ KrylovDirections::KrylovDirections(const Model& model, Inverse inverse, std::fun
       nodes_(model.tissue.node_count()),
       matrix_(model),
       price_of_factor_(inverse == Inverse::multigrid ? 5 : 30),
-      jacobian_(model) {
+      jacobian_(matrix_.jacobian()) {
   if (inverse == Inverse::multigrid) {
     preconditioner_ = make_multigrid(matrix_.layout());
   } else {

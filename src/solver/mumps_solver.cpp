@@ -102,6 +102,7 @@ class MumpsSolver final : public LinearSolver {
  private:
   void call(int job) const {
     id_.job = job;
+    const BlasUse use;
     dmumps_c(&id_);
   }
   int& icntl(int number) { return id_.icntl[number - 1]; }

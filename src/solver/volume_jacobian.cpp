@@ -10,6 +10,8 @@ VolumeJacobian::VolumeJacobian(const Model& model) : start_{0}, node_start_(mode
   if (!model.volumes_are_held) return;
   const Tissue& tissue = model.tissue;
   element_slots_.resize(tissue.elements.size());
+  start_.reserve(tissue.cells.size() + 1);
+  gradients_.reserve(8 * tissue.cells.size());  // or more, where cells are cut
   std::vector<NodeId> members;
   for (const Cell& cell : tissue.cells) {
     members.clear();

@@ -1,6 +1,9 @@
 #include "solver/block_cholesky.hpp"
 
 #include <gtest/gtest.h>
+#include <omp.h>
+
+#include <utility>
 
 #include "support/cubes.hpp"
 #include "support/tissues.hpp"
@@ -36,6 +39,18 @@ struct System {
   BlockPattern pattern;
   std::vector<float> values, b;
   Eigen::MatrixXd matrix;
+};
+
+/// So many threads, for a while.
+class Threads {
+ public:
+  explicit Threads(int count) : before_(omp_get_max_threads()) { omp_set_num_threads(count); }
+  ~Threads() { omp_set_num_threads(before_); }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+
+ private:
+  int before_;
 };
 
 TEST(BlockCholesky, AgreesWithADenseSolve) {
@@ -100,11 +115,35 @@ TEST(BlockCholesky, KeepsLessThanTheDenseFactor) {
   EXPECT_LT(cholesky.factor_size(), rows * rows / 5);
 }
 
+TEST(BlockCholesky, GivesTheSameBitsOnAnyNumberOfThreads) {
+  const System system(20, 16, 2);  // large enough for subtrees to be shared out
+  std::vector<float> on_one;
+  for (const int threads : {1, 2, 3, 8}) {
+    const Threads scope(threads);
+    BlockCholesky cholesky(system.pattern);
+    ASSERT_TRUE(cholesky.factorise(system.values));
+    auto x = system.b;
+    cholesky.solve(x);
+    if (threads == 1) on_one = x;
+    EXPECT_EQ(x, on_one) << threads << " threads";
+  }
+}
+
 TEST(BlockCholesky, SaysWhenAMatrixIsNotPositiveDefinite) {
-  System system(6, 5, 2);
-  BlockCholesky cholesky(system.pattern);
-  system.values[9 * static_cast<std::size_t>(system.pattern.find(17, 17)) + 4] = -60;
-  EXPECT_FALSE(cholesky.factorise(system.values));
+  for (const int threads : {1, 2}) {
+    const Threads scope(threads);
+    for (System system : {System(6, 5, 2), System(20, 16, 2)}) {
+      BlockCholesky cholesky(system.pattern);
+      float& value = system.values[9 * static_cast<std::size_t>(system.pattern.find(17, 17)) + 4];
+      const float was = std::exchange(value, -60.0F);
+      EXPECT_FALSE(cholesky.factorise(system.values));
+      value = was;
+      ASSERT_TRUE(cholesky.factorise(system.values));
+      auto x = system.b;
+      cholesky.solve(x);
+      EXPECT_LT(system.error(x), 2e-6);
+    }
+  }
 }
 
 TEST(BlockCholesky, PatternHasEachPairOfAGroupOnce) {
