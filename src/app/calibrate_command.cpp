@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <omp.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -171,7 +170,7 @@ int calibrate_scenario(const CalibrateOptions& options) {
   const CalibrationProblem problem = problem_of(options);
   refuse_out(options, problem.source);
   const auto model = make_model(load_scenario(problem.source, problem.overrides));
-  omp_set_num_threads(threads_for(options.threads, model->tissue.elements.size()));
+  use_threads(options.threads, model->tissue.elements.size());
   TrialTable table(problem);
   catch_interruptions();
   const Calibration calibration =

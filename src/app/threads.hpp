@@ -1,19 +1,17 @@
 // How many threads a run is given.
 #pragma once
 
-#include <omp.h>
-
-#include <algorithm>
-#include <cstdlib>
+#include <cstddef>
 
 namespace plica {
 
-/// As asked; else as OMP_NUM_THREADS says; else as many as the mesh can keep busy. Results do not depend on it.
-inline int threads_for(int asked, std::size_t elements) {
-  if (asked > 0) return asked;
-  if (std::getenv("OMP_NUM_THREADS") != nullptr) return omp_get_max_threads();
-  constexpr std::size_t elements_a_thread = 10000;
-  return static_cast<int>(std::min<std::size_t>(omp_get_num_procs(), 1 + elements / elements_a_thread));
-}
+/// From now on as many threads as asked; else as OMP_NUM_THREADS says; else as many as the mesh can keep busy. Results
+/// do not depend on it.
+///
+/// May begin the program anew, to the same end: to be called before anything is printed or written. GCC's OpenMP has
+/// threads look for work for milliseconds before they sleep. Where other programs want the cores, those that have work
+/// wait for them: a step took 38 s instead of 3 (docs/performance.md). How long they look is read from the environment
+/// before main() begins.
+void use_threads(int asked, std::size_t elements);
 
 }  // namespace plica

@@ -5,6 +5,7 @@ By hand, beside another build: sameness_test.py PROGRAM --beside OTHER_PROGRAM w
 Sameness.test_debug_build_with_multigrid (the same bits), or Sameness.test_another_build (but for rounding).
 """
 import os
+import re
 import subprocess
 import sys
 
@@ -34,6 +35,25 @@ class Sameness(Resuming):
             with self.subTest(threads=threads):
                 self.assertEqual(sorted(found), sorted(expected))
                 self.assertEqual([name for name in found if found[name] != expected[name]], [])
+
+    # The program begins anew to tell GCC's OpenMP so (src/app/threads.hpp), once, and not where the user has.
+    def test_several_threads_wait_shortly(self):
+        scenario = self.write(support.BLOCK)
+        usual = {name: value for name, value in os.environ.items() if not name.startswith(("OMP_", "GOMP_"))}
+
+        def spin_counts(threads, **variables):
+            result = plica("run", scenario, "--threads", threads, "--out", self.out, "--overwrite",
+                           env={**usual, **variables, "OMP_DISPLAY_ENV": "verbose"})
+            self.assertEqual(result.returncode, 0, result.stderr)
+            return re.findall(r"GOMP_SPINCOUNT = '(\w+)'", result.stderr)
+
+        alone = spin_counts(1)
+        if not alone:
+            self.skipTest("not GCC's OpenMP")
+        self.assertEqual(len(alone), 1)
+        self.assertEqual(spin_counts(2), [*alone, "2000"])
+        self.assertEqual(spin_counts(2, GOMP_SPINCOUNT="77"), ["77"])
+        self.assertEqual(spin_counts(2, OMP_WAIT_POLICY="PASSIVE"), ["0"])
 
     def available_kernels(self):
         refusal = plica("run", "drosophila", "--out", self.out, env=os.environ | {"PLICA_KERNELS": "?"})

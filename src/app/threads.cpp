@@ -1,0 +1,48 @@
+#include "app/threads.hpp"
+
+#include <omp.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace plica {
+namespace {
+
+int threads_for(int asked, std::size_t elements) {
+  if (asked > 0) return asked;
+  if (std::getenv("OMP_NUM_THREADS") != nullptr) return omp_get_max_threads();
+  constexpr std::size_t elements_a_thread = 10000;
+  return static_cast<int>(std::min<std::size_t>(omp_get_num_procs(), 1 + elements / elements_a_thread));
+}
+
+// The same program with the same arguments, unless the user has said how threads wait. Returns where it cannot be
+// begun.
+void begin_anew_with_short_waits() {
+#if defined(__linux__) && !defined(__clang__)  // whose OpenMP has another name for it
+  if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr) return;
+  std::vector<std::string> arguments;
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  for (std::string argument; std::getline(file, argument, '\0');) arguments.push_back(argument);
+  if (arguments.empty()) return;
+  std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  setenv("GOMP_SPINCOUNT", "2000", 0);  // microseconds: sleeping at once costs a step up to half its time
+  execv("/proc/self/exe", pointers.data());
+#endif
+}
+
+}  // namespace
+
+void use_threads(int asked, std::size_t elements) {
+  const int threads = threads_for(asked, elements);
+  if (threads > 1) begin_anew_with_short_waits();
+  omp_set_num_threads(threads);
+}
+
+}  // namespace plica
