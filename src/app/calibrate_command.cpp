@@ -170,7 +170,7 @@ int calibrate_scenario(const CalibrateOptions& options) {
   const CalibrationProblem problem = problem_of(options);
   refuse_out(options, problem.source);
   const auto model = make_model(load_scenario(problem.source, problem.overrides));
-  use_threads(options.threads, model->tissue.elements.size());
+  use_threads(options.threads, model->tissue.elements.size(), problem.source.file);
   TrialTable table(problem);
   catch_interruptions();
   const Calibration calibration =

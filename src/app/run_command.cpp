@@ -176,7 +176,7 @@ int run_scenario(const RunOptions& options) {
   const ScenarioSource source = find_scenario(options.scenario.name_or_path);
   const Scenario scenario = load_scenario(source, options.scenario.overrides);
   Setting setting(scenario);
-  use_threads(options.threads, setting.model->tissue.elements.size());
+  use_threads(options.threads, setting.model->tissue.elements.size(), options.scenario.name_or_path);
 
   if (!options.quiet)
     for (const std::string& line : advice(scenario, *setting.model))

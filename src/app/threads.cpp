@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
-#include <string>
+#include <system_error>
 #include <vector>
 
 namespace plica {
@@ -21,9 +22,11 @@ int threads_for(int asked, std::size_t elements) {
 
 // The same program with the same arguments, unless the user has said how threads wait. Returns where it cannot be
 // begun.
-void begin_anew_with_short_waits() {
+void begin_anew_with_short_waits(const std::string& scenario) {
 #if defined(__linux__) && !defined(__clang__)  // whose OpenMP has another name for it
   if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr) return;
+  std::error_code unknown;
+  if (std::filesystem::exists(scenario, unknown) && !std::filesystem::is_regular_file(scenario, unknown)) return;
   std::vector<std::string> arguments;
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   for (std::string argument; std::getline(file, argument, '\0');) arguments.push_back(argument);
@@ -32,16 +35,17 @@ void begin_anew_with_short_waits() {
   pointers.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  setenv("GOMP_SPINCOUNT", "2000", 0);  // microseconds: sleeping at once costs a step up to half its time
+  setenv("GOMP_SPINCOUNT", "2000",
+         0);  // looks, which take microseconds; sleeping at once costs a step up to half its time
   execv("/proc/self/exe", pointers.data());
 #endif
 }
 
 }  // namespace
 
-void use_threads(int asked, std::size_t elements) {
+void use_threads(int asked, std::size_t elements, const std::string& scenario) {
   const int threads = threads_for(asked, elements);
-  if (threads > 1) begin_anew_with_short_waits();
+  if (threads > 1) begin_anew_with_short_waits(scenario);
   omp_set_num_threads(threads);
 }
 

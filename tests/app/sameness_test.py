@@ -55,6 +55,20 @@ class Sameness(Resuming):
         self.assertEqual(spin_counts(2, GOMP_SPINCOUNT="77"), ["77"])
         self.assertEqual(spin_counts(2, OMP_WAIT_POLICY="PASSIVE"), ["0"])
 
+    def test_several_threads_read_a_scenario_from_a_pipe(self):
+        usual = {name: value for name, value in os.environ.items() if not name.startswith(("OMP_", "GOMP_"))}
+        resolved = []
+        for threads in (1, 2):
+            end, beginning = os.pipe()
+            os.write(beginning, support.BLOCK.encode())
+            os.close(beginning)
+            result = plica("run", f"/dev/fd/{end}", "--threads", threads, "--out", self.out, "--overwrite",
+                           env=usual, pass_fds=(end,))
+            os.close(end)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            resolved.append((self.out / "scenario.toml").read_text())
+        self.assertEqual(*resolved)
+
     def available_kernels(self):
         refusal = plica("run", "drosophila", "--out", self.out, env=os.environ | {"PLICA_KERNELS": "?"})
         return refusal.stderr.split("this machine has ")[1].strip().split(", ")
