@@ -39,7 +39,7 @@ constexpr int chains_of(int lanes) { return lanes == 8 ? 20 : 12; }
 
 double multiply_add_generic(long rounds) { PLICA_MULTIPLY_ADD(Lanes2) }
 double sum_generic(const double* values, std::size_t count) { PLICA_SUM(Lanes2) }
-#ifdef PLICA_X86_KERNELS
+#ifdef __x86_64__
 [[gnu::target("avx2,fma")]] double multiply_add_avx2(long rounds) { PLICA_MULTIPLY_ADD(Lanes4) }
 [[gnu::target("avx2,fma")]] double sum_avx2(const double* values, std::size_t count) { PLICA_SUM(Lanes4) }
 [[gnu::target("avx512f,fma")]] double multiply_add_avx512(long rounds) { PLICA_MULTIPLY_ADD(Lanes8) }
@@ -53,7 +53,7 @@ struct Loops {
 };
 
 Loops loops_for(Kernels kernels) {
-#ifdef PLICA_X86_KERNELS
+#ifdef __x86_64__
   if (kernels == Kernels::avx2) return {4, multiply_add_avx2, sum_avx2};
   if (kernels == Kernels::avx512) return {8, multiply_add_avx512, sum_avx512};
 #endif

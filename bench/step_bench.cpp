@@ -66,6 +66,40 @@ void factorisation(benchmark::State& bench) {
 }
 BENCHMARK(factorisation)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
 
+// The factor that most steps of a small embryo use: A, and volumes as a stiffness.
+struct FactorSetting : Setting {
+  explicit FactorSetting(int refinement) : Setting(refinement), matrix(*model), factor(matrix.layout()) {
+    matrix.set_zero();
+    for (const auto& law : model->laws) law->add_tangent(step, matrix);
+    matrix.add_volume_stiffness(*model, state.positions,
+                                std::vector<double>(model->tissue.cells.size(), 1e-3 / 40));  // 10 kPa a cell, or so
+    matrix.write_projected_blocks(std::vector<NodeFrame>(state.positions.size()), values);
+  }
+  StepMatrix matrix;
+  BlockCholesky factor;
+  UninitialisedVector<float> values;
+};
+
+void block_factor(benchmark::State& bench) {
+  FactorSetting setting(static_cast<int>(bench.range(0)));
+  for (auto _ : bench)
+    if (!setting.factor.factorise(setting.values)) bench.SkipWithError("not positive definite");
+}
+BENCHMARK(block_factor)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
+
+void block_solve(benchmark::State& bench) {
+  FactorSetting setting(static_cast<int>(bench.range(0)));
+  if (!setting.factor.factorise(setting.values)) bench.SkipWithError("not positive definite");
+  const std::vector<float> right(3 * setting.matrix.layout().nodes(), 1.0F);
+  std::vector<float> x;
+  for (auto _ : bench) {
+    x = right;
+    setting.factor.solve(x);
+  }
+  bench.counters["numbers"] = static_cast<double>(setting.factor.factor_size());
+}
+BENCHMARK(block_solve)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
+
 void first_step(benchmark::State& bench) {
   const Setting setting(static_cast<int>(bench.range(0)));
   StepSolver solver(*setting.model);

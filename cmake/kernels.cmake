@@ -16,7 +16,6 @@ endfunction()
 
 set_source_files_properties(${kernel_sources} PROPERTIES COMPILE_OPTIONS -ffp-contract=fast)  # after plica_options'
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  target_compile_definitions(plica_core PUBLIC PLICA_X86_KERNELS)
   add_kernels(generic 2)
   add_kernels(avx2 4 -mavx2 -mfma)
   add_kernels(avx512 8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512)

@@ -13,10 +13,9 @@
 #include "solver/blas.hpp"
 
 extern "C" {  // BLAS
-void sgemm_(const char* transposed_a, const char* transposed_b, const int* m, const int* n, const int* k,
-            const float* alpha, const float* a, const int* lda, const float* b, const int* ldb, const float* beta,
-            float* c, const int* ldc);
 void strsm_(const char* side, const char* triangle, const char* transposed, const char* diagonal, const int* m,
+            const int* n, const float* alpha, const float* a, const int* lda, float* b, const int* ldb);
+void strmm_(const char* side, const char* triangle, const char* transposed, const char* diagonal, const int* m,
             const int* n, const float* alpha, const float* a, const int* lda, float* b, const int* ldb);
 void ssyrk_(const char* triangle, const char* transposed, const int* n, const int* k, const float* alpha,
             const float* a, const int* lda, const float* beta, float* c, const int* ldc);
@@ -94,7 +93,8 @@ std::vector<int> nested_dissection(const BlockPattern& pattern) {
 
 }  // namespace
 
-BlockCholesky::BlockCholesky(const BlockPattern& pattern) : nodes_(pattern.nodes()) {
+BlockCholesky::BlockCholesky(const BlockPattern& pattern, Kernels kernels)
+    : products_(&panel_products(kernels)), nodes_(pattern.nodes()) {
   prepare_blas();
   order(pattern);
   place_blocks(pattern);
@@ -153,7 +153,7 @@ void BlockCholesky::find_supernodes(const Neighbours& below) {
     for (const int child : children[j]) std::vector<int>().swap(rows_of[child]);
 
     supernodes_.push_back(
-        {.first = j, .columns = 1, .rows = rows, .rows_in_parent = {}, .panel = 0, .children = {}, .blocks = {}});
+        {.first = j, .columns = 1, .rows = rows, .runs = {}, .panel = 0, .children = {}, .blocks = {}});
     zeros.push_back(0);
     // Join with the supernode before while that wastes little: a wider panel is read and multiplied faster.
     while (supernodes_.size() > 1) {
@@ -190,7 +190,12 @@ void BlockCholesky::place_blocks(const BlockPattern& pattern) {
     if (child.rows.empty()) continue;
     Supernode& parent = supernodes_[owner[child.rows.front()]];
     parent.children.push_back(static_cast<int>(s));
-    for (const int row : child.rows) child.rows_in_parent.push_back(front_row(parent, row));
+    for (int row = 0; row < static_cast<int>(child.rows.size()); ++row) {
+      const int in_parent = front_row(parent, child.rows[row]);
+      if (child.runs.empty() || in_parent != child.runs.back().in_parent + row - child.runs.back().first)
+        child.runs.push_back({row, row, in_parent});
+      child.runs.back().last = row + 1;
+    }
   }
   std::size_t block = 0;
   for (int row = 0; row < pattern.nodes(); ++row)
@@ -202,29 +207,33 @@ void BlockCholesky::place_blocks(const BlockPattern& pattern) {
 }
 
 void BlockCholesky::assemble(const Supernode& node, std::span<const float> values, float* panel) {
-  const std::size_t height = node.height();
-  std::fill_n(panel, height * node.width(), 0.0F);
+  const std::size_t stride = node.stride();
+  std::fill_n(panel, stride * node.width(), 0.0F);
   for (const auto& [block, row, column, turned] : node.blocks) {
     const float* value = &values[9 * block];
-    float* to = panel + 3 * (static_cast<std::size_t>(column) * height + static_cast<std::size_t>(row));
+    float* to = panel + 3 * (static_cast<std::size_t>(column) * stride + static_cast<std::size_t>(row));
     for (std::size_t j = 0; j < 3; ++j)
-      for (std::size_t i = 0; i < 3; ++i) to[j * height + i] = turned ? value[3 * j + i] : value[3 * i + j];
+      for (std::size_t i = 0; i < 3; ++i) to[j * stride + i] = turned ? value[3 * j + i] : value[3 * i + j];
   }
 }
 
 void BlockCholesky::add_child(const Supernode& child, const float* update, const Supernode& node, float* panel,
                               float* front) {
-  const std::size_t count = child.rows.size(), size = 3 * count;
-  const std::size_t height = node.height(), own = node.width(), rest = height - own;
-  for (std::size_t j = 0; j < size; ++j) {
-    const float* from = update + j * size;
-    const std::size_t column = 3 * static_cast<std::size_t>(child.rows_in_parent[j / 3]) + j % 3;
-    float* to = column < own ? panel + column * height : front + (column - own) * rest - own;
-    for (std::size_t i = j / 3; i < count; ++i) {
-      float* row = to + 3 * static_cast<std::size_t>(child.rows_in_parent[i]);
-      for (std::size_t k = 0; k < 3; ++k) row[k] += from[3 * i + k];
-    }
-  }
+  const std::size_t size = 3 * child.rows.size(), own = node.width(), rest = node.height() - own;
+  for (auto run = child.runs.begin(); run != child.runs.end(); ++run)
+    for (int row = run->first; row < run->last; ++row)
+      for (std::size_t j = 0; j < 3; ++j) {
+        const std::size_t column = 3 * static_cast<std::size_t>(run->in_parent + row - run->first) + j;
+        const float* from = update + (3 * static_cast<std::size_t>(row) + j) * size;
+        float* to = column < own ? panel + column * node.stride() : front + (column - own) * rest - own;
+        for (auto below = run; below != child.runs.end(); ++below) {
+          const int first = std::max(row, below->first);
+          const float* numbers = from + 3 * first;
+          float* sums = to + 3 * (below->in_parent + first - below->first);
+#pragma omp simd
+          for (int i = 0; i < 3 * (below->last - first); ++i) sums[i] += numbers[i];
+        }
+      }
 }
 
 namespace {
@@ -255,37 +264,36 @@ bool dense_cholesky(float* A, int size, int stride) {
 // Panel [A11; A21] to [L11^-1; L21 L11^-1]; the front of what is left to -L21 L21^T + what it was.
 bool BlockCholesky::eliminate(const Supernode& node, float* panel, float* front) {
   const BlasUse use;
-  const int own = static_cast<int>(node.width()), height = static_cast<int>(node.height()), rest = height - own;
-  const float one = 1, minus = -1, zero = 0;
-  if (!dense_cholesky(panel, own, height)) return false;
+  const int own = static_cast<int>(node.width()), rest = static_cast<int>(node.height()) - own;
+  const int stride = static_cast<int>(node.stride());
+  const float one = 1, minus = -1;
+  if (!dense_cholesky(panel, own, stride)) return false;
   std::vector<float> inverse(node.width() * node.width());
   for (std::size_t j = 0; j < node.width(); ++j) inverse[j * (node.width() + 1)] = 1;
-  strsm_("L", "L", "N", "N", &own, &own, &one, panel, &height, inverse.data(), &own);
-  if (rest > 0) {
-    // Products, though half of the inverse is zero: BLAS is faster at them than at solves.
-    std::vector<float> L21(static_cast<std::size_t>(rest) * node.width());
-    sgemm_("N", "T", &rest, &own, &own, &one, panel + own, &height, inverse.data(), &own, &zero, L21.data(), &rest);
-    ssyrk_("L", "N", &rest, &own, &minus, L21.data(), &rest, &one, front, &rest);
-    sgemm_("N", "N", &rest, &own, &own, &one, L21.data(), &rest, inverse.data(), &own, &zero, panel + own, &height);
-  }
+  strsm_("L", "L", "N", "N", &own, &own, &one, panel, &stride, inverse.data(), &own);
   for (std::size_t j = 0; j < node.width(); ++j)
-    std::copy_n(&inverse[j * node.width()], own, panel + j * node.height());
+    std::copy_n(&inverse[j * node.width()], own, panel + j * node.stride());
+  if (rest > 0) {
+    float* const below = panel + own;
+    strmm_("R", "L", "T", "N", &rest, &own, &one, inverse.data(), &own, below, &stride);
+    ssyrk_("L", "N", &rest, &own, &minus, below, &stride, &one, front, &rest);
+    strmm_("R", "L", "N", "N", &rest, &own, &one, inverse.data(), &own, below, &stride);
+  }
   return true;
 }
 
-// What threads share. Each has a panel to eliminate in.
+// What threads share.
 struct BlockCholesky::Fronts {
-  Fronts(std::size_t supernodes, int threads) : updates(supernodes), panels(threads) {}
+  explicit Fronts(std::size_t supernodes) : updates(supernodes) {}
 
   std::vector<std::unique_ptr<float[]>> updates;  // of each supernode to its parent: lower triangles, column-major
-  std::vector<std::vector<float>> panels;
   std::atomic<bool> has_failed = false;
   std::exception_ptr error;  // of the thread that has set has_failed; null: not positive definite
 };
 
 bool BlockCholesky::factorise(std::span<const float> values) {
   const int threads = omp_get_max_threads();
-  Fronts fronts(supernodes_.size(), threads);
+  Fronts fronts(supernodes_.size());
 #pragma omp parallel num_threads(threads) if (threads > 1)
 #pragma omp single
   for (int s = 0; s < static_cast<int>(supernodes_.size()); ++s)
@@ -314,23 +322,18 @@ void BlockCholesky::factorise_front(int s, std::span<const float> values, Fronts
   if (fronts.has_failed) return;
   try {
     const Supernode& node = supernodes_[s];
-    const std::size_t height = node.height(), rest = height - node.width();
-    std::vector<float>& panel = fronts.panels[omp_get_thread_num()];
-    panel.resize(node.width() * height);
-    assemble(node, values, panel.data());
+    const std::size_t rest = node.height() - node.width();
+    float* const panel = panels_[node.panel].numbers;
+    assemble(node, values, panel);
     std::unique_ptr<float[]>& update = fronts.updates[s];
     update.reset(new float[rest * rest]);
     // From the diagonal's blocks on.
     for (std::size_t j = 0; j < rest; ++j) std::fill_n(&update[j * rest + j / 3 * 3], rest - j / 3 * 3, 0.0F);
     for (const int child : node.children) {
-      add_child(supernodes_[child], fronts.updates[child].get(), node, panel.data(), update.get());
+      add_child(supernodes_[child], fronts.updates[child].get(), node, panel, update.get());
       fronts.updates[child].reset();
     }
-    if (!eliminate(node, panel.data(), update.get())) fronts.has_failed = true;
-    for (std::size_t j = 0; j < node.width(); ++j) {
-      float* column = panels_[node.panel + j * chunks_for(height)].numbers;
-      std::fill(std::copy_n(&panel[j * height], height, column), column + chunks_for(height) * PanelChunk::size, 0.0F);
-    }
+    if (!eliminate(node, panel, update.get())) fronts.has_failed = true;
   } catch (...) {  // may not leave a task
     if (!fronts.has_failed.exchange(true)) fronts.error = std::current_exception();
   }
@@ -375,7 +378,7 @@ void BlockCholesky::solve_down(const Supernode& node, Halfway& x) const {
   float* const own = own_.data();
   float* const front = front_.data()->numbers;
   for (int k = 0; k < node.columns; ++k) write(own + 3 * k, read(x[node.first + k].numbers));
-  multiply(panel_of(node), own, front_.data());
+  products_->multiply(panel_of(node), own, front_.data());
   for (int k = 0; k < node.columns; ++k) write(x[node.first + k].numbers, read(front + 3 * k));
   float* below = front + node.width();
   for (const int row : node.rows) {
@@ -394,7 +397,7 @@ void BlockCholesky::solve_up(const Supernode& node, Halfway& x) const {
     below += 3;
   }
   std::fill(below, front + chunks_for(node.height()) * PanelChunk::size, 0.0F);  // after the last node
-  multiply_transposed(panel_of(node), front_.data(), own);
+  products_->multiply_transposed(panel_of(node), front_.data(), own);
   for (int k = 0; k < node.columns; ++k) write(x[node.first + k].numbers, read(own + 3 * k));
 }
 

@@ -24,7 +24,7 @@ namespace plica {
 class BlockCholesky final : public Preconditioner {
  public:
   /// Orders the nodes and finds where the factor has entries. Once a topology.
-  explicit BlockCholesky(const BlockPattern& pattern);
+  explicit BlockCholesky(const BlockPattern& pattern, Kernels kernels = chosen_kernels());
 
   /// Factorises; `values` are the pattern's blocks, nine numbers each, by rows. False when the matrix is not positive
   /// definite in single precision: for condition numbers up to 1e6 it is, beyond 1e7 it hardly can be.
@@ -56,19 +56,23 @@ class BlockCholesky final : public Preconditioner {
     int row, column;     // in the front
     bool turned;         // transposed there
   };
+  struct Run {
+    int first, last, in_parent;  // rows `first` to before `last` follow each other in the parent's front too, from here
+  };
   struct Supernode {
-    int first = 0, columns = 0;       // nodes in elimination order
-    std::vector<int> rows;            // nodes below, ascending
-    std::vector<int> rows_in_parent;  // where they are in the parent's front
-    std::size_t panel = 0;            // where its panel begins
-    std::vector<int> children;        // supernodes that update this one
-    std::vector<Block> blocks;        // of the matrix that are assembled here
-    int subtree = 0;                  // the first supernode of those from which paths lead here; all are between
-    double work = 0;                  // to eliminate these and it, multiply-adds or so
+    int first = 0, columns = 0;  // nodes in elimination order
+    std::vector<int> rows;       // nodes below, ascending
+    std::vector<Run> runs;       // where they are in the parent's front
+    std::size_t panel = 0;       // where its panel begins
+    std::vector<int> children;   // supernodes that update this one
+    std::vector<Block> blocks;   // of the matrix that are assembled here
+    int subtree = 0;             // the first supernode of those from which paths lead here; all are between
+    double work = 0;             // to eliminate these and it, multiply-adds or so
 
     // Of its panel, in numbers.
     [[nodiscard]] std::size_t width() const { return 3 * static_cast<std::size_t>(columns); }
     [[nodiscard]] std::size_t height() const { return 3 * (static_cast<std::size_t>(columns) + rows.size()); }
+    [[nodiscard]] std::size_t stride() const { return PanelChunk::size * chunks_for(height()); }  // between columns
   };
   void order(const BlockPattern& pattern);
   void find_supernodes(const std::vector<std::vector<int>>& upper_neighbours);
@@ -86,6 +90,7 @@ class BlockCholesky final : public Preconditioner {
   void solve_down(const Supernode& node, Halfway& x) const;  // from children to parents
   void solve_up(const Supernode& node, Halfway& x) const;
 
+  const PanelProducts* products_;
   int nodes_ = 0;
   std::vector<int> position_;          // of each node in the order of elimination
   std::vector<Supernode> supernodes_;  // children before parents

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "mechanics/kernels/kernels.hpp"
+
 namespace plica {
 
 /// Sixteen numbers that lie on one cache line.
@@ -23,10 +25,14 @@ struct Panel {
   int width;
 };
 
-/// y = P x. All of y's chunks are written.
-void multiply(const Panel& P, const float* x, PanelChunk* y);
+/// Products for one instruction set.
+struct PanelProducts {
+  /// y = P x. All of y's chunks are written.
+  void (*multiply)(const Panel& P, const float* x, PanelChunk* y);
+  /// x = P^T y.
+  void (*multiply_transposed)(const Panel& P, const PanelChunk* y, float* x);
+};
 
-/// x = P^T y.
-void multiply_transposed(const Panel& P, const PanelChunk* y, float* x);
+[[nodiscard]] const PanelProducts& panel_products(Kernels kernels);
 
 }  // namespace plica

@@ -20,7 +20,7 @@ std::string_view name(Kernels kernels) {
 const std::vector<Kernels>& available_kernels() {
   static const std::vector<Kernels> available = [] {
     std::vector<Kernels> kernels = {Kernels::generic};
-#ifdef PLICA_X86_KERNELS
+#ifdef __x86_64__
     const bool fma = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     if (fma) kernels.push_back(Kernels::avx2);
     if (fma && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
