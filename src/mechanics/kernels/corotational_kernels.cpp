@@ -84,14 +84,14 @@ struct Moving {
   Stretch stretched;
 };
 
-// The stretch comes of a chain of steps that wait for each other: meanwhile the direction is gathered.
 inline void gather_moving(const Elements& e, const double* positions, const double* direction, Moving& at) {
   e.ask_for_next();
   gather_modes(e.batch.nodes, e.lane, positions, at.m);
   at.F = gradient(e, at.m);
-  at.stretched = stretch(at.F);
-  e.ask_for_next();
-  gather_modes(e.batch.nodes, e.lane, direction, at.d);
+  set_stretch(at.F, at.stretched, [&] {
+    e.ask_for_next();
+    gather_modes(e.batch.nodes, e.lane, direction, at.d);
+  });
   at.dF = gradient(e, at.d);
 }
 
@@ -102,7 +102,9 @@ template <bool viscous>
   for_elements(step, first, last, [&](const Elements& e, int count) {
     Moving at;
     gather_moving(e, step.positions, direction, at);
-    const Mat R = frame(at.F, at.stretched).R;
+    Frame frame;
+    set_frame(at.F, at.stretched, frame);
+    const Mat& R = frame.R;
     Hourglass w, dq;
     const Mat W = seen_from(e, R, at.dF, at.d, w);
     e.ask_for_next();
@@ -129,7 +131,9 @@ template <bool viscous>
     Moving at;
     gather_moving(e, step.positions, direction, at);
     const Deformation now = deformation(e, at.m, at.F, at.stretched);
-    const auto& [R, S, G, h] = now;
+    const Mat& R = now.R;
+    const Sym &S = now.S, &G = now.G;
+    const Hourglass& h = now.h;
     Hourglass dh;
     const Mat W = seen_from(e, R, at.dF, at.d, dh);
     // How the frame turns, and what that leaves of the move as deformation.

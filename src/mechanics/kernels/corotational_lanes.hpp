@@ -62,6 +62,9 @@ inline Mat gradient(const Elements& e, const Vec (&m)[7]) {
   return F;
 }
 
+// What follows is written where it is wanted: without AVX-512, GCC 12 copies structures of matrices that functions
+// return in pieces of 8 bytes.
+
 /// What F's rotation follows from, F = R S: cof F, C = F^T F = S^2, J = det F and s = tr S.
 struct Stretch {
   Mat cofactors;
@@ -70,21 +73,30 @@ struct Stretch {
 };
 
 /// s is the largest root of the quartic (s^2 - a)^2/4 - b - 2 J s, where a = tr S^2 and b = |cof S|^2 = |cof F|^2. All
-/// its roots are real, so Halley's iteration comes down to it from any larger number, cubically in the end.
-inline Stretch stretch(const Mat& F) {
-  const Mat K = {cross(F.y, F.z), cross(F.z, F.x), cross(F.x, F.y)};
-  const Sym C = {dot(F.x, F.x), dot(F.y, F.y), dot(F.z, F.z), dot(F.x, F.y), dot(F.y, F.z), dot(F.z, F.x)};
-  const Lanes J = dot(F.x, K.x), J2 = J + J;
-  const Lanes a = trace(C), b = dot(K.x, K.x) + dot(K.y, K.y) + dot(K.z, K.z);
-  Lanes s = 0.5 * a + 1.5;  // at least sqrt(3 a), and so at least the trace
-  for (int iteration = 0; iteration < 30; ++iteration) {
+/// its roots are real, so Halley's iteration comes down to it from any larger number, cubically in the end. Each of its
+/// steps waits for what is before it: `meanwhile()` is done while the first does.
+template <class Meanwhile>
+inline void set_stretch(const Mat& F, Stretch& of, const Meanwhile& meanwhile) {
+  of.cofactors = {cross(F.y, F.z), cross(F.z, F.x), cross(F.x, F.y)};
+  of.C = {dot(F.x, F.x), dot(F.y, F.y), dot(F.z, F.z), dot(F.x, F.y), dot(F.y, F.z), dot(F.z, F.x)};
+  of.J = dot(F.x, of.cofactors.x);
+  const Lanes a = trace(of.C), J2 = of.J + of.J;
+  const Lanes b =
+      dot(of.cofactors.x, of.cofactors.x) + dot(of.cofactors.y, of.cofactors.y) + dot(of.cofactors.z, of.cofactors.z);
+  const auto halley = [&](Lanes s) {
     const Lanes s2 = s * s, u = s2 - a;
     const Lanes value = 0.25 * u * u - b - J2 * s, slope = s * u - J2, half_bend = s2 + 0.5 * u;
-    const Lanes step = value * slope / (slope * slope - value * half_bend);
+    return value * slope / (slope * slope - value * half_bend);
+  };
+  const Lanes first = 0.5 * a + 1.5;  // at least sqrt(3 a), and so at least the trace
+  Lanes s = first - halley(first);
+  meanwhile();
+  for (int iteration = 1; iteration < 30; ++iteration) {  // hardly any element is done after the first
+    const Lanes step = halley(s);
     s -= step;
-    if (iteration > 0 && !any(step > 1e-5 * s)) break;  // hardly any element is done after one
+    if (!any(step > 1e-5 * s)) break;
   }
-  return {K, C, J, s};
+  of.s = s;
 }
 
 /// R, and G = (s I - S)^-1.
@@ -109,22 +121,21 @@ struct Frame {
 
 /// With c = (s^2 - tr C)/2, the second invariant of S, and D = s c - J = det(s I - S), the theorem of Cayley and
 /// Hamilton gives D G = C + c I and D R = F ((s^2 - c) I - C) + s cof F.
-inline Frame frame(const Mat& F, const Stretch& of) {
+inline void set_frame(const Mat& F, const Stretch& of, Frame& result) {
   const auto& [K, C, J, s] = of;
   const Lanes s2 = s * s, c = 0.5 * (s2 - trace(C)), D = s * c - J;
   const Lanes scale = 1 / D, own = scale * c, rest = scale * (s2 - c);
   const Sym part = scale * C;
-  Frame result = {F * Mat{{rest - part.xx, -part.xy, -part.zx},
-                          {-part.xy, rest - part.yy, -part.yz},
-                          {-part.zx, -part.yz, rest - part.zz}} +
-                      (scale * s) * K,
-                  {part.xx + own, part.yy + own, part.zz + own, part.xy, part.yz, part.zx}};
+  result = {F * Mat{{rest - part.xx, -part.xy, -part.zx},
+                    {-part.xy, rest - part.yy, -part.yz},
+                    {-part.zx, -part.yz, rest - part.zz}} +
+                (scale * s) * K,
+            {part.xx + own, part.yy + own, part.zz + own, part.xy, part.yz, part.zx}};
   // Inverted elements, or nearly so, and very flat ones.
   if (any(~((J > 1e-3) & (D > 1e-3 * s * s2)))) {
     const Mat deformed = F, R = nearest_rotation(deformed);
     result = {R, inverse(turning(upper_part(turn_back(R, F))))};
   }
-  return result;
 }
 
 /// What moves with velocities or small displacements, seen in the frame: W = R^T sum m_j b_j^T and the hourglasses that
@@ -137,17 +148,15 @@ inline Mat seen_from(const Elements& e, const Mat& R, const Mat& F, const Vec (&
 }
 
 /// S and h, and the frame they are seen in.
-struct Deformation {
-  Mat R;
-  Sym S, G;
+struct Deformation : Frame {
+  Sym S;
   Hourglass h;
 };
 
 inline Deformation deformation(const Elements& e, const Vec (&m)[7], const Mat& F, const Stretch& of) {
-  const auto [R, G] = frame(F, of);
   Deformation now;
-  now.R = R, now.G = G;
-  now.S = upper_part(seen_from(e, R, F, m, now.h));
+  set_frame(F, of, now);
+  now.S = upper_part(seen_from(e, now.R, F, m, now.h));
   return now;
 }
 
@@ -156,34 +165,43 @@ inline Deformation deformation(const Elements& e, const double* positions) {
   Vec m[7];
   gather_modes(e.batch.nodes, e.lane, positions, m);
   const Mat F = gradient(e, m);
-  return deformation(e, m, F, stretch(F));
+  Stretch of;
+  set_stretch(F, of, [] {});
+  return deformation(e, m, F, of);
 }
 
 /// q = H h for each of `n`, by blocks of 3 x 3: row by row every entry would cost each of them two loads and a store.
+/// All of them at each block, which so is loaded once.
 template <int n>
 inline void multiply(const double (&H)[78][batch_size], int lane, const Hourglass* const (&h)[n],
                      Hourglass* const (&q)[n]) {
 #pragma GCC unroll copies
-  for (int k = 0; k < n; ++k)
-#pragma GCC unroll copies
-    for (int a = 0; a < 4; ++a) {
-      const auto entry = [&](int i, int j) { return load(H[i * (i + 1) / 2 + j] + lane); };
-      const int i = 3 * a;
-      const Sym own = {entry(i, i),     entry(i + 1, i + 1), entry(i + 2, i + 2),
-                       entry(i + 1, i), entry(i + 2, i + 1), entry(i + 2, i)};
-      const Vec ha = (*h[k])[a];
-      Vec qa = own * ha;
-#pragma GCC unroll copies
-      for (int b = 0; b < a; ++b) {
-        const int j = 3 * b;
-        const Mat H_ab = {{entry(i, j), entry(i + 1, j), entry(i + 2, j)},
-                          {entry(i, j + 1), entry(i + 1, j + 1), entry(i + 2, j + 1)},
-                          {entry(i, j + 2), entry(i + 1, j + 2), entry(i + 2, j + 2)}};
-        qa = qa + H_ab * (*h[k])[b];
-        q[k]->set(b, (*q[k])[b] + turn_back(H_ab, ha));
-      }
-      q[k]->set(a, qa);
+  for (int a = 0; a < 4; ++a) {
+    const auto entry = [&](int i, int j) { return load(H[i * (i + 1) / 2 + j] + lane); };
+    const int i = 3 * a;
+    const Sym own = {entry(i, i),     entry(i + 1, i + 1), entry(i + 2, i + 2),
+                     entry(i + 1, i), entry(i + 2, i + 1), entry(i + 2, i)};
+    Vec ha[n], qa[n];
+#pragma GCC unroll 2
+    for (int k = 0; k < n; ++k) {
+      ha[k] = (*h[k])[a];
+      qa[k] = own * ha[k];
     }
+#pragma GCC unroll copies
+    for (int b = 0; b < a; ++b) {
+      const int j = 3 * b;
+      const Mat H_ab = {{entry(i, j), entry(i + 1, j), entry(i + 2, j)},
+                        {entry(i, j + 1), entry(i + 1, j + 1), entry(i + 2, j + 1)},
+                        {entry(i, j + 2), entry(i + 1, j + 2), entry(i + 2, j + 2)}};
+#pragma GCC unroll 2
+      for (int k = 0; k < n; ++k) {
+        qa[k] = qa[k] + H_ab * (*h[k])[b];
+        q[k]->set(b, (*q[k])[b] + turn_back(H_ab, ha[k]));
+      }
+    }
+#pragma GCC unroll 2
+    for (int k = 0; k < n; ++k) q[k]->set(a, qa[k]);
+  }
 }
 
 /// How a viscous element has deformed during the step.
