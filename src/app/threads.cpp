@@ -35,8 +35,8 @@ void begin_anew_with_short_waits(const std::string& scenario) {
   pointers.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  setenv("GOMP_SPINCOUNT", "2000",
-         0);  // looks, which take microseconds; sleeping at once costs a step up to half its time
+  // Looks, which take microseconds; sleeping at once costs a step up to half its time.
+  setenv("GOMP_SPINCOUNT", "2000", 0);
   execv("/proc/self/exe", pointers.data());
 #endif
 }

@@ -3,7 +3,6 @@
 #include "mechanics/kernels/kernels.hpp"
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <cstdlib>
 
@@ -12,6 +11,7 @@
 #include "mechanics/corotational.hpp"
 #include "mechanics/turning_elements.hpp"
 #include "support/law_checks.hpp"
+#include "support/threads.hpp"
 
 namespace plica {
 namespace {
@@ -202,8 +202,7 @@ TEST(Kernels, NewRestShapesAreTakenWhereverTheElementLies) {
 
 // All results that are sums over elements, as bits.
 std::vector<double> results_with(int threads, const Tissue& tissue, const Motion& motion, Kernels kernels) {
-  const int before = omp_get_max_threads();
-  omp_set_num_threads(threads);
+  const support::Threads scope(threads);
   const Corotational elasticity(tissue, moduli, 1, kernels);
   const Dilatation dilatation(tissue, moduli.bulk_modulus(), false, kernels);
   const CellVolumes volumes(tissue, kernels);
@@ -221,7 +220,6 @@ std::vector<double> results_with(int threads, const Tissue& tissue, const Motion
   for (const auto& gradient : volumes.element_gradients(motion.positions))
     for (const Vec3& g : gradient) results.insert(results.end(), g.begin(), g.end());
   for (const Vec3& sum : sums) results.insert(results.end(), sum.begin(), sum.end());
-  omp_set_num_threads(before);
   return results;
 }
 

@@ -1,11 +1,11 @@
 #include "solver/block_cholesky.hpp"
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <utility>
 
 #include "support/cubes.hpp"
+#include "support/threads.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {
@@ -39,18 +39,6 @@ struct System {
   BlockPattern pattern;
   std::vector<float> values, b;
   Eigen::MatrixXd matrix;
-};
-
-/// So many threads, for a while.
-class Threads {
- public:
-  explicit Threads(int count) : before_(omp_get_max_threads()) { omp_set_num_threads(count); }
-  ~Threads() { omp_set_num_threads(before_); }
-  Threads(const Threads&) = delete;
-  Threads& operator=(const Threads&) = delete;
-
- private:
-  int before_;
 };
 
 TEST(BlockCholesky, AgreesWithADenseSolve) {
@@ -121,7 +109,7 @@ TEST(BlockCholesky, GivesTheSameBitsOnAnyNumberOfThreads) {
   const System system(20, 16, 2);  // large enough for subtrees to be shared out
   std::vector<float> on_one;
   for (const int threads : {1, 2, 3, 8}) {
-    const Threads scope(threads);
+    const support::Threads scope(threads);
     BlockCholesky cholesky(system.pattern);
     ASSERT_TRUE(cholesky.factorise(system.values));
     auto x = system.b;
@@ -133,7 +121,7 @@ TEST(BlockCholesky, GivesTheSameBitsOnAnyNumberOfThreads) {
 
 TEST(BlockCholesky, SaysWhenAMatrixIsNotPositiveDefinite) {
   for (const int threads : {1, 2}) {
-    const Threads scope(threads);
+    const support::Threads scope(threads);
     for (System system : {System(6, 5, 2), System(20, 16, 2)}) {
       BlockCholesky cholesky(system.pattern);
       float& value = system.values[9 * static_cast<std::size_t>(system.pattern.find(17, 17)) + 4];

@@ -1,13 +1,13 @@
 #include "solver/multigrid_order.hpp"
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <cmath>
 #include <numeric>
 
 #include "solver/multigrid_smoother.hpp"
 #include "support/cubes.hpp"
+#include "support/threads.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {
@@ -82,9 +82,8 @@ TEST(MultigridOrder, SweepsGroupByGroupLeaveTheResidualOfWhatTheyFound) {
   std::vector<float> b(matrix.unknowns());
   for (float& value : b) value = static_cast<float>(random.number());
   std::vector<float> first;
-  const int usual = omp_get_max_threads();
   for (const int threads : {1, 2, 4}) {
-    omp_set_num_threads(threads);
+    const support::Threads scope(threads);
     std::vector<float> r = b, x(b.size()), Ax(b.size());
     smoother.start(r, x);
     matrix.multiply(x, Ax);
@@ -97,7 +96,6 @@ TEST(MultigridOrder, SweepsGroupByGroupLeaveTheResidualOfWhatTheyFound) {
     if (first.empty()) first = r;
     EXPECT_EQ(r, first) << threads << " threads";
   }
-  omp_set_num_threads(usual);
 }
 
 }  // namespace

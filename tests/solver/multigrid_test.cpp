@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <limits>
 
 #include "solver/block_cholesky.hpp"
 #include "support/models.hpp"
+#include "support/threads.hpp"
 
 namespace plica {
 namespace {
@@ -235,10 +235,9 @@ TEST(Multigrid, GivesTheSameBitsForAnyThreadsAndHistory) {
   const Model model = pill(2);
   const System system = in_its_shell(model), other = free_of_shell(model, 0.05);
   const Doubles r = system.noise(6);
-  const int threads = omp_get_max_threads();
   std::vector<Doubles> results;
   for (const int count : {1, 2, 4}) {
-    omp_set_num_threads(count);
+    const support::Threads scope(count);
     const auto multigrid = make_multigrid(system.pattern);
     if (count == 4) {
       ASSERT_TRUE(multigrid->factorise(other.values, other.near_kernel));
@@ -247,7 +246,6 @@ TEST(Multigrid, GivesTheSameBitsForAnyThreadsAndHistory) {
     results.push_back(apply(*multigrid, r));
     EXPECT_EQ(apply(*multigrid, r), results.back());
   }
-  omp_set_num_threads(threads);
   EXPECT_EQ(results[0], results[1]);
   EXPECT_EQ(results[0], results[2]);
 }

@@ -1,13 +1,13 @@
 #include "solver/projected_stepper.hpp"
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <cmath>
 #include <cstdio>
 
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
+#include "support/threads.hpp"
 
 namespace plica {
 namespace {
@@ -177,12 +177,11 @@ TEST(ProjectedStepper, EveryStepKeepsVolumesAndShell) {
 TEST(ProjectedStepper, OneAndTwoThreadsGiveTheSameBits) {
   Model model = furrowing_sphere();
   model.volumes_are_held = false;
-  const int threads = omp_get_max_threads();
   int cases = 0;
   for (const Forces forces : {Forces::newton, Forces::linearly_implicit}) {
     std::vector<State> ends;
     for (const int count : {1, 2}) {
-      omp_set_num_threads(count);
+      const support::Threads scope(count);
       const auto stepper = make_stepper(model, scheme(forces));
       State state = rest_state(model), next;
       for (int k = 0; k < 3; ++k) {
@@ -191,7 +190,6 @@ TEST(ProjectedStepper, OneAndTwoThreadsGiveTheSameBits) {
       }
       ends.push_back(state);
     }
-    omp_set_num_threads(threads);
     EXPECT_EQ(ends[0].positions, ends[1].positions);
     EXPECT_EQ(ends[0].pressures, ends[1].pressures);
     EXPECT_EQ(ends[0].contact_forces, ends[1].contact_forces);

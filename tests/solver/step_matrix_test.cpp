@@ -1,12 +1,12 @@
 #include "solver/step_matrix.hpp"
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <set>
 
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
+#include "support/threads.hpp"
 #include "tissue/embryo.hpp"
 
 namespace plica {
@@ -94,15 +94,13 @@ TEST(StepMatrix, PressureForcesAreTheSameBitsOnOneAndTwoThreads) {
   Random random(8);
   std::vector<double> pressures(jacobian.cells());
   for (double& pressure : pressures) pressure = random.number();
-  const int threads = omp_get_max_threads();
   const auto forces_on = [&](int count) {
-    omp_set_num_threads(count);
+    const support::Threads scope(count);
     Vectors forces(model.tissue.node_count(), Vec3::Ones());
     jacobian.add_forces(pressures, 0.3, forces);
     return forces;
   };
   const Vectors on_one = forces_on(1), on_two = forces_on(2);
-  omp_set_num_threads(threads);
   EXPECT_EQ(on_one, on_two);
 }
 

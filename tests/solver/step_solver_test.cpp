@@ -1,7 +1,6 @@
 #include "solver/step_solver.hpp"
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <cmath>
 #include <cstdio>
@@ -9,6 +8,7 @@
 
 #include "support/loads.hpp"
 #include "support/models.hpp"
+#include "support/threads.hpp"
 
 namespace plica {
 namespace {
@@ -182,14 +182,12 @@ TEST(StepSolver, HeldNodesOnTheShellStayWhereTheyAre) {
 
 TEST(StepSolver, OneAndTwoThreadsGiveTheSameBits) {
   const Model model = furrowing_sphere();
-  const int threads = omp_get_max_threads();
   std::vector<State> ends;
   for (const int count : {1, 2}) {
-    omp_set_num_threads(count);
+    const support::Threads scope(count);
     StepSolver solver(model);
     ends.push_back(steps(solver, rest_state(model), 2, 4));
   }
-  omp_set_num_threads(threads);
   EXPECT_EQ(ends[0].positions, ends[1].positions);
   EXPECT_EQ(ends[0].pressures, ends[1].pressures);
   EXPECT_EQ(ends[0].contact_forces, ends[1].contact_forces);
