@@ -71,8 +71,8 @@ struct FactorSetting : Setting {
   explicit FactorSetting(int refinement) : Setting(refinement), matrix(*model), factor(matrix.layout()) {
     matrix.set_zero();
     for (const auto& law : model->laws) law->add_tangent(step, matrix);
-    matrix.add_volume_stiffness(*model, state.positions,
-                                std::vector<double>(model->tissue.cells.size(), 1e-3 / 40));  // 10 kPa a cell, or so
+    const std::vector<double> weights(model->tissue.cells.size(), 10.0 / 16'000);  // 10 kPa over a cell's volume
+    matrix.add_volume_stiffness(*model, state.positions, weights);
     matrix.write_projected_blocks(std::vector<NodeFrame>(state.positions.size()), values);
   }
   StepMatrix matrix;

@@ -23,7 +23,7 @@ namespace plica {
 
 class BlockCholesky final : public Preconditioner {
  public:
-  /// Orders the nodes and finds where the factor has entries. Once a topology.
+  /// Orders the nodes and finds where the factor has entries. Once a topology. `kernels`: of the solves' products.
   explicit BlockCholesky(const BlockPattern& pattern, Kernels kernels = chosen_kernels());
 
   /// Factorises; `values` are the pattern's blocks, nine numbers each, by rows. False when the matrix is not positive
