@@ -274,7 +274,7 @@ bool BlockCholesky::eliminate(const Supernode& node, float* panel, float* front)
   for (std::size_t j = 0; j < node.width(); ++j)
     std::copy_n(&inverse[j * node.width()], own, panel + j * node.stride());
   if (rest > 0) {
-    float* const below = panel + own;
+    float* const below = panel + own;  // products with the inverse, not solves: BLAS is faster at them
     strmm_("R", "L", "T", "N", &rest, &own, &one, inverse.data(), &own, below, &stride);
     ssyrk_("L", "N", &rest, &own, &minus, below, &stride, &one, front, &rest);
     strmm_("R", "L", "N", "N", &rest, &own, &one, inverse.data(), &own, below, &stride);

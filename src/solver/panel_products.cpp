@@ -3,8 +3,8 @@
 namespace plica {
 namespace {
 
-// Registers that hold a part of a chunk. Every version of the functions below has the widest of its processors: out of
-// a wider type than these have, GCC 12 makes many moves through memory.
+// Registers that hold a chunk, or a part of it. The functions below are compiled for each: out of a type that is wider
+// than the processor's registers, GCC 12 makes many moves through memory.
 using Sixteen = float __attribute__((vector_size(64), may_alias));
 using Eight = float __attribute__((vector_size(32), may_alias));
 using Four = float __attribute__((vector_size(16), may_alias));
@@ -56,10 +56,10 @@ PLICA_INLINE float sum_of(const Sixteen& v) {
                 __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15));
 }
 
-// Two sums a column where a chunk is several registers: each would wait for itself.
+// Two sums a column where a chunk is several registers: one would wait for itself.
 template <class Register, int n>
 PLICA_INLINE void write_dots(const Panel& P, int first, const PanelChunk* y, float* x) {
-  constexpr int chains = parts < Register >> 1 ? 2 : 1;
+  constexpr int chains = sizeof(Register) < sizeof(PanelChunk) ? 2 : 1;
   const PanelChunk* column = P.columns + static_cast<std::size_t>(first) * P.height;
   Register sums[chains][n] = {};
   for (std::size_t i = static_cast<std::size_t>(first) / PanelChunk::size; i < P.height; ++i) {

@@ -62,8 +62,8 @@ inline Mat gradient(const Elements& e, const Vec (&m)[7]) {
   return F;
 }
 
-// What follows is written where it is wanted: without AVX-512, GCC 12 copies structures of matrices that functions
-// return in pieces of 8 bytes.
+// Stretch and Frame are written where they are wanted, not returned: without AVX-512, GCC 12 would copy them, in pieces
+// of 8 bytes.
 
 /// What F's rotation follows from, F = R S: cof F, C = F^T F = S^2, J = det F and s = tr S.
 struct Stretch {
