@@ -11,13 +11,9 @@ double cell_height(const Cell& cell, std::span<const Vec3> positions) {
   return sum;
 }
 
-double mean_speed(const Tissue& tissue, const MonitoredCells& cells, const Vectors& positions, const Vectors& before,
-                  double duration_s) {
+double mean_speed(const Tissue& tissue, const MonitoredCells& cells, const Vectors& velocities) {
   double sum = 0;
-  for (const CellId id : cells) {
-    const Cell& cell = tissue.cells[id.index()];
-    sum += (cell_centre(cell, positions) - cell_centre(cell, before)).norm() / duration_s;
-  }
+  for (const CellId id : cells) sum += cell_centre(tissue.cells[id.index()], velocities).norm();
   return sum / static_cast<double>(cells.size());
 }
 

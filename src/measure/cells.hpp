@@ -13,9 +13,8 @@ namespace plica {
 /// Mean length of the four apico-basal edges, um.
 double cell_height(const Cell& cell, std::span<const Vec3> positions);
 
-/// Mean speed of the cells' barycentres between two moments, um/s.
-double mean_speed(const Tissue& tissue, const MonitoredCells& cells, const Vectors& positions, const Vectors& before,
-                  double duration_s);
+/// Mean speed of the cells' barycentres, um/s.
+double mean_speed(const Tissue& tissue, const MonitoredCells& cells, const Vectors& velocities);
 
 /// Mean displacement from rest of the cells' corner nodes, um: "the displacement of the nodes" of the paper.
 double mean_node_displacement(const Tissue& tissue, const MonitoredCells& cells, const Vectors& positions);

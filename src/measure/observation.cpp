@@ -53,7 +53,7 @@ Observation Observer::observe(const AcceptedStep& step, double wall_s) const {
   row.cubics_with_three_roots = step.report.cubics_with_three_roots;
   if (sites_.vml.empty()) return row;
   const auto speed = [&](const MonitoredCells& cells) {
-    return mean_speed(model_.tissue, cells, step.state.positions, step.previous.positions, step.duration_s);
+    return mean_speed(model_.tissue, cells, step.state.velocities);
   };
   row.vml_speed_um_per_s = speed(sites_.vml);
   row.vce_speed_um_per_s = speed(sites_.vce);

@@ -111,8 +111,8 @@ struct Contraction::Pulled {
     tension = activity * (spring.stiffness * stretch + spring.preload);
     slope = length > spring.rest_length ? activity * spring.stiffness : 0;
     if (spring.damping > 0) {
-      const double change = length - chain_length(nodes, step.previous_positions);
-      const double rate = spring.damping / step.duration_s;
+      const double change = length - step.before([this](std::span<const Vec3> x) { return chain_length(nodes, x); });
+      const double rate = spring.damping / step.rate_s;
       energy += 0.5 * rate * change * change;
       tension += rate * change;
       slope += rate;

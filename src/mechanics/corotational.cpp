@@ -81,7 +81,9 @@ CorotationalStep Corotational::kernel_step(const Step& step) const {
           .elements = chunks_.element_count(),
           .positions = numbers(step.positions),
           .previous_positions = numbers(step.previous_positions),
-          .rate = 1 / step.duration_s,
+          .earlier_positions = numbers(step.earlier_positions),
+          .ahead = step.ahead,
+          .rate = 1 / step.rate_s,
           .semidefinite_tangent = step.semidefinite_tangent};
 }
 

@@ -16,16 +16,28 @@ namespace plica {
 struct Tissue;
 struct Division;
 
-/// Where a step stands: the unknown positions at its end, and everything that is constant during it.
+/// Where a step stands: the unknown positions at its end, and everything that is constant during it. What depends on
+/// positions, q, changes at the step's end at the rate
+///   (q(positions) - q_before) / rate_s,  q_before = q(previous) + ahead (q(previous) - q(earlier)),
+/// with ahead = 0 and rate_s = h in a step of first order, of length h (docs/theory/step.md).
 struct Step {
   std::span<const Vec3> positions;            // x at the end of the step, um; nodes
   std::span<const Vec3> previous_positions;   // x at its beginning, um; nodes
   std::span<const Vec3> previous_velocities;  // v at its beginning, um/s; nodes
-  double duration_s = 0;                      // h > 0
+  double rate_s = 0;                          // > 0
   double end_time_s = 0;                      // activity programs are read here
   // Whether tangents leave out what could make them indefinite, for a solver that needs a positive definite system.
   // Each law's header says what that is. Forces do not change.
   bool semidefinite_tangent = false;
+  std::span<const Vec3> earlier_positions = {};  // x at the beginning of the step before, um; nodes; where ahead > 0
+  double ahead = 0;                              // >= 0
+
+  /// q_before of a quantity of node positions.
+  template <class Quantity>
+  [[nodiscard]] auto before(const Quantity& q) const -> decltype(q(previous_positions)) {
+    if (ahead == 0) return q(previous_positions);
+    return (1 + ahead) * q(previous_positions) - ahead * q(earlier_positions);
+  }
 };
 
 /// Collects 3 x 3 blocks of a symmetric tangent. `add_block(a, b, K)` adds K to the rows of a and columns of b and, for

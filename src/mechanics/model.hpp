@@ -55,17 +55,19 @@ struct Model {
 struct State {
   double time_s = 0;
   Vectors positions;                   // nodes; um
-  Vectors velocities;                  // nodes; um/s, mean over the last step
+  Vectors velocities;                  // nodes; um/s, at the end of the last step
   std::vector<double> pressures;       // cells; kPa: the multipliers of the volumes
   std::vector<double> contact_forces;  // the vitelline's nodes; nN, >= 0
   std::vector<char> in_contact;        // the vitelline's nodes
   double divided_until_s = -1;         // divisions that were due up to here have been made
 
-  // How things last changed, from which the next step's end is forecast. Empty when that is not known: at the start and
-  // after a division.
+  // How things last changed (record_motion), from which the next step's end is forecast. Empty when that is not known:
+  // at the start and after a division.
   struct Trend {
-    double step_s = 0;                   // the last step, over which the velocities are means
-    Vectors accelerations;               // nodes; um/s^2
+    double step_s = 0;                   // the last step
+    double last_s = 0;                   // the one before it
+    Vectors mean_velocities;             // nodes; um/s, over the last step; empty where they are the velocities
+    Vectors accelerations;               // nodes; um/s^2, between the middles of these two steps
     std::vector<double> pressure_rates;  // cells; kPa/s
   } trend;
 };

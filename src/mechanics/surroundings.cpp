@@ -16,6 +16,10 @@ std::vector<double> drag_coefficients(const Tissue& tissue, double drag) {
   return coefficients;
 }
 
+Vec3 change(const Step& step, std::size_t node) {
+  return step.positions[node] - step.before([node](std::span<const Vec3> x) { return x[node]; });
+}
+
 std::vector<double> lumped_masses(const Tissue& tissue, double density) {
   std::vector<double> masses(tissue.node_count(), 0.0);
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
@@ -40,24 +44,22 @@ void SurfaceDrag::take_rest_shapes(const Tissue& tissue, std::span<const Element
 double SurfaceDrag::energy(const Step& step) const {
   double sum = 0;
   for (std::size_t n = 0; n < coefficients_.size(); ++n)
-    sum += 0.5 * coefficients_[n] / step.duration_s * (step.positions[n] - step.previous_positions[n]).squaredNorm();
+    sum += 0.5 * coefficients_[n] / step.rate_s * change(step, n).squaredNorm();
   return sum;
 }
 
 void SurfaceDrag::add_forces(const Step& step, std::span<Vec3> forces) const {
-  for (std::size_t n = 0; n < coefficients_.size(); ++n)
-    forces[n] -= coefficients_[n] / step.duration_s * (step.positions[n] - step.previous_positions[n]);
+  for (std::size_t n = 0; n < coefficients_.size(); ++n) forces[n] -= coefficients_[n] / step.rate_s * change(step, n);
 }
 
 void SurfaceDrag::add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                       std::span<Vec3> product) const {
-  for (std::size_t n = 0; n < coefficients_.size(); ++n)
-    product[n] += coefficients_[n] / step.duration_s * direction[n];
+  for (std::size_t n = 0; n < coefficients_.size(); ++n) product[n] += coefficients_[n] / step.rate_s * direction[n];
 }
 
 void SurfaceDrag::add_tangent(const Step& step, TangentSink& tangent) const {
   for (std::size_t n = 0; n < coefficients_.size(); ++n)
-    tangent.add_block(NodeId(n), NodeId(n), coefficients_[n] / step.duration_s * Mat3::Identity());
+    tangent.add_block(NodeId(n), NodeId(n), coefficients_[n] / step.rate_s * Mat3::Identity());
 }
 
 Inertia::Inertia(const Tissue& tissue, double density) : density_(density), masses_(lumped_masses(tissue, density)) {}
@@ -71,7 +73,7 @@ void Inertia::take_rest_shapes(const Tissue& tissue, std::span<const ElementId>)
 }
 
 double Inertia::energy(const Step& step) const {
-  const double h = step.duration_s;
+  const double h = step.rate_s;
   double sum = 0;
   for (std::size_t n = 0; n < masses_.size(); ++n)
     sum += 0.5 * masses_[n] / (h * h) *
@@ -80,7 +82,7 @@ double Inertia::energy(const Step& step) const {
 }
 
 void Inertia::add_forces(const Step& step, std::span<Vec3> forces) const {
-  const double h = step.duration_s;
+  const double h = step.rate_s;
   for (std::size_t n = 0; n < masses_.size(); ++n)
     forces[n] -=
         masses_[n] / (h * h) * (step.positions[n] - step.previous_positions[n] - h * step.previous_velocities[n]);
@@ -88,12 +90,12 @@ void Inertia::add_forces(const Step& step, std::span<Vec3> forces) const {
 
 void Inertia::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
   for (std::size_t n = 0; n < masses_.size(); ++n)
-    product[n] += masses_[n] / (step.duration_s * step.duration_s) * direction[n];
+    product[n] += masses_[n] / (step.rate_s * step.rate_s) * direction[n];
 }
 
 void Inertia::add_tangent(const Step& step, TangentSink& tangent) const {
   for (std::size_t n = 0; n < masses_.size(); ++n)
-    tangent.add_block(NodeId(n), NodeId(n), masses_[n] / (step.duration_s * step.duration_s) * Mat3::Identity());
+    tangent.add_block(NodeId(n), NodeId(n), masses_[n] / (step.rate_s * step.rate_s) * Mat3::Identity());
 }
 
 FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellSet cells, double pressure, Program program)

@@ -108,10 +108,12 @@ TurningElements::Frame TurningElements::frame(std::size_t e, const Step& step) c
   f.u = localise(step.positions, f.R, f.S, f.y);
   f.energy = respond(e, f.u, f.q);
   if (viscous_) {
-    Mat3 previous_rotation, previous_stretch;
-    std::array<Vec3, 8> previous_y;
-    const Vec24 change = f.u - localise(step.previous_positions, previous_rotation, previous_stretch, previous_y);
-    f.viscous_factor = 1 / step.duration_s;
+    const Vec24 change = f.u - step.before([&](std::span<const Vec3> positions) -> Vec24 {
+      Mat3 rotation, stretch;
+      std::array<Vec3, 8> y;
+      return localise(positions, rotation, stretch, y);
+    });
+    f.viscous_factor = 1 / step.rate_s;
     const Vec24 viscous = f.viscous_factor * (element.viscosity * change);
     f.energy += 0.5 * change.dot(viscous);
     f.q += viscous;

@@ -15,7 +15,7 @@
 namespace plica {
 namespace {
 
-constexpr int format = 1;
+constexpr int format = 2;
 constexpr std::size_t trailer_bytes = 64;
 
 std::uint32_t checksum(std::string_view bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }
@@ -111,6 +111,8 @@ void visit_run(Take& take, Run& run) {
   take("state/velocities", state.velocities);
   take("state/divided_until_s", state.divided_until_s);
   take("state/trend/step_s", state.trend.step_s);
+  take("state/trend/last_s", state.trend.last_s);
+  take("state/trend/mean_velocities", state.trend.mean_velocities);
   take("state/trend/accelerations", state.trend.accelerations);
   take("state/trend/pressure_rates", state.trend.pressure_rates);
   take("run/steps", run.steps);
@@ -118,13 +120,14 @@ void visit_run(Take& take, Run& run) {
   take("run/equilibrium_time_s", run.equilibrium_time_s);
   take("run/at_equilibrium", run.at_equilibrium);
   take("run/criterion_met", run.criterion_met);
-  take("run/step_length/wanted_s", run.step_length.wanted_s);
-  take("run/step_length/previous_s", run.step_length.previous_s);
+  take("run/wanted_step_s", run.wanted_step_s);
   auto& factor = run.factor;
   visit_iterate(take, "factor/", factor.at);
   take("factor/previous_positions", factor.previous_positions);
   take("factor/previous_velocities", factor.previous_velocities);
-  take("factor/duration_s", factor.duration_s);
+  take("factor/earlier_positions", factor.earlier_positions);
+  take("factor/rate_s", factor.rate_s);
+  take("factor/ahead", factor.ahead);
   take("factor/end_time_s", factor.end_time_s);
   take("factor/changed_contacts", factor.changed_contacts);
   take("factor/has_left", factor.has_left);
@@ -345,16 +348,17 @@ std::optional<std::string> why_unfit(const Checkpoint& checkpoint, const Model& 
            at.in_contact.size() == contacts;
   };
   const State& state = checkpoint.run.state;
-  const StepLengthMemory& step_length = checkpoint.run.step_length;
-  if (state.time_s < 0 || checkpoint.run.steps < 0 || step_length.wanted_s < 0 || step_length.previous_s < 0)
+  if (state.time_s < 0 || checkpoint.run.steps < 0 || checkpoint.run.wanted_step_s < 0 || state.trend.step_s < 0 ||
+      state.trend.last_s < 0)
     return "its time or its step is negative";
-  if (!fits(state) || state.velocities.size() != nodes || !none_or(state.trend.accelerations.size(), nodes) ||
-      !none_or(state.trend.pressure_rates.size(), cells))
+  if (!fits(state) || state.velocities.size() != nodes || !none_or(state.trend.mean_velocities.size(), nodes) ||
+      !none_or(state.trend.accelerations.size(), nodes) || !none_or(state.trend.pressure_rates.size(), cells))
     return "its state is not one of this embryo";
   const FactorMemory& factor = checkpoint.run.factor;
   if (factor.empty()) return std::nullopt;
   if (!fits(factor.at) || factor.previous_positions.size() != nodes || factor.previous_velocities.size() != nodes ||
-      !(factor.duration_s > 0) || factor.has_left.size() != factor.changed_contacts.size() ||
+      factor.earlier_positions.size() != (factor.ahead > 0 ? nodes : 0) || !(factor.rate_s > 0) || factor.ahead < 0 ||
+      factor.has_left.size() != factor.changed_contacts.size() ||
       factor.normals.size() != factor.changed_contacts.size())
     return "its factor is not one of this embryo";
   for (const int contact : factor.changed_contacts)

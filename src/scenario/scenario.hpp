@@ -114,15 +114,16 @@ struct DivisionInput {
 };
 
 struct TimeInput {
-  std::optional<double> step_s;             // empty: "adaptive"
-  double first_step_s = 0.05;               // adaptive
-  double max_step_s = 30;                   // adaptive
-  double tolerance_um = 0.05;               // adaptive: error of a step, on positions
-  double end_s = 3600;                      // TOML: end_s or end_min
-  std::string scheme = "newton";            // newton | linearly-implicit
-  std::string linear_solver = "automatic";  // newton: automatic | direct | cholesky | multigrid
-  double cg_tolerance = 1e-6;               // linearly-implicit
-  int cg_max_iterations = 2000;             // linearly-implicit
+  std::optional<double> step_s;               // empty: "adaptive"
+  double first_step_s = 0.05;                 // adaptive
+  double max_step_s = 30;                     // adaptive
+  double tolerance_um = 0.05;                 // adaptive: error of a step, on positions
+  double end_s = 3600;                        // TOML: end_s or end_min
+  std::string scheme = "newton";              // newton | linearly-implicit
+  std::string integrator = "backward-euler";  // backward-euler | bdf2
+  std::string linear_solver = "automatic";    // newton: automatic | direct | cholesky | multigrid
+  double cg_tolerance = 1e-6;                 // linearly-implicit
+  int cg_max_iterations = 2000;               // linearly-implicit
 };
 
 struct StopInput {

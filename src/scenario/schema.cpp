@@ -272,6 +272,9 @@ const std::vector<Row>& rows() {
           {.instead_of = "end_s", .scale = 60}),
       row("time", "scheme", at(&S::time, &T::scheme), words({"newton", "linearly-implicit"}),
           "How a step is solved: Newton's method, or one linear system by conjugate gradients (the paper)."),
+      row("time", "integrator", at(&S::time, &T::integrator), words({"backward-euler", "bdf2"}),
+          "How rates are taken at the end of a step: to first order in time, or to second, by differences over two "
+          "steps. The second goes neither with inertia nor with projected volumes."),
       row("time", "linear_solver", at(&S::time, &T::linear_solver),
           words({"automatic", "direct", "cholesky", "multigrid"}),
           "How Newton's linear systems are solved: a factor of the whole system; or Krylov's method with a factor of "

@@ -247,6 +247,7 @@ namespace {
 StepScheme make_scheme(const Scenario& scenario) {
   StepScheme scheme;
   if (scenario.time.scheme == "linearly-implicit") scheme.forces = StepScheme::Forces::linearly_implicit;
+  if (scenario.time.integrator == "bdf2") scheme.order = TimeOrder::second;
   const std::string& linear = scenario.time.linear_solver;
   scheme.linear_method = linear == "direct"      ? LinearMethod::direct
                          : linear == "cholesky"  ? LinearMethod::cholesky

@@ -137,6 +137,16 @@ void check_scheme(const Scenario& scenario, Input& input) {
                  "give \"cells\" or \"tissue\"");
 }
 
+void check_integrator(const Scenario& scenario, Input& input) {
+  if (!input.sound("time.integrator") || scenario.time.integrator != "bdf2") return;
+  const auto refuse = [&](const std::string& why) {
+    input.report("time.integrator", "second order in time does not go with " + why, "give \"backward-euler\"");
+  };
+  if (scenario.time.scheme != "newton") return refuse(fmt::format("time.scheme = \"{}\"", scenario.time.scheme));
+  if (scenario.volume.method == "projection") return refuse("volume.method = \"projection\"");
+  if (scenario.dynamics.density_kg_per_m3 > 0) return refuse("dynamics.density_kg_per_m3 above 0");
+}
+
 void check_required_keys(const Scenario& scenario, Input& input) {
   for (const TableInfo& info : schema_tables()) {
     if (!info.named()) continue;
@@ -321,6 +331,7 @@ void validate(Scenario& scenario, Input& input) {
   check_time(scenario.time, input);
   check_keys_of_choices(scenario, input);
   check_scheme(scenario, input);
+  check_integrator(scenario, input);
   check_required_keys(scenario, input);
   check_expectations(scenario, input);
   check_monitors(scenario, input);

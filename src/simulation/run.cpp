@@ -68,7 +68,7 @@ RunResult run(Model& model, RunMemory now, RunControls controls, const StepObser
     now.factor = {};
     grow(model, state.time_s);
   }
-  StepLength step_length(controls, now.step_length);
+  StepLength step_length(controls, now.wanted_step_s);
   const auto divide = [&](const std::vector<PlannedDivision>& due) {
     state.divided_until_s = state.time_s;
     if (due.empty()) return;
@@ -84,7 +84,7 @@ RunResult run(Model& model, RunMemory now, RunControls controls, const StepObser
   };
   const auto memory = [&] {
     RunMemory copy = now;
-    copy.step_length = step_length.memory();
+    copy.wanted_step_s = step_length.wanted_s();
     copy.factor = stepper->memory();
     return copy;
   };
@@ -112,7 +112,7 @@ RunResult run(Model& model, RunMemory now, RunControls controls, const StepObser
     }
     report.newton_iterations += std::exchange(wasted_iterations, 0);
     report.linear_solves += std::exchange(wasted_solves, 0);
-    if (!step_length.accept(state, next, duration_s)) {
+    if (!step_length.accept(state, next)) {
       wasted_iterations = report.newton_iterations;
       wasted_solves = report.linear_solves;
       continue;

@@ -35,12 +35,6 @@ struct PastDivision {
   std::vector<PlannedDivision> planned;
 };
 
-/// How the length of steps goes on.
-struct StepLengthMemory {
-  double wanted_s = 0;    // 0: no step yet
-  double previous_s = 0;  // 0: nothing is known of the next step's error
-};
-
 /// Where the loop is, between two steps: with the model of the scenario, in which the past divisions have been made
 /// again (`repeat`), enough to go on to the same bits.
 struct RunMemory {
@@ -50,7 +44,7 @@ struct RunMemory {
   std::optional<double> equilibrium_time_s;  // first time that every node was slower than the limit
   bool at_equilibrium = false;               // now
   bool criterion_met = false;                // the observer says that the run is over
-  StepLengthMemory step_length;
+  double wanted_step_s = 0;                  // length of the next step; 0: no step yet
   FactorMemory factor;
   std::vector<std::shared_ptr<const PastDivision>> past_divisions;
 };

@@ -13,10 +13,8 @@ double next_multiple(double time, double period) {
 
 }  // namespace
 
-StepLength::StepLength(const RunControls& controls, const StepLengthMemory& memory)
-    : controls_(controls),
-      wanted_s_(controls.fixed_step_s.value_or(memory.wanted_s > 0 ? memory.wanted_s : controls.first_step_s)),
-      previous_s_(memory.previous_s) {}
+StepLength::StepLength(const RunControls& controls, double wanted_s)
+    : controls_(controls), wanted_s_(controls.fixed_step_s.value_or(wanted_s > 0 ? wanted_s : controls.first_step_s)) {}
 
 double StepLength::propose(double time_s) const {
   double stop = controls_.end_s;
@@ -37,34 +35,29 @@ double StepLength::propose(double time_s) const {
   return steps <= 3 ? left / steps : wanted_s_;
 }
 
-bool StepLength::accept(const State& before, const State& after, double duration_s) {
+bool StepLength::accept(const State& before, const State& after) {
+  const double duration_s = after.trend.step_s;
   if (controls_.fixed_step_s) {
     wanted_s_ = *controls_.fixed_step_s;
     return true;
   }
-  if (previous_s_ == 0) {
-    previous_s_ = duration_s;
+  const TimeOrder order = controls_.scheme.order;
+  const std::optional<double> error_um = step_error_um(before, after, order);
+  if (!error_um) {
     wanted_s_ = duration_s;
     return true;
   }
-  double change = 0;
-  for (std::size_t n = 0; n < after.velocities.size(); ++n)
-    change = std::max(change, (after.velocities[n] - before.velocities[n]).norm());
-  const double error_um = duration_s * duration_s / (duration_s + previous_s_) * change;
-  const double factor = 0.9 * std::sqrt(controls_.position_tolerance_um / std::max(error_um, 1e-300));
+  const double allowed = controls_.position_tolerance_um / std::max(*error_um, 1e-300);
+  const double factor = 0.9 * (order == TimeOrder::first ? std::sqrt(allowed) : std::cbrt(allowed));
   if (factor < 0.6) {
     wanted_s_ = duration_s * std::max(factor, 0.2);
     return false;
   }
   wanted_s_ = std::min(controls_.max_step_s, std::max(duration_s * std::clamp(factor, 0.5, 2.0), 1e-9));
-  previous_s_ = duration_s;
   return true;
 }
 
-void StepLength::restart() {
-  wanted_s_ = controls_.fixed_step_s.value_or(controls_.first_step_s);
-  previous_s_ = 0;
-}
+void StepLength::restart() { wanted_s_ = controls_.fixed_step_s.value_or(controls_.first_step_s); }
 
 bool StepLength::halve(double failed_s) {
   wanted_s_ = 0.5 * failed_s;

@@ -8,27 +8,27 @@ namespace plica {
 
 class StepLength {
  public:
-  explicit StepLength(const RunControls& controls, const StepLengthMemory& memory = {});
+  /// Goes on with steps of about `wanted_s`; 0: begins.
+  explicit StepLength(const RunControls& controls, double wanted_s = 0);
 
   /// The length of a step that starts at `time_s`.
   [[nodiscard]] double propose(double time_s) const;
 
-  /// The step's error: half h^2 x'', from the change of velocity over it. Nothing is known of it on the first step.
-  /// False when it is so large that the step should be taken again, shorter.
-  [[nodiscard]] bool accept(const State& before, const State& after, double duration_s);
+  /// Whether the step from `before` to `after` stands. False when its error (step_error_um) is so large that it should
+  /// be taken again, shorter.
+  [[nodiscard]] bool accept(const State& before, const State& after);
 
-  /// Begins anew with a short step: after a division nothing is known of the next step's error.
+  /// Begins anew with a short step: after a division nothing is known of how things change.
   void restart();
 
   /// The step could not be solved. False when the next would be too short to be worth it.
   [[nodiscard]] bool halve(double failed_s);
 
-  [[nodiscard]] StepLengthMemory memory() const { return {wanted_s_, previous_s_}; }
+  [[nodiscard]] double wanted_s() const { return wanted_s_; }
 
  private:
   const RunControls& controls_;
   double wanted_s_;
-  double previous_s_ = 0;  // 0: no step yet
 };
 
 }  // namespace plica

@@ -12,7 +12,7 @@ DirectDirections::DirectDirections(const Model& model)
 bool DirectDirections::refresh(const Step& step, const Iterate& at) {
   factor_frames_ = node_frames(model_, at);
   factor_contacts_ = at.in_contact;
-  factor_duration_s_ = step.duration_s;
+  factor_rate_s_ = step.rate_s;
   matrix_.assemble(model_, step, at);
   matrix_.write_values(factor_frames_, values_);
   made_from_ = factor_memory(step, at);
@@ -29,8 +29,8 @@ NewtonDirections::Outcome DirectDirections::find(const Step& step, const Iterate
                                                  const Wish& wish, Direction& direction, Cost& cost) {
   // A factor of a step of nearly this length converges nearly as fast; of other contacts it has the wrong unknowns.
   constexpr double alike = 0.2;
-  const bool stale = factor_frames_.empty() || std::abs(factor_duration_s_ / step.duration_s - 1) > alike ||
-                     factor_contacts_ != at.in_contact;
+  const bool stale =
+      factor_frames_.empty() || std::abs(factor_rate_s_ / step.rate_s - 1) > alike || factor_contacts_ != at.in_contact;
   const bool slow = wish.left > 0.1;  // less than Newton's method can
   if (stale || slow) {
     ++cost.factorisations;

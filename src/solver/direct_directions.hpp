@@ -26,7 +26,7 @@ class DirectDirections final : public NewtonDirections {
   // The factor at hand: for which step length and frames it was made. Empty frames: none.
   std::vector<NodeFrame> factor_frames_;
   std::vector<char> factor_contacts_;
-  double factor_duration_s_ = 0;
+  double factor_rate_s_ = 0;
   FactorMemory made_from_;
 };
 

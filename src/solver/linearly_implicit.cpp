@@ -70,15 +70,12 @@ StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool
   }
 
   next.positions = state.positions;
-  next.velocities.resize(nodes);
-  for (std::size_t n = 0; n < nodes; ++n) {
-    next.positions[n] += displacements[n];
-    next.velocities[n] = displacements[n] / duration_s;
-  }
+  for (std::size_t n = 0; n < nodes; ++n) next.positions[n] += displacements[n];
   next.time_s = state.time_s + duration_s;
   next.pressures.assign(state.pressures.size(), 0.0);
   next.contact_forces.assign(state.contact_forces.size(), 0.0);
   next.in_contact.assign(state.in_contact.size(), 0);
+  record_motion(state, duration_s, TimeOrder::first, next);
   report.outcome = StepReport::Outcome::converged;
   return report;
 }

@@ -9,16 +9,23 @@ FactorMemory factor_memory(const Step& step, const Iterate& at) {
   return {.at = at,
           .previous_positions = copy(step.previous_positions),
           .previous_velocities = copy(step.previous_velocities),
-          .duration_s = step.duration_s,
+          .earlier_positions = copy(step.earlier_positions),
+          .rate_s = step.rate_s,
           .end_time_s = step.end_time_s,
+          .ahead = step.ahead,
           .changed_contacts = {},
           .has_left = {},
           .normals = {}};
 }
 
 Step step_of(const FactorMemory& memory) {
-  return {memory.at.positions, memory.previous_positions, memory.previous_velocities, memory.duration_s,
-          memory.end_time_s};
+  return {.positions = memory.at.positions,
+          .previous_positions = memory.previous_positions,
+          .previous_velocities = memory.previous_velocities,
+          .rate_s = memory.rate_s,
+          .end_time_s = memory.end_time_s,
+          .earlier_positions = memory.earlier_positions,
+          .ahead = memory.ahead};
 }
 
 Vec3 without_held(const Model& model, std::size_t node, Vec3 direction) {

@@ -24,8 +24,9 @@ struct Iterate {
 /// none is kept.
 struct FactorMemory {
   Iterate at;
-  Vectors previous_positions, previous_velocities;  // nodes; of the step in which it was made
-  double duration_s = 0, end_time_s = 0;            // of that step
+  // Of the step in which it was made.
+  Vectors previous_positions, previous_velocities, earlier_positions;  // nodes
+  double rate_s = 0, end_time_s = 0, ahead = 0;
   // Contacts that have changed since, in the order in which it learnt of them.
   std::vector<int> changed_contacts;  // the vitelline's nodes
   std::vector<char> has_left;         // or come

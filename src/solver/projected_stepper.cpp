@@ -1,5 +1,7 @@
 #include "solver/projected_stepper.hpp"
 
+#include "solver/backward_difference.hpp"
+
 namespace plica {
 
 ProjectedStepper::ProjectedStepper(const Model& model, std::unique_ptr<Stepper> force_step,
@@ -23,9 +25,7 @@ StepReport ProjectedStepper::advance(const State& state, double duration_s, bool
     report.cell = inverted;
     return report;
   }
-  // Velocities are those of the whole step.
-  for (std::size_t n = 0; n < moved.positions.size(); ++n)
-    moved.velocities[n] = (moved.positions[n] - state.positions[n]) / duration_s;
+  record_motion(state, duration_s, TimeOrder::first, moved);  // of the whole step
   next = std::move(moved);
   return report;
 }

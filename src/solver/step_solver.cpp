@@ -8,9 +8,10 @@
 
 namespace plica {
 
-StepSolver::StepSolver(const Model& model, StepTolerances tolerances, LinearMethod method)
+StepSolver::StepSolver(const Model& model, StepTolerances tolerances, LinearMethod method, TimeOrder order)
     : model_(model),
       tolerances_(tolerances),
+      order_(order),
       force_scale_(model.force_scale()),
       force_rounding_(model.force_rounding()),
       volume_rounding_(model.volume_rounding()),
@@ -132,8 +133,9 @@ Iterate StepSolver::forecast(const State& state, double duration_s) const {
   const State::Trend& trend = state.trend;
   // Mean velocities belong to the middles of steps.
   const double later_s = 0.5 * (trend.step_s + duration_s);
+  const Vectors& velocities = mean_velocities(state);
   for (std::size_t n = 0; n < at.positions.size(); ++n) {
-    at.positions[n] += duration_s * state.velocities[n];
+    at.positions[n] += duration_s * velocities[n];
     if (!trend.accelerations.empty()) at.positions[n] += duration_s * later_s * trend.accelerations[n];
   }
   for (std::size_t c = 0; c < trend.pressure_rates.size(); ++c) at.pressures[c] += duration_s * trend.pressure_rates[c];
@@ -144,7 +146,21 @@ Iterate StepSolver::forecast(const State& state, double duration_s) const {
 StepReport StepSolver::advance(const State& state, double duration_s, bool from_rest, State& next) {
   Iterate at = from_rest ? Iterate{state.positions, state.pressures, state.contact_forces, state.in_contact}
                          : forecast(state, duration_s);
-  Step step{at.positions, state.positions, state.velocities, duration_s, state.time_s + duration_s};
+  const double last_s = order_ == TimeOrder::second ? state.trend.step_s : 0;
+  const BackwardDifference rates = backward_difference(duration_s, last_s);
+  Vectors earlier;
+  if (last_s > 0) {
+    earlier = state.positions;
+    const Vectors& velocities = mean_velocities(state);
+    parallel_for(earlier.size(), [&](std::size_t n) { earlier[n] -= last_s * velocities[n]; });
+  }
+  Step step{.positions = at.positions,
+            .previous_positions = state.positions,
+            .previous_velocities = state.velocities,
+            .rate_s = rates.rate_s,
+            .end_time_s = state.time_s + duration_s,
+            .earlier_positions = earlier,
+            .ahead = rates.ahead};
   StepReport report;
   bool contacts_settled = !revise_contacts(at);
   Residual now = residual(step, at);
@@ -196,27 +212,13 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
       now = residual(step, at);
     }
   }
-  next.velocities.resize(at.positions.size());
-  for (std::size_t n = 0; n < at.positions.size(); ++n)
-    next.velocities[n] = (at.positions[n] - state.positions[n]) / duration_s;
-  next.trend.step_s = duration_s;
-  next.trend.accelerations.clear();
-  next.trend.pressure_rates.clear();
-  if (!from_rest && state.trend.step_s > 0) {
-    next.trend.accelerations.resize(at.positions.size());
-    const double apart_s = 0.5 * (state.trend.step_s + duration_s);
-    for (std::size_t n = 0; n < at.positions.size(); ++n)
-      next.trend.accelerations[n] = (next.velocities[n] - state.velocities[n]) / apart_s;
-    next.trend.pressure_rates.resize(at.pressures.size());
-    for (std::size_t c = 0; c < at.pressures.size(); ++c)
-      next.trend.pressure_rates[c] = (at.pressures[c] - state.pressures[c]) / duration_s;
-  }
   next.time_s = state.time_s + duration_s;
   next.divided_until_s = state.divided_until_s;
   next.positions = std::move(at.positions);
   next.pressures = std::move(at.pressures);
   next.contact_forces = std::move(at.contact_forces);
   next.in_contact = std::move(at.in_contact);
+  record_motion(state, duration_s, order_, next);
   report.outcome = StepReport::Outcome::converged;
   return report;
 }

@@ -1,4 +1,4 @@
-// One implicit step: backward Euler, with exact volumes and the shell held together with the forces.
+// One implicit step, of first or second order in time, with exact volumes and the shell held together with the forces.
 //
 // The step ends where  -dPhi/dx + J^T lambda + N mu = 0,  V_c = target,  0 <= g _|_ mu >= 0,  Phi being the sum of the
 // laws' energies. Newton's method on all of it at once, with line search; the shell by an active set that is revised
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mechanics/model.hpp"
+#include "solver/backward_difference.hpp"
 #include "solver/newton.hpp"
 #include "solver/stepper.hpp"
 
@@ -26,8 +27,8 @@ struct StepTolerances {
 /// Solves steps of one model; keeps what its linear systems have in common between them.
 class StepSolver final : public Stepper {
  public:
-  explicit StepSolver(const Model& model, StepTolerances tolerances = {},
-                      LinearMethod method = LinearMethod::automatic);
+  explicit StepSolver(const Model& model, StepTolerances tolerances = {}, LinearMethod method = LinearMethod::automatic,
+                      TimeOrder order = TimeOrder::first);
   ~StepSolver() override;
 
   /// Starts from the velocities' forecast unless `from_rest`.
@@ -45,6 +46,7 @@ class StepSolver final : public Stepper {
 
   const Model& model_;
   StepTolerances tolerances_;
+  TimeOrder order_;
   double force_scale_;      // nN
   double force_rounding_;   // nN: what rounding of positions makes of forces
   double volume_rounding_;  // the same, of relative volumes

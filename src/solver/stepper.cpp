@@ -37,7 +37,7 @@ std::string StepReport::reason() const {
 
 std::unique_ptr<Stepper> make_stepper(const Model& model, const StepScheme& scheme) {
   if (scheme.forces == StepScheme::Forces::newton && !scheme.projection)
-    return std::make_unique<StepSolver>(model, StepTolerances{}, scheme.linear_method);
+    return std::make_unique<StepSolver>(model, StepTolerances{}, scheme.linear_method, scheme.order);
   // Only Newton's step keeps nodes in the shell by itself.
   if (scheme.forces == StepScheme::Forces::linearly_implicit)
     return std::make_unique<ProjectedStepper>(

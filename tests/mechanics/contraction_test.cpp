@@ -89,8 +89,11 @@ TEST(Contraction, SlackSpringPullsWithItsPreloadOnly) {
 TEST(Contraction, DampingResistsTheRateOfLengtheningWhateverTheActivity) {
   const Contraction law({Spring{{NodeId(0), NodeId(1)}, 3, 5, 4, 0}}, Program({0}, {0}));
   Motion motion = pair(20, 18);
-  motion.duration_s = 0.5;
+  motion.rate_s = 0.5;
   EXPECT_DOUBLE_EQ(forces_of(law, motion.step())[0].x(), 4 * (20 - 18) / 0.5);
+  motion.earlier_positions = pair(17).positions;
+  motion.ahead = 0.25;
+  EXPECT_DOUBLE_EQ(forces_of(law, motion.step())[0].x(), 4 * (20 - (18 + 0.25 * (18 - 17))) / 0.5);
 }
 
 TEST(Contraction, ActivityIsReadAtTheEndOfTheStep) {
@@ -262,8 +265,8 @@ TEST(Contraction, ResultantThroughACutDoesNotDependOnRefinement) {
   BlockShape shape{.length_um = 60, .width_um = 30, .cell_height_um = 40, .cells = {3, 2, 1}};
   // Cells are 20 x 15 um now; each was 1.1 times as long and 0.9 times as wide when the step began.
   Motion motion;
-  const double along = 2 * (20 - 0.3 * 20) + 1 + 3 * (20 - 22) / motion.duration_s;
-  const double across = 0.4 * (2 * (15 - 0.3 * 15) + 1) + 3 * (15 - 13.5) / motion.duration_s;
+  const double along = 2 * (20 - 0.3 * 20) + 1 + 3 * (20 - 22) / motion.rate_s;
+  const double across = 0.4 * (2 * (15 - 0.3 * 15) + 1) + 3 * (15 - 13.5) / motion.rate_s;
   int cases = 0;
   for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 2, 2}, {4, 4, 4}, {4, 2, 1}}) {
     shape.elements_per_cell = elements;

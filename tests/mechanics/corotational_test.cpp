@@ -131,11 +131,20 @@ TEST(Corotational, SimpleShearRateGivesTwiceViscosityTimesRate) {
   Mat3 F = Mat3::Identity();
   F(0, 2) = rate * duration;
   Motion motion = deformed(tissue, F);
-  motion.duration_s = duration;
+  motion.rate_s = duration;
   const Vectors forces = forces_of(law, motion.step());
   const Vec3 top = force_on(tissue, forces, [](const Vec3& X) { return X.z() > 0; });
   // D_xz = rate / 2, so the stress 2 eta D_xz = eta rate.
   EXPECT_NEAR(top.x(), -viscosity * rate * 400, 1e-6 * viscosity * rate * 400);
+  // To second order after an equal step at the same rate: the shear was nothing, is half of this, and rate_s 2/3 of the
+  // step.
+  motion.earlier_positions = motion.previous_positions;
+  F(0, 2) = rate * duration / 2;
+  motion.previous_positions = deformed(tissue, F).positions;
+  motion.rate_s = duration / 3;
+  motion.ahead = 1.0 / 3;
+  EXPECT_NEAR(force_on(tissue, forces_of(law, motion.step()), [](const Vec3& X) { return X.z() > 0; }).x(),
+              -viscosity * rate * 400, 1e-6 * viscosity * rate * 400);
 }
 
 TEST(Corotational, ViscosityResistsNoUniformExpansion) {

@@ -27,7 +27,7 @@ TEST(SurfaceDrag, UniformMotionMeetsDragTimesAreaTimesSpeed) {
   const double drag = 0.14, duration = 0.25;
   const Vec3 velocity(2, -1, 0.5);
   Motion motion = at_rest(tissue);
-  motion.duration_s = duration;
+  motion.rate_s = duration;
   for (Vec3& x : motion.positions) x += duration * velocity;
   const Vectors forces = forces_of(SurfaceDrag(tissue, drag), motion.step());
   EXPECT_LE((resultant(forces) + drag * 1600 * velocity).norm(), 1e-11);
@@ -65,7 +65,7 @@ TEST(Inertia, SteadyMotionNeedsNoForce) {
   const Tissue tissue = build_block(two_cells);
   Motion motion = at_rest(tissue);
   const Vec3 velocity(2, -1, 0.5);
-  for (Vec3& x : motion.positions) x += motion.duration_s * velocity;
+  for (Vec3& x : motion.positions) x += motion.rate_s * velocity;
   motion.previous_velocities.assign(tissue.node_count(), velocity);
   EXPECT_LE(largest(forces_of(Inertia(tissue, 1), motion.step())), 1e-10);
 }
@@ -78,11 +78,11 @@ TEST(Inertia, ForceIsMassTimesChangeOfVelocityOverTime) {
   Random random(1);
   motion.previous_velocities = random.vectors(tissue.node_count(), 3);
   const Vectors velocities = random.vectors(tissue.node_count(), 3);
-  for (std::size_t n = 0; n < velocities.size(); ++n) motion.positions[n] += motion.duration_s * velocities[n];
+  for (std::size_t n = 0; n < velocities.size(); ++n) motion.positions[n] += motion.rate_s * velocities[n];
   const Vectors forces = forces_of(law, motion.step());
   for (std::size_t n = 0; n < velocities.size(); ++n) {
     const double mass = 1e-3 * (tissue.rest_positions[n].x() == 0 ? 4000 : 2000);
-    const Vec3 expected = -mass * (velocities[n] - motion.previous_velocities[n]) / motion.duration_s;
+    const Vec3 expected = -mass * (velocities[n] - motion.previous_velocities[n]) / motion.rate_s;
     EXPECT_LE((forces[n] - expected).norm(), 1e-11);
   }
 }

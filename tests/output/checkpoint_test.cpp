@@ -79,7 +79,7 @@ bool is_refused(std::string_view bytes) {
 std::string made_right(std::string bytes) {
   const std::size_t size = bytes.size() - trailer_bytes;
   const auto sum = crc32(0, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<uInt>(size));
-  std::string end = fmt::format("\nplica checkpoint 1 bytes {} crc32 {:08x}", size, sum);
+  std::string end = fmt::format("\nplica checkpoint 2 bytes {} crc32 {:08x}", size, sum);
   end.resize(trailer_bytes - 1, ' ');
   return bytes.replace(size, trailer_bytes, end + "\n");
 }
@@ -92,7 +92,7 @@ TEST_F(CheckpointTest, ComesBackAsItWas) {
   const Checkpoint after = read_checkpoint_bytes(bytes);
   EXPECT_EQ(after.scenario, before.scenario);
   EXPECT_EQ(after.run.state.positions, before.run.state.positions);
-  EXPECT_EQ(after.run.step_length.wanted_s, before.run.step_length.wanted_s);
+  EXPECT_EQ(after.run.wanted_step_s, before.run.wanted_step_s);
   EXPECT_EQ(after.record.rows.size(), before.record.rows.size());
   EXPECT_EQ(after.record.rows.back().monitors, before.record.rows.back().monitors);
   EXPECT_EQ(after.run.past_divisions.front()->positions, before.run.past_divisions.front()->positions);
@@ -156,8 +156,8 @@ TEST_F(CheckpointTest, DamageUnderARightChecksumIsRefusedOrHarmless) {
 
 TEST_F(CheckpointTest, AnotherFormatIsNamed) {
   std::string bytes = checkpoint_bytes(block_run().last());
-  const std::string mark = "\nplica checkpoint 1 ";
-  for (const char* format : {"2 ", "10", "0 "}) {
+  const std::string mark = "\nplica checkpoint 2 ";
+  for (const char* format : {"1 ", "20", "0 "}) {
     std::string other = bytes;
     other.replace(bytes.size() - trailer_bytes + mark.size() - 2, 2, format);
     try {
@@ -183,8 +183,8 @@ TEST_F(CheckpointTest, WhatIsNoNumberIsRefused) {
   refused([](Checkpoint& c) { c.run.state.pressures[2] = nan; });
   refused([](Checkpoint& c) { c.run.state.time_s = nan; });
   refused([](Checkpoint& c) { c.run.equilibrium_time_s = nan; });
-  refused([](Checkpoint& c) { c.run.step_length.wanted_s = -std::numeric_limits<double>::infinity(); });
-  refused([](Checkpoint& c) { c.run.factor.duration_s = nan; });
+  refused([](Checkpoint& c) { c.run.wanted_step_s = -std::numeric_limits<double>::infinity(); });
+  refused([](Checkpoint& c) { c.run.factor.rate_s = nan; });
   refused([](Checkpoint& c) { c.record.frame_times_s[1] = nan; });
   refused([](Checkpoint& c) { c.record.rows[1].max_volume_error = nan; });
   refused([](Checkpoint& c) { c.record.rows[1].monitors[0] = nan; });
@@ -209,16 +209,19 @@ TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
   unfit([](RunMemory& m) { m.state.pressures.push_back(0); });
   unfit([](RunMemory& m) { m.state.contact_forces.push_back(0); });
   unfit([](RunMemory& m) { m.state.in_contact.push_back(0); });
+  unfit([](RunMemory& m) { m.state.trend.last_s = -1; });
+  unfit([](RunMemory& m) { m.state.trend.mean_velocities.resize(1, Vec3::Zero()); });
   unfit([](RunMemory& m) { m.state.trend.accelerations.resize(1, Vec3::Zero()); });
   unfit([](RunMemory& m) { m.state.trend.pressure_rates.resize(1); });
   unfit([](RunMemory& m) { m.state.time_s = -1; });
   unfit([](RunMemory& m) { m.steps = -1; });
-  unfit([](RunMemory& m) { m.step_length.wanted_s = -1; });
+  unfit([](RunMemory& m) { m.wanted_step_s = -1; });
   unfit([](RunMemory& m) { m.factor.at.pressures.pop_back(); });
   unfit([](RunMemory& m) { m.factor.previous_positions.clear(); });
-  unfit([](RunMemory& m) { m.factor.duration_s = 0; });
+  unfit([](RunMemory& m) { m.factor.rate_s = 0; });
+  unfit([](RunMemory& m) { m.factor.ahead = 0.5; });
   unfit([](RunMemory& m) { m.factor.changed_contacts.push_back(0); });
-  EXPECT_EQ(cases, 14);
+  EXPECT_EQ(cases, 17);
   for (const int part : {0, 1, 2, 3, 4, 5}) {
     PastDivision bad = *run.last().run.past_divisions.front();
     PlannedDivision& one = bad.planned.front();

@@ -217,6 +217,15 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:3: output.frame_every_s: output.frame_every_min is given as well; give one of the two"},
       {"[time]\nfirst_step_s = 61",
        "test.toml:2: time.first_step_s: 61 is above max_step_s, 30; give a first step no longer than the longest"},
+      {"[time]\nintegrator = \"bdf2\"\n[dynamics]\ndensity_kg_per_m3 = 1",
+       "test.toml:2: time.integrator: second order in time does not go with dynamics.density_kg_per_m3 above 0; give "
+       "\"backward-euler\""},
+      {"[time]\nintegrator = \"bdf2\"\n[volume]\nmethod = \"projection\"",
+       "test.toml:2: time.integrator: second order in time does not go with volume.method = \"projection\"; give "
+       "\"backward-euler\""},
+      {"[time]\nintegrator = \"bdf2\"\nscheme = \"linearly-implicit\"\n[volume]\nmethod = \"none\"",
+       "test.toml:2: time.integrator: second order in time does not go with time.scheme = \"linearly-implicit\"; give "
+       "\"backward-euler\""},
       {program + "program = { time_s = [0, 1], activity = [1] }",
        "test.toml:3: contraction.a.program.activity: 1 activities for 2 times; give as many activities as times"},
       {program + "program = { activity = [1] }",

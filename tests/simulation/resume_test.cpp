@@ -50,6 +50,9 @@ void expect_same(const State& a, const State& b) {
   EXPECT_EQ(a.contact_forces, b.contact_forces);
   EXPECT_EQ(a.in_contact, b.in_contact);
   EXPECT_EQ(a.divided_until_s, b.divided_until_s);
+  EXPECT_EQ(a.trend.step_s, b.trend.step_s);
+  EXPECT_EQ(a.trend.last_s, b.trend.last_s);
+  EXPECT_EQ(a.trend.mean_velocities, b.trend.mean_velocities);
   EXPECT_EQ(a.trend.accelerations, b.trend.accelerations);
   EXPECT_EQ(a.trend.pressure_rates, b.trend.pressure_rates);
 }
@@ -76,6 +79,8 @@ void expect_resumable(const std::string& name, const std::vector<std::string>& o
 }
 
 TEST(Resume, GoesOnToTheSameBits) { expect_resumable("drosophila", {"time.end_min=2"}, 13); }
+
+TEST(Resume, WithSecondOrder) { expect_resumable("drosophila", {"time.end_s=10", "time.integrator=\"bdf2\""}, 7); }
 
 TEST(Resume, WithTheDirectMethod) {
   expect_resumable("drosophila", {"time.end_s=3", "time.linear_solver=\"direct\""}, 4);

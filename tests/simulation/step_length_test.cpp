@@ -2,17 +2,32 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace plica {
 namespace {
 
-/// A state of one node with a velocity.
-State moving(double time_s, const Vec3& velocity) {
-  State state;
-  state.time_s = time_s;
-  state.positions = {Vec3::Zero()};
-  state.velocities = {velocity};
-  return state;
-}
+/// States of one node at the ends of steps along x.
+class Path {
+ public:
+  explicit Path(TimeOrder order = TimeOrder::first) : order_(order) {
+    state_.positions = {Vec3::Zero()};
+    state_.velocities = {Vec3::Zero()};
+  }
+  [[nodiscard]] const State& here() const { return state_; }
+  [[nodiscard]] State after(double step_s, double x_um) const {
+    State next;
+    next.time_s = state_.time_s + step_s;
+    next.positions = {Vec3(x_um, 0, 0)};
+    record_motion(state_, step_s, order_, next);
+    return next;
+  }
+  void go_to(State next) { state_ = std::move(next); }
+
+ private:
+  TimeOrder order_;
+  State state_;
+};
 
 TEST(StepLength, FixedStepsStayOnTheirGridAndEndOnTime) {
   RunControls controls;
@@ -63,10 +78,12 @@ TEST(StepLength, RejectsAStepWhoseErrorIsFarTooLarge) {
   controls.first_step_s = 1;
   controls.position_tolerance_um = 0.01;
   controls.frame_every_s = 0;
-  const Vec3 velocity(1, 0, 0);
   StepLength length(controls);
-  EXPECT_TRUE(length.accept(moving(0, Vec3::Zero()), moving(1, velocity), 1)) << "nothing is known on the first step";
-  EXPECT_FALSE(length.accept(moving(1, velocity), moving(2, 2 * velocity), 1));
+  Path path;
+  const State first = path.after(1, 1);
+  EXPECT_TRUE(length.accept(path.here(), first)) << "nothing is known on the first step";
+  path.go_to(first);
+  EXPECT_FALSE(length.accept(path.here(), path.after(1, 3)));
   EXPECT_LT(length.propose(1), 0.5);
 }
 
@@ -76,39 +93,51 @@ TEST(StepLength, GrowsWhileStepsAreAccurateUpToItsLimit) {
   controls.max_step_s = 5;
   controls.frame_every_s = 0;
   StepLength length(controls);
-  const State steady = moving(0, Vec3(1, 0, 0));
-  double step = length.propose(0), time = 0;
+  Path steady;
+  double step = length.propose(0);
   for (int k = 0; k < 10; ++k) {
-    EXPECT_TRUE(length.accept(steady, steady, step));
-    time += step;
-    const double next = length.propose(time);
-    EXPECT_GE(next, step);
-    EXPECT_LE(next, 5);
-    step = next;
+    const State next = steady.after(step, steady.here().time_s + step);
+    EXPECT_TRUE(length.accept(steady.here(), next));
+    steady.go_to(next);
+    const double longer = length.propose(next.time_s);
+    EXPECT_GE(longer, step * (1 - 1e-12));
+    EXPECT_LE(longer, 5);
+    step = longer;
   }
   EXPECT_DOUBLE_EQ(step, 5);
 }
 
-// The step that keeps the error at the tolerance: acceleration a, h^2 a / 2 = tolerance.
-TEST(StepLength, SettlesWhereTheErrorIsNearTheTolerance) {
+/// The length at which steps come to stand on the way x(t).
+template <class Way>
+double settled_step(TimeOrder order, double tolerance_um, const Way& x_um) {
   RunControls controls;
+  controls.scheme.order = order;
   controls.first_step_s = 0.01;
-  controls.position_tolerance_um = 0.01;
+  controls.position_tolerance_um = tolerance_um;
   controls.frame_every_s = 0;
   StepLength length(controls);
-  const double acceleration = 0.5;
-  double time = 0, step = 0, before_from = -0.01;
-  for (int k = 0; k < 40; ++k) {
-    step = length.propose(time);
-    // Backward Euler's velocity is the mean over the step.
-    const auto velocity = [&](double from, double to) { return Vec3(acceleration * (from + to) / 2, 0, 0); };
-    if (length.accept(moving(time, velocity(before_from, time)), moving(time + step, velocity(time, time + step)),
-                      step)) {
-      before_from = time;
-      time += step;
-    }
+  Path path(order);
+  double step = 0;
+  for (int k = 0; k < 60; ++k) {
+    step = length.propose(path.here().time_s);
+    State next = path.after(step, x_um(path.here().time_s + step));
+    if (length.accept(path.here(), next)) path.go_to(std::move(next));
   }
-  const double ideal = std::sqrt(2 * controls.position_tolerance_um / acceleration);
+  return step;
+}
+
+// The step that keeps the error at the tolerance: acceleration a, h^2 a / 2 = tolerance.
+TEST(StepLength, SettlesWhereTheErrorIsNearTheTolerance) {
+  const double step = settled_step(TimeOrder::first, 0.01, [](double t) { return 0.25 * t * t; });
+  const double ideal = std::sqrt(2 * 0.01 / 0.5);
+  EXPECT_GT(step, 0.7 * ideal);
+  EXPECT_LT(step, 1.1 * ideal);
+}
+
+// Of second order and equal steps: 2/9 h^3 times the third derivative, 0.6, is the tolerance.
+TEST(StepLength, OfSecondOrderItSettlesWhereThatErrorIs) {
+  const double step = settled_step(TimeOrder::second, 0.01, [](double t) { return 0.25 * t * t + 0.1 * t * t * t; });
+  const double ideal = std::cbrt(9.0 / 2 * 0.01 / 0.6);
   EXPECT_GT(step, 0.7 * ideal);
   EXPECT_LT(step, 1.1 * ideal);
 }

@@ -44,12 +44,19 @@ Motion at_rest(const Tissue& tissue) {
 Motion random_motion(const Tissue& tissue, double size_um, unsigned seed) {
   Random random(seed);
   Motion motion = at_rest(tissue);
-  for (Vectors* positions : {&motion.previous_positions, &motion.positions}) {
+  const auto move = [&](Vectors& positions) {
     const Mat3 rotation = random.rotation();
     const Vec3 shift = random.vector(50);
-    for (Vec3& x : *positions) x = rotation * (x + random.vector(size_um)) + shift;
-  }
+    for (Vec3& x : positions) x = rotation * (x + random.vector(size_um)) + shift;
+  };
+  move(motion.previous_positions);
+  move(motion.positions);
   motion.previous_velocities = random.vectors(tissue.node_count(), 5);
+  if (seed % 2 == 0) {
+    motion.earlier_positions = tissue.rest_positions;
+    move(motion.earlier_positions);
+    motion.ahead = 0.4;
+  }
   return motion;
 }
 

@@ -60,12 +60,15 @@ Tissue mapped_lattice(int nx, int ny, int nz, const Place& place) {
 /// All that a Step looks at.
 struct Motion {
   Vectors positions, previous_positions, previous_velocities;
-  double duration_s = 0.7;
+  double rate_s = 0.7;
   double end_time_s = 1.3;
   bool semidefinite_tangent = false;
+  Vectors earlier_positions = {};
+  double ahead = 0;
 
   [[nodiscard]] Step step() const {
-    return {positions, previous_positions, previous_velocities, duration_s, end_time_s, semidefinite_tangent};
+    return {positions,  previous_positions,   previous_velocities, rate_s,
+            end_time_s, semidefinite_tangent, earlier_positions,   ahead};
   }
 };
 
@@ -73,7 +76,8 @@ struct Motion {
 Motion at_rest(const Tissue& tissue);
 
 /// Every node displaced at random by up to `size_um` in each direction at the beginning and at the end of the step, and
-/// the whole turned by two different random rotations.
+/// the whole turned by two different random rotations. Of second order with every other seed: then also at the
+/// beginning of the step before.
 Motion random_motion(const Tissue& tissue, double size_um, unsigned seed);
 
 /// Largest length among vectors.

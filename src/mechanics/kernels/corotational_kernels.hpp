@@ -32,9 +32,12 @@ struct CorotationalStep {
   const CorotationalBatch* batches;
   const ViscousBatch* viscous_batches;  // null: not viscous
   std::size_t elements;
-  const double* positions;           // um
-  const double* previous_positions;  // um; looked at by viscosity only
-  double rate;                       // 1/h, 1/s
+  const double* positions;  // um
+  // Looked at by viscosity only; as in Step.
+  const double* previous_positions;  // um
+  const double* earlier_positions;   // um
+  double ahead;
+  double rate;  // 1/rate_s, 1/s
   bool semidefinite_tangent;
 };
 

@@ -204,16 +204,21 @@ inline void multiply(const double (&H)[78][batch_size], int lane, const Hourglas
   }
 }
 
-/// How a viscous element has deformed during the step.
+/// How a viscous element deforms: its rate of deformation times rate_s.
 struct Strain {
   Sym S;
   Hourglass h;
+
+  void add(double weight, const Deformation& other) {
+    S = S + broadcast(weight) * other.S;
+    for (int i = 0; i < 12; ++i) h.at[i] += weight * other.h.at[i];
+  }
 };
 
 inline Strain strain(const Elements& e, const CorotationalStep& step, const Deformation& now) {
-  const Deformation before = deformation(e, step.previous_positions);
-  Strain change{now.S - before.S, now.h};
-  for (int i = 0; i < 12; ++i) change.h.at[i] -= before.h.at[i];
+  Strain change{now.S, now.h};
+  change.add(-(1 + step.ahead), deformation(e, step.previous_positions));
+  if (step.ahead > 0) change.add(step.ahead, deformation(e, step.earlier_positions));
   return change;
 }
 

@@ -1,0 +1,33 @@
+// Velocities at the end of a step, to second order, from the step and the one before it (BDF2 on steps of any lengths),
+// and the error of a step. Theory: docs/theory/step.md.
+#pragma once
+
+#include <optional>
+
+#include "mechanics/model.hpp"
+
+namespace plica {
+
+/// Order in time of a step: backward Euler, or backward differences of second order.
+enum class TimeOrder { first, second };
+
+/// How rates at the end of a step are taken: `rate_s` and `ahead` of Step.
+struct BackwardDifference {
+  double rate_s;
+  double ahead;
+};
+
+/// Of second order for a step of `step_s` > 0 after one of `last_s`; of first where there is none (0).
+BackwardDifference backward_difference(double step_s, double last_s);
+
+/// Mean velocities over the last step, um/s; nodes.
+const Vectors& mean_velocities(const State& state);
+
+/// Velocities and trend of `after`, whose positions and pressures are known, `step_s` later than `before`.
+void record_motion(const State& before, double step_s, TimeOrder order, State& after);
+
+/// The error of the step that led from `before` to `after`, um, at the node where it is largest, by the change of
+/// velocities. Nothing is known of it on a first step.
+std::optional<double> step_error_um(const State& before, const State& after, TimeOrder order);
+
+}  // namespace plica
