@@ -44,12 +44,10 @@ void ContactBorder::write_free(std::span<const Vec3> vectors) const {
 
 void ContactBorder::add_column(const Change& change, const BlockCholesky& factor) {
   Column column{change, model_->vitelline->nodes()[change.contact].index(), {}};
-  Vectors b(frames_.size(), Vec3::Zero());
-  b[column.node] = column.normal;
+  Vectors b(frames_.size());
   double diagonal = 0;
   if (column.leaves) {
-    const Vectors unit = b;
-    matrix_->multiply(unit, b);
+    matrix_->multiply(column.node, column.normal, b);
     diagonal = column.normal.dot(b[column.node]);
     write_free(b);
   } else {

@@ -143,6 +143,7 @@ double StepMatrix::mean_diagonal() const {
 
 Mat3 StepMatrix::block(std::size_t row, std::size_t column) const {
   if (column > row) return block(column, row).transpose();
+  if (static_cast<int>(column) < layout_.columns[layout_.starts[row]]) return Mat3::Zero();
   const auto first = layout_.columns.begin() + layout_.starts[row],
              last = layout_.columns.begin() + layout_.starts[row + 1];
   const auto at = std::lower_bound(first, last, static_cast<int>(column));
@@ -150,14 +151,8 @@ Mat3 StepMatrix::block(std::size_t row, std::size_t column) const {
   return blocks_[at - layout_.columns.begin()];
 }
 
-void StepMatrix::multiply(std::span<const Vec3> direction, std::span<Vec3> product) const {
-  std::fill(product.begin(), product.end(), Vec3::Zero());
-  for (std::size_t row = 0; row + 1 < layout_.starts.size(); ++row)
-    for (int k = layout_.starts[row]; k < layout_.starts[row + 1]; ++k) {
-      const std::size_t column = layout_.columns[k];
-      product[row] += blocks_[k] * direction[column];
-      if (column != row) product[column] += blocks_[k].transpose() * direction[row];
-    }
+void StepMatrix::multiply(std::size_t node, const Vec3& direction, std::span<Vec3> product) const {
+  for (std::size_t row = 0; row < product.size(); ++row) product[row] = block(row, node) * direction;
 }
 
 namespace {

@@ -47,8 +47,8 @@ class StepMatrix final : public TangentSink {
   /// The block of A of two nodes; 0 where there is none.
   [[nodiscard]] Mat3 block(std::size_t row, std::size_t column) const;
 
-  /// A times a vector, in global axes, all rows.
-  void multiply(std::span<const Vec3> direction, std::span<Vec3> product) const;
+  /// A times a vector that is zero but at `node`, in global axes, all rows.
+  void multiply(std::size_t node, const Vec3& direction, std::span<Vec3> product) const;
   /// Values in the pattern's order, turned into the frames, fixed unknowns replaced by the identity.
   void write_values(std::span<const NodeFrame> frames, std::vector<double>& values) const;
 

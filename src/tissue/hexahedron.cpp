@@ -133,16 +133,14 @@ double hex_scaled_jacobian(const HexPoints& points) {
   return worst;
 }
 
-bool hex_is_upright(const HexPoints& points) {
-  // The three nodes next to each corner, in the order in which their edges are right-handed.
-  static constexpr std::array<std::array<int, 3>, 8> corner_neighbours = {
-      {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}};
-  for (int corner = 0; corner < 8; ++corner) {
-    const auto& [a, b, c] = corner_neighbours[corner];
-    const Vec3& p = points[corner];
-    if (!((points[a] - p).cross(points[b] - p).dot(points[c] - p) > 0)) return false;
-  }
-  return true;
+bool hex_is_upright(const HexPoints& p) {
+  // Edges along the three axes of the reference cube, by the corners that they join. Named one by one, as below.
+  const Vec3 x01 = p[1] - p[0], x32 = p[2] - p[3], x45 = p[5] - p[4], x76 = p[6] - p[7];
+  const Vec3 y03 = p[3] - p[0], y12 = p[2] - p[1], y47 = p[7] - p[4], y56 = p[6] - p[5];
+  const Vec3 z04 = p[4] - p[0], z15 = p[5] - p[1], z26 = p[6] - p[2], z37 = p[7] - p[3];
+  return x01.cross(y03).dot(z04) > 0 && x01.cross(y12).dot(z15) > 0 && x32.cross(y12).dot(z26) > 0 &&
+         x32.cross(y03).dot(z37) > 0 && x45.cross(y47).dot(z04) > 0 && x45.cross(y56).dot(z15) > 0 &&
+         x76.cross(y56).dot(z26) > 0 && x76.cross(y47).dot(z37) > 0;
 }
 
 double facet_area(const std::array<Vec3, 4>& points) {

@@ -241,8 +241,8 @@ TEST(DividedSheet, AssemblesTheTangentOfItsFreeNodes) {
   for (const auto& law : model.laws) law->add_tangent(motion.step(), matrix);
   Vectors direction = random.vectors(model.tissue.node_count());
   model.tissue.place_hanging(direction);
-  Vectors assembled(direction.size(), Vec3::Zero()), matrix_free(direction.size(), Vec3::Zero());
-  matrix.multiply(direction, assembled);
+  const Vectors assembled = product_of(matrix, direction);
+  Vectors matrix_free(direction.size(), Vec3::Zero());
   for (const auto& law : model.laws) law->add_tangent_product(motion.step(), direction, matrix_free);
   model.tissue.carry_hanging(matrix_free);
   for (std::size_t n = 0; n < direction.size(); ++n)

@@ -14,12 +14,6 @@ namespace {
 
 using namespace support;
 
-Vectors product(const StepMatrix& matrix, const Vectors& direction) {
-  Vectors result(direction.size());
-  matrix.multiply(direction, result);
-  return result;
-}
-
 std::vector<double> volume_rates(const StepMatrix& matrix, const Vectors& direction) {
   std::vector<double> rates(matrix.jacobian().cells());
   matrix.jacobian().rates(direction, rates);
@@ -44,7 +38,7 @@ TEST(StepMatrix, ProductIsTheSumOfTheLawsMatrixFreeProducts) {
     Vectors expected(direction.size(), Vec3::Zero());
     for (const auto& law : model.laws) law->add_tangent_product(motion.step(), direction, expected);
     model.volumes.add_tangent_product(motion.positions, pressures, direction, expected);
-    const Vectors assembled = product(matrix, direction);
+    const Vectors assembled = product_of(matrix, direction);
     for (std::size_t n = 0; n < expected.size(); ++n)
       EXPECT_LE((assembled[n] - expected[n]).norm(), 1e-12 * largest(expected));
     ++cases;
@@ -128,7 +122,7 @@ TEST(StepMatrix, WrittenValuesAreTheFramedSystem) {
   Vectors unit(nodes, Vec3::Zero());
   for (int i = 0; i < 3 * nodes; ++i) {
     unit[i / 3][i % 3] = 1;
-    system.col(i).head(3 * nodes) = flat(product(matrix, unit));
+    system.col(i).head(3 * nodes) = flat(product_of(matrix, unit));
     const std::vector<double> rates = volume_rates(matrix, unit);
     for (int c = 0; c < cells; ++c) system(3 * nodes + c, i) = system(i, 3 * nodes + c) = -rates[c];
     unit[i / 3][i % 3] = 0;

@@ -57,6 +57,15 @@ Vectors unbalanced_forces(const Model& model, const State& before, const State& 
   return forces;
 }
 
+Vectors product_of(const StepMatrix& matrix, const Vectors& direction) {
+  Vectors sum(direction.size(), Vec3::Zero()), of_node(static_cast<std::size_t>(matrix.layout().nodes()));
+  for (std::size_t node = 0; node < of_node.size(); ++node) {
+    matrix.multiply(node, direction[node], of_node);
+    for (std::size_t n = 0; n < of_node.size(); ++n) sum[n] += of_node[n];
+  }
+  return sum;
+}
+
 double force_size(const Model& model, const State& before, const State& after) {
   const Step step{after.positions, before.positions, before.velocities, after.time_s - before.time_s, after.time_s};
   double size = 0;

@@ -4,6 +4,7 @@
 #include "mechanics/corotational.hpp"
 #include "mechanics/model.hpp"
 #include "mechanics/surroundings.hpp"
+#include "solver/step_matrix.hpp"
 #include "support/tissues.hpp"
 
 namespace plica::support {
@@ -24,6 +25,9 @@ Model furrowing_sphere();
 
 /// All forces on the nodes at a step's end: laws, pressures and the shell, as the State says them.
 Vectors unbalanced_forces(const Model& model, const State& before, const State& after);
+
+/// A times a vector, column by column; zero on nodes that hang.
+Vectors product_of(const StepMatrix& matrix, const Vectors& direction);
 
 /// Largest force of a law alone at a step's end: what the balance is judged by.
 double force_size(const Model& model, const State& before, const State& after);
