@@ -49,7 +49,7 @@ inline double parallel_dot(std::span<const double> a, std::span<const double> b)
   constexpr std::size_t part = 4096;
   const auto sum = [&](std::size_t first, std::size_t last) {
     // Four pairs of lanes, so that sums need not wait for each other, in registers.
-    typedef double Pair __attribute__((vector_size(16)));  // NOLINT: no `using` for attributes
+    using Pair = double __attribute__((vector_size(16)));
     const auto pair = [](const double* numbers) {
       Pair two;
       std::memcpy(&two, numbers, sizeof two);

@@ -65,7 +65,7 @@ struct State {
   // at the start and after a division.
   struct Trend {
     double step_s = 0;                   // the last step
-    double last_s = 0;                   // the one before it
+    double earlier_s = 0;                // the one before it
     Vectors mean_velocities;             // nodes; um/s, over the last step; empty where they are the velocities
     Vectors accelerations;               // nodes; um/s^2, between the middles of these two steps
     std::vector<double> pressure_rates;  // cells; kPa/s

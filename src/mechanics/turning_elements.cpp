@@ -84,7 +84,7 @@ struct TurningElements::Frame {
   std::array<Vec3, 8> y;
   Vec3 t;
   double energy = 0;
-  double viscous_factor = 0;  // 1/h
+  double viscous_factor = 0;  // 1/rate_s
 };
 
 TurningElements::Frame TurningElements::frame(std::size_t e, const Step& step) const {

@@ -111,7 +111,7 @@ void visit_run(Take& take, Run& run) {
   take("state/velocities", state.velocities);
   take("state/divided_until_s", state.divided_until_s);
   take("state/trend/step_s", state.trend.step_s);
-  take("state/trend/last_s", state.trend.last_s);
+  take("state/trend/earlier_s", state.trend.earlier_s);
   take("state/trend/mean_velocities", state.trend.mean_velocities);
   take("state/trend/accelerations", state.trend.accelerations);
   take("state/trend/pressure_rates", state.trend.pressure_rates);
@@ -349,8 +349,10 @@ std::optional<std::string> why_unfit(const Checkpoint& checkpoint, const Model& 
   };
   const State& state = checkpoint.run.state;
   if (state.time_s < 0 || checkpoint.run.steps < 0 || checkpoint.run.wanted_step_s < 0 || state.trend.step_s < 0 ||
-      state.trend.last_s < 0)
+      state.trend.earlier_s < 0)
     return "its time or its step is negative";
+  if (state.trend.step_s + state.trend.earlier_s > state.time_s * (1 + 1e-9))
+    return "its steps are longer than its time";
   if (!fits(state) || state.velocities.size() != nodes || !none_or(state.trend.mean_velocities.size(), nodes) ||
       !none_or(state.trend.accelerations.size(), nodes) || !none_or(state.trend.pressure_rates.size(), cells))
     return "its state is not one of this embryo";

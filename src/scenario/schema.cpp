@@ -274,7 +274,7 @@ const std::vector<Row>& rows() {
           "How a step is solved: Newton's method, or one linear system by conjugate gradients (the paper)."),
       row("time", "integrator", at(&S::time, &T::integrator), words({"backward-euler", "bdf2"}),
           "How rates are taken at the end of a step: to first order in time, or to second, by differences over two "
-          "steps. The second goes neither with inertia nor with projected volumes."),
+          "steps. The second goes with scheme newton, without inertia and with volumes that are not projected."),
       row("time", "linear_solver", at(&S::time, &T::linear_solver),
           words({"automatic", "direct", "cholesky", "multigrid"}),
           "How Newton's linear systems are solved: a factor of the whole system; or Krylov's method with a factor of "

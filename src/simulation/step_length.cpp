@@ -29,7 +29,8 @@ double StepLength::propose(double time_s) const {
   const double left = stop - time_s;
   if (controls_.fixed_step_s) return std::min(wanted_s_, left);
   // Even steps to the next stop rather than long ones and a crumb; one a quarter longer than wanted if that saves one.
-  constexpr double stretch = 1.25;
+  // To second order a step that much longer than twice the last would be too long for it (possible_order).
+  const double stretch = controls_.scheme.order == TimeOrder::first ? 1.25 : 1.2;
   const double steps = std::ceil(left / wanted_s_ * (1 - 1e-12));
   if (steps == 2 && left <= std::min(stretch * wanted_s_, controls_.max_step_s)) return left;
   return steps <= 3 ? left / steps : wanted_s_;
@@ -41,14 +42,13 @@ bool StepLength::accept(const State& before, const State& after) {
     wanted_s_ = *controls_.fixed_step_s;
     return true;
   }
-  const TimeOrder order = controls_.scheme.order;
-  const std::optional<double> error_um = step_error_um(before, after, order);
-  if (!error_um) {
+  const std::optional<StepError> error = step_error(before, after);
+  if (!error) {
     wanted_s_ = duration_s;
     return true;
   }
-  const double allowed = controls_.position_tolerance_um / std::max(*error_um, 1e-300);
-  const double factor = 0.9 * (order == TimeOrder::first ? std::sqrt(allowed) : std::cbrt(allowed));
+  const double allowed = controls_.position_tolerance_um / std::max(error->um, 1e-300);
+  const double factor = 0.9 * (error->order == TimeOrder::first ? std::sqrt(allowed) : std::cbrt(allowed));
   if (factor < 0.6) {
     wanted_s_ = duration_s * std::max(factor, 0.2);
     return false;

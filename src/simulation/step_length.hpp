@@ -14,7 +14,7 @@ class StepLength {
   /// The length of a step that starts at `time_s`.
   [[nodiscard]] double propose(double time_s) const;
 
-  /// Whether the step from `before` to `after` stands. False when its error (step_error_um) is so large that it should
+  /// Whether the step from `before` to `after` stands. False when its error (step_error) is so large that it should
   /// be taken again, shorter.
   [[nodiscard]] bool accept(const State& before, const State& after);
 

@@ -8,9 +8,13 @@
 namespace plica {
 
 BackwardDifference backward_difference(double step_s, double last_s) {
-  if (last_s == 0) return {step_s, 0};
   const double whole = last_s + 2 * step_s;
-  return {step_s * (last_s + step_s) / whole, step_s * step_s / (last_s * whole)};
+  return {step_s * ((last_s + step_s) / whole), step_s / last_s * (step_s / whole)};
+}
+
+TimeOrder possible_order(const State& before, double step_s) {
+  constexpr double most_growth = 2.41;
+  return step_s <= most_growth * before.trend.step_s ? TimeOrder::second : TimeOrder::first;
 }
 
 const Vectors& mean_velocities(const State& state) {
@@ -20,7 +24,8 @@ const Vectors& mean_velocities(const State& state) {
 void record_motion(const State& before, double step_s, TimeOrder order, State& after) {
   const std::size_t nodes = after.positions.size();
   const double last_s = before.trend.step_s;
-  after.trend = {.step_s = step_s, .last_s = last_s, .mean_velocities = {}, .accelerations = {}, .pressure_rates = {}};
+  after.trend = {
+      .step_s = step_s, .earlier_s = last_s, .mean_velocities = {}, .accelerations = {}, .pressure_rates = {}};
   after.velocities.resize(nodes);
   parallel_for(nodes,
                [&](std::size_t n) { after.velocities[n] = (after.positions[n] - before.positions[n]) / step_s; });
@@ -39,17 +44,19 @@ void record_motion(const State& before, double step_s, TimeOrder order, State& a
   parallel_for(nodes, [&](std::size_t n) { after.velocities[n] += 0.5 * step_s * after.trend.accelerations[n]; });
 }
 
-std::optional<double> step_error_um(const State& before, const State& after, TimeOrder order) {
+std::optional<StepError> step_error(const State& before, const State& after) {
   const Vectors &now = after.trend.accelerations, &last = before.trend.accelerations;
   if (now.empty()) return std::nullopt;
-  const double h = after.trend.step_s, last_s = after.trend.last_s;
+  const double h = after.trend.step_s, last_s = before.trend.step_s;
   // Without a third difference the error of first order will do: a step of second order has a smaller one.
-  const bool third = order == TimeOrder::second && !last.empty();
+  const bool of_second_order = !after.trend.mean_velocities.empty();
+  const bool third = of_second_order && !last.empty();
   double change = 0;
   for (std::size_t n = 0; n < now.size(); ++n)
     change = std::max(change, third ? (now[n] - last[n]).norm() : now[n].norm());
-  if (!third) return 0.5 * h * h * change;
-  return 0.5 * h * (last_s + h) * backward_difference(h, last_s).rate_s * change / (before.trend.last_s + last_s + h);
+  if (!third) return StepError{0.5 * h * h * change, TimeOrder::first};
+  const double rate_s = backward_difference(h, last_s).rate_s;
+  return StepError{0.5 * rate_s * h * (last_s + h) * change / (before.trend.earlier_s + last_s + h), TimeOrder::second};
 }
 
 }  // namespace plica

@@ -17,17 +17,27 @@ struct BackwardDifference {
   double ahead;
 };
 
-/// Of second order for a step of `step_s` > 0 after one of `last_s`; of first where there is none (0).
+/// Of second order for a step of `step_s` > 0 after one of `last_s` > 0.
 BackwardDifference backward_difference(double step_s, double last_s);
+
+/// The order that a step from `before` can have: of second order it is zero-stable only up to 1 + sqrt 2 times the
+/// last.
+TimeOrder possible_order(const State& before, double step_s);
 
 /// Mean velocities over the last step, um/s; nodes.
 const Vectors& mean_velocities(const State& state);
 
-/// Velocities and trend of `after`, whose positions and pressures are known, `step_s` later than `before`.
+/// Velocities and trend of `after`, whose positions and pressures are known, after a step of this length and order.
 void record_motion(const State& before, double step_s, TimeOrder order, State& after);
 
-/// The error of the step that led from `before` to `after`, um, at the node where it is largest, by the change of
-/// velocities. Nothing is known of it on a first step.
-std::optional<double> step_error_um(const State& before, const State& after, TimeOrder order);
+/// The error of a step at the node where it is largest, and the order of its estimate: it goes with the length of the
+/// step squared or cubed.
+struct StepError {
+  double um;
+  TimeOrder order;
+};
+
+/// Of the step that led from `before` to `after`, by the change of velocities. Nothing is known of it on a first step.
+std::optional<StepError> step_error(const State& before, const State& after);
 
 }  // namespace plica

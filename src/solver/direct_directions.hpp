@@ -23,7 +23,7 @@ class DirectDirections final : public NewtonDirections {
   std::unique_ptr<LinearSolver> linear_solver_;
   std::vector<double> values_;
 
-  // The factor at hand: for which step length and frames it was made. Empty frames: none.
+  // The factor at hand: for which Step::rate_s and frames it was made. Empty frames: none.
   std::vector<NodeFrame> factor_frames_;
   std::vector<char> factor_contacts_;
   double factor_rate_s_ = 0;

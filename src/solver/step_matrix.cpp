@@ -143,7 +143,7 @@ double StepMatrix::mean_diagonal() const {
 
 Mat3 StepMatrix::block(std::size_t row, std::size_t column) const {
   if (column > row) return block(column, row).transpose();
-  if (static_cast<int>(column) < layout_.columns[layout_.starts[row]]) return Mat3::Zero();
+  if (static_cast<int>(column) < layout_.columns[layout_.starts[row]]) return Mat3::Zero();  // a row has its diagonal
   const auto first = layout_.columns.begin() + layout_.starts[row],
              last = layout_.columns.begin() + layout_.starts[row + 1];
   const auto at = std::lower_bound(first, last, static_cast<int>(column));

@@ -146,13 +146,14 @@ Iterate StepSolver::forecast(const State& state, double duration_s) const {
 StepReport StepSolver::advance(const State& state, double duration_s, bool from_rest, State& next) {
   Iterate at = from_rest ? Iterate{state.positions, state.pressures, state.contact_forces, state.in_contact}
                          : forecast(state, duration_s);
-  const double last_s = order_ == TimeOrder::second ? state.trend.step_s : 0;
-  const BackwardDifference rates = backward_difference(duration_s, last_s);
+  const TimeOrder order = std::min(order_, possible_order(state, duration_s));
+  BackwardDifference rates{duration_s, 0};
   Vectors earlier;
-  if (last_s > 0) {
+  if (order == TimeOrder::second) {
+    rates = backward_difference(duration_s, state.trend.step_s);
     earlier = state.positions;
     const Vectors& velocities = mean_velocities(state);
-    parallel_for(earlier.size(), [&](std::size_t n) { earlier[n] -= last_s * velocities[n]; });
+    parallel_for(earlier.size(), [&](std::size_t n) { earlier[n] -= state.trend.step_s * velocities[n]; });
   }
   Step step{.positions = at.positions,
             .previous_positions = state.positions,
@@ -218,7 +219,7 @@ StepReport StepSolver::advance(const State& state, double duration_s, bool from_
   next.pressures = std::move(at.pressures);
   next.contact_forces = std::move(at.contact_forces);
   next.in_contact = std::move(at.in_contact);
-  record_motion(state, duration_s, order_, next);
+  record_motion(state, duration_s, order, next);
   report.outcome = StepReport::Outcome::converged;
   return report;
 }

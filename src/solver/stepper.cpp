@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "core/parallel.hpp"
 #include "solver/linearly_implicit.hpp"
 #include "solver/projected_stepper.hpp"
@@ -36,6 +38,9 @@ std::string StepReport::reason() const {
 }
 
 std::unique_ptr<Stepper> make_stepper(const Model& model, const StepScheme& scheme) {
+  if (scheme.order == TimeOrder::second &&
+      (scheme.projection || scheme.forces != StepScheme::Forces::newton || model.inertia))
+    throw std::logic_error("steps of second order are Newton's, without projection or inertia");
   if (scheme.forces == StepScheme::Forces::newton && !scheme.projection)
     return std::make_unique<StepSolver>(model, StepTolerances{}, scheme.linear_method, scheme.order);
   // Only Newton's step keeps nodes in the shell by itself.

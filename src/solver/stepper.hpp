@@ -76,7 +76,7 @@ struct ProjectionRule {
 /// What takes a step.
 struct StepScheme {
   enum class Forces { newton, linearly_implicit } forces = Forces::newton;
-  TimeOrder order = TimeOrder::first;                    // second: newton, without projection or inertia
+  TimeOrder order = TimeOrder::first;                    // second: newton, no projection, no inertia
   LinearMethod linear_method = LinearMethod::automatic;  // newton
   double linear_tolerance = 1e-6;     // linearly implicit: residual of the linear system over its right side
   int most_linear_iterations = 2000;  // linearly implicit

@@ -207,11 +207,16 @@ TEST(ShapeMemory, ViscosityIsThatOfTheCorotationalLaw) {
   const ShapeMemory law(tissue, {.stiffness = 1e-12}, viscosity);
   Mat3 F = Mat3::Identity();
   F(0, 2) = rate;
-  const Motion motion = deformed(tissue, F);
-  const Vectors found = forces_of(law, motion.step());
-  const Vectors expected =
-      forces_of(Corotational(tissue, ElasticModuli::from_young(1e-12, 0.3), viscosity), motion.step());
-  for (std::size_t n = 0; n < 8; ++n) EXPECT_LE((found[n] - expected[n]).norm(), 1e-5 * largest(expected));
+  Motion motion = deformed(tissue, F);
+  F(0, 2) = -2 * rate;
+  motion.earlier_positions = deformed(tissue, F).positions;
+  for (const double ahead : {0.0, 0.4}) {
+    motion.ahead = ahead;
+    const Vectors found = forces_of(law, motion.step());
+    const Vectors expected =
+        forces_of(Corotational(tissue, ElasticModuli::from_young(1e-12, 0.3), viscosity), motion.step());
+    for (std::size_t n = 0; n < 8; ++n) EXPECT_LE((found[n] - expected[n]).norm(), 1e-5 * largest(expected));
+  }
 }
 
 TEST(ShapeMemory, RefusesAnInvertedRestShape) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace plica {
@@ -19,7 +20,7 @@ class Path {
     State next;
     next.time_s = state_.time_s + step_s;
     next.positions = {Vec3(x_um, 0, 0)};
-    record_motion(state_, step_s, order_, next);
+    record_motion(state_, step_s, std::min(order_, possible_order(state_, step_s)), next);
     return next;
   }
   void go_to(State next) { state_ = std::move(next); }
@@ -140,6 +141,22 @@ TEST(StepLength, OfSecondOrderItSettlesWhereThatErrorIs) {
   const double ideal = std::cbrt(9.0 / 2 * 0.01 / 0.6);
   EXPECT_GT(step, 0.7 * ideal);
   EXPECT_LT(step, 1.1 * ideal);
+}
+
+TEST(StepLength, OfSecondOrderStepsGrowByNoMoreThanThatOrderAllows) {
+  RunControls controls;
+  controls.scheme.order = TimeOrder::second;
+  controls.first_step_s = 0.05;
+  controls.frame_every_s = 7;
+  StepLength length(controls);
+  Path steady(TimeOrder::second);
+  for (int k = 0; k < 40; ++k) {
+    const double step = length.propose(steady.here().time_s);
+    EXPECT_EQ(possible_order(steady.here(), step), k == 0 ? TimeOrder::first : TimeOrder::second) << "step " << k;
+    const State next = steady.after(step, steady.here().time_s + step);
+    EXPECT_TRUE(length.accept(steady.here(), next));
+    steady.go_to(next);
+  }
 }
 
 }  // namespace

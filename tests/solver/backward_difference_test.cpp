@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -21,7 +22,7 @@ std::vector<State> states_of(const Motion& at, const std::vector<double>& steps_
     State next = states.back();
     next.time_s += step_s;
     next.positions = {at(next.time_s)};
-    record_motion(states.back(), step_s, order, next);
+    record_motion(states.back(), step_s, std::min(order, possible_order(states.back(), step_s)), next);
     states.push_back(next);
   }
   return states;
@@ -31,7 +32,7 @@ Vec3 quadratic(double t) { return {3 - 2 * t, 1 + t * t, t - 0.5 * t * t}; }
 Vec3 rate_of_quadratic(double t) { return {-2, 2 * t, 1 - t}; }
 
 TEST(BackwardDifference, VelocitiesOfSecondOrderAreExactForConstantAccelerations) {
-  const std::vector<double> steps_s = {0.5, 0.5, 1, 0.1, 2, 1.9};
+  const std::vector<double> steps_s = {0.5, 0.5, 1, 0.1, 0.24, 0.3};
   const auto states = states_of(quadratic, steps_s, TimeOrder::second);
   for (std::size_t k = 2; k < states.size(); ++k) {
     const double time_s = states[k].time_s, step_s = steps_s[k - 1];
@@ -59,10 +60,11 @@ Vec3 before_of(const State& before, const State& earlier, const BackwardDifferen
 // The velocity that laws see in a step is the one that the state has after it.
 TEST(BackwardDifference, LawsSeeTheVelocityAtTheEnd) {
   const auto states = states_of([](double t) { return Vec3(std::exp(-t), std::sin(t), t * t * t); },
-                                {0.4, 0.7, 0.2, 0.5}, TimeOrder::second);
+                                {0.4, 0.7, 0.2, 0.4}, TimeOrder::second);
   for (std::size_t k = 1; k < states.size(); ++k) {
     const State &before = states[k - 1], &after = states[k];
-    const BackwardDifference rates = backward_difference(after.trend.step_s, before.trend.step_s);
+    const BackwardDifference rates = k > 1 ? backward_difference(after.trend.step_s, before.trend.step_s)
+                                           : BackwardDifference{after.trend.step_s, 0};
     const Vec3 seen = (after.positions[0] - before_of(before, states[k > 1 ? k - 2 : 0], rates)) / rates.rate_s;
     EXPECT_NEAR((seen - after.velocities[0]).norm(), 0, 1e-12) << "step " << k;
   }
@@ -78,13 +80,14 @@ TEST(BackwardDifference, TheErrorOfAStepIsThatOfTheEquationItSolves) {
   const auto error_of_last = [&](const Motion& at, const Motion& rate, TimeOrder order) {
     const auto states = states_of(at, steps_s, order);
     const State &before = states[states.size() - 2], &after = states.back();
-    const BackwardDifference rates =
-        backward_difference(after.trend.step_s, order == TimeOrder::second ? before.trend.step_s : 0);
+    const BackwardDifference rates = order == TimeOrder::second
+                                         ? backward_difference(after.trend.step_s, before.trend.step_s)
+                                         : BackwardDifference{after.trend.step_s, 0};
     const Vec3 solved = before_of(before, states[states.size() - 3], rates) + rates.rate_s * rate(after.time_s);
-    const std::optional<double> estimate = step_error_um(before, after, order);
-    EXPECT_TRUE(estimate.has_value());
-    EXPECT_NEAR(estimate.value_or(-1), (solved - after.positions[0]).norm(), 1e-12);
-    return estimate.value_or(-1);
+    const StepError estimate = step_error(before, after).value();
+    EXPECT_EQ(estimate.order, order);
+    EXPECT_NEAR(estimate.um, (solved - after.positions[0]).norm(), 1e-12);
+    return estimate.um;
   };
   const double first = error_of_last(quadratic, rate_of_quadratic, TimeOrder::first);
   EXPECT_NEAR(first, 0.5 * 0.8 * 0.8 * std::sqrt(5.0), 1e-12);
@@ -96,8 +99,17 @@ TEST(BackwardDifference, TheErrorOfAStepIsThatOfTheEquationItSolves) {
 
 TEST(BackwardDifference, NothingIsKnownOfTheErrorOfAFirstStepAndTooMuchIsSaidOfTheSecond) {
   const auto states = states_of(quadratic, {0.5, 0.5}, TimeOrder::second);
-  EXPECT_FALSE(step_error_um(states[0], states[1], TimeOrder::second).has_value());
-  EXPECT_NEAR(step_error_um(states[1], states[2], TimeOrder::second).value_or(-1), 0.5 * 0.25 * std::sqrt(5.0), 1e-12);
+  EXPECT_FALSE(step_error(states[0], states[1]).has_value());
+  const StepError second = step_error(states[1], states[2]).value();
+  EXPECT_NEAR(second.um, 0.5 * 0.25 * std::sqrt(5.0), 1e-12);
+  EXPECT_EQ(second.order, TimeOrder::first);
+}
+
+TEST(BackwardDifference, StepsThatGrowTooMuchAreOfFirstOrder) {
+  const auto states = states_of(quadratic, {0.5, 0.5}, TimeOrder::second);
+  EXPECT_EQ(possible_order(states[0], 0.5), TimeOrder::first) << "nothing is known at the start";
+  EXPECT_EQ(possible_order(states[2], 1.2), TimeOrder::second);
+  EXPECT_EQ(possible_order(states[2], 0.5 * (1 + std::sqrt(2.0))), TimeOrder::first);
 }
 
 }  // namespace

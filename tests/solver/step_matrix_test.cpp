@@ -48,7 +48,7 @@ TEST(StepMatrix, ProductIsTheSumOfTheLawsMatrixFreeProducts) {
 
 TEST(StepMatrix, VolumeRatesAreTheDerivativesOfTheVolumes) {
   const Model model = dimpling_sheet({2, 2, 1});
-  Motion motion = random_motion(model.tissue, 2, 3);
+  Motion motion = random_motion(model.tissue, 2, 4);
   StepMatrix matrix(model);
   matrix.set_volume_gradients(model.volumes, motion.positions);
   const Vectors direction = Random(4).vectors(model.tissue.node_count());
@@ -101,7 +101,7 @@ TEST(StepMatrix, PressureForcesAreTheSameBitsOnOneAndTwoThreads) {
 // The written values are Q^T [A -J^T; -J 0] Q with Q the frames, rows and columns of fixed unknowns emptied.
 TEST(StepMatrix, WrittenValuesAreTheFramedSystem) {
   const Model model = dimpling_sheet();
-  const Motion motion = random_motion(model.tissue, 2, 7);
+  const Motion motion = random_motion(model.tissue, 2, 8);
   StepMatrix matrix(model);
   matrix.set_zero();
   for (const auto& law : model.laws) law->add_tangent(motion.step(), matrix);
