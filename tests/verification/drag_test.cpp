@@ -57,7 +57,7 @@ std::vector<double> elongations(const StepOf& step_s, int steps) {
 }
 
 // (1 + 2w)/(1 + w) x_n+1 - (1 + w) x_n + w^2/(1 + w) x_n-1 = h (F - k x_n+1) / D, w the ratio of steps; the first is
-// backward Euler's. From textbooks, not from our equivalent step.
+// backward Euler's. From textbooks, not from backward_difference().
 TEST(SpringInFluid, EveryStepIsTheBackwardDifference) {
   int cases = 0;
   for (const StepOf& step_s : {StepOf([](int) { return 0.5; }), StepOf([](int) { return 50.0; }),
