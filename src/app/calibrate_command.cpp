@@ -213,7 +213,7 @@ void add_calibrate_command(CLI::App& app, int& status) {
       ->check(CLI::Range(1, 1024));
   command->add_flag("--overwrite", options->overwrite, "replace FILE.toml where it is there");
   command->footer(
-      "Example: plica calibrate drosophila --vary contraction.apical.stiffness_nN_per_um=6:10 --target "
+      "Example: plica calibrate drosophila --vary contraction.apical.stiffness_nN_per_um=3:7 --target "
       "furrow_depth_um=28.89~0.1 --out mine.toml");
   command->callback([options, &status] { status = calibrate_scenario(*options); });
 }

@@ -85,7 +85,7 @@ const std::vector<Claim> table = {
      {},
      "nN",
      Basis::measured,
-     "they push the borders apart, 2.9 times as hard as without division, and before that up to 4.8 times; the borders "
+     "they push the borders apart, 3 times as hard as without division, and before that up to 4.8 times; the borders "
      "lean on the shell, the floor buckles inward, and the lips turn over (docs/division.md)",
      "at the end"},
     {"4, thesis",

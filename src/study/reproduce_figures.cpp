@@ -179,8 +179,8 @@ std::vector<Figure> reproduction_figures(const Results& results, const Measured&
     figures.push_back(
         chart("trade-off", *plot,
               "**The trade-off.** The one number that is free once the pill's depth is met, the ratio of "
-              "springs across the axis to springs along it, against everything printed. Nothing below 0.3 or "
-              "above 0.4 meets the pill's speed ratio, VCE's displacement and the sphere's depth together."));
+              "springs across the axis to springs along it, against everything printed. Nothing far from 0.35 to "
+              "0.4 meets the pill's speed ratio, VCE's displacement and the sphere's depth together."));
   return figures;
 }
 

@@ -143,7 +143,9 @@ void add_readings(Document& page, const Measured& measured, const Plan& plan) {
     text += (&printed == &printed_numbers().front() ? " " : "; ") + printed.text;
   page.blocks.emplace_back(Paragraph{text + "."});
   page.blocks.emplace_back(Paragraph{fmt::format(
-      "Stiffness k (nN/um) is the one that makes the pill 28.89 um deep, where it is given; else 8.0. Steps have a "
+      "Stiffness k (nN/um) is the one that makes the pill 28.89 um deep, where it is given; else 4.82. Preload and "
+      "stiffness "
+      "have one proportion, 60 nN to 4.82 nN/um. Steps have a "
       "tolerance of {} um here, against 0.02 elsewhere: the chosen row against the headlines below shows what that "
       "does.",
       matrix_tolerance_um)});
@@ -211,7 +213,8 @@ Document reproduction_document(const Results& results, const Measured& measured,
                   "gastrulation*, "
                   "against plica {} ({}). The chosen reading is the built-in `drosophila`, and `xenopus` with the same "
                   "springs, drag "
-                  "and material: 5 rows, across/along 0.35, k = 8 nN/um, drag 136 Pa s/um. Runs lie in `runs/`, the "
+                  "and material: 5 rows, across/along 0.35, k = 4.82 nN/um and a preload of 60 nN, drag 131 Pa s/um. "
+                  "Runs lie in `runs/`, the "
                   "data of each plot "
                   "in `figures/`.{}",
                   version(), commit(),

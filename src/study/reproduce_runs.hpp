@@ -13,7 +13,7 @@
 
 namespace plica {
 
-inline constexpr double matrix_tolerance_um = 0.08;  // of a step, in the matrix of readings; the chosen reading's: 0.02
+inline constexpr double matrix_tolerance_um = 0.05;  // of a step, in the matrix of readings; the chosen reading's: 0.02
 inline constexpr double fine_tolerance_um = 0.005;   // for the error bars in time
 inline constexpr int pill_along = 14, sphere_along = 7;  // contractile cells on the midline
 
