@@ -142,13 +142,13 @@ void add_readings(Document& page, const Measured& measured, const Plan& plan) {
   for (const PrintedNumber& printed : printed_numbers())
     text += (&printed == &printed_numbers().front() ? " " : "; ") + printed.text;
   page.blocks.emplace_back(Paragraph{text + "."});
-  page.blocks.emplace_back(Paragraph{fmt::format(
-      "Stiffness k (nN/um) is the one that makes the pill 28.89 um deep, where it is given; else 4.82. Preload and "
-      "stiffness "
-      "have one proportion, 60 nN to 4.82 nN/um. Steps have a "
-      "tolerance of {} um here, against 0.02 elsewhere: the chosen row against the headlines below shows what that "
-      "does.",
-      matrix_tolerance_um)});
+  page.blocks.emplace_back(
+      Paragraph{fmt::format("Stiffness k (nN/um) is the one that makes the pill 28.89 um deep, where it is given; else "
+                            "4.82. The preload is 60 "
+                            "nN for 4.82 nN/um, and in proportion to k, where no other is given. Steps have a "
+                            "tolerance of {} um here, against "
+                            "0.02 elsewhere: the chosen row against the headlines below shows what that does.",
+                            matrix_tolerance_um)});
   page.blocks.emplace_back(std::move(table));
   for (const std::string& one : absent) page.blocks.emplace_back(Paragraph{"Not in this build: " + one + "."});
 }

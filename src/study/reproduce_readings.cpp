@@ -10,13 +10,15 @@ namespace plica {
 namespace {
 
 const std::string across = "contraction.apical.across_ratio=";
+const std::string stiffness = "contraction.apical.stiffness_nN_per_um=";
+const std::string preload = "contraction.apical.preload_nN=";
 const std::string rows = "region.furrow.cells_across=";
 const std::string drag = "dynamics.surface_drag_Pa_s_per_um=";
 
 // `keys`, and springs of stiffness k (nN/um) whose preload has the proportion to k that the chosen reading's have.
 std::vector<std::string> with_springs(double k, std::vector<std::string> keys) {
-  keys.push_back(fmt::format("contraction.apical.stiffness_nN_per_um={}", k));
-  keys.push_back(fmt::format("contraction.apical.preload_nN={:.4g}", 60 / 4.82 * k));
+  keys.push_back(fmt::format("{}{}", stiffness, k));
+  keys.push_back(fmt::format("{}{:.4g}", preload, 60 / 4.82 * k));
   return keys;
 }
 
@@ -48,6 +50,8 @@ const std::vector<PaperReading> table = {
      false, 2, "", true},
     {"axial-2", "across/along", "0, axial springs only (k = 9.64)", with_springs(9.64, {across + "0"})},
     {"axial-3", "across/along", "0, axial springs only (k = 14.46)", with_springs(14.46, {across + "0"})},
+    {"preload-none", "preload", "none (k = 7.99)", {stiffness + "7.99", preload + "0"}},
+    {"preload-only", "preload", "nothing else: constant forces of 152.5 nN", {stiffness + "0", preload + "152.5"}},
     {"rows-3", "rows", "3 rows (k = 7.635)", with_springs(7.635, {rows + "3"}), "drosophila", true},
     {"rows-7", "rows", "7 rows (k = 4.31)", with_springs(4.31, {rows + "7"}), "drosophila", true},
     {"rows-3-equal", "rows", "3 rows, equal springs, k as chosen", {rows + "3", across + "1"}},

@@ -1,7 +1,8 @@
-// A way through all elements for any number of threads: chunks of consecutive elements, some at a time (a window),
-// coloured so that chunks of one colour have no node in common. Windows and their colours follow each other, the chunks
-// of one colour are shared out among the threads. So elements add to their nodes without more ado, and what a node gets
-// is added up in the same order whoever does it. A window's nodes fit a cache, which all its colours find them in.
+// A way through all elements for any number of threads: chunks of consecutive elements, coloured so that chunks of one
+// colour have no node in common. Colours follow each other, the chunks of one colour are shared out among the threads.
+// So elements add to their nodes without more ado, and what a node gets is added up in the same order whoever does it.
+// Chunks are as long as they can be while there are enough of them: a processor foresees what follows in memory, but
+// not where the next chunk begins.
 #pragma once
 
 #include <omp.h>
@@ -26,8 +27,7 @@ class ElementChunks {
  public:
   /// Elements that kernels take at once. Chunks begin at multiples of it.
   static constexpr std::size_t batch_size = 8;
-  static constexpr std::size_t most_chunks = 1024;
-  static constexpr std::size_t chunks_in_window = 64;
+  static constexpr std::size_t most_chunks = 64;
 
   /// With the cells of elements, chunks of one colour have no cell in common either.
   explicit ElementChunks(std::span<const std::array<NodeId, 8>> elements, std::span<const CellId> element_cell = {});
@@ -96,8 +96,8 @@ class ElementChunks {
 
   std::size_t elements_;
   std::size_t batches_in_chunk_;
-  std::vector<std::size_t> order_;        // chunks, window by window and colour by colour
-  std::vector<std::size_t> phase_start_;  // where each colour of each window starts in order_, and the end
+  std::vector<std::size_t> order_;        // chunks, colour by colour
+  std::vector<std::size_t> phase_start_;  // where each colour starts in order_, and the end
 };
 
 }  // namespace plica
