@@ -1,8 +1,7 @@
 // A way through all elements for any number of threads: chunks of consecutive elements, coloured so that chunks of one
 // colour have no node in common. Colours follow each other, the chunks of one colour are shared out among the threads.
 // So elements add to their nodes without more ado, and what a node gets is added up in the same order whoever does it.
-// Chunks are as long as they can be while there are enough of them: a processor foresees what follows in memory, but
-// not where the next chunk begins.
+// Chunks are as long as they can be while there are enough of them to share out (docs/performance.md).
 #pragma once
 
 #include <omp.h>
