@@ -15,10 +15,13 @@ const std::string preload = "contraction.apical.preload_nN=";
 const std::string rows = "region.furrow.cells_across=";
 const std::string drag = "dynamics.surface_drag_Pa_s_per_um=";
 
-// `keys`, and springs of stiffness k (nN/um) whose preload has the proportion to k that the chosen reading's have.
+// Of the chosen reading's springs: 60 nN to 4.82 nN/um.
+const double preload_per_stiffness_um = 60 / 4.82;
+
+// `keys`, and springs of stiffness k (nN/um) with a preload in that proportion.
 std::vector<std::string> with_springs(double k, std::vector<std::string> keys) {
   keys.push_back(fmt::format("{}{}", stiffness, k));
-  keys.push_back(fmt::format("{}{:.4g}", preload, 60 / 4.82 * k));
+  keys.push_back(fmt::format("{}{:.4g}", preload, preload_per_stiffness_um * k));
   return keys;
 }
 
