@@ -44,6 +44,7 @@ template <bool viscous>
     Hourglass q;
     e.ask_for_next();
     multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
+    e.ask_for_next();
     e.ask_for_next_corners(step.positions);
     const Sym D = deviator(now.S);
     Lanes energies = 0.5 * (e.shear() * contract(D, D) + dot(now.h, q));

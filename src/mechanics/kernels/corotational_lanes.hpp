@@ -22,10 +22,10 @@ struct Elements {
   [[nodiscard]] Lanes shear() const { return load(batch.shear + lane); }
   [[nodiscard]] Lanes viscous_shear() const { return rate * load(viscous->shear + lane); }
 
-  /// Asks memory for some more of the next batch. A kernel that does so all the way through calculates while memory
-  /// answers; when it asks for much at once, which fills the processor's line buffers, or not at all, it waits.
+  /// Asks memory for a sixth of the next batch. A kernel that does so at six places or more, of which the first six are
+  /// not at its end, calculates while memory answers; for what it did not ask for, or asked for all at once, it waits.
   void ask_for_next() const {
-    constexpr int lines = sizeof(CorotationalBatch) / 64 * width / batch_size, at_once = 9;
+    constexpr int lines = sizeof(CorotationalBatch) / 64 * width / batch_size, at_once = (lines + 5) / 6;
     const char* next = reinterpret_cast<const char*>(&batch + 1) + 64 * (lane / width * lines);
     // Compilers would put all requests of a kernel together, but for the statements that touch "memory".
     asm volatile("" ::: "memory");
@@ -166,7 +166,7 @@ inline Deformation deformation(const Elements& e, const double* positions) {
   gather_modes(e.batch.nodes, e.lane, positions, m);
   const Mat F = gradient(e, m);
   Stretch of;
-  set_stretch(F, of, [] {});
+  set_stretch(F, of, [&] { e.ask_for_next(); });
   return deformation(e, m, F, of);
 }
 
