@@ -122,9 +122,14 @@ void Transfer<B>::update(const Matrix<B>& matrix, double largest_eigenvalue, Uni
 
 template <int B>
 void Transfer<B>::restrict_to(std::span<const float> fine, std::span<float> coarse) const {
+  // A column's blocks do not follow each other in memory: they are asked for so many blocks ahead.
+  constexpr int ahead = 16, numbers_a_line = 16;
+  const int last = static_cast<int>(columns_.places.size()) - 1;
   parallel_for(aggregates_.count, [&](std::size_t aggregate) {
     float sums[lanes<motions>] = {};
     for (int at = columns_.starts[aggregate]; at < columns_.starts[aggregate + 1]; ++at) {
+      const float* later = block(columns_.places[std::min(at + ahead, last)]);
+      for (int k = 0; k < B * motions; k += numbers_a_line) __builtin_prefetch(later + k);
       const float *p = block(columns_.places[at]), *from = &fine[std::size_t{B} * columns_.rows[at]];
       for (int i = 0; i < B; ++i)
 #pragma omp simd
