@@ -26,7 +26,7 @@ struct Elements {
   /// not at its end, calculates while memory answers; for what it did not ask for, or asked for all at once, it waits.
   void ask_for_next() const {
     constexpr int lines = sizeof(CorotationalBatch) / 64 * width / batch_size, at_once = (lines + 5) / 6;
-    const char* next = reinterpret_cast<const char*>(&batch + 1) + 64 * (lane / width * lines);
+    const char* next = reinterpret_cast<const char*>(&next_batch) + 64 * (lane / width * lines);
     // Compilers would put all requests of a kernel together, but for the statements that touch "memory".
     asm volatile("" ::: "memory");
     for (int k = 0; k < at_once && asked < lines; ++k) __builtin_prefetch(next + 64 * asked++, 0, 2);
