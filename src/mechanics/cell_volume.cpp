@@ -24,6 +24,7 @@ void add_volume_hessian(const std::array<NodeId, 8>& nodes, const HexPoints& poi
 VolumeElements::VolumeElements(const Tissue& tissue, Kernels kernels)
     : kernels_(kernels), chunks_(tissue.elements, tissue.element_cell), batches_(chunks_.batch_count()) {
   parallel_for(batches_.size() * ElementChunks::batch_size, [&](std::size_t place) { fit(tissue, place); });
+  chunks_.put_new_nodes(std::span(batches_));
 }
 
 void VolumeElements::fit(const Tissue& tissue, std::size_t place) {

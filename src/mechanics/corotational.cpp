@@ -37,6 +37,7 @@ Corotational::Corotational(const Tissue& tissue, const ElasticModuli& moduli, do
   require_upright_rest_shapes(tissue);
   parallel_for(
       batches_.size() * batch_size, [&](std::size_t place) { fit(tissue, place); }, long_bodies);
+  chunks_.put_new_nodes(std::span(batches_));
 }
 
 void Corotational::fit(const Tissue& tissue, std::size_t place) {

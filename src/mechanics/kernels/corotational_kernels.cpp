@@ -45,7 +45,7 @@ template <bool viscous>
     e.ask_for_next();
     multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
     e.ask_for_next();
-    e.ask_for_next_corners(step.positions);
+    e.ask_for_new_nodes(step.positions);
     const Sym D = deviator(now.S);
     Lanes energies = 0.5 * (e.shear() * contract(D, D) + dot(now.h, q));
     Sym T = D;
@@ -61,8 +61,9 @@ template <bool viscous>
     const Deformation now = deformation(e, step.positions);
     Hourglass q;
     e.ask_for_next();
+    e.ask_for_new_nodes(step.positions);
     multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
-    e.ask_for_next_corners(step.positions, forces);
+    e.ask_for_new_nodes(forces);
     Sym T = e.shear() * deviator(now.S);
     Vec torque = cross(now.h, q);
     if (viscous) {
@@ -109,8 +110,9 @@ template <bool viscous>
     Hourglass w, dq;
     const Mat W = seen_from(e, R, at.dF, at.d, w);
     e.ask_for_next();
+    e.ask_for_new_nodes(step.positions, direction);
     multiply<1>(e.batch.stiffness, e.lane, {&w}, {&dq});
-    e.ask_for_next_corners(step.positions, direction, product);
+    e.ask_for_new_nodes(product);
     Lanes shear = e.shear();
     if (viscous) {
       Hourglass damped;
@@ -145,8 +147,9 @@ template <bool viscous>
     // What answers it.
     Hourglass q, dq;
     e.ask_for_next();
+    e.ask_for_new_nodes(step.positions, direction);
     multiply<2>(e.batch.stiffness, e.lane, {&h, &dh}, {&q, &dq});
-    e.ask_for_next_corners(step.positions, direction, product);
+    e.ask_for_new_nodes(product);
     e.ask_for_next();
     Sym T = e.shear() * deviator(S), dT = e.shear() * deviator(dS);
     Vec torque = cross(h, q), dtorque = cross(dh, q) + cross(h, dq);

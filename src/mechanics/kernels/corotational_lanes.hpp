@@ -33,12 +33,12 @@ struct Elements {
     asm volatile("" ::: "memory");
   }
 
-  /// Asks memory for what the next elements will look at, or add to, at their corners. To be called when the numbers of
-  /// these have come by ask_for_next: about in the middle.
+  /// Asks memory for vectors that the next batch will look at, or add to, at its new nodes. To be called when their
+  /// numbers have come by ask_for_next: about in the middle. Of many vectors not all at once.
   template <class... Vectors>
-  void ask_for_next_corners(const Vectors*... vectors) const {
+  void ask_for_new_nodes(const Vectors*... vectors) const {
     asm volatile("" ::: "memory");
-    prefetch_next(batch, next_batch, lane, vectors...);
+    prefetch(next_batch.new_nodes, lane, vectors...);
     asm volatile("" ::: "memory");
   }
 };

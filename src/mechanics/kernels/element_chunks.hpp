@@ -14,6 +14,7 @@
 
 #include "core/ids.hpp"
 #include "core/vector.hpp"
+#include "mechanics/kernels/new_nodes.hpp"
 
 namespace plica {
 
@@ -33,6 +34,14 @@ class ElementChunks {
 
   [[nodiscard]] std::size_t element_count() const { return elements_; }
   [[nodiscard]] std::size_t batch_count() const { return (elements_ + batch_size - 1) / batch_size; }
+
+  /// Fills in the new nodes of all batches: those that none of the 32 before them in their chunk has. (To a chunk all
+  /// are new as it begins: what was before it may have been another thread's.)
+  template <class Batch>
+  void put_new_nodes(std::span<Batch> batches) const {
+    std::vector<std::size_t> seen;
+    for (std::size_t b = 0; b < batches.size(); ++b) put_new_nodes(b, batches[b].nodes, seen, batches[b].new_nodes);
+  }
 
   /// Calls body(first batch, last batch) for every chunk. `last` is the one after. On one thread unless `shared`.
   template <class Body>
@@ -84,6 +93,10 @@ class ElementChunks {
       for (std::size_t k = phase_start_[phase]; k < phase_start_[phase + 1]; ++k) body(order_[k]);
     }
   }
+
+  // Also counts the batch's nodes as seen: for each node, 1 + the batch that had it last.
+  void put_new_nodes(std::size_t batch, const int (&nodes)[8][batch_size], std::vector<std::size_t>& seen,
+                     NewNodes& new_nodes) const;
 
   [[nodiscard]] std::size_t first_batch(std::size_t chunk) const { return chunk * batches_in_chunk_; }
   [[nodiscard]] std::size_t last_batch(std::size_t chunk) const {

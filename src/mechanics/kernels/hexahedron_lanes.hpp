@@ -7,6 +7,7 @@
 #pragma once
 
 #include "mechanics/kernels/lanes.hpp"
+#include "mechanics/kernels/new_nodes.hpp"
 
 namespace plica::PLICA_KERNELS {
 
@@ -55,17 +56,13 @@ inline void gather(const BatchNodes& nodes, int lane, const double* vectors, Vec
   for (int i = 0; i < 8; ++i) x[i] = gather(vectors, nodes[i] + lane);
 }
 
-/// Asks memory for what will be gathered from, or added to, the corners of the elements after those of `batch` from
-/// `lane` on. At about every line: neighbouring lanes mostly have neighbouring nodes, of which a line holds 2 2/3.
-template <class Batch, class... Vectors>
-inline void prefetch_next(const Batch& batch, const Batch& next_batch, int lane, const Vectors*... vectors) {
-  const bool here = lane + width < batch_size;
-  const BatchNodes& nodes = here ? batch.nodes : next_batch.nodes;
-  const int from = here ? lane + width : 0;
-#pragma GCC unroll copies
-  for (const auto& corner : nodes)
-#pragma GCC unroll 3
-    for (int k = 0; k < width; k += 3) (__builtin_prefetch(vectors + corner[from + k]), ...);
+/// Asks memory for the vectors of those of the nodes whose turn it is with the elements from `lane` on.
+template <class... Vectors>
+inline void prefetch(const NewNodes& nodes, int lane, const Vectors*... vectors) {
+  constexpr int at_once = sizeof(NewNodes) / sizeof(int) * width / batch_size;
+  const int* from = nodes + lane / width * at_once;
+#pragma GCC unroll 16
+  for (int k = 0; k < at_once; ++k) (__builtin_prefetch(vectors + from[k]), ...);
 }
 
 #if PLICA_LANES == 1

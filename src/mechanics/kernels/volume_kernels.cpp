@@ -44,7 +44,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
 [[gnu::flatten]] void add_volumes(const VolumeStep& step, std::size_t first, std::size_t last, double* volumes) {
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7];
-    prefetch_next(e.batch, e.next_batch, e.lane, step.positions);
+    prefetch(e.next_batch.new_nodes, e.lane, step.positions);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     const Lanes V = volume(m);
     for (int k = 0; k < e.count; ++k) volumes[e.batch.cells[e.lane + k]] += V[k];
@@ -54,7 +54,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
 [[gnu::flatten]] void write_gradients(const VolumeStep& step, std::size_t first, std::size_t last, double* gradients) {
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7], g[7], f[8];
-    prefetch_next(e.batch, e.next_batch, e.lane, step.positions);
+    prefetch(e.next_batch.new_nodes, e.lane, step.positions);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     volume_gradient(m, g);
     from_modes(g, f);
@@ -72,7 +72,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
   double sum = 0;
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7];
-    prefetch_next(e.batch, e.next_batch, e.lane, step.positions);
+    prefetch(e.next_batch.new_nodes, e.lane, step.positions);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     const Lanes strain = volume(m) / e.rest_volume() - 1.0;
     const Lanes energies = (0.5 * step.bulk_modulus) * e.rest_volume() * strain * strain;
@@ -84,7 +84,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
 [[gnu::flatten]] void add_forces(const VolumeStep& step, std::size_t first, std::size_t last, double* forces) {
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7], g[7];
-    prefetch_next(e.batch, e.next_batch, e.lane, step.positions, forces);
+    prefetch(e.next_batch.new_nodes, e.lane, step.positions, forces);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     volume_gradient(m, g);
     const Lanes p = pressure(step, e, m);
@@ -98,7 +98,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
   const bool dilatation = !step.pressures;
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7], d[7], result[7] = {};
-    prefetch_next(e.batch, e.next_batch, e.lane, step.positions, direction, product);
+    prefetch(e.next_batch.new_nodes, e.lane, step.positions, direction, product);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     gather_modes(e.batch.nodes, e.lane, direction, d);
     if (!dilatation || !step.semidefinite_tangent) {

@@ -4,11 +4,14 @@
 
 #include <cstddef>
 
+#include "mechanics/kernels/new_nodes.hpp"
+
 namespace plica {
 
 /// Eight elements side by side: the last index is the element's. A batch that is not full repeats its last element.
 struct alignas(64) VolumeBatch {
-  int nodes[8][8];         // corners; three times the node's number
+  int nodes[8][8];  // corners; three times the node's number
+  NewNodes new_nodes;
   double rest_volumes[8];  // um^3
   int cells[8];            // whose pressure they have
 };
