@@ -18,7 +18,8 @@ void add(double factor, const Vector& a, Vector& to) {
 ConjugateResidualsReport ConjugateResiduals::solve(const std::function<void(const Vector&, Vector&)>& multiply,
                                                    const std::function<void(const Vector&, Vector&)>& precondition,
                                                    const Vector& b, const ConjugateResidualsRule& rule,
-                                                   const std::function<bool()>& stop_requested, Vector& x) {
+                                                   const std::function<bool(const ConjugateResidualsReport&)>& go_on,
+                                                   Vector& x) {
   ConjugateResidualsReport report;
   x.assign(b.size(), 0.0);
   residual_ = b;
@@ -28,7 +29,7 @@ ConjugateResidualsReport ConjugateResiduals::solve(const std::function<void(cons
   while (true) {
     report.converged = report.residual <= rule.tolerance;
     if (report.converged || report.iterations >= rule.most_iterations || !std::isfinite(report.residual)) return report;
-    if (stop_requested && stop_requested()) {
+    if (go_on && !go_on(report)) {
       report.interrupted = true;
       return report;
     }

@@ -21,15 +21,16 @@ struct ConjugateResidualsRule {
   int most_kept = 30;  // directions that are kept; then it begins anew
 };
 
-/// Solves A x = b from x = 0. `multiply(p, Ap)` sets Ap; `precondition(r, z)` sets z to an approximate A^-1 r. Sums are
-/// taken in a fixed order: the same bits for any number of threads.
+/// Solves A x = b from x = 0. `multiply(p, Ap)` sets Ap; `precondition(r, z)` sets z to an approximate A^-1 r, which
+/// may be another from one iteration to the next; `go_on(report)` is asked before each. Sums are taken in a fixed
+/// order: the same bits for any number of threads.
 class ConjugateResiduals {
  public:
   using Vector = std::vector<double>;
   ConjugateResidualsReport solve(const std::function<void(const Vector&, Vector&)>& multiply,
                                  const std::function<void(const Vector&, Vector&)>& precondition, const Vector& b,
-                                 const ConjugateResidualsRule& rule, const std::function<bool()>& stop_requested,
-                                 Vector& x);
+                                 const ConjugateResidualsRule& rule,
+                                 const std::function<bool(const ConjugateResidualsReport&)>& go_on, Vector& x);
 
  private:
   std::vector<Vector> directions_,

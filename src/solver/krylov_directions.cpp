@@ -10,6 +10,7 @@ namespace plica {
 namespace {
 
 constexpr std::size_t most_contact_changes = 32;  // before the factor is made anew
+constexpr double far_from_balance = 0.1;          // residual's forces, relative
 
 // gamma times the size of a cell, over the mean stiffness of a node. Large, so that few iterations are left for the
 // pressures; but single precision has to carry A beside it, multigrid finds nearly incompressible cells hard (and has
@@ -20,6 +21,16 @@ double regularisation(KrylovDirections::Inverse inverse, const Cell& cell) {
   if (cell.element_count > 1) return 3;
   return inverse == KrylovDirections::Inverse::multigrid ? 5 : 150;
 }
+
+/// To which Newton's method can use a direction: its own error leaves a part of the residual that falls with the
+/// residual itself; more where it has been seen to converge slowly (Eisenstat and Walker 1996, choice 2).
+double useful_tolerance(const Residual& residual, const NewtonDirections::Wish& wish) {
+  const double useful = std::clamp(std::max(0.05 * residual.force, 0.5 * wish.left * wish.left), 1e-4, 1e-2);
+  return std::clamp(wish.accuracy, useful, 0.1);
+}
+
+/// The share that reducing the residual to this has of a solve to 1e-4.
+double share_of_solve(double residual) { return std::clamp(std::log10(residual) / -4, 0.1, 4.0); }
 
 }  // namespace
 
@@ -47,13 +58,10 @@ KrylovDirections::KrylovDirections(const Model& model, Inverse inverse, std::fun
 void KrylovDirections::weigh_pressures() {
   const double stiffness = matrix_.mean_diagonal();
   pressure_weights_.clear();
-  double sum = 0;
   for (std::size_t c = 0; c < jacobian_.cells(); ++c) {
     const double target = model_.volumes.targets()[c], size = std::cbrt(target);
     pressure_weights_.push_back(regularisation(inverse_, model_.tissue.cells[c]) * stiffness / (size * target));
-    sum += pressure_weights_.back() * size * size;
   }
-  volume_unit_ = sum / static_cast<double>(std::max<std::size_t>(1, jacobian_.cells()));
 }
 
 std::span<Vec3> KrylovDirections::of_nodes(Vector& vector) const {
@@ -210,48 +218,90 @@ bool KrylovDirections::follow_contacts(const Iterate& at) {
   return changed <= frames_.size() / 100;
 }
 
+void KrylovDirections::set_right_side(const Residual& residual) {
+  // The mean weight times a cell's side squared; as it is now, should weights become others on the way.
+  double sum = 0;
+  for (std::size_t c = 0; c < pressure_weights_.size(); ++c)
+    sum += pressure_weights_[c] * std::pow(model_.volumes.targets()[c], 2.0 / 3);
+  volume_unit_ = sum / static_cast<double>(std::max<std::size_t>(1, pressure_weights_.size()));
+
+  right_.resize(3 * nodes_ + jacobian_.cells());
+  std::ranges::copy(residual.forces, of_nodes(right_).begin());
+  project(of_nodes(right_));
+  for (std::size_t c = 0; c < jacobian_.cells(); ++c) of_cells(right_)[c] = -volume_unit_ * residual.volume_deficit[c];
+}
+
+double KrylovDirections::curvature(const Vector& direction, const Vector& product) const {
+  // The product's parts are A dx - J^T dlambda and -volume_unit J dx.
+  const std::size_t numbers = 3 * nodes_;
+  double sum = parallel_dot(std::span(direction).first(numbers), std::span(product).first(numbers));
+  const std::span<const double> pressures = of_cells(direction), rates = of_cells(product);
+  for (std::size_t c = 0; c < rates.size(); ++c) {
+    const double rate = -rates[c] / volume_unit_;
+    sum += rate * (pressures[c] + pressure_weights_[c] * rate);
+  }
+  return sum;
+}
+
+int KrylovDirections::wasted(const ConjugateResidualsReport& report) const {
+  const long needed = std::lround(iterations_when_new_ * share_of_solve(report.residual));
+  return std::max(0, report.iterations - static_cast<int>(needed));
+}
+
 NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate& at, const Residual& residual,
                                                  const Wish& wish, Direction& direction, Cost& cost) {
   linearise(at);
+  constexpr ConjugateResidualsReport at_beginning{.residual = 1};
+  ConjugateResidualsReport before_new = at_beginning;  // where the solve was when the factor was made
   bool is_new = false;
-  if (!has_factor_ || wasted_iterations_ > price_of_factor_ || !follow_contacts(at)) {
+  const auto renew = [&](const ConjugateResidualsReport& so_far) {
     ++cost.factorisations;
-    if (!refresh(step, at)) return Outcome::singular;
+    has_factor_ = refresh(step, at);
     is_new = true;
-  }
-
-  // Newton's own error leaves a part of the residual that falls with the residual itself; more where it has been seen
-  // to converge slowly (Eisenstat and Walker 1996, choice 2).
-  const double useful = std::clamp(std::max(0.05 * residual.force, 0.5 * wish.left * wish.left), 1e-4, 1e-2);
-  const ConjugateResidualsRule rule{.tolerance = std::clamp(wish.accuracy, useful, 0.1)};
-  const auto solve = [&] {
-    right_.resize(3 * nodes_ + jacobian_.cells());
-    std::ranges::copy(residual.forces, of_nodes(right_).begin());
-    project(of_nodes(right_));
-    for (std::size_t c = 0; c < jacobian_.cells(); ++c)
-      of_cells(right_)[c] = -volume_unit_ * residual.volume_deficit[c];
-    const auto report = solver_.solve([&](const Vector& p, Vector& q) { multiply(step, at, p, q); },
-                                      [&](const Vector& r, Vector& z) { precondition(r, z); }, right_, rule,
-                                      stop_requested_, solution_);
-    cost.linear_solves += report.iterations;
-    return report;
+    before_new = so_far;
   };
-  auto report = solve();
-  if (!report.converged && !report.interrupted && !is_new) {
-    ++cost.factorisations;
-    if (!refresh(step, at)) return Outcome::singular;
-    is_new = true;
-    report = solve();
+  if (!has_factor_ || wasted_iterations_ > price_of_factor_ || !follow_contacts(at)) renew(at_beginning);
+
+  // Where energy curves down along some direction, that leads to a saddle, if anywhere, and iterations do not end: far
+  // from balance the semidefinite tangent shows the way. Near it Newton's method needs all of the tangent.
+  Step here = step;
+  bool is_indefinite = false;
+  const auto multiply_here = [&](const Vector& p, Vector& q) {
+    multiply(here, at, p, q);
+    if (residual.force > far_from_balance && !here.semidefinite_tangent && curvature(p, q) < 0) is_indefinite = true;
+  };
+  const auto go_on = [&](const ConjugateResidualsReport& so_far) {
+    if (!is_new && wasted(so_far) > 3 * price_of_factor_) renew(so_far);
+    return has_factor_ && !is_indefinite && !(stop_requested_ && stop_requested_());
+  };
+  ConjugateResidualsReport report;
+  while (true) {
+    set_right_side(residual);
+    report = solver_.solve(
+        multiply_here, [&](const Vector& r, Vector& z) { precondition(r, z); }, right_,
+        {.tolerance = useful_tolerance(residual, wish)}, go_on, solution_);
+    cost.linear_solves += report.iterations;
+    if (report.converged) break;
+    if (is_indefinite) {
+      is_indefinite = false;
+      here.semidefinite_tangent = true;
+      before_new = at_beginning;
+    } else if (!report.interrupted && !is_new) {
+      renew(at_beginning);
+    } else {
+      break;
+    }
   }
-  // An inexact direction is still one; the line search judges it.
+  if (!has_factor_) return Outcome::singular;
   if (report.interrupted) return Outcome::interrupted;
+  // An inexact direction is still one; the line search judges it.
   if (!(report.residual < 0.5)) return Outcome::singular;
-  const double share = std::clamp(std::log10(report.residual) / -4, 0.1, 4.0);  // of iterations to 1e-4
   if (is_new) {
-    iterations_when_new_ = static_cast<int>(std::lround(report.iterations / share));
+    const double share = share_of_solve(report.residual / before_new.residual);
+    iterations_when_new_ = static_cast<int>(std::lround((report.iterations - before_new.iterations) / share));
     wasted_iterations_ = 0;
   } else {
-    wasted_iterations_ += std::max(0, report.iterations - static_cast<int>(std::lround(iterations_when_new_ * share)));
+    wasted_iterations_ += wasted(report);
   }
   direction.positions.assign(of_nodes(solution_).begin(), of_nodes(solution_).end());
   direction.pressures.assign(of_cells(solution_).begin(), of_cells(solution_).end());

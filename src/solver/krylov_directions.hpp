@@ -40,6 +40,11 @@ class KrylovDirections final : public NewtonDirections {
   void weigh_pressures();
   [[nodiscard]] UninitialisedVector<float> rigid_motions(const Iterate& at) const;
   void multiply(const Step& step, const Iterate& at, const Vector& direction, Vector& product) const;
+  void set_right_side(const Residual& residual);
+  /// dx (A + gamma J^T W J) dx of a direction, by its product: below 0 only where the sheet is not stable.
+  [[nodiscard]] double curvature(const Vector& direction, const Vector& product) const;
+  /// How many of a solve's iterations a new factor would have saved.
+  [[nodiscard]] int wasted(const ConjugateResidualsReport& solve) const;
   void apply_inverse(std::span<Vec3> x) const;
   void precondition(const Vector& residual, Vector& result) const;
   void project(std::span<Vec3> vectors) const;

@@ -71,6 +71,29 @@ TEST(ConjugateResiduals, TheExactInverseNeedsOneIteration) {
   EXPECT_EQ(report.iterations, 1);
 }
 
+// Nothing is lost when a better preconditioner takes over on the way.
+TEST(ConjugateResiduals, GoOnWithAnotherPreconditioner) {
+  const System system;
+  const Matrix inverse = system.matrix.inverse();
+  Vector x;
+  double residual = 1;
+  bool is_exact = false;
+  const auto report = ConjugateResiduals().solve(
+      system.times(system.matrix),
+      [&](const Vector& r, Vector& z) { system.times(is_exact ? inverse : Matrix(Matrix::Identity()))(r, z); },
+      system.b, {.tolerance = 1e-9},
+      [&](const ConjugateResidualsReport& so_far) {
+        EXPECT_LE(so_far.residual, residual);
+        residual = so_far.residual;
+        is_exact = so_far.iterations == 5;
+        return true;
+      },
+      x);
+  EXPECT_TRUE(report.converged);
+  EXPECT_EQ(report.iterations, 6);
+  EXPECT_LE(system.error(x), 1e-8);
+}
+
 TEST(ConjugateResiduals, SayWhenTheyDoNotGetThere) {
   const System system;
   Vector x;
@@ -78,7 +101,8 @@ TEST(ConjugateResiduals, SayWhenTheyDoNotGetThere) {
   EXPECT_FALSE(report.converged);
   EXPECT_EQ(report.iterations, 3);
   report = ConjugateResiduals().solve(
-      system.times(system.matrix), system.times(Matrix::Identity()), system.b, {}, [] { return true; }, x);
+      system.times(system.matrix), system.times(Matrix::Identity()), system.b, {}, [](const auto&) { return false; },
+      x);
   EXPECT_TRUE(report.interrupted);
   EXPECT_FALSE(report.converged);
   EXPECT_FALSE(ConjugateResiduals()

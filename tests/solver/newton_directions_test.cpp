@@ -1,6 +1,7 @@
 // All ways of finding Newton's directions find the same.
 #include <gtest/gtest.h>
 
+#include "core/parallel.hpp"
 #include "solver/block_cholesky.hpp"
 #include "solver/contact_border.hpp"
 #include "solver/newton.hpp"
@@ -73,6 +74,37 @@ TEST(NewtonDirections, AreTheSameWhicheverWayTheyAreFound) {
           q(direct.pressures.data(), direct.pressures.size());
       EXPECT_LE((p - q).norm(), 1e-3 * q.norm());
     }
+  }
+}
+
+// A sheet that is pressed together in its plane so much that it would rather buckle.
+TEST(NewtonDirections, FarFromBalanceTheSemidefiniteTangentShowsTheWayOutOfInstability) {
+  Model model = dimpling_sheet({2, 2, 2});
+  model.volumes_are_held = false;
+  model.vitelline.reset();
+  Case given(model);
+  given.at.positions = given.previous;
+  for (Vec3& position : given.at.positions) position.head<2>() *= 0.9;
+  // The part of the forces that a direction leaves, by all of the tangent or its semidefinite part.
+  const auto left = [&](const Direction& found, bool semidefinite) {
+    Step step = given.step();
+    step.semidefinite_tangent = semidefinite;
+    Vectors rest(found.positions.size(), Vec3::Zero());
+    for (const auto& law : model.laws) law->add_tangent_product(step, found.positions, rest);
+    model.tissue.carry_hanging(rest);
+    for (std::size_t n = 0; n < rest.size(); ++n) rest[n] -= given.residual.forces[n];
+    return std::sqrt(parallel_squared_norm(rest) / parallel_squared_norm(given.residual.forces));
+  };
+  for (const LinearMethod method : {LinearMethod::cholesky, LinearMethod::multigrid}) {
+    given.residual.force = 0.5;
+    const Direction far = given.direction(method);
+    EXPECT_LE(left(far, true), 1e-2);
+    EXPECT_GE(left(far, false), 0.1);
+    // Near it all of the tangent is used, though 200 iterations do not solve that system to what was asked for.
+    given.residual.force = 0.05;
+    const Direction near = given.direction(method);
+    EXPECT_LE(left(near, false), 0.05);
+    EXPECT_GE(left(near, true), 0.1);
   }
 }
 
