@@ -52,7 +52,8 @@ TEST(ElementChunks, NewNodesAreThoseThatNoBatchShortlyBeforeHas) {
     chunks.for_batches([&](std::size_t first, std::size_t last) {
       for (std::size_t b = first; b < last; ++b) {
         std::set<int> expected = nodes_of(batches[b]);
-        for (std::size_t before = b < first + 32 ? first : b - 32; before < b; ++before)
+        for (std::size_t before = std::max(first + ElementChunks::looked_back, b) - ElementChunks::looked_back;
+             before < b; ++before)
           for (const int node : nodes_of(batches[before])) expected.erase(node);
         const auto& found = batches[b].new_nodes;
         if (expected.size() > std::size(found)) {

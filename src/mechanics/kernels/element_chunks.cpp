@@ -40,7 +40,6 @@ ElementChunks::ElementChunks(std::span<const std::array<NodeId, 8>> elements, st
 
 void ElementChunks::put_new_nodes(std::size_t batch, const int (&nodes)[8][batch_size], std::vector<std::size_t>& seen,
                                   NewNodes& new_nodes) const {
-  constexpr std::size_t looked_back = 32;  // batches; 5 to 100 do alike (docs/performance.md)
   const std::size_t first_of_chunk = batch / batches_in_chunk_ * batches_in_chunk_;
   const std::size_t since = std::max(first_of_chunk + looked_back, batch) - looked_back;
   std::vector<int> found;

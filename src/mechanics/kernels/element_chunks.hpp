@@ -28,6 +28,8 @@ class ElementChunks {
   /// Elements that kernels take at once. Chunks begin at multiples of it.
   static constexpr std::size_t batch_size = 8;
   static constexpr std::size_t most_chunks = 64;
+  /// Batches of which it is known what they have touched; 5 to 100 do alike (docs/performance.md).
+  static constexpr std::size_t looked_back = 32;
 
   /// With the cells of elements, chunks of one colour have no cell in common either.
   explicit ElementChunks(std::span<const std::array<NodeId, 8>> elements, std::span<const CellId> element_cell = {});
@@ -35,8 +37,8 @@ class ElementChunks {
   [[nodiscard]] std::size_t element_count() const { return elements_; }
   [[nodiscard]] std::size_t batch_count() const { return (elements_ + batch_size - 1) / batch_size; }
 
-  /// Fills in the new nodes of all batches: those that none of the 32 before them in their chunk has. (To a chunk all
-  /// are new as it begins: what was before it may have been another thread's.)
+  /// Fills in the new nodes of all batches: those that none of the `looked_back` before them in their chunk has. (To a
+  /// chunk all are new as it begins: what was before it may have been another thread's.)
   template <class Batch>
   void put_new_nodes(std::span<Batch> batches) const {
     std::vector<std::size_t> seen;
