@@ -98,6 +98,7 @@ void KrylovDirections::linearise(const Iterate& at) {
 }
 
 bool KrylovDirections::refresh(const Step& step, const Iterate& at) {
+  has_factor_ = false;
   // The semidefinite part of the tangent serves where all of it is not definite.
   for (const bool semidefinite : {false, true}) {
     Step here = step;
@@ -155,7 +156,8 @@ void KrylovDirections::multiply(const Step& step, const Iterate& at, const Vecto
   const std::span<Vec3> forces = of_nodes(product);
   parallel_for(forces.size(), [&](std::size_t n) { forces[n].setZero(); });
   for (const auto& law : model_.laws) law->add_tangent_product(step, dx, forces);
-  if (model_.volumes_are_held) model_.volumes.add_tangent_product(at.positions, at.pressures, dx, forces);
+  if (model_.volumes_are_held && !step.semidefinite_tangent)
+    model_.volumes.add_tangent_product(at.positions, at.pressures, dx, forces);
   model_.tissue.carry_hanging(forces);
   for (const auto& [node, tangent] : contact_tangents_) forces[node] += tangent * dx[node];
   jacobian_.add_forces(of_cells(direction), -1, forces);
@@ -256,7 +258,7 @@ NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate
   bool is_new = false;
   const auto renew = [&](const ConjugateResidualsReport& so_far) {
     ++cost.factorisations;
-    has_factor_ = refresh(step, at);
+    refresh(step, at);
     is_new = true;
     before_new = so_far;
   };

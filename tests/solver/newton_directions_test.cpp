@@ -80,18 +80,21 @@ TEST(NewtonDirections, AreTheSameWhicheverWayTheyAreFound) {
 // A sheet that is pressed together in its plane so much that it would rather buckle.
 TEST(NewtonDirections, FarFromBalanceTheSemidefiniteTangentShowsTheWayOutOfInstability) {
   Model model = dimpling_sheet({2, 2, 2});
-  model.volumes_are_held = false;
   model.vitelline.reset();
   Case given(model);
   given.at.positions = given.previous;
   for (Vec3& position : given.at.positions) position.head<2>() *= 0.9;
   // The part of the forces that a direction leaves, by all of the tangent or its semidefinite part.
+  StepMatrix matrix(model);
   const auto left = [&](const Direction& found, bool semidefinite) {
     Step step = given.step();
     step.semidefinite_tangent = semidefinite;
-    Vectors rest(found.positions.size(), Vec3::Zero());
-    for (const auto& law : model.laws) law->add_tangent_product(step, found.positions, rest);
-    model.tissue.carry_hanging(rest);
+    matrix.assemble(model, step, given.at);
+    VolumeJacobian jacobian(model);
+    jacobian.update(model.volumes, given.at.positions);
+    Vectors rest = product_of(matrix, found.positions);
+    rest.resize(found.positions.size(), Vec3::Zero());
+    jacobian.add_forces(found.pressures, -1, rest);
     for (std::size_t n = 0; n < rest.size(); ++n) rest[n] -= given.residual.forces[n];
     return std::sqrt(parallel_squared_norm(rest) / parallel_squared_norm(given.residual.forces));
   };
