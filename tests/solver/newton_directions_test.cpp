@@ -77,6 +77,29 @@ TEST(NewtonDirections, AreTheSameWhicheverWayTheyAreFound) {
   }
 }
 
+// Made where drag is all there is, it is of little use for the elastic sheet.
+TEST(NewtonDirections, AMultigridThatDragsASolveOutIsMadeAnewOnTheWay) {
+  const Model model = dimpling_sheet({2, 2, 2});
+  const Case given(model);
+  const auto directions = make_directions(model, LinearMethod::multigrid, {});
+  const auto find = [&](double rate_s, Direction& found) {
+    Step step = given.step();
+    step.rate_s = rate_s;
+    NewtonDirections::Cost cost;
+    EXPECT_EQ(directions->find(step, given.at, given.residual, {0, 1e-5}, found, cost),
+              NewtonDirections::Outcome::found);
+    return cost;
+  };
+  Direction found;
+  EXPECT_EQ(find(1e-4, found).factorisations, 1);
+  const auto cost = find(given.step().rate_s, found);
+  EXPECT_EQ(cost.factorisations, 1);
+  EXPECT_GT(cost.linear_solves, 15) << "it should have been tried";
+  EXPECT_LT(cost.linear_solves, 60);
+  const Direction expected = given.direction(LinearMethod::direct);
+  EXPECT_LE(largest_difference(found.positions, expected.positions), 1e-3 * largest(expected.positions));
+}
+
 // A sheet that is pressed together in its plane so much that it would rather buckle.
 TEST(NewtonDirections, FarFromBalanceTheSemidefiniteTangentShowsTheWayOutOfInstability) {
   Model model = dimpling_sheet({2, 2, 2});
