@@ -16,10 +16,10 @@
 
 #include "ceilings.hpp"
 #include "counted_kernels.hpp"
-#include "mechanics/cell_volume.hpp"
-#include "mechanics/corotational.hpp"
+#include "mechanics/constraints/cell_volume.hpp"
+#include "mechanics/elasticity/corotational.hpp"
 #include "reference/yardstick.hpp"
-#include "tissue/embryo.hpp"
+#include "tissue/shapes/embryo.hpp"
 
 namespace plica::bench {
 namespace {

@@ -1,11 +1,11 @@
 // Where the time of a step goes, on the pill of 756 cells with the first step of the Drosophila contraction ahead.
 #include <benchmark/benchmark.h>
 
-#include "mechanics/corotational.hpp"
+#include "mechanics/elasticity/corotational.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
-#include "solver/step_matrix.hpp"
-#include "solver/step_solver.hpp"
+#include "solver/linear/step_matrix.hpp"
+#include "solver/step/step_solver.hpp"
 
 namespace plica {
 namespace {

@@ -22,6 +22,6 @@ add_custom_command(OUTPUT ${report_template}
   COMMENT "Bundling the report's page" VERBATIM)
 add_custom_target(report_template DEPENDS ${report_template})
 add_dependencies(plica_core report_template)
-set_source_files_properties(${PROJECT_SOURCE_DIR}/src/output/report_template.cpp PROPERTIES
+set_source_files_properties(${PROJECT_SOURCE_DIR}/src/show/report_template.cpp PROPERTIES
   COMPILE_DEFINITIONS PLICA_REPORT_TEMPLATE="${report_template}"
   OBJECT_DEPENDS ${report_template})

@@ -1,4 +1,4 @@
-#include "output/checkpoint.hpp"
+#include "record/checkpoint.hpp"
 
 #include <fmt/format.h>
 #include <libdeflate.h>

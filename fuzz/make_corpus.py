@@ -90,7 +90,7 @@ def items(form, values):
 
 
 def mesh(points, cells, faces, arrays=()):
-    """As tissue/mesh_bytes.cpp writes it."""
+    """As tissue/files/mesh_bytes.cpp writes it."""
     data = items("3d", points) + items("8i", cells) + items("i", [(face,) for face in faces])
     for name, flags in arrays:
         data += struct.pack("<Q", len(name)) + name + struct.pack("<Q", len(flags)) + flags

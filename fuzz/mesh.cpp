@@ -1,6 +1,6 @@
 #include "targets.hpp"
 #include "tissue/hexahedral_mesh.hpp"
-#include "tissue/mesh_bytes.hpp"
+#include "tissue/files/mesh_bytes.hpp"
 
 namespace plica {
 namespace {

@@ -11,7 +11,7 @@ namespace plica {
 bool fuzz_scenario(std::string_view bytes);
 
 /// A mesh: the first byte says how often cells are divided, the rest is what the process that runs VTK's readers hands
-/// over (tissue/mesh_bytes.hpp).
+/// over (tissue/files/mesh_bytes.hpp).
 bool fuzz_mesh(std::string_view bytes);
 
 /// A checkpoint. The first byte says whether what follows is a whole file ('f'), or the HDF5 file in it ('h'), to which

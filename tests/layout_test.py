@@ -10,7 +10,10 @@ import sys
 from pathlib import Path
 
 # A folder of src/ includes itself and the folders before it.
-FOLDERS = ("core", "tissue", "mechanics", "solver", "simulation", "measure", "scenario", "output", "study", "app")
+FOLDERS = ("core", "tissue", "mechanics", "solver", "simulation", "measure", "scenario", "record", "show", "study",
+           "paper", "app")
+# Inside solver/, too, a folder includes itself and those before it.
+ROOMS_OF_SOLVER = ("algebra", "multigrid", "linear", "step", "projection")
 MOST_LINES = 500
 # The files of src/mechanics that are none, beside those of kernels/.
 NOT_A_LAW = {"law", "model", "program", "turning_elements", "contraction_pattern", "hexahedron_stiffness"}
@@ -39,6 +42,10 @@ def files(folder, *suffixes):
     return sorted(p for p in (root / folder).rglob("*") if p.is_file() and p.suffix in suffixes)
 
 
+def rank_in_solver(room):
+    return ROOMS_OF_SOLVER.index(room) if room in ROOMS_OF_SOLVER else len(ROOMS_OF_SOLVER)  # files beside the rooms
+
+
 def check_includes():
     """Includes run one way; VTK only where the name says so."""
     for path in files("src", ".hpp", ".cpp"):
@@ -57,6 +64,10 @@ def check_includes():
                 breach(path, f"includes {name}, which is not in src/; paths are from src/", number)
             elif quoted and FOLDERS.index(other) > FOLDERS.index(folder):
                 breach(path, f"{folder} may not include {other}: {other} comes after it", number)
+            elif quoted and folder == other == "solver":
+                room, other_room = path.relative_to(root / "src").parts[1], name.split("/")[1]
+                if rank_in_solver(other_room) > rank_in_solver(room):
+                    breach(path, f"solver/{room} may not include {name}: {other_room} comes after it", number)
             if (other.startswith("vtk") or name.endswith("_vtk.hpp")) and not path.stem.endswith("_vtk"):
                 breach(path, f"includes {name}: VTK is for files named *_vtk.cpp", number)
 
@@ -87,8 +98,8 @@ def check_laws():
         if path.stem in NOT_A_LAW or path.parent.name == "kernels":
             continue
         count("laws")
-        for companion in (f"src/mechanics/{path.stem}.cpp", f"docs/theory/{path.stem}.md",
-                          f"tests/mechanics/{path.stem}_test.cpp"):
+        place = path.relative_to(root / "src").with_suffix("")
+        for companion in (f"src/{place}.cpp", f"docs/theory/{path.stem}.md", f"tests/{place}_test.cpp"):
             if not (root / companion).is_file():
                 breach(path, f"has no {companion}")
 

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from paraview import simple
 
-# The ends and middles of plica's colour maps in CIE L*a*b*, as in src/output/looks.cpp (a test compares them).
+# The ends and middles of plica's colour maps in CIE L*a*b*, as in src/show/looks.cpp (a test compares them).
 STILL = ((96, -3, 10), (78, -18, 2), (59, -20, -18), (40, -4, -33), (21, 8, -30))
 ABOUT = ((25, 8, -38), (60, -10, -32), (95, 0, 3), (60, 22, 42), (25, 24, 32))
 # array, where it lives, map, the value in the middle of a two-sided map

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "solver/preconditioner.hpp"
+#include "solver/algebra/preconditioner.hpp"
 #include "systems.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/block_pattern.hpp"
+#include "solver/algebra/block_pattern.hpp"
 
 namespace plica::multigrid_bench {
 

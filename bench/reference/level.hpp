@@ -3,7 +3,7 @@
 
 #include "coarsening.hpp"
 #include "scene.hpp"
-#include "solver/block_cholesky.hpp"
+#include "solver/algebra/block_cholesky.hpp"
 
 namespace plica::reference {
 

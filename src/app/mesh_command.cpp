@@ -7,7 +7,7 @@
 #include "app/output_file.hpp"
 #include "app/scenario_options.hpp"
 #include "core/errors.hpp"
-#include "output/mesh_writer.hpp"
+#include "record/mesh_writer.hpp"
 #include "scenario/setup.hpp"
 #include "tissue/mesh_quality.hpp"
 

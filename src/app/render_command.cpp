@@ -10,8 +10,8 @@
 #include "app/output_file.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "output/run_pictures.hpp"
 #include "scenario/suggest.hpp"
+#include "show/run_pictures.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {

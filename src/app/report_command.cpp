@@ -9,7 +9,7 @@
 #include "app/output_file.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "output/report.hpp"
+#include "show/report.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {

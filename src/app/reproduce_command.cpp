@@ -8,7 +8,7 @@
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
 #include "core/errors.hpp"
-#include "study/reproduce.hpp"
+#include "paper/reproduce.hpp"
 
 namespace plica {
 namespace {

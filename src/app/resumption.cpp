@@ -4,7 +4,8 @@
 
 #include "core/errors.hpp"
 #include "core/version.hpp"
-#include "output/archive.hpp"
+#include "record/archive.hpp"
+#include "record/run_directory.hpp"
 #include "scenario/print.hpp"
 
 namespace plica {

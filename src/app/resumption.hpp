@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "output/recorder.hpp"
+#include "record/recorder.hpp"
 #include "simulation/run.hpp"
 
 namespace plica {

@@ -16,12 +16,14 @@
 #include "core/directory_lock.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
-#include "output/archive.hpp"
-#include "output/recorder.hpp"
-#include "output/report.hpp"
+#include "record/archive.hpp"
+#include "record/recorder.hpp"
+#include "record/run_directory.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/watch.hpp"
+#include "show/report.hpp"
+#include "show/report_writer.hpp"
 
 namespace plica {
 namespace {
@@ -187,7 +189,7 @@ int run_scenario(const RunOptions& options) {
   auto lock = std::make_unique<DirectoryLock>(options.out);
   std::optional<Checkpoint> checkpoint;
   if (options.resume) checkpoint = checkpoint_to_resume(options.out, scenario, *setting.model);
-  if (checkpoint && has_ended(checkpoint->run, setting.controls) && holds_ending(options.out)) {
+  if (checkpoint && has_ended(checkpoint->run, setting.controls) && holds_ending(options.out, can_report())) {
     if (!options.quiet) fmt::print("{}: the run is finished; nothing is left to do\n", options.out);
     return exit_done;
   }
@@ -197,7 +199,9 @@ int run_scenario(const RunOptions& options) {
     lock = std::make_unique<DirectoryLock>(options.out);  // it may have been made only now
   }
   catch_interruptions();
+  ReportWriter report(options.out);
   Recorder recorder(options.out, scenario, *setting.model, setting.observer);
+  if (can_report()) recorder.listen(report);
   const Ending ending = with_a_way_on([&] {
     WallTimes before;
     RunMemory memory;

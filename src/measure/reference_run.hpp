@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tissue/frame_file.hpp"
+#include "tissue/files/frame_file.hpp"
 
 namespace plica {
 

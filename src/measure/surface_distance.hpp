@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "tissue/frame_file.hpp"
+#include "tissue/files/frame_file.hpp"
 
 namespace plica {
 

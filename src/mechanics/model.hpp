@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "mechanics/cell_volume.hpp"
-#include "mechanics/contraction.hpp"
+#include "mechanics/active/contraction.hpp"
+#include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/law.hpp"
+#include "mechanics/obstacles/vitelline.hpp"
 #include "mechanics/surroundings.hpp"
-#include "mechanics/vitelline.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {

@@ -1,8 +1,8 @@
 // Laws that act on single nodes: drag of the surroundings, inertia, and pressure on faces as a dead load.
 #pragma once
 
+#include "mechanics/active/program.hpp"
 #include "mechanics/law.hpp"
-#include "mechanics/program.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "mechanics/shape_memory.hpp"
+#include "mechanics/elasticity/shape_memory.hpp"
 #include "tissue/mesh_quality.hpp"
 
 namespace plica {

@@ -6,13 +6,13 @@
 #include <limits>
 
 #include "core/units.hpp"
-#include "mechanics/corotational.hpp"
-#include "mechanics/shape_memory.hpp"
+#include "mechanics/elasticity/corotational.hpp"
+#include "mechanics/elasticity/shape_memory.hpp"
 #include "mechanics/surroundings.hpp"
 #include "scenario/regions.hpp"
-#include "solver/closed_surface.hpp"
-#include "tissue/embryo.hpp"
-#include "tissue/mesh_file.hpp"
+#include "solver/projection/closed_surface.hpp"
+#include "tissue/files/mesh_file.hpp"
+#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

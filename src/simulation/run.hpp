@@ -9,7 +9,7 @@
 
 #include "mechanics/model.hpp"
 #include "simulation/division_rules.hpp"
-#include "solver/stepper.hpp"
+#include "solver/make_stepper.hpp"
 
 namespace plica {
 

@@ -7,8 +7,8 @@
 
 #include "core/errors.hpp"
 #include "measure/energy_norm.hpp"
-#include "output/mesh_writer.hpp"
-#include "output/results.hpp"
+#include "record/mesh_writer.hpp"
+#include "record/results.hpp"
 #include "scenario/load.hpp"
 #include "tissue/hexahedron.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "measure/surface_distance.hpp"
-#include "tissue/frame_file.hpp"
+#include "tissue/files/frame_file.hpp"
 
 namespace plica {
 

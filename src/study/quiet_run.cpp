@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "output/summary.hpp"
+#include "record/summary.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/watch.hpp"
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/files.hpp"
-#include "output/archive.hpp"
+#include "record/archive.hpp"
 #include "targets.hpp"
 
 namespace plica {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mechanics/corotational.hpp"
+#include "mechanics/elasticity/corotational.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "tissue/embryo.hpp"
+#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

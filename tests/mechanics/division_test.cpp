@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/step_matrix.hpp"
-#include "solver/step_solver.hpp"
+#include "solver/linear/step_matrix.hpp"
+#include "solver/step/step_solver.hpp"
 #include "support/divided.hpp"
 
 namespace plica {

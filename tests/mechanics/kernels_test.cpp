@@ -7,9 +7,9 @@
 #include <cstdlib>
 
 #include "core/parallel.hpp"
-#include "mechanics/cell_volume.hpp"
-#include "mechanics/corotational.hpp"
-#include "mechanics/turning_elements.hpp"
+#include "mechanics/constraints/cell_volume.hpp"
+#include "mechanics/elasticity/corotational.hpp"
+#include "mechanics/elasticity/turning_elements.hpp"
 #include "support/law_checks.hpp"
 #include "support/threads.hpp"
 

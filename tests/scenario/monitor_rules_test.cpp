@@ -7,7 +7,7 @@
 #include "scenario/load.hpp"
 #include "scenario/print.hpp"
 #include "scenario/watch.hpp"
-#include "tissue/embryo.hpp"
+#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/errors.hpp"
 #include "measure/energy_norm.hpp"
-#include "output/mesh_writer.hpp"
+#include "record/mesh_writer.hpp"
 #include "study/compare.hpp"
 #include "support/tissues.hpp"
 

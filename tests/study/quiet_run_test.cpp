@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "core/files.hpp"
-#include "output/results.hpp"
+#include "record/results.hpp"
 #include "scenario/load.hpp"
 #include "support/block_scenario.hpp"
 

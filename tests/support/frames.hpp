@@ -1,7 +1,7 @@
 // Frames for tests, made from a mesh without a run.
 #pragma once
 
-#include "tissue/frame_file.hpp"
+#include "tissue/files/frame_file.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica::support {

@@ -4,8 +4,8 @@
 
 #include <Eigen/Sparse>
 
-#include "mechanics/cell_volume.hpp"
-#include "solver/linear_solver.hpp"
+#include "mechanics/constraints/cell_volume.hpp"
+#include "solver/algebra/linear_solver.hpp"
 
 namespace plica::support {
 namespace {

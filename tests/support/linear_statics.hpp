@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "mechanics/corotational.hpp"
+#include "mechanics/elasticity/corotational.hpp"
 #include "support/tissues.hpp"
 
 namespace plica::support {

@@ -1,10 +1,10 @@
 // Models that tests share.
 #pragma once
 
-#include "mechanics/corotational.hpp"
+#include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/model.hpp"
 #include "mechanics/surroundings.hpp"
-#include "solver/step_matrix.hpp"
+#include "solver/linear/step_matrix.hpp"
 #include "support/tissues.hpp"
 
 namespace plica::support {

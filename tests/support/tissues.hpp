@@ -4,7 +4,7 @@
 #include <random>
 
 #include "mechanics/law.hpp"
-#include "tissue/embryo.hpp"
+#include "tissue/shapes/embryo.hpp"
 
 namespace plica::support {
 

@@ -7,8 +7,8 @@
 #include <iostream>
 #include <random>
 
-#include "tissue/embryo.hpp"
-#include "tissue/mesh_bytes.hpp"
+#include "tissue/files/mesh_bytes.hpp"
+#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

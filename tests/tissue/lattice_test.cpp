@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "tissue/embryo.hpp"
+#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

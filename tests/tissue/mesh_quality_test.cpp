@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tissue/embryo.hpp"
+#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

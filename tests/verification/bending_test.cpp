@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "solver/step_solver.hpp"
+#include "solver/step/step_solver.hpp"
 #include "support/linear_statics.hpp"
 #include "support/loads.hpp"
 

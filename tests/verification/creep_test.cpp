@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "mechanics/corotational.hpp"
-#include "solver/step_solver.hpp"
+#include "mechanics/elasticity/corotational.hpp"
+#include "solver/step/step_solver.hpp"
 #include "support/loads.hpp"
 #include "support/tissues.hpp"
 

@@ -1,7 +1,7 @@
 // Random cells of the pill divide in random planes, five rounds, to over 10 000 cells; the tissue relaxes in between.
 #include <gtest/gtest.h>
 
-#include "solver/step_solver.hpp"
+#include "solver/step/step_solver.hpp"
 #include "support/divided.hpp"
 #include "support/loads.hpp"
 

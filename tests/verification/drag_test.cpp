@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <functional>
 
-#include "mechanics/corotational.hpp"
+#include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/surroundings.hpp"
-#include "solver/step_solver.hpp"
+#include "solver/step/step_solver.hpp"
 #include "support/loads.hpp"
 #include "support/tissues.hpp"
 

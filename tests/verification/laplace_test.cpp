@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "mechanics/contraction.hpp"
+#include "mechanics/active/contraction.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {

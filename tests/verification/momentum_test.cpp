@@ -3,9 +3,9 @@
 
 #include <cstdio>
 
-#include "mechanics/corotational.hpp"
+#include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/surroundings.hpp"
-#include "solver/step_solver.hpp"
+#include "solver/step/step_solver.hpp"
 #include "support/law_checks.hpp"
 
 namespace plica {

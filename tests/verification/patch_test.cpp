@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "mechanics/cell_volume.hpp"
+#include "mechanics/constraints/cell_volume.hpp"
 #include "support/law_checks.hpp"
 #include "support/linear_statics.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
-#include "mechanics/cell_volume.hpp"
-#include "mechanics/corotational.hpp"
+#include "mechanics/constraints/cell_volume.hpp"
+#include "mechanics/elasticity/corotational.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {

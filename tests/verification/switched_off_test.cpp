@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "mechanics/turning_elements.hpp"
+#include "mechanics/elasticity/turning_elements.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <map>
 
-#include "mechanics/cell_volume.hpp"
+#include "mechanics/constraints/cell_volume.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {

@@ -1,4 +1,4 @@
-// What src/output/packing.cpp packs: whole numbers as differences, byte by byte, deflated, base64.
+// What src/show/packing.cpp packs: whole numbers as differences, byte by byte, deflated, base64.
 
 export interface ArrayEntry {
   name: string;

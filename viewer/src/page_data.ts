@@ -1,4 +1,4 @@
-// What plica put into the page: src/output/report.cpp and report_run.hpp.
+// What plica put into the page: src/show/report.cpp and report_run.hpp.
 import type { ArrayEntry } from "./packed";
 
 export type Vec3 = [number, number, number];

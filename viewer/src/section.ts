@@ -1,4 +1,4 @@
-// What a plane shows of the inside: where it cuts the elements. The C++ of pictures has the same: src/output/skin.cpp.
+// What a plane shows of the inside: where it cuts the elements. The C++ of pictures has the same: src/show/skin.cpp.
 import type { Cut } from "./state";
 import type { Topology } from "./run";
 

@@ -1,0 +1,275 @@
+#include "mechanics/active/contraction.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "tissue/division.hpp"
+
+namespace plica {
+namespace {
+
+double chain_length(std::span<const NodeId> nodes, std::span<const Vec3> positions) {
+  double length = 0;
+  for (std::size_t s = 1; s < nodes.size(); ++s)
+    length += (positions[nodes[s].index()] - positions[nodes[s - 1].index()]).norm();
+  return length;
+}
+
+// Segment of a chain: its direction and length. One shrunk to a point has no direction and pulls nowhere.
+struct Segment {
+  Vec3 direction;
+  double length;
+};
+
+// The block of d2l/dx2 that a segment gives: (I - e e^T)/length.
+Mat3 turning_stiffness(const Segment& s) {
+  if (s.length <= 0) return Mat3::Zero();
+  return (Mat3::Identity() - s.direction * s.direction.transpose()) / s.length;
+}
+
+}  // namespace
+
+std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule,
+                                        const CellPattern& pattern) {
+  std::vector<Spring> springs;
+  double factor = 1, delay = 0;  // of the cell at hand
+  // One spring a segment, in series: a part of the chain is stiffer than the whole by as much as it is shorter.
+  const auto add = [&](std::size_t cell, const std::vector<NodeId>& chain, double ratio, double share) {
+    if (ratio <= 0) return;
+    const double strength = factor * share * ratio, whole = chain_length(chain, tissue.rest_positions);
+    for (std::size_t s = 1; s < chain.size(); ++s) {
+      Spring spring{.nodes = {chain[s - 1], chain[s]}, .delay_s = delay, .cell = CellId(cell)};
+      const double length = chain_length(spring.nodes, tissue.rest_positions), shorter = whole / length;
+      spring.stiffness = shorter * (strength * rule.stiffness);
+      spring.preload = strength * rule.preload;
+      spring.damping = shorter * (share * rule.damping);
+      spring.rest_length = rule.rest_length_ratio * length;
+      springs.push_back(std::move(spring));
+    }
+  };
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+    if (!cells[c]) continue;
+    const Cell& cell = tissue.cells[c];
+    if (!pattern.factors.empty()) factor = pattern.factors[c];
+    if (!pattern.delays_s.empty()) delay = pattern.delays_s[c];
+    for (const auto& [line, share] : cell.lines) {
+      if (line.side != rule.side) continue;
+      const double ratio = line.direction == EdgeDirection::along    ? rule.along_ratio
+                           : line.direction == EdgeDirection::across ? rule.across_ratio
+                                                                     : 1;
+      add(c, line.nodes, ratio, share);
+    }
+    if (rule.diagonals && rule.side != EdgeSide::lateral) {
+      const int first = rule.side == EdgeSide::apical ? 4 : 0;
+      for (const int i : {0, 1})
+        add(c, {cell.corners[first + i], cell.corners[first + i + 2]}, 0.5 * (rule.along_ratio + rule.across_ratio), 1);
+    }
+  }
+  return springs;
+}
+
+double Contraction::activity(double delay_s, double time_s) const {
+  const double own_time = time_s - delay_s;
+  return own_time < -1e-9 ? 0 : program_.at(own_time);  // a step that ends on the delay does so but for rounding
+}
+
+double Contraction::activity_of(CellId cell, double time_s) const {
+  return activity(cell_delays_s_.empty() ? 0 : cell_delays_s_[cell.index()], time_s);
+}
+
+std::vector<double> Contraction::points_s() const {
+  std::vector<double> delays = {0};
+  for (const Spring& spring : springs_) delays.push_back(spring.delay_s);
+  std::ranges::sort(delays);
+  const double apart = 0.01 * delays.back();
+  std::vector<double> kept = {0};
+  for (const double delay : delays)
+    if (delay > 0 && (delay >= kept.back() + apart || delay == delays.back())) kept.push_back(delay);
+  const std::vector<double> from_start = {0};  // a program without points: from nothing to 1 at its time 0
+  std::vector<double> points;
+  for (const double point : program_.times_s().empty() ? from_start : program_.times_s())
+    for (const double delay : kept) points.push_back(point + delay);
+  std::ranges::sort(points);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+// The tension T(l) of a spring over a step, its derivative dT/dl, and the energy it derives from.
+struct Contraction::Pulled {
+  std::span<const NodeId> nodes;
+  std::span<const Segment> segments;  // between them: where dl/dx and d2l/dx2 come from
+  double energy = 0, tension = 0, slope = 0;
+  // What resists the turning of the segments: the tension. A spring under pressure (a negative preload) is unstable
+  // there, and the semidefinite tangent leaves that out.
+  double turning_tension = 0;
+
+  void respond(const Spring& spring, const Step& step, double activity) {
+    double length = 0;
+    for (const Segment& segment : segments) length += segment.length;
+    const double stretch = std::max(0.0, length - spring.rest_length);
+    energy = activity * (0.5 * spring.stiffness * stretch * stretch + spring.preload * length);
+    tension = activity * (spring.stiffness * stretch + spring.preload);
+    slope = length > spring.rest_length ? activity * spring.stiffness : 0;
+    if (spring.damping > 0) {
+      const double change = length - step.before([this](std::span<const Vec3> x) { return chain_length(nodes, x); });
+      const double rate = spring.damping / step.rate_s;
+      energy += 0.5 * rate * change * change;
+      tension += rate * change;
+      slope += rate;
+    }
+    turning_tension = step.semidefinite_tangent ? std::max(0.0, tension) : tension;
+  }
+
+  // dl/dx of node i.
+  [[nodiscard]] Vec3 length_gradient(std::size_t i) const {
+    Vec3 gradient = Vec3::Zero();
+    if (i > 0) gradient += segments[i - 1].direction;
+    if (i < segments.size()) gradient -= segments[i].direction;
+    return gradient;
+  }
+};
+
+Contraction::Contraction(std::vector<Spring> springs, Program program, std::vector<double> cell_delays_s)
+    : springs_(std::move(springs)), program_(std::move(program)), cell_delays_s_(std::move(cell_delays_s)) {
+  start_.push_back(0);
+  for (const Spring& spring : springs_) {
+    nodes_.insert(nodes_.end(), spring.nodes.begin(), spring.nodes.end());
+    start_.push_back(nodes_.size());
+    longest_ = std::max(longest_, spring.nodes.size());
+  }
+}
+
+template <class Take>
+void Contraction::for_springs(const Step& step, const Take& take) const {
+  std::vector<Segment> segments(longest_);
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    Pulled pulled;
+    pulled.nodes = std::span(nodes_).subspan(start_[k], start_[k + 1] - start_[k]);
+    for (std::size_t s = 0; s + 1 < pulled.nodes.size(); ++s) {
+      const Vec3 d = step.positions[pulled.nodes[s + 1].index()] - step.positions[pulled.nodes[s].index()];
+      const double length = d.norm();
+      segments[s] = {length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero()), length};
+    }
+    pulled.segments = std::span(segments).first(pulled.nodes.size() - 1);
+    pulled.respond(springs_[k], step, activity(springs_[k].delay_s, step.end_time_s));
+    take(pulled);
+  }
+}
+
+double Contraction::energy(const Step& step) const {
+  double sum = 0;
+  for_springs(step, [&](const Pulled& p) { sum += p.energy; });
+  return sum;
+}
+
+void Contraction::add_forces(const Step& step, std::span<Vec3> forces) const {
+  for_springs(step, [&](const Pulled& p) {
+    for (std::size_t i = 0; i < p.nodes.size(); ++i) forces[p.nodes[i].index()] -= p.tension * p.length_gradient(i);
+  });
+}
+
+void Contraction::add_tangent_product(const Step& step, std::span<const Vec3> direction,
+                                      std::span<Vec3> product) const {
+  for_springs(step, [&](const Pulled& p) {
+    double lengthening = 0;
+    for (std::size_t i = 0; i < p.nodes.size(); ++i)
+      lengthening += p.length_gradient(i).dot(direction[p.nodes[i].index()]);
+    for (std::size_t i = 0; i < p.nodes.size(); ++i)
+      product[p.nodes[i].index()] += p.slope * lengthening * p.length_gradient(i);
+    for (std::size_t s = 0; s < p.segments.size(); ++s) {
+      const std::size_t a = p.nodes[s].index(), b = p.nodes[s + 1].index();
+      const Vec3 change = p.turning_tension * turning_stiffness(p.segments[s]) * (direction[b] - direction[a]);
+      product[a] -= change;
+      product[b] += change;
+    }
+  });
+}
+
+void Contraction::add_tangent(const Step& step, TangentSink& tangent) const {
+  for_springs(step, [&](const Pulled& p) {
+    for (std::size_t i = 0; i < p.nodes.size(); ++i)
+      for (std::size_t j = 0; j <= i; ++j)
+        tangent.add_block(p.nodes[i], p.nodes[j], p.slope * p.length_gradient(i) * p.length_gradient(j).transpose());
+    for (std::size_t s = 0; s < p.segments.size(); ++s) {
+      const NodeId a = p.nodes[s], b = p.nodes[s + 1];
+      const Mat3 block = p.turning_tension * turning_stiffness(p.segments[s]);
+      tangent.add_block(a, a, block);
+      tangent.add_block(b, b, block);
+      tangent.add_block(a, b, -block);
+    }
+  });
+}
+
+NodeGroups Contraction::node_groups() const {
+  NodeGroups groups;
+  for (const Spring& spring : springs_) groups.add(spring.nodes);
+  return groups;
+}
+
+namespace {
+
+bool is_corner(const Tissue& tissue, CellId cell, NodeId node) {
+  const auto& corners = tissue.cells[cell.index()].corners;
+  return std::ranges::find(corners, node) != corners.end();
+}
+
+// The chain with the nodes that cuts have put into it, its own cell's and its neighbours'.
+std::vector<NodeId> with_midway_nodes(const std::vector<NodeId>& chain, const Division& division) {
+  std::vector<NodeId> nodes = {chain.front()};
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    const auto midway = division.node_midway.find(std::minmax(chain[i - 1], chain[i]));
+    if (midway != division.node_midway.end()) nodes.push_back(midway->second);
+    nodes.push_back(chain[i]);
+  }
+  return nodes;
+}
+
+// The daughters' parts of their mother's spring: two in series where it was cut, else the whole.
+std::vector<Spring> inherit(const Spring& spring, CellId low, CellId high, const Tissue& tissue,
+                            std::span<const Vec3> positions) {
+  const auto& nodes = spring.nodes;
+  const auto both = [&](NodeId node) { return is_corner(tissue, low, node) && is_corner(tissue, high, node); };
+  const auto cut = std::find_if(nodes.begin() + 1, nodes.end() - 1, both);
+  std::vector<Spring> parts = {spring};
+  if (cut != nodes.end() - 1) {
+    parts.push_back(spring);
+    parts[0].nodes.assign(nodes.begin(), cut + 1);
+    parts[1].nodes.assign(cut, nodes.end());
+  }
+  for (Spring& part : parts) {
+    const double share = chain_length(part.nodes, positions) / chain_length(nodes, positions);
+    part.stiffness /= share;
+    part.damping /= share;
+    part.rest_length *= share;
+    const bool is_low = is_corner(tissue, low, part.nodes.front()) && is_corner(tissue, low, part.nodes.back());
+    part.cell = is_low ? low : high;
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::unique_ptr<Law> Contraction::after_division(const Tissue& tissue, const Division& division,
+                                                 std::span<const Vec3> positions) const {
+  std::map<CellId, CellId> now, other_daughter;
+  for (std::size_t c = 0; c < division.origin.size(); ++c) now.try_emplace(division.origin[c], CellId(c));
+  for (const auto& [low, high] : division.daughters) other_daughter[low] = high;
+  std::vector<Spring> springs;
+  for (Spring spring : springs_) {
+    if (!now.contains(spring.cell)) continue;  // the cell is no part of the tissue any more
+    spring.cell = now.at(spring.cell);
+    spring.nodes = with_midway_nodes(spring.nodes, division);
+    const auto daughter = other_daughter.find(spring.cell);
+    if (daughter == other_daughter.end()) {
+      springs.push_back(std::move(spring));
+      continue;
+    }
+    for (Spring& part : inherit(spring, daughter->first, daughter->second, tissue, positions))
+      springs.push_back(std::move(part));
+  }
+  return std::make_unique<Contraction>(
+      std::move(springs), program_,
+      cell_delays_s_.empty() ? std::vector<double>{} : inherited(division, cell_delays_s_));
+}
+
+}  // namespace plica

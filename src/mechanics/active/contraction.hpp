@@ -1,0 +1,83 @@
+// Active contraction: Kelvin-Voigt springs along the edges of contractile cells (docs/theory/contraction.md).
+#pragma once
+
+#include <vector>
+
+#include "mechanics/active/contraction_pattern.hpp"
+#include "mechanics/active/program.hpp"
+#include "mechanics/law.hpp"
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// One spring: a chain of nodes of total length l. Tension a(t) (k max(0, l - U) + P) + c dl/dt, nN.
+struct Spring {
+  std::vector<NodeId> nodes;
+  double stiffness = 0;    // k, nN/um
+  double preload = 0;      // P, nN
+  double damping = 0;      // c, nN s/um
+  double rest_length = 0;  // U, um
+  double delay_s = 0;      // its program starts that much later
+  CellId cell = {};        // whose spring it is
+};
+
+/// What a contraction asks of each edge. Lengths and stiffness as in the scenario's [contraction.NAME].
+struct ContractionRule {
+  EdgeSide side = EdgeSide::apical;
+  double stiffness = 0;          // nN/um
+  double along_ratio = 1;        // factor on stiffness and preload of edges along the axis
+  double across_ratio = 1;       // and across it; lateral edges have neither
+  bool diagonals = false;        // also the two diagonals of the face, with the mean of both factors
+  double rest_length_ratio = 0;  // U over the length at rest
+  double preload = 0;            // nN
+  double damping = 0;            // nN s/um
+};
+
+/// The springs of all cells of `cells`. Two contractile cells that share an edge have a spring each. In a cell of
+/// several elements the tension of its edges is spread over the lines of its face, and each element edge of a line is a
+/// spring (docs/decisions/0005-spread-springs.md). A cell's factor of `pattern` scales k and P, its delay is its
+/// springs'.
+std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule,
+                                        const CellPattern& pattern = {});
+
+/// Its semidefinite tangent leaves out the turning of springs that push.
+class Contraction final : public Law {
+ public:
+  /// `cell_delays_s`: cells, empty for none; for activity_of, the springs carry their own.
+  Contraction(std::vector<Spring> springs, Program program, std::vector<double> cell_delays_s = {});
+
+  [[nodiscard]] std::string_view name() const override { return "contraction"; }
+  [[nodiscard]] double energy(const Step& step) const override;
+  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] NodeGroups node_groups() const override;
+  /// An edge that is cut becomes two springs in series, k scaled so that their tension is the same; edges of the new
+  /// facet have none. A diagonal stays whole.
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                    std::span<const Vec3> positions) const override;
+
+  [[nodiscard]] const Program& program() const { return program_; }
+  /// Activity at a time for springs with a delay: that of the program `delay_s` earlier, 0 before the program's time 0.
+  [[nodiscard]] double activity(double delay_s, double time_s) const;
+  /// The same for the springs of a cell.
+  [[nodiscard]] double activity_of(CellId cell, double time_s) const;
+  /// Times at which activity starts or bends anywhere, s, increasing: the program's points shifted by the delays.
+  /// Delays closer than a hundredth of the longest count as one.
+  [[nodiscard]] std::vector<double> points_s() const;
+  [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
+
+ private:
+  struct Pulled;  // a spring at given positions
+  template <class Take>
+  void for_springs(const Step& step, const Take& take) const;
+
+  std::vector<Spring> springs_;
+  std::vector<NodeId> nodes_;       // of all springs, one after the other: what the loops read
+  std::vector<std::size_t> start_;  // springs + 1, in nodes_
+  std::size_t longest_ = 0;         // nodes of the longest chain
+  Program program_;
+  std::vector<double> cell_delays_s_;
+};
+
+}  // namespace plica

@@ -1,0 +1,115 @@
+#include "mechanics/active/contraction_pattern.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace plica {
+namespace {
+
+// Coordinates of the chosen cells' centres along an axis, um; 0 for others.
+std::vector<double> coordinates(const Tissue& tissue, const CellSet& cells, PatternAxis axis) {
+  std::vector<double> result(cells.size(), 0.0);
+  std::vector<Vec3> centres(cells.size(), Vec3::Zero());
+  Vec3 mean = Vec3::Zero();
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (!cells[c]) continue;
+    centres[c] = cell_centre(tissue.cells[c], tissue.rest_positions);
+    mean += Vec3(0, centres[c].y(), centres[c].z()).normalized();
+  }
+  // Angles about x from the belly (-z) towards the right (+y). A region all around has no mean direction: the belly.
+  const auto angle = [](const Vec3& v) { return std::atan2(v.y(), -v.z()); };
+  const double middle = mean.norm() > 1e-6 ? angle(mean) : 0;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (!cells[c]) continue;
+    if (axis == PatternAxis::along) {
+      result[c] = centres[c].x();
+    } else if (!tissue.outer_shape) {
+      result[c] = centres[c].y();
+    } else {
+      const double turn = std::remainder(angle(centres[c]) - middle, 2 * std::numbers::pi);
+      result[c] = std::hypot(centres[c].y(), centres[c].z()) * turn;
+    }
+  }
+  return result;
+}
+
+struct Extent {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+};
+
+Extent extent_of(const std::vector<double>& values, const CellSet& cells) {
+  Extent extent;
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    if (cells[c]) extent = {std::min(extent.low, values[c]), std::max(extent.high, values[c])};
+  return extent;
+}
+
+double distance_from(ContractionDelay::From from, double value, const Extent& extent) {
+  using From = ContractionDelay::From;
+  switch (from) {
+    case From::middle:
+      return std::abs(value - 0.5 * (extent.low + extent.high));
+    case From::ends:
+      return std::min(value - extent.low, extent.high - value);
+    case From::low:
+      return value - extent.low;
+    case From::high:
+      return extent.high - value;
+  }
+  return 0;
+}
+
+// SplitMix64 (Steele, Lea and Flood 2014): a well mixed number for each place in a sequence.
+std::uint64_t mixed(std::uint64_t value) {
+  value += 0x9e3779b97f4a7c15;
+  value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9;
+  value = (value ^ (value >> 27)) * 0x94d049bb133111eb;
+  return value ^ (value >> 31);
+}
+
+// In (0, 1], from the upper 53 bits.
+double uniform(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 1) * 0x1p-53; }
+
+}  // namespace
+
+double ContractionProfile::factor(double distance) const {
+  switch (shape) {
+    case Shape::constant:
+      return 1;
+    case Shape::linear:
+      return 1 + (edge - 1) * std::min(1.0, distance / half_width);
+    case Shape::gaussian:
+      return std::exp(-0.5 * (distance / sigma) * (distance / sigma));
+  }
+  return 1;
+}
+
+double chance_factor(double spread, std::uint64_t seed, std::size_t cell) {
+  if (spread <= 0) return 1;
+  const std::uint64_t first = mixed(mixed(seed) + cell), second = mixed(first);
+  // Box and Muller's normal deviate; the factor's logarithm has the variance s2 and the mean -s2/2.
+  const double normal = std::sqrt(-2 * std::log(uniform(first))) * std::cos(2 * std::numbers::pi * uniform(second));
+  const double s2 = std::log(1 + spread * spread);
+  return std::exp(std::sqrt(s2) * normal - 0.5 * s2);
+}
+
+CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const ContractionPattern& pattern) {
+  CellPattern result{std::vector<double>(cells.size(), 0.0), std::vector<double>(cells.size(), 0.0)};
+  const std::vector<double> place = coordinates(tissue, cells, pattern.profile.axis);
+  const std::vector<double> way = coordinates(tissue, cells, pattern.delay.axis);
+  const Extent places = extent_of(place, cells), ways = extent_of(way, cells);
+  const double middle = 0.5 * (places.low + places.high);
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (!cells[c]) continue;
+    result.factors[c] =
+        pattern.profile.factor(std::abs(place[c] - middle)) * chance_factor(pattern.spread, pattern.seed, c);
+    if (pattern.delay.speed > 0)
+      result.delays_s[c] = std::max(0.0, distance_from(pattern.delay.from, way[c], ways)) / pattern.delay.speed;
+  }
+  return result;
+}
+
+}  // namespace plica

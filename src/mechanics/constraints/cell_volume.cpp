@@ -1,0 +1,188 @@
+#include "mechanics/constraints/cell_volume.hpp"
+
+#include "core/parallel.hpp"
+
+namespace plica {
+namespace {
+
+HexPoints gather(std::span<const Vec3> positions, const std::array<NodeId, 8>& nodes) {
+  HexPoints points;
+  for (int i = 0; i < 8; ++i) points[i] = positions[nodes[i].index()];
+  return points;
+}
+
+// Adds scale * d2V/dx2 of one element.
+void add_volume_hessian(const std::array<NodeId, 8>& nodes, const HexPoints& points, double scale,
+                        TangentSink& tangent) {
+  const auto hessian = hex_volume_hessian(points);
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < i; ++j) tangent.add_block(nodes[i], nodes[j], cross_matrix(scale * hessian[i][j]));
+}
+
+}  // namespace
+
+VolumeElements::VolumeElements(const Tissue& tissue, Kernels kernels)
+    : kernels_(kernels), chunks_(tissue.elements, tissue.element_cell), batches_(chunks_.batch_count()) {
+  parallel_for(batches_.size() * ElementChunks::batch_size, [&](std::size_t place) { fit(tissue, place); });
+  chunks_.put_new_nodes(std::span(batches_));
+}
+
+void VolumeElements::fit(const Tissue& tissue, std::size_t place) {
+  // Places after the last element repeat it.
+  const std::size_t e = std::min(place, chunks_.element_count() - 1), lane = place % ElementChunks::batch_size;
+  VolumeBatch& batch = batches_[place / ElementChunks::batch_size];
+  for (int i = 0; i < 8; ++i) batch.nodes[i][lane] = 3 * tissue.elements[e][i].number();
+  batch.cells[lane] = tissue.element_cell[e].number();
+  batch.rest_volumes[lane] = hex_volume(tissue.element_rest_shape[e]);
+}
+
+void VolumeElements::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
+  for (const ElementId e : elements) fit(tissue, e.index());
+}
+
+const VolumeKernels& VolumeElements::kernels() const {
+  return kernels_for(kernels_, generic::volume_kernels, avx2::volume_kernels, avx512::volume_kernels);
+}
+
+CellVolumes::CellVolumes(const Tissue& tissue, Kernels kernels)
+    : elements_(tissue.elements),
+      element_cell_(tissue.element_cell),
+      targets_(tissue.cells.size(), 0.0),
+      volumes_(tissue, kernels) {
+  for (std::size_t e = 0; e < elements_.size(); ++e) targets_[element_cell_[e].index()] += volumes_.rest_volume(e);
+}
+
+VolumeStep CellVolumes::kernel_step(std::span<const Vec3> positions, std::span<const double> pressures) const {
+  return {.batches = volumes_.batches(),
+          .elements = elements_.size(),
+          .positions = numbers(positions),
+          .pressures = pressures.data(),
+          .bulk_modulus = 0,
+          .semidefinite_tangent = false};
+}
+
+std::vector<double> CellVolumes::volumes(std::span<const Vec3> positions) const {
+  std::vector<double> of_cells(targets_.size());
+  volumes(positions, of_cells);
+  return of_cells;
+}
+
+void CellVolumes::volumes(std::span<const Vec3> positions, std::span<double> of_cells) const {
+  std::fill(of_cells.begin(), of_cells.end(), 0.0);
+  const VolumeStep at = kernel_step(positions, {});
+  volumes_.chunks().for_batches(
+      [&](std::size_t first, std::size_t last) { volumes_.kernels().add_volumes(at, first, last, of_cells.data()); });
+}
+
+std::vector<double> CellVolumes::relative_errors(std::span<const Vec3> positions) const {
+  std::vector<double> errors = volumes(positions);
+  for (std::size_t c = 0; c < errors.size(); ++c) errors[c] = errors[c] / targets_[c] - 1;
+  return errors;
+}
+
+UninitialisedVector<std::array<Vec3, 8>> CellVolumes::element_gradients(std::span<const Vec3> positions) const {
+  UninitialisedVector<std::array<Vec3, 8>> gradients(elements_.size());
+  element_gradients(positions, gradients);
+  return gradients;
+}
+
+void CellVolumes::element_gradients(std::span<const Vec3> positions, std::span<std::array<Vec3, 8>> gradients) const {
+  const VolumeStep at = kernel_step(positions, {});
+  volumes_.chunks().for_batches([&](std::size_t first, std::size_t last) {
+    volumes_.kernels().write_gradients(at, first, last, reinterpret_cast<double*>(gradients.data()));
+  });
+}
+
+void CellVolumes::add_forces(std::span<const Vec3> positions, std::span<const double> pressures,
+                             std::span<Vec3> forces) const {
+  const VolumeStep at = kernel_step(positions, pressures);
+  volumes_.chunks().for_batches(
+      [&](std::size_t first, std::size_t last) { volumes_.kernels().add_forces(at, first, last, numbers(forces)); });
+}
+
+void CellVolumes::add_tangent_product(std::span<const Vec3> positions, std::span<const double> pressures,
+                                      std::span<const Vec3> direction, std::span<Vec3> product) const {
+  const VolumeStep at = kernel_step(positions, pressures);
+  volumes_.chunks().for_batches([&](std::size_t first, std::size_t last) {
+    volumes_.kernels().add_product(at, first, last, numbers(direction), numbers(product));
+  });
+}
+
+void CellVolumes::add_tangent(std::span<const Vec3> positions, std::span<const double> pressures,
+                              TangentSink& tangent) const {
+  for_elements(
+      [&](std::size_t e) {
+        const double pressure = pressures[element_cell_[e].index()];
+        add_volume_hessian(elements_[e], gather(positions, elements_[e]), -pressure, tangent);
+      },
+      tangent.takes_apart());
+}
+
+Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact, Kernels kernels)
+    : bulk_modulus_(bulk_modulus), cells_are_exact_(cells_are_exact), kernels_(kernels), volumes_(tissue, kernels) {
+  if (!cells_are_exact || tissue.elements.size() > tissue.cells.size()) elements_ = tissue.elements;
+}
+
+VolumeStep Dilatation::kernel_step(const Step& step) const {
+  return {.batches = volumes_.batches(),
+          .elements = elements_.size(),
+          .positions = numbers(step.positions),
+          .pressures = nullptr,
+          .bulk_modulus = bulk_modulus_,
+          .semidefinite_tangent = step.semidefinite_tangent};
+}
+
+double Dilatation::energy(const Step& step) const {
+  if (elements_.empty()) return 0;
+  const VolumeStep at = kernel_step(step);
+  return volumes_.chunks().sum_over_batches(
+      [&](std::size_t first, std::size_t last) { return volumes_.kernels().energy(at, first, last); });
+}
+
+void Dilatation::add_forces(const Step& step, std::span<Vec3> forces) const {
+  if (elements_.empty()) return;
+  const VolumeStep at = kernel_step(step);
+  volumes_.chunks().for_batches(
+      [&](std::size_t first, std::size_t last) { volumes_.kernels().add_forces(at, first, last, numbers(forces)); });
+}
+
+void Dilatation::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
+  if (elements_.empty()) return;
+  const VolumeStep at = kernel_step(step);
+  volumes_.chunks().for_batches([&](std::size_t first, std::size_t last) {
+    volumes_.kernels().add_product(at, first, last, numbers(direction), numbers(product));
+  });
+}
+
+void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
+  if (elements_.empty()) return;
+  volumes_.chunks().for_elements(
+      [&](std::size_t e) {
+        const auto& nodes = elements_[e];
+        const HexPoints points = gather(step.positions, nodes);
+        const double rest_volume = volumes_.rest_volume(e);
+        const double pressure = bulk_modulus_ * (1 - hex_volume(points) / rest_volume);
+        if (!step.semidefinite_tangent) add_volume_hessian(nodes, points, -pressure, tangent);
+        const auto gradient = hex_volume_gradient(points);
+        for (int i = 0; i < 8; ++i)
+          for (int j = 0; j <= i; ++j)
+            tangent.add_block(nodes[i], nodes[j], bulk_modulus_ / rest_volume * gradient[i] * gradient[j].transpose());
+      },
+      tangent.takes_apart());
+}
+
+NodeGroups Dilatation::node_groups() const {
+  NodeGroups groups;
+  for (const auto& nodes : elements_) groups.add(nodes);
+  return groups;
+}
+
+std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
+  return std::make_unique<Dilatation>(tissue, bulk_modulus_, cells_are_exact_, kernels_);
+}
+
+void Dilatation::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
+  volumes_.take_rest_shapes(tissue, elements);
+}
+
+}  // namespace plica

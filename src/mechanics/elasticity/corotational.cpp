@@ -1,0 +1,150 @@
+// What an element is made of, and the way through all of them. The formulas of forces and tangents are in
+// corotational_lanes.hpp and corotational_kernels.cpp, which is compiled for several instruction sets.
+#include "mechanics/elasticity/corotational.hpp"
+
+#include "core/parallel.hpp"
+#include "mechanics/elasticity/turning_elements.hpp"
+
+namespace plica {
+namespace {
+
+constexpr std::size_t batch_size = ElementChunks::batch_size;
+
+void put_stiffness(const Mat12& H, int lane, double (&stiffness)[78][batch_size]) {
+  for (int row = 0; row < 12; ++row)
+    for (int column = 0; column <= row; ++column) stiffness[row * (row + 1) / 2 + column][lane] = H(row, column);
+}
+
+void put_vector(const Vec3& v, int lane, double (&vectors)[3][batch_size]) {
+  for (int axis = 0; axis < 3; ++axis) vectors[axis][lane] = v[axis];
+}
+
+}  // namespace
+
+void nearest_rotation(const double (&F)[9], double (&R)[9]) {
+  Mat3 rotation, stretch;
+  polar(Mat3(F), rotation, stretch);
+  Eigen::Map<Mat3>{R} = rotation;
+}
+
+Corotational::Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity, Kernels kernels)
+    : moduli_(moduli),
+      shear_viscosity_(shear_viscosity),
+      kernels_(kernels),
+      chunks_(tissue.elements),
+      batches_(chunks_.batch_count()),
+      viscous_batches_(shear_viscosity > 0 ? chunks_.batch_count() : 0) {
+  require_upright_rest_shapes(tissue);
+  parallel_for(
+      batches_.size() * batch_size, [&](std::size_t place) { fit(tissue, place); }, long_bodies);
+  chunks_.put_new_nodes(std::span(batches_));
+}
+
+void Corotational::fit(const Tissue& tissue, std::size_t place) {
+  // Places after the last element repeat it: kernels calculate there too, and it must not be slow or fail.
+  const std::size_t e = std::min(place, chunks_.element_count() - 1);
+  const int lane = static_cast<int>(place % batch_size);
+  CorotationalBatch& batch = batches_[place / batch_size];
+  for (int i = 0; i < 8; ++i) batch.nodes[i][lane] = 3 * tissue.elements[e][i].number();
+
+  const HexPoints& rest = tissue.element_rest_shape[e];
+  const std::array<Vec3, 8> gradients = mean_gradients(rest);
+  for (int mode = 0; mode < 6; ++mode) {
+    Vec3 b = Vec3::Zero();
+    for (int i = 0; i < 8; ++i) b += hex_modes[mode][i] / 8 * gradients[i];
+    put_vector(b, lane, batch.gradients[mode]);
+  }
+  for (int a = 0; a < 4; ++a) {
+    Vec3 X = Vec3::Zero();
+    for (int i = 0; i < 8; ++i) X += hex_modes[3 + a][i] * rest[i];
+    put_vector(X, lane, batch.hourglass[a]);
+  }
+  const double volume = hex_volume(rest);
+  batch.shear[lane] = 2 * moduli_.shear_modulus * volume;
+  put_stiffness(hourglass_stiffness(rest, moduli_), lane, batch.stiffness);
+  if (viscous_batches_.empty()) return;
+  ViscousBatch& viscous = viscous_batches_[place / batch_size];
+  viscous.shear[lane] = 2 * shear_viscosity_ * volume;
+  put_stiffness(hourglass_stiffness(rest, viscous_moduli(shear_viscosity_)), lane, viscous.stiffness);
+}
+
+void Corotational::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
+  for (const ElementId e : elements) fit(tissue, e.index());
+}
+
+const CorotationalKernels& Corotational::kernels() const {
+  return kernels_for(kernels_, generic::corotational_kernels, avx2::corotational_kernels, avx512::corotational_kernels);
+}
+
+CorotationalStep Corotational::kernel_step(const Step& step) const {
+  return {.batches = batches_.data(),
+          .viscous_batches = viscous_batches_.empty() ? nullptr : viscous_batches_.data(),
+          .elements = chunks_.element_count(),
+          .positions = numbers(step.positions),
+          .previous_positions = numbers(step.previous_positions),
+          .earlier_positions = numbers(step.earlier_positions),
+          .ahead = step.ahead,
+          .rate = 1 / step.rate_s,
+          .semidefinite_tangent = step.semidefinite_tangent};
+}
+
+double Corotational::energy(const Step& step) const {
+  const CorotationalStep at = kernel_step(step);
+  return chunks_.sum_over_batches(
+      [&](std::size_t first, std::size_t last) { return kernels().energy(at, first, last); });
+}
+
+void Corotational::add_forces(const Step& step, std::span<Vec3> forces) const {
+  const CorotationalStep at = kernel_step(step);
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) { kernels().add_forces(at, first, last, numbers(forces)); });
+}
+
+void Corotational::add_tangent_product(const Step& step, std::span<const Vec3> direction,
+                                       std::span<Vec3> product) const {
+  const CorotationalStep at = kernel_step(step);
+  chunks_.for_batches([&](std::size_t first, std::size_t last) {
+    kernels().add_product(at, first, last, numbers(direction), numbers(product));
+  });
+}
+
+void Corotational::add_tangent(const Step& step, TangentSink& tangent) const {
+  const CorotationalStep at = kernel_step(step);
+  const auto add_batch = [&](std::size_t batch) {
+    CorotationalBlocks of_batch;
+    kernels().write_blocks(at, batch, of_batch);
+    const std::size_t first = batch * batch_size;
+    for (std::size_t e = first; e < std::min(first + batch_size, chunks_.element_count()); ++e)
+      for (int i = 0, pair = 0; i < 8; ++i)
+        for (int j = 0; j <= i; ++j, ++pair) {
+          Mat3 block;
+          for (int k = 0; k < 9; ++k) block.data()[k] = of_batch.blocks[pair][k][e - first];
+          tangent.add_block(node(e, i), node(e, j), block);
+        }
+  };
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) {
+        for (std::size_t batch = first; batch < last; ++batch) add_batch(batch);
+      },
+      tangent.takes_apart());
+}
+
+NodeId Corotational::node(std::size_t e, int corner) const {
+  return NodeId(batches_[e / batch_size].nodes[corner][e % batch_size] / 3);
+}
+
+NodeGroups Corotational::node_groups() const {
+  NodeGroups groups;
+  for (std::size_t e = 0; e < chunks_.element_count(); ++e) {
+    std::array<NodeId, 8> nodes;
+    for (int i = 0; i < 8; ++i) nodes[i] = node(e, i);
+    groups.add(nodes);
+  }
+  return groups;
+}
+
+std::unique_ptr<Law> Corotational::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
+  return std::make_unique<Corotational>(tissue, moduli_, shear_viscosity_, kernels_);
+}
+
+}  // namespace plica

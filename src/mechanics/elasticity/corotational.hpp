@@ -1,0 +1,55 @@
+// Corotational elasticity and Kelvin-Voigt shear viscosity of hexahedral elements.
+//
+// Linear elasticity in each element's own rotating frame (docs/theory/corotational.md): with R the rotation and S the
+// stretch of the mean deformation gradient F = sum_i x_i b_i^T = R S, and h the hourglasses of what is not linear in
+// the local displacement u_i = R^T (x_i - c) - (X_i - C),
+//   energy = V0 G |dev(S - I)|^2 + h^T H h / 2.
+// That is u^T K u / 2 with K the 24 x 24 stiffness of the rest shape with nine incompatible modes (Wilson-Taylor)
+// condensed, less its mean volumetric part, which belongs to cell_volume. R is differentiated too: the force is the
+// exact gradient, so angular momentum is exact and the tangent symmetric. The semidefinite tangent leaves the
+// derivative of R out: R K R^T, the warped stiffness.
+#pragma once
+
+#include "mechanics/elasticity/hexahedron_stiffness.hpp"
+#include "mechanics/kernels/corotational_kernels.hpp"
+#include "mechanics/kernels/element_chunks.hpp"
+#include "mechanics/kernels/kernels.hpp"
+#include "mechanics/law.hpp"
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+class Corotational final : public Law {
+ public:
+  /// `shear_viscosity` in nN s/um^2 (0: none). Rest shapes are those of the tissue's elements. Throws std::domain_error
+  /// when a rest shape is inverted.
+  Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity,
+               Kernels kernels = chosen_kernels());
+
+  [[nodiscard]] std::string_view name() const override { return "elasticity"; }
+  [[nodiscard]] double energy(const Step& step) const override;
+  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] NodeGroups node_groups() const override;
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                    std::span<const Vec3> positions) const override;
+  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
+
+  /// What the kernels are given.
+  [[nodiscard]] CorotationalStep kernel_step(const Step& step) const;
+
+ private:
+  void fit(const Tissue& tissue, std::size_t element);  // makes what is kept of it from its rest shape
+  [[nodiscard]] NodeId node(std::size_t element, int corner) const;
+  [[nodiscard]] const CorotationalKernels& kernels() const;
+
+  ElasticModuli moduli_;
+  double shear_viscosity_;
+  Kernels kernels_;
+  ElementChunks chunks_;
+  std::vector<CorotationalBatch> batches_;     // eight elements each
+  std::vector<ViscousBatch> viscous_batches_;  // the same, when viscous
+};
+
+}  // namespace plica

@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/errors.hpp"
+#include "paper/mechanism.hpp"
+#include "paper/pictures.hpp"
+#include "paper/reproduce.hpp"
+#include "record/results.hpp"
+#include "show/plot.hpp"
+#include "tissue/hexahedral_mesh.hpp"
+
+namespace plica {
+namespace {
+
+Figure chart(const std::string& name, const Plot& plot, const std::string& caption) {
+  return {name, draw(plot).file(plot.title), caption, plot_csv(plot)};
+}
+
+Curve column_of(const Series& series, const std::string& name, const std::string& column) {
+  Curve curve{name, {}, {}};
+  const std::size_t place = series.column(column).value();
+  for (const auto& row : series.rows)
+    if (row[place]) curve.x.push_back(*row.front()), curve.y.push_back(*row[place]);
+  return curve;
+}
+
+// Fig. 8: speeds of the two barycentres.
+Figure speeds(const Results& results, const std::string& embryo, const std::string& name, const std::string& caption) {
+  const Series series = read_series(results.folder("main-" + embryo) / "series.csv");
+  Plot plot{"Speeds of the barycentres of VML and VCE, " + embryo,
+            {"time, s", true, 0.05, 1200},
+            {"speed, um/s", true, 1e-4, {}},
+            {column_of(series, "VML, the middle", "vml_speed_um_per_s"),
+             column_of(series, "VCE, second-last cell", "vce_speed_um_per_s")},
+            {{"largest difference, paper", 30, {}}, {"equal speeds and rest, paper", 900, {}}},
+            {}};
+  return chart(name, plot, caption);
+}
+
+Plot onset_plot(const Onsets& pill, const Onsets& sphere) {
+  return {"When midline cells set off: a tenth of their final depth",
+          {"place along the axis at rest, um"},
+          {"time, s", false, 0.0, {}},
+          {{"pill", pill.ap_um, pill.time_s, true}, {"sphere", sphere.ap_um, sphere.time_s, true}},
+          {},
+          {}};
+}
+
+// What the ratio of springs across to along does, each figure over its printed value.
+std::optional<Plot> trade_off(const Measured& measured) {
+  struct Line {
+    const char *name, *figure;
+    double printed;
+  };
+  constexpr std::array lines = {Line{"pill's speed ratio / 3.65", "pill.peak_ratio", 3.65},
+                                Line{"sphere's speed ratio / 1.23", "sphere.peak_ratio", 1.23},
+                                Line{"sphere's depth / 27.44 um", "sphere.depth_um", 27.44},
+                                Line{"VCE at equal speeds / 15 um", "pill.vce_at_equal_um", 15},
+                                Line{"VML at equal speeds / 8.5 um", "pill.vml_at_equal_um", 8.5},
+                                Line{"VML area loss / 30 %", "pill.vml_area_loss_percent", 30}};
+  Plot plot{"The trade-off: pill 28.89 um deep throughout",
+            {"springs across / springs along"},
+            {"ours / printed"},
+            {},
+            {{"chosen", 0.35, {}}},
+            {{"printed, within 15 %", 0.85, 1.15}}};
+  for (const Line& line : lines) {
+    Curve curve{line.name, {}, {}, true};
+    for (const auto& [id, ratio] : {std::pair{"across-0.2", 0.2},
+                                    {"across-0.3", 0.3},
+                                    {"chosen", 0.35},
+                                    {"across-0.4", 0.4},
+                                    {"across-0.6", 0.6},
+                                    {"across-1", 1.0}}) {
+      const auto reading = measured.readings.find(id);
+      if (reading == measured.readings.end() || !reading->second.contains(line.figure)) continue;
+      curve.x.push_back(ratio);
+      curve.y.push_back(reading->second.at(line.figure) / line.printed);
+    }
+    if (curve.x.size() > 1) plot.curves.push_back(std::move(curve));
+  }
+  return plot.curves.empty() ? std::nullopt : std::optional(plot);
+}
+
+Figure division_volumes(const Results& results) {
+  const Series cells = read_table(results.folder("division-demo") / "cells.csv");
+  const std::size_t id = cells.column("cell_id").value(), volume = cells.column("volume_um3").value();
+  Plot plot{"Volumes of the cells of the division", {"time, s"}, {"volume, um3", false, 0.0, {}}, {}, {}, {}};
+  std::map<double, Curve> curves;
+  for (const auto& row : cells.rows) {
+    Curve& curve = curves[*row[id]];
+    curve.x.push_back(*row.front());
+    curve.y.push_back(*row[volume]);
+  }
+  for (auto& [number, curve] : curves) {
+    curve.name = fmt::format("cell {:.0f}{}", number, number == 1 ? ", the mother" : number > 2 ? ", a daughter" : "");
+    plot.curves.push_back(std::move(curve));
+  }
+  return chart(
+      "fig4-volumes", plot,
+      "**Fig. 4, volumes.** The daughters begin with half of their mother's volume each and end with the whole of "
+      "it; the neighbours keep theirs.");
+}
+
+Figure division_lips(const Results& results) {
+  Plot plot{"Distance between the lips, a fixed material pair", {"time, s"}, {"distance, um"}, {}, {}, {}};
+  for (const auto& [id, words] : {std::pair{"division-without", "without division"},
+                                  {"division", "with division of the floor"},
+                                  {"division-twice", "with a second round at the borders"}})
+    if (results.has(id))
+      plot.curves.push_back(column_of(read_series(results.folder(id) / "series.csv"), words, "lip_distance_um"));
+  return chart(
+      "fig5-lips", plot,
+      "**Fig. 5, lips.** Where the two points that bound the contractile rows in the mid cross-section are, with "
+      "division and without.");
+}
+
+Figure division_push(const Results& results) {
+  Plot plot{"Push of the furrow's cells on the row to their right", {"time, s"}, {"force across, nN"}, {}, {}, {}};
+  for (const auto& [id, words] :
+       {std::pair{"division-without", "without division"}, {"division", "with division of the floor"}})
+    if (results.has(id))
+      plot.curves.push_back(column_of(read_series(results.folder(id) / "series.csv"), words, "push.force_nN"));
+  return chart(
+      "fig5-push", plot,
+      "**Fig. 5, forces.** What the contractile cells exert on the row of cells beside them, across the embryo; "
+      "positive drives the borders apart. Dividing cells push outward at all times; the lips close because the "
+      "floor between them buckles inward and turns them over.");
+}
+
+}  // namespace
+
+std::vector<Figure> reproduction_figures(const Results& results, const Measured& measured,
+                                         std::vector<std::string>& missing) {
+  std::vector<Figure> figures;
+  const auto add = [&](const char* name, std::initializer_list<const char*> runs, const auto& make) {
+    if (!std::ranges::all_of(runs, [&](const char* run) { return results.has(run); })) return;
+    try {
+      figures.push_back(make());
+    } catch (const FileError& error) {
+      missing.push_back(fmt::format("{}: {}", name, error.what()));
+    } catch (const MeshError& error) {  // a frame that does not fit together
+      missing.push_back(fmt::format("{}: {}", name, error.what()));
+    }
+  };
+  ReproductionPictures pictures(results);
+  add("fig4-division", {"division-demo"}, [&] { return pictures.division_demo(); });
+  add("fig4-volumes", {"division-demo"}, [&] { return division_volumes(results); });
+  add("fig5-sections", {"division", "division-without"}, [&] { return pictures.division_sections(); });
+  add("fig5-lips", {"division", "division-without"}, [&] { return division_lips(results); });
+  add("fig5-push", {"division", "division-without"}, [&] { return division_push(results); });
+  add("fig7-pill", {"main-pill"}, [&] { return pictures.pill_from_two_sides(); });
+  add("fig8a-speeds", {"main-pill"}, [&] {
+    return speeds(results, "pill", "fig8a-speeds",
+                  "**Fig. 8a.** On the pill the end (VCE) sets off several times as fast as the middle (VML); the "
+                  "middle catches up, and overtakes. Both axes are logarithmic: the paper's are not.");
+  });
+  add("fig8b-speeds", {"main-sphere"}, [&] {
+    return speeds(results, "sphere", "fig8b-speeds",
+                  "**Fig. 8b.** On the sphere, with the same springs, the two are close to each other throughout.");
+  });
+  add("fig9-sections", {"main-pill"}, [&] { return pictures.pill_sections(); });
+  add("fig10-ventral", {"main-pill"}, [&] { return pictures.pill_from_below(); });
+  add("fig11-sphere", {"main-sphere"}, [&] { return pictures.sphere_from_two_sides(); });
+  const Mechanism why = mechanism();
+  figures.push_back(
+      chart("mechanism", why.plot,
+            "**Why the ends lead** (section 4). At t = 0, before anything moves, springs of the same strength "
+            "everywhere press the caps inwards harder than the cylinder, and a sphere everywhere "
+            "alike, as Laplace's law has it. On the strip of the chosen reading the last cells are drawn "
+            "along the axis as well. Springs along the axis alone do not press on the cylinder at all."));
+  if (!measured.pill_onsets.ap_um.empty())
+    figures.push_back(
+        chart("onset", onset_plot(measured.pill_onsets, measured.sphere_onsets),
+              "**Onset** along `midline.csv`: when each contractile cell of the midline has reached a tenth of "
+              "its final depth below the shell."));
+  if (const auto plot = trade_off(measured))
+    figures.push_back(
+        chart("trade-off", *plot,
+              "**The trade-off.** The one number that is free once the pill's depth is met, the ratio of "
+              "springs across the axis to springs along it, against everything printed. Nothing far from 0.35 to "
+              "0.4 meets the pill's speed ratio, VCE's displacement and the sphere's depth together."));
+  return figures;
+}
+
+}  // namespace plica

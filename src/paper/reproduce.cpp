@@ -1,0 +1,28 @@
+#include "paper/reproduce.hpp"
+
+#include <fmt/format.h>
+
+namespace plica {
+
+ReproduceOutcome reproduce(const ReproduceOptions& options,
+                           const std::function<void(std::size_t done, std::size_t count, const std::string& id)>& tell,
+                           const std::function<bool()>& interrupted) {
+  const Plan plan = make_plan(options.quick);
+  const std::vector<BatchOutcome> ends = run_batch(
+      options.directory, plan.runs, options.at_a_time,
+      [&](std::size_t done, const BatchRun& run) { tell(done, plan.runs.size(), run.id); }, interrupted);
+  ReproduceOutcome outcome;
+  outcome.interrupted = interrupted();
+  if (outcome.interrupted) return outcome;
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    if (ends[i].exit_status != 0)
+      outcome.failed_runs.push_back(
+          fmt::format("{} (exit status {}): {}", plan.runs[i].id, ends[i].exit_status, ends[i].message));
+  const Results results(options.directory, plan);
+  const Measured measured = measure(results);
+  write_document(options.directory, "reproduction",
+                 reproduction_document(results, measured, plan, options.quick, outcome));
+  return outcome;
+}
+
+}  // namespace plica

@@ -1,0 +1,185 @@
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <map>
+
+#include "core/errors.hpp"
+#include "core/memory.hpp"
+#include "record/archive.hpp"
+
+namespace plica {
+namespace {
+
+// A handle of HDF5's, closed when it goes.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {
+    if (id_ < 0) throw FileError(what);
+  }
+  ~Handle() { close_(id_); }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }  // NOLINT: it stands for the id
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+// HDF5 refuses to open an image under the name of a file that there is; there can be none of this name.
+constexpr const char* no_file = "/dev/null/checkpoint";
+
+constexpr const char* cannot_make = "HDF5 cannot make a checkpoint; is there memory left?";
+
+// Nor has it two files of one name open, even in memory.
+std::string new_name() {
+  static std::atomic<int> count = 0;
+  return fmt::format("checkpoint {}", ++count);
+}
+
+void must(herr_t result, const std::string& what) {
+  if (result < 0) throw FileError(what);
+}
+
+// Where memory ends, HDF5 (1.10) ends the process, or crashes: it must not come to that. Room for what it needs beside
+// `bytes` of arrays.
+void make_sure_of_room(std::size_t bytes) {
+  constexpr std::size_t own_bytes = std::size_t{8} << 20;
+  make_sure_of_memory(own_bytes + 2 * bytes);
+}
+
+// HDF5 tells of errors by what its functions return; its own words on stderr are for those who wrote it. What is not
+// closed when the process ends needs no closing: its files are in memory.
+void prepare_library() {
+  constexpr std::size_t library_bytes = std::size_t{32} << 20;
+  make_sure_of_memory(library_bytes);
+  [[maybe_unused]] static const herr_t ignored = H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+// Files in memory, of which nothing is written by HDF5 itself.
+hid_t in_memory(const void* image, std::size_t size) {
+  prepare_library();
+  make_sure_of_room(size);
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  if (access < 0) return access;
+  constexpr std::size_t growth = std::size_t{1} << 20;
+  H5Pset_fapl_core(access, growth, false);
+  if (image != nullptr) H5Pset_file_image(access, const_cast<void*>(image), size);  // it is copied
+  return access;
+}
+
+}  // namespace
+
+bool can_archive() { return true; }
+
+struct ArchiveWriter::File {
+  Handle access{in_memory(nullptr, 0), H5Pclose, cannot_make};
+  Handle links{H5Pcreate(H5P_LINK_CREATE), H5Pclose, cannot_make};
+  Handle datasets{H5Pcreate(H5P_DATASET_CREATE), H5Pclose, cannot_make};
+  Handle file{H5Fcreate(new_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, cannot_make};
+
+  File() {
+    must(H5Pset_create_intermediate_group(links, 1), cannot_make);
+    must(H5Pset_obj_track_times(datasets, false), cannot_make);
+  }
+
+  void put(const std::string& name, hid_t type, const void* values, std::size_t count, std::size_t columns) {
+    auto at = sets_.find(name);
+    if (at != sets_.end() && (at->second.count != count || at->second.columns != columns)) {
+      sets_.erase(at);
+      must(H5Ldelete(file, name.c_str(), H5P_DEFAULT), cannot_make);
+      at = sets_.end();
+    }
+    if (at == sets_.end()) {
+      make_sure_of_room(count * H5Tget_size(type));
+      const std::array<hsize_t, 2> shape = {columns > 0 ? count / columns : count, columns};
+      const Handle space(H5Screate_simple(columns > 0 ? 2 : 1, shape.data(), nullptr), H5Sclose, cannot_make);
+      const hid_t set = H5Dcreate2(file, name.c_str(), type, space, links, datasets, H5P_DEFAULT);
+      at = sets_.try_emplace(name, set, count, columns).first;
+    }
+    if (count > 0) must(H5Dwrite(at->second.set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), cannot_make);
+  }
+
+ private:
+  struct Set {
+    Set(hid_t id, std::size_t its_count, std::size_t its_columns)
+        : set(id, H5Dclose, cannot_make), count(its_count), columns(its_columns) {}
+    Handle set;
+    std::size_t count, columns;
+  };
+  std::map<std::string, Set> sets_;
+};
+
+ArchiveWriter::ArchiveWriter() : file_(std::make_unique<File>()) {}
+ArchiveWriter::~ArchiveWriter() = default;
+
+void ArchiveWriter::put(const std::string& name, std::span<const double> values, std::size_t columns) {
+  file_->put(name, H5T_NATIVE_DOUBLE, values.data(), values.size(), columns);
+}
+void ArchiveWriter::put(const std::string& name, std::span<const int> values) {
+  file_->put(name, H5T_NATIVE_INT, values.data(), values.size(), 0);
+}
+void ArchiveWriter::put(const std::string& name, std::span<const char> bytes) {
+  file_->put(name, H5T_NATIVE_CHAR, bytes.data(), bytes.size(), 0);
+}
+
+std::string ArchiveWriter::image() {
+  must(H5Fflush(file_->file, H5F_SCOPE_GLOBAL), cannot_make);
+  const ssize_t size = H5Fget_file_image(file_->file, nullptr, 0);
+  if (size <= 0) throw FileError(cannot_make);
+  make_sure_of_room(static_cast<std::size_t>(size));
+  std::string image(static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file_->file, image.data(), image.size()) != size) throw FileError(cannot_make);
+  return image;
+}
+
+struct ArchiveReader::File {
+  std::size_t size;
+  Handle access, file;
+
+  explicit File(std::string_view image)
+      : size(image.size()),
+        access(in_memory(image.data(), image.size()), H5Pclose, "HDF5 cannot read it; is there memory left?"),
+        file(H5Fopen(no_file, H5F_ACC_RDONLY, access), H5Fclose, "it is no HDF5 file, or damaged") {}
+
+  template <class Number>
+  [[nodiscard]] std::vector<Number> get(const std::string& name, H5T_class_t kind, hid_t type) const {
+    make_sure_of_room(0);
+    const std::string damaged = fmt::format("it is damaged: {} is missing or not what it should be", name);
+    const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, damaged);
+    const Handle stored(H5Dget_type(set), H5Tclose, damaged);
+    const Handle space(H5Dget_space(set), H5Sclose, damaged);
+    const hssize_t count = H5Sget_simple_extent_npoints(space);
+    // What it says to hold must be there: nobody makes us take more memory than the file has bytes.
+    if (H5Tget_class(stored) != kind || H5Tget_size(stored) != sizeof(Number) || count < 0 ||
+        static_cast<std::size_t>(count) > size / sizeof(Number) ||
+        (count > 0 && H5Dget_storage_size(set) != static_cast<std::size_t>(count) * sizeof(Number)))
+      throw FileError(damaged);
+    std::vector<Number> values(static_cast<std::size_t>(count));
+    if (count > 0) must(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), damaged);
+    return values;
+  }
+};
+
+ArchiveReader::ArchiveReader(std::string_view image) : file_(std::make_unique<File>(image)) {}
+ArchiveReader::~ArchiveReader() = default;
+
+std::vector<double> ArchiveReader::doubles(const std::string& name) const {
+  std::vector<double> values = file_->get<double>(name, H5T_FLOAT, H5T_NATIVE_DOUBLE);
+  if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
+    throw FileError(fmt::format("it is damaged: {} holds what is no number", name));
+  return values;
+}
+std::vector<int> ArchiveReader::integers(const std::string& name) const {
+  return file_->get<int>(name, H5T_INTEGER, H5T_NATIVE_INT);
+}
+std::vector<char> ArchiveReader::bytes(const std::string& name) const {
+  return file_->get<char>(name, H5T_INTEGER, H5T_NATIVE_CHAR);
+}
+
+}  // namespace plica

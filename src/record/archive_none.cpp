@@ -1,0 +1,34 @@
+// What stands in for archive_hdf5.cpp when plica is built without HDF5.
+#ifndef PLICA_WITH_HDF5
+
+#include "core/errors.hpp"
+#include "record/archive.hpp"
+
+namespace plica {
+namespace {
+
+[[noreturn]] void refuse() { throw FileError("this plica was built without HDF5 and has no checkpoints"); }
+
+}  // namespace
+
+struct ArchiveWriter::File {};
+struct ArchiveReader::File {};
+
+bool can_archive() { return false; }
+
+ArchiveWriter::ArchiveWriter() { refuse(); }
+ArchiveWriter::~ArchiveWriter() = default;
+void ArchiveWriter::put(const std::string&, std::span<const double>, std::size_t) {}
+void ArchiveWriter::put(const std::string&, std::span<const int>) {}
+void ArchiveWriter::put(const std::string&, std::span<const char>) {}
+std::string ArchiveWriter::image() { return {}; }
+
+ArchiveReader::ArchiveReader(std::string_view) { refuse(); }
+ArchiveReader::~ArchiveReader() = default;
+std::vector<double> ArchiveReader::doubles(const std::string&) const { return {}; }
+std::vector<int> ArchiveReader::integers(const std::string&) const { return {}; }
+std::vector<char> ArchiveReader::bytes(const std::string&) const { return {}; }
+
+}  // namespace plica
+
+#endif

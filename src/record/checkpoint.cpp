@@ -1,0 +1,419 @@
+#include "record/checkpoint.hpp"
+
+#include <fmt/format.h>
+#include <libdeflate.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <sstream>
+
+#include "core/errors.hpp"
+#include "record/archive.hpp"
+#include "record/reading_trial.hpp"
+
+namespace plica {
+namespace {
+
+constexpr int format = 2;
+constexpr std::size_t trailer_bytes = 64;
+
+std::uint32_t checksum(std::string_view bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }
+
+// After the HDF5 file, which readers of HDF5 do not mind.
+std::string trailer(std::string_view image) {
+  std::string text = fmt::format("\nplica checkpoint {} bytes {} crc32 {:08x}", format, image.size(), checksum(image));
+  text.resize(trailer_bytes - 1, ' ');
+  return text + "\n";
+}
+
+// One list of what is in a checkpoint, for writing and for reading: take(name, value).
+
+class Saving {
+ public:
+  explicit Saving(ArchiveWriter& archive) : archive_(archive) {}
+  void operator()(const std::string& name, double value) { archive_.put(name, std::span(&value, 1)); }
+  void operator()(const std::string& name, int value) { archive_.put(name, std::span<const int>(&value, 1)); }
+  void operator()(const std::string& name, bool value) { (*this)(name, static_cast<int>(value)); }
+  void operator()(const std::string& name, std::uint64_t value) { (*this)(name, static_cast<double>(value)); }
+  void operator()(const std::string& name, const std::string& text) { archive_.put(name, std::span<const char>(text)); }
+  void operator()(const std::string& name, const std::optional<double>& value) {
+    archive_.put(name, std::span<const double>(value ? &*value : nullptr, value ? 1 : 0));
+  }
+  void operator()(const std::string& name, const std::vector<double>& values) { archive_.put(name, values); }
+  void operator()(const std::string& name, const std::vector<int>& values) { archive_.put(name, values); }
+  void operator()(const std::string& name, const std::vector<char>& values) { archive_.put(name, values); }
+  void operator()(const std::string& name, const Vectors& values) {
+    archive_.put(name, std::span(reinterpret_cast<const double*>(values.data()), 3 * values.size()), 3);
+  }
+
+ private:
+  ArchiveWriter& archive_;
+};
+
+class Loading {
+ public:
+  explicit Loading(const ArchiveReader& archive) : archive_(archive) {}
+  void operator()(const std::string& name, double& value) { value = one(name, archive_.doubles(name)); }
+  void operator()(const std::string& name, int& value) { value = one(name, archive_.integers(name)); }
+  void operator()(const std::string& name, bool& value) { value = one(name, archive_.integers(name)) != 0; }
+  void operator()(const std::string& name, std::uint64_t& value) {
+    const double number = one(name, archive_.doubles(name));
+    constexpr double largest = 9007199254740992.0;  // up to which doubles count whole numbers
+    if (!(number >= 0 && number <= largest && number == std::floor(number))) refuse(name);
+    value = static_cast<std::uint64_t>(number);
+  }
+  void operator()(const std::string& name, std::string& text) {
+    const std::vector<char> bytes = archive_.bytes(name);
+    text.assign(bytes.begin(), bytes.end());
+  }
+  void operator()(const std::string& name, std::optional<double>& value) {
+    const std::vector<double> values = archive_.doubles(name);
+    value.reset();
+    if (!values.empty()) value = one(name, values);
+  }
+  void operator()(const std::string& name, std::vector<double>& values) { values = archive_.doubles(name); }
+  void operator()(const std::string& name, std::vector<int>& values) { values = archive_.integers(name); }
+  void operator()(const std::string& name, std::vector<char>& values) { values = archive_.bytes(name); }
+  void operator()(const std::string& name, Vectors& values) {
+    const std::vector<double> numbers = archive_.doubles(name);
+    if (numbers.size() % 3 != 0) refuse(name);
+    values.clear();
+    for (std::size_t i = 0; i < numbers.size(); i += 3) values.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+  }
+
+  [[noreturn]] static void refuse(const std::string& name) {
+    throw FileError(fmt::format("it is damaged: {} is not what it should be", name));
+  }
+
+ private:
+  template <class Number>
+  static Number one(const std::string& name, const std::vector<Number>& values) {
+    if (values.size() != 1) refuse(name);
+    return values.front();
+  }
+  const ArchiveReader& archive_;
+};
+
+template <class Take, class Iterate>
+void visit_iterate(Take& take, const std::string& at, Iterate& iterate) {
+  take(at + "positions", iterate.positions);
+  take(at + "pressures", iterate.pressures);
+  take(at + "contact_forces", iterate.contact_forces);
+  take(at + "in_contact", iterate.in_contact);
+}
+
+template <class Take, class Run>
+void visit_run(Take& take, Run& run) {
+  auto& state = run.state;
+  visit_iterate(take, "state/", state);
+  take("state/time_s", state.time_s);
+  take("state/velocities", state.velocities);
+  take("state/divided_until_s", state.divided_until_s);
+  take("state/trend/step_s", state.trend.step_s);
+  take("state/trend/earlier_s", state.trend.earlier_s);
+  take("state/trend/mean_velocities", state.trend.mean_velocities);
+  take("state/trend/accelerations", state.trend.accelerations);
+  take("state/trend/pressure_rates", state.trend.pressure_rates);
+  take("run/steps", run.steps);
+  take("run/divisions", run.divisions);
+  take("run/equilibrium_time_s", run.equilibrium_time_s);
+  take("run/at_equilibrium", run.at_equilibrium);
+  take("run/criterion_met", run.criterion_met);
+  take("run/wanted_step_s", run.wanted_step_s);
+  auto& factor = run.factor;
+  visit_iterate(take, "factor/", factor.at);
+  take("factor/previous_positions", factor.previous_positions);
+  take("factor/previous_velocities", factor.previous_velocities);
+  take("factor/earlier_positions", factor.earlier_positions);
+  take("factor/rate_s", factor.rate_s);
+  take("factor/ahead", factor.ahead);
+  take("factor/end_time_s", factor.end_time_s);
+  take("factor/changed_contacts", factor.changed_contacts);
+  take("factor/has_left", factor.has_left);
+  take("factor/normals", factor.normals);
+  take("factor/iterations_when_new", factor.iterations_when_new);
+  take("factor/wasted_iterations", factor.wasted_iterations);
+}
+
+template <class Take, class Record>
+void visit_record(Take& take, Record& record) {
+  take("record/series_bytes", record.series_bytes);
+  take("record/lineage_bytes", record.lineage_bytes);
+  take("record/midline_bytes", record.midline_bytes);
+  take("record/cells_bytes", record.cells_bytes);
+  take("record/frame_times_s", record.frame_times_s);
+  take("record/wall_s", record.wall_s);
+  take("record/solver_s", record.solver_s);
+}
+
+// The columns of an observation but for the monitors.
+template <class Row, class Take>
+void visit_row(Row& row, const Take& take) {
+  take(row.time_s), take(row.furrow.depth_um), take(row.furrow.depth_below_lips_um), take(row.furrow.lip_distance_um);
+  take(row.furrow.highest_points_distance_um), take(row.vml_speed_um_per_s), take(row.vce_speed_um_per_s);
+  take(row.speed_ratio), take(row.vml_displacement_um), take(row.vce_displacement_um);
+  take(row.vml_apical_area_ratio), take(row.vce_apical_area_ratio), take(row.max_node_speed_um_per_s);
+  take(row.max_volume_error), take(row.lumen_volume_ratio), take(row.max_shell_penetration_um);
+  take(row.min_scaled_jacobian), take(row.step_s), take(row.newton_iterations), take(row.linear_solves);
+  take(row.projection_sweeps), take(row.cubics), take(row.cubics_with_three_roots);
+}
+
+// A number a column, and whether the row has it.
+class RowWriter {
+ public:
+  void add(const Observation& row) {
+    visit_row(row, [&](const auto& value) { put(value); });
+    for (const std::optional<double>& value : row.monitors) put(value);
+  }
+  std::vector<double> numbers;
+  std::vector<char> has;
+
+ private:
+  void put(double value) { numbers.push_back(value), has.push_back(1); }
+  void put(const std::optional<double>& value) { numbers.push_back(value.value_or(0)), has.push_back(value ? 1 : 0); }
+};
+
+class RowReader {
+ public:
+  RowReader(const std::vector<double>& numbers, const std::vector<char>& has) : numbers_(numbers), has_(has) {}
+  Observation next(std::size_t monitors) {
+    Observation row;
+    visit_row(row, [&](auto& value) { get(value); });
+    row.monitors.resize(monitors);
+    for (std::optional<double>& value : row.monitors) get(value);
+    return row;
+  }
+
+ private:
+  void get(double& value) { value = numbers_[at_++]; }
+  void get(int& value) {
+    const double number = numbers_[at_++];
+    if (std::abs(number) > 1e9) Loading::refuse("record/rows");
+    value = static_cast<int>(number);
+  }
+  void get(std::optional<double>& value) {
+    value.reset();
+    if (has_[at_] != 0) value = numbers_[at_];
+    ++at_;
+  }
+  const std::vector<double>& numbers_;
+  const std::vector<char>& has_;
+  std::size_t at_ = 0;
+};
+
+std::size_t fixed_columns() {
+  RowWriter row;
+  row.add({});
+  return row.numbers.size();
+}
+
+void save_rows(ArchiveWriter& archive, const std::vector<Observation>& rows) {
+  RowWriter table;
+  for (const Observation& row : rows) table.add(row);
+  const std::size_t columns = rows.empty() ? 0 : table.numbers.size() / rows.size();
+  archive.put("record/rows", table.numbers, columns);
+  archive.put("record/has", table.has);
+  Saving save(archive);
+  save("record/columns", static_cast<int>(columns));
+  std::string criteria;
+  if (!rows.empty())
+    for (const std::string& name : rows.back().criteria_met) criteria += name + "\n";
+  save("record/criteria_met", criteria);
+}
+
+std::vector<Observation> load_rows(const ArchiveReader& archive) {
+  const std::vector<double> numbers = archive.doubles("record/rows");
+  const std::vector<char> has = archive.bytes("record/has");
+  int stored_columns = 0;
+  std::string criteria;
+  Loading load(archive);
+  load("record/columns", stored_columns);
+  load("record/criteria_met", criteria);
+  const std::size_t fixed = fixed_columns(), columns = static_cast<std::size_t>(std::max(stored_columns, 0));
+  if (columns < fixed || numbers.empty() || numbers.size() % columns != 0 || has.size() != numbers.size())
+    Loading::refuse("record/rows");
+  std::vector<Observation> rows;
+  RowReader reader(numbers, has);
+  for (std::size_t r = 0; r < numbers.size() / columns; ++r) rows.push_back(reader.next(columns - fixed));
+  for (std::size_t at = 0, end = 0; (end = criteria.find('\n', at)) != std::string::npos; at = end + 1)
+    rows.back().criteria_met.push_back(criteria.substr(at, end - at));
+  return rows;
+}
+
+void save_divisions(ArchiveWriter& archive, const std::vector<std::shared_ptr<const PastDivision>>& past) {
+  Saving save(archive);
+  save("divisions/count", static_cast<int>(past.size()));
+  for (std::size_t d = 0; d < past.size(); ++d) {
+    const std::string at = fmt::format("divisions/{}/", d);
+    std::vector<int> cells, walls;
+    std::vector<double> growth_s, volume_ratios;
+    for (const PlannedDivision& one : past[d]->planned) {
+      cells.push_back(one.cut.cell.number()), walls.push_back(one.cut.first_wall);
+      growth_s.push_back(one.growth_s), volume_ratios.push_back(one.volume_ratio);
+    }
+    save(at + "time_s", past[d]->time_s), save(at + "positions", past[d]->positions);
+    save(at + "cells", cells), save(at + "first_walls", walls);
+    save(at + "growth_s", growth_s), save(at + "volume_ratios", volume_ratios);
+  }
+}
+
+std::vector<std::shared_ptr<const PastDivision>> load_divisions(const ArchiveReader& archive) {
+  Loading load(archive);
+  std::vector<std::shared_ptr<const PastDivision>> past;
+  int count = 0;
+  load("divisions/count", count);
+  for (int d = 0; d < count; ++d) {
+    const std::string at = fmt::format("divisions/{}/", d);
+    PastDivision one;
+    std::vector<int> cells, walls;
+    std::vector<double> growth_s, volume_ratios;
+    load(at + "time_s", one.time_s), load(at + "positions", one.positions);
+    load(at + "cells", cells), load(at + "first_walls", walls);
+    load(at + "growth_s", growth_s), load(at + "volume_ratios", volume_ratios);
+    if (walls.size() != cells.size() || growth_s.size() != cells.size() || volume_ratios.size() != cells.size())
+      Loading::refuse(at + "cells");
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      one.planned.push_back({{CellId(cells[i]), walls[i]}, growth_s[i], volume_ratios[i]});
+    past.push_back(std::make_shared<const PastDivision>(std::move(one)));
+  }
+  return past;
+}
+
+}  // namespace
+
+std::string fingerprint(const Tissue& tissue) {
+  std::uint32_t sum = 0;
+  const auto add = [&](const void* bytes, std::size_t count) { sum = libdeflate_crc32(sum, bytes, count); };
+  add(tissue.rest_positions.data(), tissue.rest_positions.size() * sizeof(Vec3));
+  add(tissue.elements.data(), tissue.elements.size() * sizeof(tissue.elements.front()));
+  add(tissue.element_cell.data(), tissue.element_cell.size() * sizeof(CellId));
+  return fmt::format("{} nodes, {} elements, {} cells, crc32 {:08x}", tissue.node_count(), tissue.elements.size(),
+                     tissue.cells.size(), sum);
+}
+
+CheckpointBytes::CheckpointBytes() = default;
+CheckpointBytes::~CheckpointBytes() = default;
+
+std::string CheckpointBytes::operator()(const Checkpoint& checkpoint) {
+  constexpr std::size_t most_kept_bytes = std::size_t{32} << 20;
+  auto archive = archive_ ? std::move(archive_) : std::make_unique<ArchiveWriter>();  // none is kept after errors
+  Saving save(*archive);
+  save("format", format);
+  save("program", checkpoint.program);
+  save("scenario", checkpoint.scenario);
+  save("at_rest", checkpoint.at_rest);
+  visit_run(save, checkpoint.run);
+  visit_record(save, checkpoint.record);
+  save_divisions(*archive, checkpoint.run.past_divisions);
+  save_rows(*archive, checkpoint.record.rows);
+  std::string bytes = archive->image();
+  if (bytes.size() <= most_kept_bytes) archive_ = std::move(archive);
+  return bytes += trailer(bytes);
+}
+
+std::string checkpoint_bytes(const Checkpoint& checkpoint) { return CheckpointBytes()(checkpoint); }
+
+Checkpoint read_checkpoint_bytes(std::string_view bytes) {
+  if (bytes.size() < trailer_bytes) throw FileError("it is no checkpoint, or cut off");
+  const std::string_view image = bytes.substr(0, bytes.size() - trailer_bytes), end = bytes.substr(image.size());
+  constexpr std::string_view start = "\nplica checkpoint ";
+  if (!end.starts_with(start)) throw FileError("it is no checkpoint, or cut off");
+  if (end.substr(start.size(), 2) != fmt::format("{} ", format))
+    throw FileError(fmt::format("another version of plica wrote it, in a format that is not this one's ({})", format));
+  if (end != trailer(image)) throw FileError("it is damaged: its checksum is not that of its bytes");
+  const auto read = [&] {
+    const ArchiveReader archive(image);
+    Loading load(archive);
+    Checkpoint checkpoint;
+    load("program", checkpoint.program);
+    load("scenario", checkpoint.scenario);
+    load("at_rest", checkpoint.at_rest);
+    visit_run(load, checkpoint.run);
+    visit_record(load, checkpoint.record);
+    checkpoint.run.past_divisions = load_divisions(archive);
+    checkpoint.record.rows = load_rows(archive);
+    return checkpoint;
+  };
+  read_on_trial([&] { (void)read(); }, image.size());
+  return read();
+}
+
+std::optional<std::string> why_unfit(const Checkpoint& checkpoint, const Model& model) {
+  const std::size_t nodes = model.tissue.node_count(), cells = model.tissue.cells.size(),
+                    contacts = model.vitelline ? model.vitelline->nodes().size() : 0;
+  const auto none_or = [](std::size_t size, std::size_t full) { return size == 0 || size == full; };
+  const auto fits = [&](const auto& at) {
+    return at.positions.size() == nodes && at.pressures.size() == cells && at.contact_forces.size() == contacts &&
+           at.in_contact.size() == contacts;
+  };
+  const State& state = checkpoint.run.state;
+  if (state.time_s < 0 || checkpoint.run.steps < 0 || checkpoint.run.wanted_step_s < 0 || state.trend.step_s < 0 ||
+      state.trend.earlier_s < 0)
+    return "its time or its step is negative";
+  if (state.trend.step_s + state.trend.earlier_s > state.time_s * (1 + 1e-9))
+    return "its steps are longer than its time";
+  if (!fits(state) || state.velocities.size() != nodes || !none_or(state.trend.mean_velocities.size(), nodes) ||
+      !none_or(state.trend.accelerations.size(), nodes) || !none_or(state.trend.pressure_rates.size(), cells))
+    return "its state is not one of this embryo";
+  const FactorMemory& factor = checkpoint.run.factor;
+  if (factor.empty()) return std::nullopt;
+  if (!fits(factor.at) || factor.previous_positions.size() != nodes || factor.previous_velocities.size() != nodes ||
+      factor.earlier_positions.size() != (factor.ahead > 0 ? nodes : 0) || !(factor.rate_s > 0) || factor.ahead < 0 ||
+      factor.has_left.size() != factor.changed_contacts.size() ||
+      factor.normals.size() != factor.changed_contacts.size())
+    return "its factor is not one of this embryo";
+  for (const int contact : factor.changed_contacts)
+    if (contact < 0 || static_cast<std::size_t>(contact) >= contacts) return "its factor is not one of this embryo";
+  return std::nullopt;
+}
+
+std::optional<std::string> why_unfit(const PastDivision& past, const Model& model) {
+  if (past.positions.size() != model.tissue.node_count()) return "a division is not one of this embryo";
+  for (const PlannedDivision& one : past.planned) {
+    const int cell = one.cut.cell.number();
+    if (cell < 0 || static_cast<std::size_t>(cell) >= model.tissue.cells.size() || one.cut.first_wall < 0 ||
+        one.cut.first_wall > 1 || !(one.growth_s >= 0) || !(one.volume_ratio > 0))
+      return "a division is not one of this embryo";
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+// Whether a resume may change that table of a scenario.
+bool may_change(std::string_view table) {
+  return table == "[time]" || table == "[output]" || table == "[stop]" || table.starts_with("[stop.");
+}
+
+// The lines of a resolved scenario in the tables that `counts` says, each after the name of its table.
+std::vector<std::string> lines_in(const std::string& scenario, const std::function<bool(std::string_view)>& counts) {
+  std::vector<std::string> kept;
+  std::string table;
+  std::istringstream stream(scenario);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.starts_with('['))
+      table = line;
+    else if (counts(table) && !line.empty() && !line.starts_with('#'))
+      kept.push_back(table.empty() ? line : fmt::format("{} {}", table, line));
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::optional<std::string> other_scenario(const std::string& before, const std::string& now) {
+  const auto counts = [](std::string_view table) { return !may_change(table); };
+  const std::vector<std::string> a = lines_in(before, counts), b = lines_in(now, counts);
+  const auto [in_a, in_b] = std::ranges::mismatch(a, b);
+  if (in_a == a.end() && in_b == b.end()) return std::nullopt;
+  const std::string was = in_a == a.end() ? "nothing" : *in_a, is = in_b == b.end() ? "nothing" : *in_b;
+  return fmt::format("it has {}, this one has {}", was, is);
+}
+
+bool other_stop(const std::string& before, const std::string& now) {
+  const auto counts = [](std::string_view table) { return table.starts_with("[stop"); };
+  return lines_in(before, counts) != lines_in(now, counts);
+}
+
+}  // namespace plica

@@ -1,0 +1,40 @@
+#include "record/csv.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace plica {
+namespace {
+
+constexpr int digits = 10;
+constexpr double largest_short = 1e9;  // whole numbers below it are written as they are
+
+char* put_number(char* at, char* end, double value) {
+  const auto whole = std::abs(value) < largest_short ? static_cast<long>(value) : 0L;
+  if (static_cast<double>(whole) == value) return std::to_chars(at, end, whole).ptr;  // -0, too
+  return std::to_chars(at, end, value, std::chars_format::general, digits).ptr;
+}
+
+}  // namespace
+
+void append_csv_row(std::string& text, std::span<const double> values) {
+  std::array<char, 32> number;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) text += ',';
+    if (std::isfinite(values[i]))
+      text.append(number.data(), put_number(number.data(), number.data() + number.size(), values[i]));
+  }
+}
+
+std::string csv_rows(std::span<const double> values, std::size_t columns) {
+  std::string text;
+  text.reserve(values.size() * (digits + 2));
+  for (std::size_t i = 0; i < values.size(); i += columns) {
+    if (i > 0) text += '\n';
+    append_csv_row(text, values.subspan(i, columns));
+  }
+  return text;
+}
+
+}  // namespace plica

@@ -1,0 +1,221 @@
+#include "record/recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "core/errors.hpp"
+#include "core/version.hpp"
+#include "measure/reference_run.hpp"
+#include "record/archive.hpp"
+#include "record/csv.hpp"
+#include "record/mesh_writer.hpp"
+#include "record/run_directory.hpp"
+#include "scenario/print.hpp"
+
+namespace plica {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t most_cells_by_default = 2000;  // with a row a cell a frame in cells.csv
+constexpr std::size_t most_waiting = 1;              // frames and steps, beside the one being written
+constexpr const char* series_header =
+    "time_s,furrow_depth_um,furrow_depth_below_lips_um,lip_distance_um,vml_speed_um_per_s,vce_speed_um_per_s,"
+    "speed_ratio,vml_displacement_um,vce_displacement_um,vml_apical_area_ratio,vce_apical_area_ratio,"
+    "max_node_speed_um_per_s,max_volume_error,lumen_volume_ratio,cells,step_s,newton_iterations,linear_iterations";
+constexpr const char* lineage_header = "cell_id,mother_id,generation,birth_s";
+
+std::string row_of(const std::vector<std::optional<double>>& values) {
+  std::vector<double> numbers;
+  numbers.reserve(values.size());
+  for (const std::optional<double>& value : values)
+    numbers.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+  return csv_rows(numbers, numbers.size());
+}
+
+// A table that begins with its header, whole or not at all; or one cut back to what it had.
+RowFile table(const fs::path& file, const std::string& header, std::uint64_t keep_bytes) {
+  if (keep_bytes > 0) return RowFile(file, keep_bytes);
+  write_file(file, header + "\n");
+  return RowFile(file, header.size() + 1);
+}
+
+std::uint64_t bytes_of(const std::optional<RowFile>& table) { return table ? table->size_bytes() : 0; }
+
+std::string series_columns(const Observer& observer) {
+  std::string header = series_header;
+  for (const Monitor& monitor : observer.monitors()) header += fmt::format(",{}", monitor.column());
+  return header;
+}
+
+}  // namespace
+
+struct Recorder::StepRecord {
+  std::shared_ptr<const FrameRecord> frame;  // or none
+  Observation row;
+  RunMemory run;
+  std::uint64_t series_bytes, lineage_bytes;
+  WallTimes wall;
+};
+
+Recorder::Recorder(fs::path directory, const Scenario& scenario, const Model& model, const Observer& observer)
+    : directory_(std::move(directory)),
+      scenario_(scenario),
+      model_(model),
+      observer_(observer),
+      frame_taker_(model, observer.sites(),
+                   scenario.output.cells_csv.value_or(model.tissue.cells.size() <= most_cells_by_default)),
+      checkpoint_{version(), resolved_toml(scenario), fingerprint(model.tissue), {}, {}},
+      checkpoints_(directory_),
+      writing_(most_waiting) {}
+
+void Recorder::open_tables(const RecordMemory& memory) {
+  series_ = table(directory_ / "series.csv", series_columns(observer_), memory.series_bytes);
+  midline_ = table(directory_ / "midline.csv", midline_header, memory.midline_bytes);
+  if (frame_taker_.with_cell_rows()) cells_ = table(directory_ / "cells.csv", cells_header, memory.cells_bytes);
+  if (!scenario_.divisions.empty()) lineage_ = table(directory_ / "lineage.csv", lineage_header, memory.lineage_bytes);
+}
+
+std::shared_ptr<Recorder::StepRecord> Recorder::step_record(RunMemory run, const WallTimes& wall) const {
+  return std::make_shared<StepRecord>(
+      StepRecord{nullptr, rows_.back(), std::move(run), bytes_of(series_), bytes_of(lineage_), wall});
+}
+
+void Recorder::begin(const std::string& input_toml, const RunMemory& at_rest) {
+  open_tables({});
+  write_file(directory_ / "scenario.input.toml", input_toml);
+  write_file(directory_ / "scenario.toml", checkpoint_.scenario);
+  rows_.push_back(observer_.observe_rest(at_rest.state));
+  append_series(rows_.back());
+  save_frame(at_rest.state);
+  if (can_archive()) writing_.add([this, record = step_record(at_rest, {})] { write(*record); });
+  writing_.finish();  // whoever cannot write hears of it before the first step
+}
+
+void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
+  for (const Observation& row : memory.rows)
+    if (row.monitors.size() != observer_.monitors().size())
+      throw FileError(directory_.string() + ": the checkpoint is damaged: its rows are not of these monitors");
+  remove_half_written(directory_);
+  open_tables(memory);
+  write_file(directory_ / "scenario.input.toml", input_toml);
+  write_file(directory_ / "scenario.toml", checkpoint_.scenario);
+  rows_ = memory.rows;
+  for (const double time_s : memory.frame_times_s) frames_.emplace_back(time_s, frame_file(frames_.size()));
+  if (!frames_.empty()) last_frame_s_ = frames_.back().first;
+  write_collection(directory_ / "frames.pvd", frames_);
+  remove_what_came_after(directory_, frames_.size());
+  if (!listeners_.empty() && !frames_.empty()) {
+    const ReferenceRun run(directory_);
+    for (std::size_t i = 0; i < frames_.size(); ++i) tell(run.frame(i), frames_[i].first);
+  }
+  checkpoint_.record = std::move(memory);
+}
+
+const Observation& Recorder::record(const AcceptedStep& step, const WallTimes& wall) {
+  writing_.finish();
+  rows_.push_back(observer_.observe(step, wall.total_s));
+  const Observation& row = rows_.back();
+  append_series(row);
+  if (!can_archive()) {
+    if (step.frame_is_due) save_frame(step.state);
+    return row;
+  }
+  const auto record = step_record(step.memory(), wall);
+  record->run.criterion_met = row.is_over;
+  if (step.frame_is_due) {
+    last_frame_s_ = step.state.time_s;
+    record->frame = std::make_shared<const FrameRecord>(frame_taker_.take(step.state));
+  }
+  writing_.add([this, record] { write(*record); });
+  return row;
+}
+
+void Recorder::write(const StepRecord& step) {
+  if (step.frame) write(*step.frame);
+  RecordMemory& record = checkpoint_.record;
+  record.rows.push_back(step.row);
+  record.series_bytes = step.series_bytes;
+  record.lineage_bytes = step.lineage_bytes;
+  record.midline_bytes = bytes_of(midline_);
+  record.cells_bytes = bytes_of(cells_);
+  record.frame_times_s.clear();
+  for (const auto& [time_s, file] : frames_) record.frame_times_s.push_back(time_s);
+  record.wall_s = step.wall.total_s;
+  record.solver_s = step.wall.solver_s;
+  checkpoint_.run = step.run;
+  const Sync sync = checkpoints_.sync_is_due() ? Sync::now : Sync::later;
+  if (sync == Sync::now)
+    for (std::optional<RowFile>* file : {&series_, &lineage_, &midline_, &cells_})
+      if (*file) (*file)->sync();
+  checkpoints_.write(checkpoint_, sync);
+}
+
+void Recorder::record_division(const Division& division, const State& state) {
+  frame_taker_.follow_division();
+  if (lineage_) append_lineage(division);
+  save_frame(state);
+}
+
+nlohmann::ordered_json Recorder::finish(const RunResult& result, const WallTimes& wall) {
+  if (last_frame_s_ != result.state.time_s) save_frame(result.state);
+  writing_.finish();
+  nlohmann::ordered_json summary = make_summary(scenario_, model_, result, rows_, observer_.monitors(), wall);
+  write_file(directory_ / "summary.json", summary.dump(2) + "\n");
+  for (RecordListener* listener : listeners_) listener->end();
+  return summary;
+}
+
+void Recorder::append_series(const Observation& row) {
+  std::vector<std::optional<double>> values = {row.time_s,
+                                               row.furrow.depth_um,
+                                               row.furrow.depth_below_lips_um,
+                                               row.furrow.lip_distance_um,
+                                               row.vml_speed_um_per_s,
+                                               row.vce_speed_um_per_s,
+                                               row.speed_ratio,
+                                               row.vml_displacement_um,
+                                               row.vce_displacement_um,
+                                               row.vml_apical_area_ratio,
+                                               row.vce_apical_area_ratio,
+                                               row.max_node_speed_um_per_s,
+                                               row.max_volume_error,
+                                               row.lumen_volume_ratio,
+                                               static_cast<double>(model_.tissue.cells.size()),
+                                               row.step_s,
+                                               static_cast<double>(row.newton_iterations),
+                                               static_cast<double>(row.linear_solves)};
+  values.insert(values.end(), row.monitors.begin(), row.monitors.end());
+  series_->append(row_of(values));
+}
+
+void Recorder::save_frame(const State& state) {
+  last_frame_s_ = state.time_s;
+  writing_.add([this, frame = std::make_shared<const FrameRecord>(frame_taker_.take(state))] { write(*frame); });
+}
+
+void Recorder::write(const FrameRecord& frame) {
+  const MeshArrays arrays = frame.arrays();
+  const std::string file = frame_file(frames_.size());
+  write_mesh(directory_ / file, frame.mesh(), frame.positions, arrays, frame.time_s);
+  frames_.emplace_back(frame.time_s, file);
+  write_collection(directory_ / "frames.pvd", frames_);
+  if (!listeners_.empty()) tell(frame_of(frame.mesh(), frame.positions, arrays), frame.time_s);
+  if (!frame.cell_rows.empty()) cells_->append(csv_rows(frame.cell_rows, cells_columns));
+  if (!frame.midline_rows.empty()) midline_->append(csv_rows(frame.midline_rows, midline_columns));
+}
+
+void Recorder::tell(const Frame& frame, double time_s) {
+  for (RecordListener* listener : listeners_) listener->add_frame(frame, time_s);
+}
+
+void Recorder::append_lineage(const Division& division) {
+  for (const auto& daughters : division.daughters)
+    for (const CellId daughter : daughters) {
+      const Lineage& lineage = model_.tissue.cells[daughter.index()].lineage;
+      lineage_->append(row_of({static_cast<double>(lineage.id), static_cast<double>(lineage.mother),
+                               static_cast<double>(lineage.generation), lineage.birth_s}));
+    }
+}
+
+}  // namespace plica

@@ -1,0 +1,102 @@
+#include "record/results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+
+namespace plica {
+namespace {
+
+std::vector<std::string> fields(const std::string& line) {
+  std::vector<std::string> result(1);
+  for (const char c : line) {
+    if (c == ',') {
+      result.emplace_back();
+    } else if (c != '\r') {
+      result.back() += c;
+    }
+  }
+  return result;
+}
+
+/// The number, or nothing where the text is none.
+std::optional<double> number_in(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+std::optional<std::size_t> Series::column(const std::string& name) const {
+  const auto found = std::ranges::find(columns, name);
+  if (found == columns.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - columns.begin());
+}
+
+std::optional<double> Series::at(std::size_t column, double time_s) const {
+  constexpr double same_time_s = 1e-6;
+  const auto after =
+      std::ranges::lower_bound(rows, time_s - same_time_s, {}, [](const auto& row) { return *row.front(); });
+  if (after == rows.end()) return std::nullopt;
+  if (std::abs(*after->front() - time_s) <= same_time_s) return (*after)[column];
+  if (after == rows.begin()) return std::nullopt;
+  const auto before = after - 1;
+  const std::optional<double> low = (*before)[column], high = (*after)[column];
+  if (!low || !high) return std::nullopt;
+  const double part = (time_s - *before->front()) / (*after->front() - *before->front());
+  return *low + part * (*high - *low);
+}
+
+Series read_table(const std::filesystem::path& file, bool times_increase) {
+  std::istringstream text(read_file(file));
+  const auto refuse = [&](int line, const std::string& problem) {
+    throw FileError(fmt::format("{}:{}: {}", file.string(), line, problem));
+  };
+  Series series;
+  int number = 1;
+  std::string line;
+  std::getline(text, line);
+  series.columns = fields(line);
+  if (series.columns.front() != "time_s") refuse(1, "is no series: its first column is not time_s");
+  while (std::getline(text, line)) {
+    ++number;
+    const std::vector<std::string> texts = fields(line);
+    if (texts.size() != series.columns.size())
+      refuse(number, fmt::format("has {} fields for {} columns", texts.size(), series.columns.size()));
+    std::vector<std::optional<double>> row;
+    for (const std::string& field : texts) {
+      row.push_back(number_in(field));
+      if (!row.back() && !field.empty()) refuse(number, fmt::format("\"{}\" is no number", field));
+    }
+    const bool too_early =
+        !series.rows.empty() && row.front() && times_increase && *row.front() <= *series.rows.back().front();
+    if (!row.front() || too_early) refuse(number, "its time is missing or not after the one before");
+    series.rows.push_back(std::move(row));
+  }
+  return series;
+}
+
+Series read_series(const std::filesystem::path& file) { return read_table(file, true); }
+
+nlohmann::ordered_json read_summary(const std::filesystem::path& directory) {
+  const std::filesystem::path file = directory / "summary.json";
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return nullptr;
+  try {
+    nlohmann::ordered_json summary = nlohmann::ordered_json::parse(read_file(file));
+    if (!summary.is_object()) throw FileError(file.string() + ": is no summary of a run");
+    return summary;
+  } catch (const nlohmann::json::exception& problem) {
+    throw FileError(fmt::format("{}: is damaged: {}", file.string(), problem.what()));
+  }
+}
+
+}  // namespace plica

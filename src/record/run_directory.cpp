@@ -1,0 +1,92 @@
+#include "record/run_directory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "core/errors.hpp"
+#include "record/checkpoint_files.hpp"
+
+namespace plica {
+namespace fs = std::filesystem;
+namespace {
+
+const std::vector<std::string> own_files = {"summary.json",  "series.csv",          "cells.csv",
+                                            "midline.csv",   "lineage.csv",         "frames.pvd",
+                                            "scenario.toml", "scenario.input.toml", "report.html"};
+
+// What frame_file names.
+bool is_frame(const fs::path& file) {
+  const std::string name = file.stem().string();
+  return file.extension() == ".vtu" && name.starts_with("frame_") && name.size() >= 11 &&
+         name.find_first_not_of("0123456789", 6) == std::string::npos;
+}
+
+bool holds_results(const fs::path& directory) {
+  for (const std::string& file : own_files)
+    if (fs::exists(directory / file)) return true;
+  return fs::exists(directory / "frames");
+}
+
+}  // namespace
+
+std::string frame_file(std::size_t number) { return fmt::format("frames/frame_{:05}.vtu", number); }
+
+void remove_half_written(const fs::path& directory) {
+  std::error_code error;
+  const auto is_half_written = [](const fs::path& file) {
+    if (file.extension() != ".part") return false;
+    const fs::path own = file.stem().stem();  // without .PROCESS-NUMBER.part
+    return is_frame(own) || is_checkpoint(own) || std::ranges::find(own_files, own.string()) != own_files.end();
+  };
+  for (const fs::path& folder : {directory, directory / "frames"})
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (is_half_written(entry.path().filename())) fs::remove(entry.path(), error);
+}
+
+bool holds_steps(const fs::path& directory) {
+  const fs::path series = directory / "series.csv";
+  std::error_code error;
+  if (fs::exists(directory / "summary.json", error)) return true;
+  if (!fs::exists(series, error)) return false;
+  constexpr auto without_steps = 2;  // its header and the row at rest
+  std::ifstream rows(series);
+  return std::count(std::istreambuf_iterator<char>(rows), {}, '\n') > without_steps;
+}
+
+bool holds_ending(const fs::path& directory, bool with_report) {
+  std::error_code error;
+  return fs::exists(directory / "summary.json", error) &&
+         (!with_report || fs::exists(directory / "report.html", error));
+}
+
+void prepare_directory(const fs::path& directory, bool overwrite) {
+  std::error_code error;
+  if (fs::exists(directory, error) && !fs::is_directory(directory, error))
+    throw FileError(directory.string() + ": is a file, not a directory; give another --out");
+  if (holds_results(directory)) {
+    if (!overwrite)
+      throw FileError(directory.string() +
+                      ": holds results already; give another --out, or --overwrite to replace them");
+    for (const std::string& file : own_files) fs::remove(directory / file, error);
+    remove_checkpoints(directory);
+    remove_half_written(directory);
+    // Frames only: whatever else lies there is not ours.
+    for (const auto& entry : fs::directory_iterator(directory / "frames", error))
+      if (is_frame(entry.path())) fs::remove(entry.path(), error);
+  }
+  error.clear();
+  fs::create_directories(directory / "frames", error);
+  if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
+}
+
+void remove_what_came_after(const fs::path& directory, std::size_t kept) {
+  std::error_code ignored;
+  for (std::size_t k = kept; fs::remove(directory / frame_file(k), ignored); ++k) continue;
+  for (const char* file : {"summary.json", "report.html"}) fs::remove(directory / file, ignored);
+}
+
+}  // namespace plica

@@ -1,0 +1,30 @@
+#include "record/run_scenario.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "mechanics/obstacles/vitelline.hpp"
+#include "scenario/load.hpp"
+
+namespace plica {
+
+std::optional<Scenario> scenario_of_run(const std::filesystem::path& directory) {
+  const std::filesystem::path file = directory / "scenario.toml";
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return {};
+  try {
+    return load_scenario({"scenario", file.string(), read_file(file)});
+  } catch (const ScenarioError&) {
+    return {};
+  }
+}
+
+std::optional<Capsule> shell_of_run(const Scenario& scenario, const Vectors& rest_positions) {
+  const EmbryoInput& embryo = scenario.embryo;
+  if (!scenario.vitelline.enabled || embryo.shape == "block") return {};
+  const double radius = embryo.diameter_um / 2, half_axis = embryo.shape == "pill" ? embryo.length_um / 2 - radius : 0;
+  Capsule shell = embryo.shape == "file" ? enclosing_capsule(rest_positions) : Capsule{half_axis, radius};
+  shell.radius_um += scenario.vitelline.gap_um;
+  return shell;
+}
+
+}  // namespace plica

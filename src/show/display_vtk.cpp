@@ -1,0 +1,134 @@
+#include <X11/Xlib.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include "core/errors.hpp"
+#include "show/display.hpp"
+
+namespace plica {
+namespace {
+
+constexpr int most_seconds_to_start = 30;
+
+bool answers(const std::string& name) {
+  ::Display* display = XOpenDisplay(name.c_str());
+  if (display == nullptr) return false;
+  XCloseDisplay(display);
+  return true;
+}
+
+[[noreturn]] void throw_no_screen(const std::string& why) {
+  const char* named = std::getenv("DISPLAY");
+  throw FileError(fmt::format("pictures need an X display: {}, and {}; apt-get install xvfb, or set DISPLAY",
+                              named == nullptr || *named == '\0'
+                                  ? std::string("DISPLAY is not set")
+                                  : fmt::format("DISPLAY ({}) cannot be drawn on", named),
+                              why));
+}
+
+// In the child: becomes the server, which writes the number of its display to `pipe_end`.
+[[noreturn]] void become_server(int pipe_end, int messages, pid_t parent) {
+  ::setpgid(0, 0);  // Ctrl-C is for us, not for it
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (::getppid() != parent) ::_exit(1);
+  for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_DFL);
+  const int nothing = ::open("/dev/null", O_RDWR);
+  ::dup2(nothing, STDIN_FILENO);
+  ::dup2(nothing, STDOUT_FILENO);
+  ::dup2(messages, STDERR_FILENO);
+  const std::string number = std::to_string(::dup(pipe_end));  // without O_CLOEXEC
+  // -noreset: else the server starts anew when a window closes, and the next may come too early.
+  ::execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "64x64x24", "-noreset", "-nolisten", "tcp",
+           static_cast<char*>(nullptr));
+  ::_exit(errno == ENOENT ? 127 : 126);
+}
+
+// The line that the server writes once it is ready; empty when it ends or takes too long.
+std::string read_number(int pipe_end) {
+  using Clock = std::chrono::steady_clock;
+  const auto last = Clock::now() + std::chrono::seconds(most_seconds_to_start);
+  std::string line;
+  while (Clock::now() < last) {
+    pollfd watched{pipe_end, POLLIN, 0};
+    if (::poll(&watched, 1, 200) <= 0) continue;
+    char letter = 0;
+    const ssize_t count = ::read(pipe_end, &letter, 1);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return "";
+    if (letter == '\n') return line;
+    line += letter;
+  }
+  return "";
+}
+
+int status_of(pid_t process) {
+  int status = 0;
+  while (::waitpid(process, &status, 0) < 0)
+    if (errno != EINTR) return 0;
+  return status;
+}
+
+// SIGTERM lets the server take away its socket and lock.
+int end_server(pid_t server) {
+  ::kill(server, SIGTERM);
+  return status_of(server);
+}
+
+// What Xvfb said last, in one line.
+std::string last_line(std::FILE* messages) {
+  std::rewind(messages);
+  std::string line;
+  std::array<char, 512> text{};
+  while (std::fgets(text.data(), text.size(), messages) != nullptr)
+    if (text[0] != '\n') line = text.data();
+  while (!line.empty() && (line.back() == '\n' || line.back() == ' ')) line.pop_back();
+  return line;
+}
+
+}  // namespace
+
+Display::Display() {
+  const char* named = std::getenv("DISPLAY");
+  if (named != nullptr && *named != '\0' && answers(named))
+    name_ = named;
+  else
+    start_own();
+}
+
+void Display::start_own() {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> messages(std::tmpfile(), std::fclose);
+  std::array<int, 2> ends{};
+  if (messages == nullptr || ::pipe2(ends.data(), O_CLOEXEC) != 0) throw_no_screen("Xvfb cannot be started");
+  const pid_t parent = ::getpid(), child = ::fork();
+  if (child == 0) become_server(ends[1], ::fileno(messages.get()), parent);
+  ::close(ends[1]);
+  const std::string number = child < 0 ? "" : read_number(ends[0]);
+  ::close(ends[0]);
+  if (child < 0) throw_no_screen("no process can be started");
+  if (number.empty()) {
+    const int status = end_server(child);
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 127) throw_no_screen("there is no Xvfb");
+    const std::string said = last_line(messages.get());
+    throw_no_screen("Xvfb did not start" + (said.empty() ? said : " (" + said + ")"));
+  }
+  server_ = child;
+  name_ = ":" + number;
+}
+
+Display::~Display() {
+  if (server_ > 0) end_server(server_);
+}
+
+}  // namespace plica

@@ -1,0 +1,148 @@
+#include "show/looks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.hpp"
+
+namespace plica {
+namespace {
+
+using Lab = std::array<double, 3>;  // CIE L*a*b*, white point D65
+
+constexpr int colours_a_map = 33;
+
+// IEC 61966-2-1 and CIE 15: Lab to XYZ to linear light to sRGB.
+Rgb srgb_of(const Lab& lab) {
+  const double fy = (lab[0] + 16) / 116;
+  const std::array<double, 3> f = {fy + lab[1] / 500, fy, fy - lab[2] / 200}, white = {0.95047, 1, 1.08883};
+  std::array<double, 3> xyz{};
+  for (int i = 0; i < 3; ++i)
+    xyz[i] = white[i] * (f[i] > 6.0 / 29 ? f[i] * f[i] * f[i] : 3 * (6.0 / 29) * (6.0 / 29) * (f[i] - 4.0 / 29));
+  const std::array<double, 3> light = {3.2406 * xyz[0] - 1.5372 * xyz[1] - 0.4986 * xyz[2],
+                                       -0.9689 * xyz[0] + 1.8758 * xyz[1] + 0.0415 * xyz[2],
+                                       0.0557 * xyz[0] - 0.2040 * xyz[1] + 1.0570 * xyz[2]};
+  Rgb rgb{};
+  for (int i = 0; i < 3; ++i) {
+    const double value = light[i] <= 0.0031308 ? 12.92 * light[i] : 1.055 * std::pow(light[i], 1 / 2.4) - 0.055;
+    rgb[i] = std::clamp(value, 0.0, 1.0);
+  }
+  return rgb;
+}
+
+// The entry at `part` (0 to 1) of values at equal steps, linear between them.
+template <class Values>
+auto between(const Values& values, double part) {
+  const double place = std::clamp(part, 0.0, 1.0) * static_cast<double>(values.size() - 1);
+  const auto low = std::min(static_cast<std::size_t>(place), values.size() - 2);
+  auto result = values[low];
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] += (place - static_cast<double>(low)) * (values[low + 1][i] - values[low][i]);
+  return result;
+}
+
+ColourMap lab_map(const std::string& name, const std::vector<Lab>& control) {
+  ColourMap map{name, {}};
+  for (int i = 0; i < colours_a_map; ++i)
+    map.colours.push_back(srgb_of(between(control, static_cast<double>(i) / (colours_a_map - 1))));
+  return map;
+}
+
+// The smallest number of this kind (1, 1.2, 1.5, ...) times a power of ten that is not below `value`.
+double rounded_up(double value) {
+  if (!(value > 0)) return 1;
+  constexpr double slack = 1e-9;  // a value that is round but for rounding errors stays
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  for (const double factor : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 10.0})
+    if (factor * power * (1 + slack) >= value) return factor * power;
+  return 10 * power;
+}
+
+// The array of a frame that a field of cells comes from.
+const char* array_of(const ColourField& field) {
+  if (field.name == "area-ratio") return "apical_area_ratio";
+  if (field.name == "pressure") return "pressure_Pa";
+  if (field.name == "volume") return "volume_um3";
+  if (field.name == "volume-error") return "volume_error";
+  if (field.name == "contraction") return "activity";
+  return "generation";
+}
+
+template <class Arrays>
+const auto& required(const Arrays& arrays, const std::string& name) {
+  const auto found = arrays.find(name);
+  if (found == arrays.end()) throw FileError(fmt::format("the frame has no array {}; is it one of plica's?", name));
+  return found->second;
+}
+
+}  // namespace
+
+const std::vector<ColourMap>& colour_maps() {
+  // What has not moved stays light. (viridis was tried: its yellow end turns muddy in the shade.)
+  static const std::vector<ColourMap> maps = {
+      lab_map("still", {{96, -3, 10}, {78, -18, 2}, {59, -20, -18}, {40, -4, -33}, {21, 8, -30}}),
+      lab_map("about", {{25, 8, -38}, {60, -10, -32}, {95, 0, 3}, {60, 22, 42}, {25, 24, 32}}),
+      // Okabe and Ito's colours for any kind of colour vision, from their light ones.
+      {"steps", {{0.90, 0.90, 0.88}, {0.90, 0.62, 0}, {0.34, 0.71, 0.91}, {0, 0.62, 0.45}, {0.80, 0.47, 0.65}}}};
+  return maps;
+}
+
+const ColourMap& ColourField::map() const { return colour_maps()[static_cast<std::size_t>(kind)]; }
+
+std::string ColourField::title() const { return unit.empty() ? label : fmt::format("{}, {}", label, unit); }
+
+const std::vector<ColourField>& colour_fields() {
+  static const std::vector<ColourField> fields = {
+      {"displacement", "displacement from rest", "µm", true},
+      {"speed", "speed", "µm/s", true},
+      {"area-ratio", "apical area / at rest", "", false, ScaleKind::about, 1},
+      {"pressure", "pressure", "Pa", false, ScaleKind::about, 0},
+      {"volume-error", "volume error", "", false, ScaleKind::about, 0},
+      {"volume", "volume", "µm³"},
+      {"contraction", "contraction's activity", "", false},
+      {"generation", "generation", "", false, ScaleKind::steps}};
+  return fields;
+}
+
+std::vector<double> field_values(const Frame& frame, const ColourField& field) {
+  if (!field.on_nodes) return required(frame.element_scalars, array_of(field));
+  const Vectors& vectors =
+      required(frame.node_vectors, field.name == "speed" ? "velocity_um_per_s" : "displacement_um");
+  std::vector<double> lengths;
+  lengths.reserve(vectors.size());
+  for (const Vec3& vector : vectors) lengths.push_back(vector.norm());
+  return lengths;
+}
+
+ColourRange colour_range(const ColourField& field, double smallest, double largest) {
+  switch (field.kind) {
+    case ScaleKind::from_zero:
+      return {0, rounded_up(largest)};
+    case ScaleKind::about: {
+      const double reach = rounded_up(std::max(field.centre - smallest, largest - field.centre));
+      return {field.centre - reach, field.centre + reach};
+    }
+    case ScaleKind::steps:
+      break;
+  }
+  return {0, static_cast<double>(field.map().colours.size() - 1)};
+}
+
+Rgb colour_of(const ColourMap& map, const ColourRange& range, double value) {
+  return between(map.colours, (value - range.low) / (range.high - range.low));
+}
+
+const std::vector<View>& views() {
+  // +x posterior, +y right, +z dorsal.
+  static const std::vector<View> all = {
+      {"antero-ventral", "from below and in front", {0.55, 0.2, 0.8}, {0.15, -0.9, 0.3}, {}},
+      {"ventral", "from below, anterior to the left", {0, 0, 1}, {0, -1, 0}, {}},
+      {"side", "from the left side, anterior to the left", {0, 1, 0}, {0, 0, 1}, {}},
+      {"cross-section", "cut across the middle, from the front", {1, 0, 0}, {0, 0, 1}, 0},
+      {"sagittal-section", "cut along the midline, anterior to the left", {0, 1, 0}, {0, 0, 1}, 1}};
+  return all;
+}
+
+}  // namespace plica

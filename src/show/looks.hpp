@@ -1,0 +1,77 @@
+// How results look, wherever they are shown (report, pictures, ParaView): which quantities colour an embryo, by what
+// colours, and from where it is seen. The page of the report is told all this, so that it stands here only.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tissue/files/frame_file.hpp"
+
+namespace plica {
+
+using Rgb = std::array<double, 3>;  // sRGB, 0 to 1
+
+/// Colours at equal steps, from the least value to the greatest; between them, linear in sRGB.
+struct ColourMap {
+  std::string name;
+  std::vector<Rgb> colours;
+};
+
+/// "still": lightness (CIE L*) falls evenly from cream to navy. "about": from blue over near white to brown, lightest
+/// in the middle and even on both sides. Both read with any kind of colour vision; "still" in grey, too. "steps": a
+/// colour a whole number.
+const std::vector<ColourMap>& colour_maps();
+
+enum class ScaleKind {
+  from_zero,  // 0 to the greatest value
+  about,      // the same distance on both sides of `centre`
+  steps       // whole numbers
+};
+
+/// A quantity that colours the embryo.
+struct ColourField {
+  std::string name;   // as in `--colour`
+  std::string label;  // "pressure"
+  std::string unit;   // "Pa"; empty where there is none
+  bool on_nodes = false;
+  ScaleKind kind = ScaleKind::from_zero;
+  double centre = 0;
+  [[nodiscard]] const ColourMap& map() const;
+  [[nodiscard]] std::string title() const;  // "pressure, Pa"
+};
+
+/// displacement, speed, area-ratio, pressure, volume-error, volume, contraction, generation.
+const std::vector<ColourField>& colour_fields();
+
+/// The field's values of a frame: one a node where `on_nodes`, else one an element. FileError when the frame lacks the
+/// array that they come from.
+std::vector<double> field_values(const Frame& frame, const ColourField& field);
+
+/// What the two ends of the colour scale stand for.
+struct ColourRange {
+  double low = 0, high = 1;
+};
+
+/// A scale of the field's kind that holds all values, ends rounded outwards to two digits at most.
+ColourRange colour_range(const ColourField& field, double smallest, double largest);
+
+/// The value's colour; values outside of the range have that of its nearer end.
+Rgb colour_of(const ColourMap& map, const ColourRange& range, double value);
+
+/// From where the embryo is seen, in parallel projection.
+struct View {
+  std::string name;             // as in `--view`
+  std::string label;            // "from below, anterior to the left"
+  Vec3 sight, up;               // from the eye into the picture, and what is upwards; of any length, not parallel
+  std::optional<int> cut_axis;  // 0 or 1: what lies before a plane across this axis is taken away
+};
+
+/// ventral, antero-ventral, side, cross-section, sagittal-section.
+const std::vector<View>& views();
+
+/// Where the views' planes cut: next to the middle, because the middle itself may hold whole walls of cells.
+inline constexpr double view_cut_um = 0.01;
+
+}  // namespace plica

@@ -1,0 +1,139 @@
+#include "show/report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/base64.hpp"
+#include "core/errors.hpp"
+#include "core/markup.hpp"
+#include "core/version.hpp"
+#include "record/deflate.hpp"
+#include "show/looks.hpp"
+#include "show/report_run.hpp"
+
+namespace plica {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::string_view title_place = "<!--plica:title-->", data_place = "<!--plica:data-->";
+
+// JSON that may stand in a script element: "</script>" and "<!--" cannot occur. Bytes that are no UTF-8 become U+FFFD.
+std::string in_script(const ordered_json& json) {
+  const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  std::string result;
+  result.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<')
+      result += "\\u003c";
+    else
+      result += c;
+  }
+  return result;
+}
+
+std::string hex(const Rgb& colour) {
+  std::string text = "#";
+  for (const double part : colour) text += fmt::format("{:02x}", std::lround(255 * part));
+  return text;
+}
+
+const char* name_of(ScaleKind kind) {
+  return kind == ScaleKind::from_zero ? "from-zero" : kind == ScaleKind::about ? "about" : "steps";
+}
+
+// Quantities, each with one scale for all frames of all runs.
+ordered_json fields_json(const std::vector<ReportRun>& runs) {
+  ordered_json fields = ordered_json::array();
+  for (const ColourField& field : colour_fields()) {
+    Quantiser all;
+    for (const ReportRun& run : runs)
+      if (const auto found = run.fields.find(field.name); found != run.fields.end())
+        all.include(found->second.low), all.include(found->second.high);
+    const ColourRange range = colour_range(field, all.low, all.high);
+    fields.push_back({{"name", field.name},
+                      {"label", field.label},
+                      {"unit", field.unit},
+                      {"on_nodes", field.on_nodes},
+                      {"scale", name_of(field.kind)},
+                      {"map", field.map().name},
+                      {"low", range.low},
+                      {"high", range.high}});
+  }
+  return fields;
+}
+
+ordered_json maps_json() {
+  ordered_json maps;
+  for (const ColourMap& map : colour_maps())
+    for (const Rgb& colour : map.colours) maps[map.name].push_back(hex(colour));
+  return maps;
+}
+
+ordered_json views_json() {
+  ordered_json list = ordered_json::array();
+  for (const View& view : views())
+    list.push_back({{"name", view.name},
+                    {"label", view.label},
+                    {"sight", {view.sight.x(), view.sight.y(), view.sight.z()}},
+                    {"up", {view.up.x(), view.up.y(), view.up.z()}},
+                    {"cut_axis", view.cut_axis ? ordered_json(*view.cut_axis) : ordered_json(nullptr)}});
+  return list;
+}
+
+std::string title_of(const std::vector<ReportRun>& runs) {
+  std::string title;
+  for (const ReportRun& run : runs) {
+    if (!title.empty()) title += " | ";
+    const ordered_json& summary = run.json["summary"];
+    const bool has_title = summary.is_object() && summary.contains("title") && summary["title"].is_string() &&
+                           !summary["title"].get_ref<const std::string&>().empty();
+    title += has_title ? summary["title"].get<std::string>() : run.json["name"].get<std::string>();
+  }
+  return title;
+}
+
+std::string replaced(std::string_view text, std::string_view place, const std::string& by) {
+  const std::size_t at = text.find(place);
+  if (at == std::string_view::npos) throw std::logic_error("the page has no place for its data");
+  return fmt::format("{}{}{}", text.substr(0, at), by, text.substr(at + place.size()));
+}
+
+}  // namespace
+
+bool can_report() { return !report_template().empty(); }
+
+std::string report_page_of(const std::vector<std::filesystem::path>& directories) {
+  std::vector<ReportRun> runs;
+  runs.reserve(directories.size());
+  for (const auto& directory : directories)
+    runs.push_back(read_report_run(directory, most_frame_bytes / static_cast<double>(directories.size())));
+  return report_page(runs);
+}
+
+std::string report_page(const std::vector<ReportRun>& runs) {
+  if (!can_report())
+    throw FileError("no report can be made: plica was built without its viewer (PLICA_WITH_VIEWER=OFF)");
+  ordered_json page = {{"format", 1},
+                       {"made_by", fmt::format("plica {} ({})", version(), commit())},
+                       {"fields", fields_json(runs)},
+                       {"maps", maps_json()},
+                       {"views", views_json()},
+                       {"view_cut_um", view_cut_um},
+                       {"runs", ordered_json::array()}};
+  std::string frames;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    page["runs"].push_back(runs[r].json);
+    std::string packed;
+    Deflater(Deflater::Effort::small).append(runs[r].frames.bytes(), packed);
+    frames += fmt::format("<script type=\"text/plain\" id=\"frames-{}\">{}</script>\n", r, base64(packed));
+  }
+  const std::string data =
+      fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n{}", in_script(page), frames);
+  // Data first: a title that holds the mark of another place does no harm.
+  return replaced(replaced(report_template(), data_place, data), title_place, xml_escaped(title_of(runs)));
+}
+
+}  // namespace plica

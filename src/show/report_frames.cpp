@@ -1,0 +1,215 @@
+#include "show/report_frames.hpp"
+
+#include <algorithm>
+
+#include "core/errors.hpp"
+#include "show/looks.hpp"
+
+namespace plica {
+namespace {
+
+using nlohmann::ordered_json;
+constexpr const char* region_prefix = "region_";
+
+const std::vector<double>& cell_ids(const Frame& frame) {
+  const auto found = frame.element_scalars.find("cell_id");
+  if (found == frame.element_scalars.end()) throw FileError("the frame has no array cell_id; is it one of plica's?");
+  return found->second;
+}
+
+// Bits in the order of the names of `regions`.
+std::uint32_t region_bits(const Frame& frame, const std::vector<std::string>& regions, std::size_t element) {
+  std::uint32_t bits = 0;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    const auto found = frame.element_scalars.find(region_prefix + regions[r]);
+    if (found != frame.element_scalars.end() && found->second[element] != 0) bits |= std::uint32_t{1} << r;
+  }
+  return bits;
+}
+
+FrameTopology topology_of(const Frame& frame, const std::vector<std::string>& regions) {
+  FrameTopology topology{frame.elements, {}, {}, {}, {}, {}, {}, skin_of(frame), {}};
+  const auto value = [&](const char* name, std::size_t element) {
+    const auto found = frame.element_scalars.find(name);
+    return found == frame.element_scalars.end() ? 0.0 : found->second[element];
+  };
+  const std::vector<double>& ids = cell_ids(frame);
+  std::map<double, std::uint32_t> number;
+  for (std::size_t e = 0; e < ids.size(); ++e) {
+    const auto [place, is_new] = number.emplace(ids[e], static_cast<std::uint32_t>(number.size()));
+    topology.cell_of_element.push_back(place->second);
+    if (!is_new) continue;
+    topology.first_element.push_back(e);
+    topology.cell_id.push_back(static_cast<std::uint32_t>(ids[e]));
+    topology.mother_id.push_back(static_cast<std::uint32_t>(value("mother_id", e) + 1));
+    topology.generation.push_back(static_cast<std::uint32_t>(value("generation", e)));
+    topology.regions.push_back(region_bits(frame, regions, e));
+  }
+  return topology;
+}
+
+bool shows(const FrameTopology& topology, const Frame& frame) {
+  if (topology.elements != frame.elements) return false;
+  const std::vector<double>& ids = cell_ids(frame);
+  for (std::size_t e = 0; e < ids.size(); ++e)
+    if (topology.cell_id[topology.cell_of_element[e]] != ids[e]) return false;
+  return true;
+}
+
+FrameMoment moment_of(const Frame& frame, const FrameTopology& topology, double time_s, std::size_t number) {
+  FrameMoment moment{time_s, number, false, {}, {}};
+  for (const Vec3& position : frame.positions)
+    moment.positions.push_back(
+        {static_cast<float>(position.x()), static_cast<float>(position.y()), static_cast<float>(position.z())});
+  for (const ColourField& field : colour_fields()) {
+    const std::vector<double> values = field_values(frame, field);
+    std::vector<float> kept;
+    if (field.on_nodes)
+      kept.assign(values.begin(), values.end());
+    else
+      for (const std::size_t element : topology.first_element) kept.push_back(static_cast<float>(values[element]));
+    moment.fields.push_back(std::move(kept));
+  }
+  return moment;
+}
+
+std::vector<std::string> regions_of(const Frame& frame) {
+  constexpr std::size_t most = 32;  // bits
+  std::vector<std::string> names;
+  for (const auto& [name, values] : frame.element_scalars)
+    if (name.starts_with(region_prefix) && names.size() < most)
+      names.push_back(name.substr(std::string(region_prefix).size()));
+  return names;
+}
+
+template <class Ids>
+std::vector<std::uint32_t> flat(const std::vector<Ids>& lists) {
+  std::vector<std::uint32_t> numbers;
+  for (const Ids& list : lists)
+    for (const NodeId node : list) numbers.push_back(static_cast<std::uint32_t>(node.index()));
+  return numbers;
+}
+
+void pack_structure(const FrameTopology& topology, const std::string& prefix, PackedArrays& arrays) {
+  const auto add = [&](const char* name, const std::vector<std::uint32_t>& values, std::size_t period) {
+    arrays.add(prefix + name, std::span<const std::uint32_t>(values), period);
+  };
+  add("elements", flat(topology.elements), 8);
+  add("cell_of_element", topology.cell_of_element, 1);
+  std::vector<std::uint32_t> nodes, elements, faces;
+  for (const SkinFacet& facet : topology.skin.facets) {
+    for (const NodeId node : facet.nodes) nodes.push_back(static_cast<std::uint32_t>(node.index()));
+    elements.push_back(static_cast<std::uint32_t>(facet.element));
+    faces.push_back(static_cast<std::uint32_t>(facet.face));
+  }
+  add("facets", nodes, 4);
+  add("element_of_facet", elements, 1);
+  add("face_of_facet", faces, 1);
+  add("outlines", flat(topology.skin.outlines), 2);
+  add("cell_id", topology.cell_id, 1);
+  add("mother_id", topology.mother_id, 1);
+  add("generation", topology.generation, 1);
+  add("regions", topology.regions, 1);
+}
+
+using Box = std::array<Quantiser, 3>;
+
+void pack_moments(const FrameTopology& topology, const std::string& prefix, const Box& box, ReportRun& run) {
+  std::vector<std::uint16_t> steps;
+  for (const FrameMoment& moment : topology.moments)
+    for (const auto& position : moment.positions)
+      for (int i = 0; i < 3; ++i) steps.push_back(box[i].step_of(position[i]));
+  run.frames.add(prefix + "positions", std::span<const std::uint16_t>(steps),
+                 3 * topology.moments.front().positions.size());
+  for (std::size_t f = 0; f < colour_fields().size(); ++f) {
+    const std::string& name = colour_fields()[f].name;
+    steps.clear();
+    const Quantiser& range = run.fields.at(name);
+    for (const FrameMoment& moment : topology.moments)
+      for (const float value : moment.fields[f]) steps.push_back(range.step_of(value));
+    run.frames.add(prefix + name, std::span<const std::uint16_t>(steps), topology.moments.front().fields[f].size());
+  }
+}
+
+void pack_frames(const std::vector<FrameTopology>& topologies, ReportRun& run) {
+  Box box;
+  for (const FrameTopology& topology : topologies)
+    for (const FrameMoment& moment : topology.moments) {
+      for (const auto& position : moment.positions)
+        for (int i = 0; i < 3; ++i) box[i].include(position[i]);
+      for (std::size_t f = 0; f < colour_fields().size(); ++f) {
+        Quantiser& range = run.fields[colour_fields()[f].name];
+        for (const float value : moment.fields[f]) range.include(value);
+      }
+    }
+  run.json["box"] = {{"low", {box[0].low, box[1].low, box[2].low}}, {"high", {box[0].high, box[1].high, box[2].high}}};
+  for (const auto& [name, range] : run.fields) run.json["fields"][name] = {{"low", range.low}, {"high", range.high}};
+  for (std::size_t t = 0; t < topologies.size(); ++t) {
+    const FrameTopology& topology = topologies[t];
+    const std::string prefix = std::to_string(t) + "/";
+    pack_structure(topology, prefix, run.frames);
+    pack_moments(topology, prefix, box, run);
+    ordered_json times = ordered_json::array();
+    for (const FrameMoment& moment : topology.moments) times.push_back(moment.time_s);
+    run.json["topologies"].push_back({{"times_s", std::move(times)},
+                                      {"nodes", topology.moments.front().positions.size()},
+                                      {"elements", topology.elements.size()},
+                                      {"cells", topology.cell_id.size()}});
+  }
+  run.json["arrays"] = run.frames.index();
+}
+
+// What a frame of this size takes in the page before compression.
+double bytes_of(const FrameMoment& moment) {
+  std::size_t numbers = 3 * moment.positions.size();
+  for (const auto& field : moment.fields) numbers += field.size();
+  return static_cast<double>(sizeof(std::uint16_t) * numbers);
+}
+
+}  // namespace
+
+void ReportFrames::add(const Frame& frame, double time_s) {
+  if (topologies_.empty()) {
+    regions_ = regions_of(frame);
+    rest_positions_ = frame.positions;
+  }
+  const bool new_cells = topologies_.empty() || !shows(topologies_.back(), frame);
+  if (new_cells) {
+    if (!topologies_.empty()) topologies_.back().moments.back().at_division = true;
+    topologies_.push_back(topology_of(frame, regions_));
+  } else {
+    // The one before is no longer the last.
+    std::vector<FrameMoment>& moments = topologies_.back().moments;
+    const FrameMoment& before = moments.back();
+    if (before.number % every_ != 0 && !before.at_division) {
+      bytes_ -= bytes_of(before);
+      moments.pop_back();
+    }
+  }
+  FrameTopology& topology = topologies_.back();
+  topology.moments.push_back(moment_of(frame, topology, time_s, seen_++));
+  topology.moments.back().at_division = new_cells;
+  bytes_ += bytes_of(topology.moments.back());
+  thin_out();
+}
+
+void ReportFrames::thin_out() {
+  while (bytes_ > most_bytes_ && every_ < seen_) {
+    every_ *= 2;
+    for (FrameTopology& topology : topologies_)
+      std::erase_if(topology.moments, [&](const FrameMoment& moment) {
+        const bool stays = moment.number % every_ == 0 || moment.at_division || moment.number + 1 == seen_;
+        if (!stays) bytes_ -= bytes_of(moment);
+        return !stays;
+      });
+  }
+}
+
+void ReportFrames::pack_into(ReportRun& run) const {
+  run.json["frames_saved"] = seen_;
+  run.json["every"] = every_;
+  run.json["regions"] = regions_;
+  if (!topologies_.empty()) pack_frames(topologies_, run);
+}
+
+}  // namespace plica

@@ -1,0 +1,26 @@
+#include "show/report.hpp"
+
+#ifdef PLICA_REPORT_TEMPLATE
+// Put in by the assembler: the compiler takes seconds for a literal of this size.
+__asm__(
+    ".pushsection .rodata\n"
+    "plica_report_template_begin:\n"
+    ".incbin \"" PLICA_REPORT_TEMPLATE
+    "\"\n"
+    "plica_report_template_end:\n"
+    ".byte 0\n"
+    ".popsection\n");
+extern "C" const char plica_report_template_begin[], plica_report_template_end[];
+#endif
+
+namespace plica {
+
+std::string_view report_template() {
+#ifdef PLICA_REPORT_TEMPLATE
+  return {plica_report_template_begin, plica_report_template_end};
+#else
+  return {};
+#endif
+}
+
+}  // namespace plica

@@ -1,0 +1,111 @@
+#include "show/run_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/errors.hpp"
+#include "record/run_scenario.hpp"
+
+namespace plica {
+namespace {
+
+double farthest_displacement_um(const Frame& frame) {
+  const auto displacements = frame.node_vectors.find("displacement_um");
+  double farthest = 0;
+  if (displacements != frame.node_vectors.end())
+    for (const Vec3& displacement : displacements->second) farthest = std::max(farthest, displacement.norm());
+  return farthest;
+}
+
+}  // namespace
+
+RunPictures::RunPictures(std::filesystem::path directory, PictureOptions options)
+    : run_(std::move(directory)), options_(std::move(options)), times_s_(run_.times_s()) {
+  for (const View& view : options_.views) rows_.push_back({view, {0, 0}});
+  look_through();
+  const std::optional<Scenario> scenario = scenario_of_run(run_.directory());
+  is_embryo_ = !scenario || scenario->embryo.shape != "block";
+  if (!options_.shell) return;
+  if (!scenario)
+    throw FileError(run_.directory().string() + ": holds no scenario.toml that says what the vitelline shell is");
+  shell_ = shell_of_run(*scenario, rest_.positions);
+  if (!shell_) throw FileError(run_.directory().string() + ": was run without a vitelline shell; leave out --shell");
+  const double reach = shell_->half_axis_um + shell_->radius_um;
+  for (PictureRow& row : rows_) {
+    // Its two ends and its two sides are enough to make room for it.
+    const double radius = shell_->radius_um;
+    const auto half = half_size_um({{reach, 0, 0}}, row.view);
+    row.half_size_um = {std::max({row.half_size_um[0], half[0], radius}),
+                        std::max({row.half_size_um[1], half[1], radius})};
+  }
+}
+
+void RunPictures::look_through() {
+  smallest_ = std::numeric_limits<double>::infinity();
+  largest_ = -smallest_;
+  for (std::size_t i = 0; i < times_s_.size(); ++i) {
+    Frame frame = run_.frame(i);
+    for (const double value : field_values(frame, options_.field)) {
+      if (!std::isfinite(value)) continue;
+      smallest_ = std::min(smallest_, value);
+      largest_ = std::max(largest_, value);
+    }
+    for (PictureRow& row : rows_) {
+      const auto half = half_size_um(frame.positions, row.view);
+      for (int k = 0; k < 2; ++k) row.half_size_um[k] = std::max(row.half_size_um[k], half[k]);
+    }
+    farthest_um_.push_back(farthest_displacement_um(frame));
+    if (i == 0) rest_ = std::move(frame);
+  }
+}
+
+std::optional<double> RunPictures::nearest_time_s(double time_s) const {
+  const double last_gap = times_s_.size() > 1 ? times_s_.back() - times_s_[times_s_.size() - 2] : 0;
+  constexpr double slack_s = 1e-6;
+  if (time_s < times_s_.front() - slack_s || time_s > times_s_.back() + last_gap / 2 + slack_s) return {};
+  return *std::ranges::min_element(times_s_, {}, [&](double time) { return std::abs(time - time_s); });
+}
+
+std::vector<double> RunPictures::telling_times_s(int count) const {
+  const double farthest = *std::ranges::max_element(farthest_um_);
+  std::vector<double> times;
+  for (int k = 0; k < count; ++k) {
+    const double part = static_cast<double>(k) / std::max(1, count - 1);
+    double time_s = nearest_time_s(times_s_.front() + part * (times_s_.back() - times_s_.front())).value();
+    if (farthest > 0 && k > 0 && k + 1 < count) {
+      const auto first = std::ranges::find_if(farthest_um_, [&](double um) { return um >= part * farthest; });
+      time_s = times_s_[static_cast<std::size_t>(first - farthest_um_.begin())];
+    }
+    if (times.empty() || time_s > times.back()) times.push_back(time_s);
+  }
+  return times;
+}
+
+Picture RunPictures::picture(const std::vector<double>& times_s) const {
+  Picture picture;
+  for (const double time_s : times_s) {
+    const std::optional<Frame> frame = run_.frame_at(time_s);
+    if (!frame) throw FileError(fmt::format("{}: has no frame at {} s", run_.directory().string(), time_s));
+    picture.columns.push_back({time_text(time_s), *frame});
+  }
+  picture.rows = rows_;
+  picture.field = options_.field;
+  picture.range = options_.range.value_or(colour_range(options_.field, smallest_, largest_));
+  if (is_embryo_) picture.rest = rest_;
+  picture.shell = shell_;
+  picture.edges = options_.edges;
+  picture.anatomy = is_embryo_;
+  picture.width_px = options_.width_px;
+  picture.height_px = options_.height_px;
+  return picture;
+}
+
+std::string RunPictures::time_text(double time_s) const {
+  constexpr double longest_in_s = 90;
+  return times_s_.back() < longest_in_s ? fmt::format("{:.3g} s", time_s) : fmt::format("{:.3g} min", time_s / 60);
+}
+
+}  // namespace plica

@@ -1,0 +1,66 @@
+#include "solver/algebra/conjugate_residuals.hpp"
+
+#include <cmath>
+
+#include "core/parallel.hpp"
+
+namespace plica {
+namespace {
+
+using Vector = ConjugateResiduals::Vector;
+
+void add(double factor, const Vector& a, Vector& to) {
+  parallel_for(to.size(), [&](std::size_t i) { to[i] += factor * a[i]; });
+}
+
+}  // namespace
+
+ConjugateResidualsReport ConjugateResiduals::solve(const std::function<void(const Vector&, Vector&)>& multiply,
+                                                   const std::function<void(const Vector&, Vector&)>& precondition,
+                                                   const Vector& b, const ConjugateResidualsRule& rule,
+                                                   const std::function<bool(const ConjugateResidualsReport&)>& go_on,
+                                                   Vector& x) {
+  ConjugateResidualsReport report;
+  x.assign(b.size(), 0.0);
+  residual_ = b;
+  const double norm = std::sqrt(parallel_dot(b, b));
+  report.residual = norm == 0 ? 0 : norm / norm;  // not a number stays one
+  int kept = 0;
+  while (true) {
+    report.converged = report.residual <= rule.tolerance;
+    if (report.converged || report.iterations >= rule.most_iterations || !std::isfinite(report.residual)) return report;
+    if (go_on && !go_on(report)) {
+      report.interrupted = true;
+      return report;
+    }
+    if (kept == rule.most_kept) kept = 0;
+    if (static_cast<int>(directions_.size()) == kept) {
+      directions_.emplace_back();
+      products_.emplace_back();
+    }
+    Vector &p = directions_[kept], &q = products_[kept];
+    p.resize(b.size());
+    q.resize(b.size());
+    precondition(residual_, p);
+    multiply(p, q);
+    for (int k = 0; k < kept; ++k) {
+      const double along = parallel_dot(q, products_[k]);
+      add(-along, products_[k], q);
+      add(-along, directions_[k], p);
+    }
+    const double length = std::sqrt(parallel_dot(q, q));
+    if (!(length > 0)) return report;  // nothing new: the preconditioner leads nowhere
+    parallel_for(b.size(), [&](std::size_t i) {
+      p[i] /= length;
+      q[i] /= length;
+    });
+    const double step = parallel_dot(residual_, q);
+    add(step, p, x);
+    add(-step, q, residual_);
+    report.residual = std::sqrt(parallel_dot(residual_, residual_)) / norm;
+    ++kept;
+    ++report.iterations;
+  }
+}
+
+}  // namespace plica

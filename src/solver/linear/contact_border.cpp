@@ -1,0 +1,133 @@
+#include "solver/linear/contact_border.hpp"
+
+#include <algorithm>
+
+namespace plica {
+namespace {
+
+using Halfway = BlockCholesky::Halfway;
+
+double inner(const std::vector<std::pair<int, Vec3>>& sparse, const Halfway& full) {
+  double sum = 0;
+  for (const auto& [place, value] : sparse) {
+    const float* numbers = full[place].numbers;
+    sum += value[0] * numbers[0] + value[1] * numbers[1] + value[2] * numbers[2];
+  }
+  return sum;
+}
+
+void subtract(double factor, const std::vector<std::pair<int, Vec3>>& sparse, Halfway& from) {
+  for (const auto& [place, value] : sparse)
+    for (int i = 0; i < 3; ++i) from[place].numbers[i] -= static_cast<float>(factor * value[i]);
+}
+
+}  // namespace
+
+void ContactBorder::begin(const Model& model, const StepMatrix& matrix, std::vector<NodeFrame> frames,
+                          std::vector<char> in_contact, std::size_t most_changes) {
+  model_ = &model;
+  matrix_ = &matrix;
+  frames_ = std::move(frames);
+  in_contact_ = std::move(in_contact);
+  most_changes_ = most_changes;
+  columns_.clear();
+  active_.clear();
+}
+
+void ContactBorder::write_free(std::span<const Vec3> vectors) const {
+  single_.resize(3 * vectors.size());
+  for (std::size_t n = 0; n < vectors.size(); ++n) {
+    const Vec3 free = frames_[n].free_part(vectors[n]);
+    for (int i = 0; i < 3; ++i) single_[3 * n + i] = static_cast<float>(free[i]);
+  }
+}
+
+void ContactBorder::add_column(const Change& change, const BlockCholesky& factor) {
+  Column column{change, model_->vitelline->nodes()[change.contact].index(), {}};
+  Vectors b(frames_.size());
+  double diagonal = 0;
+  if (column.leaves) {
+    matrix_->multiply(column.node, column.normal, b);
+    diagonal = column.normal.dot(b[column.node]);
+    write_free(b);
+  } else {
+    single_.assign(3 * b.size(), 0.0F);
+    for (int i = 0; i < 3; ++i) single_[3 * column.node + i] = static_cast<float>(column.normal[i]);
+  }
+  factor.solve_down(single_, z_);
+  for (std::size_t place = 0; place < z_.size(); ++place)
+    if (const Vec3 value = Eigen::Map<const Eigen::Vector3f>(z_[place].numbers).cast<double>(); value != Vec3::Zero())
+      column.halfway.emplace_back(static_cast<int>(place), value);
+
+  columns_.push_back(std::move(column));
+  const Column& last = columns_.back();
+  const auto i = static_cast<Eigen::Index>(columns_.size()) - 1;
+  complement_.conservativeResize(i + 1, i + 1);
+  complement_(i, i) = diagonal - inner(last.halfway, z_);
+  for (Eigen::Index j = 0; j < i; ++j) {
+    const Column& other = columns_[j];
+    // D between two nodes that have left; that of neighbours is in the matrix.
+    const double between =
+        last.leaves && other.leaves ? last.normal.dot(matrix_->block(last.node, other.node) * other.normal) : 0;
+    complement_(i, j) = complement_(j, i) = between - inner(other.halfway, z_);
+  }
+}
+
+void ContactBorder::remember(FactorMemory& memory) const {
+  for (const Column& column : columns_) {
+    memory.changed_contacts.push_back(static_cast<int>(column.contact));
+    memory.has_left.push_back(column.leaves);
+    memory.normals.push_back(column.normal);
+  }
+}
+
+void ContactBorder::recall(const FactorMemory& memory, const BlockCholesky& factor) {
+  for (std::size_t k = 0; k < memory.changed_contacts.size(); ++k)
+    add_column({static_cast<std::size_t>(memory.changed_contacts[k]), memory.has_left[k] != 0, memory.normals[k]},
+               factor);
+}
+
+bool ContactBorder::follow(const Iterate& at, const BlockCholesky& factor) {
+  std::vector<std::size_t> changed, active;
+  std::vector<Change> unknown;
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k)
+    if (at.in_contact[k] != in_contact_[k]) changed.push_back(k);
+  const auto column_of = [&](std::size_t k) { return std::ranges::find(columns_, k, &Column::contact); };
+  for (const std::size_t k : changed) {
+    if (column_of(k) != columns_.end()) continue;
+    const std::size_t n = model_->vitelline->nodes()[k].index();
+    const bool leaves = !at.in_contact[k];
+    unknown.push_back({k, leaves,
+                       leaves ? Vec3(frames_[n].axes.col(frames_[n].fixed - 1))
+                              : without_held(*model_, n, model_->vitelline->gap(at.positions[n]).inward).normalized()});
+  }
+  if (changed.size() > most_changes_ || columns_.size() + unknown.size() > most_changes_) return false;
+  for (const Change& change : unknown) add_column(change, factor);
+  for (const std::size_t k : changed) active.push_back(static_cast<std::size_t>(column_of(k) - columns_.begin()));
+  if (active == active_) return true;
+  active_ = std::move(active);
+  if (!active_.empty()) active_complement_.compute(complement_(active_, active_));
+  return true;
+}
+
+void ContactBorder::solve(const BlockCholesky& factor, std::span<Vec3> x) const {
+  const auto size = static_cast<Eigen::Index>(active_.size());
+  Eigen::VectorXd border(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const Column& column = columns_[active_[i]];
+    border[i] = column.leaves ? column.normal.dot(x[column.node]) : 0;
+  }
+  write_free(x);
+  factor.solve_down(single_, z_);
+  if (size > 0) {
+    for (Eigen::Index i = 0; i < size; ++i) border[i] -= inner(columns_[active_[i]].halfway, z_);
+    border = active_complement_.solve(border).eval();
+    for (Eigen::Index i = 0; i < size; ++i) subtract(border[i], columns_[active_[i]].halfway, z_);
+  }
+  factor.solve_up(z_, single_);
+  for (std::size_t n = 0; n < x.size(); ++n) x[n] = Eigen::Map<const Eigen::Vector3f>(&single_[3 * n]).cast<double>();
+  for (Eigen::Index i = 0; i < size; ++i)
+    if (const Column& column = columns_[active_[i]]; column.leaves) x[column.node] += border[i] * column.normal;
+}
+
+}  // namespace plica

@@ -1,0 +1,62 @@
+// Lets a factor serve while nodes leave the shell or come to it. The factor has the directions that were fixed when it
+// was made; each node that has changed since borders it with one more unknown (its free normal) or condition (its fixed
+// one):
+//   [ A0   B ] [ x  ]   [ f        ]     B: columns A n of nodes that have left, n of nodes that have come,
+//   [ B^T  D ] [ xi ] = [ n^T f, 0 ]     D: n^T A n among those that have left.
+// With A0 = L L^T and Y = L^-1 B this is, between the two halves of a solve with the factor,
+//   z = L^-1 f,   (D - Y^T Y) xi = [ n^T f, 0 ] - Y^T z,   x = L^-T (z - Y xi).
+// Y is sparse: a column of it costs a part of half a solve, once.
+#pragma once
+
+#include <Eigen/LU>
+#include <optional>
+
+#include "solver/algebra/block_cholesky.hpp"
+#include "solver/linear/newton.hpp"
+#include "solver/linear/step_matrix.hpp"
+
+namespace plica {
+
+class ContactBorder {
+ public:
+  /// The factor is new: of `matrix` (which stays as it is until the next call) with these frames and contacts.
+  void begin(const Model& model, const StepMatrix& matrix, std::vector<NodeFrame> frames, std::vector<char> in_contact,
+             std::size_t most_changes);
+
+  /// Takes up the changes of contacts since. False when there are too many: the factor should be made anew.
+  [[nodiscard]] bool follow(const Iterate& at, const BlockCholesky& factor);
+
+  /// Adds the changes that have been taken up to a factor's memory; takes up those of one after `begin`.
+  void remember(FactorMemory& memory) const;
+  void recall(const FactorMemory& memory, const BlockCholesky& factor);
+
+  /// Applies factor and border in place; free nodes.
+  void solve(const BlockCholesky& factor, std::span<Vec3> x) const;
+
+ private:
+  struct Change {
+    std::size_t contact;
+    bool leaves;
+    Vec3 normal;
+  };
+  struct Column : Change {
+    std::size_t node;
+    std::vector<std::pair<int, Vec3>> halfway;  // of Y: place in the order of elimination, numbers
+  };
+  void add_column(const Change& change, const BlockCholesky& factor);
+  void write_free(std::span<const Vec3> vectors) const;  // to single_
+
+  const Model* model_ = nullptr;
+  const StepMatrix* matrix_ = nullptr;
+  std::vector<NodeFrame> frames_;
+  std::vector<char> in_contact_;
+  std::size_t most_changes_ = 0;
+  std::vector<Column> columns_;      // of all changes since; some may have been undone
+  Eigen::MatrixXd complement_;       // D - Y^T Y of all columns
+  std::vector<std::size_t> active_;  // columns that hold now
+  Eigen::PartialPivLU<Eigen::MatrixXd> active_complement_;
+  mutable std::vector<float> single_;  // scratch
+  mutable BlockCholesky::Halfway z_;
+};
+
+}  // namespace plica

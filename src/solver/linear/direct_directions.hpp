@@ -1,0 +1,33 @@
+// Newton directions from a factor of the whole indefinite system. The factor is kept, within a step and in the next
+// one of about equal length with the same contacts, while it still converges fast (docs/decisions/0003-newton.md).
+#pragma once
+
+#include "solver/linear/step_matrix.hpp"
+
+namespace plica {
+
+class DirectDirections final : public NewtonDirections {
+ public:
+  explicit DirectDirections(const Model& model);
+  [[nodiscard]] Outcome find(const Step& step, const Iterate& at, const Residual& residual, const Wish& wish,
+                             Direction& direction, Cost& cost) override;
+  void forget_factor() override { factor_frames_.clear(); }
+  [[nodiscard]] FactorMemory memory() const override { return factor_frames_.empty() ? FactorMemory{} : made_from_; }
+  void recall(const FactorMemory& memory) override;
+
+ private:
+  bool refresh(const Step& step, const Iterate& at);
+
+  const Model& model_;
+  StepMatrix matrix_;
+  std::unique_ptr<LinearSolver> linear_solver_;
+  std::vector<double> values_;
+
+  // The factor at hand: for which Step::rate_s and frames it was made. Empty frames: none.
+  std::vector<NodeFrame> factor_frames_;
+  std::vector<char> factor_contacts_;
+  double factor_rate_s_ = 0;
+  FactorMemory made_from_;
+};
+
+}  // namespace plica

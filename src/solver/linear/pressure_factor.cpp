@@ -1,0 +1,103 @@
+#include "solver/linear/pressure_factor.hpp"
+
+#include <algorithm>
+
+#include "core/parallel.hpp"
+#include "solver/multigrid/rows.hpp"
+
+namespace plica {
+
+PressureFactor::PressureFactor(const VolumeJacobian& jacobian, std::size_t free_nodes)
+    : places_(jacobian.cells(), {-1, 0}), compliances_(free_nodes, 0.0) {
+  gather_blocks(jacobian);
+  multigrid::Rows rows = multigrid::collect_rows(static_cast<int>(blocks_.size()), [&](int block, const auto& take) {
+    for (const int cell : blocks_[block]) {
+      if (cell < 0) continue;
+      for (const auto& [node, value] : jacobian.of_cell(cell))
+        for (const auto& touch : jacobian.around(node.index()))
+          if (const int other = places_[touch.cell].block; other <= block) take(other);
+    }
+  });
+  pattern_ = {std::move(rows.starts), std::move(rows.columns)};
+  factor_.emplace(pattern_);
+  single_.resize(cells_a_block * blocks_.size());
+}
+
+// Each cell that is left takes neighbours that are left, those with most nodes in common first.
+void PressureFactor::gather_blocks(const VolumeJacobian& jacobian) {
+  for (int cell = 0; cell < static_cast<int>(places_.size()); ++cell) {
+    if (places_[cell].block >= 0) continue;
+    const int block = static_cast<int>(blocks_.size());
+    std::array<int, 3> members = {cell, -1, -1};
+    places_[cell] = {block, 0};
+    for (int row = 1; row < cells_a_block; ++row) {
+      std::vector<int> around;
+      for (const auto& [node, value] : jacobian.of_cell(members[row - 1]))
+        for (const auto& touch : jacobian.around(node.index()))
+          if (places_[touch.cell].block < 0) around.push_back(touch.cell);
+      if (around.empty()) break;
+      std::ranges::sort(around);
+      int best = around.front();
+      for (std::size_t i = 0, most = 0; i < around.size();) {
+        const std::size_t end = std::ranges::upper_bound(around, around[i]) - around.begin();
+        if (end - i > most) {
+          most = end - i;
+          best = around[i];
+        }
+        i = end;
+      }
+      members[row] = best;
+      places_[best] = {block, row};
+    }
+    blocks_.push_back(members);
+  }
+}
+
+void PressureFactor::write_rows(const VolumeJacobian& jacobian, std::span<const NodeFrame> frames, int block,
+                                std::span<float> values) const {
+  for (const int cell : blocks_[block]) {
+    if (cell < 0) continue;
+    for (const auto& [node, value] : jacobian.of_cell(cell)) {
+      const Vec3 moved = compliances_[node.index()] * frames[node.index()].free_part(value);
+      for (const auto& [other, slot] : jacobian.around(node.index())) {
+        if (places_[other].block > block) continue;
+        const std::size_t at = 9 * static_cast<std::size_t>(pattern_.find(block, places_[other].block)) +
+                               3 * places_[cell].row + places_[other].row;
+        values[at] += static_cast<float>(moved.dot(jacobian.of_cell(other)[slot].value));
+      }
+    }
+  }
+  // What is left of modes that resist nothing, for single precision; and cells that are not there, or held altogether.
+  constexpr float least = 1e-5F;
+  float* diagonal = &values[9 * static_cast<std::size_t>(pattern_.starts[block + 1] - 1)];
+  for (int row = 0; row < cells_a_block; ++row) {
+    float& value = diagonal[4 * row];
+    value = value > 0 ? (1 + least) * value : 1;
+  }
+}
+
+bool PressureFactor::factorise(const VolumeJacobian& jacobian, const StepMatrix& matrix,
+                               std::span<const NodeFrame> frames) {
+  parallel_for(compliances_.size(), [&](std::size_t n) { compliances_[n] = 3 / matrix.block(n, n).trace(); });
+  if (!std::ranges::all_of(compliances_, [](double c) { return c > 0; })) return false;
+  std::vector<float> values(9 * pattern_.columns.size(), 0.0F);
+  parallel_for(blocks_.size(),
+               [&](std::size_t block) { write_rows(jacobian, frames, static_cast<int>(block), values); });
+  return factor_->factorise(values);
+}
+
+void PressureFactor::solve(std::span<double> rates) const {
+  std::ranges::fill(single_, 0.0F);
+  const auto at = [&](std::size_t cell) -> float& {
+    return single_[cells_a_block * static_cast<std::size_t>(places_[cell].block) + places_[cell].row];
+  };
+  parallel_for(rates.size(), [&](std::size_t cell) { at(cell) = static_cast<float>(rates[cell]); });
+  factor_->solve(single_);
+  parallel_for(rates.size(), [&](std::size_t cell) { rates[cell] = at(cell); });
+}
+
+void PressureFactor::displace(std::span<Vec3> forces) const {
+  parallel_for(compliances_.size(), [&](std::size_t n) { forces[n] *= compliances_[n]; });
+}
+
+}  // namespace plica

@@ -1,0 +1,49 @@
+// Pressures that hardly move anything. In a sheet whose cells are one element each, neighbours with pressures of
+// opposite sign push against each other: the chequerboard makes no forces at all on a regular grid, and nearly none
+// where its amplitude changes slowly, so that no multiple of W comes near what resists it. L = J D^-1 J^T does, D being
+// the diagonal of A: forces that change from node to node meet the stiffness of each node. Derivation:
+// docs/theory/step.md, Linear systems.
+#pragma once
+
+#include "solver/algebra/block_cholesky.hpp"
+#include "solver/linear/step_matrix.hpp"
+#include "solver/linear/volume_jacobian.hpp"
+
+namespace plica {
+
+/// L = J D^-1 J^T, cell by cell, and its factor. Cells that share a node are neighbours.
+class PressureFactor {
+ public:
+  /// Cells and nodes that join them: analysed once a topology.
+  PressureFactor(const VolumeJacobian& jacobian, std::size_t free_nodes);
+
+  /// Makes the factor with the diagonal of `matrix` (of A alone) and without the directions that frames fix. False when
+  /// a node has no stiffness.
+  [[nodiscard]] bool factorise(const VolumeJacobian& jacobian, const StepMatrix& matrix,
+                               std::span<const NodeFrame> frames);
+
+  /// Pressures p with L p = rates, in place; cells: um^3 in, kPa out.
+  void solve(std::span<double> rates) const;
+
+  /// Displacements by forces where each node is alone: D^-1 f, in place. Fixed directions are the caller's.
+  void displace(std::span<Vec3> forces) const;
+
+ private:
+  // The factor's blocks are of three cells, neighbours where there are any.
+  static constexpr int cells_a_block = 3;
+  struct Place {
+    int block = 0, row = 0;
+  };
+  void gather_blocks(const VolumeJacobian& jacobian);
+  void write_rows(const VolumeJacobian& jacobian, std::span<const NodeFrame> frames, int block,
+                  std::span<float> values) const;
+
+  std::vector<Place> places_;               // cells
+  std::vector<std::array<int, 3>> blocks_;  // their cells; -1: none
+  BlockPattern pattern_;
+  std::optional<BlockCholesky> factor_;
+  std::vector<double> compliances_;  // of D^-1; nodes, um/nN
+  mutable std::vector<float> single_;
+};
+
+}  // namespace plica

@@ -1,0 +1,26 @@
+#include "solver/make_stepper.hpp"
+
+#include <stdexcept>
+
+#include "solver/projection/linearly_implicit.hpp"
+#include "solver/projection/projected_stepper.hpp"
+#include "solver/step/step_solver.hpp"
+
+namespace plica {
+
+std::unique_ptr<Stepper> make_stepper(const Model& model, const StepScheme& scheme) {
+  if (scheme.order == TimeOrder::second &&
+      (scheme.projection || scheme.forces != StepScheme::Forces::newton || model.inertia))
+    throw std::logic_error("steps of second order are Newton's, without projection or inertia");
+  if (scheme.forces == StepScheme::Forces::newton && !scheme.projection)
+    return std::make_unique<StepSolver>(model, StepTolerances{}, scheme.linear_method, scheme.order);
+  // Only Newton's step keeps nodes in the shell by itself.
+  if (scheme.forces == StepScheme::Forces::linearly_implicit)
+    return std::make_unique<ProjectedStepper>(
+        model, std::make_unique<LinearlyImplicit>(model, scheme.linear_tolerance, scheme.most_linear_iterations),
+        scheme.projection);
+  return std::make_unique<ProjectedStepper>(
+      model, std::make_unique<StepSolver>(model, StepTolerances{}, scheme.linear_method), scheme.projection);
+}
+
+}  // namespace plica

@@ -1,0 +1,26 @@
+// Who takes a model's steps: the choice between the schemes that a scenario may ask for.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "solver/linear/newton.hpp"
+#include "solver/projection/volume_projection.hpp"
+#include "solver/step/backward_difference.hpp"
+#include "solver/step/stepper.hpp"
+
+namespace plica {
+
+/// What takes a step.
+struct StepScheme {
+  enum class Forces { newton, linearly_implicit } forces = Forces::newton;
+  TimeOrder order = TimeOrder::first;                    // second: newton, no projection, no inertia
+  LinearMethod linear_method = LinearMethod::automatic;  // newton
+  double linear_tolerance = 1e-6;     // linearly implicit: residual of the linear system over its right side
+  int most_linear_iterations = 2000;  // linearly implicit
+  std::optional<ProjectionRule> projection;
+};
+
+std::unique_ptr<Stepper> make_stepper(const Model& model, const StepScheme& scheme);
+
+}  // namespace plica

@@ -1,0 +1,27 @@
+// A force step followed by the projection onto volumes and shell: the splitting of the paper (2.5, 2.7).
+#pragma once
+
+#include "solver/projection/volume_projection.hpp"
+#include "solver/step/stepper.hpp"
+
+namespace plica {
+
+class ProjectedStepper final : public Stepper {
+ public:
+  /// Without a rule only the shell is projected.
+  ProjectedStepper(const Model& model, std::unique_ptr<Stepper> force_step, const std::optional<ProjectionRule>& rule);
+
+  StepReport advance(const State& state, double duration_s, bool from_rest, State& next) override;
+  void stop_when(std::function<bool()> stop_requested) override;
+  void forget_factor() override { force_step_->forget_factor(); }
+  [[nodiscard]] FactorMemory memory() const override { return force_step_->memory(); }
+  void recall(const FactorMemory& memory) override { force_step_->recall(memory); }
+
+ private:
+  const Model& model_;
+  std::unique_ptr<Stepper> force_step_;
+  VolumeProjection projection_;
+  std::function<bool()> stop_requested_;
+};
+
+}  // namespace plica

@@ -1,0 +1,187 @@
+#include "solver/projection/volume_projection.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plica {
+namespace {
+
+void add_facets(const std::array<NodeId, 8>& element, std::vector<ClosedSurface::Quad>& facets) {
+  for (const auto& face : hex_faces)
+    facets.push_back({element[face[0]], element[face[1]], element[face[2]], element[face[3]]});
+}
+
+double volume_inside(const ClosedSurface& surface, const Vectors& positions) {
+  Vectors points, gradient;
+  surface.gather(positions, points);
+  surface.gradient(points, gradient);
+  return dot(points, gradient) / 3;
+}
+
+}  // namespace
+
+VolumeProjection::VolumeProjection(const Model& model, const std::optional<ProjectionRule>& rule)
+    : model_(model), rule_(rule.value_or(ProjectionRule{})) {
+  if (!rule) return;
+  const Tissue& tissue = model.tissue;
+  const std::vector<double>& targets = model.volumes.targets();
+  std::vector<ClosedSurface::Quad> facets;
+  if (rule_.surfaces == ProjectionRule::Surfaces::cells) {
+    for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+      facets.clear();
+      const std::size_t first = tissue.cells[c].first_element.index();
+      for (std::size_t e = first; e < first + tissue.cells[c].element_count; ++e)
+        add_facets(tissue.elements[e], facets);
+      kept_.push_back({ClosedSurface(facets), targets[c], CellId(c)});
+    }
+  } else if (rule_.surfaces == ProjectionRule::Surfaces::tissue) {
+    for (const auto& element : tissue.elements) add_facets(element, facets);
+    double target = 0;
+    for (const double of_cell : targets) target += of_cell;
+    kept_.push_back({ClosedSurface(facets), target, std::nullopt});
+  } else {
+    for (const Facet& facet : tissue.apical_facets) facets.push_back(facet.nodes);
+    ClosedSurface surface(facets);
+    const double target = volume_inside(surface, tissue.rest_positions);
+    kept_.push_back({std::move(surface), target, std::nullopt});
+  }
+}
+
+// Mobility: one over what resists a node's motion in a step, drag and mass, which the laws on single nodes say.
+void VolumeProjection::set_weights(double duration_s) {
+  const std::size_t nodes = model_.tissue.node_count();
+  const Vectors &at = model_.tissue.rest_positions, along_x(nodes, Vec3::UnitX()), still(nodes, Vec3::Zero());
+  const Step step{at, at, still, duration_s, 0};
+  Vectors resistance(nodes, Vec3::Zero());
+  for (const auto& law : model_.laws)
+    if (law->node_groups().empty()) law->add_tangent_product(step, along_x, resistance);
+  double sum = 0, least = 0;
+  for (const Vec3& r : resistance) {
+    sum += r.x();
+    if (r.x() > 0 && (least == 0 || r.x() < least)) least = r.x();
+  }
+  weights_.assign(nodes, static_cast<double>(nodes) / (sum * duration_s));
+  if (rule_.weights == ProjectionRule::Weights::equal) return;
+  // A node inside the body that nothing resists counts as the one that is resisted least.
+  for (std::size_t n = 0; n < nodes; ++n) weights_[n] = 1 / (std::max(resistance[n].x(), least) * duration_s);
+}
+
+// Moves a node of the vitelline inward, the way that its held directions leave, by a distance along the normal.
+void VolumeProjection::push(std::size_t k, double distance_um, Vectors& positions) {
+  const std::size_t n = model_.vitelline->nodes()[k].index();
+  Vec3 inward = model_.vitelline->gap(positions[n]).inward;
+  for (int axis = 0; axis < 3; ++axis)
+    if (model_.held[n][axis]) inward[axis] = 0;
+  if (inward.norm() < 1e-6) return;  // held where the shell would push: the hold's business
+  positions[n] += distance_um / inward.squaredNorm() * inward;
+  pushed_[k] += distance_um;
+}
+
+// Puts nodes outside the shell back onto it. A node that was pushed and now has a gap goes back to the shell, at most
+// as far as it was pushed: so the end is the nearest place that obeys shell and volumes, on whatever way it is reached.
+bool VolumeProjection::project_shell(Vectors& positions) {
+  bool moved = false;
+  for (std::size_t k = 0; k < pushed_.size(); ++k) {
+    const double gap = model_.vitelline->gap(positions[model_.vitelline->nodes()[k].index()]).value;
+    const double distance = std::max(-gap, -pushed_[k]);
+    if (std::abs(distance) <= rule_.gap_um) continue;
+    const double before = pushed_[k];
+    push(k, distance, positions);
+    moved = moved || pushed_[k] != before;
+  }
+  return moved;
+}
+
+// Sets points_, gradient_ and direction_, along which its nodes go, to those of a surface. Returns V - target.
+double VolumeProjection::look_at(const Kept& kept, const Vectors& positions) {
+  const std::vector<NodeId>& nodes = kept.surface.nodes();
+  kept.surface.gather(positions, points_);
+  kept.surface.gradient(points_, gradient_);
+  direction_ = gradient_;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const std::size_t n = nodes[i].index();
+    direction_[i] *= weights_[n];
+    for (int axis = 0; axis < 3; ++axis)
+      if (model_.held[n][axis]) direction_[i][axis] = 0;
+  }
+  return dot(points_, gradient_) / 3 - kept.target;
+}
+
+void VolumeProjection::move(std::size_t k, double l, Vectors& positions) {
+  const std::vector<NodeId>& nodes = kept_[k].surface.nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) positions[nodes[i].index()] += l * direction_[i];
+  moved_[k] += l;
+}
+
+// True if the surface's volume was off and had to be mended.
+bool VolumeProjection::project(std::size_t k, Vectors& positions, StepReport& report) {
+  const Kept& kept = kept_[k];
+  const double excess = look_at(kept, positions);
+  if (std::abs(excess) <= rule_.tolerance * kept.target) return false;
+  Cubic cubic = kept.surface.volume_along(points_, gradient_, direction_, scratch_);
+  cubic.c0 = excess;
+  if (!(cubic.c1 > 0)) return true;  // nothing of it can move
+  ++report.cubics;
+  if (has_three_real_roots(cubic)) ++report.cubics_with_three_roots;
+  if (const std::optional<double> root = root_nearest_zero(cubic)) move(k, *root, positions);
+  return true;
+}
+
+// Goes as far as in the step before: next to rest that is nearly all of the way.
+void VolumeProjection::repeat_last_step(const State& before, double duration_s, State& after) {
+  moved_.assign(kept_.size(), 0.0);
+  pushed_.assign(after.contact_forces.size(), 0.0);
+  for (std::size_t k = 0; k < kept_.size(); ++k)
+    if (const auto& cell = kept_[k].cell; cell && before.pressures[cell->index()] != 0) {
+      look_at(kept_[k], after.positions);
+      move(k, before.pressures[cell->index()] * duration_s, after.positions);
+    }
+  for (std::size_t k = 0; k < pushed_.size(); ++k)
+    if (const double more = before.contact_forces[k] - after.contact_forces[k]; more > 0)
+      push(k, more * contact_weight(k, duration_s), after.positions);
+}
+
+double VolumeProjection::contact_weight(std::size_t k, double duration_s) const {
+  return weights_[model_.vitelline->nodes()[k].index()] * duration_s;
+}
+
+// How far off volumes and shell are left.
+void VolumeProjection::judge(const Vectors& positions, StepReport& report) const {
+  report.volume_error = report.outside_um = 0;
+  for (const auto& [surface, target, cell] : kept_) {
+    const double error = std::abs(volume_inside(surface, positions) / target - 1);
+    if (error <= report.volume_error) continue;
+    report.volume_error = error;
+    report.cell = cell;
+  }
+  if (!model_.vitelline) return;
+  for (const NodeId node : model_.vitelline->nodes())
+    report.outside_um = std::max(report.outside_um, -model_.vitelline->gap(positions[node.index()]).value);
+}
+
+void VolumeProjection::apply(const State& before, double duration_s, const std::function<bool()>& stop_requested,
+                             State& after, StepReport& report) {
+  set_weights(duration_s);
+  repeat_last_step(before, duration_s, after);
+  bool moved = true;
+  for (report.projection_sweeps = 0; moved && report.projection_sweeps < rule_.most_sweeps;
+       ++report.projection_sweeps) {
+    if (stop_requested && stop_requested()) {
+      report.outcome = StepReport::Outcome::interrupted;
+      return;
+    }
+    moved = project_shell(after.positions);
+    for (std::size_t k = 0; k < kept_.size(); ++k) moved = project(k, after.positions, report) || moved;
+  }
+  judge(after.positions, report);
+  report.outcome = moved ? StepReport::Outcome::not_projected : StepReport::Outcome::converged;
+  if (!moved) report.cell.reset();
+  for (std::size_t k = 0; k < kept_.size(); ++k)
+    if (kept_[k].cell) after.pressures[kept_[k].cell->index()] += moved_[k] / duration_s;
+  for (std::size_t k = 0; k < pushed_.size(); ++k) {
+    after.contact_forces[k] += pushed_[k] / contact_weight(k, duration_s);
+    after.in_contact[k] = after.contact_forces[k] > 0;
+  }
+}
+
+}  // namespace plica

@@ -1,0 +1,24 @@
+// What stands in for frame_file_vtk.cpp when plica is built without VTK.
+#ifndef PLICA_WITH_VTK
+
+#include <fmt/format.h>
+
+#include "core/errors.hpp"
+#include "tissue/files/frame_file.hpp"
+
+namespace plica {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& file) {
+  throw FileError(fmt::format("{}: cannot be read: plica was built without VTK", file.string()));
+}
+
+}  // namespace
+
+Frame read_frame(const std::filesystem::path& file) { refuse(file); }
+TriangleSurface read_surface(const std::filesystem::path& file) { refuse(file); }
+std::vector<std::pair<double, std::string>> read_collection(const std::filesystem::path& pvd) { refuse(pvd); }
+
+}  // namespace plica
+
+#endif

@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+#include <vtkCellArray.h>
+#include <vtkCellTypes.h>
+#include <vtkDataSetSurfaceFilter.h>
+#include <vtkGenericDataObjectReader.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkOBJReader.h>
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
+#include <vtkPLYReader.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSTLReader.h>
+#include <vtkSmartPointer.h>
+#include <vtkTriangleFilter.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkUnstructuredGridReader.h>
+#include <vtkXMLGenericDataObjectReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+
+#include "core/child_process.hpp"
+#include "core/errors.hpp"
+#include "core/one_thread_vtk.hpp"
+#include "tissue/files/grid_reading.hpp"
+
+namespace plica {
+namespace {
+
+template <class Output>
+constexpr const char* what_is = "surface";
+template <>
+constexpr const char* what_is<vtkUnstructuredGrid> = "unstructured grid";
+
+/// Keeps the first error.
+class ErrorWindow : public vtkOutputWindow {
+ public:
+  static ErrorWindow* New();
+
+  void DisplayText(const char*) override {}
+  void DisplayErrorText(const char* text) override {
+    if (first_error_.empty()) first_error_ = text;
+  }
+  [[nodiscard]] bool has_error() const { return !first_error_.empty(); }
+
+  /// One line, without the place in VTK's sources and the address of VTK's object.
+  [[nodiscard]] std::string first_error() const {
+    std::string text = first_error_;
+    if (text.starts_with("ERROR: In")) text.erase(0, text.find('\n') + 1);
+    const std::size_t address = text.find(" (0x"), end = text.find("): ");
+    if (address != std::string::npos && end != std::string::npos && address < end) text.erase(0, end + 3);
+    std::string line;
+    for (const char c : text) {
+      const bool space = std::isspace(static_cast<unsigned char>(c)) != 0;
+      if (!space) line += c;
+      if (space && !line.empty() && line.back() != ' ') line += ' ';
+    }
+    while (line.ends_with(' ') || line.ends_with('.')) line.pop_back();
+    return line;
+  }
+
+ private:
+  std::string first_error_;
+};
+vtkStandardNewMacro(ErrorWindow)
+
+    /// Tells the two kinds of file by how they begin.
+    bool is_xml(const std::filesystem::path& file) {
+  std::string start(64, '\0');
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (stream.bad() || (stream.gcount() == 0 && errno != 0))
+    throw_unread(file, std::generic_category().message(errno != 0 ? errno : EIO));
+  start.resize(static_cast<std::size_t>(stream.gcount()));
+  if (start.empty()) throw_unread(file, "it is empty");
+  if (start.starts_with("# vtk DataFile")) return false;
+  if (start.starts_with("\xEF\xBB\xBF")) start.erase(0, 3);
+  const std::size_t first = start.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos || start[first] != '<')
+    throw_unread(file, "it is neither a VTK XML file (.vtu) nor a legacy VTK file (.vtk)");
+  return true;
+}
+
+/// What `last`, a reader or a filter behind it, makes of the file.
+template <class Output, class Reader, class Last>
+vtkSmartPointer<Output> output_of(const std::filesystem::path& file, Reader& reader, Last& last) {
+  vtkNew<ErrorWindow> window;
+  vtkOutputWindow::SetInstance(window);
+  reader.SetFileName(file.c_str());
+  last.Update();
+  if (window->has_error()) throw_unread(file, fmt::format("VTK says: {}", window->first_error()));
+  vtkSmartPointer<Output> output = Output::SafeDownCast(last.GetOutputDataObject(0));
+  if (output == nullptr) throw_unread(file, fmt::format("it holds no {}", what_is<Output>));
+  return output;
+}
+
+/// The triangles of whatever surface the reader finds.
+template <class Reader>
+vtkSmartPointer<vtkPolyData> triangles_of(const std::filesystem::path& file, Reader& reader) {
+  vtkNew<vtkDataSetSurfaceFilter> surface;
+  surface->SetInputConnection(reader.GetOutputPort());
+  vtkNew<vtkTriangleFilter> triangles;
+  triangles->PassVertsOff();
+  triangles->PassLinesOff();
+  triangles->SetInputConnection(surface->GetOutputPort());
+  return output_of<vtkPolyData>(file, reader, *triangles);
+}
+
+void check_hexahedra(vtkUnstructuredGrid& grid) {
+  const vtkIdType count = grid.GetNumberOfCells();
+  if (count > largest_mesh_elements)
+    throw MeshError(fmt::format("the mesh has {} cells; at most {} are allowed", count, largest_mesh_elements));
+  if (count == 0) return;
+  vtkCellArray* cells = grid.GetCells();
+  const vtkUnsignedCharArray* types = grid.GetCellTypesArray();
+  if (cells == nullptr || types == nullptr || !cells->IsValid() || types->GetNumberOfTuples() != count)
+    throw MeshError("the lists of the cells' nodes and types do not fit together");
+  for (vtkIdType cell = 0; cell < count; ++cell) {
+    const int type = grid.GetCellType(cell);
+    if (type != VTK_HEXAHEDRON)
+      throw MeshError(fmt::format("cell {} is a {} (VTK type {}); every cell must be a vtkHexahedron (type {})", cell,
+                                  vtkCellTypes::GetClassNameFromTypeId(type), type, int{VTK_HEXAHEDRON}));
+    if (cells->GetCellSize(cell) != 8)
+      throw MeshError(fmt::format("cell {} is a hexahedron with {} nodes", cell, cells->GetCellSize(cell)));
+  }
+}
+
+}  // namespace
+
+void throw_unread(const std::filesystem::path& file, const std::string& why) {
+  throw FileError(fmt::format("{}: cannot be read: {}", file.string(), why));
+}
+
+std::string read_in_child(const std::filesystem::path& file, const std::function<std::string()>& read) {
+  // A letter for the kind of answer, then what was read or the error.
+  const std::optional<std::string> answer = output_of_child([&] {
+    try {
+      return 'r' + read();
+    } catch (const FileError& error) {
+      return std::string("f") + error.what();
+    } catch (const MeshError& error) {
+      return std::string("m") + error.what();
+    }
+  });
+  if (!answer || answer->empty()) throw_unread(file, "it is damaged: VTK breaks off at it");
+  if (answer->front() == 'f') throw FileError(answer->substr(1));
+  if (answer->front() == 'm') throw MeshError(answer->substr(1));
+  return answer->substr(1);
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& file) {
+  if (is_xml(file)) {
+    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    return output_of<vtkUnstructuredGrid>(file, *reader, *reader);
+  }
+  vtkNew<vtkUnstructuredGridReader> reader;
+  reader->ReadAllScalarsOn();  // by default, the first array only
+  reader->ReadAllFieldsOn();
+  return output_of<vtkUnstructuredGrid>(file, *reader, *reader);
+}
+
+vtkSmartPointer<vtkPolyData> read_triangles(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  if (ending == ".stl" || ending == ".STL") return triangles_of(file, *vtkNew<vtkSTLReader>());
+  if (ending == ".ply" || ending == ".PLY") return triangles_of(file, *vtkNew<vtkPLYReader>());
+  if (ending == ".obj" || ending == ".OBJ") return triangles_of(file, *vtkNew<vtkOBJReader>());
+  if (is_xml(file)) return triangles_of(file, *vtkNew<vtkXMLGenericDataObjectReader>());
+  return triangles_of(file, *vtkNew<vtkGenericDataObjectReader>());
+}
+
+void copy_hexahedra(vtkUnstructuredGrid& grid, Vectors& points, std::vector<std::array<NodeId, 8>>& hexahedra) {
+  check_hexahedra(grid);
+  const vtkIdType point_count = grid.GetNumberOfPoints(), cell_count = grid.GetNumberOfCells();
+  if (point_count > 8 * largest_mesh_elements) throw MeshError(fmt::format("the mesh has {} nodes", point_count));
+  points.resize(static_cast<std::size_t>(point_count));
+  for (vtkIdType i = 0; i < point_count; ++i) grid.GetPoints()->GetPoint(i, points[i].data());
+  hexahedra.resize(static_cast<std::size_t>(cell_count));
+  vtkNew<vtkIdList> nodes;
+  for (vtkIdType cell = 0; cell < cell_count; ++cell) {
+    grid.GetCells()->GetCellAtId(cell, nodes);
+    for (int i = 0; i < 8; ++i) {
+      // Before VTK's number is made shorter.
+      const vtkIdType node = nodes->GetId(i);
+      if (node < 0 || node >= point_count)
+        throw MeshError(fmt::format("cell {} uses node {}, and the nodes are 0 to {}", cell, node, point_count - 1));
+      hexahedra[cell][i] = NodeId(static_cast<std::size_t>(node));
+    }
+  }
+}
+
+}  // namespace plica

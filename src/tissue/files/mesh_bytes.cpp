@@ -1,0 +1,33 @@
+#include "tissue/files/mesh_bytes.hpp"
+
+#include "core/bytes.hpp"
+
+namespace plica {
+
+std::string mesh_to_bytes(const HexahedralMesh& mesh) {
+  std::string bytes;
+  put(mesh.points, bytes);
+  put(mesh.cells, bytes);
+  put(mesh.apical_faces, bytes);
+  for (const auto& [name, set] : mesh.arrays) {
+    put(name, bytes);
+    put(std::string(set.begin(), set.end()), bytes);
+  }
+  return bytes;
+}
+
+HexahedralMesh mesh_from_bytes(std::string_view bytes) try {
+  HexahedralMesh mesh;
+  mesh.points = take<Vectors>(bytes);
+  mesh.cells = take<std::vector<std::array<NodeId, 8>>>(bytes);
+  mesh.apical_faces = take<std::vector<int>>(bytes);
+  while (!bytes.empty()) {
+    const auto name = take<std::string>(bytes), flags = take<std::string>(bytes);
+    mesh.arrays[name] = CellSet(flags.begin(), flags.end());
+  }
+  return mesh;
+} catch (const BytesEndEarly&) {
+  throw MeshError("the mesh ends early");
+}
+
+}  // namespace plica

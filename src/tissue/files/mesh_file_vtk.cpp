@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <cmath>
+
+#include "core/errors.hpp"
+#include "core/one_thread_vtk.hpp"
+#include "tissue/files/grid_reading.hpp"
+#include "tissue/files/mesh_bytes.hpp"
+#include "tissue/files/mesh_file.hpp"
+
+namespace plica {
+namespace {
+
+std::vector<int> apical_faces(vtkDataArray& array) {
+  std::vector<int> faces;
+  for (vtkIdType cell = 0; cell < array.GetNumberOfTuples(); ++cell) {
+    const double value = array.GetComponent(cell, 0);
+    if (!(value >= 0 && value <= 5 && value == std::floor(value)))
+      throw MeshError(
+          fmt::format("the apical face of cell {} is {} in \"{}\"; faces are 0 to 5", cell, value, array.GetName()));
+    faces.push_back(static_cast<int>(value));
+  }
+  return faces;
+}
+
+/// Arrays of one number a cell: as sets where it is neither 0 nor NaN, or as the faces that are apical.
+void copy_arrays(vtkUnstructuredGrid& grid, const std::string& apical_array, HexahedralMesh& mesh) {
+  std::string names;
+  for (int a = 0; a < grid.GetCellData()->GetNumberOfArrays(); ++a) {
+    vtkDataArray* array = grid.GetCellData()->GetArray(a);
+    if (array == nullptr || array->GetName() == nullptr || array->GetNumberOfComponents() != 1) continue;
+    const std::string name = array->GetName();
+    if (array->GetNumberOfTuples() != grid.GetNumberOfCells())
+      throw MeshError(fmt::format("the cell array \"{}\" has {} values for {} cells", name, array->GetNumberOfTuples(),
+                                  grid.GetNumberOfCells()));
+    names += names.empty() ? name : ", " + name;
+    if (name == apical_array) {
+      mesh.apical_faces = apical_faces(*array);
+      continue;
+    }
+    CellSet& set = mesh.arrays[name];
+    set.resize(mesh.cells.size());
+    for (std::size_t cell = 0; cell < set.size(); ++cell) {
+      const double value = array->GetComponent(static_cast<vtkIdType>(cell), 0);
+      set[cell] = value != 0 && !std::isnan(value);
+    }
+  }
+  if (!apical_array.empty() && mesh.apical_faces.empty())
+    throw MeshError(fmt::format("there is no cell array \"{}\" of one number a cell; there {}", apical_array,
+                                names.empty() ? "is none at all" : "are: " + names));
+}
+
+/// What the child process makes of the file.
+HexahedralMesh mesh_in(const std::filesystem::path& file, const std::string& apical_array) {
+  HexahedralMesh mesh;
+  const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
+  copy_hexahedra(*grid, mesh.points, mesh.cells);
+  if (!mesh.cells.empty()) copy_arrays(*grid, apical_array, mesh);
+  return mesh;
+}
+
+}  // namespace
+
+Tissue read_mesh_file(const std::filesystem::path& file, const std::string& apical_array,
+                      const std::array<int, 3>& elements_per_cell) {
+  try {
+    const std::string bytes = read_in_child(file, [&] { return mesh_to_bytes(mesh_in(file, apical_array)); });
+    return tissue_from_mesh(mesh_from_bytes(bytes), elements_per_cell);
+  } catch (const MeshError& error) {
+    throw MeshError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+}  // namespace plica

@@ -1,0 +1,164 @@
+#include "mechanics/constraints/cell_volume.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/law_checks.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+const BlockShape two_cells{.length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}};
+const BlockShape refined{
+    .length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}, .elements_per_cell = {2, 1, 1}};
+
+/// The volumes with given pressures as a law of energy -sum p_c V_c, so that the same checks apply.
+class Pressurised final : public Law {
+ public:
+  Pressurised(const CellVolumes& volumes, std::vector<double> pressures)
+      : volumes_(volumes), pressures_(std::move(pressures)) {}
+  [[nodiscard]] std::string_view name() const override { return "pressurised volumes"; }
+  [[nodiscard]] double energy(const Step& step) const override {
+    const std::vector<double> volumes = volumes_.volumes(step.positions);
+    double sum = 0;
+    for (std::size_t c = 0; c < volumes.size(); ++c) sum -= pressures_[c] * volumes[c];
+    return sum;
+  }
+  void add_forces(const Step& step, std::span<Vec3> forces) const override {
+    volumes_.add_forces(step.positions, pressures_, forces);
+  }
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override {
+    volumes_.add_tangent_product(step.positions, pressures_, direction, product);
+  }
+  void add_tangent(const Step& step, TangentSink& tangent) const override {
+    volumes_.add_tangent(step.positions, pressures_, tangent);
+  }
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const Division&,
+                                                    std::span<const Vec3>) const override {
+    return nullptr;  // not divided here
+  }
+
+ private:
+  const CellVolumes& volumes_;
+  std::vector<double> pressures_;
+};
+
+TEST(CellVolumes, DerivativesAgreeWithFiniteDifferences) {
+  const Tissue tissue = distorted_block(two_cells, 2, 1);
+  const CellVolumes volumes(tissue);
+  check_derivatives(Pressurised(volumes, {0.7, -1.3}), tissue, 4);
+}
+
+TEST(CellVolumes, DerivativesAgreeWithFiniteDifferencesWithSeveralElementsACell) {
+  const Tissue tissue = distorted_block(refined, 1, 2);
+  const CellVolumes volumes(tissue);
+  ASSERT_EQ(volumes.count(), 2u);
+  check_derivatives(Pressurised(volumes, {0.7, -1.3}), tissue, 2);
+}
+
+TEST(CellVolumes, RestAndRigidMotionsHaveNoError) {
+  const Tissue tissue = distorted_block(refined, 1, 3);
+  const CellVolumes volumes(tissue);
+  Random random(1);
+  for (int k = 0; k < 10; ++k) {
+    const Mat3 R = random.rotation();
+    const Vec3 shift = random.vector(100);
+    Vectors positions = tissue.rest_positions;
+    for (Vec3& x : positions) x = R * x + shift;
+    for (const double error : volumes.relative_errors(positions)) EXPECT_NEAR(error, 0, 1e-12);
+  }
+}
+
+TEST(CellVolumes, TargetsOfABlockAreItsCells) {
+  const CellVolumes volumes(build_block(refined));
+  for (const double target : volumes.targets()) EXPECT_NEAR(target, 20 * 20 * 40, 1e-9);
+}
+
+TEST(CellVolumes, StretchedCellIsTooLargeByTheStretch) {
+  const Tissue tissue = build_block(two_cells);
+  const CellVolumes volumes(tissue);
+  Vectors positions = tissue.rest_positions;
+  for (Vec3& x : positions) x.x() *= 1.1;
+  for (const double error : volumes.relative_errors(positions)) EXPECT_NEAR(error, 0.1, 1e-13);
+}
+
+// A positive pressure pushes outward: on a face of area A with force p A.
+TEST(CellVolumes, PositivePressurePushesFacesOutward) {
+  const Tissue tissue = build_block({.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 1}});
+  const CellVolumes volumes(tissue);
+  const std::vector<double> pressures = {0.25};
+  Vectors forces(8, Vec3::Zero());
+  volumes.add_forces(tissue.rest_positions, pressures, forces);
+  double top = 0;
+  for (std::size_t n = 0; n < 8; ++n)
+    if (tissue.rest_positions[n].z() > 0) top += forces[n].z();
+  EXPECT_NEAR(top, 0.25 * 400, 1e-12 * 100);
+}
+
+TEST(CellVolumes, PressuresHaveNoResultantAndNoTorque) {
+  const Tissue tissue = distorted_block(refined, 1, 4);
+  const CellVolumes volumes(tissue);
+  const Pressurised law(volumes, {0.7, -1.3});
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Motion motion = random_motion(tissue, 3, seed);
+    const Vectors forces = forces_of(law, motion.step());
+    EXPECT_LE(resultant(forces).norm(), 1e-11 * largest(forces));
+    EXPECT_LE(torque(forces, motion.positions).norm(), 1e-9 * largest(forces));
+  }
+}
+
+TEST(Dilatation, DerivativesAgreeWithFiniteDifferences) {
+  const Tissue tissue = distorted_block(two_cells, 2, 5);
+  check_derivatives(Dilatation(tissue, 3.0), tissue, 4);
+}
+
+TEST(Dilatation, SemidefiniteTangentLeavesOutThePressure) {
+  const Tissue tissue = distorted_block(two_cells, 2, 5);
+  check_semidefinite_tangent(Dilatation(tissue, 3.0), tissue, 4, true);
+}
+
+TEST(Dilatation, RestAndRigidMotionsHaveNoForce) {
+  const Tissue tissue = distorted_block(two_cells, 2, 6);
+  const Dilatation law(tissue, 3.0);
+  EXPECT_LE(largest(forces_of(law, at_rest(tissue).step())), 1e-12);
+  Random random(2);
+  for (int k = 0; k < 10; ++k) {
+    Motion motion = at_rest(tissue);
+    const Mat3 R = random.rotation();
+    for (Vec3& x : motion.positions) x = R * x;
+    EXPECT_LE(largest(forces_of(law, motion.step())), 1e-10);
+  }
+}
+
+// Energy kappa V0 (V/V0 - 1)^2 / 2: a brick scaled by s on each side pushes back on a face of area A s^2 with kappa
+// (s^3 - 1).
+TEST(Dilatation, ScaledBrickHasThePressureOfItsBulkModulus) {
+  const Tissue tissue = build_block({.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 1}});
+  const double kappa = 3, s = 1.05;
+  const Dilatation law(tissue, kappa);
+  Motion motion = at_rest(tissue);
+  for (Vec3& x : motion.positions) x *= s;
+  const double strain = s * s * s - 1;
+  EXPECT_NEAR(law.energy(motion.step()), kappa * 16000 * strain * strain / 2, 1e-9);
+  const Vectors forces = forces_of(law, motion.step());
+  double top = 0;
+  for (std::size_t n = 0; n < 8; ++n)
+    if (tissue.rest_positions[n].z() > 0) top += forces[n].z();
+  EXPECT_NEAR(top, -kappa * strain * 400 * s * s, 1e-9);
+}
+
+// Per element, not per cell: one element of a cell that grows at the other's cost is resisted.
+TEST(Dilatation, ResistsOneElementGrowingAtAnothersCost) {
+  const Tissue tissue = build_block(
+      {.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 1}, .elements_per_cell = {2, 1, 1}});
+  const double kappa = 3;
+  const Dilatation law(tissue, kappa);
+  Motion motion = at_rest(tissue);
+  for (Vec3& x : motion.positions)
+    if (x.x() == 0) x.x() = 1;  // of halves 10 um long: strains of 0.1 and -0.1
+  EXPECT_NEAR(law.energy(motion.step()), 2 * kappa * 8000 * 0.01 / 2, 1e-9);
+}
+
+}  // namespace
+}  // namespace plica

@@ -1,0 +1,338 @@
+// Checkpoints: the same bytes for the same run, and every damage is told from a good one.
+#include "record/checkpoint.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <iostream>
+#include <limits>
+
+#include "core/errors.hpp"
+#include "record/archive.hpp"
+#include "record/checkpoint_files.hpp"
+#include "scenario/load.hpp"
+#include "scenario/print.hpp"
+#include "scenario/setup.hpp"
+#include "scenario/watch.hpp"
+#include "support/block_scenario.hpp"
+
+namespace plica {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t trailer_bytes = 64;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// A block whose cells divided once, after some steps.
+struct BlockRun {
+  std::unique_ptr<Model> model;  // with the division behind it
+  std::unique_ptr<Model> at_rest;
+  std::vector<Checkpoint> checkpoints;  // after each step
+
+  BlockRun() {
+    const Scenario scenario =
+        load_scenario(support::pulled_block(
+                          "[division.all]\nregion = \"all\"\nat_s = 2\n[stop.never]\nmonitor = \"all\"\nbelow = 1\n"),
+                      {"time.integrator=bdf2"});
+    model = make_model(scenario), at_rest = make_model(scenario);
+    Observer observer(*model, make_furrow_sites(scenario, model->tissue), make_watch(scenario, model->tissue));
+    Checkpoint now{"0.1.0", resolved_toml(scenario), fingerprint(model->tissue), {}, {}};
+    now.record.rows.push_back(observer.observe_rest(rest_state(*model)));
+    run(
+        *model, rest_state(*model), make_controls(scenario, *model),
+        [&](const AcceptedStep& step) {
+          now.record.rows.push_back(observer.observe(step));
+          now.record.series_bytes += 100;
+          now.record.frame_times_s.push_back(step.state.time_s);
+          now.run = step.memory();
+          checkpoints.push_back(now);
+          return true;
+        },
+        {}, [&](const Division& division, const State&) { observer.follow_division(division); });
+  }
+  [[nodiscard]] const Checkpoint& last() const { return checkpoints.back(); }
+};
+
+class CheckpointTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!can_archive()) GTEST_SKIP() << "built without HDF5";
+  }
+};
+
+const BlockRun& block_run() {
+  static const BlockRun run;
+  return run;
+}
+
+bool is_refused(std::string_view bytes) {
+  try {
+    (void)read_checkpoint_bytes(bytes);
+    return false;
+  } catch (const FileError&) {
+    return true;
+  }
+}
+
+// The same bytes with a checksum that fits them.
+std::string made_right(std::string bytes) {
+  const std::size_t size = bytes.size() - trailer_bytes;
+  const auto sum = crc32(0, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<uInt>(size));
+  std::string end = fmt::format("\nplica checkpoint 2 bytes {} crc32 {:08x}", size, sum);
+  end.resize(trailer_bytes - 1, ' ');
+  return bytes.replace(size, trailer_bytes, end + "\n");
+}
+
+TEST_F(CheckpointTest, ComesBackAsItWas) {
+  Checkpoint before = block_run().last();
+  ASSERT_FALSE(before.run.past_divisions.empty());
+  ASSERT_FALSE(before.run.factor.empty());
+  before.run.factor.ahead = 0.25;  // that factor is of a first step
+  before.run.factor.earlier_positions = before.run.state.positions;
+  const std::string bytes = checkpoint_bytes(before);
+  const Checkpoint after = read_checkpoint_bytes(bytes);
+  EXPECT_EQ(after.scenario, before.scenario);
+  EXPECT_EQ(after.run.state.positions, before.run.state.positions);
+  EXPECT_EQ(after.run.wanted_step_s, before.run.wanted_step_s);
+  ASSERT_FALSE(before.run.state.trend.mean_velocities.empty()) << "second order";
+  EXPECT_EQ(after.run.state.trend.mean_velocities, before.run.state.trend.mean_velocities);
+  EXPECT_EQ(after.run.state.trend.earlier_s, before.run.state.trend.earlier_s);
+  EXPECT_EQ(after.run.factor.ahead, before.run.factor.ahead);
+  EXPECT_EQ(after.run.factor.rate_s, before.run.factor.rate_s);
+  EXPECT_EQ(after.run.factor.earlier_positions, before.run.factor.earlier_positions);
+  EXPECT_EQ(after.record.rows.size(), before.record.rows.size());
+  EXPECT_EQ(after.record.rows.back().monitors, before.record.rows.back().monitors);
+  EXPECT_EQ(after.run.past_divisions.front()->positions, before.run.past_divisions.front()->positions);
+  EXPECT_EQ(checkpoint_bytes(after), bytes) << "all that is in it comes back, and gives the same bytes";
+  EXPECT_EQ(checkpoint_bytes(before), bytes);
+  EXPECT_EQ(made_right(bytes), bytes) << "this test's own checksum";
+}
+
+// Rows, contacts and divisions come and go between them: what is in one is not in the next unless it should be.
+TEST_F(CheckpointTest, OneAfterTheOtherHoldTheSameAsEachAlone) {
+  CheckpointBytes bytes_of;
+  std::size_t largest = 0, largest_alone = 0;
+  const auto& checkpoints = block_run().checkpoints;
+  for (int round = 0; round < 2; ++round)  // from the last to the first: rows become fewer
+    for (const Checkpoint& checkpoint : checkpoints) {
+      const std::string bytes = bytes_of(checkpoint), alone = checkpoint_bytes(checkpoint);
+      EXPECT_EQ(checkpoint_bytes(read_checkpoint_bytes(bytes)), alone);
+      largest = std::max(largest, bytes.size()), largest_alone = std::max(largest_alone, alone.size());
+    }
+  EXPECT_GT(checkpoints.size(), 5U);
+  EXPECT_LT(largest, 2 * largest_alone) << "room that was given up is used again";
+}
+
+TEST_F(CheckpointTest, EveryDamageIsRefused) {
+  const std::string whole = checkpoint_bytes(block_run().last());
+  int cases = 0;
+  const auto refused = [&](const std::string& bytes, const std::string& what) {
+    ++cases;
+    EXPECT_TRUE(is_refused(bytes)) << what;
+  };
+  constexpr std::size_t every = 97, ends = 512;
+  for (std::size_t at = 0; at < whole.size(); at += at < ends || at + ends > whole.size() ? 1 : every) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ (1 << at % 8));
+    refused(bytes, fmt::format("a bit flipped in byte {}", at));
+  }
+  for (std::size_t size = 0; size < whole.size(); size += size < ends || size + ends > whole.size() ? 1 : 10 * every)
+    refused(whole.substr(0, size), fmt::format("cut off after {} bytes", size));
+  for (std::size_t size = 1; size < whole.size(); size += 100 * every)
+    refused(whole.substr(size), fmt::format("without its first {} bytes", size));
+  refused(whole + "\n", "a byte more");
+  refused(whole + whole, "twice");
+  refused(std::string(whole.size(), '\0'), "nothing but zeros, as after a power cut");
+  std::cout << cases << " damaged checkpoints refused\n";
+}
+
+// As by one who means it: what reads HDF5 then stands alone.
+TEST_F(CheckpointTest, DamageUnderARightChecksumIsRefusedOrHarmless) {
+  const std::string whole = checkpoint_bytes(block_run().last());
+  int refused = 0, read = 0;
+  for (std::size_t at = 0; at < whole.size() - trailer_bytes; at += at < 2048 ? 3 : 251) {
+    for (const int flip : {0x01, 0x80, 0xff}) {
+      std::string bytes = whole;
+      bytes[at] = static_cast<char>(bytes[at] ^ flip);
+      (is_refused(made_right(bytes)) ? refused : read) += 1;
+    }
+  }
+  std::cout << refused << " refused, " << read << " read\n";
+  EXPECT_GT(refused, 0);
+}
+
+TEST_F(CheckpointTest, AnotherFormatIsNamed) {
+  std::string bytes = checkpoint_bytes(block_run().last());
+  const std::string mark = "\nplica checkpoint 2 ";
+  for (const char* format : {"1 ", "20", "0 "}) {
+    std::string other = bytes;
+    other.replace(bytes.size() - trailer_bytes + mark.size() - 2, 2, format);
+    try {
+      (void)read_checkpoint_bytes(other);
+      ADD_FAILURE() << format;
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("format"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(CheckpointTest, WhatIsNoNumberIsRefused) {
+  const Checkpoint& good = block_run().last();
+  int cases = 0;
+  const auto refused = [&](const auto& harm) {
+    Checkpoint bad = good;
+    harm(bad);
+    EXPECT_TRUE(is_refused(checkpoint_bytes(bad))) << "case " << cases;
+    ++cases;
+  };
+  refused([](Checkpoint& c) { c.run.state.positions[5].y() = nan; });
+  refused([](Checkpoint& c) { c.run.state.velocities[0].x() = std::numeric_limits<double>::infinity(); });
+  refused([](Checkpoint& c) { c.run.state.pressures[2] = nan; });
+  refused([](Checkpoint& c) { c.run.state.time_s = nan; });
+  refused([](Checkpoint& c) { c.run.equilibrium_time_s = nan; });
+  refused([](Checkpoint& c) { c.run.wanted_step_s = -std::numeric_limits<double>::infinity(); });
+  refused([](Checkpoint& c) { c.run.factor.rate_s = nan; });
+  refused([](Checkpoint& c) { c.record.frame_times_s[1] = nan; });
+  refused([](Checkpoint& c) { c.record.rows[1].max_volume_error = nan; });
+  refused([](Checkpoint& c) { c.record.rows[1].monitors[0] = nan; });
+  refused([](Checkpoint& c) { c.record.rows.clear(); });
+  EXPECT_EQ(cases, 11);
+}
+
+TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
+  const BlockRun& run = block_run();
+  EXPECT_FALSE(why_unfit(run.last(), *run.model));
+  EXPECT_TRUE(why_unfit(run.last(), *run.at_rest)) << "its cells have not divided";
+  EXPECT_FALSE(why_unfit(*run.last().run.past_divisions.front(), *run.at_rest));
+  int cases = 0;
+  const auto unfit = [&](const auto& harm) {
+    Checkpoint bad = run.last();
+    harm(bad.run);
+    EXPECT_TRUE(why_unfit(read_checkpoint_bytes(checkpoint_bytes(bad)), *run.model)) << "case " << cases;
+    ++cases;
+  };
+  unfit([](RunMemory& m) { m.state.positions.pop_back(); });
+  unfit([](RunMemory& m) { m.state.velocities.clear(); });
+  unfit([](RunMemory& m) { m.state.pressures.push_back(0); });
+  unfit([](RunMemory& m) { m.state.contact_forces.push_back(0); });
+  unfit([](RunMemory& m) { m.state.in_contact.push_back(0); });
+  unfit([](RunMemory& m) { m.state.trend.earlier_s = -1; });
+  unfit([](RunMemory& m) { m.state.trend.step_s = 1e308; });
+  unfit([](RunMemory& m) { m.state.trend.mean_velocities.resize(1, Vec3::Zero()); });
+  unfit([](RunMemory& m) { m.state.trend.accelerations.resize(1, Vec3::Zero()); });
+  unfit([](RunMemory& m) { m.state.trend.pressure_rates.resize(1); });
+  unfit([](RunMemory& m) { m.state.time_s = -1; });
+  unfit([](RunMemory& m) { m.steps = -1; });
+  unfit([](RunMemory& m) { m.wanted_step_s = -1; });
+  unfit([](RunMemory& m) { m.factor.at.pressures.pop_back(); });
+  unfit([](RunMemory& m) { m.factor.previous_positions.clear(); });
+  unfit([](RunMemory& m) { m.factor.rate_s = 0; });
+  unfit([](RunMemory& m) { m.factor.ahead = 0.5; });
+  unfit([](RunMemory& m) { m.factor.changed_contacts.push_back(0); });
+  EXPECT_EQ(cases, 18);
+  for (const int part : {0, 1, 2, 3, 4, 5}) {
+    PastDivision bad = *run.last().run.past_divisions.front();
+    PlannedDivision& one = bad.planned.front();
+    if (part == 0) bad.positions.pop_back();
+    if (part == 1) one.cut.cell = CellId(1000000);
+    if (part == 2) one.cut.cell = CellId(-1);
+    if (part == 3) one.cut.first_wall = 2;
+    if (part == 4) one.growth_s = -1;
+    if (part == 5) one.volume_ratio = 0;
+    EXPECT_TRUE(why_unfit(bad, *run.at_rest)) << part;
+  }
+}
+
+TEST_F(CheckpointTest, ScenariosThatMayChange) {
+  const std::string before =
+      "format = 1\n[embryo]\na = 1\n[time]\nend_s = 1\n[stop]\nb = 1\n[stop.x]\nc = 1\n[output]\nd = 1\n";
+  const auto with = [&](const std::string& old_line, const std::string& new_line) {
+    std::string now = before;
+    return now.replace(now.find(old_line), old_line.size(), new_line);
+  };
+  EXPECT_FALSE(other_scenario(before, before));
+  EXPECT_FALSE(other_scenario(before, with("end_s = 1", "end_s = 2")));
+  EXPECT_FALSE(other_scenario(before, with("d = 1", "")));
+  EXPECT_FALSE(other_scenario(before, with("[stop.x]\nc = 1\n", "[stop.y]\n")));
+  EXPECT_TRUE(other_stop(before, with("b = 1", "b = 2")));
+  EXPECT_TRUE(other_stop(before, with("c = 1", "c = 2")));
+  EXPECT_FALSE(other_stop(before, with("end_s = 1", "end_s = 2")));
+  EXPECT_EQ(other_scenario(before, with("a = 1", "a = 2")), "it has [embryo] a = 1, this one has [embryo] a = 2");
+  EXPECT_EQ(other_scenario(before, with("a = 1\n", "")), "it has [embryo] a = 1, this one has nothing");
+  EXPECT_TRUE(other_scenario(before, before + "[stopped]\na = 1\n"));
+  EXPECT_TRUE(other_scenario(before, with("format = 1", "format = 2")));
+}
+
+// The last two of a directory.
+class CheckpointFilesTest : public CheckpointTest {
+ protected:
+  CheckpointFilesTest() : folder(fs::path(testing::TempDir()) / fmt::format("plica_checkpoints_{}", ::getpid())) {
+    fs::create_directories(folder);
+  }
+  ~CheckpointFilesTest() override { fs::remove_all(folder); }
+
+  // The time of the checkpoint that is read; -1: none.
+  double time_read() {
+    const std::optional<Checkpoint> checkpoint = read_checkpoint(folder, complaint);
+    return checkpoint ? checkpoint->run.state.time_s : -1;
+  }
+  const fs::path folder;
+  const fs::path newest = folder / "checkpoint.h5", previous = folder / "checkpoint.previous.h5";
+  const std::vector<Checkpoint>& steps = block_run().checkpoints;
+  std::string complaint;
+};
+
+TEST_F(CheckpointFilesTest, TheOneBeforeIsTakenWhenTheNewestIsDamaged) {
+  EXPECT_EQ(time_read(), -1);
+  CheckpointFiles files(folder);
+  for (const int step : {0, 1, 2}) {
+    files.write(steps[step], Sync::now);
+    EXPECT_EQ(time_read(), steps[step].run.state.time_s);
+    EXPECT_EQ(complaint, "");
+  }
+  write_file(newest, read_file(newest).substr(1));
+  EXPECT_EQ(time_read(), steps[1].run.state.time_s);
+  EXPECT_NE(complaint.find(newest.string()), std::string::npos) << complaint;
+  fs::remove(newest);
+  EXPECT_EQ(time_read(), steps[1].run.state.time_s) << "as after a kill between two renames";
+  EXPECT_EQ(complaint, "");
+  write_file(previous, "");
+  EXPECT_THROW(time_read(), FileError);
+  remove_checkpoints(folder);
+  EXPECT_EQ(time_read(), -1);
+}
+
+// What is not on the disk never takes the place of what is.
+TEST_F(CheckpointFilesTest, OneOfTheTwoIsOnTheDisk) {
+  const auto previous_time = [&] { return read_checkpoint_bytes(read_file(previous)).run.state.time_s; };
+  CheckpointFiles files(folder);
+  files.write(steps[0], Sync::now);
+  for (const int step : {1, 2, 3}) {
+    files.write(steps[step], Sync::later);
+    EXPECT_EQ(previous_time(), steps[0].run.state.time_s);
+    EXPECT_EQ(time_read(), steps[step].run.state.time_s);
+  }
+  files.write(steps[4], Sync::now);
+  EXPECT_EQ(previous_time(), steps[0].run.state.time_s) << "the one before was not on the disk";
+  files.write(steps[5], Sync::later);
+  EXPECT_EQ(previous_time(), steps[4].run.state.time_s);
+}
+
+TEST_F(CheckpointFilesTest, AfterADamagedOneTheGoodOneStays) {
+  {
+    CheckpointFiles files(folder);
+    files.write(steps[0], Sync::now);
+    files.write(steps[1], Sync::now);
+  }
+  write_file(newest, "damaged");
+  CheckpointFiles files(folder);
+  files.write(steps[1], Sync::now);
+  EXPECT_EQ(read_checkpoint_bytes(read_file(previous)).run.state.time_s, steps[0].run.state.time_s);
+  EXPECT_EQ(time_read(), steps[1].run.state.time_s);
+}
+
+}  // namespace
+}  // namespace plica

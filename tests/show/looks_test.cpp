@@ -1,0 +1,107 @@
+#include "show/looks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.hpp"
+
+namespace plica {
+namespace {
+
+// CIE L*, a*, b* of an sRGB colour (white D65): the way back from what looks.cpp does, from CIE 15's formulas.
+Vec3 lab_of(const Rgb& rgb) {
+  Vec3 light;
+  for (int i = 0; i < 3; ++i) light[i] = rgb[i] <= 0.04045 ? rgb[i] / 12.92 : std::pow((rgb[i] + 0.055) / 1.055, 2.4);
+  Mat3 to_xyz;
+  to_xyz << 0.4124, 0.3576, 0.1805, 0.2126, 0.7152, 0.0722, 0.0193, 0.1192, 0.9505;
+  const Vec3 xyz = to_xyz * light, white(0.95047, 1, 1.08883);
+  Vec3 f;
+  for (int i = 0; i < 3; ++i) {
+    const double part = xyz[i] / white[i];
+    f[i] = part > 216.0 / 24389 ? std::cbrt(part) : (24389.0 / 27 * part + 16) / 116;
+  }
+  return {116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])};
+}
+
+const ColourMap& map_named(const std::string& name) {
+  return *std::ranges::find(colour_maps(), name, &ColourMap::name);
+}
+
+// Largest and smallest step of lightness between neighbouring colours.
+std::pair<double, double> lightness_steps(const std::vector<Rgb>& colours, std::size_t first, std::size_t last) {
+  double smallest = 1e9, largest = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    const double step = lab_of(colours[i + 1])[0] - lab_of(colours[i])[0];
+    smallest = std::min(smallest, std::abs(step));
+    largest = std::max(largest, std::abs(step));
+  }
+  return {smallest, largest};
+}
+
+TEST(ColourMaps, LightnessFallsEvenlyWithTheValue) {
+  const auto& colours = map_named("still").colours;
+  for (std::size_t i = 0; i + 1 < colours.size(); ++i) EXPECT_LT(lab_of(colours[i + 1])[0], lab_of(colours[i])[0]) << i;
+  const auto [smallest, largest] = lightness_steps(colours, 0, colours.size() - 1);
+  EXPECT_LT(largest / smallest, 1.3);
+}
+
+TEST(ColourMaps, TwoSidedMapIsLightestInTheMiddleAndEvenOnBothSides) {
+  const auto& colours = map_named("about").colours;
+  const std::size_t middle = colours.size() / 2;
+  for (std::size_t i = 1; i <= middle; ++i) {
+    EXPECT_LT(lab_of(colours[middle - i])[0], lab_of(colours[middle - i + 1])[0]) << i;
+    EXPECT_NEAR(lab_of(colours[middle - i])[0], lab_of(colours[middle + i])[0], 1.5) << i;
+  }
+  const auto [smallest, largest] = lightness_steps(colours, 0, colours.size() - 1);
+  EXPECT_LT(largest / smallest, 1.3);
+}
+
+// Viénot, Brettel and Mollon 1999: what a dichromat sees, in linear light (protanopia, deuteranopia).
+TEST(ColourMaps, SidesDifferForColourBlindEyes) {
+  const auto& colours = map_named("about").colours;
+  Mat3 protan, deutan;
+  protan << 0.11238, 0.88762, 0, 0.11238, 0.88762, 0, 0.00401, -0.00401, 1;
+  deutan << 0.29275, 0.70725, 0, 0.29275, 0.70725, 0, -0.02234, 0.02234, 1;
+  const auto seen = [](const Mat3& eye, const Rgb& rgb) {
+    Vec3 light;
+    for (int i = 0; i < 3; ++i) light[i] = rgb[i] <= 0.04045 ? rgb[i] / 12.92 : std::pow((rgb[i] + 0.055) / 1.055, 2.4);
+    light = (eye * light).cwiseMax(0).cwiseMin(1);
+    Rgb result{};
+    for (int i = 0; i < 3; ++i)
+      result[i] = light[i] <= 0.0031308 ? 12.92 * light[i] : 1.055 * std::pow(light[i], 1 / 2.4) - 0.055;
+    return lab_of(result);
+  };
+  const std::size_t last = colours.size() - 1;
+  for (const Mat3& eye : {protan, deutan})
+    for (const std::size_t i : {std::size_t{4}, std::size_t{8}, std::size_t{12}})
+      EXPECT_GT((seen(eye, colours[i]) - seen(eye, colours[last - i])).norm(), 20) << i;
+}
+
+TEST(ColourRange, HoldsAllValuesAndIsRound) {
+  const auto& fields = colour_fields();
+  const auto range = [&](const std::string& name, double low, double high) {
+    return colour_range(*std::ranges::find(fields, name, &ColourField::name), low, high);
+  };
+  EXPECT_DOUBLE_EQ(range("displacement", 0, 33.2).high, 35);
+  EXPECT_DOUBLE_EQ(range("displacement", 0, 35).high, 35);
+  EXPECT_DOUBLE_EQ(range("displacement", 0, 0).high, 1);
+  EXPECT_DOUBLE_EQ(range("area-ratio", 0.55, 1.1).low, 0.5);
+  EXPECT_DOUBLE_EQ(range("area-ratio", 0.55, 1.1).high, 1.5);
+  EXPECT_DOUBLE_EQ(range("pressure", -310, 120).low, -350);
+}
+
+TEST(ColourOf, EndsAreHeldAndTheMiddleIsTheMiddle) {
+  const ColourMap& map = map_named("still");
+  EXPECT_EQ(colour_of(map, {0, 10}, -5), map.colours.front());
+  EXPECT_EQ(colour_of(map, {0, 10}, 50), map.colours.back());
+  EXPECT_EQ(colour_of(map, {0, 10}, 5), map.colours[map.colours.size() / 2]);
+}
+
+TEST(FieldValues, RefusesAFrameWithoutTheArray) {
+  EXPECT_THROW(field_values(Frame{}, colour_fields().front()), FileError);
+}
+
+}  // namespace
+}  // namespace plica

@@ -1,0 +1,136 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "core/errors.hpp"
+#include "record/mesh_writer.hpp"
+#include "show/looks.hpp"
+#include "show/report.hpp"
+#include "show/report_run.hpp"
+#include "support/tissues.hpp"
+
+namespace plica {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace support;
+
+// The numbers of a packed array, read back as the page does it.
+std::vector<std::uint32_t> unpacked(const ReportRun& run, const std::string& name) {
+  for (const auto& entry : run.json["arrays"]) {
+    if (entry["name"] != name) continue;
+    const std::size_t count = entry["count"], period = entry["period"], offset = entry["offset"];
+    const std::size_t size = entry["bits"].get<std::size_t>() / 8;
+    std::vector<std::uint32_t> numbers(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t b = 0; b < size; ++b)
+        numbers[i] |= std::uint32_t{static_cast<unsigned char>(run.frames.bytes()[offset + b * count + i])} << (8 * b);
+      if (i >= period) numbers[i] += numbers[i - period];
+      if (size == 2) numbers[i] &= 0xffff;
+    }
+    return numbers;
+  }
+  ADD_FAILURE() << "no array " << name;
+  return {};
+}
+
+class ReportRunTest : public testing::Test {
+ protected:
+  ReportRunTest() : folder(fs::path(testing::TempDir()) / ("plica_report_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder / "frames");
+  }
+  ~ReportRunTest() override { fs::remove_all(folder); }
+
+  // Frame i is the block moved by i um along x; from frame `divided_at` on it is another one, of more cells. As in a
+  // run, the row of series.csv at the time of the division still counts those before it.
+  void write_frames(int count, int divided_at = 1000) const {
+    std::vector<std::pair<double, std::string>> entries;
+    for (int i = 0; i < count; ++i) {
+      const Tissue& tissue = i < divided_at ? block : finer;
+      Vectors positions = tissue.rest_positions, displacements(positions.size(), Vec3(i, 0, 0));
+      for (Vec3& position : positions) position.x() += i;
+      std::vector<int> ids(tissue.cells.size()), zeros(tissue.cells.size(), 0);
+      std::vector<double> values(tissue.cells.size(), 0.25 * i);
+      for (std::size_t c = 0; c < ids.size(); ++c) ids[c] = static_cast<int>(c);
+      MeshArrays arrays;
+      arrays.node_vectors = {{"displacement_um", displacements}, {"velocity_um_per_s", displacements}};
+      arrays.cell_integers = {{"cell_id", ids}, {"generation", zeros}, {"region_some", zeros}};
+      for (const char* name : {"volume_um3", "volume_error", "apical_area_ratio", "pressure_Pa", "activity"})
+        arrays.cell_scalars.emplace_back(name, values);
+      const std::string file = "frames/frame_" + std::to_string(i) + ".vtu";
+      write_mesh(folder / file, tissue, positions, arrays, 10.0 * i);
+      entries.emplace_back(10.0 * i, file);
+    }
+    write_collection(folder / "frames.pvd", entries);
+  }
+
+  fs::path folder;
+  const Tissue block = distorted_block({60, 40, 40, {3, 2, 1}, {1, 1, 1}}, 2, 9);
+  const Tissue finer = distorted_block({60, 40, 40, {3, 3, 1}, {1, 1, 1}}, 2, 9);
+};
+
+TEST_F(ReportRunTest, HoldsPositionsAndValuesOfEveryFrame) {
+  write_frames(3);
+  const ReportRun run = read_report_run(folder, most_frame_bytes);
+  ASSERT_EQ(run.json["topologies"].size(), 1u);
+  EXPECT_EQ(run.json["topologies"][0]["times_s"], nlohmann::ordered_json({0, 10, 20}));
+  const auto steps = unpacked(run, "0/positions");
+  const std::size_t nodes = block.rest_positions.size();
+  ASSERT_EQ(steps.size(), 3 * 3 * nodes);
+  for (std::size_t f = 0; f < 3; ++f)
+    for (std::size_t n = 0; n < nodes; ++n)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double low = run.json["box"]["low"][i], high = run.json["box"]["high"][i];
+        const double position = low + (high - low) * steps[3 * (f * nodes + n) + i] / 65535;
+        const double expected = block.rest_positions[n][static_cast<int>(i)] + (i == 0 ? static_cast<double>(f) : 0.0);
+        EXPECT_NEAR(position, expected, 0.51 * (high - low) / 65535);
+      }
+  const auto pressures = unpacked(run, "0/pressure");
+  EXPECT_EQ(pressures.front(), 0u);
+  EXPECT_EQ(pressures.back(), 65535u);
+  EXPECT_DOUBLE_EQ(run.fields.at("pressure").high, 0.5);
+  EXPECT_EQ(run.json["regions"], nlohmann::ordered_json({"some"}));
+}
+
+TEST_F(ReportRunTest, NewCellsAreANewTopology) {
+  write_frames(5, 3);
+  const ReportRun run = read_report_run(folder, most_frame_bytes);
+  ASSERT_EQ(run.json["topologies"].size(), 2u);
+  EXPECT_EQ(run.json["topologies"][0]["cells"], 6);
+  EXPECT_EQ(run.json["topologies"][1]["cells"], 9);
+  EXPECT_EQ(run.json["topologies"][1]["times_s"], nlohmann::ordered_json({30, 40}));
+}
+
+TEST_F(ReportRunTest, ThinsFramesByItsRuleAndSaysSo) {
+  write_frames(20, 11);
+  const double bytes_a_frame = 2.0 * static_cast<double>(finer.rest_positions.size() * 5 + finer.elements.size() * 6);
+  const ReportRun run = read_report_run(folder, 7 * bytes_a_frame);
+  EXPECT_EQ(run.json["every"], 4);
+  EXPECT_EQ(run.json["frames_saved"], 20);
+  // Every 4th, the last, and the two on both sides of the division at 110 s.
+  EXPECT_EQ(run.json["topologies"][0]["times_s"], nlohmann::ordered_json({0, 40, 80, 100}));
+  EXPECT_EQ(run.json["topologies"][1]["times_s"], nlohmann::ordered_json({110, 120, 160, 190}));
+  EXPECT_EQ(read_report_run(folder, 100 * bytes_a_frame).json["every"], 1);
+  // However little there is room for, the ends and the division stay.
+  EXPECT_EQ(read_report_run(folder, 1).json["topologies"][0]["times_s"], nlohmann::ordered_json({0, 100}));
+  EXPECT_EQ(read_report_run(folder, 1).json["topologies"][1]["times_s"], nlohmann::ordered_json({110, 190}));
+}
+
+TEST_F(ReportRunTest, RefusesWhatIsNoRun) {
+  EXPECT_THROW(read_report_run(folder / "none", most_frame_bytes), FileError);
+  EXPECT_THROW(read_report_run(folder, most_frame_bytes), FileError);
+}
+
+TEST_F(ReportRunTest, PageHoldsNoMarkupOfTheScenario) {
+  write_frames(2);
+  std::ofstream(folder / "summary.json") << R"({"title": "</script><b>&\u2028"})";
+  std::ofstream(folder / "scenario.toml") << "title = \"</script><!--plica:title-->\"\n";
+  const std::string page = report_page_of({folder});
+  EXPECT_EQ(page.find("</script><b>"), std::string::npos);
+  EXPECT_EQ(page.find("<!--plica:"), std::string::npos);
+  EXPECT_NE(page.find("<title>&lt;/script&gt;&lt;b&gt;&amp;"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace plica

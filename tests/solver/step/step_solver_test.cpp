@@ -1,0 +1,315 @@
+#include "solver/step/step_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "support/loads.hpp"
+#include "support/models.hpp"
+#include "support/threads.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+/// Several steps; every one has to converge.
+State steps(StepSolver& solver, State state, double duration_s, int count, State* before_last = nullptr) {
+  State next;
+  for (int k = 0; k < count; ++k) {
+    const StepReport report = solver.advance(state, duration_s, k == 0, next);
+    EXPECT_TRUE(report.converged()) << report.reason() << " in step " << k;
+    if (!report.converged()) break;
+    if (before_last != nullptr) *before_last = state;
+    std::swap(state, next);
+  }
+  return state;
+}
+
+double worst_volume_error(const Model& model, const State& state) {
+  double worst = 0;
+  for (const double error : model.volumes.relative_errors(state.positions)) worst = std::max(worst, std::abs(error));
+  return worst;
+}
+
+TEST(StepSolver, AStepBalancesForcesAndKeepsVolumes) {
+  int cases = 0;
+  for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 1, 2}}) {
+    const Model model = dimpling_sheet(elements);
+    StepSolver solver(model);
+    for (const double duration : {0.05, 2.0, 60.0}) {
+      const State before = rest_state(model);
+      State after;
+      const StepReport report = solver.advance(before, duration, true, after);
+      ASSERT_TRUE(report.converged()) << report.reason();
+      EXPECT_LE(largest(unbalanced_forces(model, before, after)), 1e-7 * force_size(model, before, after));
+      EXPECT_LE(worst_volume_error(model, after), 1e-10);
+      EXPECT_LE(report.volume_error, 1e-10);
+      EXPECT_EQ(after.time_s, duration);
+      for (std::size_t n = 0; n < after.positions.size(); ++n)
+        EXPECT_LE((after.velocities[n] - (after.positions[n] - before.positions[n]) / duration).norm(), 1e-12);
+      ++cases;
+    }
+  }
+  RecordProperty("cases", cases);
+}
+
+TEST(StepSolver, WithoutTheConstraintVolumesAreFree) {
+  Model model = dimpling_sheet();
+  model.volumes_are_held = false;
+  StepSolver solver(model);
+  const State before = rest_state(model);
+  State after;
+  ASSERT_TRUE(solver.advance(before, 2, true, after).converged());
+  EXPECT_LE(largest(unbalanced_forces(model, before, after)), 1e-7 * force_size(model, before, after));
+  EXPECT_GT(worst_volume_error(model, after), 1e-6);
+}
+
+TEST(StepSolver, HeldDirectionsDoNotMoveAndOthersBalance) {
+  Model model = dimpling_sheet();
+  for (std::size_t n = 0; n < model.held.size(); ++n) {
+    const Vec3& X = model.tissue.rest_positions[n];
+    if (X.x() == -30) model.held[n] = {true, false, X.z() > 0};
+    if (X.x() == 30) model.held[n] = {true, true, true};
+  }
+  StepSolver solver(model);
+  const State before = rest_state(model);
+  State after;
+  ASSERT_TRUE(solver.advance(before, 10, true, after).converged());
+  const Vectors forces = unbalanced_forces(model, before, after);
+  const double size = force_size(model, before, after);
+  int held = 0;
+  for (std::size_t n = 0; n < forces.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      if (model.held[n][axis]) {
+        EXPECT_EQ(after.positions[n][axis], before.positions[n][axis]);
+        ++held;
+      } else {
+        EXPECT_LE(std::abs(forces[n][axis]), 1e-7 * size);
+      }
+  EXPECT_EQ(held, 8 * 1 + 4 + 8 * 3);
+}
+
+// Hydrostatics: a sphere whose cells keep their volume cannot grow into a rigid shell, so an inner pressure p passes
+// through: every cell has pressure p, and the shell carries p times its area.
+TEST(StepSolver, PressurisedSphereRestsOnItsShell) {
+  Model model(build_shell({.length_um = 280, .cells = {9, 9, 8}}));
+  add_elasticity(model);
+  add_drag(model);
+  const double pressure = 0.01;
+  model.laws.push_back(std::make_unique<FacePressure>(model.tissue, false, CellSet(model.tissue.cells.size(), true),
+                                                      pressure, Program{}));
+  model.vitelline.emplace(model.tissue, *model.tissue.outer_shape);
+  StepSolver solver(model);
+  State before;
+  const State after = steps(solver, rest_state(model), 20, 10, &before);
+  EXPECT_LE(largest(unbalanced_forces(model, before, after)), 1e-7 * force_size(model, before, after));
+  double total = 0;
+  for (std::size_t k = 0; k < after.contact_forces.size(); ++k) {
+    const std::size_t n = model.vitelline->nodes()[k].index();
+    EXPECT_GE(after.contact_forces[k], 0);
+    EXPECT_GE(model.vitelline->gap(after.positions[n]).value, -1e-8);
+    total += after.contact_forces[k];
+  }
+  double area = 0;
+  for (const Facet& facet : model.tissue.apical_facets) {
+    std::array<Vec3, 4> points;
+    for (int i = 0; i < 4; ++i) points[i] = after.positions[facet.nodes[i].index()];
+    area += facet_area(points);
+  }
+  std::printf("pressurised sphere: shell carries %.4f of p A\n", total / (pressure * area));
+  EXPECT_NEAR(total / (pressure * area), 1, 0.02);
+  for (const double p : after.pressures) EXPECT_NEAR(p, pressure, 0.05 * pressure);
+}
+
+// Complementarity where part of the surface leaves the shell.
+TEST(StepSolver, NodesAreEitherOnTheShellOrFreeOfIt) {
+  const Model model = furrowing_sphere();
+  StepSolver solver(model);
+  State before;
+  int on_shell = 0, off_shell = 0;
+  State state = rest_state(model);
+  for (int k = 0; k < 5; ++k) {
+    before = state;
+    ASSERT_TRUE(solver.advance(before, 5, k == 0, state).converged());
+    EXPECT_LE(largest(unbalanced_forces(model, before, state)), 1e-7 * force_size(model, before, state));
+    EXPECT_LE(worst_volume_error(model, state), 1e-10);
+    on_shell = off_shell = 0;
+    for (std::size_t i = 0; i < state.contact_forces.size(); ++i) {
+      const double gap = model.vitelline->gap(state.positions[model.vitelline->nodes()[i].index()]).value;
+      EXPECT_GE(state.contact_forces[i], 0);
+      EXPECT_GE(gap, -1e-8);
+      EXPECT_EQ(state.in_contact[i] != 0, gap <= 1e-8 && state.in_contact[i] != 0);
+      if (state.contact_forces[i] > 0) {
+        EXPECT_LE(gap, 1e-8) << "a force at a distance";
+      }
+      (state.in_contact[i] ? on_shell : off_shell) += 1;
+    }
+  }
+  std::printf("furrowing sphere: %d nodes on the shell, %d off it\n", on_shell, off_shell);
+  EXPECT_GT(on_shell, 50);
+  EXPECT_GT(off_shell, 50);
+}
+
+// A scenario may hold nodes that also lie on the shell.
+TEST(StepSolver, HeldNodesOnTheShellStayWhereTheyAre) {
+  Model model = furrowing_sphere();
+  std::vector<std::size_t> held;
+  for (std::size_t c = 0; c < model.tissue.cells.size(); ++c)
+    if (model.tissue.cells[c].grid_place->face == GridPlace::Face::anterior)
+      for (int corner = 4; corner < 8; ++corner) held.push_back(model.tissue.cells[c].corners[corner].index());
+  int cases = 0;
+  for (const std::array<bool, 3>& directions :
+       {std::array<bool, 3>{true, true, true}, {true, false, false}, {false, true, true}}) {
+    for (const std::size_t n : held) model.held[n] = directions;
+    StepSolver solver(model);
+    State after;
+    const StepReport report = solver.advance(rest_state(model), 5, true, after);
+    EXPECT_TRUE(report.converged()) << report.reason() << " with held directions " << directions[0] << directions[1]
+                                    << directions[2];
+    if (!report.converged()) continue;
+    for (const std::size_t n : held)
+      for (int axis = 0; axis < 3; ++axis)
+        if (directions[axis]) {
+          EXPECT_NEAR(after.positions[n][axis], model.tissue.rest_positions[n][axis], 1e-12);
+        }
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
+TEST(StepSolver, OneAndTwoThreadsGiveTheSameBits) {
+  const Model model = furrowing_sphere();
+  std::vector<State> ends;
+  for (const int count : {1, 2}) {
+    const support::Threads scope(count);
+    StepSolver solver(model);
+    ends.push_back(steps(solver, rest_state(model), 2, 4));
+  }
+  EXPECT_EQ(ends[0].positions, ends[1].positions);
+  EXPECT_EQ(ends[0].pressures, ends[1].pressures);
+  EXPECT_EQ(ends[0].contact_forces, ends[1].contact_forces);
+}
+
+// What a resumed run rests on.
+TEST(StepSolver, AfterForgettingItsFactorAStepDoesNotDependOnTheOnesBefore) {
+  const Model model = dimpling_sheet();
+  StepSolver used(model), fresh(model);
+  const State state = steps(used, rest_state(model), 2, 3);
+  used.forget_factor();
+  State a, b;
+  ASSERT_TRUE(used.advance(state, 2, false, a).converged());
+  ASSERT_TRUE(fresh.advance(state, 2, false, b).converged());
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.pressures, b.pressures);
+}
+
+TEST(StepSolver, RestStaysAtRest) {
+  Model model(build_block({.cells = {2, 2, 1}}));
+  add_elasticity(model);
+  add_drag(model);
+  StepSolver solver(model);
+  State after;
+  const StepReport report = solver.advance(rest_state(model), 10, true, after);
+  ASSERT_TRUE(report.converged());
+  for (std::size_t n = 0; n < after.positions.size(); ++n)
+    EXPECT_LE((after.positions[n] - model.tissue.rest_positions[n]).norm(), 1e-10);
+}
+
+TEST(StepSolver, AStepThatFailsSaysSoAndLeavesTheStateAlone) {
+  Model model = dimpling_sheet();
+  Vectors loads(model.tissue.node_count(), Vec3::Zero());
+  loads[0].x() = std::numeric_limits<double>::quiet_NaN();
+  model.laws.push_back(std::make_unique<NodalForces>(loads));
+  StepSolver solver(model);
+  State next;
+  next.time_s = 77;
+  const StepReport report = solver.advance(rest_state(model), 1, true, next);
+  EXPECT_EQ(report.outcome, StepReport::Outcome::not_finite);
+  EXPECT_FALSE(report.reason().empty());
+  EXPECT_EQ(next.time_s, 77);
+  EXPECT_TRUE(next.positions.empty());
+}
+
+// Asked before every iteration, of Newton and Krylov; a request that comes in the middle of a step is heard there.
+TEST(StepSolver, AnInterruptedStepSaysSoAndLeavesTheStateAlone) {
+  const Model model = dimpling_sheet();
+  StepSolver solver(model);
+  int cases = 0;
+  for (const int answers : {0, 1, 2}) {
+    int asked = 0;
+    solver.stop_when([&] { return asked++ >= answers; });
+    State next;
+    next.time_s = 77;
+    const StepReport report = solver.advance(rest_state(model), 2, true, next);
+    EXPECT_EQ(report.outcome, StepReport::Outcome::interrupted);
+    EXPECT_FALSE(report.converged());
+    EXPECT_FALSE(report.reason().empty());
+    EXPECT_LE(report.newton_iterations, answers);
+    EXPECT_EQ(next.time_s, 77);
+    EXPECT_TRUE(next.positions.empty() && next.velocities.empty() && next.pressures.empty());
+    ++cases;
+  }
+  RecordProperty("cases", cases);
+  // Interruption leaves nothing behind: the step solved afterwards is that of a new solver.
+  State after, expected;
+  solver.stop_when([] { return false; });
+  solver.forget_factor();
+  ASSERT_TRUE(solver.advance(rest_state(model), 2, true, after).converged());
+  ASSERT_TRUE(StepSolver(model).advance(rest_state(model), 2, true, expected).converged());
+  EXPECT_EQ(after.positions, expected.positions);
+}
+
+// The volume of a cell that cannot move needs no pressure: its constraint must not make the system singular.
+TEST(StepSolver, WholeCellsMayBeHeldWithTheirVolumes) {
+  int cases = 0;
+  for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 1, 2}})
+    for (const std::vector<int>& held : {std::vector<int>{0}, {4}, {0, 1, 8}, {0, 1, 2, 3, 4, 5, 6, 7, 8}}) {
+      Model model = dimpling_sheet(elements);
+      for (const int cell : held)
+        for (std::size_t e = 0; e < model.tissue.elements.size(); ++e)
+          if (model.tissue.element_cell[e] == CellId(cell))
+            for (const NodeId node : model.tissue.elements[e]) model.held[node.index()] = {true, true, true};
+      StepSolver solver(model);
+      State before = rest_state(model), after;
+      for (int k = 0; k < 3; ++k) {
+        const StepReport report = solver.advance(before, 5, k == 0, after);
+        ASSERT_TRUE(report.converged()) << report.reason() << " with " << held.size() << " cells held";
+        for (std::size_t n = 0; n < after.positions.size(); ++n)
+          if (model.held[n][0]) {
+            EXPECT_EQ(after.positions[n], model.tissue.rest_positions[n]);
+          }
+        for (const double pressure : after.pressures) EXPECT_TRUE(std::isfinite(pressure));
+        EXPECT_LE(worst_volume_error(model, after), 1e-10);
+        std::swap(before, after);
+      }
+      ++cases;
+    }
+  RecordProperty("cases", cases);
+}
+
+// A force that no shape can bear: the step may fail, but never with an element inside out.
+TEST(StepSolver, NoStepEndsInsideOut) {
+  int cases = 0, failed = 0;
+  for (const double stiffness : {50.0, 500.0, 5000.0}) {
+    Model model(build_block({.length_um = 60, .width_um = 60, .cell_height_um = 40, .cells = {3, 3, 1}}));
+    add_elasticity(model);
+    add_contraction(model, CellSet(9, true), {.stiffness = stiffness});
+    add_drag(model);
+    StepSolver solver(model);
+    State after;
+    if (solver.advance(rest_state(model), 60, true, after).converged()) {
+      for (const auto& element : model.tissue.elements)
+        EXPECT_GT(hex_scaled_jacobian(gather(after.positions, element)), 0);
+    } else {
+      ++failed;
+    }
+    ++cases;
+  }
+  std::printf("overwhelming contraction: %d of %d steps fail\n", failed, cases);
+}
+
+}  // namespace
+}  // namespace plica

@@ -1,0 +1,140 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <iostream>
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "record/mesh_writer.hpp"
+#include "support/tissues.hpp"
+#include "tissue/files/frame_file.hpp"
+#include "tissue/hexahedral_mesh.hpp"
+#include "tissue/shapes/embryo.hpp"
+
+namespace plica {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace support;
+
+class FrameFileTest : public testing::Test {
+ protected:
+  FrameFileTest() : folder(fs::path(testing::TempDir()) / ("plica_frame_file_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder);
+  }
+  ~FrameFileTest() override { fs::remove_all(folder); }
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name, std::ios::binary) << text;
+    return folder / name;
+  }
+
+  /// What reading complains of, without anything on stderr.
+  template <class Error, class Read>
+  static std::string error(const Read& read, const fs::path& file) {
+    testing::internal::CaptureStderr();
+    std::string text;
+    try {
+      (void)read(file);
+    } catch (const Error& caught) {
+      text = caught.what();
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_TRUE(text.starts_with(file.string() + ": ")) << text;
+    return text;
+  }
+
+  fs::path folder;
+};
+
+TEST_F(FrameFileTest, ReadsWhatWasWritten) {
+  const Tissue block = distorted_block({60, 20, 40, {3, 1, 1}, {2, 2, 1}}, 1, 7);
+  const Vectors velocities = Random(1).vectors(block.node_count());
+  write_mesh(folder / "a.vtu", block, block.rest_positions,
+             {{{"velocity_um_per_s", velocities}}, {{"volume_um3", {1, -2.5, 3}}}, {{"cell_id", {0, 1, 2}}}}, 12.5);
+  const Frame frame = read_frame(folder / "a.vtu");
+  EXPECT_EQ(frame.positions, block.rest_positions);
+  EXPECT_EQ(frame.elements, block.elements);
+  EXPECT_EQ(frame.time_s, 12.5);
+  EXPECT_EQ(frame.node_vectors.at("velocity_um_per_s"), velocities);
+  EXPECT_EQ(frame.element_scalars.at("volume_um3"),
+            (std::vector<double>{1, 1, 1, 1, -2.5, -2.5, -2.5, -2.5, 3, 3, 3, 3}));
+  EXPECT_EQ(frame.element_scalars.at("cell_id")[4], 1);
+  write_mesh(folder / "b.vtu", block, block.rest_positions, {});
+  EXPECT_FALSE(read_frame(folder / "b.vtu").time_s);
+}
+
+TEST_F(FrameFileTest, ReadsCollections) {
+  write_collection(folder / "frames.pvd", {{0, "frames/0.vtu"}, {0.1, "a&\"b\".vtu"}});
+  const std::vector<std::pair<double, std::string>> expected = {{0, "frames/0.vtu"}, {0.1, "a&\"b\".vtu"}};
+  EXPECT_EQ(read_collection(folder / "frames.pvd"), expected);
+  write_collection(folder / "none.pvd", {});
+  EXPECT_TRUE(read_collection(folder / "none.pvd").empty());
+}
+
+TEST_F(FrameFileTest, ReadsSurfacesInSeveralFormats) {
+  const std::string off_plane = "0 0 0\n4 0 0\n4 4 0\n0 4 0\n";
+  const std::vector<fs::path> files = {
+      write("a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 4 double\n" + off_plane +
+                         "POLYGONS 1 5\n4 0 1 2 3\n"),
+      write(
+          "a.stl",
+          "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 0 0\nvertex 4 4 0\nendloop\nendfacet\n"
+          "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 4 0\nvertex 0 4 0\nendloop\nendfacet\nendsolid s\n"),
+      write("a.obj", "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nf 1 2 3 4\n"),
+      write(
+          "a.ply",
+          "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face "
+          "1\nproperty list uchar int vertex_indices\nend_header\n" +
+              off_plane + "4 0 1 2 3\n"),
+  };
+  int cases = 0;
+  for (const fs::path& file : files) {
+    const TriangleSurface surface = read_surface(file);
+    double area = 0;
+    for (const auto& [a, b, c] : surface.triangles)
+      area += (surface.points[b] - surface.points[a]).cross(surface.points[c] - surface.points[a]).norm() / 2;
+    EXPECT_EQ(surface.triangles.size(), 2U) << file;
+    EXPECT_NEAR(area, 16, 1e-5) << file;
+    ++cases;
+  }
+  // Of a volume mesh, its boundary: 14 faces of three cells in a row.
+  const Tissue block = build_block({60, 20, 40, {3, 1, 1}, {1, 1, 1}});
+  write_mesh(folder / "block.vtu", block, block.rest_positions, {});
+  EXPECT_EQ(read_surface(folder / "block.vtu").triangles.size(), 28U);
+  std::cout << cases + 1 << " files\n";
+}
+
+TEST_F(FrameFileTest, WhatCannotBeReadSaysWhy) {
+  const fs::path missing = folder / "missing.vtu", text = write("text.vtu", "hello"), empty = write("empty.pvd", "");
+  const fs::path cut = write("cut.pvd", "<?xml version=\"1.0\"?>\n<VTKFile><Collection>\n");
+  const fs::path untimed = write("untimed.pvd", "<VTKFile><Collection><DataSet file=\"a\"/></Collection></VTKFile>");
+  const fs::path points =
+      write("points.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 0\n");
+  const Tissue block = build_block({60, 20, 40, {3, 1, 1}, {1, 1, 1}});
+  write_mesh(folder / "whole.vtu", block, block.rest_positions, {});
+  const std::string whole = read_file(folder / "whole.vtu");
+  const fs::path torn = write("torn.vtu", whole.substr(0, whole.size() / 2));
+  int cases = 0;
+  for (const fs::path& file : {missing, text, torn, folder}) {
+    error<FileError>(read_frame, file);
+    error<FileError>(read_surface, file);
+    cases += 2;
+  }
+  for (const fs::path& file : {folder / "missing.pvd", empty, cut, untimed}) {
+    error<FileError>(read_collection, file);
+    ++cases;
+  }
+  EXPECT_NE(error<FileError>(read_surface, points).find("no face"), std::string::npos);
+  const fs::path triangle =
+      write("triangle.vtk",
+            "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 "
+            "0 1 0\nCELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n");
+  EXPECT_NE(error<MeshError>(read_frame, triangle).find("vtkTriangle"), std::string::npos);
+  std::cout << cases + 2 << " cases\n";
+}
+
+}  // namespace
+}  // namespace plica
