@@ -16,6 +16,7 @@
 #include "core/memory.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
+#include "simulation/controls.hpp"
 
 namespace {
 

@@ -27,7 +27,7 @@ BlockPattern pattern_of(const Model& model) {
         if (b < a) below[a.index()].push_back(b.number());
   };
   for (const auto& law : model.laws) {
-    const NodeGroups groups = law->node_groups();
+    const NodeGroups groups = law->node_groups({});
     for (std::size_t k = 0; k < groups.size(); ++k) join(groups[k]);
   }
   for (const auto& element : model.tissue.elements) join(element);

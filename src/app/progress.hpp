@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "measure/observation.hpp"
-#include "simulation/run.hpp"
+#include "simulation/controls.hpp"
 
 namespace plica {
 

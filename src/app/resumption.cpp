@@ -37,19 +37,14 @@ std::optional<Checkpoint> checkpoint_to_resume(const std::string& out, const Sce
   return checkpoint;
 }
 
-RunMemory go_on_from(Checkpoint checkpoint, const std::string& out, Model& model, Observer& observer,
-                     Recorder& recorder, const std::string& input_toml) {
-  const auto refuse_if = [&](const std::optional<std::string>& unfit) {
-    if (unfit) throw FileError(out + ": the checkpoint is damaged: " + *unfit);
-  };
-  for (const auto& past : checkpoint.run.past_divisions) {
-    refuse_if(why_unfit(*past, model));
-    observer.follow_division(repeat(model, *past));
-    recorder.follow_division();
+void go_on_from(Checkpoint checkpoint, const std::string& out, Simulation& simulation, Recorder& recorder,
+                const std::string& input_toml) {
+  try {
+    simulation.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  } catch (const UnfitMemory& error) {
+    throw FileError(out + ": the checkpoint is damaged: " + error.what());
   }
-  refuse_if(why_unfit(checkpoint, model));
   recorder.go_on(input_toml, std::move(checkpoint.record));
-  return std::move(checkpoint.run);
 }
 
 }  // namespace plica

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "record/recorder.hpp"
-#include "simulation/run.hpp"
+#include "simulation/simulation.hpp"
 
 namespace plica {
 
@@ -13,8 +13,8 @@ namespace plica {
 /// damaged, or when there are results that belong to none.
 std::optional<Checkpoint> checkpoint_to_resume(const std::string& out, const Scenario& scenario, const Model& at_rest);
 
-/// Brings model, observer and recorder from rest to where the checkpoint is.
-RunMemory go_on_from(Checkpoint checkpoint, const std::string& out, Model& model, Observer& observer,
-                     Recorder& recorder, const std::string& input_toml);
+/// Brings simulation and recorder from rest to where the checkpoint is.
+void go_on_from(Checkpoint checkpoint, const std::string& out, Simulation& simulation, Recorder& recorder,
+                const std::string& input_toml);
 
 }  // namespace plica

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
-#include <omp.h>
 
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <new>
@@ -20,8 +18,6 @@
 #include "record/recorder.hpp"
 #include "record/run_directory.hpp"
 #include "scenario/advice.hpp"
-#include "scenario/setup.hpp"
-#include "scenario/watch.hpp"
 #include "show/report.hpp"
 #include "show/report_writer.hpp"
 
@@ -33,31 +29,6 @@ struct RunOptions {
   std::string out;
   int threads = 0;
   bool quiet = false, overwrite = false, resume = false;
-};
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// Wall time of the solver: what passes while nothing is recorded, less what the writing of files beside it takes of
-/// the core where there is only one.
-class SolverClock {
- public:
-  explicit SolverClock(Recorder& recorder) : recorder_(recorder) { start(); }
-  void start() {
-    start_ = std::chrono::steady_clock::now();
-    writing_s_ = recorder_.writing_s();
-  }
-  void stop() {
-    solver_s_ += seconds_since(start_);
-    if (omp_get_num_procs() == 1) solver_s_ -= recorder_.writing_s() - writing_s_;
-  }
-  [[nodiscard]] double solver_s() const { return solver_s_; }
-
- private:
-  Recorder& recorder_;
-  std::chrono::steady_clock::time_point start_;
-  double writing_s_ = 0, solver_s_ = 0;
 };
 
 void print_result(const nlohmann::ordered_json& summary, const std::string& out) {
@@ -93,62 +64,27 @@ void refuse_to_replace_reference(const std::vector<Monitor>& monitors, const std
           fmt::format("--out {} is the reference of monitor \"{}\"; give another --out", out.string(), monitor.name));
 }
 
-int exit_status(const RunResult& result, bool missed) {
-  if (result.status == RunStatus::failed) return exit_gave_up;
-  if (result.status == RunStatus::interrupted) return interrupted_status();
+int exit_status(RunStatus status, bool missed) {
+  if (status == RunStatus::failed) return exit_gave_up;
+  if (status == RunStatus::under_way) return interrupted_status();
   return missed ? exit_missed : exit_done;
 }
-
-// What a run consists of beside its scenario.
-struct Setting {
-  std::unique_ptr<Model> model;
-  RunControls controls;
-  Observer observer;
-
-  explicit Setting(const Scenario& scenario)
-      : model(make_model(scenario)),
-        controls(make_controls(scenario, *model)),
-        observer(*model, make_furrow_sites(scenario, model->tissue), make_watch(scenario, model->tissue)) {}
-};
-
-using Clock = std::chrono::steady_clock;
 
 // A step under way at an interruption is finished if it can be within this. What ends processes (Docker, Slurm) waits
 // for 10 s and more.
 constexpr double step_patience_s = 3;
 
-// From where the memory is to the end. `before`: wall times until then, in earlier runs.
-struct Ending {
-  RunResult result;
-  nlohmann::ordered_json summary;
-};
-Ending simulate(Setting& setting, Recorder& recorder, RunMemory memory, const WallTimes& before,
-                Clock::time_point start, bool quiet) {
-  Progress progress(setting.controls, quiet);
-  SolverClock solver_clock(recorder);
-  const auto wall = [&] {
-    return WallTimes{before.total_s + seconds_since(start), before.solver_s + solver_clock.solver_s()};
-  };
-  RunResult result = run(
-      *setting.model, std::move(memory), setting.controls,
-      [&](const AcceptedStep& step) {
-        solver_clock.stop();
-        const Observation& row = recorder.record(step, wall());
-        progress.show(row);
-        solver_clock.start();
-        return StepAnswer(!interrupted(), row.is_over);
-      },
-      [&] { return interrupted_for(step_patience_s) || recorder.has_failed(); },
-      [&](const Division& division, const State& state) {
-        solver_clock.stop();
-        setting.observer.follow_division(division);
-        recorder.record_division(division, state);
-        solver_clock.start();
-      });
-  solver_clock.stop();
+// To the end, or an interruption.
+nlohmann::ordered_json simulate(Simulation& simulation, Recorder& recorder, bool quiet) {
+  Progress progress(simulation.controls(), quiet);
+  simulation.listen(recorder);
+  simulation.stop_when([&] { return interrupted_for(step_patience_s) || recorder.has_failed(); });
+  while (simulation.step()) {
+    progress.show(simulation.measures());
+    if (interrupted()) break;
+  }
   progress.finish();
-  auto summary = recorder.finish(result, wall());
-  return {std::move(result), std::move(summary)};
+  return recorder.finish();
 }
 
 // Once a run has begun, what ends it can be mended, and nothing is lost.
@@ -164,32 +100,33 @@ auto with_a_way_on(const Work& work) {
   }
 }
 
-void report_ending(const Ending& ending, const std::vector<std::string>& missed, const RunOptions& options) {
+void report_ending(const Simulation& simulation, const nlohmann::ordered_json& summary,
+                   const std::vector<std::string>& missed, const RunOptions& options) {
   for (const std::string& line : missed) fmt::print(stderr, "{}\n", line);
-  if (!ending.result.failure.empty())
-    fmt::print(stderr, "plica: gave up: {}; the last good state is in {}\n", ending.result.failure, options.out);
-  if (ending.result.status == RunStatus::interrupted && can_archive())
+  if (!simulation.failure().empty())
+    fmt::print(stderr, "plica: gave up: {}; the last good state is in {}\n", simulation.failure(), options.out);
+  if (simulation.status() == RunStatus::under_way && can_archive())
     fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");
-  if (!options.quiet) print_result(ending.summary, options.out);
+  if (!options.quiet) print_result(summary, options.out);
 }
 
 int run_scenario(const RunOptions& options) {
-  const Clock::time_point start = Clock::now();
+  const Recorder::Clock::time_point start = Recorder::Clock::now();
   const ScenarioSource source = find_scenario(options.scenario.name_or_path);
   const Scenario scenario = load_scenario(source, options.scenario.overrides);
-  Setting setting(scenario);
-  use_threads(options.threads, setting.model->tissue.elements.size(), options.scenario.name_or_path);
+  Simulation simulation(scenario);
+  use_threads(options.threads, simulation.model().tissue.elements.size(), options.scenario.name_or_path);
 
   if (!options.quiet)
-    for (const std::string& line : advice(scenario, *setting.model))
+    for (const std::string& line : advice(scenario, simulation.model()))
       if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
 
   refuse_to_replace_scenario(source.file, options.out);
-  refuse_to_replace_reference(setting.observer.monitors(), options.out);
+  refuse_to_replace_reference(simulation.observer().monitors(), options.out);
   auto lock = std::make_unique<DirectoryLock>(options.out);
   std::optional<Checkpoint> checkpoint;
-  if (options.resume) checkpoint = checkpoint_to_resume(options.out, scenario, *setting.model);
-  if (checkpoint && has_ended(checkpoint->run, setting.controls) && holds_ending(options.out, can_report())) {
+  if (options.resume) checkpoint = checkpoint_to_resume(options.out, scenario, simulation.model());
+  if (checkpoint && has_ended(checkpoint->run, simulation.controls()) && holds_ending(options.out, can_report())) {
     if (!options.quiet) fmt::print("{}: the run is finished; nothing is left to do\n", options.out);
     return exit_done;
   }
@@ -200,26 +137,22 @@ int run_scenario(const RunOptions& options) {
   }
   catch_interruptions();
   ReportWriter report(options.out);
-  Recorder recorder(options.out, scenario, *setting.model, setting.observer);
+  Recorder recorder(options.out, scenario, simulation, start);
   if (can_report()) recorder.listen(report);
-  const Ending ending = with_a_way_on([&] {
-    WallTimes before;
-    RunMemory memory;
+  const nlohmann::ordered_json summary = with_a_way_on([&] {
     if (checkpoint) {
-      before = {checkpoint->record.wall_s, checkpoint->record.solver_s};
-      memory = go_on_from(std::move(*checkpoint), options.out, *setting.model, setting.observer, recorder, source.text);
-      if (!options.quiet) fmt::print("going on after step {}, t = {:g} s\n", memory.steps, memory.state.time_s);
+      go_on_from(std::move(*checkpoint), options.out, simulation, recorder, source.text);
+      if (!options.quiet) fmt::print("going on after step {}, t = {:g} s\n", simulation.steps(), simulation.time_s());
     } else {
-      memory.state = rest_state(*setting.model);
-      recorder.begin(source.text, memory);
+      recorder.begin(source.text);
     }
-    return simulate(setting, recorder, std::move(memory), before, start, options.quiet);
+    return simulate(simulation, recorder, options.quiet);
   });
   std::vector<std::string> missed;
-  if (ending.result.status == RunStatus::equilibrium || ending.result.status == RunStatus::end_time)
-    missed = missed_expectations(scenario, ending.summary);
-  report_ending(ending, missed, options);
-  return exit_status(ending.result, !missed.empty());
+  if (simulation.status() == RunStatus::equilibrium || simulation.status() == RunStatus::end_time)
+    missed = missed_expectations(scenario, summary);
+  report_ending(simulation, summary, missed, options);
+  return exit_status(simulation.status(), !missed.empty());
 }
 
 }  // namespace

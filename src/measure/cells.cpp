@@ -40,9 +40,9 @@ double mean_apical_area_ratio(const Tissue& tissue, const MonitoredCells& cells,
 
 std::vector<double> activities(const Model& model, double time_s) {
   std::vector<double> result(model.tissue.cells.size(), 0.0);
-  for (std::size_t k = model.contractions.size(); k-- > 0;)
-    for (std::size_t c = 0; c < result.size(); ++c)
-      if (model.contraction_cells[k][c]) result[c] = model.contractions[k]->activity_of(CellId(c), time_s);
+  for (auto law = model.laws.rbegin(); law != model.laws.rend(); ++law)
+    for (std::size_t c = 0; (*law)->is_active() && c < result.size(); ++c)
+      if (const auto activity = (*law)->activity_of(CellId(c), time_s)) result[c] = *activity;
   return result;
 }
 

@@ -22,7 +22,7 @@ double mean_node_displacement(const Tissue& tissue, const MonitoredCells& cells,
 /// Mean over the cells of apical area over apical area at rest.
 double mean_apical_area_ratio(const Tissue& tissue, const MonitoredCells& cells, std::span<const Vec3> positions);
 
-/// Activity of each cell: that of its program, delay included, in the first contraction that it belongs to; 0 outside.
+/// Activity of each cell: that of its program, delay included, in the first law by which it acts; 0 outside.
 /// Profile and variation are no part of it.
 std::vector<double> activities(const Model& model, double time_s);
 

@@ -9,7 +9,6 @@
 #include "core/units.hpp"
 #include "measure/cells.hpp"
 #include "measure/energy_norm.hpp"
-#include "mechanics/surroundings.hpp"
 #include "tissue/part.hpp"
 
 namespace plica {
@@ -97,12 +96,10 @@ std::vector<double> energy_norm_values(const Monitor& monitor, const Moment& mom
 std::vector<double> kinetic_energy_values(const Monitor& monitor, const Moment& moment) {
   const Tissue& tissue = moment.model.tissue;
   const CellSet& region = tissue.regions.at(monitor.region);
-  const Inertia* inertia = nullptr;
-  for (const auto& law : moment.model.laws)
-    if (const auto* found = dynamic_cast<const Inertia*>(law.get())) inertia = found;
-  if (inertia == nullptr) return {};
+  const std::span<const double> masses = moment.model.masses();
+  if (masses.empty()) return {};
   double mass = 0, rest_volume = 0, energy_of_unit_density = 0;
-  for (const double part : inertia->masses()) mass += part;
+  for (const double part : masses) mass += part;
   for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
     const double volume = hex_volume(tissue.element_rest_shape[e]);
     rest_volume += volume;

@@ -67,9 +67,9 @@ struct Monitor {
   std::string from;         // of a force: only what the cells of this region exert
   Over over = Over::mean;
   double poisson_ratio = 0;  // of the energy norm
-  std::unique_ptr<const ReferenceRun> reference_run;
+  std::shared_ptr<const ReferenceRun> reference_run;
   std::optional<Frame> reference_frame;  // the run's last one, where it is measured against its end
-  std::unique_ptr<const SurfaceDistance> reference_surface;
+  std::shared_ptr<const SurfaceDistance> reference_surface;
 
   /// NAME.quantity_unit: its column in series.csv and its key in summary.json.
   [[nodiscard]] std::string column() const;
@@ -79,7 +79,7 @@ struct Monitor {
 struct Moment {
   const Model& model;
   const State& state;
-  double wall_s = 0;  // computing time since the first step began
+  double wall_s = 0;  // computing time of all steps so far
 };
 
 /// A monitor at a moment, in the unit of its column: a value for each node or cell of its region (or one for all of

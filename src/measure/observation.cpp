@@ -11,7 +11,12 @@ Observer::Observer(const Model& model, FurrowSites sites, Watch watch)
     : model_(model),
       sites_(std::move(sites)),
       watch_(std::move(watch)),
-      rest_lumen_volume_(lumen_volume(model.tissue, model.tissue.rest_positions)) {}
+      rest_lumen_volume_(lumen_volume(model.tissue, model.tissue.rest_positions)) {
+  sites_.contractile.resize(model.tissue.cells.size(), false);  // where there are no sites
+}
+
+Observer::Observer(const Model& model, const Observer& other)
+    : model_(model), sites_(other.sites_), watch_(other.watch_), rest_lumen_volume_(other.rest_lumen_volume_) {}
 
 void Observer::observe_state(const State& state, Observation& row) const {
   const Tissue& tissue = model_.tissue;

@@ -7,9 +7,20 @@
 
 #include "measure/furrow.hpp"
 #include "measure/stop_rule.hpp"
-#include "simulation/run.hpp"
+#include "solver/step/stepper.hpp"
 
 namespace plica {
+
+/// A step that stands, as it is measured.
+struct AcceptedStep {
+  const State& state;     // at its end
+  const State& previous;  // at its beginning
+  double duration_s;
+  const StepReport& report;  // of the accepted attempt, iterations of rejected ones added
+  double max_node_speed_um_per_s;
+  bool frame_is_due;
+  bool at_equilibrium = false;
+};
 
 /// The measures of one accepted step. Empty: has no value.
 struct Observation {
@@ -42,7 +53,9 @@ struct Watch {
 class Observer {
  public:
   Observer(const Model& model, FurrowSites sites, Watch watch = {});
-  /// `wall_s`: computing time since the first step began, for the monitor of that name.
+  /// Measures the same of a copy of the other's model.
+  Observer(const Model& model, const Observer& other);
+  /// `wall_s`: computing time of all steps so far, for the monitor of that name.
   [[nodiscard]] Observation observe(const AcceptedStep& step, double wall_s = 0) const;
   /// The same of the body at rest, before the first step.
   [[nodiscard]] Observation observe_rest(const State& state) const;

@@ -42,14 +42,7 @@ std::array<Growth, 2> growths_of(const PlannedDivision& plan, const std::array<C
 }
 
 void divide_laws(Model& model, const Division& division, const Vectors& positions) {
-  for (auto& law : model.laws) {
-    auto after = law->after_division(model.tissue, division, positions);
-    for (const Contraction*& contraction : model.contractions)
-      if (contraction == law.get()) contraction = static_cast<const Contraction*>(after.get());
-    if (model.inertia == law.get()) model.inertia = static_cast<const Inertia*>(after.get());
-    law = std::move(after);
-  }
-  for (CellSet& cells : model.contraction_cells) cells = inherited(division, cells);
+  for (auto& law : model.laws) law = law->after_division(model.tissue, division, positions);
 }
 
 // Held nodes stay held; a new one is where all nodes that it lies between are.
@@ -82,9 +75,10 @@ void divide_contacts(Model& model, State& state) {
   state.in_contact = std::move(in_contact);
 }
 
-Vec3 momentum(const Inertia& inertia, const Vectors& velocities) {
+Vec3 momentum(const Model& model, const Vectors& velocities) {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t n = 0; n < velocities.size(); ++n) sum += inertia.masses()[n] * velocities[n];
+  const std::span<const double> masses = model.masses();
+  for (std::size_t n = 0; n < masses.size(); ++n) sum += masses[n] * velocities[n];
   return sum;
 }
 
@@ -96,8 +90,8 @@ void restore_momentum(const Model& model, const Division& division, const Vec3& 
   for (std::size_t n = division.free_nodes_before; n < model.tissue.free_node_count(); ++n)
     for (int axis = 0; axis < 3; ++axis) unit[n][axis] = model.held[n][axis] ? 0 : 1;
   model.tissue.place_hanging(unit);
-  const Vec3 mass = momentum(*model.inertia, unit);
-  Vec3 missing = before - momentum(*model.inertia, velocities);
+  const Vec3 mass = momentum(model, unit);
+  Vec3 missing = before - momentum(model, velocities);
   for (int axis = 0; axis < 3; ++axis) missing[axis] = mass[axis] > 0 ? missing[axis] / mass[axis] : 0;
   for (std::size_t n = 0; n < velocities.size(); ++n) velocities[n] += unit[n].cwiseProduct(missing);
 }
@@ -110,7 +104,7 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
   grow(model, state.time_s);
   std::erase_if(model.growths, [&](const Growth& growth) { return growth.end_s <= state.time_s; });
 
-  const Vec3 momentum_before = model.inertia ? momentum(*model.inertia, state.velocities) : Vec3::Zero();
+  const Vec3 momentum_before = momentum(model, state.velocities);
   std::vector<CellCut> cuts;
   std::vector<Destiny> destinies;
   for (const PlannedDivision& plan : planned) {
@@ -138,7 +132,7 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
   divide_laws(model, division, state.positions);
   divide_holds(model, division);
   divide_contacts(model, state);
-  if (model.inertia) restore_momentum(model, division, momentum_before, state.velocities);
+  if (!model.masses().empty()) restore_momentum(model, division, momentum_before, state.velocities);
   return division;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,7 @@ struct Step {
   bool semidefinite_tangent = false;
   std::span<const Vec3> earlier_positions = {};  // x at the beginning of the step before, um; nodes; where ahead > 0
   double ahead = 0;                              // >= 0
+  std::span<const double> internal = {};         // of the law that is asked: its state at the step's beginning
 
   /// q_before of a quantity of node positions.
   template <class Quantity>
@@ -70,11 +72,14 @@ class NodeGroups {
   std::vector<NodeId> nodes_;
 };
 
-/// One law. Vectors are a Vec3 a node; forces in nN, tangents in nN/um, energies in nN um.
+/// One law. Vectors are a Vec3 a node; forces in nN, tangents in nN/um, energies in nN um. A law is constant during a
+/// step; what it remembers from one step to the next (a rest length that flows, which nodes touch) is numbers that the
+/// State holds for it, its internal state.
 class Law {
  public:
   virtual ~Law() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
+  [[nodiscard]] virtual std::unique_ptr<Law> clone() const = 0;
 
   /// The law's part of the incremental potential.
   [[nodiscard]] virtual double energy(const Step& step) const = 0;
@@ -86,19 +91,50 @@ class Law {
   virtual void add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                    std::span<Vec3> product) const = 0;
 
-  /// Adds the same as a matrix: every block (a, b) and (b, a) of nodes that the law joins.
+  /// Adds the same as a matrix: every block (a, b) and (b, a) of nodes that the law joins. A law may leave out blocks
+  /// that its product has, where they would fill the matrix: directions are then found by more iterations.
   virtual void add_tangent(const Step& step, TangentSink& tangent) const = 0;
 
-  /// The nodes that the law joins. Laws that act on single nodes have none.
-  [[nodiscard]] virtual NodeGroups node_groups() const { return {}; }
+  /// The nodes that the law joins, as long as its internal state has this revision of the pattern: only their blocks
+  /// are in its tangent. Laws that act on single nodes have none.
+  [[nodiscard]] virtual NodeGroups node_groups(std::span<const double> /*internal*/) const { return {}; }
+  [[nodiscard]] virtual int pattern_revision(std::span<const double> /*internal*/) const { return 0; }
+
+  /// How much of a change of positions may be tried at once, 0 to 1: for laws whose energy has a barrier.
+  [[nodiscard]] virtual double max_fraction(const Step& /*step*/, std::span<const Vec3> /*direction*/) const {
+    return 1;
+  }
+
+  /// The internal state before the first step, and at the end of a step that has been accepted.
+  [[nodiscard]] virtual std::vector<double> first_internal(const Tissue& /*tissue*/) const { return {}; }
+  [[nodiscard]] virtual std::vector<double> next_internal(const Step& step) const {
+    return {step.internal.begin(), step.internal.end()};
+  }
 
   /// The same law for the tissue after a division, with nodes at `positions`. Existing nodes feel the same forces, but
   /// for what finer elements change.
   [[nodiscard]] virtual std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                             std::span<const Vec3> positions) const = 0;
+  /// And its internal state, from that before; asked of the law before the division.
+  [[nodiscard]] virtual std::vector<double> internal_after_division(std::span<const double> internal,
+                                                                    const Tissue& /*tissue*/,
+                                                                    const Division& /*division*/) const {
+    return {internal.begin(), internal.end()};
+  }
 
   /// Daughters have grown: the rest shapes of these elements are new. Between steps only.
   virtual void take_rest_shapes(const Tissue& /*tissue*/, std::span<const ElementId> /*elements*/) {}
+
+  /// Times at which its programs begin or bend, s: steps end on them.
+  [[nodiscard]] virtual std::vector<double> program_points_s() const { return {}; }
+
+  /// Of a law by which cells act: the activity of the cell's program, 0 to 1; empty for cells that it leaves alone, and
+  /// of laws that are none. The forces of such laws at rest are the active ones.
+  [[nodiscard]] virtual bool is_active() const { return false; }
+  [[nodiscard]] virtual std::optional<double> activity_of(CellId /*cell*/, double /*time_s*/) const { return {}; }
+
+  /// Mass that the law gives to nodes, g; empty for none.
+  [[nodiscard]] virtual std::span<const double> masses() const { return {}; }
 };
 
 }  // namespace plica

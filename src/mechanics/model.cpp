@@ -11,6 +11,23 @@ double Growth::part(double time_s) const {
   return time_s <= start_s ? 0 : (time_s - start_s) / (end_s - start_s);
 }
 
+Model::Model(const Model& other)
+    : tissue(other.tissue),
+      volumes(other.volumes),
+      volumes_are_held(other.volumes_are_held),
+      vitelline(other.vitelline),
+      held(other.held),
+      growths(other.growths),
+      stiffness_scale(other.stiffness_scale) {
+  for (const auto& law : other.laws) laws.push_back(law->clone());
+}
+
+std::span<const double> Model::masses() const {
+  for (const auto& law : laws)
+    if (const auto masses = law->masses(); !masses.empty()) return masses;
+  return {};
+}
+
 double Model::force_scale() const {
   double volume = 0;
   for (const double target : volumes.targets()) volume += target;

@@ -6,11 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "mechanics/active/contraction.hpp"
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/law.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
-#include "mechanics/surroundings.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -33,14 +31,17 @@ struct Model {
   CellVolumes volumes;
   bool volumes_are_held = true;
   std::optional<Vitelline> vitelline;
-  std::vector<std::array<bool, 3>> held;         // nodes; directions x, y, z in which a node does not move
-  std::vector<const Contraction*> contractions;  // among the laws
-  std::vector<CellSet> contraction_cells;        // contractions
-  const Inertia* inertia = nullptr;              // among the laws
-  std::vector<Growth> growths;                   // under way, and over since the last division
-  double stiffness_scale = 1;  // Young's modulus, kPa: for tolerances that must not depend on the load
+  std::vector<std::array<bool, 3>> held;  // nodes; directions x, y, z in which a node does not move
+  std::vector<Growth> growths;            // under way, and over since the last division
+  double stiffness_scale = 1;             // Young's modulus, kPa: for tolerances that must not depend on the load
 
   explicit Model(Tissue t) : tissue(std::move(t)), volumes(tissue), held(tissue.node_count(), {false, false, false}) {}
+  Model(const Model& other);
+  Model(Model&&) = default;
+  Model& operator=(Model&&) = default;
+
+  /// Mass of the nodes, g; empty in a model without inertia.
+  [[nodiscard]] std::span<const double> masses() const;
 
   /// Typical force of the body, nN: modulus times the mean area of an element's face. Residuals are zero against this.
   [[nodiscard]] double force_scale() const;

@@ -14,6 +14,7 @@ class SurfaceDrag final : public Law {
   SurfaceDrag(const Tissue& tissue, double drag);
 
   [[nodiscard]] std::string_view name() const override { return "drag"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<SurfaceDrag>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
@@ -34,11 +35,12 @@ class Inertia final : public Law {
   Inertia(const Tissue& tissue, double density);
 
   [[nodiscard]] std::string_view name() const override { return "inertia"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Inertia>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
-  [[nodiscard]] const std::vector<double>& masses() const { return masses_; }
+  [[nodiscard]] std::span<const double> masses() const override { return masses_; }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
@@ -55,10 +57,12 @@ class FacePressure final : public Law {
   FacePressure(const Tissue& tissue, bool on_apical, CellSet cells, double pressure, Program program);
 
   [[nodiscard]] std::string_view name() const override { return "pressure"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<FacePressure>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step&, std::span<const Vec3>, std::span<Vec3>) const override {}  // constant force
   void add_tangent(const Step&, TangentSink&) const override {}
+  [[nodiscard]] std::vector<double> program_points_s() const override { return program_.times_s(); }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
 

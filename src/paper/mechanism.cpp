@@ -26,7 +26,8 @@ Curve inward_force(const std::string& name, const Model& model, const FurrowSite
   Vectors forces(rest.size(), Vec3::Zero()), normals(rest.size(), Vec3::Zero());
   const Step still{rest, rest, forces, 1, 1e6};
   Vectors sum(rest.size(), Vec3::Zero());
-  for (const Contraction* contraction : model.contractions) contraction->add_forces(still, sum);
+  for (const auto& law : model.laws)
+    if (law->is_active()) law->add_forces(still, sum);
   for (const Facet& facet : tissue.apical_facets) {
     const Vec3 area = facet_area_vector(gather(std::span<const Vec3>(rest), facet));
     for (const NodeId node : facet.nodes) normals[node.index()] += area / 4;

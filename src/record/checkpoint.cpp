@@ -15,7 +15,7 @@
 namespace plica {
 namespace {
 
-constexpr int format = 2;
+constexpr int format = 3;
 constexpr std::size_t trailer_bytes = 64;
 
 std::uint32_t checksum(std::string_view bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }
@@ -121,6 +121,7 @@ void visit_run(Take& take, Run& run) {
   take("run/at_equilibrium", run.at_equilibrium);
   take("run/criterion_met", run.criterion_met);
   take("run/wanted_step_s", run.wanted_step_s);
+  take("run/computing_s", run.computing_s);
   auto& factor = run.factor;
   visit_iterate(take, "factor/", factor.at);
   take("factor/previous_positions", factor.previous_positions);
@@ -337,46 +338,6 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
   };
   read_on_trial([&] { (void)read(); }, image.size());
   return read();
-}
-
-std::optional<std::string> why_unfit(const Checkpoint& checkpoint, const Model& model) {
-  const std::size_t nodes = model.tissue.node_count(), cells = model.tissue.cells.size(),
-                    contacts = model.vitelline ? model.vitelline->nodes().size() : 0;
-  const auto none_or = [](std::size_t size, std::size_t full) { return size == 0 || size == full; };
-  const auto fits = [&](const auto& at) {
-    return at.positions.size() == nodes && at.pressures.size() == cells && at.contact_forces.size() == contacts &&
-           at.in_contact.size() == contacts;
-  };
-  const State& state = checkpoint.run.state;
-  if (state.time_s < 0 || checkpoint.run.steps < 0 || checkpoint.run.wanted_step_s < 0 || state.trend.step_s < 0 ||
-      state.trend.earlier_s < 0)
-    return "its time or its step is negative";
-  if (state.trend.step_s + state.trend.earlier_s > state.time_s * (1 + 1e-9))
-    return "its steps are longer than its time";
-  if (!fits(state) || state.velocities.size() != nodes || !none_or(state.trend.mean_velocities.size(), nodes) ||
-      !none_or(state.trend.accelerations.size(), nodes) || !none_or(state.trend.pressure_rates.size(), cells))
-    return "its state is not one of this embryo";
-  const FactorMemory& factor = checkpoint.run.factor;
-  if (factor.empty()) return std::nullopt;
-  if (!fits(factor.at) || factor.previous_positions.size() != nodes || factor.previous_velocities.size() != nodes ||
-      factor.earlier_positions.size() != (factor.ahead > 0 ? nodes : 0) || !(factor.rate_s > 0) || factor.ahead < 0 ||
-      factor.has_left.size() != factor.changed_contacts.size() ||
-      factor.normals.size() != factor.changed_contacts.size())
-    return "its factor is not one of this embryo";
-  for (const int contact : factor.changed_contacts)
-    if (contact < 0 || static_cast<std::size_t>(contact) >= contacts) return "its factor is not one of this embryo";
-  return std::nullopt;
-}
-
-std::optional<std::string> why_unfit(const PastDivision& past, const Model& model) {
-  if (past.positions.size() != model.tissue.node_count()) return "a division is not one of this embryo";
-  for (const PlannedDivision& one : past.planned) {
-    const int cell = one.cut.cell.number();
-    if (cell < 0 || static_cast<std::size_t>(cell) >= model.tissue.cells.size() || one.cut.first_wall < 0 ||
-        one.cut.first_wall > 1 || !(one.growth_s >= 0) || !(one.volume_ratio > 0))
-      return "a division is not one of this embryo";
-  }
-  return std::nullopt;
 }
 
 namespace {

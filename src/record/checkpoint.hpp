@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "measure/observation.hpp"
-#include "simulation/run.hpp"
+#include "simulation/run_memory.hpp"
 
 namespace plica {
 
@@ -52,12 +52,6 @@ class CheckpointBytes {
  private:
   std::unique_ptr<class ArchiveWriter> archive_;  // of the last one, as long as it is small
 };
-
-/// Whether it fits the model, which has the past divisions behind it: sizes, and numbers of nodes and cells. What is
-/// wrong, or nothing.
-std::optional<std::string> why_unfit(const Checkpoint& checkpoint, const Model& model);
-/// The same of a division that is to be made again.
-std::optional<std::string> why_unfit(const PastDivision& past, const Model& model);
 
 /// Whether two resolved scenarios differ in more than [time], [stop] and [output], which may change at a resume: the
 /// first line that does, or nothing.

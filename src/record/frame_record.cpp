@@ -69,10 +69,11 @@ FrameRecord FrameTaker::take(const State& state) const {
   frame.displacements.resize(state.positions.size());
   for (std::size_t n = 0; n < state.positions.size(); ++n)
     frame.displacements[n] = state.positions[n] - tissue.rest_positions[n];
-  // The active forces: what the contractions pull with, without their dampers.
+  // The active forces: what cells pull with, without their dampers.
   frame.forces.assign(state.positions.size(), Vec3::Zero());
   const Step still{state.positions, state.positions, state.velocities, 1, state.time_s};
-  for (const Contraction* contraction : model_.contractions) contraction->add_forces(still, frame.forces);
+  for (const auto& law : model_.laws)
+    if (law->is_active()) law->add_forces(still, frame.forces);
 
   const std::vector<double> areas = apical_areas(tissue, state.positions), rest_areas = rest_apical_areas(tissue);
   std::vector<double> ratios = areas, pressures = state.pressures;

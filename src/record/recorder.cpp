@@ -1,6 +1,7 @@
 #include "record/recorder.hpp"
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <limits>
 
@@ -58,44 +59,52 @@ struct Recorder::StepRecord {
   WallTimes wall;
 };
 
-Recorder::Recorder(fs::path directory, const Scenario& scenario, const Model& model, const Observer& observer)
+Recorder::Recorder(fs::path directory, const Scenario& scenario, const Simulation& simulation, Clock::time_point start)
     : directory_(std::move(directory)),
       scenario_(scenario),
-      model_(model),
-      observer_(observer),
-      frame_taker_(model, observer.sites(),
-                   scenario.output.cells_csv.value_or(model.tissue.cells.size() <= most_cells_by_default)),
-      checkpoint_{version(), resolved_toml(scenario), fingerprint(model.tissue), {}, {}},
+      simulation_(simulation),
+      start_(start),
+      frame_taker_(simulation.model(), simulation.observer().sites(),
+                   scenario.output.cells_csv.value_or(simulation.model().tissue.cells.size() <= most_cells_by_default)),
+      checkpoint_{version(), resolved_toml(scenario), fingerprint(simulation.model().tissue), {}, {}},
       checkpoints_(directory_),
       writing_(most_waiting) {}
 
+WallTimes Recorder::wall() const {
+  const double since_start_s = std::chrono::duration<double>(Clock::now() - start_).count();
+  return {earlier_s_ + since_start_s, simulation_.computing_s() - beside_s_};
+}
+
 void Recorder::open_tables(const RecordMemory& memory) {
-  series_ = table(directory_ / "series.csv", series_columns(observer_), memory.series_bytes);
+  series_ = table(directory_ / "series.csv", series_columns(simulation_.observer()), memory.series_bytes);
   midline_ = table(directory_ / "midline.csv", midline_header, memory.midline_bytes);
   if (frame_taker_.with_cell_rows()) cells_ = table(directory_ / "cells.csv", cells_header, memory.cells_bytes);
   if (!scenario_.divisions.empty()) lineage_ = table(directory_ / "lineage.csv", lineage_header, memory.lineage_bytes);
 }
 
-std::shared_ptr<Recorder::StepRecord> Recorder::step_record(RunMemory run, const WallTimes& wall) const {
+std::shared_ptr<Recorder::StepRecord> Recorder::step_record() const {
   return std::make_shared<StepRecord>(
-      StepRecord{nullptr, rows_.back(), std::move(run), bytes_of(series_), bytes_of(lineage_), wall});
+      StepRecord{nullptr, rows_.back(), simulation_.memory(), bytes_of(series_), bytes_of(lineage_), wall()});
 }
 
-void Recorder::begin(const std::string& input_toml, const RunMemory& at_rest) {
+void Recorder::begin(const std::string& input_toml) {
   open_tables({});
   write_file(directory_ / "scenario.input.toml", input_toml);
   write_file(directory_ / "scenario.toml", checkpoint_.scenario);
-  rows_.push_back(observer_.observe_rest(at_rest.state));
+  rows_.push_back(simulation_.measures());
   append_series(rows_.back());
-  save_frame(at_rest.state);
-  if (can_archive()) writing_.add([this, record = step_record(at_rest, {})] { write(*record); });
+  save_frame();
+  if (can_archive()) writing_.add([this, record = step_record()] { write(*record); });
   writing_.finish();  // whoever cannot write hears of it before the first step
 }
 
 void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
   for (const Observation& row : memory.rows)
-    if (row.monitors.size() != observer_.monitors().size())
+    if (row.monitors.size() != simulation_.observer().monitors().size())
       throw FileError(directory_.string() + ": the checkpoint is damaged: its rows are not of these monitors");
+  frame_taker_.follow_division();
+  earlier_s_ = memory.wall_s;
+  beside_s_ = simulation_.computing_s() - memory.solver_s;
   remove_half_written(directory_);
   open_tables(memory);
   write_file(directory_ / "scenario.input.toml", input_toml);
@@ -112,23 +121,22 @@ void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
   checkpoint_.record = std::move(memory);
 }
 
-const Observation& Recorder::record(const AcceptedStep& step, const WallTimes& wall) {
+void Recorder::step_accepted(const AcceptedStep& step, const Observation& measures) {
+  if (omp_get_num_procs() == 1) beside_s_ += writing_.processor_s() - written_s_;
   writing_.finish();
-  rows_.push_back(observer_.observe(step, wall.total_s));
-  const Observation& row = rows_.back();
-  append_series(row);
-  if (!can_archive()) {
-    if (step.frame_is_due) save_frame(step.state);
-    return row;
+  rows_.push_back(measures);
+  append_series(measures);
+  if (can_archive()) {
+    const auto record = step_record();
+    if (step.frame_is_due) {
+      last_frame_s_ = step.state.time_s;
+      record->frame = std::make_shared<const FrameRecord>(frame_taker_.take(step.state));
+    }
+    writing_.add([this, record] { write(*record); });
+  } else if (step.frame_is_due) {
+    save_frame();
   }
-  const auto record = step_record(step.memory(), wall);
-  record->run.criterion_met = row.is_over;
-  if (step.frame_is_due) {
-    last_frame_s_ = step.state.time_s;
-    record->frame = std::make_shared<const FrameRecord>(frame_taker_.take(step.state));
-  }
-  writing_.add([this, record] { write(*record); });
-  return row;
+  written_s_ = writing_.processor_s();
 }
 
 void Recorder::write(const StepRecord& step) {
@@ -151,16 +159,16 @@ void Recorder::write(const StepRecord& step) {
   checkpoints_.write(checkpoint_, sync);
 }
 
-void Recorder::record_division(const Division& division, const State& state) {
+void Recorder::cells_divided(const Division& division) {
   frame_taker_.follow_division();
   if (lineage_) append_lineage(division);
-  save_frame(state);
+  save_frame();
 }
 
-nlohmann::ordered_json Recorder::finish(const RunResult& result, const WallTimes& wall) {
-  if (last_frame_s_ != result.state.time_s) save_frame(result.state);
+nlohmann::ordered_json Recorder::finish() {
+  if (last_frame_s_ != simulation_.time_s()) save_frame();
   writing_.finish();
-  nlohmann::ordered_json summary = make_summary(scenario_, model_, result, rows_, observer_.monitors(), wall);
+  nlohmann::ordered_json summary = make_summary(scenario_, simulation_, rows_, wall());
   write_file(directory_ / "summary.json", summary.dump(2) + "\n");
   for (RecordListener* listener : listeners_) listener->end();
   return summary;
@@ -181,7 +189,7 @@ void Recorder::append_series(const Observation& row) {
                                                row.max_node_speed_um_per_s,
                                                row.max_volume_error,
                                                row.lumen_volume_ratio,
-                                               static_cast<double>(model_.tissue.cells.size()),
+                                               static_cast<double>(simulation_.model().tissue.cells.size()),
                                                row.step_s,
                                                static_cast<double>(row.newton_iterations),
                                                static_cast<double>(row.linear_solves)};
@@ -189,9 +197,10 @@ void Recorder::append_series(const Observation& row) {
   series_->append(row_of(values));
 }
 
-void Recorder::save_frame(const State& state) {
-  last_frame_s_ = state.time_s;
-  writing_.add([this, frame = std::make_shared<const FrameRecord>(frame_taker_.take(state))] { write(*frame); });
+void Recorder::save_frame() {
+  last_frame_s_ = simulation_.time_s();
+  writing_.add(
+      [this, frame = std::make_shared<const FrameRecord>(frame_taker_.take(simulation_.state()))] { write(*frame); });
 }
 
 void Recorder::write(const FrameRecord& frame) {
@@ -212,7 +221,7 @@ void Recorder::tell(const Frame& frame, double time_s) {
 void Recorder::append_lineage(const Division& division) {
   for (const auto& daughters : division.daughters)
     for (const CellId daughter : daughters) {
-      const Lineage& lineage = model_.tissue.cells[daughter.index()].lineage;
+      const Lineage& lineage = simulation_.model().tissue.cells[daughter.index()].lineage;
       lineage_->append(row_of({static_cast<double>(lineage.id), static_cast<double>(lineage.mother),
                                static_cast<double>(lineage.generation), lineage.birth_s}));
     }

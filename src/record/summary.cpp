@@ -43,16 +43,16 @@ const char* word(RunStatus status) {
       return "end_time";
     case RunStatus::failed:
       return "failed";
-    case RunStatus::interrupted:
+    case RunStatus::under_way:
       return "interrupted";
   }
   return "";
 }
 
 // What ended the run: the criteria that were met and rest, where they count; null at the end of time or a failure.
-Json stopped_by(const Scenario& scenario, const RunResult& result, const Observation& last) {
-  std::vector<std::string> names = result.criterion_met ? last.criteria_met : std::vector<std::string>{};
-  if (result.status == RunStatus::equilibrium && scenario.stop.at_equilibrium) names.emplace_back("equilibrium");
+Json stopped_by(const Scenario& scenario, const Simulation& simulation, const Observation& last) {
+  std::vector<std::string> names = simulation.criterion_met() ? last.criteria_met : std::vector<std::string>{};
+  if (simulation.status() == RunStatus::equilibrium && scenario.stop.at_equilibrium) names.emplace_back("equilibrium");
   return names.empty() ? Json(nullptr) : Json(fmt::format("{}", fmt::join(names, ", ")));
 }
 
@@ -66,8 +66,10 @@ std::optional<double> last_value(const std::vector<Observation>& rows, std::size
 
 }  // namespace
 
-Json make_summary(const Scenario& scenario, const Model& model, const RunResult& result,
-                  const std::vector<Observation>& rows, const std::vector<Monitor>& monitors, const WallTimes& wall) {
+Json make_summary(const Scenario& scenario, const Simulation& simulation, const std::vector<Observation>& rows,
+                  const WallTimes& wall) {
+  const Tissue& tissue = simulation.model().tissue;
+  const std::vector<Monitor>& monitors = simulation.observer().monitors();
   const Observation& last = rows.back();
   const SpeedHistory history = speed_history(rows);
   double volume_error = 0, penetration = 0, jacobian = 1;
@@ -79,16 +81,16 @@ Json make_summary(const Scenario& scenario, const Model& model, const RunResult&
   Json summary;
   summary["scenario"] = scenario.name;
   summary["title"] = scenario.title;
-  summary["status"] = word(result.status);
-  summary["stopped_by"] = stopped_by(scenario, result, last);
-  summary["failure"] = result.failure.empty() ? Json(nullptr) : Json(result.failure);
+  summary["status"] = word(simulation.status());
+  summary["stopped_by"] = stopped_by(scenario, simulation, last);
+  summary["failure"] = simulation.failure().empty() ? Json(nullptr) : Json(simulation.failure());
   summary["time_s"] = last.time_s;
-  summary["equilibrium_time_s"] = number(result.equilibrium_time_s);
-  summary["cells"] = model.tissue.cells.size();
-  summary["nodes"] = model.tissue.free_node_count();
-  summary["elements"] = model.tissue.elements.size();
-  summary["divisions"] = result.divisions;
-  summary["steps"] = result.steps;
+  summary["equilibrium_time_s"] = number(simulation.equilibrium_time_s());
+  summary["cells"] = tissue.cells.size();
+  summary["nodes"] = tissue.free_node_count();
+  summary["elements"] = tissue.elements.size();
+  summary["divisions"] = simulation.divisions();
+  summary["steps"] = simulation.steps();
   summary["wall_s"] = wall.total_s;
   summary["wall_solver_s"] = wall.solver_s;
   summary["furrow_depth_um"] = number(last.furrow.depth_um);

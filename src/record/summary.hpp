@@ -7,7 +7,7 @@
 
 #include "measure/observation.hpp"
 #include "scenario/scenario.hpp"
-#include "simulation/run.hpp"
+#include "simulation/simulation.hpp"
 
 namespace plica {
 
@@ -18,9 +18,8 @@ struct WallTimes {
 
 /// The keys of the contract; what never happened is null. Rows are those of the whole run, the one at rest first. Each
 /// monitor's last value stands under the name of its column.
-nlohmann::ordered_json make_summary(const Scenario& scenario, const Model& model, const RunResult& result,
-                                    const std::vector<Observation>& rows, const std::vector<Monitor>& monitors,
-                                    const WallTimes& wall);
+nlohmann::ordered_json make_summary(const Scenario& scenario, const Simulation& simulation,
+                                    const std::vector<Observation>& rows, const WallTimes& wall);
 
 /// One line for each of the scenario's [expect] that the summary misses; empty when all are met.
 std::vector<std::string> missed_expectations(const Scenario& scenario, const nlohmann::ordered_json& summary);

@@ -46,9 +46,12 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   for (const auto& [name, contraction] : scenario.contractions)
     if (!contraction.program.activity.empty() && std::ranges::max(contraction.program.activity) == 0)
       warn(fmt::format("contraction.{}: its program is 0 at every point", name));
-  for (std::size_t k = 0; const auto& [name, contraction] : scenario.contractions)
-    if (model.contractions[k++]->points_s().back() > scenario.time.end_s)
+  auto law = model.laws.begin();  // contractions are among them in the order of their names
+  for (const auto& [name, contraction] : scenario.contractions) {
+    law = std::find_if(law, model.laws.end(), [](const auto& one) { return one->name() == "contraction"; });
+    if ((*law++)->program_points_s().back() > scenario.time.end_s)
       warn(fmt::format("contraction.{}: its program goes on after the run's end at {} s", name, scenario.time.end_s));
+  }
   if (scenario.time.step_s && *scenario.time.step_s > scenario.time.end_s)
     warn("time.step_s is longer than the whole run");
   advise_on_shape_memory(scenario, model, note, warn);

@@ -1,4 +1,4 @@
-// From a scenario to what is run: model, controls, and where the furrow is measured.
+// From a scenario to what is run: the model, and where the furrow is measured.
 #pragma once
 
 #include <memory>
@@ -6,7 +6,6 @@
 #include "measure/furrow.hpp"
 #include "mechanics/model.hpp"
 #include "scenario/scenario.hpp"
-#include "simulation/run.hpp"
 
 namespace plica {
 
@@ -16,9 +15,6 @@ Tissue make_tissue(const Scenario& scenario);
 
 /// The laws of a scenario on its tissue. Throws ScenarioError for what only the tissue shows to be wrong.
 std::unique_ptr<Model> make_model(const Scenario& scenario);
-
-/// `model` is the scenario's: where cells contract one after another, only it knows when the last one does.
-RunControls make_controls(const Scenario& scenario, const Model& model);
 
 /// VML, VCE, midline and lips of the scenario's furrow; none where there is no contraction.
 FurrowSites make_furrow_sites(const Scenario& scenario, const Tissue& tissue);

@@ -22,11 +22,11 @@ Over over_named(const std::string& name) {
 void open_reference(const MonitorInput& input, Monitor& monitor) {
   const QuantityInfo::Reference kind = info_of(monitor.quantity).reference;
   if (kind == QuantityInfo::Reference::run) {
-    monitor.reference_run = std::make_unique<ReferenceRun>(input.reference);
+    monitor.reference_run = std::make_shared<ReferenceRun>(input.reference);
     if (input.reference_at == "end") monitor.reference_frame = monitor.reference_run->last_frame();
   }
   if (kind == QuantityInfo::Reference::surface)
-    monitor.reference_surface = std::make_unique<SurfaceDistance>(read_surface(input.reference));
+    monitor.reference_surface = std::make_shared<SurfaceDistance>(read_surface(input.reference));
 }
 
 Monitor make_monitor(const std::string& name, const MonitorInput& input, const Scenario& scenario) {

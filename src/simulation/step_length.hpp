@@ -1,8 +1,10 @@
 // How long the next step is: as long as its error on positions allows, ending on the times that are asked for.
 #pragma once
 
+#include <limits>
+
 #include "mechanics/model.hpp"
-#include "simulation/run.hpp"
+#include "simulation/controls.hpp"
 
 namespace plica {
 
@@ -11,23 +13,20 @@ class StepLength {
   /// Goes on with steps of about `wanted_s`; 0: begins.
   explicit StepLength(const RunControls& controls, double wanted_s = 0);
 
-  /// The length of a step that starts at `time_s`.
-  [[nodiscard]] double propose(double time_s) const;
+  /// The length of a step that starts at `time_s` and ends at `until_s` at the latest.
+  [[nodiscard]] double propose(const RunControls& controls, double time_s,
+                               double until_s = std::numeric_limits<double>::infinity()) const;
 
   /// Whether the step from `before` to `after` stands. False when its error (step_error) is so large that it should
   /// be taken again, shorter.
-  [[nodiscard]] bool accept(const State& before, const State& after);
-
-  /// Begins anew with a short step: after a division nothing is known of how things change.
-  void restart();
+  [[nodiscard]] bool accept(const RunControls& controls, const State& before, const State& after);
 
   /// The step could not be solved. False when the next would be too short to be worth it.
-  [[nodiscard]] bool halve(double failed_s);
+  [[nodiscard]] bool halve(const RunControls& controls, double failed_s);
 
   [[nodiscard]] double wanted_s() const { return wanted_s_; }
 
  private:
-  const RunControls& controls_;
   double wanted_s_;
 };
 

@@ -10,7 +10,7 @@ namespace plica {
 
 std::unique_ptr<Stepper> make_stepper(const Model& model, const StepScheme& scheme) {
   if (scheme.order == TimeOrder::second &&
-      (scheme.projection || scheme.forces != StepScheme::Forces::newton || model.inertia))
+      (scheme.projection || scheme.forces != StepScheme::Forces::newton || !model.masses().empty()))
     throw std::logic_error("steps of second order are Newton's, without projection or inertia");
   if (scheme.forces == StepScheme::Forces::newton && !scheme.projection)
     return std::make_unique<StepSolver>(model, StepTolerances{}, scheme.linear_method, scheme.order);

@@ -28,6 +28,7 @@ class DenseCorotational final : public TurningElements {
     for (std::size_t e = 0; e < elements_.size(); ++e) fit(tissue, e);
   }
   [[nodiscard]] std::string_view name() const override { return "dense"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<DenseCorotational>(*this); }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const Division&,
                                                     std::span<const Vec3>) const override {
     return nullptr;

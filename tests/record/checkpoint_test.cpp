@@ -15,7 +15,7 @@
 #include "scenario/load.hpp"
 #include "scenario/print.hpp"
 #include "scenario/setup.hpp"
-#include "scenario/watch.hpp"
+#include "simulation/simulation.hpp"
 #include "support/block_scenario.hpp"
 
 namespace plica {
@@ -37,21 +37,27 @@ struct BlockRun {
         load_scenario(support::pulled_block(
                           "[division.all]\nregion = \"all\"\nat_s = 2\n[stop.never]\nmonitor = \"all\"\nbelow = 1\n"),
                       {"time.integrator=bdf2"});
-    model = make_model(scenario), at_rest = make_model(scenario);
-    Observer observer(*model, make_furrow_sites(scenario, model->tissue), make_watch(scenario, model->tissue));
-    Checkpoint now{"0.1.0", resolved_toml(scenario), fingerprint(model->tissue), {}, {}};
-    now.record.rows.push_back(observer.observe_rest(rest_state(*model)));
-    run(
-        *model, rest_state(*model), make_controls(scenario, *model),
-        [&](const AcceptedStep& step) {
-          now.record.rows.push_back(observer.observe(step));
-          now.record.series_bytes += 100;
-          now.record.frame_times_s.push_back(step.state.time_s);
-          now.run = step.memory();
-          checkpoints.push_back(now);
-          return true;
-        },
-        {}, [&](const Division& division, const State&) { observer.follow_division(division); });
+    at_rest = make_model(scenario);
+    struct Keeper final : SimulationListener {
+      Keeper(const Simulation& of, BlockRun& into) : simulation(of), run(into) {}
+      void step_accepted(const AcceptedStep& step, const Observation& measures) override {
+        now.record.rows.push_back(measures);
+        now.record.series_bytes += 100;
+        now.record.frame_times_s.push_back(step.state.time_s);
+        now.run = simulation.memory();
+        run.checkpoints.push_back(now);
+      }
+      const Simulation& simulation;
+      BlockRun& run;
+      Checkpoint now;
+    };
+    Simulation simulation(scenario);
+    Keeper keeper(simulation, *this);
+    keeper.now = {"0.1.0", resolved_toml(scenario), fingerprint(at_rest->tissue), {}, {}};
+    keeper.now.record.rows.push_back(simulation.measures());
+    simulation.listen(keeper);
+    simulation.run();
+    model = std::make_unique<Model>(simulation.model());
   }
   [[nodiscard]] const Checkpoint& last() const { return checkpoints.back(); }
 };
@@ -81,7 +87,7 @@ bool is_refused(std::string_view bytes) {
 std::string made_right(std::string bytes) {
   const std::size_t size = bytes.size() - trailer_bytes;
   const auto sum = crc32(0, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<uInt>(size));
-  std::string end = fmt::format("\nplica checkpoint 2 bytes {} crc32 {:08x}", size, sum);
+  std::string end = fmt::format("\nplica checkpoint 3 bytes {} crc32 {:08x}", size, sum);
   end.resize(trailer_bytes - 1, ' ');
   return bytes.replace(size, trailer_bytes, end + "\n");
 }
@@ -166,7 +172,7 @@ TEST_F(CheckpointTest, DamageUnderARightChecksumIsRefusedOrHarmless) {
 
 TEST_F(CheckpointTest, AnotherFormatIsNamed) {
   std::string bytes = checkpoint_bytes(block_run().last());
-  const std::string mark = "\nplica checkpoint 2 ";
+  const std::string mark = "\nplica checkpoint 3 ";
   for (const char* format : {"1 ", "20", "0 "}) {
     std::string other = bytes;
     other.replace(bytes.size() - trailer_bytes + mark.size() - 2, 2, format);
@@ -204,14 +210,14 @@ TEST_F(CheckpointTest, WhatIsNoNumberIsRefused) {
 
 TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
   const BlockRun& run = block_run();
-  EXPECT_FALSE(why_unfit(run.last(), *run.model));
-  EXPECT_TRUE(why_unfit(run.last(), *run.at_rest)) << "its cells have not divided";
+  EXPECT_FALSE(why_unfit(run.last().run, *run.model));
+  EXPECT_TRUE(why_unfit(run.last().run, *run.at_rest)) << "its cells have not divided";
   EXPECT_FALSE(why_unfit(*run.last().run.past_divisions.front(), *run.at_rest));
   int cases = 0;
   const auto unfit = [&](const auto& harm) {
     Checkpoint bad = run.last();
     harm(bad.run);
-    EXPECT_TRUE(why_unfit(read_checkpoint_bytes(checkpoint_bytes(bad)), *run.model)) << "case " << cases;
+    EXPECT_TRUE(why_unfit(read_checkpoint_bytes(checkpoint_bytes(bad)).run, *run.model)) << "case " << cases;
     ++cases;
   };
   unfit([](RunMemory& m) { m.state.positions.pop_back(); });

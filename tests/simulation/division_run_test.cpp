@@ -3,8 +3,9 @@
 
 #include <cmath>
 
-#include "simulation/run.hpp"
+#include "simulation/simulation.hpp"
 #include "support/divided.hpp"
+#include "support/ran.hpp"
 
 namespace plica {
 namespace {
@@ -45,14 +46,13 @@ struct Kept {
   double gap = 0;           // sum of cells over the volume inside the boundary, less 1
   int steps = 0;
 
-  StepObserver observer(const Model& model) {
-    return [&](const AcceptedStep& step) {
+  StepWatcher watcher() {
+    return [&](const AcceptedStep& step, const Model& model) {
       for (const double error : model.volumes.relative_errors(step.state.positions))
         volume_error = std::max(volume_error, std::abs(error));
       const double inside = volume_inside_boundary(model.tissue, step.state.positions);
       gap = std::max(gap, std::abs(volume_of_cells(model.tissue, step.state.positions) / inside - 1));
       ++steps;
-      return true;
     };
   }
 };
@@ -71,18 +71,18 @@ TEST(DivisionRun, FreeDaughtersEndWithTheirMothersShapeAndVolume) {
     model.tissue.regions["middle"] = {false, true, false};
     Kept kept;
     const auto mother = edge_lengths(model.tissue.cells[1], model.tissue.rest_positions);
-    const RunResult result =
-        run(model, rest_state(model), controls_of({at(60, "middle", 300, plane)}), kept.observer(model));
-    EXPECT_EQ(result.status, RunStatus::equilibrium);
-    ASSERT_EQ(model.tissue.cells.size(), 4u);
-    EXPECT_EQ(result.divisions, 1);
+    const Simulation result = ran(std::move(model), controls_of({at(60, "middle", 300, plane)}), kept.watcher());
+    EXPECT_EQ(result.status(), RunStatus::equilibrium);
+    const Tissue& tissue = result.model().tissue;
+    ASSERT_EQ(tissue.cells.size(), 4u);
+    EXPECT_EQ(result.divisions(), 1);
     EXPECT_LE(kept.volume_error, 1e-9);
     EXPECT_LE(kept.gap, 1e-12);
     double shape = 0;
     for (const int daughter : {1, 3}) {
-      const Cell& cell = model.tissue.cells[daughter];
-      EXPECT_NEAR(cell_volume(model.tissue, cell, result.state.positions) / 16000, 1, 1e-9);
-      const auto lengths = edge_lengths(cell, result.state.positions);
+      const Cell& cell = tissue.cells[daughter];
+      EXPECT_NEAR(cell_volume(tissue, cell, result.state().positions) / 16000, 1, 1e-9);
+      const auto lengths = edge_lengths(cell, result.state().positions);
       for (int e = 0; e < 12; ++e) shape = std::max(shape, std::abs(lengths[e] / mother[e] - 1));
     }
     // Along the row the ends are free; side by side the two are held together by neighbours that stay narrow.
@@ -97,17 +97,17 @@ TEST(DivisionRun, FreeDaughtersEndWithTheirMothersShapeAndVolume) {
 TEST(DivisionRun, FourParallelSlicesOfOneCellGrowOneAfterTheOther) {
   Model model = row_of_cells(1);
   Kept kept;
-  const RunResult result =
-      run(model, rest_state(model),
+  const Simulation result =
+      ran(std::move(model),
           controls_of({at(10, "all", 300, DivisionPlane::transverse), at(100, "all", 200, DivisionPlane::transverse)}),
-          kept.observer(model));
-  EXPECT_EQ(result.status, RunStatus::equilibrium);
-  EXPECT_EQ(result.divisions, 3);
-  ASSERT_EQ(model.tissue.cells.size(), 4u);
+          kept.watcher());
+  EXPECT_EQ(result.status(), RunStatus::equilibrium);
+  EXPECT_EQ(result.divisions(), 3);
+  ASSERT_EQ(result.model().tissue.cells.size(), 4u);
   EXPECT_LE(kept.volume_error, 1e-9);
   EXPECT_LE(kept.gap, 1e-12);
   double extent = 0;
-  for (const Vec3& x : result.state.positions) extent = std::max(extent, std::abs(x.x()));
+  for (const Vec3& x : result.state().positions) extent = std::max(extent, std::abs(x.x()));
   EXPECT_NEAR(extent, 40, 0.4);  // four cells of 20 um in a row
   std::cout << kept.steps << " steps: volumes to " << kept.volume_error << ", gap " << kept.gap << "\n";
 }
@@ -120,11 +120,11 @@ TEST(DivisionRun, ByThresholdEndsWithTheLastGenerationAllowed) {
     rule.trigger = trigger;
     rule.max_generation = 2;
     Kept kept;
-    const RunResult result = run(model, rest_state(model), controls_of({rule}), kept.observer(model));
-    EXPECT_EQ(model.tissue.cells.size(), 8u);
-    EXPECT_EQ(result.divisions, 6);
-    EXPECT_EQ(result.status, RunStatus::equilibrium);
-    for (const Cell& cell : model.tissue.cells) EXPECT_EQ(cell.lineage.generation, 2);
+    const Simulation result = ran(std::move(model), controls_of({rule}), kept.watcher());
+    EXPECT_EQ(result.model().tissue.cells.size(), 8u);
+    EXPECT_EQ(result.divisions(), 6);
+    EXPECT_EQ(result.status(), RunStatus::equilibrium);
+    for (const Cell& cell : result.model().tissue.cells) EXPECT_EQ(cell.lineage.generation, 2);
     EXPECT_LE(kept.volume_error, 1e-9);
   }
 }
@@ -136,9 +136,10 @@ TEST(DivisionRun, ByElongationCutsTheLongerSide) {
   DivisionRule rule = at(2, "all", 10, DivisionPlane::longest_axis);
   rule.trigger = DivisionTrigger::elongation;
   rule.volume_ratio = 0.5;
-  run(model, rest_state(model), controls_of({rule}), [](const AcceptedStep&) { return true; });
-  ASSERT_EQ(model.tissue.cells.size(), 2u);  // 30 by 20: not elongated enough to go on
-  EXPECT_NEAR(cell_centre(model.tissue.cells[0], model.tissue.rest_positions).x(), -15, 1e-9);
+  const Simulation result = ran(std::move(model), controls_of({rule}));
+  const Tissue& tissue = result.model().tissue;
+  ASSERT_EQ(tissue.cells.size(), 2u);  // 30 by 20: not elongated enough to go on
+  EXPECT_NEAR(cell_centre(tissue.cells[0], tissue.rest_positions).x(), -15, 1e-9);
 }
 
 // 3 steps of 0.7 s are 4e-16 s short of 2.1 s.
@@ -163,21 +164,19 @@ TEST(DivisionRun, EquilibriumCountsAfterTheLastDivision) {
   controls.stop_at_equilibrium = false;
   controls.end_s = 3000;
   std::optional<double> first_at_rest_s;
-  const RunResult result = run(model, rest_state(model), controls, [&](const AcceptedStep& step) {
+  const Simulation result = ran(std::move(model), controls, [&](const AcceptedStep& step, const Model&) {
     if (step.at_equilibrium && !first_at_rest_s) first_at_rest_s = step.state.time_s;
-    return true;
   });
-  EXPECT_EQ(result.divisions, 1);
+  EXPECT_EQ(result.divisions(), 1);
   EXPECT_LT(first_at_rest_s.value(), 500);
-  EXPECT_GT(result.equilibrium_time_s.value(), 600);
+  EXPECT_GT(result.equilibrium_time_s().value(), 600);
 }
 
 TEST(DivisionRun, GivesTheSameBitsAgain) {
   const auto once = [] {
     Model model = row_of_cells(3);
-    const RunResult result = run(model, rest_state(model), controls_of({at(60, "all", 100, DivisionPlane::transverse)}),
-                                 [](const AcceptedStep&) { return true; });
-    return result.state.positions;
+    const Simulation result = ran(std::move(model), controls_of({at(60, "all", 100, DivisionPlane::transverse)}));
+    return result.state().positions;
   };
   EXPECT_EQ(once(), once());
 }

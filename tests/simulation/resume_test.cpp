@@ -2,8 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "scenario/load.hpp"
-#include "scenario/setup.hpp"
-#include "simulation/run.hpp"
+#include "simulation/simulation.hpp"
 
 namespace plica {
 namespace {
@@ -11,23 +10,32 @@ namespace {
 // What a run leaves behind: everything that happened after each step.
 struct Trace {
   std::vector<RunMemory> memories;  // after each step
-  RunResult result;
+  std::vector<Observation> measures;
+  RunStatus status;
+  std::string failure;
+  RunMemory end;
 };
 
-Trace trace(const std::string& name, const std::vector<std::string>& overrides, const RunMemory* start = nullptr) {
-  const Scenario scenario = load_scenario(find_scenario(name), overrides);
-  const auto model = make_model(scenario);
-  RunMemory memory;
-  memory.state = rest_state(*model);
-  if (start != nullptr) {
-    memory = *start;
-    for (const auto& past : memory.past_divisions) repeat(*model, *past);
+struct Tracer final : SimulationListener {
+  Tracer(const Simulation& of, Trace& into) : simulation(of), trace(into) {}
+  void step_accepted(const AcceptedStep& /*step*/, const Observation& measures) override {
+    trace.memories.push_back(simulation.memory());
+    trace.measures.push_back(measures);
   }
+  const Simulation& simulation;
+  Trace& trace;
+};
+
+Trace trace(const std::string& name, const std::vector<std::string>& overrides, const Trace* before = nullptr,
+            std::size_t step = 0) {
+  Simulation simulation(load_scenario(find_scenario(name), overrides));
+  if (before != nullptr) simulation.go_on_from(before->memories[step], before->measures[step]);
   Trace trace;
-  trace.result = run(*model, memory, make_controls(scenario, *model), [&](const AcceptedStep& step) {
-    trace.memories.push_back(step.memory());
-    return true;
-  });
+  Tracer tracer(simulation, trace);
+  simulation.listen(tracer);
+  trace.status = simulation.run();
+  trace.failure = simulation.failure();
+  trace.end = simulation.memory();
   return trace;
 }
 
@@ -67,7 +75,7 @@ void expect_resumable(const std::string& name, const std::vector<std::string>& o
   ASSERT_GT(whole.memories.size(), every);
   for (std::size_t k = 0; k < whole.memories.size(); k += every) {
     SCOPED_TRACE(testing::Message() << name << " from step " << k + 1 << " of " << whole.memories.size());
-    const Trace rest = trace(name, overrides, &whole.memories[k]);
+    const Trace rest = trace(name, overrides, &whole, k);
     ASSERT_EQ(rest.memories.size(), whole.memories.size() - k - 1);
     for (std::size_t i = 0; i < rest.memories.size(); ++i) {
       expect_same(rest.memories[i].state, whole.memories[k + 1 + i].state);
@@ -75,10 +83,10 @@ void expect_resumable(const std::string& name, const std::vector<std::string>& o
       EXPECT_EQ(rest.memories[i].steps, whole.memories[k + 1 + i].steps);
       ASSERT_FALSE(testing::Test::HasFailure()) << "at step " << k + 2 + i;
     }
-    expect_same(rest.result.state, whole.result.state);
-    EXPECT_EQ(rest.result.status, whole.result.status);
-    EXPECT_EQ(rest.result.equilibrium_time_s, whole.result.equilibrium_time_s);
-    EXPECT_EQ(rest.result.divisions, whole.result.divisions);
+    expect_same(rest.end.state, whole.end.state);
+    EXPECT_EQ(rest.status, whole.status);
+    EXPECT_EQ(rest.end.equilibrium_time_s, whole.end.equilibrium_time_s);
+    EXPECT_EQ(rest.end.divisions, whole.end.divisions);
   }
 }
 
@@ -99,13 +107,13 @@ TEST(Resume, HeedsTheOrder) {
 TEST(Resume, WithAnotherOrder) {
   const std::vector<std::string> first = {"time.end_s=6", first_order}, second = {"time.end_s=6", second_order};
   const Trace of_first = trace("drosophila", first), of_second = trace("drosophila", second);
-  const auto half = [](const Trace& whole) { return &whole.memories[whole.memories.size() / 2]; };
-  for (const Trace& changed :
-       {trace("drosophila", second, half(of_first)), trace("drosophila", first, half(of_second))}) {
-    EXPECT_EQ(changed.result.status, RunStatus::end_time) << changed.result.failure;
+  const auto half = [](const Trace& whole) { return whole.memories.size() / 2; };
+  for (const Trace& changed : {trace("drosophila", second, &of_first, half(of_first)),
+                               trace("drosophila", first, &of_second, half(of_second))}) {
+    EXPECT_EQ(changed.status, RunStatus::end_time) << changed.failure;
     double apart = 0;
-    for (std::size_t n = 0; n < changed.result.state.positions.size(); ++n)
-      apart = std::max(apart, (changed.result.state.positions[n] - of_second.result.state.positions[n]).norm());
+    for (std::size_t n = 0; n < changed.end.state.positions.size(); ++n)
+      apart = std::max(apart, (changed.end.state.positions[n] - of_second.end.state.positions[n]).norm());
     EXPECT_LT(apart, 0.3) << "backward Euler alone is off by as much";
     EXPECT_GT(apart, 1e-6) << "it went on with the order of before";
   }

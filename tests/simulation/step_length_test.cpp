@@ -35,20 +35,20 @@ TEST(StepLength, FixedStepsStayOnTheirGridAndEndOnTime) {
   controls.fixed_step_s = 0.3;
   controls.end_s = 1;
   const StepLength length(controls);
-  EXPECT_DOUBLE_EQ(length.propose(0), 0.3);
-  EXPECT_NEAR(length.propose(0.6), 0.3, 1e-12);
-  EXPECT_NEAR(length.propose(0.9), 0.1, 1e-12);
-  EXPECT_NEAR(length.propose(0.45), 0.15, 1e-12);  // back to the grid after a halved step
+  EXPECT_DOUBLE_EQ(length.propose(controls, 0), 0.3);
+  EXPECT_NEAR(length.propose(controls, 0.6), 0.3, 1e-12);
+  EXPECT_NEAR(length.propose(controls, 0.9), 0.1, 1e-12);
+  EXPECT_NEAR(length.propose(controls, 0.45), 0.15, 1e-12);  // back to the grid after a halved step
 }
 
 TEST(StepLength, AFailedStepIsHalvedUntilItIsNotWorthIt) {
   RunControls controls;
   controls.fixed_step_s = 1;
   StepLength length(controls);
-  double tried = length.propose(0);
+  double tried = length.propose(controls, 0);
   int halvings = 0;
-  while (length.halve(tried)) {
-    const double next = length.propose(0);
+  while (length.halve(controls, tried)) {
+    const double next = length.propose(controls, 0);
     EXPECT_NEAR(next, tried / 2, 1e-12);
     tried = next;
     ASSERT_LT(++halvings, 100);
@@ -64,7 +64,7 @@ TEST(StepLength, AdaptiveStepsLandOnFrames) {
   double time = 0;
   int steps = 0;
   while (time < 15 - 1e-9) {
-    const double step = length.propose(time);
+    const double step = length.propose(controls, time);
     EXPECT_LE(step, 4 * (1 + 1e-9));
     time += step;
     ASSERT_LT(++steps, 10);
@@ -82,10 +82,10 @@ TEST(StepLength, RejectsAStepWhoseErrorIsFarTooLarge) {
   StepLength length(controls);
   Path path;
   const State first = path.after(1, 1);
-  EXPECT_TRUE(length.accept(path.here(), first)) << "nothing is known on the first step";
+  EXPECT_TRUE(length.accept(controls, path.here(), first)) << "nothing is known on the first step";
   path.go_to(first);
-  EXPECT_FALSE(length.accept(path.here(), path.after(1, 3)));
-  EXPECT_LT(length.propose(1), 0.5);
+  EXPECT_FALSE(length.accept(controls, path.here(), path.after(1, 3)));
+  EXPECT_LT(length.propose(controls, 1), 0.5);
 }
 
 TEST(StepLength, GrowsWhileStepsAreAccurateUpToItsLimit) {
@@ -95,12 +95,12 @@ TEST(StepLength, GrowsWhileStepsAreAccurateUpToItsLimit) {
   controls.frame_every_s = 0;
   StepLength length(controls);
   Path steady;
-  double step = length.propose(0);
+  double step = length.propose(controls, 0);
   for (int k = 0; k < 10; ++k) {
     const State next = steady.after(step, steady.here().time_s + step);
-    EXPECT_TRUE(length.accept(steady.here(), next));
+    EXPECT_TRUE(length.accept(controls, steady.here(), next));
     steady.go_to(next);
-    const double longer = length.propose(next.time_s);
+    const double longer = length.propose(controls, next.time_s);
     EXPECT_GE(longer, step * (1 - 1e-12));
     EXPECT_LE(longer, 5);
     step = longer;
@@ -120,9 +120,9 @@ double settled_step(TimeOrder order, double tolerance_um, const Way& x_um) {
   Path path(order);
   double step = 0;
   for (int k = 0; k < 60; ++k) {
-    step = length.propose(path.here().time_s);
+    step = length.propose(controls, path.here().time_s);
     State next = path.after(step, x_um(path.here().time_s + step));
-    if (length.accept(path.here(), next)) path.go_to(std::move(next));
+    if (length.accept(controls, path.here(), next)) path.go_to(std::move(next));
   }
   return step;
 }
@@ -151,10 +151,10 @@ TEST(StepLength, OfSecondOrderStepsGrowByNoMoreThanThatOrderAllows) {
   StepLength length(controls);
   Path steady(TimeOrder::second);
   for (int k = 0; k < 40; ++k) {
-    const double step = length.propose(steady.here().time_s);
+    const double step = length.propose(controls, steady.here().time_s);
     EXPECT_EQ(possible_order(steady.here(), step), k == 0 ? TimeOrder::first : TimeOrder::second) << "step " << k;
     const State next = steady.after(step, steady.here().time_s + step);
-    EXPECT_TRUE(length.accept(steady.here(), next));
+    EXPECT_TRUE(length.accept(controls, steady.here(), next));
     steady.go_to(next);
   }
 }

@@ -11,6 +11,7 @@ class NodalForces final : public Law {
  public:
   explicit NodalForces(Vectors loads) : loads_(std::move(loads)) {}
   [[nodiscard]] std::string_view name() const override { return "nodal forces"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<NodalForces>(*this); }
   [[nodiscard]] double energy(const Step& step) const override {
     double work = 0;
     for (std::size_t n = 0; n < loads_.size(); ++n) work += loads_[n].dot(step.positions[n]);

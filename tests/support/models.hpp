@@ -1,6 +1,7 @@
 // Models that tests share.
 #pragma once
 
+#include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/model.hpp"
 #include "mechanics/surroundings.hpp"

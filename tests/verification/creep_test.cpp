@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/corotational.hpp"
 #include "solver/step/step_solver.hpp"
 #include "support/loads.hpp"

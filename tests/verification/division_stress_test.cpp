@@ -19,8 +19,6 @@ Model contracting_pill() {
     furrow[c] = model.tissue.cells[c].grid_place->face == GridPlace::Face::ventral;
   auto law = std::make_unique<Contraction>(
       contraction_springs(model.tissue, furrow, {.stiffness = 3, .across_ratio = 0.4}), Program{});
-  model.contractions.push_back(law.get());
-  model.contraction_cells.push_back(furrow);
   model.laws.push_back(std::move(law));
   add_drag(model);
   return model;

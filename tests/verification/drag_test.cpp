@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/surroundings.hpp"
 #include "solver/step/step_solver.hpp"

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/surroundings.hpp"
 #include "solver/step/step_solver.hpp"

@@ -6,7 +6,7 @@
 
 #include "mechanics/elasticity/turning_elements.hpp"
 #include "scenario/load.hpp"
-#include "scenario/setup.hpp"
+#include "simulation/simulation.hpp"
 
 namespace plica {
 namespace {
@@ -39,22 +39,19 @@ Returned switch_off(const std::string& name) {
       find_scenario(name), {"contraction.apical.program.time_min=[0, 10, 12]",
                             "contraction.apical.program.activity=[1, 1, 0]", "dynamics.surface_drag_Pa_s_per_um=1.36",
                             "time.max_step_s=300", "stop.equilibrium_speed_um_per_min=1e-6", "output.frame_every_s=0"});
-  const auto model = make_model(scenario);
+  Simulation simulation(scenario);
   Returned returned{};
-  const Vectors& rest = model->tissue.rest_positions;
-  const RunResult result =
-      run(*model, rest_state(*model), make_controls(scenario, *model), [&](const AcceptedStep& step) {
-        if (std::abs(step.state.time_s - 600) < 1e-6)
-          returned.folded_um = distance_from_rest(rest, step.state.positions);
-        return true;
-      });
-  EXPECT_NE(result.status, RunStatus::failed) << result.failure;
-  EXPECT_GT(result.state.time_s, 720);
-  returned.left_um = distance_from_rest(rest, result.state.positions);
+  const Vectors& rest = simulation.model().tissue.rest_positions;
+  simulation.run_until(600);
+  EXPECT_NEAR(simulation.time_s(), 600, 1e-6);
+  returned.folded_um = distance_from_rest(rest, simulation.state().positions);
+  EXPECT_NE(simulation.run(), RunStatus::failed) << simulation.failure();
+  EXPECT_GT(simulation.time_s(), 720);
+  returned.left_um = distance_from_rest(rest, simulation.state().positions);
   std::printf(
       "%s: nodes up to %.3g um from rest with the contraction on, %.1e um after it was switched off (%d steps, "
       "at %.0f s)\n",
-      name.c_str(), returned.folded_um, returned.left_um, result.steps, result.state.time_s);
+      name.c_str(), returned.folded_um, returned.left_um, simulation.steps(), simulation.time_s());
   return returned;
 }
 

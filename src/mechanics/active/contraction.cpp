@@ -73,11 +73,12 @@ double Contraction::activity(double delay_s, double time_s) const {
   return own_time < -1e-9 ? 0 : program_.at(own_time);  // a step that ends on the delay does so but for rounding
 }
 
-double Contraction::activity_of(CellId cell, double time_s) const {
+std::optional<double> Contraction::activity_of(CellId cell, double time_s) const {
+  if (cells_.empty() || !cells_[cell.index()]) return std::nullopt;
   return activity(cell_delays_s_.empty() ? 0 : cell_delays_s_[cell.index()], time_s);
 }
 
-std::vector<double> Contraction::points_s() const {
+std::vector<double> Contraction::program_points_s() const {
   std::vector<double> delays = {0};
   for (const Spring& spring : springs_) delays.push_back(spring.delay_s);
   std::ranges::sort(delays);
@@ -129,8 +130,11 @@ struct Contraction::Pulled {
   }
 };
 
-Contraction::Contraction(std::vector<Spring> springs, Program program, std::vector<double> cell_delays_s)
-    : springs_(std::move(springs)), program_(std::move(program)), cell_delays_s_(std::move(cell_delays_s)) {
+Contraction::Contraction(std::vector<Spring> springs, Program program, CellSet cells, std::vector<double> cell_delays_s)
+    : springs_(std::move(springs)),
+      program_(std::move(program)),
+      cells_(std::move(cells)),
+      cell_delays_s_(std::move(cell_delays_s)) {
   start_.push_back(0);
   for (const Spring& spring : springs_) {
     nodes_.insert(nodes_.end(), spring.nodes.begin(), spring.nodes.end());
@@ -200,7 +204,7 @@ void Contraction::add_tangent(const Step& step, TangentSink& tangent) const {
   });
 }
 
-NodeGroups Contraction::node_groups() const {
+NodeGroups Contraction::node_groups(std::span<const double> /*internal*/) const {
   NodeGroups groups;
   for (const Spring& spring : springs_) groups.add(spring.nodes);
   return groups;
@@ -268,7 +272,7 @@ std::unique_ptr<Law> Contraction::after_division(const Tissue& tissue, const Div
       springs.push_back(std::move(part));
   }
   return std::make_unique<Contraction>(
-      std::move(springs), program_,
+      std::move(springs), program_, cells_.empty() ? CellSet{} : inherited(division, cells_),
       cell_delays_s_.empty() ? std::vector<double>{} : inherited(division, cell_delays_s_));
 }
 

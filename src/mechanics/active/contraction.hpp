@@ -43,15 +43,16 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cel
 /// Its semidefinite tangent leaves out the turning of springs that push.
 class Contraction final : public Law {
  public:
-  /// `cell_delays_s`: cells, empty for none; for activity_of, the springs carry their own.
-  Contraction(std::vector<Spring> springs, Program program, std::vector<double> cell_delays_s = {});
+  /// `cells`: who contracts, and `cell_delays_s`: cells, empty for none; for activity_of, the springs carry their own.
+  Contraction(std::vector<Spring> springs, Program program, CellSet cells = {}, std::vector<double> cell_delays_s = {});
 
   [[nodiscard]] std::string_view name() const override { return "contraction"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Contraction>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
-  [[nodiscard]] NodeGroups node_groups() const override;
+  [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
   /// An edge that is cut becomes two springs in series, k scaled so that their tension is the same; edges of the new
   /// facet have none. A diagonal stays whole.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
@@ -60,11 +61,11 @@ class Contraction final : public Law {
   [[nodiscard]] const Program& program() const { return program_; }
   /// Activity at a time for springs with a delay: that of the program `delay_s` earlier, 0 before the program's time 0.
   [[nodiscard]] double activity(double delay_s, double time_s) const;
-  /// The same for the springs of a cell.
-  [[nodiscard]] double activity_of(CellId cell, double time_s) const;
-  /// Times at which activity starts or bends anywhere, s, increasing: the program's points shifted by the delays.
-  /// Delays closer than a hundredth of the longest count as one.
-  [[nodiscard]] std::vector<double> points_s() const;
+  [[nodiscard]] bool is_active() const override { return true; }
+  [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s) const override;
+  /// Increasing: the program's points shifted by the delays. Delays closer than a hundredth of the longest count as
+  /// one.
+  [[nodiscard]] std::vector<double> program_points_s() const override;
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
 
  private:
@@ -77,6 +78,7 @@ class Contraction final : public Law {
   std::vector<std::size_t> start_;  // springs + 1, in nodes_
   std::size_t longest_ = 0;         // nodes of the longest chain
   Program program_;
+  CellSet cells_;
   std::vector<double> cell_delays_s_;
 };
 

@@ -171,7 +171,7 @@ void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
       tangent.takes_apart());
 }
 
-NodeGroups Dilatation::node_groups() const {
+NodeGroups Dilatation::node_groups(std::span<const double> /*internal*/) const {
   NodeGroups groups;
   for (const auto& nodes : elements_) groups.add(nodes);
   return groups;

@@ -98,11 +98,12 @@ class Dilatation final : public Law {
              Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "dilatation"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Dilatation>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
-  [[nodiscard]] NodeGroups node_groups() const override;
+  [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;

@@ -133,7 +133,7 @@ NodeId Corotational::node(std::size_t e, int corner) const {
   return NodeId(batches_[e / batch_size].nodes[corner][e % batch_size] / 3);
 }
 
-NodeGroups Corotational::node_groups() const {
+NodeGroups Corotational::node_groups(std::span<const double> /*internal*/) const {
   NodeGroups groups;
   for (std::size_t e = 0; e < chunks_.element_count(); ++e) {
     std::array<NodeId, 8> nodes;

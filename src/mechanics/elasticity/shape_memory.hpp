@@ -38,6 +38,7 @@ class ShapeMemory final : public TurningElements {
   ShapeMemory(const Tissue& tissue, const AttractorSprings& springs, double shear_viscosity);
 
   [[nodiscard]] std::string_view name() const override { return "shape memory"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<ShapeMemory>(*this); }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
 

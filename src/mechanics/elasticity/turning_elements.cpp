@@ -228,7 +228,7 @@ void TurningElements::add_tangent(const Step& step, TangentSink& tangent) const 
       tangent.takes_apart());
 }
 
-NodeGroups TurningElements::node_groups() const {
+NodeGroups TurningElements::node_groups(std::span<const double> /*internal*/) const {
   NodeGroups groups;
   for (const Element& element : elements_) groups.add(element.nodes);
   return groups;

@@ -28,7 +28,7 @@ class TurningElements : public Law {
   void add_forces(const Step& step, std::span<Vec3> forces) const final;
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const final;
   void add_tangent(const Step& step, TangentSink& tangent) const final;
-  [[nodiscard]] NodeGroups node_groups() const final;
+  [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const final;
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) final;
 
  protected:

@@ -15,7 +15,7 @@ multigrid::Rows joined_nodes(const Model& model) {
   const auto take = [&](NodeGroups groups) {
     if (std::ranges::find(lists, groups) == lists.end()) lists.push_back(std::move(groups));
   };
-  for (const auto& law : model.laws) take(law->node_groups());
+  for (const auto& law : model.laws) take(law->node_groups({}));
   if (model.volumes_are_held) {
     NodeGroups elements;
     for (const auto& element : model.tissue.elements) elements.add(element);

@@ -54,7 +54,7 @@ void VolumeProjection::set_weights(double duration_s) {
   const Step step{at, at, still, duration_s, 0};
   Vectors resistance(nodes, Vec3::Zero());
   for (const auto& law : model_.laws)
-    if (law->node_groups().empty()) law->add_tangent_product(step, along_x, resistance);
+    if (law->node_groups({}).empty()) law->add_tangent_product(step, along_x, resistance);
   double sum = 0, least = 0;
   for (const Vec3& r : resistance) {
     sum += r.x();

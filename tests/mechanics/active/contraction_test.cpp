@@ -135,7 +135,7 @@ TEST(Contraction, DerivativesAgreeWithFiniteDifferencesInAWave) {
   // At 1.3 s, when random_motion's step ends, one cell is in the middle of its program and one before its end.
   const CellPattern pattern{{1, 0.3}, {0.2, 0.8}};
   check_derivatives(Contraction(contraction_springs(tissue, CellSet(2, true), {.stiffness = 2, .preload = 3}, pattern),
-                                Program({0, 1}, {0, 1}), pattern.delays_s),
+                                Program({0, 1}, {0, 1}), CellSet(2, true), pattern.delays_s),
                     tissue, 3);
 }
 
@@ -143,7 +143,7 @@ TEST(Contraction, PointsAreThoseOfTheProgramAfterEachDelay) {
   const auto points = [](const std::vector<double>& delays, Program program) {
     std::vector<Spring> springs;
     for (const double delay : delays) springs.push_back({{NodeId(0), NodeId(1)}, 1, 0, 0, 0, delay});
-    return Contraction(std::move(springs), std::move(program)).points_s();
+    return Contraction(std::move(springs), std::move(program)).program_points_s();
   };
   using Points = std::vector<double>;
   EXPECT_EQ(points({0, 0}, {}), (Points{0}));

@@ -19,6 +19,7 @@ class Pressurised final : public Law {
   Pressurised(const CellVolumes& volumes, std::vector<double> pressures)
       : volumes_(volumes), pressures_(std::move(pressures)) {}
   [[nodiscard]] std::string_view name() const override { return "pressurised volumes"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Pressurised>(*this); }
   [[nodiscard]] double energy(const Step& step) const override {
     const std::vector<double> volumes = volumes_.volumes(step.positions);
     double sum = 0;

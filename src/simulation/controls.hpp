@@ -1,0 +1,31 @@
+// How far a run steps, on what times its steps end, and when it is over.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mechanics/model.hpp"
+#include "scenario/scenario.hpp"
+#include "simulation/division_rules.hpp"
+#include "solver/make_stepper.hpp"
+
+namespace plica {
+
+struct RunControls {
+  StepScheme scheme;
+  std::optional<double> fixed_step_s;   // empty: adaptive
+  double first_step_s = 0.05;           // adaptive
+  double max_step_s = 30;               // adaptive
+  double position_tolerance_um = 0.05;  // adaptive: largest error of a step at any node
+  double end_s = 3600;
+  double equilibrium_speed_um_per_s = 0.2 / 60;
+  bool stop_at_equilibrium = true;
+  double frame_every_s = 15;             // adaptive steps end on frames; 0: no frames in between
+  std::vector<double> program_points_s;  // adaptive steps end on them, too; equilibrium counts only after the last
+  std::vector<DivisionRule> divisions;   // their times are among the program points
+};
+
+/// Those of a scenario. `model` is made from it: only its laws know when the last of their programs bends.
+RunControls make_controls(const Scenario& scenario, const Model& model);
+
+}  // namespace plica

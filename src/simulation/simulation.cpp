@@ -1,0 +1,217 @@
+#include "simulation/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "mechanics/division.hpp"
+#include "scenario/setup.hpp"
+#include "scenario/watch.hpp"
+
+namespace plica {
+namespace {
+
+double max_speed(const State& state) {
+  double fastest = 0;
+  for (const Vec3& velocity : state.velocities) fastest = std::max(fastest, velocity.norm());
+  return fastest;
+}
+
+bool passes_frame(double from_s, double to_s, double every_s) {
+  return every_s > 0 && std::floor(to_s / every_s + 1e-9) > std::floor(from_s / every_s + 1e-9);
+}
+
+double last_of(const std::vector<double>& times_s) {
+  return times_s.empty() ? 0 : *std::max_element(times_s.begin(), times_s.end());
+}
+
+std::string failure_text(StepReport report, const Model& model, const State& state, double duration_s) {
+  // Users know a cell by its id, which after divisions is not its place.
+  if (report.cell) report.cell = CellId(model.tissue.cells[report.cell->index()].lineage.id);
+  return fmt::format("{} at t = {:g} s, with steps down to {:g} s", report.reason(), state.time_s, duration_s);
+}
+
+Simulation::Parts parts_of(const Scenario& scenario) {
+  Simulation::Parts parts;
+  parts.model = make_model(scenario);
+  parts.controls = make_controls(scenario, *parts.model);
+  parts.sites = make_furrow_sites(scenario, parts.model->tissue);
+  parts.watch = make_watch(scenario, parts.model->tissue);
+  return parts;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scenario& scenario) : Simulation(parts_of(scenario)) {}
+
+Simulation::Simulation(Parts parts)
+    : model_(std::move(parts.model)),
+      controls_(std::move(parts.controls)),
+      step_length_(controls_),
+      observer_(std::make_unique<Observer>(*model_, std::move(parts.sites), std::move(parts.watch))) {
+  now_.state = rest_state(*model_);
+  measures_ = observer_->observe_rest(now_.state);
+  renew_stepper();
+}
+
+Simulation::Simulation(const Simulation& other)
+    : model_(std::make_unique<Model>(*other.model_)),
+      controls_(other.controls_),
+      now_(other.memory()),
+      step_length_(other.step_length_),
+      observer_(std::make_unique<Observer>(*model_, *other.observer_)),
+      measures_(other.measures_),
+      has_begun_(other.has_begun_),
+      failure_(other.failure_) {
+  renew_stepper();
+  recall_factor();
+}
+
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+Simulation& Simulation::operator=(const Simulation& other) {
+  if (this != &other) *this = Simulation(other);
+  return *this;
+}
+
+void Simulation::renew_stepper() {
+  stepper_ = make_stepper(*model_, controls_.scheme);
+  stepper_->stop_when(stop_requested_);
+}
+
+// The stepper makes again what it kept; daughters are as grown as they were then.
+void Simulation::recall_factor() {
+  if (now_.factor.empty()) return;
+  grow(*model_, now_.factor.end_time_s);
+  stepper_->recall(now_.factor);
+  now_.factor = {};
+  grow(*model_, now_.state.time_s);
+}
+
+void Simulation::stop_when(std::function<bool()> stop_requested) {
+  stop_requested_ = std::move(stop_requested);
+  stepper_->stop_when(stop_requested_);
+}
+
+RunMemory Simulation::memory() const {
+  RunMemory memory = now_;
+  memory.wanted_step_s = step_length_.wanted_s();
+  memory.factor = stepper_->memory();
+  return memory;
+}
+
+void Simulation::go_on_from(RunMemory memory, Observation measures) {
+  for (const auto& past : memory.past_divisions) {
+    if (const auto why = why_unfit(*past, *model_)) throw UnfitMemory(*why);
+    State then = rest_state(*model_);
+    then.time_s = past->time_s;
+    then.positions = past->positions;
+    (void)make_division(then, past->planned);
+  }
+  if (const auto why = why_unfit(memory, *model_)) throw UnfitMemory(*why);
+  now_ = std::move(memory);
+  measures_ = std::move(measures);
+  step_length_ = StepLength(controls_, now_.wanted_step_s);
+  grow(*model_, now_.state.time_s);
+  renew_stepper();
+  recall_factor();
+}
+
+// Cells divide, and everything that goes by cells and nodes follows.
+Division Simulation::make_division(State& state, const std::vector<PlannedDivision>& planned) {
+  Division division = divide_cells(*model_, state, planned);
+  for (const PlannedDivision& one : planned) controls_.program_points_s.push_back(state.time_s + one.growth_s);
+  observer_->follow_division(division);
+  return division;
+}
+
+void Simulation::divide(const std::vector<PlannedDivision>& due) {
+  now_.state.divided_until_s = now_.state.time_s;
+  if (due.empty()) return;
+  now_.past_divisions.push_back(
+      std::make_shared<const PastDivision>(PastDivision{now_.state.time_s, now_.state.positions, due}));
+  now_.divisions += static_cast<int>(due.size());
+  now_.equilibrium_time_s.reset();  // it counts only after the last division
+  const Division division = make_division(now_.state, due);
+  renew_stepper();
+  step_length_ = StepLength(controls_);
+  for (SimulationListener* listener : listeners_) listener->cells_divided(division);
+}
+
+RunStatus Simulation::status() const {
+  if (!failure_.empty()) return RunStatus::failed;
+  if (!has_ended(now_, controls_)) return RunStatus::under_way;
+  const bool before_end = now_.criterion_met || (now_.at_equilibrium && controls_.stop_at_equilibrium);
+  return before_end && now_.at_equilibrium ? RunStatus::equilibrium : RunStatus::end_time;
+}
+
+RunStatus Simulation::run_until(double time_s) {
+  while (!has_come(time_s, now_.state.time_s) && step_towards(time_s)) continue;
+  return status();
+}
+
+bool Simulation::step_towards(double time_s) {
+  if (!has_begun_) divide(due_divisions(*model_, now_.state, controls_.divisions));
+  has_begun_ = true;
+  if (status() != RunStatus::under_way) return false;
+
+  const auto start = std::chrono::steady_clock::now();
+  State before;
+  const std::optional<StepReport> report = take_step(time_s, before);
+  now_.computing_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!report) return false;
+
+  const State& state = now_.state;
+  const double speed = max_speed(state);
+  const std::vector<PlannedDivision> due = due_divisions(*model_, state, controls_.divisions);
+  now_.at_equilibrium = speed < controls_.equilibrium_speed_um_per_s && due.empty() &&
+                        has_come(last_of(controls_.program_points_s), state.time_s);
+  if (now_.at_equilibrium && !now_.equilibrium_time_s) now_.equilibrium_time_s = state.time_s;
+  // At a division, the frame shows the daughters.
+  const bool frame_is_due = due.empty() && passes_frame(before.time_s, state.time_s, controls_.frame_every_s);
+  const AcceptedStep step{state, before, state.trend.step_s, *report, speed, frame_is_due, now_.at_equilibrium};
+  measures_ = observer_->observe(step, now_.computing_s);
+  now_.criterion_met = measures_.is_over;
+  for (SimulationListener* listener : listeners_) listener->step_accepted(step, measures_);
+  divide(due);
+  return true;
+}
+
+// From the state to the next, which becomes it; `before` is then what it was. Nothing, and the state as it was, when
+// that fails or is stopped.
+std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
+  State& next = before;
+  int wasted_iterations = 0, wasted_solves = 0;
+  while (true) {
+    const double duration_s = step_length_.propose(controls_, now_.state.time_s, until_s);
+    grow(*model_, now_.state.time_s + duration_s);
+    StepReport report = stepper_->advance(now_.state, duration_s, now_.steps == 0, next);
+    if (report.outcome == StepReport::Outcome::interrupted) break;
+    const bool solved = report.converged();
+    if (solved) {
+      report.newton_iterations += std::exchange(wasted_iterations, 0);
+      report.linear_solves += std::exchange(wasted_solves, 0);
+    }
+    if (solved && step_length_.accept(controls_, now_.state, next)) {
+      std::swap(now_.state, next);
+      ++now_.steps;
+      return report;
+    }
+    wasted_iterations += report.newton_iterations;
+    wasted_solves += report.linear_solves;
+    if (solved) continue;
+    stepper_->forget_factor();
+    if (step_length_.halve(controls_, duration_s)) continue;
+    failure_ = failure_text(report, *model_, now_.state, duration_s);
+    break;
+  }
+  grow(*model_, now_.state.time_s);
+  return std::nullopt;
+}
+
+}  // namespace plica
