@@ -43,7 +43,7 @@ with tempfile.TemporaryDirectory() as folder:
         assert all(kernel["ns_per_element"] > 0 and kernel["share"] > 0 for kernel in kernels["kernels"])
     for words in ("### One step", "### The whole Drosophila run", "3 024", "linear iterations"):
         assert words in done.stdout, words
-    assert "other bits" not in done.stdout
+    assert "Positions after the step are identical" in done.stdout and "Positions differ" not in done.stdout
 
     # Into the document, between the marks and nowhere else, however often.
     page = Path(folder) / "page.md"
@@ -52,10 +52,24 @@ with tempfile.TemporaryDirectory() as folder:
         tables.put_into(page, tables.page(figures, " --brief"))
     text = page.read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text and text.count("### One step") == 1
-    # How the cost grows.
+    # Of the documents each has its own tables, and keeps them when nothing is measured for it.
+    for document in tables.DOCUMENTS:
+        copy = Path(folder) / document
+        copy.parent.mkdir(exist_ok=True)
+        copy.write_text((root / document).read_text())  # which must have the marks
+    tables.update(folder, figures, " --brief")
+    results, notebook = ((Path(folder) / document).read_text() for document in tables.DOCUMENTS)
+    assert "### One step" in results and "### The whole Drosophila run" in results and "### Kernels" not in results
+    assert "### One step" not in notebook and ("### Kernels" in notebook or not figures["kernels"])
+    tables.update(folder, figures | {"steps": [], "runs": [], "kernels": []}, " --only nothing")
+    assert results == (Path(folder) / "docs/performance.md").read_text()
+    # How the cost grows, what more threads gain, and whether they change anything.
     grown = [steps[0] | {"elements": 756 * k * k, "step_s": 0.001 * k**3, "embryo": f"{k}", "refined_by": "more cells"} for k in (4, 16)]
     text = tables.page(figures | {"steps": grown}, "")
-    assert "- Refined by more cells: an element takes 4.00 times as long among 193 536 as among 12 096." in text, text
+    assert "- More cells: the time per element is 4.00 times as long with 193 536 elements as with 12 096, on one thread." in text, text
+    two = grown[0] | {"threads": 2, "step_s": grown[0]["step_s"] / 1.6, "checksum": "another"}
+    text = tables.page(figures | {"steps": [grown[0], two]}, "")
+    assert "| 1.60 |" in text and "Positions differ from those of one thread: 4, 2 threads." in text, text
     # Kernels, and what could not be measured.
     example = {"elements": 756, "threads": 1, "multiply_add_rate": 7e10, "reading_rate": 2e10, "embryo": "the paper's",
                "kernels": [{"kernel": "tangent product", "ns_per_element": 21.5, "ceiling": "arithmetic", "share": 0.65}]}

@@ -1,4 +1,4 @@
-// The reference scene, as bench/data/README.md has it, run and timed: docs/performance.md, The reference scene.
+// The reference scene, as bench/data/README.md has it, run and timed (docs/performance-notebook.md).
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>

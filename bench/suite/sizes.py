@@ -23,14 +23,14 @@ class Embryo:
 
     @property
     def refined_by(self):
-        return "nothing" if self.elements == PAPERS_CELLS else "more cells" if self.scale > 1 else "elements a cell"
+        return "nothing" if self.elements == PAPERS_CELLS else "more cells" if self.scale > 1 else "more elements per cell"
 
     def __str__(self):
         if self.scale == self.across == self.layers == 1:
             return "the paper's"
         if self.scale > 1:
-            return f"{self.scale} times as long"
-        return f"{self.across} × {self.across} × {self.layers} a cell"
+            return f"{self.scale} times as long and wide"
+        return f"{self.across} × {self.across} × {self.layers} per cell"
 
 
 def by_elements(size):

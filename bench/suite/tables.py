@@ -3,6 +3,8 @@ import math
 from pathlib import Path
 
 BEGIN, END = "<!-- Below: the output of bench/run. -->\n", "<!-- Above: the output of bench/run. -->\n"
+# Which tables a document has between these marks.
+DOCUMENTS = {"docs/performance.md": ("runs", "steps"), "docs/performance-notebook.md": ("kernels",)}
 
 
 def number(value, digits=3):
@@ -40,55 +42,59 @@ def kernels_text(results):
     if done:
         rows = [[number(r["elements"]), r["threads"], f"{r['multiply_add_rate'] / 1e9:.1f}", f"{r['reading_rate'] / 1e9:.1f}"]
                 for r in done]
-        text += "Ceilings, measured in turns with the kernels:\n\n"
+        text += "Rates of this machine, measured between the rounds of the kernels:\n\n"
         text += table(["elements", "threads", "multiply-adds, GFlop/s", "reading as many bytes, GB/s"], rows)
         rows = [[k["kernel"], number(r["elements"]), r["threads"], f"{k['ns_per_element']:.3g}",
                  f"{100 * k['share']:.0f} % of {k['ceiling']}", number(k.get("yardsticks"))]
                 for r in done for k in r["kernels"]]
         rows.sort(key=lambda row: row[0])
-        text += table(["kernel", "elements", "threads", "ns an element", "share of the nearer ceiling", "yardsticks"], rows)
+        text += table(["kernel", "elements", "threads", "ns per element", "share of the nearer ceiling", "yardsticks"], rows)
     return text + failures(results)
 
 
 def steps_text(results):
-    rows = []
-    for r in results:
-        if "failed" in r:
-            continue
-        rows.append([number(r["elements"]), r["embryo"], r["threads"], seconds(r["model_s"]), seconds(r["step_s"]),
-                     number(1e6 * r["step_s"] / r["elements"]), r["newton_iterations"], r["linear_iterations"],
-                     r["factorisations"], number(round(r["peak_MiB"])), number(r.get("instructions"))])
-    header = ["elements", "embryo", "threads", "model made in", "step", "µs an element", "Newton iterations",
-              "linear iterations", "factorisations", "peak, MiB", "instructions"]
-    return drop_empty(table, header, rows) + growth_text(results) + threads_text(results) + failures(results)
+    done = [result for result in results if "failed" not in result]
+    rows = [[number(r["elements"]), r["embryo"], r["threads"], seconds(r["model_s"]), seconds(r["step_s"]), speed_up(r, done),
+             number(1e6 * r["step_s"] / r["elements"]), r["newton_iterations"], r["linear_iterations"], r["factorisations"],
+             number(round(r["peak_MiB"])), number(r.get("instructions"))] for r in done]
+    header = ["elements", "embryo", "threads", "model built in", "first step", "speed-up", "µs per element",
+              "Newton iterations", "linear iterations", "factorisations", "peak memory, MiB", "instructions"]
+    notes = growth_text(done) + threads_text(done)
+    return drop_empty(table, header, rows) + notes + ("\n" if notes else "") + failures(results)
 
 
-def growth_text(results, small=10_000, large=200_000):
+def on_one_thread(result, done):
+    return next((r for r in done if r["embryo"] == result["embryo"] and r["threads"] == 1), None)
+
+
+def speed_up(result, done):
+    """How many times as fast as on one thread."""
+    one = on_one_thread(result, done)
+    return "–" if one in (None, result) else f"{one['step_s'] / result['step_s']:.2f}"
+
+
+def growth_text(done, small=10_000, large=200_000):
     """Whether the cost grows with the number of elements: an element's on the large mesh over one's on the small."""
     text = ""
-    for refined_by in ("elements a cell", "more cells"):
-        alike = [r for r in results if "failed" not in r and r["threads"] == 1 and r["refined_by"] == refined_by]
+    for refined_by in ("more elements per cell", "more cells"):
+        alike = [r for r in done if r["threads"] == 1 and r["refined_by"] == refined_by]
         ends = [min(alike, key=lambda r: abs(math.log(r["elements"] / size)), default=None) for size in (small, large)]
         if None in ends or not all(0.5 < r["elements"] / size < 2 for r, size in zip(ends, (small, large))):
             continue
         ratio = (ends[1]["step_s"] / ends[1]["elements"]) / (ends[0]["step_s"] / ends[0]["elements"])
-        text += (f"- Refined by {refined_by}: an element takes {ratio:.2f} times as long among {number(ends[1]['elements'])} "
-                 f"as among {number(ends[0]['elements'])}.\n")
+        text += (f"- {refined_by.capitalize()}: the time per element is {ratio:.2f} times as long with "
+                 f"{number(ends[1]['elements'])} elements as with {number(ends[0]['elements'])}, on one thread.\n")
     return text
 
 
-def threads_text(results):
-    """How much faster with more threads, and whether to the same bits."""
-    text = ""
-    done = {(r["embryo"], r["threads"]): r for r in results if "failed" not in r}
-    for (embryo, threads), many in done.items():
-        one = done.get((embryo, 1))
-        if threads == 1 or one is None:
-            continue
-        same = "the same bits" if one["checksum"] == many["checksum"] else "**other bits**"
-        text += (f"- {number(many['elements'])} elements ({embryo}): {one['step_s'] / many['step_s']:.2f} times as fast on "
-                 f"{threads} threads, {same}.\n")
-    return text + ("\n" if text else "")
+def threads_text(done):
+    """Whether positions depend on the number of threads."""
+    pairs = [(r, on_one_thread(r, done)) for r in done if r["threads"] > 1]
+    pairs = [(many, one) for many, one in pairs if one is not None]
+    differing = [f"{many['embryo']}, {many['threads']} threads" for many, one in pairs if many["checksum"] != one["checksum"]]
+    if differing:
+        return f"- **Positions differ from those of one thread: {'; '.join(differing)}.**\n"
+    return "- Positions after the step are identical for every number of threads.\n" if pairs else ""
 
 
 def runs_text(results):
@@ -100,7 +106,7 @@ def runs_text(results):
                      r["steps"], r["newton_iterations"], r["linear_iterations"], number(round(r["process_peak_MiB"])),
                      number(r.get("instructions"))])
     header = ["elements", "embryo", "threads", "start to end", "solver", "steps", "Newton iterations", "linear iterations",
-              "peak, MiB", "instructions"]
+              "peak memory, MiB", "instructions"]
     return drop_empty(table, header, rows) + failures(results)
 
 
@@ -116,15 +122,23 @@ def failures(results):
     return "".join(lines) + ("\n" if lines else "")
 
 
-def page(measured, arguments):
+TEXTS = {"runs": ("The whole Drosophila run", runs_text), "steps": ("One step", steps_text), "kernels": ("Kernels", kernels_text)}
+
+
+def page(measured, arguments, parts=tuple(TEXTS)):
     text = machine_text(measured["machine"], arguments)
-    if measured["kernels"]:
-        text += "### Kernels\n\n" + kernels_text(measured["kernels"])
-    if measured["steps"]:
-        text += "### One step\n\n" + steps_text(measured["steps"])
-    if measured["runs"]:
-        text += "### The whole Drosophila run\n\n" + runs_text(measured["runs"])
+    for part in parts:
+        heading, text_of = TEXTS[part]
+        if measured[part]:
+            text += f"### {heading}\n\n" + text_of(measured[part])
     return text
+
+
+def update(root, measured, arguments):
+    """Each document gets its tables, unless nothing was measured for it."""
+    for document, parts in DOCUMENTS.items():
+        if any(measured[part] for part in parts):
+            put_into(Path(root) / document, page(measured, arguments, parts))
 
 
 def put_into(document, text):

@@ -1,7 +1,7 @@
 // A way through all elements for any number of threads: chunks of consecutive elements, coloured so that chunks of one
 // colour have no node in common. Colours follow each other, the chunks of one colour are shared out among the threads.
 // So elements add to their nodes without more ado, and what a node gets is added up in the same order whoever does it.
-// Chunks are as long as they can be while there are enough of them to share out (docs/performance.md).
+// Chunks are as long as they can be while there are enough of them to share out (docs/performance-notebook.md).
 #pragma once
 
 #include <omp.h>
@@ -28,7 +28,7 @@ class ElementChunks {
   /// Elements that kernels take at once. Chunks begin at multiples of it.
   static constexpr std::size_t batch_size = 8;
   static constexpr std::size_t most_chunks = 64;
-  /// Batches of which it is known what they have touched; 5 to 100 do alike (docs/performance.md).
+  /// Batches of which it is known what they have touched; 5 to 100 do alike (docs/performance-notebook.md).
   static constexpr std::size_t looked_back = 32;
 
   /// With the cells of elements, chunks of one colour have no cell in common either.
