@@ -78,7 +78,7 @@ struct Measured {
   Vectors result = Vectors(scene.positions.size(), Vec3::Zero());
   std::vector<double> pressures = std::vector<double>(scene.tissue.cells.size(), 0.1);
   std::vector<double> of_cells = std::vector<double>(scene.tissue.cells.size());
-  std::vector<std::array<Vec3, 8>> gradients = std::vector<std::array<Vec3, 8>>(scene.tissue.elements.size());
+  Vectors gradients = Vectors(8 * scene.tissue.elements.size());
   NoTangent sink = {};
 
   // The elements' batches; positions, and what is added to (read and written); directions.
@@ -104,9 +104,9 @@ struct Measured {
            for (std::size_t b = 0; b < n; ++b) counted::corotational().write_blocks(e, b, *blocks);
          },
          corotational, vec},
-        {"volumes", [this] { volumes.volumes(scene.positions, of_cells); },
+        {"volumes", [this] { volumes.values(scene.positions, of_cells); },
          [=, this](std::size_t n) { counted::volumes().add_volumes(v, 0, n, of_cells.data()); }, volume, vec},
-        {"volume gradients", [this] { volumes.element_gradients(scene.positions, gradients); },
+        {"volume gradients", [this] { volumes.gradients(scene.positions, gradients); },
          [=, this](std::size_t n) {
            counted::volumes().write_gradients(v, 0, n, reinterpret_cast<double*>(gradients.data()));
          },

@@ -5,7 +5,7 @@
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
 #include "solver/linear/step_matrix.hpp"
-#include "solver/step/step_solver.hpp"
+#include "solver/step/newton_stepper.hpp"
 
 namespace plica {
 namespace {
@@ -57,7 +57,7 @@ void factorisation(benchmark::State& bench) {
   StepMatrix matrix(*setting.model);
   matrix.set_zero();
   for (const auto& law : setting.model->laws) law->add_tangent(setting.step, matrix);
-  matrix.set_volume_gradients(setting.model->volumes, setting.state.positions);
+  matrix.take_gradients(*setting.model, setting.state.positions);
   std::vector<double> values;
   matrix.write_values(std::vector<NodeFrame>(setting.state.positions.size()), values);
   const auto solver = make_direct_solver();
@@ -72,7 +72,7 @@ struct FactorSetting : Setting {
     matrix.set_zero();
     for (const auto& law : model->laws) law->add_tangent(step, matrix);
     const std::vector<double> weights(model->tissue.cells.size(), 10.0 / 16'000);  // 10 kPa over a cell's volume
-    matrix.add_volume_stiffness(*model, state.positions, weights);
+    matrix.add_constraint_stiffness(*model, state.positions, weights);
     matrix.write_projected_blocks(std::vector<NodeFrame>(state.positions.size()), values);
   }
   StepMatrix matrix;
@@ -102,7 +102,7 @@ BENCHMARK(block_solve)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
 
 void first_step(benchmark::State& bench) {
   const Setting setting(static_cast<int>(bench.range(0)));
-  StepSolver solver(*setting.model);
+  NewtonStepper solver(*setting.model);
   State next;
   for (auto _ : bench) {
     solver.forget_factor();

@@ -16,7 +16,8 @@ FOLDERS = ("core", "tissue", "mechanics", "solver", "measure", "scenario", "simu
 ROOMS_OF_SOLVER = ("algebra", "multigrid", "linear", "step", "projection")
 MOST_LINES = 500
 # The files of src/mechanics that are none, beside those of kernels/.
-NOT_A_LAW = {"law", "model", "program", "turning_elements", "contraction_pattern", "hexahedron_stiffness"}
+NOT_A_LAW = {"law", "constraint", "obstacle", "model", "program", "turning_elements", "contraction_pattern",
+             "hexahedron_stiffness"}
 MARKDOWN_LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 

@@ -31,7 +31,7 @@ BlockPattern pattern_of(const Model& model) {
     for (std::size_t k = 0; k < groups.size(); ++k) join(groups[k]);
   }
   for (const auto& element : model.tissue.elements) join(element);
-  BlockPattern pattern{{0}, {}};
+  BlockPattern pattern;
   for (auto& row : below) {
     std::sort(row.begin(), row.end());
     row.erase(std::unique(row.begin(), row.end()), row.end());
@@ -60,24 +60,27 @@ class Blocks final : public TangentSink {
 
 void add_volumes(const Model& model, double bulk_modulus, Blocks& blocks) {
   const auto& elements = model.tissue.elements;
-  const auto gradients = model.volumes.element_gradients(model.tissue.rest_positions);
+  Vectors gradients(8 * elements.size());
+  model.volumes().gradients(model.tissue.rest_positions, gradients);
   for (std::size_t e = 0; e < elements.size(); ++e) {
     double volume = 0;  // a third of sum x . dV/dx: V is cubic
-    for (int a = 0; a < 8; ++a) volume += model.tissue.rest_positions[elements[e][a].index()].dot(gradients[e][a]) / 3;
+    for (int a = 0; a < 8; ++a)
+      volume += model.tissue.rest_positions[elements[e][a].index()].dot(gradients[8 * e + a]) / 3;
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b <= a; ++b)
         blocks.add_block(elements[e][a], elements[e][b],
-                         bulk_modulus / volume * gradients[e][a] * gradients[e][b].transpose());
+                         bulk_modulus / volume * gradients[8 * e + a] * gradients[8 * e + b].transpose());
   }
 }
 
 // Normals of the nodes that touch the shell; zero of the others.
 Vectors fixed_normals(const Model& model, int free_of) {
   Vectors normals(model.tissue.free_node_count(), Vec3::Zero());
-  const auto& nodes = model.vitelline->nodes();
+  const Obstacle& shell = *model.obstacles.front();
+  const auto nodes = shell.nodes();
   for (std::size_t k = 0; k < nodes.size(); ++k)
     if (free_of == 0 || k % free_of != 0)
-      normals[nodes[k].index()] = model.vitelline->gap(model.tissue.rest_positions[nodes[k].index()]).inward;
+      normals[nodes[k].index()] = shell.gap(model.tissue.rest_positions[nodes[k].index()]).inward;
   return normals;
 }
 

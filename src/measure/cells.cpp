@@ -63,9 +63,8 @@ std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> p
 
 double shell_penetration(const Model& model, std::span<const Vec3> positions) {
   double deepest = 0;
-  if (model.vitelline)
-    for (const NodeId node : model.vitelline->nodes())
-      deepest = std::max(deepest, -model.vitelline->gap(positions[node.index()]).value);
+  const Contacts contacts(model);
+  for (std::size_t k = 0; k < contacts.size(); ++k) deepest = std::max(deepest, -contacts.gap(k, positions).value);
   return deepest;
 }
 

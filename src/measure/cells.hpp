@@ -29,7 +29,7 @@ std::vector<double> activities(const Model& model, double time_s);
 /// Volume enclosed by the basal surface, um^3; empty when that surface is not closed.
 std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> positions);
 
-/// Deepest place of a node outside the shell, um; 0 where none is.
+/// Deepest place of a node beyond an obstacle (outside the shell), um; 0 where none is.
 double shell_penetration(const Model& model, std::span<const Vec3> positions);
 
 }  // namespace plica

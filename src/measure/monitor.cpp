@@ -45,9 +45,10 @@ std::vector<double> sized(const Vectors& vectors, std::optional<int> axis) {
 /// pressures. No drag, no inertia; volumes and the shell, which balance these, are not in it.
 Vectors driving_forces(const Model& model, const State& state) {
   const Vectors no_velocity(state.positions.size(), Vec3::Zero());
-  const Step still{state.positions, state.positions, no_velocity, 1, state.time_s};
+  Step still{state.positions, state.positions, no_velocity, 1, state.time_s};
+  still.internals = state.internals;
   Vectors forces(state.positions.size(), Vec3::Zero());
-  for (const auto& law : model.laws) law->add_forces(still, forces);
+  for_laws(model, still, [&](const Law& law, const Step& own) { law.add_forces(own, forces); });
   model.tissue.carry_hanging(forces);
   return forces;
 }
@@ -60,8 +61,15 @@ Vectors forces_of_cells(const Model& model, const State& state, const CellSet& c
   const Vectors no_velocity(state.positions.size(), Vec3::Zero());
   const Step still{state.positions, state.positions, no_velocity, 1, state.time_s};
   Vectors forces(state.positions.size(), Vec3::Zero());
-  for (const auto& law : model.laws) law->after_division(part, kept, state.positions)->add_forces(still, forces);
-  CellVolumes(part).add_forces(state.positions, inherited(kept, state.pressures), forces);
+  for (std::size_t l = 0; l < model.laws.size(); ++l) {
+    const std::vector<double> internal = model.laws[l]->internal_after_division(state.internals[l], part, kept);
+    Step own = still;
+    own.internal = internal;
+    model.laws[l]->after_division(part, kept, state.positions)->add_forces(own, forces);
+  }
+  const std::span<const double> pressures = state.pressures(model);
+  CellVolumes(part).add_forces(state.positions,
+                               inherited(kept, std::vector<double>(pressures.begin(), pressures.end())), forces);
   part.carry_hanging(forces);
   return forces;
 }
@@ -152,12 +160,12 @@ std::vector<double> node_values(const Monitor& monitor, const Moment& moment) {
 std::vector<double> cell_values(const Monitor& monitor, const Moment& moment) {
   const Tissue& tissue = moment.model.tissue;
   std::vector<double> of_all;
-  if (monitor.quantity == Quantity::volume) of_all = moment.model.volumes.volumes(moment.state.positions);
+  if (monitor.quantity == Quantity::volume) of_all = moment.model.volumes().volumes(moment.state.positions);
   if (monitor.quantity == Quantity::area)
     of_all = monitor.face == Monitor::Face::basal ? basal_areas(tissue, moment.state.positions)
                                                   : apical_areas(tissue, moment.state.positions);
-  if (monitor.quantity == Quantity::pressure && moment.model.volumes_are_held)
-    for (const double pressure : moment.state.pressures) of_all.push_back(pressure / units::pascal);
+  if (monitor.quantity == Quantity::pressure && moment.model.volumes().is_held())
+    for (const double pressure : moment.state.pressures(moment.model)) of_all.push_back(pressure / units::pascal);
   std::vector<double> values;
   if (of_all.empty()) return values;
   for (const CellId cell : monitored_cells(monitor, tissue)) values.push_back(of_all[cell.index()]);

@@ -22,7 +22,7 @@ void Observer::observe_state(const State& state, Observation& row) const {
   const Tissue& tissue = model_.tissue;
   row.time_s = state.time_s;
   row.furrow = furrow_shape(tissue, sites_, state.positions);
-  for (const double error : model_.volumes.relative_errors(state.positions))
+  for (const double error : model_.volumes().relative_errors(state.positions))
     row.max_volume_error = std::max(row.max_volume_error, std::abs(error));
   if (rest_lumen_volume_)
     if (const auto volume = lumen_volume(tissue, state.positions))

@@ -18,7 +18,7 @@ struct Destiny {
 Destiny destiny(const Model& model, CellId cell) {
   for (const Growth& growth : model.growths)
     if (growth.cell == cell) return {growth.rest_to, growth.target_to};
-  return {model.tissue.cells[cell.index()].rest_shape, model.volumes.targets()[cell.index()]};
+  return {model.tissue.cells[cell.index()].rest_shape, model.volumes().targets()[cell.index()]};
 }
 
 std::array<Growth, 2> growths_of(const PlannedDivision& plan, const std::array<CellId, 2>& daughters,
@@ -41,8 +41,24 @@ std::array<Growth, 2> growths_of(const PlannedDivision& plan, const std::array<C
   return growths;
 }
 
-void divide_laws(Model& model, const Division& division, const Vectors& positions) {
-  for (auto& law : model.laws) law = law->after_division(model.tissue, division, positions);
+void divide_laws(Model& model, State& state, const Division& division) {
+  state.internals.resize(model.laws.size());
+  for (std::size_t l = 0; l < model.laws.size(); ++l) {
+    state.internals[l] = model.laws[l]->internal_after_division(state.internals[l], model.tissue, division);
+    model.laws[l] = model.laws[l]->after_division(model.tissue, division, state.positions);
+  }
+}
+
+void divide_constraints(Model& model, State& state, const Division& division) {
+  std::vector<double> multipliers;
+  std::span<const double> before = state.multipliers;
+  for (auto& constraint : model.constraints) {
+    const auto own = constraint->multipliers_after_division(before.first(constraint->count()), division);
+    multipliers.insert(multipliers.end(), own.begin(), own.end());
+    before = before.subspan(constraint->count());
+    constraint = constraint->after_division(model.tissue, division, state.positions);
+  }
+  state.multipliers = std::move(multipliers);
 }
 
 // Held nodes stay held; a new one is where all nodes that it lies between are.
@@ -59,17 +75,19 @@ void divide_holds(Model& model, const Division& division) {
 
 // New nodes begin without contact: midway between two they lie inside the shell, on a chord of it. What a bent face
 // puts outside (it is blended from its edges, and need not lie between them) the next step takes back.
-void divide_contacts(Model& model, State& state) {
-  if (!model.vitelline) return;
-  std::map<NodeId, std::size_t> place;
-  for (std::size_t k = 0; k < model.vitelline->nodes().size(); ++k) place[model.vitelline->nodes()[k]] = k;
-  model.vitelline.emplace(model.tissue, model.vitelline->shell());
+void divide_obstacles(Model& model, State& state, const Division& division) {
   std::vector<double> forces;
   std::vector<char> in_contact;
-  for (const NodeId node : model.vitelline->nodes()) {
-    const auto known = place.find(node);
-    forces.push_back(known == place.end() ? 0 : state.contact_forces[known->second]);
-    in_contact.push_back(known == place.end() ? 0 : state.in_contact[known->second]);
+  std::size_t first = 0;  // of the obstacle's contacts before
+  for (auto& obstacle : model.obstacles) {
+    std::map<NodeId, std::size_t> place;
+    for (const NodeId node : obstacle->nodes()) place[node] = first++;
+    obstacle = obstacle->after_division(model.tissue, division);
+    for (const NodeId node : obstacle->nodes()) {
+      const auto known = place.find(node);
+      forces.push_back(known == place.end() ? 0 : state.contact_forces[known->second]);
+      in_contact.push_back(known == place.end() ? 0 : state.in_contact[known->second]);
+    }
   }
   state.contact_forces = std::move(forces);
   state.in_contact = std::move(in_contact);
@@ -116,22 +134,19 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
   Division division = divide(model.tissue, cuts, state.time_s);
   state.positions = with_new_nodes(model.tissue, division, state.positions);
   state.velocities = with_new_nodes(model.tissue, division, state.velocities);
-  state.pressures = inherited(division, state.pressures);
   state.trend = {};
 
-  std::vector<double> targets = inherited(division, model.volumes.targets());
-  model.volumes = CellVolumes(model.tissue);
-  for (std::size_t c = 0; c < targets.size(); ++c) model.volumes.set_target(CellId(c), targets[c]);
+  divide_constraints(model, state, division);
   for (std::size_t i = 0; i < planned.size(); ++i)
     for (const Growth& growth :
          growths_of(planned[i], division.daughters[i], destinies[i], model.tissue, state.positions, state.time_s)) {
-      model.volumes.set_target(growth.cell, growth.target_from);
+      model.volumes().set_target(growth.cell, growth.target_from);
       model.growths.push_back(growth);
     }
 
-  divide_laws(model, division, state.positions);
+  divide_laws(model, state, division);
   divide_holds(model, division);
-  divide_contacts(model, state);
+  divide_obstacles(model, state, division);
   if (!model.masses().empty()) restore_momentum(model, division, momentum_before, state.velocities);
   return division;
 }
@@ -147,7 +162,7 @@ void grow(Model& model, double time_s) {
       for (int axis = 0; axis < 3; ++axis)
         rest[i][axis] = between(growth.rest_from[i][axis], growth.rest_to[i][axis], part);
     Cell& cell = model.tissue.cells[growth.cell.index()];
-    model.volumes.set_target(growth.cell, between(growth.target_from, growth.target_to, part));
+    model.volumes().set_target(growth.cell, between(growth.target_from, growth.target_to, part));
     if (rest == cell.rest_shape) continue;
     cell.rest_shape = rest;
     set_element_rest_shapes(model.tissue, growth.cell);

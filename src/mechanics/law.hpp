@@ -32,7 +32,8 @@ struct Step {
   bool semidefinite_tangent = false;
   std::span<const Vec3> earlier_positions = {};  // x at the beginning of the step before, um; nodes; where ahead > 0
   double ahead = 0;                              // >= 0
-  std::span<const double> internal = {};         // of the law that is asked: its state at the step's beginning
+  std::span<const std::vector<double>> internals = {};  // laws: their states at the step's beginning
+  std::span<const double> internal = {};                // that of the law that is asked (for_laws)
 
   /// q_before of a quantity of node positions.
   template <class Quantity>
@@ -65,6 +66,8 @@ class NodeGroups {
   [[nodiscard]] std::span<const NodeId> operator[](std::size_t group) const {
     return std::span(nodes_).subspan(starts_[group], starts_[group + 1] - starts_[group]);
   }
+  /// Where a group begins among the nodes of all groups; of `size()`, how many these are.
+  [[nodiscard]] std::size_t start(std::size_t group) const { return starts_[group]; }
   bool operator==(const NodeGroups&) const = default;
 
  private:

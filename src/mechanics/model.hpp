@@ -6,9 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "mechanics/constraint.hpp"
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/law.hpp"
-#include "mechanics/obstacles/vitelline.hpp"
+#include "mechanics/obstacle.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -28,17 +29,23 @@ struct Growth {
 struct Model {
   Tissue tissue;
   std::vector<std::unique_ptr<Law>> laws;
-  CellVolumes volumes;
-  bool volumes_are_held = true;
-  std::optional<Vitelline> vitelline;
+  std::vector<std::unique_ptr<Constraint>> constraints;  // the first is that of the cells' volumes
+  std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<std::array<bool, 3>> held;  // nodes; directions x, y, z in which a node does not move
   std::vector<Growth> growths;            // under way, and over since the last division
   double stiffness_scale = 1;             // Young's modulus, kPa: for tolerances that must not depend on the load
 
-  explicit Model(Tissue t) : tissue(std::move(t)), volumes(tissue), held(tissue.node_count(), {false, false, false}) {}
+  /// Nothing but the cells' volumes, which are held.
+  explicit Model(Tissue t);
   Model(const Model& other);
   Model(Model&&) = default;
   Model& operator=(Model&&) = default;
+
+  [[nodiscard]] CellVolumes& volumes() { return static_cast<CellVolumes&>(*constraints.front()); }
+  [[nodiscard]] const CellVolumes& volumes() const { return static_cast<const CellVolumes&>(*constraints.front()); }
+
+  /// How many multipliers all constraints have.
+  [[nodiscard]] std::size_t multiplier_count() const;
 
   /// Mass of the nodes, g; empty in a model without inertia.
   [[nodiscard]] std::span<const double> masses() const;
@@ -46,31 +53,58 @@ struct Model {
   /// Typical force of the body, nN: modulus times the mean area of an element's face. Residuals are zero against this.
   [[nodiscard]] double force_scale() const;
 
-  /// What rounding of positions makes of forces (nN, norm over nodes) and of relative volumes: nothing solves below
-  /// that. Matters for cells that are very thin beside the embryo.
+  /// What rounding of positions makes of forces (nN, norm over nodes): nothing solves below that. Matters for cells
+  /// that are very thin beside the embryo.
   [[nodiscard]] double force_rounding() const;
-  [[nodiscard]] double volume_rounding() const;
+  /// How far positions are rounded, with a margin for sums, um.
+  [[nodiscard]] double position_rounding() const;
 };
+
+/// Calls body(law, step as that law sees it) for every law.
+template <class Body>
+void for_laws(const Model& model, const Step& step, const Body& body) {
+  Step own = step;
+  for (std::size_t l = 0; l < model.laws.size(); ++l) {
+    own.internal = l < step.internals.size() ? std::span<const double>(step.internals[l]) : std::span<const double>{};
+    body(*model.laws[l], own);
+  }
+}
+
+/// Calls body(constraint, where its multipliers begin among all) for every constraint that a step holds.
+template <class Body>
+void for_held_constraints(const Model& model, const Body& body) {
+  std::size_t first = 0;
+  for (const auto& constraint : model.constraints) {
+    if (constraint->is_held()) body(*constraint, first);
+    first += constraint->count();
+  }
+}
 
 /// Where the run is. Enough, with the Model, to go on from here to the same bits.
 struct State {
   double time_s = 0;
-  Vectors positions;                   // nodes; um
-  Vectors velocities;                  // nodes; um/s, at the end of the last step
-  std::vector<double> pressures;       // cells; kPa: the multipliers of the volumes
-  std::vector<double> contact_forces;  // the vitelline's nodes; nN, >= 0
-  std::vector<char> in_contact;        // the vitelline's nodes
-  double divided_until_s = -1;         // divisions that were due up to here have been made
+  Vectors positions;                           // nodes; um
+  Vectors velocities;                          // nodes; um/s, at the end of the last step
+  std::vector<double> multipliers;             // the constraints', one after the other; first the cells' pressures, kPa
+  std::vector<double> contact_forces;          // Contacts; nN, >= 0
+  std::vector<char> in_contact;                // Contacts
+  std::vector<std::vector<double>> internals;  // laws: what each remembers (Law::next_internal)
+  double divided_until_s = -1;                 // divisions that were due up to here have been made
 
   // How things last changed (record_motion), from which the next step's end is forecast. Empty when that is not known:
   // at the start and after a division.
   struct Trend {
-    double step_s = 0;                   // the last step
-    double earlier_s = 0;                // the one before it
-    Vectors mean_velocities;             // nodes; um/s, over the last step; empty where they are the velocities
-    Vectors accelerations;               // nodes; um/s^2, between the middles of these two steps
-    std::vector<double> pressure_rates;  // cells; kPa/s
+    double step_s = 0;                     // the last step
+    double earlier_s = 0;                  // the one before it
+    Vectors mean_velocities;               // nodes; um/s, over the last step; empty where they are the velocities
+    Vectors accelerations;                 // nodes; um/s^2, between the middles of these two steps
+    std::vector<double> multiplier_rates;  // a second
   } trend;
+
+  /// The cells' pressures, kPa.
+  [[nodiscard]] std::span<const double> pressures(const Model& model) const {
+    return std::span(multipliers).first(model.tissue.cells.size());
+  }
 };
 
 /// The model at rest, before the first step.

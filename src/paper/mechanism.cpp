@@ -26,8 +26,9 @@ Curve inward_force(const std::string& name, const Model& model, const FurrowSite
   Vectors forces(rest.size(), Vec3::Zero()), normals(rest.size(), Vec3::Zero());
   const Step still{rest, rest, forces, 1, 1e6};
   Vectors sum(rest.size(), Vec3::Zero());
-  for (const auto& law : model.laws)
-    if (law->is_active()) law->add_forces(still, sum);
+  for_laws(model, still, [&](const Law& law, const Step& own) {
+    if (law.is_active()) law.add_forces(own, sum);
+  });
   for (const Facet& facet : tissue.apical_facets) {
     const Vec3 area = facet_area_vector(gather(std::span<const Vec3>(rest), facet));
     for (const NodeId node : facet.nodes) normals[node.index()] += area / 4;
@@ -140,17 +141,17 @@ Figures mesh_figures() {
     for (const Vec3& point : tissue.rest_positions) extent.take(point);
     figures[prefix + "_length_um"] = (extent.high - extent.low).x();
     figures[prefix + "_width_um"] = (extent.high - extent.low).y();
-    const std::vector<double> volumes = model->volumes.volumes(tissue.rest_positions);
+    const std::vector<double> volumes = model->volumes().volumes(tissue.rest_positions);
     double volume = 0;
     for (const double one : volumes) volume += one;
     figures[prefix + "_cell_volume_um3"] = volume / static_cast<double>(volumes.size());
     if (prefix != "mesh.pill") continue;
 
     double product = 0;
-    const auto gradients = model->volumes.element_gradients(tissue.rest_positions);
-    for (std::size_t e = 0; e < gradients.size(); ++e)
-      for (int i = 0; i < 8; ++i)
-        product += gradients[e][i].dot(tissue.rest_positions[model->volumes.elements()[e][i].index()]);
+    Vectors gradient(tissue.node_count(), Vec3::Zero());  // of all cells' volume
+    const std::vector<double> ones(volumes.size(), 1.0);
+    model->volumes().add_forces(tissue.rest_positions, ones, gradient);
+    for (std::size_t n = 0; n < gradient.size(); ++n) product += gradient[n].dot(tissue.rest_positions[n]);
     figures["mesh.gradient_sum"] = product / volume;
     Extent strip;
     for (const Facet& facet : tissue.apical_facets)

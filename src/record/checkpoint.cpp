@@ -43,6 +43,17 @@ class Saving {
   void operator()(const std::string& name, const std::vector<double>& values) { archive_.put(name, values); }
   void operator()(const std::string& name, const std::vector<int>& values) { archive_.put(name, values); }
   void operator()(const std::string& name, const std::vector<char>& values) { archive_.put(name, values); }
+  /// How long each list is, then all of them.
+  void operator()(const std::string& name, const std::vector<std::vector<double>>& lists) {
+    std::vector<int> lengths;
+    std::vector<double> all;
+    for (const std::vector<double>& list : lists) {
+      lengths.push_back(static_cast<int>(list.size()));
+      all.insert(all.end(), list.begin(), list.end());
+    }
+    (*this)(name + "_lengths", lengths);
+    (*this)(name, all);
+  }
   void operator()(const std::string& name, const Vectors& values) {
     archive_.put(name, std::span(reinterpret_cast<const double*>(values.data()), 3 * values.size()), 3);
   }
@@ -75,6 +86,17 @@ class Loading {
   void operator()(const std::string& name, std::vector<double>& values) { values = archive_.doubles(name); }
   void operator()(const std::string& name, std::vector<int>& values) { values = archive_.integers(name); }
   void operator()(const std::string& name, std::vector<char>& values) { values = archive_.bytes(name); }
+  void operator()(const std::string& name, std::vector<std::vector<double>>& lists) {
+    const std::vector<double> all = archive_.doubles(name);
+    lists.clear();
+    auto from = all.begin();
+    for (const int length : archive_.integers(name + "_lengths")) {
+      if (length < 0 || length > all.end() - from) refuse(name);
+      lists.emplace_back(from, from + length);
+      from += length;
+    }
+    if (from != all.end()) refuse(name);
+  }
   void operator()(const std::string& name, Vectors& values) {
     const std::vector<double> numbers = archive_.doubles(name);
     if (numbers.size() % 3 != 0) refuse(name);
@@ -98,7 +120,7 @@ class Loading {
 template <class Take, class Iterate>
 void visit_iterate(Take& take, const std::string& at, Iterate& iterate) {
   take(at + "positions", iterate.positions);
-  take(at + "pressures", iterate.pressures);
+  take(at + "multipliers", iterate.multipliers);
   take(at + "contact_forces", iterate.contact_forces);
   take(at + "in_contact", iterate.in_contact);
 }
@@ -114,7 +136,8 @@ void visit_run(Take& take, Run& run) {
   take("state/trend/earlier_s", state.trend.earlier_s);
   take("state/trend/mean_velocities", state.trend.mean_velocities);
   take("state/trend/accelerations", state.trend.accelerations);
-  take("state/trend/pressure_rates", state.trend.pressure_rates);
+  take("state/trend/multiplier_rates", state.trend.multiplier_rates);
+  take("state/internals", state.internals);
   take("run/steps", run.steps);
   take("run/divisions", run.divisions);
   take("run/equilibrium_time_s", run.equilibrium_time_s);
@@ -130,6 +153,7 @@ void visit_run(Take& take, Run& run) {
   take("factor/rate_s", factor.rate_s);
   take("factor/ahead", factor.ahead);
   take("factor/end_time_s", factor.end_time_s);
+  take("factor/internals", factor.internals);
   take("factor/changed_contacts", factor.changed_contacts);
   take("factor/has_left", factor.has_left);
   take("factor/normals", factor.normals);

@@ -71,16 +71,19 @@ FrameRecord FrameTaker::take(const State& state) const {
     frame.displacements[n] = state.positions[n] - tissue.rest_positions[n];
   // The active forces: what cells pull with, without their dampers.
   frame.forces.assign(state.positions.size(), Vec3::Zero());
-  const Step still{state.positions, state.positions, state.velocities, 1, state.time_s};
-  for (const auto& law : model_.laws)
-    if (law->is_active()) law->add_forces(still, frame.forces);
+  Step still{state.positions, state.positions, state.velocities, 1, state.time_s};
+  still.internals = state.internals;
+  for_laws(model_, still, [&](const Law& law, const Step& own) {
+    if (law.is_active()) law.add_forces(own, frame.forces);
+  });
 
   const std::vector<double> areas = apical_areas(tissue, state.positions), rest_areas = rest_apical_areas(tissue);
-  std::vector<double> ratios = areas, pressures = state.pressures;
+  const std::span<const double> of_cells = state.pressures(model_);
+  std::vector<double> ratios = areas, pressures(of_cells.begin(), of_cells.end());
   for (std::size_t c = 0; c < ratios.size(); ++c) ratios[c] = rest_areas[c] > 0 ? ratios[c] / rest_areas[c] : 1;
   for (double& pressure : pressures) pressure /= units::pascal;
-  frame.scalars = {{"volume_um3", model_.volumes.volumes(state.positions)},
-                   {"volume_error", model_.volumes.relative_errors(state.positions)},
+  frame.scalars = {{"volume_um3", model_.volumes().volumes(state.positions)},
+                   {"volume_error", model_.volumes().relative_errors(state.positions)},
                    {"apical_area_ratio", std::move(ratios)},
                    {"pressure_Pa", std::move(pressures)},
                    {"activity", activities(model_, state.time_s)}};

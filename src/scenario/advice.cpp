@@ -68,13 +68,15 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
           "it "
           "and stay short; give time.step_s a number");
   }
-  if (model.vitelline && scenario.vitelline.gap_um > 0)
+  if (scenario.vitelline.enabled && scenario.vitelline.gap_um > 0)
     note(fmt::format("the embryo starts {} um away from its shell", scenario.vitelline.gap_um));
 
-  if (model.vitelline && scenario.embryo.shape == "file")
+  if (scenario.vitelline.enabled && scenario.embryo.shape == "file") {
+    const Capsule& mesh = *model.tissue.outer_shape;
+    const double radius_um = mesh.radius_um + scenario.vitelline.gap_um;
     note(fmt::format("the shell is the capsule along x around the mesh, {:.4g} um long and {:.4g} um across",
-                     2 * (model.vitelline->shell().half_axis_um + model.vitelline->shell().radius_um),
-                     2 * model.vitelline->shell().radius_um));
+                     2 * (mesh.half_axis_um + radius_um), 2 * radius_um));
+  }
 
   const MeshQuality quality = mesh_quality(model.tissue, model.tissue.rest_positions);
   note(fmt::format(

@@ -8,6 +8,7 @@
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
+#include "mechanics/obstacles/vitelline.hpp"
 #include "mechanics/surroundings.hpp"
 #include "scenario/regions.hpp"
 #include "solver/projection/closed_surface.hpp"
@@ -79,7 +80,7 @@ void add_elasticity(const Scenario& scenario, Model& model) {
     return;
   }
   model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, viscosity));
-  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus(), model.volumes_are_held));
+  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus(), model.volumes().is_held()));
 }
 
 ContractionPattern make_pattern(const ContractionInput& input) {
@@ -160,8 +161,9 @@ void add_holds(const Scenario& scenario, Model& model, std::vector<Diagnostic>& 
 void check_forces_at_rest(const Scenario& scenario, const Model& model) {
   const State rest = rest_state(model);
   Vectors forces(rest.positions.size(), Vec3::Zero());
-  const Step still{rest.positions, rest.positions, rest.velocities, 1, 0};
-  for (const auto& law : model.laws) law->add_forces(still, forces);
+  Step still{rest.positions, rest.positions, rest.velocities, 1, 0};
+  still.internals = rest.internals;
+  for_laws(model, still, [&](const Law& law, const Step& own) { law.add_forces(own, forces); });
   const auto bad = std::ranges::find_if(forces, [](const Vec3& force) { return !force.allFinite(); });
   if (bad == forces.end()) return;
   const NodeId node(static_cast<std::size_t>(bad - forces.begin()));
@@ -188,7 +190,7 @@ Tissue make_tissue(const Scenario& scenario) {
 std::unique_ptr<Model> make_model(const Scenario& scenario) {
   auto model = std::make_unique<Model>(make_tissue(scenario));
   const Tissue& tissue = model->tissue;
-  model->volumes_are_held = scenario.volume.method == "coupled";
+  model->volumes().hold(scenario.volume.method == "coupled");
   add_elasticity(scenario, *model);
   add_contractions(scenario, *model);
   add_pressures(scenario, *model);
@@ -204,7 +206,7 @@ std::unique_ptr<Model> make_model(const Scenario& scenario) {
   if (scenario.vitelline.enabled) {
     Capsule shell = *tissue.outer_shape;
     shell.radius_um += scenario.vitelline.gap_um;
-    model->vitelline.emplace(tissue, shell);
+    model->obstacles.push_back(std::make_unique<Vitelline>(tissue, shell));
   }
   if (const auto why = why_indivisible(tissue); why && !scenario.divisions.empty())
     errors.push_back(diagnostic_at(scenario, "division." + scenario.divisions.begin()->first,

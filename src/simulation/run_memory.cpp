@@ -8,12 +8,12 @@ bool has_ended(const RunMemory& run, const RunControls& controls) {
 }
 
 std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
-  const std::size_t nodes = model.tissue.node_count(), cells = model.tissue.cells.size(),
-                    contacts = model.vitelline ? model.vitelline->nodes().size() : 0;
+  const std::size_t nodes = model.tissue.node_count(), multipliers = model.multiplier_count(),
+                    contacts = Contacts(model).size();
   const auto none_or = [](std::size_t size, std::size_t full) { return size == 0 || size == full; };
   const auto fits = [&](const auto& at) {
-    return at.positions.size() == nodes && at.pressures.size() == cells && at.contact_forces.size() == contacts &&
-           at.in_contact.size() == contacts;
+    return at.positions.size() == nodes && at.multipliers.size() == multipliers &&
+           at.contact_forces.size() == contacts && at.in_contact.size() == contacts;
   };
   const State& state = run.state;
   if (state.time_s < 0 || run.steps < 0 || run.wanted_step_s < 0 || state.trend.step_s < 0 || state.trend.earlier_s < 0)
@@ -21,13 +21,14 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
   if (state.trend.step_s + state.trend.earlier_s > state.time_s * (1 + 1e-9))
     return "its steps are longer than its time";
   if (!fits(state) || state.velocities.size() != nodes || !none_or(state.trend.mean_velocities.size(), nodes) ||
-      !none_or(state.trend.accelerations.size(), nodes) || !none_or(state.trend.pressure_rates.size(), cells))
+      !none_or(state.trend.accelerations.size(), nodes) || !none_or(state.trend.multiplier_rates.size(), multipliers) ||
+      state.internals.size() != model.laws.size())
     return "its state is not one of this embryo";
   const FactorMemory& factor = run.factor;
   if (factor.empty()) return std::nullopt;
-  if (!fits(factor.at) || factor.previous_positions.size() != nodes || factor.previous_velocities.size() != nodes ||
-      factor.earlier_positions.size() != (factor.ahead > 0 ? nodes : 0) || !(factor.rate_s > 0) || factor.ahead < 0 ||
-      factor.has_left.size() != factor.changed_contacts.size() ||
+  if (!fits(factor.at) || factor.internals.size() != model.laws.size() || factor.previous_positions.size() != nodes ||
+      factor.previous_velocities.size() != nodes || factor.earlier_positions.size() != (factor.ahead > 0 ? nodes : 0) ||
+      !(factor.rate_s > 0) || factor.ahead < 0 || factor.has_left.size() != factor.changed_contacts.size() ||
       factor.normals.size() != factor.changed_contacts.size())
     return "its factor is not one of this embryo";
   for (const int contact : factor.changed_contacts)

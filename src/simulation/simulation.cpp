@@ -34,6 +34,8 @@ std::string failure_text(StepReport report, const Model& model, const State& sta
   return fmt::format("{} at t = {:g} s, with steps down to {:g} s", report.reason(), state.time_s, duration_s);
 }
 
+}  // namespace
+
 Simulation::Parts parts_of(const Scenario& scenario) {
   Simulation::Parts parts;
   parts.model = make_model(scenario);
@@ -42,8 +44,6 @@ Simulation::Parts parts_of(const Scenario& scenario) {
   parts.watch = make_watch(scenario, parts.model->tissue);
   return parts;
 }
-
-}  // namespace
 
 Simulation::Simulation(const Scenario& scenario) : Simulation(parts_of(scenario)) {}
 

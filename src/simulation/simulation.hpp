@@ -118,4 +118,7 @@ class Simulation {
   std::function<bool()> stop_requested_;
 };
 
+/// What a scenario's simulation is made of: for whoever adds something to it. Throws as Simulation does.
+Simulation::Parts parts_of(const Scenario& scenario);
+
 }  // namespace plica

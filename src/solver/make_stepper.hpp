@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "solver/linear/newton.hpp"
+#include "solver/linear/directions.hpp"
 #include "solver/projection/volume_projection.hpp"
 #include "solver/step/backward_difference.hpp"
 #include "solver/step/stepper.hpp"

@@ -160,4 +160,11 @@ Vec3 facet_area_vector(const std::array<Vec3, 4>& points) {
   return 0.5 * (points[2] - points[0]).cross(points[3] - points[1]);
 }
 
+double largest_face(const HexPoints& points) {
+  double area = 0;
+  for (const auto& face : hex_faces)
+    area = std::max(area, facet_area({points[face[0]], points[face[1]], points[face[2]], points[face[3]]}));
+  return area;
+}
+
 }  // namespace plica

@@ -59,4 +59,7 @@ double facet_area(const std::array<Vec3, 4>& points);
 /// The facet's area vector (outward for counter-clockwise order), um^2; exact.
 Vec3 facet_area_vector(const std::array<Vec3, 4>& points);
 
+/// The area of the largest of its six faces.
+double largest_face(const HexPoints& points);
+
 }  // namespace plica

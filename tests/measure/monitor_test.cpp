@@ -130,9 +130,9 @@ TEST(Monitor, CellsOfALowerLayerHaveNoApicalArea) {
 TEST(Monitor, PressureIsInPascalAndOnlyWhereVolumesAreHeld) {
   Model model = row_of_three();
   State state = rest_state(model);
-  state.pressures = {0.25, 7, 7};  // kPa
+  state.multipliers = {0.25, 7, 7};  // kPa
   EXPECT_NEAR(number(monitor_of(Quantity::pressure), model, state), 250, 1e-9);
-  model.volumes_are_held = false;
+  model.volumes().hold(false);
   EXPECT_FALSE(read_monitor(monitor_of(Quantity::pressure), {model, state}).number);
 }
 
@@ -215,7 +215,7 @@ TEST(ForcesOfCells, OfPartsAddUpToThoseOfTheWhole) {
   add_drag(model);
   Random random(5);
   State state = rest_state(model);
-  for (double& pressure : state.pressures) pressure = random.number();
+  for (double& pressure : state.multipliers) pressure = random.number();
   divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
   for (Vec3& x : state.positions) x += random.vector(0.5);
   model.tissue.place_hanging(state.positions);
@@ -231,7 +231,7 @@ TEST(ForcesOfCells, OfPartsAddUpToThoseOfTheWhole) {
   const Vectors no_velocity(of_all.size(), Vec3::Zero());
   const Step still{state.positions, state.positions, no_velocity, 1, 0};
   for (const auto& law : model.laws) law->add_forces(still, expected);
-  model.volumes.add_forces(state.positions, state.pressures, expected);
+  model.volumes().add_forces(state.positions, state.multipliers, expected);
   model.tissue.carry_hanging(expected);
   for (std::size_t n = 0; n < of_all.size(); ++n) EXPECT_LE((of_all[n] - expected[n]).norm(), 1e-12 * largest(of_all));
 }

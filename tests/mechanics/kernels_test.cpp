@@ -161,7 +161,8 @@ TEST(Kernels, VolumesAreThoseOfEachElement) {
       const Motion motion = random_motion(tissue, 4, 9);
       const CellVolumes volumes(tissue, kernels);
       const std::vector<double> of_cells = volumes.volumes(motion.positions);
-      const auto gradients = volumes.element_gradients(motion.positions);
+      Vectors gradients(8 * static_cast<std::size_t>(elements));
+      volumes.gradients(motion.positions, gradients);
       std::vector<double> pressures;
       Vectors forces(tissue.node_count(), Vec3::Zero()), product = forces;
       Vectors expected_forces = forces, expected_product = forces;
@@ -173,7 +174,7 @@ TEST(Kernels, VolumesAreThoseOfEachElement) {
         const auto gradient = hex_volume_gradient(points);
         const auto change = hex_volume_hessian_product(points, gather(direction, tissue.elements[e]));
         for (int i = 0; i < 8; ++i) {
-          EXPECT_LE((gradients[e][i] - gradient[i]).norm(), 1e-13 * 800);
+          EXPECT_LE((gradients[8 * e + i] - gradient[i]).norm(), 1e-13 * 800);
           expected_forces[tissue.elements[e][i].index()] += pressures[e] * gradient[i];
           expected_product[tissue.elements[e][i].index()] -= pressures[e] * change[i];
         }
@@ -218,8 +219,9 @@ std::vector<double> results_with(int threads, const Tissue& tissue, const Motion
   const std::vector<double> pressures(tissue.cells.size(), 0.2);
   volumes.add_forces(motion.positions, pressures, sums);
   volumes.add_tangent_product(motion.positions, pressures, direction, sums);
-  for (const auto& gradient : volumes.element_gradients(motion.positions))
-    for (const Vec3& g : gradient) results.insert(results.end(), g.begin(), g.end());
+  Vectors gradients(8 * tissue.elements.size());
+  volumes.gradients(motion.positions, gradients);
+  for (const Vec3& g : gradients) results.insert(results.end(), g.begin(), g.end());
   for (const Vec3& sum : sums) results.insert(results.end(), sum.begin(), sum.end());
   return results;
 }

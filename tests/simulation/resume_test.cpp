@@ -41,7 +41,7 @@ Trace trace(const std::string& name, const std::vector<std::string>& overrides, 
 
 void expect_same(const FactorMemory& a, const FactorMemory& b) {
   EXPECT_EQ(a.at.positions, b.at.positions);
-  EXPECT_EQ(a.at.pressures, b.at.pressures);
+  EXPECT_EQ(a.at.multipliers, b.at.multipliers);
   EXPECT_EQ(a.previous_positions, b.previous_positions);
   EXPECT_EQ(a.earlier_positions, b.earlier_positions);
   EXPECT_EQ(a.rate_s, b.rate_s);
@@ -58,7 +58,7 @@ void expect_same(const State& a, const State& b) {
   EXPECT_EQ(a.time_s, b.time_s);
   EXPECT_EQ(a.positions, b.positions);
   EXPECT_EQ(a.velocities, b.velocities);
-  EXPECT_EQ(a.pressures, b.pressures);
+  EXPECT_EQ(a.multipliers, b.multipliers);
   EXPECT_EQ(a.contact_forces, b.contact_forces);
   EXPECT_EQ(a.in_contact, b.in_contact);
   EXPECT_EQ(a.divided_until_s, b.divided_until_s);
@@ -66,7 +66,7 @@ void expect_same(const State& a, const State& b) {
   EXPECT_EQ(a.trend.earlier_s, b.trend.earlier_s);
   EXPECT_EQ(a.trend.mean_velocities, b.trend.mean_velocities);
   EXPECT_EQ(a.trend.accelerations, b.trend.accelerations);
-  EXPECT_EQ(a.trend.pressure_rates, b.trend.pressure_rates);
+  EXPECT_EQ(a.trend.multiplier_rates, b.trend.multiplier_rates);
 }
 
 // Goes on from every `every`th step of the run.

@@ -83,7 +83,8 @@ void expect_assembled_is_matrix_free(const Law& law, const Motion& motion, unsig
 void check_derivatives(const Law& law, const Tissue& tissue, double size_um, int cases, double tolerance) {
   for (int seed = 1; seed <= cases; ++seed) {
     SCOPED_TRACE(::testing::Message() << "random motion " << seed << " of " << cases);
-    const Motion motion = random_motion(tissue, size_um, static_cast<unsigned>(seed));
+    Motion motion = random_motion(tissue, size_um, static_cast<unsigned>(seed));
+    motion.internal = law.first_internal(tissue);
     expect_forces_are_minus_energy_gradient(law, motion, tolerance);
     expect_tangent_is_minus_force_gradient(law, motion, tolerance);
     expect_assembled_is_matrix_free(law, motion, static_cast<unsigned>(100 + seed));
@@ -96,6 +97,7 @@ void check_semidefinite_tangent(const Law& law, const Tissue& tissue, double siz
   double worst = 0, exact_worst = 0;  // least eigenvalue over the largest
   for (int seed = 1; seed <= cases; ++seed) {
     Motion motion = random_motion(tissue, size_um, static_cast<unsigned>(seed));
+    motion.internal = law.first_internal(tissue);
     const auto least_over_largest = [&] {
       const Eigen::MatrixXd tangent = DenseTangent(law, motion.step()).matrix;
       const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(tangent).eigenvalues();

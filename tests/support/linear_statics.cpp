@@ -69,19 +69,19 @@ Vectors LinearStatics::solve() const {
   Eigen::VectorXd u = Eigen::VectorXd::Zero(size_);
   for (int i = 0; i < size_; ++i) u[i] = prescribed_[i].value_or(0);
   const Eigen::VectorXd right = loads_ - K * u;
-  SymmetricPattern pattern;
+  Rows pattern;
   std::vector<double> values, unknowns(size_, 0.0);
-  pattern.size = size_;
-  for (int column = 0; column < size_; ++column)
-    for (Eigen::SparseMatrix<double>::InnerIterator k(K, column); k; ++k) {
-      const int row = static_cast<int>(k.row());
-      if (row < column) continue;
+  for (int row = 0; row < size_; ++row) {  // K is symmetric: a row is a column
+    for (Eigen::SparseMatrix<double>::InnerIterator k(K, row); k; ++k) {
+      const int column = static_cast<int>(k.row());
+      if (column > row) continue;
       const bool fixed = prescribed_[row] || prescribed_[column];
       if (fixed && row != column) continue;
-      pattern.rows.push_back(row);
       pattern.columns.push_back(column);
       values.push_back(k.value());
     }
+    pattern.starts.push_back(static_cast<int>(pattern.columns.size()));
+  }
   for (int i = 0; i < size_; ++i)
     if (!prescribed_[i]) unknowns[i] = right[i];
   const auto solver = make_direct_solver();

@@ -1,5 +1,7 @@
 #include "support/models.hpp"
 
+#include "mechanics/obstacles/vitelline.hpp"
+
 namespace plica::support {
 
 void add_elasticity(Model& model, double poisson) {
@@ -40,7 +42,7 @@ Model furrowing_sphere() {
   }
   add_contraction(model, furrow, {.stiffness = 7.3, .across_ratio = 0.4});
   add_drag(model);
-  model.vitelline.emplace(model.tissue, *model.tissue.outer_shape);
+  model.obstacles.push_back(std::make_unique<Vitelline>(model.tissue, *model.tissue.outer_shape));
   return model;
 }
 
@@ -48,12 +50,10 @@ Vectors unbalanced_forces(const Model& model, const State& before, const State& 
   const Step step{after.positions, before.positions, before.velocities, after.time_s - before.time_s, after.time_s};
   Vectors forces(after.positions.size(), Vec3::Zero());
   for (const auto& law : model.laws) law->add_forces(step, forces);
-  if (model.volumes_are_held) model.volumes.add_forces(after.positions, after.pressures, forces);
-  if (model.vitelline)
-    for (std::size_t k = 0; k < after.contact_forces.size(); ++k) {
-      const std::size_t n = model.vitelline->nodes()[k].index();
-      forces[n] += after.contact_forces[k] * model.vitelline->gap(after.positions[n]).inward;
-    }
+  if (model.volumes().is_held()) model.volumes().add_forces(after.positions, after.multipliers, forces);
+  const Contacts contacts(model);
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+    forces[contacts.node(k).index()] += after.contact_forces[k] * contacts.gap(k, after.positions).inward;
   return forces;
 }
 

@@ -65,10 +65,18 @@ struct Motion {
   bool semidefinite_tangent = false;
   Vectors earlier_positions = {};
   double ahead = 0;
+  std::vector<double> internal = {};  // of the law that is asked
 
   [[nodiscard]] Step step() const {
-    return {positions,  previous_positions,   previous_velocities, rate_s,
-            end_time_s, semidefinite_tangent, earlier_positions,   ahead};
+    return {.positions = positions,
+            .previous_positions = previous_positions,
+            .previous_velocities = previous_velocities,
+            .rate_s = rate_s,
+            .end_time_s = end_time_s,
+            .semidefinite_tangent = semidefinite_tangent,
+            .earlier_positions = earlier_positions,
+            .ahead = ahead,
+            .internal = internal};
   }
 };
 

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "solver/step/step_solver.hpp"
+#include "solver/step/newton_stepper.hpp"
 #include "support/linear_statics.hpp"
 #include "support/loads.hpp"
 
@@ -89,7 +89,7 @@ TEST(Bending, ExactCellVolumesDoNotStiffenIt) {
     }
     model.held[0][2] = true;
     model.laws.push_back(std::make_unique<NodalForces>(loads));
-    StepSolver solver(model);
+    NewtonStepper solver(model);
     State state = rest_state(model);
     const StepReport report = solver.advance(rest_state(model), 1e6, true, state);
     ASSERT_TRUE(report.converged()) << report.reason();

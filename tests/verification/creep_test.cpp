@@ -7,7 +7,7 @@
 
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/corotational.hpp"
-#include "solver/step/step_solver.hpp"
+#include "solver/step/newton_stepper.hpp"
 #include "support/loads.hpp"
 #include "support/tissues.hpp"
 
@@ -24,7 +24,7 @@ Model one_spring() {
   Model model(build_block({.length_um = length, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 1}}));
   for (auto& directions : model.held) directions = {true, true, true};
   model.held[1][0] = false;
-  model.volumes_are_held = false;
+  model.volumes().hold(false);
   model.laws.push_back(std::make_unique<Corotational>(model.tissue, ElasticModuli::from_young(1e-12, 0.3), 0));
   model.laws.push_back(std::make_unique<Contraction>(
       std::vector<Spring>{{{NodeId(0), NodeId(1)}, stiffness, 0, damping, length}}, Program{}));
@@ -37,7 +37,7 @@ Model one_spring() {
 /// Elongation after `steps` steps of `duration_s`.
 double creep(double duration_s, int steps, TimeOrder order = TimeOrder::first) {
   const Model model = one_spring();
-  StepSolver solver(model, {.force = 1e-12}, LinearMethod::automatic, order);
+  NewtonStepper solver(model, {.force = 1e-12}, LinearMethod::automatic, order);
   State state = rest_state(model), next;
   for (int k = 0; k < steps; ++k) {
     const StepReport report = solver.advance(state, duration_s, k == 0, next);

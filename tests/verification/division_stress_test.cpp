@@ -1,7 +1,7 @@
 // Random cells of the pill divide in random planes, five rounds, to over 10 000 cells; the tissue relaxes in between.
 #include <gtest/gtest.h>
 
-#include "solver/step/step_solver.hpp"
+#include "solver/step/newton_stepper.hpp"
 #include "support/divided.hpp"
 #include "support/loads.hpp"
 
@@ -30,13 +30,13 @@ TEST(DivisionStress, FiveRandomRoundsToTenThousandCells) {
   Random random(20261121);
   for (int round = 1; round <= 5; ++round) {
     divide_cells(model, state, random_divisions(model.tissue, 0.7, random));
-    StepSolver solver(model);
+    NewtonStepper solver(model);
     double worst_volume = 0, worst_jacobian = 1;
     for (const double duration_s : {0.5, 5.0, 20.0}) {
       const StepReport report = solver.advance(state, duration_s, false, next);
       ASSERT_TRUE(report.converged()) << report.reason() << " in round " << round;
       state = next;
-      for (const double error : model.volumes.relative_errors(state.positions))
+      for (const double error : model.volumes().relative_errors(state.positions))
         worst_volume = std::max(worst_volume, std::abs(error));
     }
     for (const auto& element : model.tissue.elements)
@@ -66,7 +66,7 @@ double deflection(Model& model, State state) {
   }
   for (const NodeId node : end) loads[node.index()] = Vec3(0, 0, 0.1 / static_cast<double>(end.size()));
   model.laws.push_back(std::make_unique<NodalForces>(loads));
-  StepSolver solver(model);
+  NewtonStepper solver(model);
   State next;
   for (int step = 0; step < 3; ++step) {
     const StepReport report = solver.advance(state, 1e7, true, next);

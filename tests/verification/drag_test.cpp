@@ -9,7 +9,7 @@
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/surroundings.hpp"
-#include "solver/step/step_solver.hpp"
+#include "solver/step/newton_stepper.hpp"
 #include "support/loads.hpp"
 #include "support/tissues.hpp"
 
@@ -28,7 +28,7 @@ Model one_spring_in_fluid() {
   Model model(build_block({.length_um = length, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 1}}));
   for (auto& directions : model.held) directions = {true, true, true};
   model.held[1][0] = false;
-  model.volumes_are_held = false;
+  model.volumes().hold(false);
   model.laws.push_back(std::make_unique<Corotational>(model.tissue, ElasticModuli::from_young(1e-12, 0.3), 0));
   model.laws.push_back(std::make_unique<SurfaceDrag>(model.tissue, 0.1));
   model.laws.push_back(
@@ -44,7 +44,7 @@ using StepOf = std::function<double(int)>;
 /// Elongations after each step.
 std::vector<double> elongations(const StepOf& step_s, int steps) {
   const Model model = one_spring_in_fluid();
-  StepSolver solver(model, {.force = 1e-12}, LinearMethod::automatic, TimeOrder::second);
+  NewtonStepper solver(model, {.force = 1e-12}, LinearMethod::automatic, TimeOrder::second);
   State state = rest_state(model), next;
   std::vector<double> all = {0};
   for (int k = 0; k < steps; ++k) {

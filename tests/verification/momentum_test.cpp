@@ -6,7 +6,7 @@
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/surroundings.hpp"
-#include "solver/step/step_solver.hpp"
+#include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"
 
 namespace plica {
@@ -56,7 +56,7 @@ Momenta momenta(const Model& model, const State& state) {
 State throw_for(const Model& model, double time_s, int steps, double& worst_linear) {
   StepTolerances tolerances;
   tolerances.force = 1e-10;  // what a step leaves unbalanced moves the body as a whole
-  StepSolver solver(model, tolerances);
+  NewtonStepper solver(model, tolerances);
   State state = thrown(model), next;
   const Momenta before = momenta(model, state);
   for (int k = 0; k < steps; ++k) {
@@ -111,8 +111,8 @@ TEST(Momentum, InternalForcesHaveNoResultantAndNoTorque) {
       if (law->name() != "inertia") law->add_forces(motion.step(), forces);
     Random random(seed);
     std::vector<double> pressures;
-    for (std::size_t c = 0; c < model.volumes.count(); ++c) pressures.push_back(random.number(1));
-    model.volumes.add_forces(motion.positions, pressures, forces);
+    for (std::size_t c = 0; c < model.volumes().count(); ++c) pressures.push_back(random.number(1));
+    model.volumes().add_forces(motion.positions, pressures, forces);
     worst_resultant = std::max(worst_resultant, resultant(forces).norm() / largest(forces));
     worst_torque = std::max(worst_torque, torque(forces, motion.positions).norm() / (largest(forces) * 100));
     ++cases;

@@ -1,6 +1,9 @@
 #include "mechanics/constraints/cell_volume.hpp"
 
+#include <cmath>
+
 #include "core/parallel.hpp"
+#include "tissue/division.hpp"
 
 namespace plica {
 namespace {
@@ -63,11 +66,11 @@ VolumeStep CellVolumes::kernel_step(std::span<const Vec3> positions, std::span<c
 
 std::vector<double> CellVolumes::volumes(std::span<const Vec3> positions) const {
   std::vector<double> of_cells(targets_.size());
-  volumes(positions, of_cells);
+  values(positions, of_cells);
   return of_cells;
 }
 
-void CellVolumes::volumes(std::span<const Vec3> positions, std::span<double> of_cells) const {
+void CellVolumes::values(std::span<const Vec3> positions, std::span<double> of_cells) const {
   std::fill(of_cells.begin(), of_cells.end(), 0.0);
   const VolumeStep at = kernel_step(positions, {});
   volumes_.chunks().for_batches(
@@ -80,16 +83,42 @@ std::vector<double> CellVolumes::relative_errors(std::span<const Vec3> positions
   return errors;
 }
 
-UninitialisedVector<std::array<Vec3, 8>> CellVolumes::element_gradients(std::span<const Vec3> positions) const {
-  UninitialisedVector<std::array<Vec3, 8>> gradients(elements_.size());
-  element_gradients(positions, gradients);
-  return gradients;
+ConstraintParts CellVolumes::parts() const {
+  ConstraintParts parts;
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    parts.nodes.add(elements_[e]);
+    parts.function.push_back(element_cell_[e].number());
+  }
+  return parts;
 }
 
-void CellVolumes::element_gradients(std::span<const Vec3> positions, std::span<std::array<Vec3, 8>> gradients) const {
+// About the square of a face's area, V^(4/3).
+double CellVolumes::gradient_scale(std::size_t cell) const { return std::cbrt(targets_[cell]) * targets_[cell]; }
+
+double CellVolumes::rounding(const Tissue& tissue, double position_rounding) const {
+  double thinnest = 0;  // largest of an element's faces over its volume: how much a shift of a face changes it
+  for (const HexPoints& rest : tissue.element_rest_shape)
+    thinnest = std::max(thinnest, largest_face(rest) / hex_volume(rest));
+  return thinnest * position_rounding;
+}
+
+std::unique_ptr<Constraint> CellVolumes::after_division(const Tissue& tissue, const Division& division,
+                                                        std::span<const Vec3> /*positions*/) const {
+  auto after = std::make_unique<CellVolumes>(tissue);
+  after->targets_ = inherited(division, targets_);
+  after->is_held_ = is_held_;
+  return after;
+}
+
+std::vector<double> CellVolumes::multipliers_after_division(std::span<const double> pressures,
+                                                            const Division& division) const {
+  return inherited(division, std::vector<double>(pressures.begin(), pressures.end()));
+}
+
+void CellVolumes::gradients(std::span<const Vec3> positions, std::span<Vec3> of_elements) const {
   const VolumeStep at = kernel_step(positions, {});
   volumes_.chunks().for_batches([&](std::size_t first, std::size_t last) {
-    volumes_.kernels().write_gradients(at, first, last, reinterpret_cast<double*>(gradients.data()));
+    volumes_.kernels().write_gradients(at, first, last, numbers(of_elements));
   });
 }
 
@@ -110,7 +139,7 @@ void CellVolumes::add_tangent_product(std::span<const Vec3> positions, std::span
 
 void CellVolumes::add_tangent(std::span<const Vec3> positions, std::span<const double> pressures,
                               TangentSink& tangent) const {
-  for_elements(
+  volumes_.chunks().for_elements(
       [&](std::size_t e) {
         const double pressure = pressures[element_cell_[e].index()];
         add_volume_hessian(elements_[e], gather(positions, elements_[e]), -pressure, tangent);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/uninitialised.hpp"
+#include "mechanics/constraint.hpp"
 #include "mechanics/kernels/element_chunks.hpp"
 #include "mechanics/kernels/kernels.hpp"
 #include "mechanics/kernels/volume_kernels.hpp"
@@ -37,44 +38,47 @@ class VolumeElements {
 
 /// The constraints V_c(x) = target, one a cell. Their multipliers are the cells' pressures, kPa, positive in
 /// compression.
-class CellVolumes {
+class CellVolumes final : public Constraint {
  public:
   /// Targets are the cells' rest volumes.
   explicit CellVolumes(const Tissue& tissue, Kernels kernels = chosen_kernels());
 
-  [[nodiscard]] std::size_t count() const { return targets_.size(); }
-  [[nodiscard]] const std::vector<double>& targets() const { return targets_; }
+  [[nodiscard]] std::string_view name() const override { return "cell volumes"; }
+  [[nodiscard]] std::unique_ptr<Constraint> clone() const override { return std::make_unique<CellVolumes>(*this); }
+  [[nodiscard]] std::size_t count() const override { return targets_.size(); }
+  [[nodiscard]] std::span<const double> targets() const override { return targets_; }
+  [[nodiscard]] bool is_held() const override { return is_held_; }
+  /// Whether steps hold them. Where they do not, the projection may, or a bulk modulus, or nobody.
+  void hold(bool held) { is_held_ = held; }
   void set_target(CellId cell, double volume) { targets_[cell.index()] = volume; }
 
   /// V_c at the given positions, um^3; cells.
   [[nodiscard]] std::vector<double> volumes(std::span<const Vec3> positions) const;
-  void volumes(std::span<const Vec3> positions, std::span<double> of_cells) const;
+  void values(std::span<const Vec3> positions, std::span<double> of_cells) const override;
 
   /// V_c / target - 1; cells.
   [[nodiscard]] std::vector<double> relative_errors(std::span<const Vec3> positions) const;
 
-  /// dV/dx of every element, um^2; elements, in the order of their nodes.
-  [[nodiscard]] UninitialisedVector<std::array<Vec3, 8>> element_gradients(std::span<const Vec3> positions) const;
-  void element_gradients(std::span<const Vec3> positions, std::span<std::array<Vec3, 8>> gradients) const;
-
-  /// Adds sum_c pressure_c dV_c/dx.
-  void add_forces(std::span<const Vec3> positions, std::span<const double> pressures, std::span<Vec3> forces) const;
-
-  /// Adds -sum_c pressure_c d2V_c/dx2 times `direction`.
-  void add_tangent_product(std::span<const Vec3> positions, std::span<const double> pressures,
-                           std::span<const Vec3> direction, std::span<Vec3> product) const;
-
-  /// Adds -sum_c pressure_c d2V_c/dx2.
-  void add_tangent(std::span<const Vec3> positions, std::span<const double> pressures, TangentSink& tangent) const;
-
-  [[nodiscard]] const std::vector<std::array<NodeId, 8>>& elements() const { return elements_; }
-  /// Calls body(element) for every element; with `shared`, for elements that have no node in common at once.
-  template <class Body>
-  void for_elements(const Body& body, bool shared) const {
+  /// Elements.
+  [[nodiscard]] ConstraintParts parts() const override;
+  void gradients(std::span<const Vec3> positions, std::span<Vec3> of_elements) const override;
+  void for_parts(const std::function<void(std::size_t)>& body, bool shared) const override {
     volumes_.chunks().for_elements(body, shared);
   }
-
-  [[nodiscard]] CellId cell_of(std::size_t element) const { return element_cell_[element]; }
+  void add_forces(std::span<const Vec3> positions, std::span<const double> pressures,
+                  std::span<Vec3> forces) const override;
+  void add_tangent_product(std::span<const Vec3> positions, std::span<const double> pressures,
+                           std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(std::span<const Vec3> positions, std::span<const double> pressures,
+                   TangentSink& tangent) const override;
+  [[nodiscard]] double gradient_scale(std::size_t cell) const override;
+  [[nodiscard]] double rounding(const Tissue& tissue, double position_rounding) const override;
+  [[nodiscard]] std::optional<CellId> cell_of(std::size_t cell) const override { return CellId(cell); }
+  /// Targets and pressures are handed on to daughters.
+  [[nodiscard]] std::unique_ptr<Constraint> after_division(const Tissue& tissue, const Division& division,
+                                                           std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::vector<double> multipliers_after_division(std::span<const double> pressures,
+                                                               const Division& division) const override;
 
   /// What the kernels are given.
   [[nodiscard]] VolumeStep kernel_step(std::span<const Vec3> positions, std::span<const double> pressures) const;
@@ -84,6 +88,7 @@ class CellVolumes {
   std::vector<CellId> element_cell_;
   std::vector<double> targets_;  // cells; um^3
   VolumeElements volumes_;
+  bool is_held_ = true;
 };
 
 /// The bulk modulus at work: energy kappa V0 (V/V0 - 1)^2 / 2 an element, with exact volumes. It replaces the mean

@@ -24,7 +24,7 @@ Vitelline::Vitelline(const Tissue& tissue, const Capsule& shell) : shell_(shell)
   std::erase_if(nodes_, [&](NodeId node) { return node.index() >= tissue.free_node_count(); });
 }
 
-Vitelline::Gap Vitelline::gap(const Vec3& position) const {
+Obstacle::Gap Vitelline::gap(const Vec3& position) const {
   // Distance to the axis segment; on the cylinder it does not change along x.
   const double foot_x = std::clamp(position.x(), -shell_.half_axis_um, shell_.half_axis_um);
   const Vec3 from_axis(position.x() - foot_x, position.y(), position.z());

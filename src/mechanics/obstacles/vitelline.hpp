@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/ids.hpp"
+#include "mechanics/obstacle.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -13,20 +14,19 @@ namespace plica {
 /// centred on the x axis. (Of a pill or a sphere it is a little off: between two nodes their shell bulges.)
 Capsule enclosing_capsule(const Vectors& positions);
 
-class Vitelline {
+class Vitelline final : public Obstacle {
  public:
-  /// A capsule or ball; the nodes are the free ones of the tissue's apical surface (what hangs lies between them).
+  /// A capsule or ball; the nodes are those of the tissue's apical surface.
   Vitelline(const Tissue& tissue, const Capsule& shell);
 
-  /// A node's gap to the shell (positive inside, um), its gradient (unit inward normal) and Hessian (1/um).
-  struct Gap {
-    double value;
-    Vec3 inward;
-    Mat3 hessian;
-  };
-  [[nodiscard]] Gap gap(const Vec3& position) const;
+  [[nodiscard]] std::string_view name() const override { return "vitelline"; }
+  [[nodiscard]] std::unique_ptr<Obstacle> clone() const override { return std::make_unique<Vitelline>(*this); }
+  [[nodiscard]] std::span<const NodeId> nodes() const override { return nodes_; }
+  [[nodiscard]] Gap gap(const Vec3& position) const override;
+  [[nodiscard]] std::unique_ptr<Obstacle> after_division(const Tissue& tissue, const Division&) const override {
+    return std::make_unique<Vitelline>(tissue, shell_);
+  }
 
-  [[nodiscard]] const std::vector<NodeId>& nodes() const { return nodes_; }
   [[nodiscard]] const Capsule& shell() const { return shell_; }
 
  private:

@@ -1,6 +1,5 @@
 #include "solver/algebra/block_cholesky.hpp"
 
-#include <metis.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -64,33 +63,6 @@ std::vector<int> postorder(const std::vector<int>& parent) {
   return order;
 }
 
-std::vector<int> nested_dissection(const BlockPattern& pattern) {
-  idx_t n = pattern.nodes();
-  Neighbours neighbours(n);
-  for (int row = 0; row < n; ++row)
-    for (int at = pattern.starts[row]; at < pattern.starts[row + 1] - 1; ++at) {
-      neighbours[row].push_back(pattern.columns[at]);
-      neighbours[pattern.columns[at]].push_back(row);
-    }
-  std::vector<idx_t> starts{0}, adjacent, permutation(n), position(n);
-  for (const auto& list : neighbours) {
-    adjacent.insert(adjacent.end(), list.begin(), list.end());
-    starts.push_back(static_cast<idx_t>(adjacent.size()));
-  }
-  if (adjacent.empty()) {  // METIS wants an edge
-    std::vector<int> as_given(n);
-    for (int i = 0; i < n; ++i) as_given[i] = i;
-    return as_given;
-  }
-  idx_t options[METIS_NOPTIONS];
-  METIS_SetDefaultOptions(options);
-  options[METIS_OPTION_SEED] = 1;
-  if (METIS_NodeND(&n, starts.data(), adjacent.data(), nullptr, options, permutation.data(), position.data()) !=
-      METIS_OK)
-    throw std::runtime_error("METIS could not order the matrix");
-  return {position.begin(), position.end()};
-}
-
 }  // namespace
 
 BlockCholesky::BlockCholesky(const BlockPattern& pattern, Kernels kernels)
@@ -116,7 +88,7 @@ BlockCholesky::BlockCholesky(const BlockPattern& pattern, Kernels kernels)
 }
 
 void BlockCholesky::order(const BlockPattern& pattern) {
-  position_ = nested_dissection(pattern);
+  position_ = elimination_order(pattern);
   const auto below_in_order = [&] {
     Neighbours below(nodes_);
     for (int row = 0; row < nodes_; ++row)

@@ -6,10 +6,9 @@
 namespace plica {
 
 int BlockPattern::find(int row, int column) const {
-  const auto begin = columns.begin() + starts[row], end = columns.begin() + starts[row + 1];
-  const auto place = std::lower_bound(begin, end, column);
-  if (place == end || *place != column) throw std::out_of_range("no such block in the pattern");
-  return static_cast<int>(place - columns.begin());
+  const int at = place(row, column);
+  if (at < 0) throw std::out_of_range("no such block in the pattern");
+  return at;
 }
 
 BlockPattern pattern_of_groups(int nodes, std::span<const int> groups, int group_size) {
@@ -19,7 +18,7 @@ BlockPattern pattern_of_groups(int nodes, std::span<const int> groups, int group
     for (int a = 0; a < group_size; ++a)
       for (int b = 0; b < group_size; ++b)
         if (groups[g + b] < groups[g + a]) below[groups[g + a]].push_back(groups[g + b]);
-  BlockPattern pattern{{0}, {}};
+  BlockPattern pattern;
   for (auto& row : below) {
     std::sort(row.begin(), row.end());
     row.erase(std::unique(row.begin(), row.end()), row.end());

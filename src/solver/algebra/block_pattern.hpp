@@ -4,13 +4,13 @@
 #include <span>
 #include <vector>
 
+#include "solver/algebra/rows.hpp"
+
 namespace plica {
 
-/// Places of the blocks of a symmetric matrix, diagonal and below, by rows: those of row n are columns[starts[n]] to
-/// columns[starts[n + 1] - 1], ascending, the last being n itself.
-struct BlockPattern {
-  std::vector<int> starts, columns;
-  [[nodiscard]] int nodes() const { return static_cast<int>(starts.size()) - 1; }
+/// The blocks on and below the diagonal; the last of a row is its diagonal's.
+struct BlockPattern : Rows {
+  [[nodiscard]] int nodes() const { return count(); }
   /// Number of the block at (row, column), column <= row; it must be there.
   [[nodiscard]] int find(int row, int column) const;
 };

@@ -7,20 +7,16 @@
 namespace plica {
 namespace {
 
-using Vector = ConjugateResiduals::Vector;
-
-void add(double factor, const Vector& a, Vector& to) {
+void add(double factor, const KrylovVector& a, KrylovVector& to) {
   parallel_for(to.size(), [&](std::size_t i) { to[i] += factor * a[i]; });
 }
 
 }  // namespace
 
-ConjugateResidualsReport ConjugateResiduals::solve(const std::function<void(const Vector&, Vector&)>& multiply,
-                                                   const std::function<void(const Vector&, Vector&)>& precondition,
-                                                   const Vector& b, const ConjugateResidualsRule& rule,
-                                                   const std::function<bool(const ConjugateResidualsReport&)>& go_on,
-                                                   Vector& x) {
-  ConjugateResidualsReport report;
+KrylovReport ConjugateResiduals::solve(const KrylovOperator& multiply, const KrylovOperator& precondition,
+                                       const KrylovVector& b, const KrylovRule& rule, const KrylovGoOn& go_on,
+                                       KrylovVector& x) {
+  KrylovReport report;
   x.assign(b.size(), 0.0);
   residual_ = b;
   const double norm = std::sqrt(parallel_dot(b, b));
@@ -38,7 +34,7 @@ ConjugateResidualsReport ConjugateResiduals::solve(const std::function<void(cons
       directions_.emplace_back();
       products_.emplace_back();
     }
-    Vector &p = directions_[kept], &q = products_[kept];
+    KrylovVector &p = directions_[kept], &q = products_[kept];
     p.resize(b.size());
     q.resize(b.size());
     precondition(residual_, p);

@@ -6,20 +6,16 @@
 #include <span>
 #include <vector>
 
-namespace plica {
+#include "solver/algebra/rows.hpp"
 
-/// Places of the lower triangle's entries, 0-based, each once; the diagonal may be missing.
-struct SymmetricPattern {
-  int size = 0;
-  std::vector<int> rows, columns;
-};
+namespace plica {
 
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
-  /// Orders the pattern. Once a topology.
-  virtual void analyse(const SymmetricPattern& pattern) = 0;
-  /// Factorises; values in the pattern's order. False when the matrix is singular or memory runs out.
+  /// Orders the pattern on and below the diagonal, which may be missing. Once a topology.
+  virtual void analyse(const Rows& lower) = 0;
+  /// Factorises; values in the pattern's order, row by row. False when the matrix is singular or memory runs out.
   [[nodiscard]] virtual bool factorise(std::span<const double> values) = 0;
   /// Solves in place with the last factor.
   virtual void solve(std::span<double> right_hand_side) const = 0;

@@ -1,9 +1,6 @@
 #include <dmumps_c.h>
-#include <metis.h>
 
-#include <algorithm>
-#include <array>
-#include <numeric>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 
@@ -17,34 +14,10 @@ namespace {
 constexpr int job_initialise = -1, job_end = -2, job_analyse = 1, job_factorise = 2, job_solve = 3;
 constexpr int use_default_communicator = -987654;
 
-/// The place of each row in the order of elimination, 1-based: nested dissection by METIS. (Scotch, the orderer of
-/// Debian's MUMPS, gives another order from call to call.)
-std::vector<int> elimination_order(const SymmetricPattern& pattern) {
-  std::vector<idx_t> starts(pattern.size + 1, 0), neighbours;
-  for (std::size_t e = 0; e < pattern.rows.size(); ++e)
-    if (pattern.rows[e] != pattern.columns[e]) ++starts[pattern.rows[e] + 1], ++starts[pattern.columns[e] + 1];
-  for (int i = 0; i < pattern.size; ++i) starts[i + 1] += starts[i];
-  neighbours.resize(starts.back());
-  std::vector<idx_t> next(starts.begin(), starts.end() - 1);
-  for (std::size_t e = 0; e < pattern.rows.size(); ++e) {
-    const int row = pattern.rows[e], column = pattern.columns[e];
-    if (row == column) continue;
-    neighbours[next[row]++] = column;
-    neighbours[next[column]++] = row;
-  }
-  std::vector<int> order(pattern.size);
-  std::iota(order.begin(), order.end(), 1);
-  if (neighbours.empty()) return order;  // METIS wants an edge
-  idx_t size = pattern.size;
-  std::array<idx_t, METIS_NOPTIONS> options;
-  METIS_SetDefaultOptions(options.data());
-  options[METIS_OPTION_SEED] = 1;
-  std::vector<idx_t> rows(size), places(size);
-  if (METIS_NodeND(&size, starts.data(), neighbours.data(), nullptr, options.data(), rows.data(), places.data()) !=
-      METIS_OK)
-    throw std::runtime_error("METIS could not order the matrix");
-  std::transform(places.begin(), places.end(), order.begin(), [](idx_t place) { return static_cast<int>(place) + 1; });
-  return order;
+// MUMPS keeps data beside the structures that it is given, and is not made to be called twice at once.
+std::mutex& one_at_a_time() {
+  static std::mutex mutex;
+  return mutex;
 }
 
 class MumpsSolver final : public LinearSolver {
@@ -64,13 +37,19 @@ class MumpsSolver final : public LinearSolver {
   MumpsSolver(const MumpsSolver&) = delete;
   MumpsSolver& operator=(const MumpsSolver&) = delete;
 
-  void analyse(const SymmetricPattern& pattern) override {
-    order_ = elimination_order(pattern);
-    rows_ = pattern.rows;
-    columns_ = pattern.columns;
-    for (int& row : rows_) ++row;
-    for (int& column : columns_) ++column;
-    id_.n = pattern.size;
+  void analyse(const Rows& lower) override {
+    // Fortran counts from 1.
+    order_ =
+        elimination_order(lower);  // not that of Scotch, with which Debian's MUMPS comes: another from call to call
+    for (int& place : order_) ++place;
+    rows_.clear();
+    columns_.clear();
+    for (int row = 0; row < lower.count(); ++row)
+      for (const int column : lower.of(row)) {
+        rows_.push_back(row + 1);
+        columns_.push_back(column + 1);
+      }
+    id_.n = lower.count();
     id_.nnz = static_cast<MUMPS_INT8>(rows_.size());
     id_.irn = rows_.data();
     id_.jcn = columns_.data();
@@ -101,6 +80,7 @@ class MumpsSolver final : public LinearSolver {
 
  private:
   void call(int job) const {
+    const std::lock_guard lock(one_at_a_time());
     id_.job = job;
     const BlasUse use;
     dmumps_c(&id_);

@@ -23,9 +23,10 @@ void subtract(double factor, const std::vector<std::pair<int, Vec3>>& sparse, Ha
 
 }  // namespace
 
-void ContactBorder::begin(const Model& model, const StepMatrix& matrix, std::vector<NodeFrame> frames,
-                          std::vector<char> in_contact, std::size_t most_changes) {
+void ContactBorder::begin(const Model& model, const Contacts& contacts, const StepMatrix& matrix,
+                          std::vector<NodeFrame> frames, std::vector<char> in_contact, std::size_t most_changes) {
   model_ = &model;
+  contacts_ = &contacts;
   matrix_ = &matrix;
   frames_ = std::move(frames);
   in_contact_ = std::move(in_contact);
@@ -43,7 +44,7 @@ void ContactBorder::write_free(std::span<const Vec3> vectors) const {
 }
 
 void ContactBorder::add_column(const Change& change, const BlockCholesky& factor) {
-  Column column{change, model_->vitelline->nodes()[change.contact].index(), {}};
+  Column column{change, contacts_->node(change.contact).index(), {}};
   Vectors b(frames_.size());
   double diagonal = 0;
   if (column.leaves) {
@@ -87,6 +88,13 @@ void ContactBorder::recall(const FactorMemory& memory, const BlockCholesky& fact
                factor);
 }
 
+// Whether its node touches nothing else, now or in the factor.
+bool ContactBorder::is_alone(std::size_t contact, const Iterate& at) const {
+  return std::ranges::all_of(contacts_->beside(contact), [&](std::size_t other) {
+    return other == contact || (!at.in_contact[other] && !in_contact_[other]);
+  });
+}
+
 bool ContactBorder::follow(const Iterate& at, const BlockCholesky& factor) {
   std::vector<std::size_t> changed, active;
   std::vector<Change> unknown;
@@ -95,11 +103,12 @@ bool ContactBorder::follow(const Iterate& at, const BlockCholesky& factor) {
   const auto column_of = [&](std::size_t k) { return std::ranges::find(columns_, k, &Column::contact); };
   for (const std::size_t k : changed) {
     if (column_of(k) != columns_.end()) continue;
-    const std::size_t n = model_->vitelline->nodes()[k].index();
+    if (!is_alone(k, at)) return false;
+    const std::size_t n = contacts_->node(k).index();
     const bool leaves = !at.in_contact[k];
     unknown.push_back({k, leaves,
                        leaves ? Vec3(frames_[n].axes.col(frames_[n].fixed - 1))
-                              : without_held(*model_, n, model_->vitelline->gap(at.positions[n]).inward).normalized()});
+                              : without_held(*model_, n, contacts_->gap(k, at.positions).inward).normalized()});
   }
   if (changed.size() > most_changes_ || columns_.size() + unknown.size() > most_changes_) return false;
   for (const Change& change : unknown) add_column(change, factor);

@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "solver/algebra/block_cholesky.hpp"
-#include "solver/linear/newton.hpp"
+#include "solver/linear/node_frame.hpp"
 #include "solver/linear/step_matrix.hpp"
 
 namespace plica {
@@ -20,10 +20,11 @@ namespace plica {
 class ContactBorder {
  public:
   /// The factor is new: of `matrix` (which stays as it is until the next call) with these frames and contacts.
-  void begin(const Model& model, const StepMatrix& matrix, std::vector<NodeFrame> frames, std::vector<char> in_contact,
-             std::size_t most_changes);
+  void begin(const Model& model, const Contacts& contacts, const StepMatrix& matrix, std::vector<NodeFrame> frames,
+             std::vector<char> in_contact, std::size_t most_changes);
 
-  /// Takes up the changes of contacts since. False when there are too many: the factor should be made anew.
+  /// Takes up the changes of contacts since. False when there are too many, or one of a node that touches something
+  /// else as well: the factor should be made anew.
   [[nodiscard]] bool follow(const Iterate& at, const BlockCholesky& factor);
 
   /// Adds the changes that have been taken up to a factor's memory; takes up those of one after `begin`.
@@ -43,10 +44,12 @@ class ContactBorder {
     std::size_t node;
     std::vector<std::pair<int, Vec3>> halfway;  // of Y: place in the order of elimination, numbers
   };
+  [[nodiscard]] bool is_alone(std::size_t contact, const Iterate& at) const;
   void add_column(const Change& change, const BlockCholesky& factor);
   void write_free(std::span<const Vec3> vectors) const;  // to single_
 
   const Model* model_ = nullptr;
+  const Contacts* contacts_ = nullptr;
   const StepMatrix* matrix_ = nullptr;
   std::vector<NodeFrame> frames_;
   std::vector<char> in_contact_;

@@ -2,6 +2,8 @@
 // one of about equal length with the same contacts, while it still converges fast (docs/decisions/0003-newton.md).
 #pragma once
 
+#include "solver/linear/dense_border.hpp"
+#include "solver/linear/directions.hpp"
 #include "solver/linear/step_matrix.hpp"
 
 namespace plica {
@@ -16,11 +18,15 @@ class DirectDirections final : public NewtonDirections {
   void recall(const FactorMemory& memory) override;
 
  private:
+  void prepare(const Step& step);
   bool refresh(const Step& step, const Iterate& at);
+  void border_dense_rows();
 
   const Model& model_;
-  StepMatrix matrix_;
+  Contacts contacts_;
+  std::unique_ptr<StepMatrix> matrix_;  // of the laws' last patterns
   std::unique_ptr<LinearSolver> linear_solver_;
+  DenseBorder dense_;
   std::vector<double> values_;
 
   // The factor at hand: for which Step::rate_s and frames it was made. Empty frames: none.

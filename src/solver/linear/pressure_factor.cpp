@@ -3,28 +3,26 @@
 #include <algorithm>
 
 #include "core/parallel.hpp"
-#include "solver/multigrid/rows.hpp"
 
 namespace plica {
 
-PressureFactor::PressureFactor(const VolumeJacobian& jacobian, std::size_t free_nodes)
-    : places_(jacobian.cells(), {-1, 0}), compliances_(free_nodes, 0.0) {
+PressureFactor::PressureFactor(const ConstraintJacobian& jacobian, std::size_t free_nodes)
+    : places_(jacobian.sparse_rows(), {-1, 0}), compliances_(free_nodes, 0.0) {
   gather_blocks(jacobian);
-  multigrid::Rows rows = multigrid::collect_rows(static_cast<int>(blocks_.size()), [&](int block, const auto& take) {
+  pattern_ = {collect_rows(static_cast<int>(blocks_.size()), [&](int block, const auto& take) {
     for (const int cell : blocks_[block]) {
       if (cell < 0) continue;
-      for (const auto& [node, value] : jacobian.of_cell(cell))
+      for (const auto& [node, value] : jacobian.of_row(cell))
         for (const auto& touch : jacobian.around(node.index()))
-          if (const int other = places_[touch.cell].block; other <= block) take(other);
+          if (const int other = places_[touch.row].block; other <= block) take(other);
     }
-  });
-  pattern_ = {std::move(rows.starts), std::move(rows.columns)};
+  })};
   factor_.emplace(pattern_);
   single_.resize(cells_a_block * blocks_.size());
 }
 
 // Each cell that is left takes neighbours that are left, those with most nodes in common first.
-void PressureFactor::gather_blocks(const VolumeJacobian& jacobian) {
+void PressureFactor::gather_blocks(const ConstraintJacobian& jacobian) {
   for (int cell = 0; cell < static_cast<int>(places_.size()); ++cell) {
     if (places_[cell].block >= 0) continue;
     const int block = static_cast<int>(blocks_.size());
@@ -32,9 +30,9 @@ void PressureFactor::gather_blocks(const VolumeJacobian& jacobian) {
     places_[cell] = {block, 0};
     for (int row = 1; row < cells_a_block; ++row) {
       std::vector<int> around;
-      for (const auto& [node, value] : jacobian.of_cell(members[row - 1]))
+      for (const auto& [node, value] : jacobian.of_row(members[row - 1]))
         for (const auto& touch : jacobian.around(node.index()))
-          if (places_[touch.cell].block < 0) around.push_back(touch.cell);
+          if (places_[touch.row].block < 0) around.push_back(touch.row);
       if (around.empty()) break;
       std::ranges::sort(around);
       int best = around.front();
@@ -53,17 +51,17 @@ void PressureFactor::gather_blocks(const VolumeJacobian& jacobian) {
   }
 }
 
-void PressureFactor::write_rows(const VolumeJacobian& jacobian, std::span<const NodeFrame> frames, int block,
+void PressureFactor::write_rows(const ConstraintJacobian& jacobian, std::span<const NodeFrame> frames, int block,
                                 std::span<float> values) const {
   for (const int cell : blocks_[block]) {
     if (cell < 0) continue;
-    for (const auto& [node, value] : jacobian.of_cell(cell)) {
+    for (const auto& [node, value] : jacobian.of_row(cell)) {
       const Vec3 moved = compliances_[node.index()] * frames[node.index()].free_part(value);
       for (const auto& [other, slot] : jacobian.around(node.index())) {
         if (places_[other].block > block) continue;
         const std::size_t at = 9 * static_cast<std::size_t>(pattern_.find(block, places_[other].block)) +
                                3 * places_[cell].row + places_[other].row;
-        values[at] += static_cast<float>(moved.dot(jacobian.of_cell(other)[slot].value));
+        values[at] += static_cast<float>(moved.dot(jacobian.of_row(other)[slot].value));
       }
     }
   }
@@ -76,7 +74,7 @@ void PressureFactor::write_rows(const VolumeJacobian& jacobian, std::span<const 
   }
 }
 
-bool PressureFactor::factorise(const VolumeJacobian& jacobian, const StepMatrix& matrix,
+bool PressureFactor::factorise(const ConstraintJacobian& jacobian, const StepMatrix& matrix,
                                std::span<const NodeFrame> frames) {
   parallel_for(compliances_.size(), [&](std::size_t n) { compliances_[n] = 3 / matrix.block(n, n).trace(); });
   if (!std::ranges::all_of(compliances_, [](double c) { return c > 0; })) return false;

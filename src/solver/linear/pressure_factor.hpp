@@ -6,8 +6,8 @@
 #pragma once
 
 #include "solver/algebra/block_cholesky.hpp"
+#include "solver/linear/constraint_jacobian.hpp"
 #include "solver/linear/step_matrix.hpp"
-#include "solver/linear/volume_jacobian.hpp"
 
 namespace plica {
 
@@ -15,11 +15,11 @@ namespace plica {
 class PressureFactor {
  public:
   /// Cells and nodes that join them: analysed once a topology.
-  PressureFactor(const VolumeJacobian& jacobian, std::size_t free_nodes);
+  PressureFactor(const ConstraintJacobian& jacobian, std::size_t free_nodes);
 
   /// Makes the factor with the diagonal of `matrix` (of A alone) and without the directions that frames fix. False when
   /// a node has no stiffness.
-  [[nodiscard]] bool factorise(const VolumeJacobian& jacobian, const StepMatrix& matrix,
+  [[nodiscard]] bool factorise(const ConstraintJacobian& jacobian, const StepMatrix& matrix,
                                std::span<const NodeFrame> frames);
 
   /// Pressures p with L p = rates, in place; cells: um^3 in, kPa out.
@@ -34,8 +34,8 @@ class PressureFactor {
   struct Place {
     int block = 0, row = 0;
   };
-  void gather_blocks(const VolumeJacobian& jacobian);
-  void write_rows(const VolumeJacobian& jacobian, std::span<const NodeFrame> frames, int block,
+  void gather_blocks(const ConstraintJacobian& jacobian);
+  void write_rows(const ConstraintJacobian& jacobian, std::span<const NodeFrame> frames, int block,
                   std::span<float> values) const;
 
   std::vector<Place> places_;               // cells

@@ -1,27 +1,25 @@
 #include "solver/linear/step_matrix.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <stdexcept>
 
 #include "core/parallel.hpp"
-#include "solver/multigrid/rows.hpp"
 
 namespace plica {
 
 namespace {
 
-// The free nodes of every group that a law or the volumes join; laws that join the same groups once.
-multigrid::Rows joined_nodes(const Model& model) {
+// The free nodes of every group that a law or a constraint joins; what joins the same groups once.
+Rows joined_nodes(const Model& model, const Step& step) {
   std::vector<NodeGroups> lists;
   const auto take = [&](NodeGroups groups) {
     if (std::ranges::find(lists, groups) == lists.end()) lists.push_back(std::move(groups));
   };
-  for (const auto& law : model.laws) take(law->node_groups({}));
-  if (model.volumes_are_held) {
-    NodeGroups elements;
-    for (const auto& element : model.tissue.elements) elements.add(element);
-    take(std::move(elements));
-  }
-  multigrid::Rows joined;
+  for_laws(model, step, [&](const Law& law, const Step& own) { take(law.node_groups(own.internal)); });
+  for_held_constraints(model, [&](const Constraint& constraint, std::size_t) { take(constraint.parts().nodes); });
+  Rows joined;
   for (const NodeGroups& groups : lists)
     for (std::size_t k = 0; k < groups.size(); ++k) {
       for (const NodeId node : groups[k])
@@ -32,42 +30,43 @@ multigrid::Rows joined_nodes(const Model& model) {
 }
 
 // The blocks that can be non-zero: of pairs within a group, and of every node with itself.
-BlockPattern pattern_of(const Model& model) {
+BlockPattern pattern_of(const Model& model, const Step& step) {
   const int nodes = static_cast<int>(model.tissue.free_node_count());
-  const multigrid::Rows groups = joined_nodes(model);
-  const multigrid::Transposed of_node = multigrid::transpose(groups, nodes);
-  multigrid::Rows lower = multigrid::collect_rows(nodes, [&](int node, const auto& take) {
+  const Rows groups = joined_nodes(model, step);
+  const Transposed of_node = transpose(groups, nodes);
+  Rows lower = collect_rows(nodes, [&](int node, const auto& take) {
     take(node);
     for (int at = of_node.starts[node]; at < of_node.starts[node + 1]; ++at)
       for (const int other : groups.of(of_node.rows[at]))
         if (other < node) take(other);
   });
-  return {std::move(lower.starts), std::move(lower.columns)};
+  return {std::move(lower)};
 }
 
 }  // namespace
 
-StepMatrix::StepMatrix(const Model& model)
-    : tissue_(model.tissue), layout_(pattern_of(model)), blocks_(layout_.columns.size()), jacobian_(model) {}
+StepMatrix::StepMatrix(const Model& model, const Step& step)
+    : tissue_(model.tissue),
+      revisions_(pattern_revisions(model, step)),
+      layout_(pattern_of(model, step)),
+      blocks_(layout_.columns.size()),
+      jacobian_(model) {}
 
-SymmetricPattern StepMatrix::pattern() const {
-  SymmetricPattern pattern;
+Rows StepMatrix::pattern() const {
+  Rows pattern;
   const int nodes = layout_.nodes();
-  const int cells = static_cast<int>(jacobian_.cells());
-  pattern.size = 3 * nodes + cells;
-  const auto entry = [&](int row, int column) {
-    pattern.rows.push_back(row);
-    pattern.columns.push_back(column);
-  };
-  for (int row = 0; row < nodes; ++row)
-    for (int k = layout_.starts[row]; k < layout_.starts[row + 1]; ++k)
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < (layout_.columns[k] == row ? i + 1 : 3); ++j)
-          entry(3 * row + i, 3 * layout_.columns[k] + j);
-  for (int cell = 0; cell < cells; ++cell) {
-    for (const auto& [node, value] : jacobian_.of_cell(cell))
-      for (int j = 0; j < 3; ++j) entry(3 * nodes + cell, 3 * node.number() + j);
-    entry(3 * nodes + cell, 3 * nodes + cell);
+  const auto end_row = [&] { pattern.starts.push_back(static_cast<int>(pattern.columns.size())); };
+  for (int node = 0; node < nodes; ++node)
+    for (int i = 0; i < 3; ++i) {
+      for (const int column : layout_.of(node))
+        for (int j = 0; j < (column == node ? i + 1 : 3); ++j) pattern.columns.push_back(3 * column + j);
+      end_row();
+    }
+  for (int row = 0; row < static_cast<int>(jacobian_.sparse_rows()); ++row) {
+    for (const auto& [node, value] : jacobian_.of_row(row))
+      for (int j = 0; j < 3; ++j) pattern.columns.push_back(3 * node.number() + j);
+    pattern.columns.push_back(3 * nodes + row);
+    end_row();
   }
   return pattern;
 }
@@ -84,55 +83,60 @@ void StepMatrix::add_block(NodeId row, NodeId column, const Mat3& block) {
   const std::size_t free = tissue_.free_node_count();
   if (row.index() < free && column.index() < free) {
     if (column <= row)
-      lower_block(row, column) += block;
+      add_lower(row, column, block);
     else
-      lower_block(column, row) += block.transpose();
+      add_lower(column, row, block.transpose());
     return;
   }
   tissue_.for_free_nodes(row, [&](NodeId r, double weight_r) {
     tissue_.for_free_nodes(column, [&](NodeId c, double weight_c) {
       // Both orders of a pair; nodes that carry both of them are in it twice.
-      if (c <= r) lower_block(r, c) += weight_r * weight_c * block;
-      if (r <= c && row != column) lower_block(c, r) += weight_r * weight_c * block.transpose();
+      if (c <= r) add_lower(r, c, weight_r * weight_c * block);
+      if (r <= c && row != column) add_lower(c, r, weight_r * weight_c * block.transpose());
     });
   });
 }
 
-Mat3& StepMatrix::lower_block(NodeId row, NodeId column) {
-  const auto first = layout_.columns.begin() + layout_.starts[row.index()],
-             last = layout_.columns.begin() + layout_.starts[row.index() + 1];
-  return blocks_[std::lower_bound(first, last, column.number()) - layout_.columns.begin()];
+void StepMatrix::add_lower(NodeId row, NodeId column, const Mat3& block) {
+  const int at = layout_.place(row.number(), column.number());
+  if (at < 0)
+    is_outside_ = true;  // told by `assemble`: not here, where several threads may be
+  else
+    blocks_[at] += block;
 }
 
-void StepMatrix::assemble(const Model& model, const Step& step, const Iterate& at) {
+void StepMatrix::assemble(const Model& model, const Contacts& contacts, const Step& step, const Iterate& at) {
   set_zero();
-  for (const auto& law : model.laws) law->add_tangent(step, *this);
-  if (model.volumes_are_held) {
-    if (!step.semidefinite_tangent) model.volumes.add_tangent(at.positions, at.pressures, *this);
-    jacobian_.update(model.volumes, at.positions);
-  }
+  const auto refuse_outside = [&](std::string_view name) {
+    if (is_outside_.exchange(false))
+      throw std::logic_error(fmt::format(
+          "\"{}\" adds to the tangent a block of nodes that its pattern does not join (node_groups, parts)", name));
+  };
+  for_laws(model, step, [&](const Law& law, const Step& own) {
+    law.add_tangent(own, *this);
+    refuse_outside(law.name());
+  });
+  for_held_constraints(model, [&](const Constraint& constraint, std::size_t first) {
+    if (step.semidefinite_tangent) return;
+    constraint.add_tangent(at.positions, std::span(at.multipliers).subspan(first, constraint.count()), *this);
+    refuse_outside(constraint.name());
+  });
+  jacobian_.update(model, at.positions);
   for (std::size_t k = 0; k < at.in_contact.size(); ++k)
-    if (at.in_contact[k]) {
-      const NodeId node = model.vitelline->nodes()[k];
-      add_block(node, node, -at.contact_forces[k] * model.vitelline->gap(at.positions[node.index()]).hessian);
-    }
+    if (at.in_contact[k])
+      add_block(contacts.node(k), contacts.node(k), -at.contact_forces[k] * contacts.gap(k, at.positions).hessian);
 }
 
-void StepMatrix::add_volume_stiffness(const Model& model, std::span<const Vec3> positions,
-                                      std::span<const double> weights) {
-  if (weights.empty()) return;
-  const auto gradients = model.volumes.element_gradients(positions);
-  model.volumes.for_elements(
-      [&](std::size_t e) {
-        // sum_e 1/V_e (dV_e)^2 >= 1/V_c (sum_e dV_e)^2.
-        const std::size_t cell = model.volumes.cell_of(e).index();
-        const double weight = weights[cell] * model.tissue.cells[cell].element_count;
-        const auto& nodes = model.tissue.elements[e];
-        for (int i = 0; i < 8; ++i)
-          for (int j = 0; j <= i; ++j)
-            add_block(nodes[i], nodes[j], weight * gradients[e][i] * gradients[e][j].transpose());
-      },
-      takes_apart());
+void StepMatrix::add_constraint_stiffness(const Model& model, std::span<const Vec3> positions,
+                                          std::span<const double> weights) {
+  jacobian_.for_parts(model, positions, takes_apart(),
+                      [&](std::size_t row, std::span<const NodeId> nodes, std::span<const Vec3> gradients) {
+                        // sum_p n (dc_p)^2 >= (sum_p dc_p)^2, of n parts.
+                        const double weight = weights[row] * jacobian_.part_count(row);
+                        for (std::size_t i = 0; i < nodes.size(); ++i)
+                          for (std::size_t j = 0; j <= i; ++j)
+                            add_block(nodes[i], nodes[j], weight * gradients[i] * gradients[j].transpose());
+                      });
 }
 
 double StepMatrix::mean_diagonal() const {
@@ -143,12 +147,8 @@ double StepMatrix::mean_diagonal() const {
 
 Mat3 StepMatrix::block(std::size_t row, std::size_t column) const {
   if (column > row) return block(column, row).transpose();
-  if (static_cast<int>(column) < layout_.columns[layout_.starts[row]]) return Mat3::Zero();  // a row has its diagonal
-  const auto first = layout_.columns.begin() + layout_.starts[row],
-             last = layout_.columns.begin() + layout_.starts[row + 1];
-  const auto at = std::lower_bound(first, last, static_cast<int>(column));
-  if (at == last || *at != static_cast<int>(column)) return Mat3::Zero();
-  return blocks_[at - layout_.columns.begin()];
+  const int at = layout_.place(static_cast<int>(row), static_cast<int>(column));
+  return at < 0 ? Mat3(Mat3::Zero()) : blocks_[at];
 }
 
 void StepMatrix::multiply(std::size_t node, const Vec3& direction, std::span<Vec3> product) const {
@@ -165,22 +165,29 @@ double pivot(double own) { return own != 0 ? own : 1; }
 void StepMatrix::write_values(std::span<const NodeFrame> frames, std::vector<double>& values) const {
   values.clear();
   values.reserve(9 * blocks_.size());
-  for (std::size_t row = 0; row + 1 < layout_.starts.size(); ++row)
+  std::vector<Mat3> turned;  // the blocks of a node's rows
+  for (int row = 0; row < layout_.nodes(); ++row) {
+    const NodeFrame& a = frames[row];
+    turned.clear();
     for (int k = layout_.starts[row]; k < layout_.starts[row + 1]; ++k) {
-      const std::size_t column = layout_.columns[k];
-      const NodeFrame &a = frames[row], &b = frames[column];
+      const NodeFrame& b = frames[layout_.columns[k]];
       Mat3 block = blocks_[k];
       if (a.fixed > 0) block = a.axes.transpose() * block;
       if (b.fixed > 0) block = block * b.axes;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < (column == row ? i + 1 : 3); ++j) {
-          const bool fixed = i < a.fixed || j < b.fixed;
-          values.push_back(!fixed ? block(i, j) : column == row && i == j ? pivot(block(i, i)) : 0.0);
-        }
+      turned.push_back(block);
     }
-  for (std::size_t cell = 0; cell < jacobian_.cells(); ++cell) {
+    for (int i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < turned.size(); ++k) {
+        const int column = layout_.columns[layout_.starts[row] + k];
+        for (int j = 0; j < (column == row ? i + 1 : 3); ++j) {
+          const bool fixed = i < a.fixed || j < frames[column].fixed;
+          values.push_back(!fixed ? turned[k](i, j) : column == row && i == j ? pivot(turned[k](i, i)) : 0.0);
+        }
+      }
+  }
+  for (std::size_t row = 0; row < jacobian_.sparse_rows(); ++row) {
     bool can_change = false;
-    for (const auto& [node, gradient] : jacobian_.of_cell(cell)) {
+    for (const auto& [node, gradient] : jacobian_.of_row(row)) {
       const NodeFrame& frame = frames[node.index()];
       const Vec3 local = frame.axes.transpose() * gradient;
       for (int j = 0; j < 3; ++j) {

@@ -1,45 +1,52 @@
 // The symmetric system of one Newton iteration:
 //   [ A  -J^T ] [ dx      ]
 //   [ -J   0  ] [ dlambda ]
-// A: tangent of all laws, 3 x 3 blocks a pair of nodes; J: gradients of the cells' volumes. Nodes are the free ones:
-// what acts on a hanging node acts on those that carry it. Some nodes have directions
+// A: tangent of all laws, 3 x 3 blocks a pair of nodes; J: the sparse rows of the constraints' gradients. Nodes are the
+// free ones: what acts on a hanging node acts on those that carry it. Some nodes have directions
 // in which they are fixed (held, or in contact): their unknowns are turned into a frame whose first axes are those
 // directions, and those rows and columns are taken out.
 #pragma once
 
+#include <atomic>
 #include <span>
 #include <vector>
 
 #include "core/uninitialised.hpp"
 #include "solver/algebra/block_cholesky.hpp"
 #include "solver/algebra/linear_solver.hpp"
-#include "solver/linear/newton.hpp"
-#include "solver/linear/volume_jacobian.hpp"
+#include "solver/linear/constraint_jacobian.hpp"
+#include "solver/linear/iterate.hpp"
+#include "solver/linear/node_frame.hpp"
 
 namespace plica {
 
 class StepMatrix final : public TangentSink {
  public:
-  explicit StepMatrix(const Model& model);
+  /// For steps in which the laws' patterns are those of this one.
+  explicit StepMatrix(const Model& model, const Step& step = {});
 
-  /// The numbers of the whole system, in the order of write_values. Unknowns: three a free node, then one a cell (when
-  /// volumes are held).
-  [[nodiscard]] SymmetricPattern pattern() const;
+  /// Whether they still are.
+  [[nodiscard]] bool serves(const Model& model, const Step& step) const {
+    return pattern_revisions(model, step) == revisions_;
+  }
+
+  /// The numbers of the whole system, in the order of write_values. Unknowns: three a free node, then one a sparse row
+  /// of J.
+  [[nodiscard]] Rows pattern() const;
 
   void set_zero();
-  /// The tangent of all laws and constraints, and the volumes' gradients, at an iterate.
-  void assemble(const Model& model, const Step& step, const Iterate& at);
+  /// The tangent of all laws, constraints and obstacles, and J, at an iterate. std::logic_error, which names the law,
+  /// when one adds a block outside the pattern that it states.
+  void assemble(const Model& model, const Contacts& contacts, const Step& step, const Iterate& at);
   void add_block(NodeId row, NodeId column, const Mat3& block) override;
   /// What acts on a hanging node acts on others.
   [[nodiscard]] bool takes_apart() const override { return tissue_.free_node_count() == tissue_.node_count(); }
-  void set_volume_gradients(const CellVolumes& volumes, std::span<const Vec3> positions) {
-    jacobian_.update(volumes, positions);
-  }
-  [[nodiscard]] const VolumeJacobian& jacobian() const { return jacobian_; }
+  void take_gradients(const Model& model, std::span<const Vec3> positions) { jacobian_.update(model, positions); }
+  [[nodiscard]] const ConstraintJacobian& jacobian() const { return jacobian_; }
 
-  /// Adds sum_c w_c dV_c dV_c^T, spread over the cells' elements so that it joins no more nodes than they do: elements
-  /// of one cell resist their own changes of volume.
-  void add_volume_stiffness(const Model& model, std::span<const Vec3> positions, std::span<const double> weights);
+  /// Adds sum_r w_r J_r^T J_r of the sparse rows, spread over their functions' parts so that it joins no more nodes
+  /// than they do: the elements of one cell resist their own changes of volume.
+  void add_constraint_stiffness(const Model& model, std::span<const Vec3> positions, std::span<const double> weights);
 
   /// The mean of the diagonal of A, nN/um.
   [[nodiscard]] double mean_diagonal() const;
@@ -59,12 +66,14 @@ class StepMatrix final : public TangentSink {
   void write_projected_blocks(std::span<const NodeFrame> frames, UninitialisedVector<float>& values) const;
 
  private:
-  [[nodiscard]] Mat3& lower_block(NodeId row, NodeId column);  // column <= row, both free
+  void add_lower(NodeId row, NodeId column, const Mat3& block);  // column <= row, both free
 
   const Tissue& tissue_;
+  std::vector<int> revisions_;
   BlockPattern layout_;  // lower triangle
   std::vector<Mat3> blocks_;
-  VolumeJacobian jacobian_;
+  ConstraintJacobian jacobian_;
+  std::atomic<bool> is_outside_ = false;  // a block was given that is not in the pattern
 };
 
 }  // namespace plica

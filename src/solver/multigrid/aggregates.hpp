@@ -1,7 +1,7 @@
 // Which nodes become one of the next coarser level.
 #pragma once
 
-#include "solver/multigrid/rows.hpp"
+#include "solver/algebra/rows.hpp"
 
 namespace plica::multigrid {
 

@@ -11,7 +11,7 @@
 
 #include "core/uninitialised.hpp"
 #include "solver/algebra/block_pattern.hpp"
-#include "solver/multigrid/rows.hpp"
+#include "solver/algebra/rows.hpp"
 
 namespace plica::multigrid {
 

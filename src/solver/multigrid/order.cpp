@@ -15,23 +15,6 @@ void walk(const Rows& neighbours, int first, std::vector<char>& seen, std::vecto
     }
 }
 
-Rows neighbours_of(const BlockPattern& pattern) {
-  Rows rows{std::vector<int>(pattern.starts.size(), 0), {}};
-  const auto for_pairs = [&](const auto& take) {
-    for (int node = 0; node < pattern.nodes(); ++node)
-      for (int block = pattern.starts[node]; block < pattern.starts[node + 1] - 1; ++block) {
-        take(node, pattern.columns[block]);
-        take(pattern.columns[block], node);
-      }
-  };
-  for_pairs([&](int node, int) { ++rows.starts[node + 1]; });
-  for (int node = 0; node < pattern.nodes(); ++node) rows.starts[node + 1] += rows.starts[node];
-  rows.columns.resize(rows.starts.back());
-  std::vector<int> next(rows.starts.begin(), rows.starts.end() - 1);
-  for_pairs([&](int node, int neighbour) { rows.columns[next[node]++] = neighbour; });
-  return rows;
-}
-
 }  // namespace
 
 std::vector<int> places_by_distance(const BlockPattern& pattern) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "solver/algebra/block_pattern.hpp"
-#include "solver/multigrid/rows.hpp"
+#include "solver/algebra/rows.hpp"
 
 namespace plica::multigrid {
 

@@ -1,5 +1,8 @@
 #include "solver/projection/linearly_implicit.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "solver/algebra/conjugate_gradients.hpp"
 
 namespace plica {
@@ -14,12 +17,17 @@ struct DiagonalBlocks final : TangentSink {
   std::vector<Mat3> blocks;
 };
 
+std::span<Vec3> as_vectors(KrylovVector& vector) { return {reinterpret_cast<Vec3*>(vector.data()), vector.size() / 3}; }
+std::span<const Vec3> as_vectors(const KrylovVector& vector) {
+  return {reinterpret_cast<const Vec3*>(vector.data()), vector.size() / 3};
+}
+
 }  // namespace
 
 LinearlyImplicit::LinearlyImplicit(const Model& model, double tolerance, int most_iterations)
     : model_(model), tolerance_(tolerance), most_iterations_(most_iterations) {}
 
-void LinearlyImplicit::keep_held(Vectors& vectors) const {
+void LinearlyImplicit::keep_held(std::span<Vec3> vectors) const {
   for (std::size_t n = 0; n < vectors.size(); ++n)
     for (int axis = 0; axis < 3; ++axis)
       if (model_.held[n][axis]) vectors[n][axis] = 0;
@@ -29,13 +37,14 @@ StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool
   const std::size_t nodes = state.positions.size();
   Step step{state.positions, state.positions, state.velocities, duration_s, state.time_s + duration_s};
   step.semidefinite_tangent = true;
+  step.internals = state.internals;
   StepReport report;
-  Vectors forces(nodes, Vec3::Zero());
-  for (const auto& law : model_.laws) law->add_forces(step, forces);
-  keep_held(forces);
+  KrylovVector forces(3 * nodes, 0.0);
+  for_laws(model_, step, [&](const Law& law, const Step& own) { law.add_forces(own, as_vectors(forces)); });
+  keep_held(as_vectors(forces));
 
   DiagonalBlocks diagonal(nodes);
-  for (const auto& law : model_.laws) law->add_tangent(step, diagonal);
+  for_laws(model_, step, [&](const Law& law, const Step& own) { law.add_tangent(own, diagonal); });
   for (std::size_t n = 0; n < nodes; ++n) {
     Mat3& block = diagonal.blocks[n];
     for (int axis = 0; axis < 3; ++axis)
@@ -47,17 +56,20 @@ StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool
     block = block.inverse().eval();
   }
 
-  const auto multiply = [&](const Vectors& direction, Vectors& product) {
-    product.assign(nodes, Vec3::Zero());
-    for (const auto& law : model_.laws) law->add_tangent_product(step, direction, product);
-    keep_held(product);
+  const auto multiply = [&](const KrylovVector& direction, KrylovVector& product) {
+    std::ranges::fill(product, 0.0);
+    for_laws(model_, step, [&](const Law& law, const Step& own) {
+      law.add_tangent_product(own, as_vectors(direction), as_vectors(product));
+    });
+    keep_held(as_vectors(product));
   };
-  const auto precondition = [&](const Vectors& residual, Vectors& result) {
-    for (std::size_t n = 0; n < nodes; ++n) result[n] = diagonal.blocks[n] * residual[n];
+  const auto precondition = [&](const KrylovVector& residual, KrylovVector& result) {
+    for (std::size_t n = 0; n < nodes; ++n) as_vectors(result)[n] = diagonal.blocks[n] * as_vectors(residual)[n];
   };
-  Vectors displacements;
-  const ConjugateGradientsReport solved =
-      conjugate_gradients(multiply, precondition, forces, tolerance_, most_iterations_, stop_requested_, displacements);
+  KrylovVector displacements;
+  const KrylovReport solved = conjugate_gradients(
+      multiply, precondition, forces, {.tolerance = tolerance_, .most_iterations = most_iterations_},
+      [&](const KrylovReport&) { return !(stop_requested_ && stop_requested_()); }, displacements);
   report.newton_iterations = 1;
   report.linear_solves = solved.iterations;
   report.residual = solved.residual;
@@ -65,16 +77,19 @@ StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool
     report.outcome = solved.interrupted               ? StepReport::Outcome::interrupted
                      : std::isfinite(solved.residual) ? StepReport::Outcome::no_linear_convergence
                                                       : StepReport::Outcome::not_finite;
-    report.cell = cell_with_largest(model_.tissue, forces);
+    report.cell = cell_with_largest(model_.tissue, as_vectors(forces));
     return report;
   }
 
   next.positions = state.positions;
-  for (std::size_t n = 0; n < nodes; ++n) next.positions[n] += displacements[n];
+  for (std::size_t n = 0; n < nodes; ++n) next.positions[n] += as_vectors(displacements)[n];
   next.time_s = state.time_s + duration_s;
-  next.pressures.assign(state.pressures.size(), 0.0);
+  next.multipliers.assign(state.multipliers.size(), 0.0);
   next.contact_forces.assign(state.contact_forces.size(), 0.0);
   next.in_contact.assign(state.in_contact.size(), 0);
+  next.internals.clear();
+  step.positions = next.positions;
+  for_laws(model_, step, [&](const Law& law, const Step& own) { next.internals.push_back(law.next_internal(own)); });
   record_motion(state, duration_s, TimeOrder::first, next);
   report.outcome = StepReport::Outcome::converged;
   return report;

@@ -18,7 +18,7 @@ class LinearlyImplicit final : public Stepper {
   void stop_when(std::function<bool()> stop_requested) override { stop_requested_ = std::move(stop_requested); }
 
  private:
-  void keep_held(Vectors& vectors) const;  // sets held directions to zero
+  void keep_held(std::span<Vec3> vectors) const;  // sets held directions to zero
 
   const Model& model_;
   double tolerance_;

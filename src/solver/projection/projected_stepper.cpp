@@ -17,7 +17,7 @@ StepReport ProjectedStepper::advance(const State& state, double duration_s, bool
   State moved;
   StepReport report = force_step_->advance(state, duration_s, from_rest, moved);
   if (!report.converged()) return report;
-  moved.pressures.assign(state.pressures.size(), 0.0);  // none of its own
+  moved.multipliers.assign(state.multipliers.size(), 0.0);  // none of its own
   projection_.apply(state, duration_s, stop_requested_, moved, report);
   if (!report.converged()) return report;
   if (const auto inverted = inverted_cell(model_.tissue, moved.positions)) {

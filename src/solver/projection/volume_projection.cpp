@@ -21,10 +21,10 @@ double volume_inside(const ClosedSurface& surface, const Vectors& positions) {
 }  // namespace
 
 VolumeProjection::VolumeProjection(const Model& model, const std::optional<ProjectionRule>& rule)
-    : model_(model), rule_(rule.value_or(ProjectionRule{})) {
+    : model_(model), contacts_(model), rule_(rule.value_or(ProjectionRule{})) {
   if (!rule) return;
   const Tissue& tissue = model.tissue;
-  const std::vector<double>& targets = model.volumes.targets();
+  const std::span<const double> targets = model.volumes().targets();
   std::vector<ClosedSurface::Quad> facets;
   if (rule_.surfaces == ProjectionRule::Surfaces::cells) {
     for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
@@ -53,8 +53,9 @@ void VolumeProjection::set_weights(double duration_s) {
   const Vectors &at = model_.tissue.rest_positions, along_x(nodes, Vec3::UnitX()), still(nodes, Vec3::Zero());
   const Step step{at, at, still, duration_s, 0};
   Vectors resistance(nodes, Vec3::Zero());
-  for (const auto& law : model_.laws)
-    if (law->node_groups({}).empty()) law->add_tangent_product(step, along_x, resistance);
+  for_laws(model_, step, [&](const Law& law, const Step& own) {
+    if (law.node_groups(own.internal).empty()) law.add_tangent_product(own, along_x, resistance);
+  });
   double sum = 0, least = 0;
   for (const Vec3& r : resistance) {
     sum += r.x();
@@ -66,13 +67,13 @@ void VolumeProjection::set_weights(double duration_s) {
   for (std::size_t n = 0; n < nodes; ++n) weights_[n] = 1 / (std::max(resistance[n].x(), least) * duration_s);
 }
 
-// Moves a node of the vitelline inward, the way that its held directions leave, by a distance along the normal.
+// Moves the node of a contact inward, the way that its held directions leave, by a distance along the normal.
 void VolumeProjection::push(std::size_t k, double distance_um, Vectors& positions) {
-  const std::size_t n = model_.vitelline->nodes()[k].index();
-  Vec3 inward = model_.vitelline->gap(positions[n]).inward;
+  const std::size_t n = contacts_.node(k).index();
+  Vec3 inward = contacts_.gap(k, positions).inward;
   for (int axis = 0; axis < 3; ++axis)
     if (model_.held[n][axis]) inward[axis] = 0;
-  if (inward.norm() < 1e-6) return;  // held where the shell would push: the hold's business
+  if (inward.norm() < 1e-6) return;  // held where the obstacle would push: the hold's business
   positions[n] += distance_um / inward.squaredNorm() * inward;
   pushed_[k] += distance_um;
 }
@@ -82,7 +83,7 @@ void VolumeProjection::push(std::size_t k, double distance_um, Vectors& position
 bool VolumeProjection::project_shell(Vectors& positions) {
   bool moved = false;
   for (std::size_t k = 0; k < pushed_.size(); ++k) {
-    const double gap = model_.vitelline->gap(positions[model_.vitelline->nodes()[k].index()]).value;
+    const double gap = contacts_.gap(k, positions).value;
     const double distance = std::max(-gap, -pushed_[k]);
     if (std::abs(distance) <= rule_.gap_um) continue;
     const double before = pushed_[k];
@@ -132,9 +133,9 @@ void VolumeProjection::repeat_last_step(const State& before, double duration_s, 
   moved_.assign(kept_.size(), 0.0);
   pushed_.assign(after.contact_forces.size(), 0.0);
   for (std::size_t k = 0; k < kept_.size(); ++k)
-    if (const auto& cell = kept_[k].cell; cell && before.pressures[cell->index()] != 0) {
+    if (const auto& cell = kept_[k].cell; cell && before.multipliers[cell->index()] != 0) {
       look_at(kept_[k], after.positions);
-      move(k, before.pressures[cell->index()] * duration_s, after.positions);
+      move(k, before.multipliers[cell->index()] * duration_s, after.positions);
     }
   for (std::size_t k = 0; k < pushed_.size(); ++k)
     if (const double more = before.contact_forces[k] - after.contact_forces[k]; more > 0)
@@ -142,21 +143,20 @@ void VolumeProjection::repeat_last_step(const State& before, double duration_s, 
 }
 
 double VolumeProjection::contact_weight(std::size_t k, double duration_s) const {
-  return weights_[model_.vitelline->nodes()[k].index()] * duration_s;
+  return weights_[contacts_.node(k).index()] * duration_s;
 }
 
 // How far off volumes and shell are left.
 void VolumeProjection::judge(const Vectors& positions, StepReport& report) const {
-  report.volume_error = report.outside_um = 0;
+  report.constraint_error = report.outside_um = 0;
   for (const auto& [surface, target, cell] : kept_) {
     const double error = std::abs(volume_inside(surface, positions) / target - 1);
-    if (error <= report.volume_error) continue;
-    report.volume_error = error;
+    if (error <= report.constraint_error) continue;
+    report.constraint_error = error;
     report.cell = cell;
   }
-  if (!model_.vitelline) return;
-  for (const NodeId node : model_.vitelline->nodes())
-    report.outside_um = std::max(report.outside_um, -model_.vitelline->gap(positions[node.index()]).value);
+  for (std::size_t k = 0; k < contacts_.size(); ++k)
+    report.outside_um = std::max(report.outside_um, -contacts_.gap(k, positions).value);
 }
 
 void VolumeProjection::apply(const State& before, double duration_s, const std::function<bool()>& stop_requested,
@@ -177,7 +177,7 @@ void VolumeProjection::apply(const State& before, double duration_s, const std::
   report.outcome = moved ? StepReport::Outcome::not_projected : StepReport::Outcome::converged;
   if (!moved) report.cell.reset();
   for (std::size_t k = 0; k < kept_.size(); ++k)
-    if (kept_[k].cell) after.pressures[kept_[k].cell->index()] += moved_[k] / duration_s;
+    if (kept_[k].cell) after.multipliers[kept_[k].cell->index()] += moved_[k] / duration_s;
   for (std::size_t k = 0; k < pushed_.size(); ++k) {
     after.contact_forces[k] += pushed_[k] / contact_weight(k, duration_s);
     after.in_contact[k] = after.contact_forces[k] > 0;

@@ -43,7 +43,7 @@ class VolumeProjection {
   };
 
   void set_weights(double duration_s);
-  [[nodiscard]] double contact_weight(std::size_t k, double duration_s) const;  // of a vitelline's node, um/nN
+  [[nodiscard]] double contact_weight(std::size_t k, double duration_s) const;  // um/nN
   void repeat_last_step(const State& before, double duration_s, State& after);
   void push(std::size_t k, double distance_um, Vectors& positions);
   bool project_shell(Vectors& positions);
@@ -53,11 +53,12 @@ class VolumeProjection {
   void judge(const Vectors& positions, StepReport& report) const;
 
   const Model& model_;
+  Contacts contacts_;
   ProjectionRule rule_;
   std::vector<Kept> kept_;
   std::vector<double> weights_;                      // nodes; um/(nN s)
   std::vector<double> moved_;                        // kept surfaces; sum of l, kPa s
-  std::vector<double> pushed_;                       // the vitelline's nodes; how far the shell has pushed them in, um
+  std::vector<double> pushed_;                       // contacts; how far their nodes have been pushed in, um
   Vectors points_, gradient_, direction_, scratch_;  // of one surface's nodes
 };
 

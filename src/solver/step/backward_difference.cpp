@@ -25,7 +25,7 @@ void record_motion(const State& before, double step_s, TimeOrder order, State& a
   const std::size_t nodes = after.positions.size();
   const double last_s = before.trend.step_s;
   after.trend = {
-      .step_s = step_s, .earlier_s = last_s, .mean_velocities = {}, .accelerations = {}, .pressure_rates = {}};
+      .step_s = step_s, .earlier_s = last_s, .mean_velocities = {}, .accelerations = {}, .multiplier_rates = {}};
   after.velocities.resize(nodes);
   parallel_for(nodes,
                [&](std::size_t n) { after.velocities[n] = (after.positions[n] - before.positions[n]) / step_s; });
@@ -35,9 +35,9 @@ void record_motion(const State& before, double step_s, TimeOrder order, State& a
   after.trend.accelerations.resize(nodes);
   const double apart_s = 0.5 * (last_s + step_s);
   parallel_for(nodes, [&](std::size_t n) { after.trend.accelerations[n] = (after.velocities[n] - last[n]) / apart_s; });
-  after.trend.pressure_rates.resize(after.pressures.size());
-  for (std::size_t c = 0; c < after.pressures.size(); ++c)
-    after.trend.pressure_rates[c] = (after.pressures[c] - before.pressures[c]) / step_s;
+  after.trend.multiplier_rates.resize(after.multipliers.size());
+  for (std::size_t m = 0; m < after.multipliers.size(); ++m)
+    after.trend.multiplier_rates[m] = (after.multipliers[m] - before.multipliers[m]) / step_s;
   if (order == TimeOrder::first) return;
 
   after.trend.mean_velocities = after.velocities;

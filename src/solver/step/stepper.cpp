@@ -23,7 +23,7 @@ std::string StepReport::reason() const {
       return fmt::format(
           "volumes and shell are not met after {} sweeps of projection: the volume of {} is off by {:.1e}, a node is "
           "{:.1e} um outside the shell",
-          projection_sweeps, cell ? where : "the whole surface", volume_error, outside_um);
+          projection_sweeps, cell ? where : "the whole surface", constraint_error, outside_um);
     case Outcome::not_finite:
       return "a force in " + where + " is not a finite number";
     case Outcome::interrupted:
@@ -32,7 +32,7 @@ std::string StepReport::reason() const {
   return "";
 }
 
-std::optional<CellId> cell_with_largest(const Tissue& tissue, const Vectors& vectors) {
+std::optional<CellId> cell_with_largest(const Tissue& tissue, std::span<const Vec3> vectors) {
   std::size_t largest = 0;
   for (std::size_t n = 0; n < vectors.size(); ++n) {
     if (!vectors[n].allFinite()) {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "mechanics/model.hpp"
-#include "solver/linear/newton.hpp"
+#include "solver/linear/iterate.hpp"
 #include "solver/step/backward_difference.hpp"
 
 namespace plica {
@@ -27,10 +27,10 @@ struct StepReport {
   Outcome outcome = Outcome::no_convergence;
   int newton_iterations = 0;
   int factorisations = 0;
-  int linear_solves = 0;  // back substitutions of a factor, or iterations of conjugate gradients
-  double residual = 0;    // relative: of the forces (Newton) or of the linear system (linearly implicit)
-  double volume_error = 0;
-  double outside_um = 0;  // how far a node is left outside the shell by the projection
+  int linear_solves = 0;        // back substitutions of a factor, or iterations of conjugate gradients
+  double residual = 0;          // relative: of the forces (Newton) or of the linear system (linearly implicit)
+  double constraint_error = 0;  // largest relative one
+  double outside_um = 0;        // how far a node is left outside the shell by the projection
   int projection_sweeps = 0;
   int cubics = 0;                   // solved by the projection,
   int cubics_with_three_roots = 0;  // and how many of them had three real roots
@@ -62,7 +62,7 @@ class Stepper {
 };
 
 /// A cell at the node with the largest vector; one that is not finite goes before all others.
-std::optional<CellId> cell_with_largest(const Tissue& tissue, const Vectors& vectors);
+std::optional<CellId> cell_with_largest(const Tissue& tissue, std::span<const Vec3> vectors);
 
 /// The first cell that has an element inside out or flat.
 std::optional<CellId> inverted_cell(const Tissue& tissue, const Vectors& positions);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/constraint_law.hpp"
 #include "support/law_checks.hpp"
 
 namespace plica {
@@ -13,49 +14,17 @@ const BlockShape two_cells{.length_um = 40, .width_um = 20, .cell_height_um = 40
 const BlockShape refined{
     .length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}, .elements_per_cell = {2, 1, 1}};
 
-/// The volumes with given pressures as a law of energy -sum p_c V_c, so that the same checks apply.
-class Pressurised final : public Law {
- public:
-  Pressurised(const CellVolumes& volumes, std::vector<double> pressures)
-      : volumes_(volumes), pressures_(std::move(pressures)) {}
-  [[nodiscard]] std::string_view name() const override { return "pressurised volumes"; }
-  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Pressurised>(*this); }
-  [[nodiscard]] double energy(const Step& step) const override {
-    const std::vector<double> volumes = volumes_.volumes(step.positions);
-    double sum = 0;
-    for (std::size_t c = 0; c < volumes.size(); ++c) sum -= pressures_[c] * volumes[c];
-    return sum;
-  }
-  void add_forces(const Step& step, std::span<Vec3> forces) const override {
-    volumes_.add_forces(step.positions, pressures_, forces);
-  }
-  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override {
-    volumes_.add_tangent_product(step.positions, pressures_, direction, product);
-  }
-  void add_tangent(const Step& step, TangentSink& tangent) const override {
-    volumes_.add_tangent(step.positions, pressures_, tangent);
-  }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const Division&,
-                                                    std::span<const Vec3>) const override {
-    return nullptr;  // not divided here
-  }
-
- private:
-  const CellVolumes& volumes_;
-  std::vector<double> pressures_;
-};
-
 TEST(CellVolumes, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block(two_cells, 2, 1);
   const CellVolumes volumes(tissue);
-  check_derivatives(Pressurised(volumes, {0.7, -1.3}), tissue, 4);
+  check_derivatives(ConstraintLaw(volumes, {0.7, -1.3}), tissue, 4);
 }
 
 TEST(CellVolumes, DerivativesAgreeWithFiniteDifferencesWithSeveralElementsACell) {
   const Tissue tissue = distorted_block(refined, 1, 2);
   const CellVolumes volumes(tissue);
   ASSERT_EQ(volumes.count(), 2u);
-  check_derivatives(Pressurised(volumes, {0.7, -1.3}), tissue, 2);
+  check_derivatives(ConstraintLaw(volumes, {0.7, -1.3}), tissue, 2);
 }
 
 TEST(CellVolumes, RestAndRigidMotionsHaveNoError) {
@@ -100,7 +69,7 @@ TEST(CellVolumes, PositivePressurePushesFacesOutward) {
 TEST(CellVolumes, PressuresHaveNoResultantAndNoTorque) {
   const Tissue tissue = distorted_block(refined, 1, 4);
   const CellVolumes volumes(tissue);
-  const Pressurised law(volumes, {0.7, -1.3});
+  const ConstraintLaw law(volumes, {0.7, -1.3});
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Motion motion = random_motion(tissue, 3, seed);
     const Vectors forces = forces_of(law, motion.step());

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int size = 40;
 using Matrix = Eigen::Matrix<double, size, size>;
-using Vector = ConjugateResiduals::Vector;
+using Vector = KrylovVector;
 using Map = Eigen::Map<const Eigen::Matrix<double, size, 1>>;
 
 /// A random matrix without symmetry, its eigenvalues on both sides of zero.
@@ -27,7 +27,7 @@ struct System {
       Eigen::Map<Eigen::Matrix<double, size, 1>>(product.data()) = factor * Map(x.data());
     };
   }
-  [[nodiscard]] ConjugateResidualsReport solve(const ConjugateResidualsRule& rule, Vector& x) const {
+  [[nodiscard]] KrylovReport solve(const KrylovRule& rule, Vector& x) const {
     return ConjugateResiduals().solve(times(matrix), times(Matrix::Identity()), b, rule, {}, x);
   }
   [[nodiscard]] double error(const Vector& x) const {
@@ -82,7 +82,7 @@ TEST(ConjugateResiduals, GoOnWithAnotherPreconditioner) {
       system.times(system.matrix),
       [&](const Vector& r, Vector& z) { system.times(is_exact ? inverse : Matrix(Matrix::Identity()))(r, z); },
       system.b, {.tolerance = 1e-9},
-      [&](const ConjugateResidualsReport& so_far) {
+      [&](const KrylovReport& so_far) {
         EXPECT_LE(so_far.residual, residual);
         residual = so_far.residual;
         is_exact = so_far.iterations == 5;

@@ -2,10 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "core/parallel.hpp"
+#include "mechanics/obstacles/vitelline.hpp"
 #include "solver/algebra/block_cholesky.hpp"
 #include "solver/linear/contact_border.hpp"
-#include "solver/linear/newton.hpp"
-#include "solver/step/step_solver.hpp"
+#include "solver/linear/directions.hpp"
+#include "solver/step/newton_stepper.hpp"
 #include "support/models.hpp"
 
 namespace plica {
@@ -17,18 +18,18 @@ using namespace support;
 struct Case {
   explicit Case(const Model& m, unsigned seed = 1) : model(m), random(seed) {
     const State rest = rest_state(model);
-    at = {rest.positions, rest.pressures, rest.contact_forces, rest.in_contact};
+    at = {rest.positions, rest.multipliers, rest.contact_forces, rest.in_contact};
     previous = rest.positions;
     const Vectors moves = random.vectors(previous.size());
     for (std::size_t n = 0; n < moves.size(); ++n) at.positions[n] += 0.2 * moves[n];
     model.tissue.place_hanging(at.positions);
-    for (double& pressure : at.pressures) pressure = 0.02 * random.number();
+    for (double& pressure : at.multipliers) pressure = 0.02 * random.number();
     for (std::size_t k = 0; k < at.in_contact.size(); ++k) at.in_contact[k] = k % 3 != 0;
-    return_to_shell(model, at);
+    return_to_obstacles(model, Contacts(model), at);
     for (std::size_t k = 0; k < at.in_contact.size(); ++k) at.contact_forces[k] = at.in_contact[k] ? 0.5 : 0;
     residual.forces = random.vectors(previous.size());
     for (std::size_t n = model.tissue.free_node_count(); n < previous.size(); ++n) residual.forces[n].setZero();
-    for (std::size_t c = 0; c < at.pressures.size(); ++c) residual.volume_deficit.push_back(random.number());
+    for (std::size_t c = 0; c < at.multipliers.size(); ++c) residual.deficits.push_back(random.number());
   }
   [[nodiscard]] Step step() const { return {at.positions, previous, velocities, 5, 5}; }
   [[nodiscard]] Direction direction(LinearMethod method) const {
@@ -59,7 +60,7 @@ TEST(NewtonDirections, AreTheSameWhicheverWayTheyAreFound) {
   models.push_back(dimpling_sheet());
   models.push_back(dimpling_sheet({2, 1, 2}));
   models.push_back(dimpling_sheet());
-  models.back().volumes_are_held = false;
+  models.back().volumes().hold(false);
   models.push_back(dimpling_sheet());
   for (std::size_t n = 0; n < 8; ++n) models.back().held[n] = {true, n % 2 == 0, false};
   models.push_back(furrowing_sphere());
@@ -69,9 +70,9 @@ TEST(NewtonDirections, AreTheSameWhicheverWayTheyAreFound) {
     for (const LinearMethod method : {LinearMethod::cholesky, LinearMethod::multigrid, LinearMethod::automatic}) {
       const Direction found = given.direction(method);
       EXPECT_LE(largest_difference(found.positions, direct.positions), 1e-3 * largest(direct.positions));
-      ASSERT_EQ(found.pressures.size(), direct.pressures.size());
-      const Eigen::Map<const Eigen::VectorXd> p(found.pressures.data(), found.pressures.size()),
-          q(direct.pressures.data(), direct.pressures.size());
+      ASSERT_EQ(found.multipliers.size(), direct.multipliers.size());
+      const Eigen::Map<const Eigen::VectorXd> p(found.multipliers.data(), found.multipliers.size()),
+          q(direct.multipliers.data(), direct.multipliers.size());
       EXPECT_LE((p - q).norm(), 1e-3 * q.norm());
     }
   }
@@ -103,7 +104,7 @@ TEST(NewtonDirections, AMultigridThatDragsASolveOutIsMadeAnewOnTheWay) {
 // A sheet that is pressed together in its plane so much that it would rather buckle.
 TEST(NewtonDirections, FarFromBalanceTheSemidefiniteTangentShowsTheWayOutOfInstability) {
   Model model = dimpling_sheet({2, 2, 2});
-  model.vitelline.reset();
+  model.obstacles.clear();
   Case given(model);
   given.at.positions = given.previous;
   for (Vec3& position : given.at.positions) position.head<2>() *= 0.9;
@@ -112,12 +113,12 @@ TEST(NewtonDirections, FarFromBalanceTheSemidefiniteTangentShowsTheWayOutOfInsta
   const auto left = [&](const Direction& found, bool semidefinite) {
     Step step = given.step();
     step.semidefinite_tangent = semidefinite;
-    matrix.assemble(model, step, given.at);
-    VolumeJacobian jacobian(model);
-    jacobian.update(model.volumes, given.at.positions);
+    matrix.assemble(model, Contacts(model), step, given.at);
+    ConstraintJacobian jacobian(model);
+    jacobian.update(model, given.at.positions);
     Vectors rest = product_of(matrix, found.positions);
     rest.resize(found.positions.size(), Vec3::Zero());
-    jacobian.add_forces(found.pressures, -1, rest);
+    jacobian.add_forces(found.multipliers, -1, rest);
     for (std::size_t n = 0; n < rest.size(); ++n) rest[n] -= given.residual.forces[n];
     return std::sqrt(parallel_squared_norm(rest) / parallel_squared_norm(given.residual.forces));
   };
@@ -139,7 +140,7 @@ TEST(NewtonDirections, EveryWayLeadsToTheSameState) {
   std::vector<State> ends;
   for (const LinearMethod method :
        {LinearMethod::direct, LinearMethod::cholesky, LinearMethod::multigrid, LinearMethod::automatic}) {
-    StepSolver solver(model, {}, method);
+    NewtonStepper solver(model, {}, method);
     State state = rest_state(model), next;
     for (int k = 0; k < 5; ++k) {
       ASSERT_TRUE(solver.advance(state, 5, k == 0, next).converged());
@@ -158,17 +159,18 @@ TEST(ContactBorder, SolvesForTheContactsOfNow) {
   StepMatrix matrix(model);
   Step step = given.step();
   step.semidefinite_tangent = true;
-  matrix.assemble(model, step, given.at);
+  matrix.assemble(model, Contacts(model), step, given.at);
   const auto factor = [&](const Iterate& at) {
     auto cholesky = std::make_unique<BlockCholesky>(matrix.layout());
     UninitialisedVector<float> values;
-    matrix.write_projected_blocks(node_frames(model, at), values);
+    matrix.write_projected_blocks(node_frames(model, Contacts(model), at), values);
     EXPECT_TRUE(cholesky->factorise(values));
     return cholesky;
   };
   const auto before = factor(given.at);
+  const Contacts contacts(model);
   ContactBorder border;
-  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact, 32);
+  border.begin(model, contacts, matrix, node_frames(model, Contacts(model), given.at), given.at.in_contact, 32);
 
   Iterate now = given.at;
   int changes = 0;
@@ -176,7 +178,7 @@ TEST(ContactBorder, SolvesForTheContactsOfNow) {
   ASSERT_GT(changes, 20);
   ASSERT_TRUE(border.follow(now, *before));
   const auto after = factor(now);
-  const std::vector<NodeFrame> frames = node_frames(model, now);
+  const std::vector<NodeFrame> frames = node_frames(model, Contacts(model), now);
   Vectors x = given.random.vectors(frames.size());
   for (std::size_t n = 0; n < x.size(); ++n) x[n] = frames[n].free_part(x[n]);
   std::vector<float> expected;
@@ -186,7 +188,7 @@ TEST(ContactBorder, SolvesForTheContactsOfNow) {
   after->solve(expected);
   double difference = 0, without = 0, length = 0;
   Vectors alone = forces;
-  border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact, 32);
+  border.begin(model, contacts, matrix, node_frames(model, Contacts(model), given.at), given.at.in_contact, 32);
   border.solve(*before, alone);
   for (std::size_t n = 0; n < x.size(); ++n) {
     const Vec3 should_be(expected[3 * n], expected[3 * n + 1], expected[3 * n + 2]);
@@ -200,13 +202,14 @@ TEST(ContactBorder, SolvesForTheContactsOfNow) {
 
 // A factor of a case, and its border before any contact has changed.
 struct Bordered {
-  explicit Bordered(const Case& given, const Model& model) : matrix(model), factor(matrix.layout()) {
-    matrix.assemble(model, given.step(), given.at);
+  explicit Bordered(const Case& given, const Model& model) : contacts(model), matrix(model), factor(matrix.layout()) {
+    matrix.assemble(model, Contacts(model), given.step(), given.at);
     UninitialisedVector<float> values;
-    matrix.write_projected_blocks(node_frames(model, given.at), values);
+    matrix.write_projected_blocks(node_frames(model, Contacts(model), given.at), values);
     EXPECT_TRUE(factor.factorise(values));
-    border.begin(model, matrix, node_frames(model, given.at), given.at.in_contact, 32);
+    border.begin(model, contacts, matrix, node_frames(model, Contacts(model), given.at), given.at.in_contact, 32);
   }
+  Contacts contacts;
   StepMatrix matrix;
   BlockCholesky factor;
   ContactBorder border;

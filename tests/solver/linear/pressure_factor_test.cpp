@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "mechanics/obstacles/vitelline.hpp"
+#include "solver/linear/directions.hpp"
 #include "support/models.hpp"
 
 namespace plica {
@@ -14,11 +16,11 @@ struct Ball {
   explicit Ball(int n) : model(build_shell({.length_um = 35.0 * n, .diameter_um = 35.0 * n, .cells = {n, n, n}})) {
     add_elasticity(model);
     add_drag(model, 0.1);
-    model.vitelline.emplace(model.tissue, *model.tissue.outer_shape);
+    model.obstacles.push_back(std::make_unique<Vitelline>(model.tissue, *model.tissue.outer_shape));
     const State rest = rest_state(model);
-    at = {rest.positions, rest.pressures, rest.contact_forces, rest.in_contact};
+    at = {rest.positions, rest.multipliers, rest.contact_forces, rest.in_contact};
     for (std::size_t k = 0; k < at.in_contact.size(); ++k) at.in_contact[k] = k % 3 != 0;
-    frames = node_frames(model, at);
+    frames = node_frames(model, Contacts(model), at);
   }
   [[nodiscard]] Step step() const { return {at.positions, at.positions, velocities, 5, 5}; }
 
@@ -32,12 +34,12 @@ struct Ball {
 TEST(PressureFactor, IsTheInverseOfWhatForcesOnSingleNodesDo) {
   const Ball ball(8);
   StepMatrix matrix(ball.model);
-  matrix.assemble(ball.model, ball.step(), ball.at);
-  const VolumeJacobian& jacobian = matrix.jacobian();
+  matrix.assemble(ball.model, Contacts(ball.model), ball.step(), ball.at);
+  const ConstraintJacobian& jacobian = matrix.jacobian();
   PressureFactor factor(jacobian, ball.frames.size());
   ASSERT_TRUE(factor.factorise(jacobian, matrix, ball.frames));
   Random random(1);
-  std::vector<double> pressures(jacobian.cells());
+  std::vector<double> pressures(jacobian.sparse_rows());
   for (double& pressure : pressures) pressure = random.number();
   Vectors moves(ball.frames.size(), Vec3::Zero());
   jacobian.add_forces(pressures, 1, moves);
@@ -58,7 +60,7 @@ TEST(PressureFactor, IterationsHardlyGrowWithTheNumberOfCells) {
     Random random(2);
     Residual residual;
     residual.forces.assign(ball.at.positions.size(), Vec3::Zero());
-    for (std::size_t c = 0; c < ball.model.tissue.cells.size(); ++c) residual.volume_deficit.push_back(random.number());
+    for (std::size_t c = 0; c < ball.model.tissue.cells.size(); ++c) residual.deficits.push_back(random.number());
     Direction direction;
     NewtonDirections::Cost cost;
     const auto outcome = make_directions(ball.model, LinearMethod::multigrid, {})
@@ -74,15 +76,15 @@ TEST(PressureFactor, IterationsHardlyGrowWithTheNumberOfCells) {
 TEST(PressureFactor, TakesCellsThatAreHeld) {
   Ball ball(8);
   for (const NodeId node : ball.model.tissue.elements[7]) ball.model.held[node.index()] = {true, true, true};
-  const auto& on_shell = ball.model.vitelline->nodes();  // held nodes are never in contact
+  const auto on_shell = ball.model.obstacles.front()->nodes();  // held nodes are never in contact
   for (std::size_t k = 0; k < on_shell.size(); ++k)
     if (ball.model.held[on_shell[k].index()][0]) ball.at.in_contact[k] = false;
-  ball.frames = node_frames(ball.model, ball.at);
+  ball.frames = node_frames(ball.model, Contacts(ball.model), ball.at);
   StepMatrix matrix(ball.model);
-  matrix.assemble(ball.model, ball.step(), ball.at);
+  matrix.assemble(ball.model, Contacts(ball.model), ball.step(), ball.at);
   PressureFactor factor(matrix.jacobian(), ball.frames.size());
   ASSERT_TRUE(factor.factorise(matrix.jacobian(), matrix, ball.frames));
-  std::vector<double> rates(matrix.jacobian().cells(), 1.0);
+  std::vector<double> rates(matrix.jacobian().sparse_rows(), 1.0);
   factor.solve(rates);
   for (const double pressure : rates) EXPECT_TRUE(std::isfinite(pressure));
   matrix.set_zero();

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "mechanics/obstacles/vitelline.hpp"
 #include "solver/algebra/block_cholesky.hpp"
 #include "support/models.hpp"
 #include "support/threads.hpp"
@@ -131,14 +132,14 @@ Model pill(int scale) {
       {.length_um = 460.0 * scale, .diameter_um = 280.0 * scale, .cells = {18 * scale, 9 * scale, 8 * scale}}));
   support::add_elasticity(model, 0.48);
   support::add_drag(model);
-  model.vitelline.emplace(model.tissue, *model.tissue.outer_shape);
+  model.obstacles.push_back(std::make_unique<Vitelline>(model.tissue, *model.tissue.outer_shape));
   return model;
 }
 
 System in_its_shell(const Model& model, double duration_s = 5) {
   System system(model, duration_s);
-  for (const NodeId node : model.vitelline->nodes())
-    system.normals[node.index()] = model.vitelline->gap(model.tissue.rest_positions[node.index()]).inward;
+  for (const NodeId node : model.obstacles.front()->nodes())
+    system.normals[node.index()] = model.obstacles.front()->gap(model.tissue.rest_positions[node.index()]).inward;
   system.fix();
   return system;
 }

@@ -27,7 +27,7 @@ std::vector<int> shuffled(int count) {
   return names;
 }
 
-void expect_bounds(const multigrid::Rows& rows, const std::vector<int>& bounds) {
+void expect_bounds(const Rows& rows, const std::vector<int>& bounds) {
   ASSERT_EQ(bounds.front(), 0);
   ASSERT_EQ(bounds.back(), rows.count());
   const auto group_of = [&](int row) { return std::ranges::upper_bound(bounds, row) - bounds.begin() - 1; };
@@ -61,7 +61,7 @@ TEST(MultigridOrder, PiecesAndLoneNodesHavePlacesToo) {
   EXPECT_EQ(std::abs(places[0] - places[8]), 1);
   std::ranges::sort(places);
   for (int k = 0; k < 9; ++k) EXPECT_EQ(places[k], k);
-  EXPECT_EQ(multigrid::groups_of_rows(multigrid::Matrix<3>(BlockPattern{{0}, {}}).rows(), 10), std::vector<int>{0});
+  EXPECT_EQ(multigrid::groups_of_rows(multigrid::Matrix<3>(BlockPattern{}).rows(), 10), std::vector<int>{0});
 }
 
 // Sweeps that read a neighbour too early or too late would leave another residual than that of x.

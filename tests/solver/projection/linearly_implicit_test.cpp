@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "solver/step/step_solver.hpp"
+#include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
 
@@ -36,7 +36,7 @@ double distance(const State& a, const State& b) {
 /// A sheet without volumes or shell, some of it held; and where it is after a while of contraction.
 Model held_sheet() {
   Model model = dimpling_sheet();
-  model.volumes_are_held = false;
+  model.volumes().hold(false);
   for (std::size_t n = 0; n < model.held.size(); n += 5) model.held[n] = {true, n % 2 == 0, false};
   return model;
 }
@@ -87,13 +87,13 @@ TEST(LinearlyImplicit, ConjugateGradientsAgreeWithADirectSolve) {
 TEST(LinearlyImplicit, ComesToNewtonsMotionAtFirstOrderInTheStep) {
   const Model model = held_sheet();
   const double time_s = 8;
-  StepSolver newton(model);
+  NewtonStepper newton(model);
   const State exact = steps(newton, rest_state(model), time_s / 512, 512);
   double previous = 0, previous_difference = 0;
   int cases = 0;
   for (const int count : {16, 32, 64}) {
     LinearlyImplicit linear(model, 1e-10, 1000);
-    StepSolver nonlinear(model);
+    NewtonStepper nonlinear(model);
     const State end = steps(linear, rest_state(model), time_s / count, count);
     const double error = distance(end, exact),
                  difference = distance(end, steps(nonlinear, rest_state(model), time_s / count, count));

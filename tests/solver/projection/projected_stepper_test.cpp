@@ -46,7 +46,7 @@ Model sheet(bool volumes_are_held) {
     if (std::abs(x.x()) > 29 && std::abs(x.y()) > 29 && x.z() < model.tissue.rest_positions[0].z() + 1)
       model.held[n] = {true, true, true};
   }
-  model.volumes_are_held = volumes_are_held;
+  model.volumes().hold(volumes_are_held);
   return model;
 }
 
@@ -81,7 +81,7 @@ TEST(ProjectedStepper, RestsWhereTheoryHasIt) {
       const State rest = come_to_rest(*stepper, rest_state(model), h, 4000);
       // W J^T p, and with it both balances.
       Vectors pushed(rest.positions.size(), Vec3::Zero()), balance = still_forces(model, rest);
-      model.volumes.add_forces(rest.positions, rest.pressures, pushed);
+      model.volumes().add_forces(rest.positions, rest.multipliers, pushed);
       const double size = largest(balance);
       Vectors plain = balance;
       for (std::size_t n = 0; n < plain.size(); ++n) plain[n] += pushed[n];
@@ -153,7 +153,7 @@ TEST(ProjectedStepper, ByMobilityComesToTheCoupledSolve) {
 
 TEST(ProjectedStepper, EveryStepKeepsVolumesAndShell) {
   Model model = furrowing_sphere();
-  model.volumes_are_held = false;
+  model.volumes().hold(false);
   int cases = 0;
   for (const Forces forces : {Forces::newton, Forces::linearly_implicit}) {
     const auto stepper = make_stepper(model, scheme(forces));
@@ -162,10 +162,10 @@ TEST(ProjectedStepper, EveryStepKeepsVolumesAndShell) {
       const StepReport report = stepper->advance(state, 5, k == 0, next);
       ASSERT_TRUE(report.converged()) << report.reason();
       EXPECT_GT(report.cubics, 0);
-      EXPECT_LE(report.volume_error, 1e-9);
-      for (const double error : model.volumes.relative_errors(next.positions)) EXPECT_LE(std::abs(error), 1e-9);
-      for (const NodeId node : model.vitelline->nodes())
-        EXPECT_GE(model.vitelline->gap(next.positions[node.index()]).value, -1e-6);
+      EXPECT_LE(report.constraint_error, 1e-9);
+      for (const double error : model.volumes().relative_errors(next.positions)) EXPECT_LE(std::abs(error), 1e-9);
+      for (const NodeId node : model.obstacles.front()->nodes())
+        EXPECT_GE(model.obstacles.front()->gap(next.positions[node.index()]).value, -1e-6);
       for (std::size_t n = 0; n < next.positions.size(); ++n)
         EXPECT_LE((next.velocities[n] - (next.positions[n] - state.positions[n]) / 5).norm(), 1e-12);
       std::swap(state, next);
@@ -177,7 +177,7 @@ TEST(ProjectedStepper, EveryStepKeepsVolumesAndShell) {
 
 TEST(ProjectedStepper, OneAndTwoThreadsGiveTheSameBits) {
   Model model = furrowing_sphere();
-  model.volumes_are_held = false;
+  model.volumes().hold(false);
   int cases = 0;
   for (const Forces forces : {Forces::newton, Forces::linearly_implicit}) {
     std::vector<State> ends;
@@ -192,7 +192,7 @@ TEST(ProjectedStepper, OneAndTwoThreadsGiveTheSameBits) {
       ends.push_back(state);
     }
     EXPECT_EQ(ends[0].positions, ends[1].positions);
-    EXPECT_EQ(ends[0].pressures, ends[1].pressures);
+    EXPECT_EQ(ends[0].multipliers, ends[1].multipliers);
     EXPECT_EQ(ends[0].contact_forces, ends[1].contact_forces);
     ++cases;
   }
@@ -212,7 +212,7 @@ TEST(ProjectedStepper, AStepDoesNotDependOnTheOnesBefore) {
   ASSERT_TRUE(used->advance(state, 2, false, a).converged());
   ASSERT_TRUE(fresh->advance(state, 2, false, b).converged());
   EXPECT_EQ(a.positions, b.positions);
-  EXPECT_EQ(a.pressures, b.pressures);
+  EXPECT_EQ(a.multipliers, b.multipliers);
 }
 
 TEST(ProjectedStepper, FailuresLeaveTheStateAlone) {

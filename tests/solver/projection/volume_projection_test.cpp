@@ -37,7 +37,7 @@ StepReport project(const Model& model, const ProjectionRule& rule, State& state)
 
 double worst_error(const Model& model, const Vectors& positions) {
   double worst = 0;
-  for (const double error : model.volumes.relative_errors(positions)) worst = std::max(worst, std::abs(error));
+  for (const double error : model.volumes().relative_errors(positions)) worst = std::max(worst, std::abs(error));
   return worst;
 }
 
@@ -81,7 +81,7 @@ TEST(VolumeProjection, BlownUpCubeIsScaledBackInOneMove) {
   for (std::size_t n = 0; n < 8; ++n) EXPECT_LE((state.positions[n] - model.tissue.rest_positions[n]).norm(), 1e-7);
   // Its pressure: l over the step, with the mean of the nodes' mobility.
   const double l = (1 / 1.01 - 1) / 10.1, mean_drag = usual_drag * 2 * 400 / 8;
-  EXPECT_NEAR(state.pressures[0], l * mean_drag / duration_s, 1e-9 * std::abs(state.pressures[0]));
+  EXPECT_NEAR(state.multipliers[0], l * mean_drag / duration_s, 1e-9 * std::abs(state.multipliers[0]));
 }
 
 // X + l dV/dX moves no cell as a whole and turns none: the gradient has neither resultant nor moment.
@@ -156,8 +156,8 @@ TEST(VolumeProjection, WholeSurfaces) {
   StepReport report = project(model, {.surfaces = ProjectionRule::Surfaces::tissue}, state);
   ASSERT_TRUE(report.converged()) << report.reason();
   double volume = 0, target = 0;
-  const std::vector<double> volumes = model.volumes.volumes(state.positions);
-  for (std::size_t c = 0; c < volumes.size(); ++c) volume += volumes[c], target += model.volumes.targets()[c];
+  const std::vector<double> volumes = model.volumes().volumes(state.positions);
+  for (std::size_t c = 0; c < volumes.size(); ++c) volume += volumes[c], target += model.volumes().targets()[c];
   EXPECT_NEAR(volume / target, 1, 1e-9);
   EXPECT_GT(worst_error(model, state.positions), 1e-3);
 
@@ -181,7 +181,7 @@ TEST(VolumeProjection, ShellAndVolumesAreMetTogetherFromAnyStart) {
     State cold = moved_to(model, moved), warm = moved_to(model, moved);
     ASSERT_TRUE(project(model, {}, cold).converged());
     State before = rest_state(model);
-    for (std::size_t c = 0; c < before.pressures.size(); ++c) before.pressures[c] = 1.3 * cold.pressures[c];
+    for (std::size_t c = 0; c < before.multipliers.size(); ++c) before.multipliers[c] = 1.3 * cold.multipliers[c];
     for (double& force : before.contact_forces) force = 2 * size;
     StepReport report;
     VolumeProjection(model, ProjectionRule{}).apply(before, duration_s, {}, warm, report);
@@ -192,7 +192,7 @@ TEST(VolumeProjection, ShellAndVolumesAreMetTogetherFromAnyStart) {
     for (const State* state : {&cold, &warm}) {
       EXPECT_LE(worst_error(model, state->positions), 1e-9);
       for (std::size_t k = 0; k < state->contact_forces.size(); ++k) {
-        const double gap = model.vitelline->gap(state->positions[model.vitelline->nodes()[k].index()]).value;
+        const double gap = Contacts(model).gap(k, state->positions).value;
         EXPECT_GE(gap, -1e-7);
         EXPECT_GE(state->contact_forces[k], 0);
         if (state->contact_forces[k] > 0) {

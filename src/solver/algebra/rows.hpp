@@ -1,11 +1,11 @@
-// Sparse structures of the multigrid: which columns each row has.
+// THE sparse pattern: which columns each row of a matrix has. Groups of nodes, factors and the multigrid all have it.
 #pragma once
 
 #include <algorithm>
 #include <span>
 #include <vector>
 
-namespace plica::multigrid {
+namespace plica {
 
 /// Row n has the columns columns[starts[n]] to columns[starts[n + 1] - 1], ascending.
 struct Rows {
@@ -15,7 +15,20 @@ struct Rows {
   [[nodiscard]] std::span<const int> of(int row) const {
     return std::span(columns).subspan(starts[row], starts[row + 1] - starts[row]);
   }
+  /// The place of (row, column) in `columns`; -1 where it is not there.
+  [[nodiscard]] int place(int row, int column) const {
+    const auto first = columns.begin() + starts[row], last = columns.begin() + starts[row + 1];
+    const auto at = std::lower_bound(first, last, column);
+    return at == last || *at != column ? -1 : static_cast<int>(at - columns.begin());
+  }
 };
+
+/// The pattern of the whole of a symmetric matrix without its diagonal, from that on and below it.
+Rows neighbours_of(const Rows& lower);
+
+/// The order in which a symmetric matrix is best eliminated (nested dissection): the place of each row in it. `lower`:
+/// its pattern on and below the diagonal, or below. The same on every call, also of several threads at once.
+std::vector<int> elimination_order(const Rows& lower);
 
 /// The rows that `visit(row, take)` makes by calling take(column), in any order and as often as it likes.
 template <class Visit>
@@ -53,4 +66,4 @@ struct Transposed {
 };
 Transposed transpose(const Rows& rows, int columns);
 
-}  // namespace plica::multigrid
+}  // namespace plica

@@ -1,0 +1,27 @@
+#include "mechanics/obstacle.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "mechanics/model.hpp"
+
+namespace plica {
+
+Contacts::Contacts(const Model& model) {
+  for (const auto& obstacle : model.obstacles)
+    for (const NodeId node : obstacle->nodes()) {
+      nodes_.push_back(node);
+      obstacles_.push_back(obstacle.get());
+    }
+  by_node_.resize(nodes_.size());
+  std::iota(by_node_.begin(), by_node_.end(), std::size_t{0});
+  std::ranges::stable_sort(by_node_, {}, [&](std::size_t contact) { return nodes_[contact]; });
+  place_.resize(nodes_.size());
+  for (std::size_t k = 0; k < by_node_.size(); ++k) {
+    if (k == 0 || nodes_[by_node_[k]] != nodes_[by_node_[k - 1]]) starts_.push_back(k);
+    place_[by_node_[k]] = starts_.size() - 1;
+  }
+  starts_.push_back(by_node_.size());
+}
+
+}  // namespace plica

@@ -1,0 +1,62 @@
+#include "solver/algebra/rows.hpp"
+
+#include <metis.h>
+
+#include <mutex>
+#include <numeric>
+#include <stdexcept>
+
+namespace plica {
+
+Rows neighbours_of(const Rows& lower) {
+  Rows neighbours{std::vector<int>(lower.starts.size(), 0), {}};
+  const auto for_pairs = [&](const auto& take) {
+    for (int row = 0; row < lower.count(); ++row)
+      for (const int column : lower.of(row))
+        if (column != row) take(row, column), take(column, row);
+  };
+  for_pairs([&](int row, int) { ++neighbours.starts[row + 1]; });
+  std::partial_sum(neighbours.starts.begin(), neighbours.starts.end(), neighbours.starts.begin());
+  neighbours.columns.resize(neighbours.starts.back());
+  std::vector<int> next(neighbours.starts.begin(), neighbours.starts.end() - 1);
+  for_pairs([&](int row, int column) { neighbours.columns[next[row]++] = column; });
+  return neighbours;
+}
+
+std::vector<int> elimination_order(const Rows& lower) {
+  const Rows neighbours = neighbours_of(lower);
+  idx_t size = lower.count();
+  std::vector<idx_t> starts(neighbours.starts.begin(), neighbours.starts.end());
+  std::vector<idx_t> adjacent(neighbours.columns.begin(), neighbours.columns.end());
+  std::vector<int> order(size);
+  std::iota(order.begin(), order.end(), 0);
+  if (adjacent.empty()) return order;  // METIS wants an edge
+  idx_t options[METIS_NOPTIONS];
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_SEED] = 1;
+  std::vector<idx_t> rows(size), places(size);
+  static std::mutex one_at_a_time;  // METIS draws from the C library's one sequence of random numbers
+  const std::lock_guard lock(one_at_a_time);
+  if (METIS_NodeND(&size, starts.data(), adjacent.data(), nullptr, options, rows.data(), places.data()) != METIS_OK)
+    throw std::runtime_error("METIS could not order the matrix");
+  return {places.begin(), places.end()};
+}
+
+Transposed transpose(const Rows& rows, int columns) {
+  Transposed result;
+  result.starts.assign(columns + 1, 0);
+  for (const int column : rows.columns) ++result.starts[column + 1];
+  for (int column = 0; column < columns; ++column) result.starts[column + 1] += result.starts[column];
+  result.rows.resize(rows.columns.size());
+  result.places.resize(rows.columns.size());
+  std::vector<int> next(result.starts.begin(), result.starts.end() - 1);
+  for (int row = 0; row < rows.count(); ++row)
+    for (int place = rows.starts[row]; place < rows.starts[row + 1]; ++place) {
+      const int at = next[rows.columns[place]]++;
+      result.rows[at] = row;
+      result.places[at] = place;
+    }
+  return result;
+}
+
+}  // namespace plica

@@ -1,0 +1,145 @@
+#include "solver/step/balance.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/parallel.hpp"
+
+namespace plica {
+namespace {
+
+// The ways of a node's contacts, normalised, as columns.
+Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> normals_of(const NodeContacts& touched) {
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> normals(3, touched.count);
+  for (int k = 0; k < touched.count; ++k) normals.col(k) = touched.way[k].normalized();
+  return normals;
+}
+
+}  // namespace
+
+Balance::Balance(const Model& model, const StepTolerances& tolerances)
+    : model_(model),
+      tolerances_(tolerances),
+      contacts_(model),
+      force_scale_(model.force_scale()),
+      force_rounding_(model.force_rounding()) {
+  for (const auto& constraint : model.constraints)
+    constraint_rounding_.push_back(constraint->rounding(model.tissue, model.position_rounding()));
+}
+
+bool Balance::is_solved(const Residual& residual) const {
+  return residual.force <= tolerances_.force && residual.constraint_excess <= 1;
+}
+
+void Balance::add_contact_forces(Iterate& at, std::span<const Vec3> others, std::span<Vec3> forces) const {
+  parallel_for(contacts_.node_count(), [&](std::size_t place) {
+    const auto of_node = contacts_.at_node(place);
+    const NodeContacts touched = node_contacts(model_, contacts_, of_node, at);
+    if (touched.count == 0) return;
+    const std::size_t n = contacts_.node(of_node.front()).index();
+    if (touched.count == 1) {
+      const Vec3 normal = touched.way[0].normalized();
+      double& force = at.contact_forces[touched.contact[0]];
+      force = -normal.dot(others[n]) / normal.dot(touched.inward[0]);
+      forces[n] = force * touched.inward[0];
+      return;
+    }
+    const auto normals = normals_of(touched);
+    Eigen::MatrixXd pushes(3, touched.count);
+    for (int k = 0; k < touched.count; ++k) pushes.col(k) = touched.inward[k];
+    const Eigen::VectorXd sizes = (normals.transpose() * pushes).partialPivLu().solve(-normals.transpose() * others[n]);
+    for (const std::size_t k : of_node) at.contact_forces[k] = 0;  // of one that leaves nothing to do beside the others
+    for (int k = 0; k < touched.count; ++k) at.contact_forces[touched.contact[k]] = sizes[k];
+    forces[n] = pushes * sizes;
+  });
+}
+
+void Balance::take_out_normals(const Iterate& at, std::span<Vec3> forces) const {
+  parallel_for(contacts_.node_count(), [&](std::size_t place) {
+    const auto of_node = contacts_.at_node(place);
+    const NodeContacts touched = node_contacts(model_, contacts_, of_node, at);
+    Vec3& force = forces[contacts_.node(of_node.front()).index()];
+    if (touched.count == 1) {
+      const Vec3 normal = touched.way[0].normalized();
+      force -= normal.dot(force) * normal;
+    } else if (touched.count > 1) {
+      const auto normals = normals_of(touched);
+      force -= normals * (normals.transpose() * normals).ldlt().solve(normals.transpose() * force).eval();
+    }
+  });
+}
+
+Residual Balance::residual(const Step& step, Iterate& at) const {
+  Residual r;
+  r.forces.assign(at.positions.size(), Vec3::Zero());
+  Vectors of_one(at.positions.size(), Vec3::Zero());
+  double balanced = 0;  // squared norm of the forces that have to balance
+  const auto take = [&] {
+    model_.tissue.carry_hanging(of_one);
+    balanced += parallel_squared_norm(of_one);
+    parallel_for(of_one.size(), [&](std::size_t n) {
+      r.forces[n] += of_one[n];
+      of_one[n].setZero();
+    });
+  };
+  for_laws(model_, step, [&](const Law& law, const Step& own) {
+    law.add_forces(own, of_one);
+    take();
+  });
+  r.deficits.assign(at.multipliers.size(), 0.0);
+  std::size_t place = 0;
+  for_held_constraints(model_, [&](const Constraint& constraint, std::size_t first) {
+    while (model_.constraints[place].get() != &constraint) ++place;
+    constraint.add_forces(at.positions, std::span(at.multipliers).subspan(first, constraint.count()), of_one);
+    take();
+    const std::span<double> deficits = std::span(r.deficits).subspan(first, constraint.count());
+    constraint.values(at.positions, deficits);
+    double worst = 0;
+    for (std::size_t f = 0; f < deficits.size(); ++f) {
+      deficits[f] = constraint.targets()[f] - deficits[f];
+      worst = std::max(worst, std::abs(deficits[f] / constraint.targets()[f]));
+    }
+    r.constraint = std::max(r.constraint, worst);
+    r.constraint_excess =
+        std::max(r.constraint_excess, worst / std::max(tolerances_.constraint, constraint_rounding_[place]));
+  });
+  add_contact_forces(at, r.forces, of_one);
+  take();
+
+  Vectors& free = of_one;
+  parallel_for(model_.tissue.free_node_count(), [&](std::size_t n) { free[n] = without_held(model_, n, r.forces[n]); });
+  take_out_normals(at, free);
+  // Relative to the forces that balance; but where those are next to none, or as small as what rounding makes, to a
+  // floor.
+  const double floor = std::max(1e-4 * force_scale_, force_rounding_ / tolerances_.force);
+  r.force = std::sqrt(parallel_squared_norm(free)) / (std::sqrt(balanced) + floor);
+  return r;
+}
+
+bool Balance::revise_contacts(Iterate& at) const {
+  std::atomic<bool> changed = false;
+  parallel_for(at.in_contact.size(), [&](std::size_t k) {
+    const Obstacle::Gap gap = contacts_.gap(k, at.positions);
+    // A node that is held where an obstacle would push it is the hold's business.
+    if (without_held(model_, contacts_.node(k).index(), gap.inward).norm() < 1e-6) {
+      at.in_contact[k] = 0;
+      at.contact_forces[k] = 0;
+    } else if (at.in_contact[k]) {
+      // Pulled inward for real: let go. Forces of rounding's size are none.
+      if (at.contact_forces[k] < -1e-12 * force_scale_) {
+        at.in_contact[k] = 0;
+        changed = true;
+      }
+      if (at.contact_forces[k] < 0) at.contact_forces[k] = 0;
+    } else if (gap.value < -tolerances_.gap_um) {
+      at.in_contact[k] = 1;
+      changed = true;
+    }
+  });
+  return_to_obstacles(model_, contacts_, at);
+  return changed;
+}
+
+}  // namespace plica

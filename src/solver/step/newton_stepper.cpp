@@ -1,0 +1,160 @@
+#include "solver/step/newton_stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.hpp"
+
+namespace plica {
+
+NewtonStepper::NewtonStepper(const Model& model, StepTolerances tolerances, LinearMethod method, TimeOrder order)
+    : model_(model),
+      tolerances_(tolerances),
+      order_(order),
+      balance_(model, tolerances),
+      directions_(make_directions(model, method, [this] { return stop_requested_ && stop_requested_(); })) {}
+
+NewtonStepper::~NewtonStepper() = default;
+
+void NewtonStepper::forget_factor() { directions_->forget_factor(); }
+
+// Goes along the direction as far as laws allow, elements stay upright and the residual falls; if it falls nowhere,
+// where it is least. False, with the reason in the report, when no length keeps every element upright and every force
+// finite.
+bool NewtonStepper::search_line(const Step& step, const Direction& d, Iterate& at, Residual& now,
+                                StepReport& report) const {
+  std::optional<CellId> blocking;
+  std::optional<std::pair<Iterate, Residual>> best;
+  double part = 1;
+  for_laws(model_, step,
+           [&](const Law& law, const Step& own) { part = std::min(part, law.max_fraction(own, d.positions)); });
+  for (int halving = 0; halving < 8; ++halving, part *= 0.5) {
+    Iterate trial = at;
+    parallel_for(trial.positions.size(), [&](std::size_t n) { trial.positions[n] += part * d.positions[n]; });
+    return_to_obstacles(model_, balance_.contacts(), trial);
+    blocking = inverted_cell(model_.tissue, trial.positions);
+    if (blocking) continue;
+    for (std::size_t m = 0; m < trial.multipliers.size(); ++m) trial.multipliers[m] += part * d.multipliers[m];
+    Step there = step;
+    there.positions = trial.positions;
+    Residual r = balance_.residual(there, trial);
+    if (r.finite() && (!best || r.merit() < best->second.merit())) best.emplace(std::move(trial), std::move(r));
+    if (best && best->second.merit() < (1 - 1e-4 * part) * now.merit()) break;
+  }
+  if (!best) {
+    report.outcome = blocking ? StepReport::Outcome::inverted_element : StepReport::Outcome::not_finite;
+    report.cell = blocking ? blocking : cell_with_largest(model_.tissue, now.forces);
+    return false;
+  }
+  at = std::move(best->first);
+  now = std::move(best->second);
+  return true;
+}
+
+Iterate NewtonStepper::forecast(const State& state, double duration_s) const {
+  Iterate at{state.positions, state.multipliers, state.contact_forces, state.in_contact};
+  const State::Trend& trend = state.trend;
+  // Mean velocities belong to the middles of steps.
+  const double later_s = 0.5 * (trend.step_s + duration_s);
+  const Vectors& velocities = mean_velocities(state);
+  for (std::size_t n = 0; n < at.positions.size(); ++n) {
+    at.positions[n] += duration_s * velocities[n];
+    if (!trend.accelerations.empty()) at.positions[n] += duration_s * later_s * trend.accelerations[n];
+  }
+  for (std::size_t m = 0; m < trend.multiplier_rates.size(); ++m)
+    at.multipliers[m] += duration_s * trend.multiplier_rates[m];
+  if (inverted_cell(model_.tissue, at.positions)) at.positions = state.positions;
+  return at;
+}
+
+StepReport NewtonStepper::advance(const State& state, double duration_s, bool from_rest, State& next) {
+  Iterate at = from_rest ? Iterate{state.positions, state.multipliers, state.contact_forces, state.in_contact}
+                         : forecast(state, duration_s);
+  const TimeOrder order = std::min(order_, possible_order(state, duration_s));
+  BackwardDifference rates{duration_s, 0};
+  Vectors earlier;
+  if (order == TimeOrder::second) {
+    rates = backward_difference(duration_s, state.trend.step_s);
+    earlier = state.positions;
+    const Vectors& velocities = mean_velocities(state);
+    parallel_for(earlier.size(), [&](std::size_t n) { earlier[n] -= state.trend.step_s * velocities[n]; });
+  }
+  Step step{.positions = at.positions,
+            .previous_positions = state.positions,
+            .previous_velocities = state.velocities,
+            .rate_s = rates.rate_s,
+            .end_time_s = state.time_s + duration_s,
+            .earlier_positions = earlier,
+            .ahead = rates.ahead,
+            .internals = state.internals};
+  StepReport report;
+  bool contacts_settled = !balance_.revise_contacts(at);
+  Residual now = balance_.residual(step, at);
+  constexpr int most_slow_iterations = 12;  // in a row, none of which halves the residual
+  double left = 0;
+  int slow_iterations = 0;
+  for (;; ++report.newton_iterations) {
+    report.residual = now.force;
+    report.constraint_error = now.constraint;
+    if (!now.finite()) {
+      report.outcome = StepReport::Outcome::not_finite;
+      report.cell = cell_with_largest(model_.tissue, now.forces);
+      return report;
+    }
+    if (contacts_settled && balance_.is_solved(now)) break;
+    if (stop_requested_ && stop_requested_()) {
+      report.outcome = StepReport::Outcome::interrupted;
+      return report;
+    }
+    if (report.newton_iterations >= tolerances_.max_iterations || slow_iterations >= most_slow_iterations) {
+      report.outcome = StepReport::Outcome::no_convergence;
+      report.cell = cell_with_largest(model_.tissue, now.forces);
+      return report;
+    }
+    step.positions = at.positions;
+    Direction direction;
+    NewtonDirections::Cost cost;
+    const double accuracy = 0.3 * std::min(tolerances_.force / now.force, tolerances_.constraint / now.constraint);
+    const auto outcome = directions_->find(step, at, now, {left, accuracy}, direction, cost);
+    report.factorisations += cost.factorisations;
+    report.linear_solves += cost.linear_solves;
+    if (outcome == NewtonDirections::Outcome::interrupted) {
+      report.outcome = StepReport::Outcome::interrupted;
+      return report;
+    }
+    if (outcome == NewtonDirections::Outcome::singular) {
+      report.outcome = StepReport::Outcome::singular_system;
+      report.cell = cell_with_largest(model_.tissue, now.forces);
+      return report;
+    }
+    const double before = now.merit();
+    if (!search_line(step, direction, at, now, report)) return report;
+    left = now.merit() / before;
+    slow_iterations = left > 0.5 ? slow_iterations + 1 : 0;
+    contacts_settled = !balance_.revise_contacts(at);
+    if (!contacts_settled) {
+      step.positions = at.positions;
+      now = balance_.residual(step, at);
+    }
+  }
+  step.positions = at.positions;
+  accept(state, step, duration_s, order, std::move(at), next);
+  report.outcome = StepReport::Outcome::converged;
+  return report;
+}
+
+void NewtonStepper::accept(const State& state, const Step& step, double duration_s, TimeOrder order, Iterate at,
+                           State& next) const {
+  std::vector<std::vector<double>> internals;
+  for_laws(model_, step, [&](const Law& law, const Step& own) { internals.push_back(law.next_internal(own)); });
+  next.time_s = state.time_s + duration_s;
+  next.divided_until_s = state.divided_until_s;
+  next.positions = std::move(at.positions);
+  next.multipliers = std::move(at.multipliers);
+  next.contact_forces = std::move(at.contact_forces);
+  next.in_contact = std::move(at.in_contact);
+  next.internals = std::move(internals);
+  record_motion(state, duration_s, order, next);
+}
+
+}  // namespace plica

@@ -1,0 +1,85 @@
+// What every extension must do: run with each linear solver to the same end, go on from a checkpoint to the same bits
+// through a division, and go with the paper's algorithm or be refused by it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "record/archive.hpp"
+#include "record/checkpoint.hpp"
+#include "scenario/load.hpp"
+#include "simulation/simulation.hpp"
+#include "support/law_checks.hpp"
+#include "support/loads.hpp"
+#include "support/models.hpp"
+#include "support/ran.hpp"
+
+namespace plica::support {
+
+/// Puts something into the model of a scenario.
+using Extension = std::function<void(Model&)>;
+
+/// The parts of a simulation of the Drosophila embryo with the extension.
+inline Simulation::Parts extended(const Extension& extension, const std::vector<std::string>& overrides,
+                                  const std::string& scenario = "drosophila") {
+  Simulation::Parts parts = parts_of(load_scenario(find_scenario(scenario), overrides));
+  if (extension) extension(*parts.model);
+  return parts;
+}
+
+inline void expect_same_run_with_every_solver(const Extension& extension) {
+  std::vector<Vectors> ends;
+  for (const char* method : {"direct", "cholesky", "multigrid"}) {
+    Simulation simulation(extended(extension, {"time.step_s=2", "time.end_s=10", "output.frame_every_s=0",
+                                               std::string("time.linear_solver=") + method}));
+    ASSERT_EQ(simulation.run(), RunStatus::end_time) << method << ": " << simulation.failure();
+    ends.push_back(simulation.state().positions);
+  }
+  double apart = 0;
+  for (std::size_t m = 1; m < ends.size(); ++m)
+    for (std::size_t n = 0; n < ends[0].size(); ++n) apart = std::max(apart, (ends[m][n] - ends[0][n]).norm());
+  std::printf("direct, cholesky and multigrid end %.1e um apart\n", apart);
+  EXPECT_LE(apart, 1e-4);
+}
+
+/// From every few steps on, by the bytes of a checkpoint where this plica has them.
+inline void expect_resumable_through_a_division(const Extension& extension,
+                                                const std::string& also = "output.frame_every_s=0") {
+  const std::vector<std::string> overrides = {also, "division.floor.at_min=0.1", "division.floor.growth_min=0.2",
+                                              "time.end_min=0.4", "time.integrator=\"bdf2\""};
+  const auto fresh = [&] { return Simulation(extended(extension, overrides, "drosophila-division")); };
+  struct Kept {
+    RunMemory memory;
+    Observation measures;
+  };
+  std::vector<Kept> steps;
+  Simulation whole = fresh();
+  while (whole.step()) steps.push_back({whole.memory(), whole.measures()});
+  ASSERT_EQ(whole.status(), RunStatus::end_time) << whole.failure();
+  ASSERT_GT(whole.divisions(), 0);
+  int resumed = 0;
+  for (std::size_t k = 0; k < steps.size(); k += 7, ++resumed) {
+    SCOPED_TRACE(testing::Message() << "from step " << k + 1 << " of " << steps.size());
+    Checkpoint checkpoint{"", "", "", steps[k].memory, {}};
+    checkpoint.record.rows.push_back(steps[k].measures);
+    if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
+    Simulation rest = fresh();
+    rest.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+    EXPECT_EQ(rest.run(), whole.status());
+    EXPECT_EQ(rest.steps(), whole.steps());
+    EXPECT_EQ(rest.state().positions, whole.state().positions);
+    EXPECT_EQ(rest.state().multipliers, whole.state().multipliers);
+    EXPECT_EQ(rest.state().contact_forces, whole.state().contact_forces);
+    EXPECT_EQ(rest.state().internals, whole.state().internals);
+    ASSERT_FALSE(testing::Test::HasFailure());
+  }
+  EXPECT_GT(resumed, 3);
+}
+
+inline void expect_runs_with_the_papers_algorithm(const Extension& extension) {
+  Simulation simulation(extended(extension, {"time.end_s=40"}, "drosophila-paper"));
+  EXPECT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
+}
+
+}  // namespace plica::support
