@@ -27,7 +27,7 @@ void check(const Checkpoint& checkpoint) {
   for (const Vec3& position : checkpoint.run.state.positions) require(position.allFinite());
   require(std::isfinite(checkpoint.run.state.time_s));
   require(!checkpoint.record.rows.empty());
-  for (const Observation& row : checkpoint.record.rows) require(std::isfinite(row.time_s));
+  for (const Observation& row : checkpoint.record.rows) require(std::isfinite(row.time_s()));
 }
 
 }  // namespace

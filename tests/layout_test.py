@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Holds the layout of the sources: who includes whom, where VTK may be, headers, file lengths, theory pages, links.
 
-Usage: layout_test.py ROOT [PLICA]; with the program, docs/scenario.md is compared with `plica reference` too.
+Usage: layout_test.py ROOT [PLICA]; with the program, docs/scenario.md and the end of docs/measures.md are compared with
+what `plica reference` prints, too.
 Prints what it counted; on a breach, a line each, and exit status 1.
 """
 import re
@@ -18,6 +19,7 @@ MOST_LINES = 500
 # The files of src/mechanics that are none, beside those of kernels/.
 NOT_A_LAW = {"law", "constraint", "obstacle", "model", "program", "turning_elements", "contraction_pattern",
              "hexahedron_stiffness"}
+MEASURES_MARK = "<!-- Below: what plica reference --measures prints. -->\n"
 MARKDOWN_LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -123,9 +125,24 @@ def check_links():
         breach(root / "README.md", "is missing")
 
 
+def printed(*arguments):
+    return subprocess.run([program, *arguments], capture_output=True, text=True, check=True).stdout
+
+
+def check_measures():
+    """Every column of the program is on the page, with the meaning that its table says."""
+    page = root / "docs/measures.md"
+    expected = printed("reference", "--measures")
+    count("columns of results", len(re.findall(r"^\| `", expected, re.MULTILINE)))
+    _, mark, found = page.read_text(encoding="utf-8").partition(MEASURES_MARK)
+    if not mark or found != expected:
+        breach(page, "does not end with what the program prints; run: sed -i '/^<!-- Below/q' docs/measures.md && "
+                     "plica reference --measures >> docs/measures.md")
+
+
 def check_reference():
     page = root / "docs/scenario.md"
-    expected = subprocess.run([program, "reference"], capture_output=True, text=True, check=True).stdout
+    expected = printed("reference")
     count("lines of the scenario reference", len(expected.splitlines()))
     if not page.is_file() or page.read_text(encoding="utf-8") != expected:
         breach(page, "is not what the program prints; run: plica reference > docs/scenario.md")
@@ -138,6 +155,7 @@ check_laws()
 check_links()
 if program:
     check_reference()
+    check_measures()
 
 # A check that looked at nothing is a broken check.
 for what in ("includes", "headers", "source files", "laws", "pages", "links"):

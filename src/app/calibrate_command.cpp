@@ -79,7 +79,7 @@ class TrialTable {
     if (!on_terminal_ || now - last_ < std::chrono::milliseconds(100)) return;
     last_ = now;
     fmt::print(stderr, "\r{:>5}  {}: t = {:.2f} min\033[K", number, values_text(problem_, values),
-               row.time_s / units::minute);
+               row.time_s() / units::minute);
     std::fflush(stderr);
   }
 

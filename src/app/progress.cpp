@@ -10,21 +10,26 @@
 #include "core/units.hpp"
 
 namespace plica {
+namespace {
+
+double fastest_node(const Observation& row) { return row["max_node_speed_um_per_s"].value_or(0); }
+
+}  // namespace
 
 Progress::Progress(const RunControls& controls, bool quiet)
     : controls_(controls), quiet_(quiet), on_terminal_(isatty(STDERR_FILENO) != 0) {}
 
 // Towards the end of time or, as speeds decay exponentially, towards rest: whichever is nearer.
 double Progress::part_done(const Observation& row) const {
-  double part = row.time_s / controls_.end_s;
-  const double speed = row.max_node_speed_um_per_s, goal = controls_.equilibrium_speed_um_per_s;
+  double part = row.time_s() / controls_.end_s;
+  const double speed = fastest_node(row), goal = controls_.equilibrium_speed_um_per_s;
   if (controls_.stop_at_equilibrium && goal > 0 && speed > goal && fastest_um_per_s_ > speed)
     part = std::max(part, std::log(fastest_um_per_s_ / speed) / std::log(fastest_um_per_s_ / goal));
   return std::clamp(part, 0.0, 1.0);
 }
 
 void Progress::show(const Observation& row) {
-  fastest_um_per_s_ = std::max(fastest_um_per_s_, row.max_node_speed_um_per_s);
+  fastest_um_per_s_ = std::max(fastest_um_per_s_, fastest_node(row));
   if (quiet_) return;
   const auto now = Clock::now();
   const double since_last_s = std::chrono::duration<double>(now - last_).count();
@@ -35,10 +40,9 @@ void Progress::show(const Observation& row) {
   constexpr int width = 24;
   const int filled = static_cast<int>(std::lround(part * width));
   const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');
-  const std::string line =
-      fmt::format("[{}] {:3.0f} %  t = {:6.2f} min  depth {:6.2f} um  fastest node {:9.3g} um/min  {}", bar, 100 * part,
-                  row.time_s / units::minute, row.furrow.depth_um.value_or(0),
-                  row.max_node_speed_um_per_s / units::um_per_minute, left);
+  const std::string line = fmt::format(
+      "[{}] {:3.0f} %  t = {:6.2f} min  depth {:6.2f} um  fastest node {:9.3g} um/min  {}", bar, 100 * part,
+      row.time_s() / units::minute, row["furrow_depth_um"].value_or(0), fastest_node(row) / units::um_per_minute, left);
   // Clear to the end of the line, since the next line may be shorter.
   fmt::print(stderr, "{}{}{}", on_terminal_ ? "\r" : "", line, on_terminal_ ? "\033[K" : "\n");
   std::fflush(stderr);

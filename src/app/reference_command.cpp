@@ -1,14 +1,17 @@
 #include <fmt/format.h>
 
 #include "app/commands.hpp"
+#include "measure/columns.hpp"
 #include "scenario/print.hpp"
 
 namespace plica {
 
 void add_reference_command(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand("reference", "print the reference of all scenario keys, in Markdown");
+  const CLI::Option* measures =
+      command->add_flag("--measures")->description("that of all columns of the results instead");
   command->footer("Example: plica reference > docs/scenario.md");
-  command->callback([] { fmt::print("{}", reference_markdown()); });
+  command->callback([=] { fmt::print("{}", measures->count() > 0 ? measures_markdown() : reference_markdown()); });
 }
 
 }  // namespace plica

@@ -1,6 +1,7 @@
 #include "measure/cells.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace plica {
 
@@ -66,6 +67,44 @@ double shell_penetration(const Model& model, std::span<const Vec3> positions) {
   const Contacts contacts(model);
   for (std::size_t k = 0; k < contacts.size(); ++k) deepest = std::max(deepest, -contacts.gap(k, positions).value);
   return deepest;
+}
+
+double max_volume_error(const Model& model, std::span<const Vec3> positions) {
+  double largest = 0;
+  for (const double error : model.volumes().relative_errors(positions)) largest = std::max(largest, std::abs(error));
+  return largest;
+}
+
+double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions) {
+  double least = 1;
+  for (const auto& element : tissue.elements) least = std::min(least, hex_scaled_jacobian(gather(positions, element)));
+  return least;
+}
+
+Vectors active_forces(const Model& model, const State& state) {
+  Vectors forces(state.positions.size(), Vec3::Zero());
+  Step still{state.positions, state.positions, state.velocities, 1, state.time_s};
+  still.internals = state.internals;
+  for_laws(model, still, [&](const Law& law, const Step& own) {
+    if (law.is_active()) law.add_forces(own, forces);
+  });
+  return forces;
+}
+
+std::vector<Vec3> rest_apical_normals(const Tissue& tissue, std::span<const CellId> cells) {
+  std::vector<Vec3> of_all(tissue.cells.size(), Vec3::Zero());
+  for (const Facet& facet : tissue.apical_facets)
+    of_all[facet.cell.index()] += facet_area_vector(gather(tissue.rest_positions, facet));
+  std::vector<Vec3> normals;
+  normals.reserve(cells.size());
+  for (const CellId cell : cells) normals.push_back(of_all[cell.index()].normalized());
+  return normals;
+}
+
+Vec3 mean_apical(const Cell& cell, const Vectors& vectors) {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 4; i < 8; ++i) sum += vectors[cell.corners[i].index()] / 4;
+  return sum;
 }
 
 }  // namespace plica

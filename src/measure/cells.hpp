@@ -32,4 +32,19 @@ std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> p
 /// Deepest place of a node beyond an obstacle (outside the shell), um; 0 where none is.
 double shell_penetration(const Model& model, std::span<const Vec3> positions);
 
+/// Largest |V/V_target - 1| of a cell.
+double max_volume_error(const Model& model, std::span<const Vec3> positions);
+
+/// Worst corner of an element: 1 is a brick, 0 is flat.
+double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions);
+
+/// What the active laws exert on each node, nN, without their dampers.
+Vectors active_forces(const Model& model, const State& state);
+
+/// Unit normals of the cells' apical surfaces at rest, outward.
+std::vector<Vec3> rest_apical_normals(const Tissue& tissue, std::span<const CellId> cells);
+
+/// Mean of the vectors at a cell's four apical corners.
+Vec3 mean_apical(const Cell& cell, const Vectors& vectors);
+
 }  // namespace plica

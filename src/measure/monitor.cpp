@@ -18,20 +18,39 @@ using Info = QuantityInfo;
 constexpr auto may = Info::Axis::may_have, must = Info::Axis::must_have, no_axis = Info::Axis::none;
 
 constexpr std::array<Info, 14> table = {{
-    {Quantity::position, "position", "um", Info::Of::node, must},
-    {Quantity::displacement, "displacement", "um", Info::Of::node, may},
-    {Quantity::speed, "speed", "um_per_s", Info::Of::node},
-    {Quantity::velocity, "velocity", "um_per_s", Info::Of::node, must},
-    {Quantity::deviation, "deviation", "um", Info::Of::node, may, Info::Reference::run},
-    {Quantity::relative_energy_norm, "relative_energy_norm", "", Info::Of::region, no_axis, Info::Reference::run},
-    {Quantity::surface_distance, "surface_distance", "um", Info::Of::node, no_axis, Info::Reference::surface},
-    {Quantity::force, "force", "nN", Info::Of::node, may},
-    {Quantity::volume, "volume", "um3", Info::Of::cell},
-    {Quantity::area, "area", "um2", Info::Of::cell},
-    {Quantity::pressure, "pressure", "Pa", Info::Of::cell},
-    {Quantity::kinetic_energy, "kinetic_energy", "nN_um", Info::Of::region},
-    {Quantity::time, "time", "s", Info::Of::region},
-    {Quantity::wall, "wall", "s", Info::Of::region},
+    {Quantity::position, "position", "um", Info::Of::node, "Coordinate along `axis`.", must},
+    {Quantity::displacement, "displacement", "um", Info::Of::node, "From its place at rest: norm, or component.", may},
+    {Quantity::speed, "speed", "um_per_s", Info::Of::node,
+     "Norm of the velocity at the step's end (with backward Euler the mean over the step); 0 before the first."},
+    {Quantity::velocity, "velocity", "um_per_s", Info::Of::node, "Component of that velocity along `axis`.", must},
+    {Quantity::deviation, "deviation", "um", Info::Of::node,
+     "From the same node of the run in the directory `reference`: norm, or component.", may, Info::Reference::run},
+    {Quantity::relative_energy_norm, "relative_energy_norm", "", Info::Of::region,
+     "$\\sqrt{(u-u_r)^TK(u-u_r)}\\,/\\sqrt{u_r^TKu_r}$ of displacements $u$ from rest, $u_r$ those of `reference`. "
+     "$K$: linear stiffness of the region's elements at rest (nine incompatible modes, the scenario's Poisson's ratio; "
+     "Young's modulus cancels). In the fixed frame: turning as a whole counts. No value while the reference is at "
+     "rest.",
+     no_axis, Info::Reference::run},
+    {Quantity::surface_distance, "surface_distance", "um", Info::Of::node,
+     "To the nearest triangle of the mesh file `reference` (VTK, STL, PLY, OBJ; of a volume mesh its boundary, both "
+     "sides of a layer); never negative. Faces of more corners are split into triangles.",
+     no_axis, Info::Reference::surface},
+    {Quantity::force, "force", "nN", Info::Of::node,
+     "What elasticity, contractions and applied pressures exert on the node of a body that stands still: no drag, "
+     "dampers or inertia. Volumes and shell, which balance it at rest, are not in it. With `from = \"REGION\"` it is "
+     "what the cells of that region exert, the pressures that hold their volumes included: on a node that they share "
+     "with others, the push across the boundary.",
+     may},
+    {Quantity::volume, "volume", "um3", Info::Of::cell, "Signed: negative in a cell that is inside out."},
+    {Quantity::area, "area", "um2", Info::Of::cell,
+     "Of the apical facets, or basal with `face = \"basal\"`; as in `cells.csv`."},
+    {Quantity::pressure, "pressure", "Pa", Info::Of::cell, "What holds the cell's volume; positive in compression."},
+    {Quantity::kinetic_energy, "kinetic_energy", "nN_um", Info::Of::region,
+     "$\\tfrac12\\sum m v^2$, an eighth of each element's mass at each of its nodes. Refused without a density."},
+    {Quantity::time, "time", "s", Info::Of::region, "Of the run; for criteria."},
+    {Quantity::wall, "wall", "s", Info::Of::region,
+     "Computing time of all steps so far. The one quantity that differs from run to run: results are the same to the "
+     "bit but for `wall_*`, here the columns whose name goes on with `wall_` after the dot."},
 }};
 
 /// One value of each vector: its component or its norm.

@@ -41,6 +41,7 @@ struct QuantityInfo {
   std::string_view name;
   std::string_view unit;  // as in a column's name; empty for a ratio
   Of of;
+  std::string_view meaning;  // for docs/measures.md, in Markdown
   Axis axis = Axis::none;
   Reference reference = Reference::none;
 

@@ -1,10 +1,12 @@
-// One row of series.csv, and what the rows of a run add up to.
+// One row of series.csv: an accepted step as it is measured.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "measure/columns.hpp"
 #include "measure/furrow.hpp"
 #include "measure/stop_rule.hpp"
 #include "solver/step/stepper.hpp"
@@ -24,23 +26,14 @@ struct AcceptedStep {
 
 /// The measures of one accepted step. Empty: has no value.
 struct Observation {
-  double time_s = 0;
-  FurrowShape furrow;
-  std::optional<double> vml_speed_um_per_s, vce_speed_um_per_s, speed_ratio;
-  std::optional<double> vml_displacement_um, vce_displacement_um;
-  std::optional<double> vml_apical_area_ratio, vce_apical_area_ratio;
-  double max_node_speed_um_per_s = 0;
-  double max_volume_error = 0;  // over cells
-  std::optional<double> lumen_volume_ratio;
-  double max_shell_penetration_um = 0;
-  double min_scaled_jacobian = 1;
-  double step_s = 0;
-  int newton_iterations = 0;
-  int linear_solves = 0;
-  int projection_sweeps = 0, cubics = 0, cubics_with_three_roots = 0;
+  std::vector<std::optional<double>> values = std::vector<std::optional<double>>(columns().size());  // by column
   std::vector<std::optional<double>> monitors;  // in the order of the scenario's
   std::vector<std::string> criteria_met;        // of [stop]
   bool is_over = false;                         // the criteria say so
+
+  /// By the column's name, as in row["furrow_depth_um"]. std::logic_error when there is none.
+  [[nodiscard]] std::optional<double> operator[](std::string_view column) const { return values[column_index(column)]; }
+  [[nodiscard]] double time_s() const { return (*this)["time_s"].value_or(0); }
 };
 
 /// What a scenario asks to be watched beside the furrow.
@@ -66,23 +59,12 @@ class Observer {
   void follow_division(const Division& division) { plica::follow_division(sites_, model_.tissue, division); }
 
  private:
-  void observe_state(const State& state, Observation& row) const;
-  void observe_monitors(const State& state, double wall_s, bool at_equilibrium, Observation& row) const;
+  [[nodiscard]] Observation row_of(const State& state, const AcceptedStep* step, double wall_s) const;
 
   const Model& model_;
   FurrowSites sites_;
   Watch watch_;
   std::optional<double> rest_lumen_volume_;
 };
-
-/// Who leads, the ends or the middle, over a whole run.
-struct SpeedHistory {
-  std::optional<double> peak_ratio;  // v_c/v_m when v_c - v_m is largest, among steps with v_m over 1 % of its peak
-  std::optional<double> peak_ratio_time_s;
-  std::optional<double> ends_lead_until_s;  // first time after that when v_c <= v_m; linear between steps
-  std::optional<double> vml_displacement_at_equal_speed_um, vce_displacement_at_equal_speed_um;
-};
-
-SpeedHistory speed_history(const std::vector<Observation>& rows);
 
 }  // namespace plica

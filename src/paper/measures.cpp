@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core/units.hpp"
-#include "measure/observation.hpp"
+#include "measure/speed_history.hpp"
 #include "record/results.hpp"
 
 namespace plica {
@@ -33,34 +33,32 @@ std::optional<double> in_row(const Series& series, const std::vector<std::option
 }
 
 // The run as speed_history wants it, with the given cell from the end as VCE.
-std::vector<Observation> observations(const Series& series, int vce) {
+std::vector<SpeedRow> speed_rows(const Series& series, int vce) {
   const std::string monitor = fmt::format("vce_{}", vce);
-  std::vector<Observation> rows;
+  std::vector<SpeedRow> rows;
   for (const auto& row : series.rows) {
-    Observation observation;
-    observation.time_s = *row.front();
-    observation.vml_speed_um_per_s = in_row(series, row, "vml_speed_um_per_s");
-    observation.vml_displacement_um = in_row(series, row, "vml_displacement_um");
+    SpeedRow speeds;
+    speeds.time_s = *row.front();
+    speeds.vml_speed_um_per_s = in_row(series, row, "vml_speed_um_per_s");
+    speeds.vml_displacement_um = in_row(series, row, "vml_displacement_um");
     if (vce == 2) {
-      observation.vce_speed_um_per_s = in_row(series, row, "vce_speed_um_per_s");
-      observation.vce_displacement_um = in_row(series, row, "vce_displacement_um");
+      speeds.vce_speed_um_per_s = in_row(series, row, "vce_speed_um_per_s");
+      speeds.vce_displacement_um = in_row(series, row, "vce_displacement_um");
     } else {
       const auto x = in_row(series, row, monitor + "_x.velocity_um_per_s");
       const auto z = in_row(series, row, monitor + "_z.velocity_um_per_s");
       if (!x || !z) return {};
-      observation.vce_speed_um_per_s = std::hypot(*x, *z);  // nothing along y on the midline
-      observation.vce_displacement_um = in_row(series, row, monitor + ".displacement_um");
+      speeds.vce_speed_um_per_s = std::hypot(*x, *z);  // nothing along y on the midline
+      speeds.vce_displacement_um = in_row(series, row, monitor + ".displacement_um");
     }
-    if (!observation.vml_speed_um_per_s || !observation.vce_speed_um_per_s) continue;  // at rest
-    if (*observation.vml_speed_um_per_s > 0)
-      observation.speed_ratio = *observation.vce_speed_um_per_s / *observation.vml_speed_um_per_s;
-    rows.push_back(observation);
+    if (!speeds.vml_speed_um_per_s || !speeds.vce_speed_um_per_s) continue;  // at rest
+    rows.push_back(speeds);
   }
   return rows;
 }
 
 void add_speeds(Figures& figures, const Series& series, int vce, const std::string& ending) {
-  const std::vector<Observation> rows = observations(series, vce);
+  const std::vector<SpeedRow> rows = speed_rows(series, vce);
   const SpeedHistory history = speed_history(rows);
   put(figures, "peak_ratio" + ending, history.peak_ratio);
   put(figures, "peak_ratio_time_s" + ending, history.peak_ratio_time_s);
@@ -101,12 +99,13 @@ std::optional<double> time_of(const Series& series, const std::string& column, d
 
 void add_extreme_ratios(Figures& figures, const Series& series) {
   double fastest = 0;
-  const std::vector<Observation> rows = observations(series, 2);
-  for (const Observation& row : rows) fastest = std::max(fastest, *row.vml_speed_um_per_s);
+  const std::vector<SpeedRow> rows = speed_rows(series, 2);
+  for (const SpeedRow& row : rows) fastest = std::max(fastest, *row.vml_speed_um_per_s);
   std::optional<double> least, most;
-  for (const Observation& row : rows) {
-    if (*row.vml_speed_um_per_s < 0.01 * fastest || !row.speed_ratio) continue;
-    least = std::min(least.value_or(1e300), *row.speed_ratio), most = std::max(most.value_or(0), *row.speed_ratio);
+  for (const SpeedRow& row : rows) {
+    const std::optional<double> ratio = row.speed_ratio();
+    if (*row.vml_speed_um_per_s < 0.01 * fastest || !ratio) continue;
+    least = std::min(least.value_or(1e300), *ratio), most = std::max(most.value_or(0), *ratio);
   }
   put(figures, "least_ratio", least);
   put(figures, "largest_ratio", most);

@@ -172,97 +172,70 @@ void visit_record(Take& take, Record& record) {
   take("record/solver_s", record.solver_s);
 }
 
-// The columns of an observation but for the monitors.
-template <class Row, class Take>
-void visit_row(Row& row, const Take& take) {
-  take(row.time_s), take(row.furrow.depth_um), take(row.furrow.depth_below_lips_um), take(row.furrow.lip_distance_um);
-  take(row.furrow.highest_points_distance_um), take(row.vml_speed_um_per_s), take(row.vce_speed_um_per_s);
-  take(row.speed_ratio), take(row.vml_displacement_um), take(row.vce_displacement_um);
-  take(row.vml_apical_area_ratio), take(row.vce_apical_area_ratio), take(row.max_node_speed_um_per_s);
-  take(row.max_volume_error), take(row.lumen_volume_ratio), take(row.max_shell_penetration_um);
-  take(row.min_scaled_jacobian), take(row.step_s), take(row.newton_iterations), take(row.linear_solves);
-  take(row.projection_sweeps), take(row.cubics), take(row.cubics_with_three_roots);
+std::string in_lines(const std::vector<std::string>& texts) {
+  std::string lines;
+  for (const std::string& text : texts) lines += text + "\n";
+  return lines;
 }
 
-// A number a column, and whether the row has it.
-class RowWriter {
- public:
-  void add(const Observation& row) {
-    visit_row(row, [&](const auto& value) { put(value); });
-    for (const std::optional<double>& value : row.monitors) put(value);
-  }
+std::vector<std::string> of_lines(const std::string& lines) {
+  std::vector<std::string> texts;
+  for (std::size_t at = 0, end = 0; (end = lines.find('\n', at)) != std::string::npos; at = end + 1)
+    texts.push_back(lines.substr(at, end - at));
+  return texts;
+}
+
+// Of the table and not of this file: a checkpoint of another table has other names.
+std::vector<std::string> column_names() {
+  std::vector<std::string> names;
+  for (const Column& column : columns()) names.emplace_back(column.name);
+  return names;
+}
+
+// A number a column, then one a monitor, and whether the row has it.
+void save_rows(ArchiveWriter& archive, const std::vector<Observation>& rows) {
   std::vector<double> numbers;
   std::vector<char> has;
-
- private:
-  void put(double value) { numbers.push_back(value), has.push_back(1); }
-  void put(const std::optional<double>& value) { numbers.push_back(value.value_or(0)), has.push_back(value ? 1 : 0); }
-};
-
-class RowReader {
- public:
-  RowReader(const std::vector<double>& numbers, const std::vector<char>& has) : numbers_(numbers), has_(has) {}
-  Observation next(std::size_t monitors) {
-    Observation row;
-    visit_row(row, [&](auto& value) { get(value); });
-    row.monitors.resize(monitors);
-    for (std::optional<double>& value : row.monitors) get(value);
-    return row;
-  }
-
- private:
-  void get(double& value) { value = numbers_[at_++]; }
-  void get(int& value) {
-    const double number = numbers_[at_++];
-    if (std::abs(number) > 1e9) Loading::refuse("record/rows");
-    value = static_cast<int>(number);
-  }
-  void get(std::optional<double>& value) {
-    value.reset();
-    if (has_[at_] != 0) value = numbers_[at_];
-    ++at_;
-  }
-  const std::vector<double>& numbers_;
-  const std::vector<char>& has_;
-  std::size_t at_ = 0;
-};
-
-std::size_t fixed_columns() {
-  RowWriter row;
-  row.add({});
-  return row.numbers.size();
-}
-
-void save_rows(ArchiveWriter& archive, const std::vector<Observation>& rows) {
-  RowWriter table;
-  for (const Observation& row : rows) table.add(row);
-  const std::size_t columns = rows.empty() ? 0 : table.numbers.size() / rows.size();
-  archive.put("record/rows", table.numbers, columns);
-  archive.put("record/has", table.has);
+  for (const Observation& row : rows)
+    for (const auto* values : {&row.values, &row.monitors})
+      for (const std::optional<double>& value : *values)
+        numbers.push_back(value.value_or(0)), has.push_back(value ? 1 : 0);
+  const std::size_t monitors = rows.empty() ? 0 : rows.back().monitors.size();
+  archive.put("record/rows", numbers, rows.empty() ? 0 : numbers.size() / rows.size());
+  archive.put("record/has", has);
   Saving save(archive);
-  save("record/columns", static_cast<int>(columns));
-  std::string criteria;
-  if (!rows.empty())
-    for (const std::string& name : rows.back().criteria_met) criteria += name + "\n";
-  save("record/criteria_met", criteria);
+  save("record/columns", in_lines(column_names()));
+  save("record/monitors", static_cast<int>(monitors));
+  save("record/criteria_met", in_lines(rows.empty() ? std::vector<std::string>() : rows.back().criteria_met));
 }
+
+bool is_count(double number) { return std::abs(number) <= 1e9 && number == std::floor(number); }
 
 std::vector<Observation> load_rows(const ArchiveReader& archive) {
   const std::vector<double> numbers = archive.doubles("record/rows");
   const std::vector<char> has = archive.bytes("record/has");
-  int stored_columns = 0;
-  std::string criteria;
+  int monitors = 0;
+  std::string names, criteria;
   Loading load(archive);
-  load("record/columns", stored_columns);
+  load("record/columns", names);
+  load("record/monitors", monitors);
   load("record/criteria_met", criteria);
-  const std::size_t fixed = fixed_columns(), columns = static_cast<std::size_t>(std::max(stored_columns, 0));
-  if (columns < fixed || numbers.empty() || numbers.size() % columns != 0 || has.size() != numbers.size())
-    Loading::refuse("record/rows");
-  std::vector<Observation> rows;
-  RowReader reader(numbers, has);
-  for (std::size_t r = 0; r < numbers.size() / columns; ++r) rows.push_back(reader.next(columns - fixed));
-  for (std::size_t at = 0, end = 0; (end = criteria.find('\n', at)) != std::string::npos; at = end + 1)
-    rows.back().criteria_met.push_back(criteria.substr(at, end - at));
+  if (of_lines(names) != column_names())
+    throw FileError("another version of plica wrote it, whose rows have other columns");
+  const std::size_t fixed = columns().size(), width = fixed + static_cast<std::size_t>(std::max(monitors, 0));
+  if (numbers.empty() || numbers.size() % width != 0 || has.size() != numbers.size()) Loading::refuse("record/rows");
+  std::vector<Observation> rows(numbers.size() / width);
+  for (std::size_t at = 0; at < numbers.size(); ++at) {
+    const std::size_t c = at % width;
+    const std::optional<double> value = has[at] != 0 ? std::optional(numbers[at]) : std::nullopt;
+    Observation& row = rows[at / width];
+    if (c < fixed && columns()[c].is_count && !is_count(numbers[at])) Loading::refuse("record/rows");
+    if (c < fixed)
+      row.values[c] = value;
+    else
+      row.monitors.push_back(value);
+  }
+  rows.back().criteria_met = of_lines(criteria);
   return rows;
 }
 

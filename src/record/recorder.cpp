@@ -1,6 +1,7 @@
 #include "record/recorder.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <omp.h>
 
 #include <limits>
@@ -20,11 +21,6 @@ namespace {
 
 constexpr std::size_t most_cells_by_default = 2000;  // with a row a cell a frame in cells.csv
 constexpr std::size_t most_waiting = 1;              // frames and steps, beside the one being written
-constexpr const char* series_header =
-    "time_s,furrow_depth_um,furrow_depth_below_lips_um,lip_distance_um,vml_speed_um_per_s,vce_speed_um_per_s,"
-    "speed_ratio,vml_displacement_um,vce_displacement_um,vml_apical_area_ratio,vce_apical_area_ratio,"
-    "max_node_speed_um_per_s,max_volume_error,lumen_volume_ratio,cells,step_s,newton_iterations,linear_iterations";
-constexpr const char* lineage_header = "cell_id,mother_id,generation,birth_s";
 
 std::string row_of(const std::vector<std::optional<double>>& values) {
   std::vector<double> numbers;
@@ -35,18 +31,19 @@ std::string row_of(const std::vector<std::optional<double>>& values) {
 }
 
 // A table that begins with its header, whole or not at all; or one cut back to what it had.
-RowFile table(const fs::path& file, const std::string& header, std::uint64_t keep_bytes) {
+RowFile table(const fs::path& file, const std::vector<std::string>& names, std::uint64_t keep_bytes) {
   if (keep_bytes > 0) return RowFile(file, keep_bytes);
-  write_file(file, header + "\n");
-  return RowFile(file, header.size() + 1);
+  const std::string header = fmt::format("{}\n", fmt::join(names, ","));
+  write_file(file, header);
+  return RowFile(file, header.size());
 }
 
 std::uint64_t bytes_of(const std::optional<RowFile>& table) { return table ? table->size_bytes() : 0; }
 
-std::string series_columns(const Observer& observer) {
-  std::string header = series_header;
-  for (const Monitor& monitor : observer.monitors()) header += fmt::format(",{}", monitor.column());
-  return header;
+std::vector<std::string> all_series_names(const Observer& observer) {
+  std::vector<std::string> names = series_names();
+  for (const Monitor& monitor : observer.monitors()) names.push_back(monitor.column());
+  return names;
 }
 
 }  // namespace
@@ -76,10 +73,11 @@ WallTimes Recorder::wall() const {
 }
 
 void Recorder::open_tables(const RecordMemory& memory) {
-  series_ = table(directory_ / "series.csv", series_columns(simulation_.observer()), memory.series_bytes);
-  midline_ = table(directory_ / "midline.csv", midline_header, memory.midline_bytes);
-  if (frame_taker_.with_cell_rows()) cells_ = table(directory_ / "cells.csv", cells_header, memory.cells_bytes);
-  if (!scenario_.divisions.empty()) lineage_ = table(directory_ / "lineage.csv", lineage_header, memory.lineage_bytes);
+  series_ = table(directory_ / "series.csv", all_series_names(simulation_.observer()), memory.series_bytes);
+  midline_ = table(directory_ / "midline.csv", midline_csv_names(), memory.midline_bytes);
+  if (frame_taker_.with_cell_rows()) cells_ = table(directory_ / "cells.csv", cells_csv_names(), memory.cells_bytes);
+  if (!scenario_.divisions.empty())
+    lineage_ = table(directory_ / "lineage.csv", lineage_csv_names(), memory.lineage_bytes);
 }
 
 std::shared_ptr<Recorder::StepRecord> Recorder::step_record() const {
@@ -175,24 +173,9 @@ nlohmann::ordered_json Recorder::finish() {
 }
 
 void Recorder::append_series(const Observation& row) {
-  std::vector<std::optional<double>> values = {row.time_s,
-                                               row.furrow.depth_um,
-                                               row.furrow.depth_below_lips_um,
-                                               row.furrow.lip_distance_um,
-                                               row.vml_speed_um_per_s,
-                                               row.vce_speed_um_per_s,
-                                               row.speed_ratio,
-                                               row.vml_displacement_um,
-                                               row.vce_displacement_um,
-                                               row.vml_apical_area_ratio,
-                                               row.vce_apical_area_ratio,
-                                               row.max_node_speed_um_per_s,
-                                               row.max_volume_error,
-                                               row.lumen_volume_ratio,
-                                               static_cast<double>(simulation_.model().tissue.cells.size()),
-                                               row.step_s,
-                                               static_cast<double>(row.newton_iterations),
-                                               static_cast<double>(row.linear_solves)};
+  std::vector<std::optional<double>> values;
+  for (std::size_t c = 0; c < columns().size(); ++c)
+    if (columns()[c].in_series) values.push_back(row.values[c]);
   values.insert(values.end(), row.monitors.begin(), row.monitors.end());
   series_->append(row_of(values));
 }
@@ -210,8 +193,8 @@ void Recorder::write(const FrameRecord& frame) {
   frames_.emplace_back(frame.time_s, file);
   write_collection(directory_ / "frames.pvd", frames_);
   if (!listeners_.empty()) tell(frame_of(frame.mesh(), frame.positions, arrays), frame.time_s);
-  if (!frame.cell_rows.empty()) cells_->append(csv_rows(frame.cell_rows, cells_columns));
-  if (!frame.midline_rows.empty()) midline_->append(csv_rows(frame.midline_rows, midline_columns));
+  if (!frame.cell_rows.empty()) cells_->append(csv_rows(frame.cell_rows, cells_csv_names().size()));
+  if (!frame.midline_rows.empty()) midline_->append(csv_rows(frame.midline_rows, midline_columns().size()));
 }
 
 void Recorder::tell(const Frame& frame, double time_s) {
@@ -222,8 +205,9 @@ void Recorder::append_lineage(const Division& division) {
   for (const auto& daughters : division.daughters)
     for (const CellId daughter : daughters) {
       const Lineage& lineage = simulation_.model().tissue.cells[daughter.index()].lineage;
-      lineage_->append(row_of({static_cast<double>(lineage.id), static_cast<double>(lineage.mother),
-                               static_cast<double>(lineage.generation), lineage.birth_s}));
+      std::vector<std::optional<double>> values;
+      for (const LineageColumn& column : lineage_columns()) values.emplace_back(column.value(lineage));
+      lineage_->append(row_of(values));
     }
 }
 

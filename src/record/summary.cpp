@@ -21,6 +21,10 @@ using Json = nlohmann::ordered_json;
 
 Json number(std::optional<double> value) { return value && std::isfinite(*value) ? Json(*value) : Json(nullptr); }
 
+Json in_json(const Column& column, std::optional<double> value) {
+  return column.is_count && value ? Json(static_cast<std::int64_t>(*value)) : number(value);
+}
+
 std::string cpu_name() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);)
@@ -71,20 +75,13 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   const Tissue& tissue = simulation.model().tissue;
   const std::vector<Monitor>& monitors = simulation.observer().monitors();
   const Observation& last = rows.back();
-  const SpeedHistory history = speed_history(rows);
-  double volume_error = 0, penetration = 0, jacobian = 1;
-  for (const Observation& row : rows) {
-    volume_error = std::max(volume_error, row.max_volume_error);
-    penetration = std::max(penetration, row.max_shell_penetration_um);
-    jacobian = std::min(jacobian, row.min_scaled_jacobian);
-  }
   Json summary;
   summary["scenario"] = scenario.name;
   summary["title"] = scenario.title;
   summary["status"] = word(simulation.status());
   summary["stopped_by"] = stopped_by(scenario, simulation, last);
   summary["failure"] = simulation.failure().empty() ? Json(nullptr) : Json(simulation.failure());
-  summary["time_s"] = last.time_s;
+  summary["time_s"] = last.time_s();
   summary["equilibrium_time_s"] = number(simulation.equilibrium_time_s());
   summary["cells"] = tissue.cells.size();
   summary["nodes"] = tissue.free_node_count();
@@ -93,36 +90,13 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   summary["steps"] = simulation.steps();
   summary["wall_s"] = wall.total_s;
   summary["wall_solver_s"] = wall.solver_s;
-  summary["furrow_depth_um"] = number(last.furrow.depth_um);
-  summary["furrow_depth_below_lips_um"] = number(last.furrow.depth_below_lips_um);
-  summary["lip_distance_um"] = number(last.furrow.lip_distance_um);
-  summary["highest_points_distance_um"] = number(last.furrow.highest_points_distance_um);
-  summary["vml_apical_area_ratio"] = number(last.vml_apical_area_ratio);
-  summary["vce_apical_area_ratio"] = number(last.vce_apical_area_ratio);
-  summary["vml_displacement_um"] = number(last.vml_displacement_um);
-  summary["vce_displacement_um"] = number(last.vce_displacement_um);
-  summary["peak_speed_ratio"] = number(history.peak_ratio);
-  summary["peak_speed_ratio_time_s"] = number(history.peak_ratio_time_s);
-  summary["ends_lead_until_s"] = number(history.ends_lead_until_s);
-  summary["vml_displacement_at_equal_speed_um"] = number(history.vml_displacement_at_equal_speed_um);
-  summary["vce_displacement_at_equal_speed_um"] = number(history.vce_displacement_at_equal_speed_um);
-  summary["max_node_speed_um_per_s"] = number(last.max_node_speed_um_per_s);
-  summary["max_volume_error"] = number(volume_error);
-  summary["max_shell_penetration_um"] = number(penetration);
-  summary["min_scaled_jacobian"] = number(jacobian);
-  summary["lumen_volume_ratio"] = number(last.lumen_volume_ratio);
-  std::int64_t newton = 0, solves = 0, sweeps = 0, cubics = 0, three_roots = 0;
-  for (const Observation& row : rows) {
-    newton += row.newton_iterations, solves += row.linear_solves;
-    sweeps += row.projection_sweeps, cubics += row.cubics, three_roots += row.cubics_with_three_roots;
-  }
-  summary["newton_iterations"] = newton;
-  summary["linear_iterations"] = solves;
+  const auto values = summary_values(rows);
+  for (const auto& [column, value] : values)
+    if (!column->of_projection) summary[column->name] = in_json(*column, value);
   for (std::size_t m = 0; m < monitors.size(); ++m) summary[monitors[m].column()] = number(last_value(rows, m));
   const bool projects = scenario.volume.method == "projection";
-  summary["projection_sweeps"] = projects ? Json(sweeps) : Json(nullptr);
-  summary["cubic_solves"] = projects ? Json(cubics) : Json(nullptr);
-  summary["cubic_three_real_roots"] = projects ? Json(three_roots) : Json(nullptr);
+  for (const auto& [column, value] : values)
+    if (column->of_projection) summary[column->name] = projects ? in_json(*column, value) : Json(nullptr);
   summary["provenance"] = {{"version", version()},
                            {"commit", commit()},
                            {"compiler", compiler()},

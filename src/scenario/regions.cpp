@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "scenario/words.hpp"
+
 namespace plica {
 namespace {
 
@@ -18,18 +20,10 @@ bool in_strip(int place, int count, const std::optional<int>& wanted) {
   return !wanted || std::abs(2 * place - (count - 1)) < *wanted;
 }
 
-GridPlace::Face face_named(const std::string& name) {
-  using Face = GridPlace::Face;
-  static const std::map<std::string, Face> faces = {{"ventral", Face::ventral},   {"dorsal", Face::dorsal},
-                                                    {"left", Face::left},         {"right", Face::right},
-                                                    {"anterior", Face::anterior}, {"posterior", Face::posterior}};
-  return faces.at(name);
-}
-
 bool selected(const RegionInput& region, std::size_t id, const Cell& cell, const Tissue& tissue) {
   if (!region.face.empty()) {
     const auto& place = cell.grid_place;
-    if (!place || place->face != face_named(region.face) ||
+    if (!place || place->face != meaning_of(words::sides, region.face) ||
         !in_strip(place->place[0], place->count[0], region.cells_along) ||
         !in_strip(place->place[1], place->count[1], region.cells_across))
       return false;

@@ -102,6 +102,12 @@ struct ContractionInput {
   VariationInput variation;
 };
 
+/// What makes cells divide: a time, or what has to pass a threshold.
+enum class DivisionTrigger { time, apical_area, volume, elongation };
+
+/// Apico-basal planes: across the embryo's axis (x), along the midline (across y), or across the cell's longer side.
+enum class DivisionPlane { transverse, sagittal, longest_axis };
+
 struct DivisionInput {
   std::string region;
   std::optional<double> at_s;  // TOML: at_s or at_min

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 
+#include "measure/columns.hpp"
 #include "measure/monitor.hpp"
+#include "scenario/words.hpp"
 
 namespace plica {
 namespace {
@@ -43,7 +45,11 @@ const Allowed positive = {.low = 0, .low_included = false};
 const Allowed not_negative = {.low = 0};
 
 Allowed between(double low, double high) { return {.low = low, .high = high}; }
-Allowed words(std::vector<std::string_view> words) { return {.words = std::move(words)}; }
+Allowed one_of(std::vector<std::string_view> words) { return {.words = std::move(words)}; }
+template <class Meaning, std::size_t n>
+Allowed one_of(const std::array<Word<Meaning>, n>& table) {
+  return one_of(words_of(table));
+}
 
 std::vector<std::string_view> quantity_names() {
   std::vector<std::string_view> names;
@@ -79,7 +85,7 @@ const std::vector<Row>& rows() {
       row("", "base", no_field(), anything,
           "Built-in name, or path relative to this file, of the scenario to inherit from key by key."),
 
-      row("embryo", "shape", at(&S::embryo, &E::shape), words({"pill", "sphere", "block", "file"}),
+      row("embryo", "shape", at(&S::embryo, &E::shape), one_of({"pill", "sphere", "block", "file"}),
           "Closed sheets (pill, sphere), a block of cells, or a mesh file."),
       row("embryo", "length_um", at(&S::embryo, &E::length_um), positive, "Length along x (µm).",
           {.shapes = {"pill", "block"}}),
@@ -101,9 +107,7 @@ const std::vector<Row>& rows() {
           "surface is apical.",
           {.shapes = {"file"}}),
 
-      row("region.*", "face", at(&S::regions, &R::face),
-          words({"ventral", "dorsal", "left", "right", "anterior", "posterior"}),
-          "Cells of this side of a built embryo."),
+      row("region.*", "face", at(&S::regions, &R::face), one_of(words::sides), "Cells of this side of a built embryo."),
       row("region.*", "cells_along", at(&S::regions, &R::cells_along), between(1, max_count),
           "Only a centred strip of the face, this many cells along (x; y on the end faces)."),
       row("region.*", "cells_across", at(&S::regions, &R::cells_across), between(1, max_count),
@@ -119,7 +123,7 @@ const std::vector<Row>& rows() {
       row("region.*", "intersect", at(&S::regions, &R::intersect), anything, "Only cells of each of these regions."),
       row("region.*", "except", at(&S::regions, &R::except), anything, "No cells of these regions."),
 
-      row("elasticity", "model", at(&S::elasticity, &ElasticityInput::model), words({"corotational", "shape-memory"}),
+      row("elasticity", "model", at(&S::elasticity, &ElasticityInput::model), one_of({"corotational", "shape-memory"}),
           "Elastic law of a cell: isotropic in a frame that turns with it, or springs from its nodes to their places "
           "in "
           "the rest shape that follows it."),
@@ -140,15 +144,15 @@ const std::vector<Row>& rows() {
           at(&S::elasticity, &ElasticityInput::attractor_preload_length_um), positive,
           "Model shape-memory: how far from its place a node feels 0.7 of the preload (µm); it has no direction at 0."),
 
-      row("volume", "method", at(&S::volume, &VolumeInput::method), words({"coupled", "projection", "none"}),
+      row("volume", "method", at(&S::volume, &VolumeInput::method), one_of({"coupled", "projection", "none"}),
           "How cells keep their volume: as constraints of each step; by the paper's projection after it, so that the "
           "state of rest depends on the step; or not."),
       row("volume", "projection_surface", at(&S::volume, &VolumeInput::projection_surface),
-          words({"cells", "tissue", "embryo"}),
+          one_of(words::projection_surfaces),
           "Closed surfaces whose volume is projected: each cell's; the one around all cells; the apical one, with the "
           "lumen inside."),
       row("volume", "projection_weights", at(&S::volume, &VolumeInput::projection_weights),
-          words({"equal", "mobility"}),
+          one_of(words::projection_weights),
           "How far the projection moves nodes along the volume's gradient: all alike (the paper), or each as far as "
           "its "
           "drag and mass let it, which is where the coupled solve goes as steps get short."),
@@ -167,7 +171,7 @@ const std::vector<Row>& rows() {
 
       row("contraction.*", "region", at(&S::contractions, &C::region), anything, "Region whose cells contract.",
           {.required = true}),
-      row("contraction.*", "edges", at(&S::contractions, &C::edges), words({"apical", "basal", "lateral"}),
+      row("contraction.*", "edges", at(&S::contractions, &C::edges), one_of(words::edges),
           "Edges of the cells that contract."),
       row("contraction.*", "stiffness_nN_per_um", at(&S::contractions, &C::stiffness_nN_per_um), not_negative,
           "Stiffness of a spring (nN/µm)."),
@@ -190,11 +194,11 @@ const std::vector<Row>& rows() {
       row("contraction.*", "program.activity", at(&S::contractions, &C::program, &ProgramInput::activity), not_negative,
           "Activity at these times: a factor on the tension, linear between them."),
       row("contraction.*", "profile.shape", at(&S::contractions, &C::profile, &ProfileInput::shape),
-          words({"constant", "linear", "gaussian"}),
+          one_of(words::profile_shapes),
           "Factor on stiffness and preload by a cell's distance from the region's middle: 1, falling to `edge` at "
           "`half_width_um`, or exp(−d²/2σ²)."),
       row("contraction.*", "profile.axis", at(&S::contractions, &C::profile, &ProfileInput::axis),
-          words({"across", "along"}),
+          one_of(words::profile_axes),
           "Distance across the axis (the arc about it through the cell's centre; y in a block) or along it (x); "
           "without "
           "it across."),
@@ -207,10 +211,10 @@ const std::vector<Row>& rows() {
       row("contraction.*", "delay.speed_um_per_s", at(&S::contractions, &C::delay, &DelayInput::speed_um_per_s),
           {.low = 0, .low_included = false, .word_for_none = "none"},
           "Speed of a wave (µm/s): a cell's program starts when it arrives, and the cell is slack before."),
-      row("contraction.*", "delay.axis", at(&S::contractions, &C::delay, &DelayInput::axis), words({"along", "across"}),
+      row("contraction.*", "delay.axis", at(&S::contractions, &C::delay, &DelayInput::axis), one_of(words::delay_axes),
           "Direction of the wave, as in `profile.axis`; without it along."),
       row("contraction.*", "delay.from", at(&S::contractions, &C::delay, &DelayInput::from),
-          words({"middle", "ends", "low", "high"}),
+          one_of(words::delay_starts),
           "Where the region's wave starts at time 0; without it in the middle. Low is the anterior end, or the left "
           "side."),
       row("contraction.*", "variation.spread", at(&S::contractions, &C::variation, &VariationInput::spread),
@@ -220,7 +224,7 @@ const std::vector<Row>& rows() {
           "Another seed gives other factors; a cell's factor depends on seed and cell number only."),
 
       row("hold.*", "region", at(&S::holds, &H::region), anything, "Region whose nodes are held.", {.required = true}),
-      row("hold.*", "directions", at(&S::holds, &H::directions), words({"x", "y", "z"}),
+      row("hold.*", "directions", at(&S::holds, &H::directions), one_of(words::axes),
           "Directions in which they are held."),
       row("hold.*", "x_um", at(&S::holds, &H::x_um), anything, "Only nodes that lie at rest in this range of x (µm)."),
       row("hold.*", "y_um", at(&S::holds, &H::y_um), anything, "The same in y (µm)."),
@@ -228,7 +232,7 @@ const std::vector<Row>& rows() {
 
       row("pressure.*", "region", at(&S::pressures, &P::region), anything, "Region whose faces carry the pressure.",
           {.required = true}),
-      row("pressure.*", "face", at(&S::pressures, &P::face), words({"apical", "basal"}),
+      row("pressure.*", "face", at(&S::pressures, &P::face), one_of(words::pressure_faces),
           "Face of the cells that carries it."),
       row("pressure.*", "pressure_Pa", at(&S::pressures, &P::pressure_Pa), anything,
           "Pressure into the cell (Pa), a dead load on the face at rest.", {.required = true}),
@@ -244,12 +248,11 @@ const std::vector<Row>& rows() {
       row("division.*", "at_s", at(&S::divisions, &V::at_s), positive, "When all of them divide (s)."),
       row("division.*", "at_min", at(&S::divisions, &V::at_s), positive, "The same in minutes.",
           {.instead_of = "at_s", .scale = 60}),
-      row("division.*", "when", at(&S::divisions, &V::when),
-          words({"area_above_um2", "volume_above_um3", "elongation_above"}),
+      row("division.*", "when", at(&S::divisions, &V::when), one_of(words::division_triggers),
           "Instead of a time: a cell divides when its apical area, its volume, or the ratio of its longer to its "
           "shorter side passes the threshold, unless it is still growing."),
       row("division.*", "threshold", at(&S::divisions, &V::threshold), positive, "What has to be passed, with `when`."),
-      row("division.*", "plane", at(&S::divisions, &V::plane), words({"transverse", "sagittal", "longest-axis"}),
+      row("division.*", "plane", at(&S::divisions, &V::plane), one_of(words::division_planes),
           "Apico-basal plane of the cut: across the embryo's axis, along the midline, or across the cell's longer "
           "side; it runs between the middles of opposite sides of the cell."),
       row("division.*", "growth_s", at(&S::divisions, &V::growth_s), not_negative,
@@ -270,13 +273,12 @@ const std::vector<Row>& rows() {
       row("time", "end_s", at(&S::time, &T::end_s), positive, "When the run ends (s)."),
       row("time", "end_min", at(&S::time, &T::end_s), positive, "The same in minutes.",
           {.instead_of = "end_s", .scale = 60}),
-      row("time", "scheme", at(&S::time, &T::scheme), words({"newton", "linearly-implicit"}),
+      row("time", "scheme", at(&S::time, &T::scheme), one_of(words::schemes),
           "How a step is solved: Newton's method, or one linear system by conjugate gradients (the paper)."),
-      row("time", "integrator", at(&S::time, &T::integrator), words({"backward-euler", "bdf2"}),
+      row("time", "integrator", at(&S::time, &T::integrator), one_of(words::integrators),
           "How rates are taken at the end of a step: to first order in time, or to second, by differences over two "
           "steps. The second goes with scheme newton, without inertia and with volumes that are not projected."),
-      row("time", "linear_solver", at(&S::time, &T::linear_solver),
-          words({"automatic", "direct", "cholesky", "multigrid"}),
+      row("time", "linear_solver", at(&S::time, &T::linear_solver), one_of(words::linear_solvers),
           "How Newton's linear systems are solved: a factor of the whole system; or Krylov's method with a factor of "
           "its "
           "positive definite part, or with multigrid; automatic: by size. Results differ by less than the tolerances."),
@@ -289,34 +291,34 @@ const std::vector<Row>& rows() {
           "Equilibrium is when all nodes are slower (µm/min)."),
       row("stop", "at_equilibrium", at(&S::stop, &StopInput::at_equilibrium), anything,
           "Whether to stop there; false notes the time and runs on."),
-      row("stop", "combine", at(&S::stop, &StopInput::combine), words({"any", "all"}),
+      row("stop", "combine", at(&S::stop, &StopInput::combine), one_of(words::combinations),
           "Whether any of the `[stop.NAME]` and equilibrium ends the run, or all of them together."),
       row("stop.*", "monitor", at(&S::criteria, &K::monitor), anything, "The monitor that is bounded.",
           {.required = true}),
       row("stop.*", "above", at(&S::criteria, &K::above), anything,
           "Met when the value is larger (unit of the monitor's column)."),
       row("stop.*", "below", at(&S::criteria, &K::below), anything, "Met when the value is smaller (the same unit)."),
-      row("stop.*", "over", at(&S::criteria, &K::over), words({"any", "all"}),
+      row("stop.*", "over", at(&S::criteria, &K::over), one_of(words::criterion_overs),
           "Met when any one of the monitor's nodes or cells is beyond the bound, or all of them are; without it, when "
           "the monitor's number is."),
 
-      row("monitor.*", "quantity", at(&S::monitors, &M::quantity), words(quantity_names()), "What is measured.",
+      row("monitor.*", "quantity", at(&S::monitors, &M::quantity), one_of(quantity_names()), "What is measured.",
           {.required = true}),
       row("monitor.*", "region", at(&S::monitors, &M::region), anything, "Where: the cells of this region."),
-      row("monitor.*", "face", at(&S::monitors, &M::face), words({"apical", "basal"}),
+      row("monitor.*", "face", at(&S::monitors, &M::face), one_of(words::monitor_faces),
           "Only nodes of this side of the cells; without it, all. The side of an area; without it, apical."),
-      row("monitor.*", "axis", at(&S::monitors, &M::axis), words({"x", "y", "z"}),
+      row("monitor.*", "axis", at(&S::monitors, &M::axis), one_of(words::axes),
           "The component along this axis; without it, the norm."),
       row("monitor.*", "from", at(&S::monitors, &M::from), anything,
           "Of a force: only what the cells of this region exert on the nodes, the pressures that hold their volumes "
           "included; without it, what drives the nodes."),
-      row("monitor.*", "over", at(&S::monitors, &M::over), words({"mean", "max", "min", "sum", "rms"}),
+      row("monitor.*", "over", at(&S::monitors, &M::over), one_of(words::overs),
           "How the values of nodes or cells make one number; without it, their mean."),
       row("monitor.*", "reference", at(&S::monitors, &M::reference), anything,
           "What it is measured against, path relative to the scenario's file: the results of a run (deviation, "
           "relative_energy_norm), or a mesh (surface_distance).",
           {.is_path = true}),
-      row("monitor.*", "reference_at", at(&S::monitors, &M::reference_at), words({"same-time", "end"}),
+      row("monitor.*", "reference_at", at(&S::monitors, &M::reference_at), one_of(words::reference_times),
           "Which of the run's frames; without it, the one of the same time."),
 
       row("furrow", "region", at(&S::furrow, &FurrowInput::region), anything,
@@ -448,24 +450,13 @@ std::vector<const Row*> rows_of(std::string_view table) {
 }
 
 std::span<const std::string_view> expectation_names() {
-  static const std::vector<std::string_view> names = {"furrow_depth_um",
-                                                      "furrow_depth_below_lips_um",
-                                                      "lip_distance_um",
-                                                      "vml_apical_area_ratio",
-                                                      "vce_apical_area_ratio",
-                                                      "vml_displacement_um",
-                                                      "vce_displacement_um",
-                                                      "peak_speed_ratio",
-                                                      "peak_speed_ratio_time_s",
-                                                      "ends_lead_until_s",
-                                                      "vml_displacement_at_equal_speed_um",
-                                                      "vce_displacement_at_equal_speed_um",
-                                                      "equilibrium_time_s",
-                                                      "time_s",
-                                                      "max_volume_error",
-                                                      "max_shell_penetration_um",
-                                                      "cells",
-                                                      "nodes"};
+  // The measures, and what else summary.json says of a run in numbers that do not depend on the machine.
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> all;
+    for (const Column* column : summary_columns()) all.push_back(column->name);
+    all.insert(all.end(), {"equilibrium_time_s", "time_s", "cells", "nodes"});
+    return all;
+  }();
   return names;
 }
 

@@ -11,6 +11,7 @@
 #include "mechanics/obstacles/vitelline.hpp"
 #include "mechanics/surroundings.hpp"
 #include "scenario/regions.hpp"
+#include "scenario/words.hpp"
 #include "solver/projection/closed_surface.hpp"
 #include "tissue/files/mesh_file.hpp"
 #include "tissue/shapes/embryo.hpp"
@@ -59,10 +60,6 @@ void check_encloses(const Scenario& scenario, const Tissue& tissue, std::vector<
                                    "the apical surface of this mesh encloses nothing", "give \"cells\" or \"tissue\""));
 }
 
-EdgeSide side_named(const std::string& name) {
-  return name == "apical" ? EdgeSide::apical : name == "basal" ? EdgeSide::basal : EdgeSide::lateral;
-}
-
 void add_elasticity(const Scenario& scenario, Model& model) {
   const ElasticityInput& input = scenario.elasticity;
   const double young_modulus = input.young_modulus_Pa * units::pascal;
@@ -84,24 +81,16 @@ void add_elasticity(const Scenario& scenario, Model& model) {
 }
 
 ContractionPattern make_pattern(const ContractionInput& input) {
-  using Shape = ContractionProfile::Shape;
-  using From = ContractionDelay::From;
-  const auto axis = [](const std::string& name) { return name == "along" ? PatternAxis::along : PatternAxis::across; };
   ContractionPattern pattern;
   const ProfileInput& profile = input.profile;
-  pattern.profile.shape = profile.shape == "linear"     ? Shape::linear
-                          : profile.shape == "gaussian" ? Shape::gaussian
-                                                        : Shape::constant;
-  pattern.profile.axis = axis(profile.axis);
+  pattern.profile.shape = meaning_of(words::profile_shapes, profile.shape, pattern.profile.shape);
+  pattern.profile.axis = meaning_of(words::profile_axes, profile.axis, pattern.profile.axis);
   pattern.profile.half_width = profile.half_width_um.value_or(1);
   pattern.profile.edge = profile.edge.value_or(0);
   pattern.profile.sigma = profile.sigma_um.value_or(1);
   pattern.delay.speed = input.delay.speed_um_per_s.value_or(0);
-  pattern.delay.axis = axis(input.delay.axis);
-  pattern.delay.from = input.delay.from == "ends"   ? From::ends
-                       : input.delay.from == "low"  ? From::low
-                       : input.delay.from == "high" ? From::high
-                                                    : From::middle;
+  pattern.delay.axis = meaning_of(words::delay_axes, input.delay.axis, pattern.delay.axis);
+  pattern.delay.from = meaning_of(words::delay_starts, input.delay.from, pattern.delay.from);
   pattern.spread = input.variation.spread;
   pattern.seed = static_cast<std::uint64_t>(input.variation.seed);
   return pattern;
@@ -111,7 +100,7 @@ void add_contractions(const Scenario& scenario, Model& model) {
   for (const auto& [name, input] : scenario.contractions) {
     const CellSet& cells = model.tissue.regions.at(input.region);
     ContractionRule rule;
-    rule.side = side_named(input.edges);
+    rule.side = meaning_of(words::edges, input.edges);
     rule.stiffness = input.stiffness_nN_per_um;
     rule.along_ratio = input.along_ratio;
     rule.across_ratio = input.across_ratio;
@@ -128,9 +117,9 @@ void add_contractions(const Scenario& scenario, Model& model) {
 
 void add_pressures(const Scenario& scenario, Model& model) {
   for (const auto& [name, input] : scenario.pressures)
-    model.laws.push_back(
-        std::make_unique<FacePressure>(model.tissue, input.face == "apical", model.tissue.regions.at(input.region),
-                                       input.pressure_Pa * units::pascal, make_program(input.program)));
+    model.laws.push_back(std::make_unique<FacePressure>(
+        model.tissue, meaning_of(words::pressure_faces, input.face), model.tissue.regions.at(input.region),
+        input.pressure_Pa * units::pascal, make_program(input.program)));
 }
 
 void add_holds(const Scenario& scenario, Model& model, std::vector<Diagnostic>& errors) {
@@ -147,7 +136,8 @@ void add_holds(const Scenario& scenario, Model& model, std::vector<Diagnostic>& 
         const Vec3& x = model.tissue.rest_positions[node.index()];
         if (!inside(input.x_um, x.x()) || !inside(input.y_um, x.y()) || !inside(input.z_um, x.z())) continue;
         any = true;
-        for (const std::string& direction : input.directions) model.held[node.index()][direction[0] - 'x'] = true;
+        for (const std::string& direction : input.directions)
+          model.held[node.index()][meaning_of(words::axes, direction)] = true;
       }
     }
     if (!any)

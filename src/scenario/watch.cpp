@@ -6,24 +6,18 @@
 
 #include "core/errors.hpp"
 #include "scenario/regions.hpp"
+#include "scenario/words.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
 namespace {
 
-Over over_named(const std::string& name) {
-  return name == "max"   ? Over::max
-         : name == "min" ? Over::min
-         : name == "sum" ? Over::sum
-         : name == "rms" ? Over::rms
-                         : Over::mean;
-}
-
 void open_reference(const MonitorInput& input, Monitor& monitor) {
   const QuantityInfo::Reference kind = info_of(monitor.quantity).reference;
   if (kind == QuantityInfo::Reference::run) {
+    const auto at = meaning_of(words::reference_times, input.reference_at, Monitor::ReferenceAt::same_time);
     monitor.reference_run = std::make_shared<ReferenceRun>(input.reference);
-    if (input.reference_at == "end") monitor.reference_frame = monitor.reference_run->last_frame();
+    if (at == Monitor::ReferenceAt::end) monitor.reference_frame = monitor.reference_run->last_frame();
   }
   if (kind == QuantityInfo::Reference::surface)
     monitor.reference_surface = std::make_shared<SurfaceDistance>(read_surface(input.reference));
@@ -35,9 +29,9 @@ Monitor make_monitor(const std::string& name, const MonitorInput& input, const S
   monitor.quantity = quantity_named(input.quantity)->quantity;
   monitor.region = input.region;
   monitor.from = input.from;
-  if (!input.face.empty()) monitor.face = input.face == "apical" ? Monitor::Face::apical : Monitor::Face::basal;
-  if (!input.axis.empty()) monitor.axis = input.axis[0] - 'x';
-  monitor.over = over_named(input.over);
+  monitor.face = meaning_of(words::monitor_faces, input.face, monitor.face);
+  if (!input.axis.empty()) monitor.axis = meaning_of(words::axes, input.axis);
+  monitor.over = meaning_of(words::overs, input.over, monitor.over);
   monitor.poisson_ratio = scenario.elasticity.poisson_ratio;
   open_reference(input, monitor);
   return monitor;
@@ -51,7 +45,7 @@ bool reads_something(const Monitor& monitor, const Tissue& tissue) {
 
 StopRule make_stop_rule(const Scenario& scenario) {
   StopRule rule;
-  rule.all = scenario.stop.combine == "all";
+  rule.all = meaning_of(words::combinations, scenario.stop.combine);
   rule.needs_rest = scenario.stop.at_equilibrium;
   for (const auto& [name, input] : scenario.criteria) {
     Criterion criterion;
@@ -60,7 +54,7 @@ StopRule make_stop_rule(const Scenario& scenario) {
     criterion.monitor = static_cast<std::size_t>(std::distance(scenario.monitors.begin(), monitor));
     criterion.above = input.above;
     criterion.below = input.below;
-    if (!input.over.empty()) criterion.over = input.over == "any" ? Criterion::Over::any : Criterion::Over::all;
+    criterion.over = meaning_of(words::criterion_overs, input.over, criterion.over);
     rule.criteria.push_back(std::move(criterion));
   }
   return rule;

@@ -60,16 +60,6 @@ double rounded_up(double value) {
   return 10 * power;
 }
 
-// The array of a frame that a field of cells comes from.
-const char* array_of(const ColourField& field) {
-  if (field.name == "area-ratio") return "apical_area_ratio";
-  if (field.name == "pressure") return "pressure_Pa";
-  if (field.name == "volume") return "volume_um3";
-  if (field.name == "volume-error") return "volume_error";
-  if (field.name == "contraction") return "activity";
-  return "generation";
-}
-
 template <class Arrays>
 const auto& required(const Arrays& arrays, const std::string& name) {
   const auto found = arrays.find(name);
@@ -95,21 +85,20 @@ std::string ColourField::title() const { return unit.empty() ? label : fmt::form
 
 const std::vector<ColourField>& colour_fields() {
   static const std::vector<ColourField> fields = {
-      {"displacement", "displacement from rest", "µm", true},
-      {"speed", "speed", "µm/s", true},
-      {"area-ratio", "apical area / at rest", "", false, ScaleKind::about, 1},
-      {"pressure", "pressure", "Pa", false, ScaleKind::about, 0},
-      {"volume-error", "volume error", "", false, ScaleKind::about, 0},
-      {"volume", "volume", "µm³"},
-      {"contraction", "contraction's activity", "", false},
-      {"generation", "generation", "", false, ScaleKind::steps}};
+      {"displacement", "displacement from rest", "µm", "displacement_um", true},
+      {"speed", "speed", "µm/s", "velocity_um_per_s", true},
+      {"area-ratio", "apical area / at rest", "", "apical_area_ratio", false, ScaleKind::about, 1},
+      {"pressure", "pressure", "Pa", "pressure_Pa", false, ScaleKind::about, 0},
+      {"volume-error", "volume error", "", "volume_error", false, ScaleKind::about, 0},
+      {"volume", "volume", "µm³", "volume_um3"},
+      {"contraction", "contraction's activity", "", "activity"},
+      {"generation", "generation", "", "generation", false, ScaleKind::steps}};
   return fields;
 }
 
 std::vector<double> field_values(const Frame& frame, const ColourField& field) {
-  if (!field.on_nodes) return required(frame.element_scalars, array_of(field));
-  const Vectors& vectors =
-      required(frame.node_vectors, field.name == "speed" ? "velocity_um_per_s" : "displacement_um");
+  if (!field.on_nodes) return required(frame.element_scalars, field.array);
+  const Vectors& vectors = required(frame.node_vectors, field.array);
   std::vector<double> lengths;
   lengths.reserve(vectors.size());
   for (const Vec3& vector : vectors) lengths.push_back(vector.norm());

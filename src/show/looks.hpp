@@ -35,6 +35,7 @@ struct ColourField {
   std::string name;   // as in `--colour`
   std::string label;  // "pressure"
   std::string unit;   // "Pa"; empty where there is none
+  std::string array;  // of a frame: vectors of nodes, whose lengths it is, or numbers of cells
   bool on_nodes = false;
   ScaleKind kind = ScaleKind::from_zero;
   double centre = 0;

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/units.hpp"
+#include "scenario/words.hpp"
 
 namespace plica {
 namespace {
@@ -14,14 +15,10 @@ DivisionRule make_division_rule(const DivisionInput& input) {
     rule.trigger = DivisionTrigger::time;
     rule.threshold = *input.at_s;
   } else {
-    rule.trigger = input.when == "area_above_um2"     ? DivisionTrigger::apical_area
-                   : input.when == "volume_above_um3" ? DivisionTrigger::volume
-                                                      : DivisionTrigger::elongation;
+    rule.trigger = meaning_of(words::division_triggers, input.when);
     rule.threshold = *input.threshold;
   }
-  rule.plane = input.plane == "transverse" ? DivisionPlane::transverse
-               : input.plane == "sagittal" ? DivisionPlane::sagittal
-                                           : DivisionPlane::longest_axis;
+  rule.plane = meaning_of(words::division_planes, input.plane);
   rule.growth_s = input.growth_s;
   rule.volume_ratio = input.daughter_volume_ratio;
   rule.max_generation = input.max_generation.value_or(input.at_s ? std::numeric_limits<int>::max() : 1);
@@ -30,23 +27,14 @@ DivisionRule make_division_rule(const DivisionInput& input) {
 
 StepScheme make_scheme(const Scenario& scenario) {
   StepScheme scheme;
-  if (scenario.time.scheme == "linearly-implicit") scheme.forces = StepScheme::Forces::linearly_implicit;
-  if (scenario.time.integrator == "bdf2") scheme.order = TimeOrder::second;
-  const std::string& linear = scenario.time.linear_solver;
-  scheme.linear_method = linear == "direct"      ? LinearMethod::direct
-                         : linear == "cholesky"  ? LinearMethod::cholesky
-                         : linear == "multigrid" ? LinearMethod::multigrid
-                                                 : LinearMethod::automatic;
+  scheme.forces = meaning_of(words::schemes, scenario.time.scheme);
+  scheme.order = meaning_of(words::integrators, scenario.time.integrator);
+  scheme.linear_method = meaning_of(words::linear_solvers, scenario.time.linear_solver);
   scheme.linear_tolerance = scenario.time.cg_tolerance;
   scheme.most_linear_iterations = scenario.time.cg_max_iterations;
   if (scenario.volume.method == "projection") {
-    using Rule = ProjectionRule;
-    const std::string& surface = scenario.volume.projection_surface;
-    Rule& rule = scheme.projection.emplace();
-    rule.surfaces = surface == "cells"    ? Rule::Surfaces::cells
-                    : surface == "tissue" ? Rule::Surfaces::tissue
-                                          : Rule::Surfaces::embryo;
-    rule.weights = scenario.volume.projection_weights == "equal" ? Rule::Weights::equal : Rule::Weights::mobility;
+    scheme.projection = ProjectionRule{meaning_of(words::projection_surfaces, scenario.volume.projection_surface),
+                                       meaning_of(words::projection_weights, scenario.volume.projection_weights)};
   }
   return scheme;
 }
@@ -63,8 +51,8 @@ RunControls make_controls(const Scenario& scenario, const Model& model) {
   controls.end_s = scenario.time.end_s;
   controls.equilibrium_speed_um_per_s = scenario.stop.equilibrium_speed_um_per_min * units::um_per_minute;
   // Where rest must come together with criteria, it is one of them (make_watch).
-  controls.stop_at_equilibrium =
-      scenario.stop.at_equilibrium && (scenario.stop.combine == "any" || scenario.criteria.empty());
+  const bool all_at_once = meaning_of(words::combinations, scenario.stop.combine) && !scenario.criteria.empty();
+  controls.stop_at_equilibrium = scenario.stop.at_equilibrium && !all_at_once;
   controls.frame_every_s = scenario.output.frame_every_s;
   const auto add_points = [&](const std::vector<double>& points) {
     controls.program_points_s.insert(controls.program_points_s.end(), points.begin(), points.end());

@@ -6,13 +6,9 @@
 #include <vector>
 
 #include "mechanics/division.hpp"
+#include "scenario/scenario.hpp"
 
 namespace plica {
-
-enum class DivisionTrigger { time, apical_area, volume, elongation };
-
-/// Apico-basal planes: across the embryo's axis (x), along the midline (across y), or across the cell's longer side.
-enum class DivisionPlane { transverse, sagittal, longest_axis };
 
 struct DivisionRule {
   std::string region;

@@ -35,7 +35,7 @@ class SimulationListener {
 /// the same bits. It prints nothing, writes no file and knows no signals.
 ///
 ///   Simulation simulation(load_scenario(find_scenario("drosophila")));
-///   while (simulation.step()) fmt::print("{}\n", *simulation.measures().furrow.depth_um);
+///   while (simulation.step()) fmt::print("{}\n", *simulation.measures()["furrow_depth_um"]);
 class Simulation {
  public:
   /// At rest. Throws ScenarioError for what only the tissue shows to be wrong, FileError for files that it names.

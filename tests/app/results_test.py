@@ -1,5 +1,6 @@
 """What a run leaves, and with which status it ends."""
 import xml.etree.ElementTree
+from pathlib import Path
 
 import support
 from support import BLOCK, CELL_DATA, CELLS, MIDLINE, POINT_DATA, RESULTS, SERIES, SPHERE, SUMMARY, CommandLine
@@ -39,6 +40,18 @@ class Outcomes(CommandLine):
         for key, value in summary.items():
             self.assertNotIsInstance(value, list)
             self.assertTrue(key == "provenance" or not isinstance(value, dict), "flat")
+
+    def test_every_column_is_in_the_documentation(self):
+        page = (Path(__file__).resolve().parents[2] / "docs" / "measures.md").read_text(encoding="utf-8")
+        self.run_scenario(BLOCK + '[division.d]\nregion = "all"\nat_s = 0.2\n')
+        frame = read_vtu(sorted((self.out / "frames").iterdir())[-1])
+        arrays = {name for name, (section, _) in frame.items() if section in ("PointData", "CellData")}
+        names = set(self.summary()) | {name for name in arrays if not name.startswith("region_")}
+        tables = [self.out / f"{name}.csv" for name in ("series", "cells", "midline", "lineage")]
+        for file in tables:
+            names |= set(file.read_text().splitlines()[0].split(","))
+        self.assertGreater(len(names), 60)
+        self.assertEqual([name for name in sorted(names) if f"`{name}`" not in page], [])
 
     def test_frames_hold_the_fields_of_the_contract(self):
         self.run_scenario(BLOCK)

@@ -41,7 +41,7 @@ TEST(Plane, IsNotPassed) {
   double deepest = 0;
   int on_plane = 0, on_both = 0;
   while (simulation.step()) {
-    deepest = std::max(deepest, simulation.measures().max_shell_penetration_um);
+    deepest = std::max(deepest, *simulation.measures()["max_shell_penetration_um"]);
     const State& state = simulation.state();
     for (std::size_t k = 0; k < contacts.size(); ++k) {
       EXPECT_GE(state.contact_forces[k], 0);

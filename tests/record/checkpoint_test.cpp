@@ -110,6 +110,7 @@ TEST_F(CheckpointTest, ComesBackAsItWas) {
   EXPECT_EQ(after.run.factor.rate_s, before.run.factor.rate_s);
   EXPECT_EQ(after.run.factor.earlier_positions, before.run.factor.earlier_positions);
   EXPECT_EQ(after.record.rows.size(), before.record.rows.size());
+  EXPECT_EQ(after.record.rows.back().values, before.record.rows.back().values);
   EXPECT_EQ(after.record.rows.back().monitors, before.record.rows.back().monitors);
   EXPECT_EQ(after.run.past_divisions.front()->positions, before.run.past_divisions.front()->positions);
   EXPECT_EQ(checkpoint_bytes(after), bytes) << "all that is in it comes back, and gives the same bytes";
@@ -185,6 +186,19 @@ TEST_F(CheckpointTest, AnotherFormatIsNamed) {
   }
 }
 
+TEST_F(CheckpointTest, RowsOfOtherColumnsAreNamed) {
+  std::string bytes = checkpoint_bytes(block_run().last());
+  const std::size_t at = bytes.find("furrow_depth_um\n");
+  ASSERT_NE(at, std::string::npos);
+  bytes.replace(at, 15, "furrow_width_um");
+  try {
+    (void)read_checkpoint_bytes(made_right(bytes));
+    ADD_FAILURE();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("other columns"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(CheckpointTest, WhatIsNoNumberIsRefused) {
   const Checkpoint& good = block_run().last();
   int cases = 0;
@@ -202,7 +216,7 @@ TEST_F(CheckpointTest, WhatIsNoNumberIsRefused) {
   refused([](Checkpoint& c) { c.run.wanted_step_s = -std::numeric_limits<double>::infinity(); });
   refused([](Checkpoint& c) { c.run.factor.rate_s = nan; });
   refused([](Checkpoint& c) { c.record.frame_times_s[1] = nan; });
-  refused([](Checkpoint& c) { c.record.rows[1].max_volume_error = nan; });
+  refused([](Checkpoint& c) { c.record.rows[1].values[column_index("max_volume_error")] = nan; });
   refused([](Checkpoint& c) { c.record.rows[1].monitors[0] = nan; });
   refused([](Checkpoint& c) { c.record.rows.clear(); });
   EXPECT_EQ(cases, 11);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "measure/cell_columns.hpp"
 
 namespace plica {
 namespace {
@@ -97,6 +98,15 @@ TEST(ColourOf, EndsAreHeldAndTheMiddleIsTheMiddle) {
   EXPECT_EQ(colour_of(map, {0, 10}, -5), map.colours.front());
   EXPECT_EQ(colour_of(map, {0, 10}, 50), map.colours.back());
   EXPECT_EQ(colour_of(map, {0, 10}, 5), map.colours[map.colours.size() / 2]);
+}
+
+TEST(ColourFields, ComeFromArraysThatFramesHave) {
+  for (const ColourField& field : colour_fields()) {
+    const bool of_nodes = std::ranges::find(node_columns(), field.array, &NodeColumn::name) != node_columns().end();
+    const auto of_cells = std::ranges::find(cell_columns(), field.array, &CellColumn::name);
+    const bool in_frames = of_cells != cell_columns().end() && of_cells->in_frames != InFrames::nothing;
+    EXPECT_TRUE(field.on_nodes ? of_nodes : in_frames) << field.name;
+  }
 }
 
 TEST(FieldValues, RefusesAFrameWithoutTheArray) {

@@ -230,7 +230,7 @@ TEST(Simulation, ACopyIsAForkInTime) {
   for (int step = 0; step < 10; ++step) ASSERT_TRUE(first.step());
   Simulation fork = first, moved = std::move(first);
   EXPECT_EQ(fork.steps(), 10);
-  EXPECT_EQ(fork.measures().furrow.depth_um, moved.measures().furrow.depth_um);
+  EXPECT_EQ(fork.measures()["furrow_depth_um"], moved.measures()["furrow_depth_um"]);
   // In turns: neither disturbs the other.
   while (fork.status() == RunStatus::under_way || moved.status() == RunStatus::under_way) {
     (void)moved.step();
@@ -240,7 +240,7 @@ TEST(Simulation, ACopyIsAForkInTime) {
     EXPECT_EQ(end->status(), RunStatus::end_time);
     EXPECT_EQ(end->steps(), whole.steps());
     EXPECT_EQ(end->state().positions, whole.state().positions);
-    EXPECT_EQ(end->measures().vml_speed_um_per_s, whole.measures().vml_speed_um_per_s);
+    EXPECT_EQ(end->measures()["vml_speed_um_per_s"], whole.measures()["vml_speed_um_per_s"]);
   }
 }
 

@@ -30,7 +30,7 @@ TEST(QuietRun, ComesToWhatPlicaRunWrites) {
   for (auto* summary : {&written, &ours})
     for (const char* key : {"scenario", "wall_s", "wall_solver_s", "provenance"}) summary->erase(key);
   EXPECT_EQ(written, ours);
-  EXPECT_EQ(quiet.state.time_s, quiet.rows.back().time_s);
+  EXPECT_EQ(quiet.state.time_s, quiet.rows.back().time_s());
 }
 
 TEST(QuietRun, AtRestHasTheSameKeys) {

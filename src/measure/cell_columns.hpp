@@ -1,0 +1,77 @@
+// What is measured of single cells and nodes at a moment: one table each for the cells of cells.csv and of frames, the
+// nodes of frames, midline.csv and lineage.csv. Headers, rows, arrays and the tables in docs/measures.md come from
+// them.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "measure/furrow.hpp"
+#include "mechanics/model.hpp"
+
+namespace plica {
+
+/// What the values of cells are made from. What several of them need is made once.
+struct MeasuredCells {
+  MeasuredCells(const Model& of_model, const State& at_state);
+
+  const Model& model;
+  const State& state;
+  std::vector<double> apical_areas, rest_apical_areas;  // cells
+
+  /// Of every cell its apical area over that at rest; NaN where it has no apical face.
+  [[nodiscard]] std::vector<double> apical_area_ratios() const;
+};
+
+/// What a frame has of a column.
+enum class InFrames { nothing, numbers, integers };
+
+/// A value of each cell. NaN: it has none.
+struct CellColumn {
+  std::string_view name;  // with its unit
+  bool in_csv;            // cells.csv
+  InFrames in_frames;
+  std::string_view meaning;  // for docs/measures.md, in Markdown
+  std::function<std::vector<double>(const MeasuredCells&)> values;
+  std::optional<double> none_in_frames = {};  // what stands for none in a frame, which holds numbers only
+};
+
+/// In the order of cells.csv; those that it has.
+std::span<const CellColumn> cell_columns();
+std::vector<std::string> cells_csv_names();
+
+/// A vector of each node, in frames.
+struct NodeColumn {
+  std::string_view name;
+  std::string_view meaning;
+  std::function<Vectors(const Model&, const State&)> values;
+};
+
+std::span<const NodeColumn> node_columns();
+
+/// A value of each cell of the midline (FurrowSites::midline). NaN: it has none.
+struct MidlineColumn {
+  std::string_view name;
+  std::string_view meaning;
+  std::function<std::vector<double>(const MeasuredCells&, const std::vector<CellId>& midline)> values;
+};
+
+/// In the order of midline.csv.
+std::span<const MidlineColumn> midline_columns();
+std::vector<std::string> midline_csv_names();
+
+/// A value of a daughter when she is born, in lineage.csv.
+struct LineageColumn {
+  std::string_view name;
+  std::string_view meaning;
+  std::function<double(const Lineage&)> value;
+};
+
+std::span<const LineageColumn> lineage_columns();
+std::vector<std::string> lineage_csv_names();
+
+}  // namespace plica

@@ -1,0 +1,218 @@
+#include "measure/columns.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "measure/cells.hpp"
+#include "measure/observation.hpp"
+
+namespace plica {
+namespace {
+
+constexpr bool series = true, no_series = false;
+using enum InSummary;
+
+// Of the speeds and displacements: none where no furrow is measured, and speeds only of a step.
+SpeedRow speeds_of(const Tissue& tissue, const FurrowSites& sites, const State& state, bool at_rest) {
+  SpeedRow row;
+  row.time_s = state.time_s;
+  if (sites.vml.empty()) return row;
+  row.vml_displacement_um = mean_node_displacement(tissue, sites.vml, state.positions);
+  row.vce_displacement_um = mean_node_displacement(tissue, sites.vce, state.positions);
+  if (at_rest) return row;
+  row.vml_speed_um_per_s = mean_speed(tissue, sites.vml, state.velocities);
+  row.vce_speed_um_per_s = mean_speed(tissue, sites.vce, state.velocities);
+  return row;
+}
+
+std::optional<double> area_ratio(const MeasuredStep& m, const MonitoredCells& cells) {
+  if (cells.empty()) return std::nullopt;
+  return mean_apical_area_ratio(m.model.tissue, cells, m.state.positions);
+}
+
+std::optional<double> lumen_ratio(const MeasuredStep& m) {
+  if (!m.rest_lumen_volume_um3) return std::nullopt;
+  const auto volume = lumen_volume(m.model.tissue, m.state.positions);
+  return volume ? std::optional(*volume / *m.rest_lumen_volume_um3) : std::nullopt;
+}
+
+// A number of the solver's report; 0 at rest.
+Column::OfStep reported(int StepReport::*number) {
+  return [=](const MeasuredStep& m) { return m.step != nullptr ? m.step->report.*number : 0; };
+}
+
+Column count(Column column) {
+  column.is_count = true;
+  return column;
+}
+
+Column of_projection(Column column) {
+  column.of_projection = true;
+  return count(std::move(column));
+}
+
+Column of_run(std::string_view name, std::string_view meaning, std::optional<double> SpeedHistory::*number) {
+  return {name, no_series, whole_run, meaning, {}, [=](const SpeedHistory& run) { return run.*number; }};
+}
+
+std::vector<Column> table() {
+  using M = MeasuredStep;
+  return {
+      {"time_s", series, nothing, "End of the step; 0 at rest.", [](const M& m) { return m.state.time_s; }},
+      {"furrow_depth_um", series, last,
+       "The apical surface of the contractile cells cut by the plane y = 0; of all points on the cut, the largest "
+       "distance along z inside the ventral side of the shell, less the same distance of the same material point at "
+       "rest (flat facets lie a little inside a round shell). Without a built shape (a mesh from a file): the largest "
+       "rise along z.",
+       [](const M& m) { return m.furrow.depth_um; }},
+      {"furrow_depth_below_lips_um", series, last,
+       "In the mid cross-section (x = 0): height of the floor (the cut at y = 0) over the mean height of the two lips, "
+       "positive when the floor lies inside. Under 1 µm the belly is flattened and not furrowed; at rest it is "
+       "negative, the belly being convex.",
+       [](const M& m) { return m.furrow.depth_below_lips_um; }},
+      {"lip_distance_um", series, last,
+       "Between the lips: the two points where the mid cross-section left the contractile cells at rest. Material "
+       "points, fixed for the run.",
+       [](const M& m) { return m.furrow.lip_distance_um; }},
+      {"highest_points_distance_um", no_series, last,
+       "The paper's pair beside it: between the most ventral points of the mid cross-section left and right of the "
+       "midline. They may jump.",
+       [](const M& m) { return m.furrow.highest_points_distance_um; }},
+      {"vml_speed_um_per_s", series, nothing,
+       "Speed of the VML's barycentre (mean of its eight corners; the paper's, 3.1) at the step's end; with backward "
+       "Euler that is the mean over the step. None at rest.",
+       [](const M& m) { return m.speeds.vml_speed_um_per_s; }},
+      {"vce_speed_um_per_s", series, nothing, "The same of the VCE.",
+       [](const M& m) { return m.speeds.vce_speed_um_per_s; }},
+      {"speed_ratio", series, nothing, "$v_c/v_m$: the speed of the VCE over that of the VML.",
+       [](const M& m) { return m.speeds.speed_ratio(); }},
+      {"vml_displacement_um", series, last,
+       "Mean over the VML's eight corner nodes of their displacement from rest: the paper gives displacements of "
+       "*nodes* (section 4, Figs. 9 and 10).",
+       [](const M& m) { return m.speeds.vml_displacement_um; }},
+      {"vce_displacement_um", series, last, "The same of the VCE.",
+       [](const M& m) { return m.speeds.vce_displacement_um; }},
+      {"vml_apical_area_ratio", series, last,
+       "Apical area of the VML over that at rest; area of the bilinear facet by 2 × 2 Gauss points.",
+       [](const M& m) { return area_ratio(m, m.sites.vml); }},
+      {"vce_apical_area_ratio", series, last, "The same of the VCE.",
+       [](const M& m) { return area_ratio(m, m.sites.vce); }},
+      of_run("peak_speed_ratio",
+             "$v_c/v_m$ of the step for which $v_c-v_m$ is largest, among steps with $v_m$ over 1 % of its peak.",
+             &SpeedHistory::peak_ratio),
+      of_run("peak_speed_ratio_time_s", "End of that step.", &SpeedHistory::peak_ratio_time_s),
+      of_run("ends_lead_until_s",
+             "First time after that when $v_c\\le v_m$, linear between steps; null where the ends never lead.",
+             &SpeedHistory::ends_lead_until_s),
+      of_run("vml_displacement_at_equal_speed_um", "`vml_displacement_um` at that time.",
+             &SpeedHistory::vml_displacement_at_equal_speed_um),
+      of_run("vce_displacement_at_equal_speed_um", "The same of the VCE.",
+             &SpeedHistory::vce_displacement_at_equal_speed_um),
+      {"max_node_speed_um_per_s", series, last,
+       "Speed of the fastest node at the step's end; 0 at rest. Equilibrium goes by it.",
+       [](const M& m) { return m.step != nullptr ? m.step->max_node_speed_um_per_s : 0; }},
+      {"max_volume_error", series, largest, "Largest $\\lvert V/V_{target}-1\\rvert$ over cells.",
+       [](const M& m) { return max_volume_error(m.model, m.state.positions); }},
+      {"max_shell_penetration_um", no_series, largest, "Deepest place of any apical node outside the shell.",
+       [](const M& m) { return shell_penetration(m.model, m.state.positions); }},
+      {"min_scaled_jacobian", no_series, least, "Worst corner of an element: 1 is a brick, 0 is flat.",
+       [](const M& m) { return min_scaled_jacobian(m.model.tissue, m.state.positions); }},
+      {"lumen_volume_ratio", series, last,
+       "Volume inside the basal surface over that at rest; none where that surface is not closed.", lumen_ratio},
+      count({"cells", series, nothing, "Number of cells, before those divide that are due at the step's end.",
+             [](const M& m) { return static_cast<double>(m.model.tissue.cells.size()); }}),
+      {"step_s", series, nothing, "Length of the step; 0 at rest.",
+       [](const M& m) { return m.step != nullptr ? m.step->duration_s : 0; }},
+      count({"newton_iterations", series, sum,
+             "Iterations of Newton's method, those of attempts that were rejected included.",
+             reported(&StepReport::newton_iterations)}),
+      count({"linear_iterations", series, sum,
+             "Newton: solves with a factor. Linearly implicit: iterations of conjugate gradients.",
+             reported(&StepReport::linear_solves)}),
+      of_projection({"projection_sweeps", no_series, sum,
+                     "With `volume.method = \"projection\"` only: sweeps over the volumes "
+                     "([theory/paper_algorithm.md](theory/paper_algorithm.md)).",
+                     reported(&StepReport::projection_sweeps)}),
+      of_projection({"cubic_solves", no_series, sum, "Cubics solved in them.", reported(&StepReport::cubics)}),
+      of_projection({"cubic_three_real_roots", no_series, sum, "How many of those had three different real roots.",
+                     reported(&StepReport::cubics_with_three_roots)}),
+  };
+}
+
+SpeedHistory history_of(std::span<const Observation> rows) {
+  std::vector<SpeedRow> speeds;
+  speeds.reserve(rows.size());
+  for (const Observation& row : rows)
+    speeds.push_back({row.time_s(), row["vml_speed_um_per_s"], row["vce_speed_um_per_s"], row["vml_displacement_um"],
+                      row["vce_displacement_um"]});
+  return speed_history(speeds);
+}
+
+std::optional<double> reduced(InSummary how, std::span<const Observation> rows, std::size_t column) {
+  if (how == last) return rows.back().values[column];
+  std::optional<double> result;
+  for (const Observation& row : rows) {
+    const std::optional<double> value = row.values[column];
+    if (!value) continue;
+    if (!result)
+      result = value;
+    else if (how == largest)
+      result = std::max(*result, *value);
+    else if (how == least)
+      result = std::min(*result, *value);
+    else
+      *result += *value;
+  }
+  return result;
+}
+
+}  // namespace
+
+MeasuredStep::MeasuredStep(const Model& of_model, const FurrowSites& at_sites, std::optional<double> rest_lumen_volume,
+                           const State& at_its_end, const AcceptedStep* accepted)
+    : model(of_model),
+      sites(at_sites),
+      rest_lumen_volume_um3(rest_lumen_volume),
+      state(at_its_end),
+      step(accepted),
+      furrow(furrow_shape(model.tissue, sites, state.positions)),
+      speeds(speeds_of(model.tissue, sites, state, step == nullptr)) {}
+
+std::span<const Column> columns() {
+  static const std::vector<Column> all = table();
+  return all;
+}
+
+std::size_t column_index(std::string_view name) {
+  const auto found = std::ranges::find(columns(), name, &Column::name);
+  if (found == columns().end()) throw std::logic_error("there is no column " + std::string(name));
+  return static_cast<std::size_t>(found - columns().begin());
+}
+
+std::vector<std::string> series_names() {
+  std::vector<std::string> names;
+  for (const Column& column : columns())
+    if (column.in_series) names.emplace_back(column.name);
+  return names;
+}
+
+std::vector<const Column*> summary_columns() {
+  std::vector<const Column*> found;
+  for (const Column& column : columns())
+    if (column.in_summary != nothing) found.push_back(&column);
+  // There, areas stand before displacements: a contract that is older than this table.
+  const auto at = [&](std::string_view name) { return std::ranges::find(found, name, &Column::name); };
+  std::rotate(at("vml_displacement_um"), at("vml_apical_area_ratio"), at("peak_speed_ratio"));
+  return found;
+}
+
+std::vector<std::pair<const Column*, std::optional<double>>> summary_values(std::span<const Observation> rows) {
+  const SpeedHistory history = history_of(rows);
+  std::vector<std::pair<const Column*, std::optional<double>>> values;
+  for (const Column* column : summary_columns())
+    values.emplace_back(column, column->of_run ? column->of_run(history)
+                                               : reduced(column->in_summary, rows, column_index(column->name)));
+  return values;
+}
+
+}  // namespace plica

@@ -1,0 +1,122 @@
+// The words of the input that stand for one of several things, a table a key: schema.cpp takes from it what is allowed,
+// and whoever builds from the scenario what is meant.
+#pragma once
+
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "measure/monitor.hpp"
+#include "measure/stop_rule.hpp"
+#include "mechanics/active/contraction_pattern.hpp"
+#include "scenario/scenario.hpp"
+#include "solver/make_stepper.hpp"
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+template <class Meaning>
+struct Word {
+  std::string_view word;
+  Meaning meaning;
+};
+
+/// The words alone, in their order.
+template <class Words>
+std::vector<std::string_view> words_of(const Words& table) {
+  std::vector<std::string_view> words;
+  for (const auto& entry : table) words.push_back(entry.word);
+  return words;
+}
+
+/// What a word stands for. The scenario has been read against the same table: std::logic_error for another word.
+template <class Meaning, std::size_t n>
+Meaning meaning_of(const std::array<Word<Meaning>, n>& table, std::string_view word) {
+  for (const Word<Meaning>& entry : table)
+    if (entry.word == word) return entry.meaning;
+  throw std::logic_error("no word of this key: " + std::string(word));
+}
+
+/// The same of a key that need not be given.
+template <class Meaning, std::size_t n>
+Meaning meaning_of(const std::array<Word<Meaning>, n>& table, std::string_view word, Meaning when_not_given) {
+  return word.empty() ? when_not_given : meaning_of(table, word);
+}
+
+namespace words {
+
+inline constexpr auto axes = std::to_array<Word<int>>({{"x", 0}, {"y", 1}, {"z", 2}});
+
+// [region.NAME]
+inline constexpr auto sides = std::to_array<Word<GridPlace::Face>>({{"ventral", GridPlace::Face::ventral},
+                                                                    {"dorsal", GridPlace::Face::dorsal},
+                                                                    {"left", GridPlace::Face::left},
+                                                                    {"right", GridPlace::Face::right},
+                                                                    {"anterior", GridPlace::Face::anterior},
+                                                                    {"posterior", GridPlace::Face::posterior}});
+
+// [volume]
+inline constexpr auto projection_surfaces =
+    std::to_array<Word<ProjectionRule::Surfaces>>({{"cells", ProjectionRule::Surfaces::cells},
+                                                   {"tissue", ProjectionRule::Surfaces::tissue},
+                                                   {"embryo", ProjectionRule::Surfaces::embryo}});
+inline constexpr auto projection_weights = std::to_array<Word<ProjectionRule::Weights>>(
+    {{"equal", ProjectionRule::Weights::equal}, {"mobility", ProjectionRule::Weights::mobility}});
+
+// [contraction.NAME]
+inline constexpr auto edges = std::to_array<Word<EdgeSide>>(
+    {{"apical", EdgeSide::apical}, {"basal", EdgeSide::basal}, {"lateral", EdgeSide::lateral}});
+inline constexpr auto profile_shapes =
+    std::to_array<Word<ContractionProfile::Shape>>({{"constant", ContractionProfile::Shape::constant},
+                                                    {"linear", ContractionProfile::Shape::linear},
+                                                    {"gaussian", ContractionProfile::Shape::gaussian}});
+inline constexpr auto profile_axes =
+    std::to_array<Word<PatternAxis>>({{"across", PatternAxis::across}, {"along", PatternAxis::along}});
+inline constexpr auto delay_axes =
+    std::to_array<Word<PatternAxis>>({{"along", PatternAxis::along}, {"across", PatternAxis::across}});
+inline constexpr auto delay_starts =
+    std::to_array<Word<ContractionDelay::From>>({{"middle", ContractionDelay::From::middle},
+                                                 {"ends", ContractionDelay::From::ends},
+                                                 {"low", ContractionDelay::From::low},
+                                                 {"high", ContractionDelay::From::high}});
+
+// [pressure.NAME]: whether it is the apical face.
+inline constexpr auto pressure_faces = std::to_array<Word<bool>>({{"apical", true}, {"basal", false}});
+
+// [division.NAME]
+inline constexpr auto division_triggers =
+    std::to_array<Word<DivisionTrigger>>({{"area_above_um2", DivisionTrigger::apical_area},
+                                          {"volume_above_um3", DivisionTrigger::volume},
+                                          {"elongation_above", DivisionTrigger::elongation}});
+inline constexpr auto division_planes =
+    std::to_array<Word<DivisionPlane>>({{"transverse", DivisionPlane::transverse},
+                                        {"sagittal", DivisionPlane::sagittal},
+                                        {"longest-axis", DivisionPlane::longest_axis}});
+
+// [time]
+inline constexpr auto schemes = std::to_array<Word<StepScheme::Forces>>(
+    {{"newton", StepScheme::Forces::newton}, {"linearly-implicit", StepScheme::Forces::linearly_implicit}});
+inline constexpr auto integrators =
+    std::to_array<Word<TimeOrder>>({{"backward-euler", TimeOrder::first}, {"bdf2", TimeOrder::second}});
+inline constexpr auto linear_solvers = std::to_array<Word<LinearMethod>>({{"automatic", LinearMethod::automatic},
+                                                                          {"direct", LinearMethod::direct},
+                                                                          {"cholesky", LinearMethod::cholesky},
+                                                                          {"multigrid", LinearMethod::multigrid}});
+
+// [stop]: whether all of the criteria have to be met. [stop.NAME]: by how many of a monitor's values.
+inline constexpr auto combinations = std::to_array<Word<bool>>({{"any", false}, {"all", true}});
+inline constexpr auto criterion_overs =
+    std::to_array<Word<Criterion::Over>>({{"any", Criterion::Over::any}, {"all", Criterion::Over::all}});
+
+// [monitor.NAME]
+inline constexpr auto monitor_faces =
+    std::to_array<Word<Monitor::Face>>({{"apical", Monitor::Face::apical}, {"basal", Monitor::Face::basal}});
+inline constexpr auto overs = std::to_array<Word<Over>>(
+    {{"mean", Over::mean}, {"max", Over::max}, {"min", Over::min}, {"sum", Over::sum}, {"rms", Over::rms}});
+inline constexpr auto reference_times = std::to_array<Word<Monitor::ReferenceAt>>(
+    {{"same-time", Monitor::ReferenceAt::same_time}, {"end", Monitor::ReferenceAt::end}});
+
+}  // namespace words
+}  // namespace plica
