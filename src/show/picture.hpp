@@ -20,6 +20,7 @@ namespace plica {
 struct PictureColumn {
   std::string heading;  // "5 min"
   Frame frame;
+  Vectors dots = {};  // places that are marked, um
 };
 
 /// A view: what stands beside each other.

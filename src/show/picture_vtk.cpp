@@ -140,6 +140,21 @@ double outline_px(const Scene& scene, const Layout& layout) {
   return std::min(0.06 * layout.font_px, 0.08 * mean_px);
 }
 
+// Discs towards the eye.
+void add_dots(const Vectors& places, const View& view, double radius_um, vtkRenderer& renderer) {
+  constexpr int corners = 24;
+  const auto [right, up] = screenwise(view);
+  // In front of the facets that meet there.
+  const Vec3 move = -3 * radius_um * view.sight.normalized();
+  Vectors points;
+  for (const Vec3& place : places)
+    for (int i = 0; i < corners; ++i) {
+      const double angle = 2 * EIGEN_PI * i / corners;
+      points.emplace_back(place + radius_um * (std::cos(angle) * right + std::sin(angle) * up));
+    }
+  add_plain(*poly_data(points, corners, false, move), {0.75, 0.1, 0.1}, 1, 1, renderer);
+}
+
 /// The window and what is in it, `scale` times as fine as the picture.
 class Stage {
  public:
@@ -186,6 +201,7 @@ class Stage {
     add_facets(scene, *table_, *renderer);
     add_lines(scene.outlines, -in_front_um * sight, ink, outline_px(scene, layout_) * scale_, *renderer);
     add_plain(*poly_data(scene.shell, 3, false, Vec3::Zero()), shell_grey, 0.6, 1, *renderer);
+    add_dots(picture_.columns[panel.column].dots, view, 0.3 * layout_.font_px * layout_.um_per_px, *renderer);
     vtkCamera& camera = *renderer->GetActiveCamera();
     camera.ParallelProjectionOn();
     camera.SetFocalPoint(0, 0, 0);

@@ -53,33 +53,19 @@ template <bool viscous>
   });
 }
 
-// Where the elements are and how they move: modes and gradients.
-struct Moving {
-  Vec m[7], d[7];
-  Mat F, dF;
-  Stretch stretched;
-};
-
-inline void gather_moving(const Elements& e, const double* positions, const double* direction, Moving& at) {
-  gather_modes(e.batch.nodes, e.lane, positions, at.m);
-  at.F = gradient(e, at.m);
-  set_stretch(at.F, at.stretched);
-  gather_modes(e.batch.nodes, e.lane, direction, at.d);
-  at.dF = gradient(e, at.d);
-}
-
 // R K R^T: the frame does not turn.
 template <bool viscous>
 [[gnu::flatten]] void add_warped_product(const CorotationalStep& step, std::size_t first, std::size_t last,
                                          const double* direction, double* product) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
-    Moving at;
-    gather_moving(e, step.positions, direction, at);
+    Vec m[7], d[7];
+    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    gather_modes(e.batch.nodes, e.lane, direction, d);
     Frame frame;
-    set_frame(at.F, at.stretched, frame);
+    set_frame(gradient(e, m), frame);
     const Mat& R = frame.R;
     Hourglass w, dq;
-    const Mat W = seen_from(e, R, at.dF, at.d, w);
+    const Mat W = seen_from(e, R, gradient(e, d), d, w);
     multiply<1>(e.batch.stiffness, e.lane, {&w}, {&dq});
     Lanes shear = e.shear();
     if (viscous) {
@@ -99,14 +85,14 @@ template <bool viscous>
 [[gnu::flatten]] void add_exact_product(const CorotationalStep& step, std::size_t first, std::size_t last,
                                         const double* direction, double* product) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
-    Moving at;
-    gather_moving(e, step.positions, direction, at);
-    const Deformation now = deformation(e, at.m, at.F, at.stretched);
+    const Deformation now = deformation(e, step.positions);
+    Vec d[7];
+    gather_modes(e.batch.nodes, e.lane, direction, d);
     const Mat& R = now.R;
     const Sym &S = now.S, &G = now.G;
     const Hourglass& h = now.h;
     Hourglass dh;
-    const Mat W = seen_from(e, R, at.dF, at.d, dh);
+    const Mat W = seen_from(e, R, gradient(e, d), d, dh);
     // How the frame turns, and what that leaves of the move as deformation.
     const Vec omega = -(G * axial(W));
     const Sym dS = upper_part(W - cross(omega, full(S)));

@@ -39,25 +39,11 @@ inline Mat gradient(const Elements& e, const Vec (&m)[7]) {
   return F;
 }
 
-// Stretch and Frame are written where they are wanted, not returned: without AVX-512, GCC 12 would copy them, in pieces
-// of 8 bytes.
-
-/// What F's rotation follows from, F = R S: cof F, C = F^T F = S^2, J = det F and s = tr S.
-struct Stretch {
-  Mat cofactors;
-  Sym C;
-  Lanes J, s;
-};
-
-/// s is the largest root of the quartic (s^2 - a)^2/4 - b - 2 J s, where a = tr S^2 and b = |cof S|^2 = |cof F|^2. All
-/// its roots are real, so Halley's iteration comes down to it from any larger number, cubically in the end.
-inline void set_stretch(const Mat& F, Stretch& of) {
-  of.cofactors = {cross(F.y, F.z), cross(F.z, F.x), cross(F.x, F.y)};
-  of.C = {dot(F.x, F.x), dot(F.y, F.y), dot(F.z, F.z), dot(F.x, F.y), dot(F.y, F.z), dot(F.z, F.x)};
-  of.J = dot(F.x, of.cofactors.x);
-  const Lanes a = trace(of.C), J2 = of.J + of.J;
-  const Lanes b =
-      dot(of.cofactors.x, of.cofactors.x) + dot(of.cofactors.y, of.cofactors.y) + dot(of.cofactors.z, of.cofactors.z);
+/// tr S of F = R S, from a = tr S^2, b = |cof S|^2 and J = det F: the largest root of the quartic
+/// (s^2 - a)^2/4 - b - 2 J s. All its roots are real, so Halley's iteration comes down to it from any larger number,
+/// cubically in the end.
+inline Lanes stretch_trace(Lanes a, Lanes b, Lanes J) {
+  const Lanes J2 = J + J;
   const auto halley = [&](Lanes s) {
     const Lanes s2 = s * s, u = s2 - a;
     const Lanes value = 0.25 * u * u - b - J2 * s, slope = s * u - J2, half_bend = s2 + 0.5 * u;
@@ -70,10 +56,10 @@ inline void set_stretch(const Mat& F, Stretch& of) {
     s -= step;
     if (!any(step > 1e-5 * s)) break;
   }
-  of.s = s;
+  return s;
 }
 
-/// R, and G = (s I - S)^-1.
+/// R, and G = (s I - S)^-1, where s = tr S.
 struct Frame {
   Mat R;
   Sym G;
@@ -93,10 +79,13 @@ struct Frame {
   return R;
 }
 
-/// With c = (s^2 - tr C)/2, the second invariant of S, and D = s c - J = det(s I - S), the theorem of Cayley and
-/// Hamilton gives D G = C + c I and D R = F ((s^2 - c) I - C) + s cof F.
-inline void set_frame(const Mat& F, const Stretch& of, Frame& result) {
-  const auto& [K, C, J, s] = of;
+/// With K = cof F, C = F^T F = S^2, c = (s^2 - tr C)/2, the second invariant of S, and D = s c - J = det(s I - S), the
+/// theorem of Cayley and Hamilton gives D G = C + c I and D R = F ((s^2 - c) I - C) + s K. (Written where it is wanted,
+/// not returned: without AVX-512, GCC 12 would copy it, in pieces of 8 bytes.)
+inline void set_frame(const Mat& F, Frame& result) {
+  const Mat K = {cross(F.y, F.z), cross(F.z, F.x), cross(F.x, F.y)};
+  const Sym C = {dot(F.x, F.x), dot(F.y, F.y), dot(F.z, F.z), dot(F.x, F.y), dot(F.y, F.z), dot(F.z, F.x)};
+  const Lanes J = dot(F.x, K.x), s = stretch_trace(trace(C), dot(K.x, K.x) + dot(K.y, K.y) + dot(K.z, K.z), J);
   const Lanes s2 = s * s, c = 0.5 * (s2 - trace(C)), D = s * c - J;
   const Lanes scale = 1 / D, own = scale * c, rest = scale * (s2 - c);
   const Sym part = scale * C;
@@ -126,20 +115,14 @@ struct Deformation : Frame {
   Hourglass h;
 };
 
-inline Deformation deformation(const Elements& e, const Vec (&m)[7], const Mat& F, const Stretch& of) {
-  Deformation now;
-  set_frame(F, of, now);
-  now.S = upper_part(seen_from(e, now.R, F, m, now.h));
-  return now;
-}
-
 inline Deformation deformation(const Elements& e, const double* positions) {
   Vec m[7];
   gather_modes(e.batch.nodes, e.lane, positions, m);
   const Mat F = gradient(e, m);
-  Stretch of;
-  set_stretch(F, of);
-  return deformation(e, m, F, of);
+  Deformation now;
+  set_frame(F, now);
+  now.S = upper_part(seen_from(e, now.R, F, m, now.h));
+  return now;
 }
 
 /// q = H h for each of `n`, by blocks of 3 x 3: row by row every entry would cost each of them two loads and a store.
