@@ -33,7 +33,7 @@ class Scene {
   [[nodiscard]] const Settings& settings() const { return settings_; }
 
  private:
-  // Its tangent, (k - t) u u^T + t I with t = k (d - l) / d, as A holds it: times h (h + r).
+  // A spring's tangent, (k - t) u u^T + t I with t = k (d - l) / d, as A holds it: times h (h + r).
   struct SpringTangent {
     int i, j;  // 3 times the nodes' numbers
     double block[9];
