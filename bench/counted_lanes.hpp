@@ -13,7 +13,6 @@ inline thread_local long operations = 0;
 struct Mask {
   long long value;
   long long operator[](int) const { return value; }
-  Mask& operator&=(Mask other) { return value &= other.value, *this; }
   Mask operator&(Mask other) const { return {value & other.value}; }
   Mask operator~() const { return {~value}; }
 };
@@ -31,7 +30,6 @@ struct Lanes {
   friend Lanes operator-(Lanes a, Lanes b) { return ++operations, Lanes(a.value - b.value); }
   friend Lanes operator*(Lanes a, Lanes b) { return ++operations, Lanes(a.value * b.value); }
   friend Lanes operator/(Lanes a, Lanes b) { return ++operations, Lanes(a.value / b.value); }
-  friend Mask operator==(Lanes a, Lanes b) { return {a.value == b.value ? -1 : 0}; }
   friend Mask operator>(Lanes a, Lanes b) { return {a.value > b.value ? -1 : 0}; }
 };
 inline Lanes broadcast(double value) { return value; }

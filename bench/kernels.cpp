@@ -96,8 +96,6 @@ struct Measured {
          [=](std::size_t n) { counted::corotational().add_product(e, 0, n, d, out); }, corotational, 4 * vec},
         {"semidefinite tangent product", [this] { elasticity.add_tangent_product(warped, scene.direction, result); },
          [=](std::size_t n) { counted::corotational().add_product(w, 0, n, d, out); }, corotational, 4 * vec},
-        {"element energies", [this] { (void)elasticity.energy(step); },
-         [=](std::size_t n) { counted::corotational().energy(e, 0, n); }, corotational, vec},
         {"tangent blocks", [this] { elasticity.add_tangent(step, sink); },
          [=](std::size_t n) {
            const auto blocks = std::make_unique<CorotationalBlocks>();

@@ -3,10 +3,8 @@
 // many cells. docs/decisions/0007-multigrid.md.
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
 
 #include "solver/algebra/preconditioner.hpp"
 #include "systems.hpp"

@@ -18,9 +18,8 @@ constexpr int index_at(int k, int p) {
 
 }  // namespace
 
-template <class Real>
-[[gnu::always_inline]] inline void Elements<Real>::gather(const Batch& batch, const Real* p, Lanes (&u)[8][3]) {
-  alignas(64) Real buffer[8][3][width];
+[[gnu::always_inline]] inline void Elements::gather(const Batch& batch, const double* p, Lanes (&u)[8][3]) {
+  alignas(64) double buffer[8][3][width];
   for (int a = 0; a < 8; ++a)
     for (int lane = 0; lane < width; ++lane)
       for (int c = 0; c < 3; ++c) buffer[a][c][lane] = p[batch.nodes[a][lane] + c];
@@ -28,8 +27,7 @@ template <class Real>
     for (int c = 0; c < 3; ++c) u[a][c] = *reinterpret_cast<const Lanes*>(buffer[a][c]);
 }
 
-template <class Real>
-[[gnu::always_inline]] inline void Elements<Real>::scatter(const Batch& batch, const Lanes (&f)[8][3], Real* y) {
+[[gnu::always_inline]] inline void Elements::scatter(const Batch& batch, const Lanes (&f)[8][3], double* y) {
   for (int a = 0; a < 8; ++a)
     for (int lane = 0; lane < width; ++lane)
       for (int c = 0; c < 3; ++c) y[batch.nodes[a][lane] + c] += f[a][c][lane];
@@ -42,9 +40,8 @@ template <class Part>
 }
 
 // From the corners of a square to its four Gauss points; its own transpose.
-template <class Real>
-[[gnu::always_inline]] inline void Elements<Real>::interpolate(const Lanes (&v)[4], Lanes (&at_points)[4]) {
-  constexpr Real near = 0.78867513459481288225, far = 0.21132486540518711775;  // (1 +- 1/sqrt(3)) / 2
+[[gnu::always_inline]] inline void Elements::interpolate(const Lanes (&v)[4], Lanes (&at_points)[4]) {
+  constexpr double near = 0.78867513459481288225, far = 0.21132486540518711775;  // (1 +- 1/sqrt(3)) / 2
   const Lanes a = near * v[0] + far * v[1], b = far * v[0] + near * v[1];
   const Lanes c = near * v[2] + far * v[3], d = far * v[2] + near * v[3];
   at_points[0] = near * a + far * c;
@@ -54,9 +51,7 @@ template <class Real>
 }
 
 // along[k][c]: twice the derivative of component c along local axis k.
-template <class Real>
-[[gnu::always_inline]] inline void Elements<Real>::reference_gradients(const Lanes (&u)[8][3],
-                                                                       Lanes (&along)[3][3][4]) {
+[[gnu::always_inline]] inline void Elements::reference_gradients(const Lanes (&u)[8][3], Lanes (&along)[3][3][4]) {
   for (int k = 0; k < 3; ++k)
     for (int c = 0; c < 3; ++c) {
       Lanes differences[4];
@@ -65,9 +60,8 @@ template <class Real>
     }
 }
 
-template <class Real>
-[[gnu::always_inline]] inline void Elements<Real>::respond(const Batch& batch, Real lambda, Real mu,
-                                                           const Lanes (&u)[8][3], Lanes (&f)[8][3]) {
+[[gnu::always_inline]] inline void Elements::respond(const Batch& batch, double lambda, double mu,
+                                                     const Lanes (&u)[8][3], Lanes (&f)[8][3]) {
   Lanes along[3][3][4], back[3][3][4] = {};
   reference_gradients(u, along);
 #pragma GCC unroll 8
@@ -102,8 +96,7 @@ template <class Real>
     }
 }
 
-template <class Real>
-[[gnu::always_inline]] inline void Elements<Real>::to_rest(const Batch& batch, Lanes (&u)[8][3]) {
+[[gnu::always_inline]] inline void Elements::to_rest(const Batch& batch, Lanes (&u)[8][3]) {
   const Lanes(&Q)[9] = batch.Q;
   for (auto& v : u) {
     const Lanes x = v[0], y = v[1], z = v[2];
@@ -111,8 +104,7 @@ template <class Real>
   }
 }
 
-template <class Real>
-[[gnu::always_inline]] inline void Elements<Real>::to_current(const Batch& batch, Lanes (&u)[8][3]) {
+[[gnu::always_inline]] inline void Elements::to_current(const Batch& batch, Lanes (&u)[8][3]) {
   const Lanes(&Q)[9] = batch.Q;
   for (auto& v : u) {
     const Lanes x = v[0], y = v[1], z = v[2];
@@ -121,8 +113,7 @@ template <class Real>
 }
 
 // Rows of R: e1 along the mean of the four edges of the first axis, e3 = e1 x (mean of the second), e2 = e3 x e1.
-template <class Real>
-void Elements<Real>::frame(const Lanes (&x)[8][3], Lanes (&R)[9]) {
+void Elements::frame(const Lanes (&x)[8][3], Lanes (&R)[9]) {
   Lanes e1[3], second[3];
   for (int c = 0; c < 3; ++c) {
     e1[c] = second[c] = Lanes{};
@@ -152,12 +143,9 @@ void Elements<Real>::frame(const Lanes (&x)[8][3], Lanes (&R)[9]) {
   }
 }
 
-template <class Real>
-Elements<Real>::Elements(std::span<const double> rest, std::span<const std::array<int, 8>> hexes,
-                         const Material& material)
-    : lambda_(static_cast<Real>(material.lambda())),
-      mu_(static_cast<Real>(material.mu())),
-      exact_rest_(rest.begin(), rest.end()),
+Elements::Elements(std::span<const double> rest, std::span<const std::array<int, 8>> hexes, const Material& material)
+    : lambda_(material.lambda()),
+      mu_(material.mu()),
       rest_(rest.begin(), rest.end()),
       batches_((hexes.size() + width - 1) / width) {
   for (std::size_t b = 0; b < batches_.size(); ++b) {
@@ -180,21 +168,18 @@ Elements<Real>::Elements(std::span<const double> rest, std::span<const std::arra
         const double det = D[0][0] * cofactor(0, 0) + D[0][1] * cofactor(0, 1) + D[0][2] * cofactor(0, 2);
         const bool there = b * width + lane < hexes.size();
         for (int k = 0; k < 3; ++k)
-          for (int j = 0; j < 3; ++j)
-            batch.G[p][3 * k + j][lane] = there ? static_cast<Real>(cofactor(k, j) / std::sqrt(det) / 2) : Real{0};
+          for (int j = 0; j < 3; ++j) batch.G[p][3 * k + j][lane] = there ? cofactor(k, j) / std::sqrt(det) / 2 : 0;
       }
   }
   turn_to(rest);
 }
 
-template <class Real>
-void Elements<Real>::turn_to(std::span<const double> x) {
-  const std::vector<Real> rounded(x.begin(), x.end());
+void Elements::turn_to(std::span<const double> x) {
   for (auto& batch : batches_) {
     Lanes nodes[8][3], R[9], R0[9];
     gather(batch, rest_.data(), nodes);
     frame(nodes, R0);
-    gather(batch, rounded.data(), nodes);
+    gather(batch, x.data(), nodes);
     frame(nodes, R);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)  // Q = R^T R0
@@ -202,9 +187,8 @@ void Elements<Real>::turn_to(std::span<const double> x) {
   }
 }
 
-template <class Real>
-void Elements<Real>::add_product(Real scale, std::span<const Real> p, std::span<Real> y) const {
-  const Real lambda = scale * lambda_, mu = scale * mu_;
+void Elements::add_product(double scale, std::span<const double> p, std::span<double> y) const {
+  const double lambda = scale * lambda_, mu = scale * mu_;
   for (const auto& batch : batches_) {
     Lanes u[8][3], f[8][3];
     fetch((&batch + 1)->Q);
@@ -217,14 +201,12 @@ void Elements<Real>::add_product(Real scale, std::span<const Real> p, std::span<
   }
 }
 
-template <class Real>
-void Elements<Real>::add_forces(std::span<const double> x, std::span<Real> forces) const {
-  const std::vector<Real> rounded(x.begin(), x.end());
+void Elements::add_forces(std::span<const double> x, std::span<double> forces) const {
   for (const auto& batch : batches_) {
     Lanes u[8][3], X[8][3], f[8][3];
     fetch((&batch + 1)->Q);
     fetch((&batch + 1)->nodes);
-    gather(batch, rounded.data(), u);
+    gather(batch, x.data(), u);
     gather(batch, rest_.data(), X);
     to_rest(batch, u);
     for (int a = 0; a < 8; ++a)
@@ -236,9 +218,8 @@ void Elements<Real>::add_forces(std::span<const double> x, std::span<Real> force
 }
 
 // g[a] = Q grad N_a sqrt(det J) at a Gauss point.
-template <class Real>
-void Elements<Real>::turned_gradients(const Batch& batch, int point, Lanes (&g)[8][3]) {
-  constexpr Real near = 0.78867513459481288225, far = 0.21132486540518711775;
+void Elements::turned_gradients(const Batch& batch, int point, Lanes (&g)[8][3]) {
+  constexpr double near = 0.78867513459481288225, far = 0.21132486540518711775;
   for (auto& node : g)
     for (auto& component : node) component = Lanes{};
   for (int k = 0; k < 3; ++k) {
@@ -247,7 +228,7 @@ void Elements<Real>::turned_gradients(const Batch& batch, int point, Lanes (&g)[
       const Lanes turned = batch.Q[3 * i] * G[0] + batch.Q[3 * i + 1] * G[1] + batch.Q[3 * i + 2] * G[2];
       for (int e = 0; e < 4; ++e) {
         const int differ = e ^ index_at(k, point);
-        const Real weight = ((differ & 1) ? far : near) * ((differ & 2) ? far : near);
+        const double weight = ((differ & 1) ? far : near) * ((differ & 2) ? far : near);
         g[edges[k][e][1]][i] += weight * turned;
         g[edges[k][e][0]][i] -= weight * turned;
       }
@@ -255,37 +236,13 @@ void Elements<Real>::turned_gradients(const Batch& batch, int point, Lanes (&g)[
   }
 }
 
-template <class Real>
-void Elements<Real>::add_diagonal(double scale, std::span<double> blocks) const {
-  const Real lambda = scale * lambda_, mu = scale * mu_;
-  for (const auto& batch : batches_) {
-    Lanes sum[8][3][3] = {};
-    for (int p = 0; p < 8; ++p) {
-      Lanes g[8][3];
-      turned_gradients(batch, p, g);
-      for (int a = 0; a < 8; ++a) {
-        const Lanes trace = mu * (g[a][0] * g[a][0] + g[a][1] * g[a][1] + g[a][2] * g[a][2]);
-        for (int i = 0; i < 3; ++i) {
-          for (int j = 0; j < 3; ++j) sum[a][i][j] += (lambda + mu) * g[a][i] * g[a][j];
-          sum[a][i][i] += trace;
-        }
-      }
-    }
-    for (int a = 0; a < 8; ++a)
-      for (int lane = 0; lane < width; ++lane)
-        for (int i = 0; i < 3; ++i)
-          for (int j = 0; j < 3; ++j) blocks[3 * batch.nodes[a][lane] + 3 * i + j] += sum[a][i][j][lane];
-  }
-}
-
-template <class Real>
-void Elements<Real>::write_blocks(double scale, std::vector<Real>& blocks) const {
-  const Real lambda = scale * lambda_, mu = scale * mu_;
-  blocks.resize(batches_.size() * width * 36 * 9);
+void Elements::add_blocks(double scale, std::span<const int> places, std::span<float> values) const {
+  const double lambda = scale * lambda_, mu = scale * mu_;
   for (std::size_t b = 0; b < batches_.size(); ++b) {
+    const std::size_t first = b * width, count = std::min<std::size_t>(width, places.size() / pairs - first);
     Lanes g[8][8][3];
     for (int p = 0; p < 8; ++p) turned_gradients(batches_[b], p, g[p]);
-    int pair = 0;
+    std::size_t pair = 0;
     for (int n = 0; n < 8; ++n)
       for (int m = 0; m <= n; ++m, ++pair) {
         Lanes S[3][3] = {};
@@ -296,14 +253,14 @@ void Elements<Real>::write_blocks(double scale, std::vector<Real>& blocks) const
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j) {
             const Lanes value = lambda * S[i][j] + mu * S[j][i] + (i == j ? trace : Lanes{});
-            for (int lane = 0; lane < width; ++lane)
-              blocks[((b * width + lane) * 36 + pair) * 9 + 3 * i + j] = value[lane];
+            for (std::size_t lane = 0; lane < count; ++lane) {
+              const int place = places[pairs * (first + lane) + pair];
+              float* block = &values[std::size_t{9} * (place < 0 ? ~place : place)];
+              block[place < 0 ? 3 * j + i : 3 * i + j] += static_cast<float>(value[lane]);
+            }
           }
       }
   }
 }
-
-template class Elements<double>;
-template class Elements<float>;
 
 }  // namespace plica::reference

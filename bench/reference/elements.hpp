@@ -22,11 +22,11 @@ struct Material {
   [[nodiscard]] double mu() const { return young_modulus / (2 * (1 + poisson_ratio)); }
 };
 
-/// `Real` is double or float; vectors are x y z of each node.
-template <class Real>
+/// Vectors are x y z of each node.
 class Elements {
  public:
-  static constexpr int width = 64 / sizeof(Real);  // elements a batch
+  static constexpr int width = 8;           // elements a batch
+  static constexpr std::size_t pairs = 36;  // of an element's nodes: (0,0), (1,0), (1,1), (2,0), ...
 
   Elements(std::span<const double> rest, std::span<const std::array<int, 8>> hexes, const Material& material);
 
@@ -34,41 +34,35 @@ class Elements {
   void turn_to(std::span<const double> x);
 
   /// y += scale * sum_e Q K Q^T p.
-  void add_product(Real scale, std::span<const Real> p, std::span<Real> y) const;
+  void add_product(double scale, std::span<const double> p, std::span<double> y) const;
 
   /// f += sum_e Q K (X - Q^T x): elastic forces.
-  void add_forces(std::span<const double> x, std::span<Real> f) const;
+  void add_forces(std::span<const double> x, std::span<double> f) const;
 
-  /// blocks[n] += scale * the 3 x 3 diagonal block of node n, nine numbers by rows.
-  void add_diagonal(double scale, std::span<double> blocks) const;
-
-  /// Blocks of scale * Q K Q^T of each element: nine numbers by rows for each of the 36 pairs of local nodes
-  /// (0,0), (1,0), (1,1), (2,0), ...
-  void write_blocks(double scale, std::vector<Real>& blocks) const;
-
-  [[nodiscard]] const std::vector<double>& rest() const { return exact_rest_; }
+  /// values += scale * sum_e Q K Q^T: nine numbers by rows a block, that of each pair of each element at its place, or
+  /// transposed at ~ of it.
+  void add_blocks(double scale, std::span<const int> places, std::span<float> values) const;
 
  private:
-  typedef Real Lanes __attribute__((vector_size(64)));
+  typedef double Lanes __attribute__((vector_size(64)));
   struct Batch {
     Lanes G[8][9];
     Lanes Q[9];
     int nodes[8][width];  // 3 times their number
   };
 
-  static void gather(const Batch& batch, const Real* p, Lanes (&u)[8][3]);
-  static void scatter(const Batch& batch, const Lanes (&f)[8][3], Real* y);
+  static void gather(const Batch& batch, const double* p, Lanes (&u)[8][3]);
+  static void scatter(const Batch& batch, const Lanes (&f)[8][3], double* y);
   static void interpolate(const Lanes (&v)[4], Lanes (&at_points)[4]);
   static void reference_gradients(const Lanes (&u)[8][3], Lanes (&along)[3][3][4]);
-  static void respond(const Batch& batch, Real lambda, Real mu, const Lanes (&u)[8][3], Lanes (&f)[8][3]);
+  static void respond(const Batch& batch, double lambda, double mu, const Lanes (&u)[8][3], Lanes (&f)[8][3]);
   static void to_rest(const Batch& batch, Lanes (&u)[8][3]);
   static void to_current(const Batch& batch, Lanes (&u)[8][3]);
   static void frame(const Lanes (&x)[8][3], Lanes (&R)[9]);
   static void turned_gradients(const Batch& batch, int point, Lanes (&g)[8][3]);
 
-  Real lambda_, mu_;
-  std::vector<double> exact_rest_;
-  std::vector<Real> rest_;
+  double lambda_, mu_;
+  std::vector<double> rest_;
   std::vector<Batch> batches_;
 };
 

@@ -1,4 +1,5 @@
 // The reference scene, as bench/data/README.md has it, run and timed (docs/performance-notebook.md).
+#include <omp.h>
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
@@ -83,7 +84,7 @@ void run(const Options& options) {
     const double cpu_before = cpu_seconds();
     auto start = std::chrono::steady_clock::now();
     const auto lap = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-    Stepper stepper(mesh, Settings{}, options.tolerance, make_multigrid);
+    Stepper stepper(mesh, Settings{}, options.tolerance);
     for (int step = 1; step <= options.steps; ++step) {
       stepper.step();
       if (const auto found = expected.find(step); found != expected.end()) {
@@ -121,6 +122,7 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
   const Options options = read_options(argc, argv);
+  omp_set_num_threads(1);  // as the program that it is compared with
   try {
     run(options);
   } catch (const FileError& error) {

@@ -2,12 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace plica::reference {
 
 Scene::Scene(const Mesh& mesh, const Settings& settings)
     : mesh_(mesh), settings_(settings), elements_(mesh.nodes, mesh.hexes, settings.material) {
   turn_to(mesh.nodes);
+  std::vector<int> groups;  // a spring's nodes are those of one hexahedron
+  for (const auto& hex : mesh.hexes) groups.insert(groups.end(), hex.begin(), hex.end());
+  pattern_ = pattern_of_groups(static_cast<int>(mesh.nodes.size() / 3), groups, 8);
+  for (const auto& hex : mesh.hexes)
+    for (int a = 0; a < 8; ++a)
+      for (int b = 0; b <= a; ++b)
+        places_.push_back(hex[a] < hex[b] ? ~pattern_.find(hex[b], hex[a]) : pattern_.find(hex[a], hex[b]));
 }
 
 void Scene::turn_to(std::span<const double> x) {
@@ -62,6 +70,20 @@ void Scene::add_stiffness(std::span<const double> p, std::span<double> y) const 
 void Scene::multiply(std::span<const double> p, std::span<double> y) const {
   for (std::size_t n = 0; n < p.size(); ++n) y[n] = settings_.mass * p[n];
   add_stiffness(p, y);
+}
+
+void Scene::write_blocks(std::vector<float>& values) const {
+  values.assign(9 * pattern_.columns.size(), 0);
+  elements_.add_blocks(settings_.stiffness_factor(), places_, values);
+  for (const auto& [i, j, block] : springs_)
+    for (const auto& [row, column, sign] : {std::tuple{i, i, 1}, {j, j, 1}, {i, j, -1}}) {
+      const int place = pattern_.find(std::max(row, column) / 3, std::min(row, column) / 3);
+      for (int k = 0; k < 9; ++k)
+        values[std::size_t{9} * place + k] += static_cast<float>(sign * block[k]);  // symmetric
+    }
+  for (int n = 0; n < pattern_.nodes(); ++n)
+    for (int c = 0; c < 3; ++c)
+      values[std::size_t{9} * pattern_.find(n, n) + 4 * c] += static_cast<float>(settings_.mass);
 }
 
 }  // namespace plica::reference

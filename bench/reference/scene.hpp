@@ -3,6 +3,7 @@
 
 #include "elements.hpp"
 #include "mesh.hpp"
+#include "solver/algebra/block_pattern.hpp"
 
 namespace plica::reference {
 
@@ -10,12 +11,6 @@ struct Settings {
   double mass = 0.01, step = 0.1, damping_time = 0.1;  // damping_time: stiffness-proportional damping r
   Material material;
   [[nodiscard]] double stiffness_factor() const { return step * (step + damping_time); }
-};
-
-/// A spring's tangent, (k - t) u u^T + t I with t = k (d - l) / d, as A holds it: times h (h + r).
-struct SpringTangent {
-  int i, j;
-  double block[9];
 };
 
 /// A dv = b at positions x: A = M + h (h + r) K, b = h (f - (h + r) K v), K the stiffness (minus the forces'
@@ -31,18 +26,26 @@ class Scene {
   /// y = A p.
   void multiply(std::span<const double> p, std::span<double> y) const;
 
-  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+  /// A as plica's preconditioners take it.
+  [[nodiscard]] const BlockPattern& pattern() const { return pattern_; }
+  void write_blocks(std::vector<float>& values) const;
+
   [[nodiscard]] const Settings& settings() const { return settings_; }
-  [[nodiscard]] const std::vector<SpringTangent>& springs() const { return springs_; }
-  [[nodiscard]] const Elements<double>& elements() const { return elements_; }
 
  private:
+  // A spring's tangent, (k - t) u u^T + t I with t = k (d - l) / d, as A holds it: times h (h + r).
+  struct SpringTangent {
+    int i, j;  // 3 times the nodes' numbers
+    double block[9];
+  };
   void add_stiffness(std::span<const double> p, std::span<double> y) const;  // y += h (h + r) K p
 
   const Mesh& mesh_;
   Settings settings_;
-  Elements<double> elements_;
+  Elements elements_;
   std::vector<SpringTangent> springs_;
+  BlockPattern pattern_;
+  std::vector<int> places_;  // of the elements' blocks
 };
 
 }  // namespace plica::reference

@@ -8,6 +8,7 @@ namespace plica::reference {
 namespace {
 
 constexpr int most_iterations = 2000;
+constexpr double update_cost = 8;      // of making a preconditioner, in applications of it, about
 constexpr std::size_t remembered = 2;  // a line; one or three cost up to an eighth more iterations
 
 // Sums in lanes, in an order that a build fixes.
@@ -18,13 +19,32 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
+// As plica::Preconditioner has it.
+std::vector<float> rigid_motions(const std::vector<double>& nodes) {
+  const double count = static_cast<double>(nodes.size() / 3);
+  double middle[3] = {}, squares = 0;
+  for (std::size_t k = 0; k < nodes.size(); ++k) middle[k % 3] += nodes[k] / count;
+  for (std::size_t k = 0; k < nodes.size(); ++k) squares += std::pow(nodes[k] - middle[k % 3], 2);
+  const double radius = std::sqrt(squares / count);
+  std::vector<float> motions;
+  for (std::size_t n = 0; n < nodes.size(); n += 3) {
+    float x[3];
+    for (int c = 0; c < 3; ++c) x[c] = static_cast<float>((nodes[n + c] - middle[c]) / radius);
+    motions.insert(motions.end(), {1, 0, 0, 0, x[2], -x[1],  //
+                                   0, 1, 0, -x[2], 0, x[0],  //
+                                   0, 0, 1, x[1], -x[0], 0});
+  }
+  return motions;
+}
+
 }  // namespace
 
-Stepper::Stepper(const Mesh& mesh, const Settings& settings, double tolerance,
-                 const std::function<std::unique_ptr<Preconditioner>(const Scene&)>& make_preconditioner)
+Stepper::Stepper(const Mesh& mesh, const Settings& settings, double tolerance)
     : tolerance_(tolerance),
       scene_(mesh, settings),
-      preconditioner_(make_preconditioner(scene_)),
+      preconditioner_(make_multigrid(scene_.pattern())),
+      near_kernel_(rigid_motions(mesh.nodes)),
+      single_(mesh.nodes.size()),
       x_(mesh.nodes),
       v_(x_.size()),
       b_(x_.size()),
@@ -37,10 +57,19 @@ Stepper::Stepper(const Mesh& mesh, const Settings& settings, double tolerance,
 }
 
 void Stepper::update_preconditioner() {
-  preconditioner_->update(scene_, x_);
+  std::vector<float> values;
+  scene_.write_blocks(values);
+  if (!preconditioner_->factorise(values, near_kernel_))
+    throw std::runtime_error("the system is not positive definite");
   fewest_iterations_ = 0;
   excess_ = 0;
   ++report_.updates;
+}
+
+void Stepper::precondition() {
+  std::copy(r_.begin(), r_.end(), single_.begin());
+  preconditioner_->solve(single_);
+  std::copy(single_.begin(), single_.end(), z_.begin());
 }
 
 // What the last steps' dv lead to, if they go on along a line.
@@ -55,7 +84,7 @@ void Stepper::step() {
   scene_.turn_to(x_);
   scene_.right_hand_side(x_, v_, b_);
   // An update pays when the iterations it would have saved so far cost as much.
-  if (excess_ > preconditioner_->update_cost()) update_preconditioner();
+  if (excess_ > update_cost) update_preconditioner();
   guess();
   const SolveReport solved = solve();
   if (!(solved.residual <= tolerance_))
@@ -93,7 +122,7 @@ SolveReport Stepper::solve() {
     double rz = 0;
     std::fill(p_.begin(), p_.end(), 0.0);
     for (double estimate = report.residual; estimate > tolerance_ && report.iterations < most_iterations;) {
-      preconditioner_->apply(r_, z_);
+      precondition();
       const double next = dot(r_, z_);
       const double beta = rz == 0 ? 0 : (next - dot(z_, Ap_)) / rz;  // Ap_ holds the last residual
       rz = next;

@@ -1,9 +1,10 @@
 // Steps of the reference scene: one linear system each, by preconditioned conjugate gradients.
 #pragma once
 
-#include <functional>
+#include <memory>
 
-#include "preconditioner.hpp"
+#include "scene.hpp"
+#include "solver/algebra/preconditioner.hpp"
 
 namespace plica::reference {
 
@@ -20,8 +21,7 @@ struct RunReport {
 
 class Stepper {
  public:
-  Stepper(const Mesh& mesh, const Settings& settings, double tolerance,
-          const std::function<std::unique_ptr<Preconditioner>(const Scene&)>& make_preconditioner);
+  Stepper(const Mesh& mesh, const Settings& settings, double tolerance);
 
   /// v += dv, x += h v. Throws std::runtime_error when the system cannot be solved to the tolerance.
   void step();
@@ -33,10 +33,12 @@ class Stepper {
   void guess();
   SolveReport solve();
   void update_preconditioner();
+  void precondition();  // z_ from r_
 
   double tolerance_;
   Scene scene_;
   std::unique_ptr<Preconditioner> preconditioner_;
+  std::vector<float> near_kernel_, single_;
   std::vector<double> x_, v_, b_, dv_;
   std::vector<std::vector<double>> history_;  // of the last steps' dv, the newest first
   std::vector<double> r_, z_, p_, Ap_;

@@ -93,6 +93,14 @@ bool exists_and_is_no_regular_file(const fs::path& path) {
   return fs::exists(status) && !fs::is_regular_file(status);
 }
 
+fs::path temporary_beside(const fs::path& path) {
+  static std::atomic<unsigned> count = 0;
+  // The process and a number, so that two that write the same file do not write the same temporary one.
+  fs::path temporary = path;
+  temporary += fmt::format(".{}-{}.part", ::getpid(), count++);
+  return temporary;
+}
+
 }  // namespace
 
 void rename_file(const fs::path& temporary, const fs::path& path, Sync sync) {
@@ -147,24 +155,6 @@ void write_file(const fs::path& path, std::string_view content) {
   }
   const fs::path target = link_target(path);
   rename_file(write_beside(target, content, Sync::now), target, Sync::now);
-}
-
-fs::path temporary_beside(const fs::path& path) {
-  static std::atomic<unsigned> count = 0;
-  // The process and a number, so that two that write the same file do not write the same temporary one.
-  fs::path temporary = path;
-  temporary += fmt::format(".{}-{}.part", ::getpid(), count++);
-  return temporary;
-}
-
-void replace_file(const fs::path& temporary, const fs::path& path) {
-  if (exists_and_is_no_regular_file(path)) {
-    ::unlink(temporary.c_str());
-    throw_unwritten(path, "it is not a regular file");
-  }
-  const int error = sync_path(temporary, 0);
-  if (error != 0) remove_and_throw(temporary, path, error);
-  rename_file(temporary, link_target(path), Sync::now);
 }
 
 RowFile::RowFile(fs::path path, std::uint64_t keep_bytes) : path_(std::move(path)), size_bytes_(keep_bytes) {

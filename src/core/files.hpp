@@ -21,14 +21,6 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t most_byt
 /// FileError when that fails; the temporary file is then removed.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-/// A name beside `path`, on the same file system and with another extension, for a library that writes files itself;
-/// `replace_file` then gives the file its name. Every call returns another name.
-std::filesystem::path temporary_beside(const std::filesystem::path& path);
-
-/// Puts the finished file `temporary` in the place of `path`: fsync, rename, fsync of the folder. FileError when that
-/// fails; `temporary` is then removed.
-void replace_file(const std::filesystem::path& temporary, const std::filesystem::path& path);
-
 /// Whether a file is to be on the disk at once (fsync), or when the system comes to it: what is not outlives the
 /// program, but not a power cut.
 enum class Sync { now, later };

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/units.hpp"
 #include "measure/speed_history.hpp"

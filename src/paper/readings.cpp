@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace plica {
 namespace {
@@ -116,8 +115,6 @@ const std::vector<PrintedNumber> numbers = {
 }  // namespace
 
 std::span<const PaperReading> readings() { return table; }
-
-const PaperReading& chosen_reading() { return table.front(); }
 
 std::vector<std::string> sphere_overrides(const PaperReading& reading) {
   std::vector<std::string> keys = {"embryo.shape=sphere", "embryo.cells=[9,9,8]", "region.furrow.cells_along=7"};

@@ -22,11 +22,9 @@ struct PaperReading {
   int vce = 2;                    // which cell from the end VCE is
   std::string same_runs_as = {};  // measured otherwise, in the runs of that reading
   bool quick = false;             // a part of --quick
-  bool has_sphere = true;         // worth a run
 };
 
 std::span<const PaperReading> readings();
-const PaperReading& chosen_reading();
 
 /// The keys that turn a pill scenario into the sphere with the same cells.
 std::vector<std::string> sphere_overrides(const PaperReading& reading);

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/errors.hpp"
 #include "measure/reference_run.hpp"
 #include "paper/mechanism.hpp"
 #include "record/results.hpp"
 #include "scenario/load.hpp"
-#include "study/frame_surface.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;

@@ -19,7 +19,7 @@ bool holds_steps(const std::filesystem::path& directory);
 /// Whether everything is there that the end of a run leaves.
 bool holds_ending(const std::filesystem::path& directory, bool with_report);
 
-/// What was being written when a run was killed. Only temporary names of plica's own files (see temporary_beside).
+/// What was being written when a run was killed. Only temporary names of plica's own files (see write_beside).
 void remove_half_written(const std::filesystem::path& directory);
 
 /// Removes the frames that come after the first `kept`, and what told of a run's end.

@@ -85,15 +85,6 @@ std::array<Vec3, 8> hex_volume_gradient(const HexPoints& points) {
   return gradient;
 }
 
-std::array<Vec3, 8> hex_volume_hessian_product(const HexPoints& points, const std::array<Vec3, 8>& direction) {
-  std::array<Vec3, 8> product;
-  product.fill(Vec3::Zero());
-  const auto a = hex_volume_hessian(points);
-  for (int i = 0; i < 8; ++i)
-    for (int j = 0; j < 8; ++j) product[i] += a[i][j].cross(direction[j]);
-  return product;
-}
-
 std::array<std::array<Vec3, 8>, 8> hex_volume_hessian(const HexPoints& points) {
   std::array<std::array<Vec3, 8>, 8> hessian;
   for (auto& row : hessian) row.fill(Vec3::Zero());

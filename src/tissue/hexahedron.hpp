@@ -40,9 +40,6 @@ double hex_volume(const HexPoints& points);
 /// dV/dx_i, um^2 (eight vectors). Satisfies sum_i x_i . dV/dx_i = 3 V.
 std::array<Vec3, 8> hex_volume_gradient(const HexPoints& points);
 
-/// The change of the volume gradient with the points: d(dV/dx) . direction, um.
-std::array<Vec3, 8> hex_volume_hessian_product(const HexPoints& points, const std::array<Vec3, 8>& direction);
-
 /// d2V/dx_i dx_j as vectors a_ij with the 3 x 3 block [a_ij]x; antisymmetric: a_ji = -a_ij.
 std::array<std::array<Vec3, 8>, 8> hex_volume_hessian(const HexPoints& points);
 

@@ -125,24 +125,6 @@ TEST_F(FilesTest, WhatCannotBeReadIsNamed) {
   EXPECT_EQ(file_error([] { read_file("/dev/zero"); }), "/dev/zero: cannot be read: it is larger than 256 MiB");
 }
 
-TEST_F(FilesTest, ReplacesAFileByATemporaryOne) {
-  write_file(folder / "file", "old");
-  const fs::path temporary = temporary_beside(folder / "file");
-  EXPECT_NE(temporary, temporary_beside(folder / "file"));
-  EXPECT_EQ(temporary.parent_path(), folder);
-  write_file(temporary, "new");
-  replace_file(temporary, folder / "file");
-  EXPECT_EQ(read_file(folder / "file"), "new");
-  EXPECT_EQ(file_count(), 1U);
-
-  EXPECT_NE(file_error([&] { replace_file(temporary, folder / "file"); }), "");
-  EXPECT_EQ(read_file(folder / "file"), "new");
-  fs::create_directory(folder / "folder");
-  write_file(temporary, "newer");
-  EXPECT_NE(file_error([&] { replace_file(temporary, folder / "folder"); }), "");
-  EXPECT_FALSE(fs::exists(temporary));
-}
-
 TEST_F(FilesTest, RowsCanBeReadAtOnce) {
   RowFile file(folder / "rows");
   file.append("a,b");

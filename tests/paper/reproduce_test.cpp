@@ -40,16 +40,16 @@ TEST(Claims, AreWhole) {
 TEST(Score, IsNothingForThePrintedNumbersAndTheLargestMissForNoneOfThem) {
   Figures printed, empty = {{"pill.depth_um", 1e6}, {"sphere.depth_um", 1e6}};
   for (const PrintedNumber& number : printed_numbers()) printed[number.name] = number.centre;
-  const auto best = score(chosen_reading(), printed), worst = score(chosen_reading(), empty);
+  const auto best = score(readings().front(), printed), worst = score(readings().front(), empty);
   ASSERT_TRUE(best && worst);
   EXPECT_EQ(best->rms, 0);
   EXPECT_EQ(best->met, static_cast<int>(printed_numbers().size()));
   EXPECT_DOUBLE_EQ(worst->rms, largest_miss);
   EXPECT_EQ(worst->met, 0);
-  EXPECT_FALSE(score(chosen_reading(), {{"pill.depth_um", 28.89}}));
+  EXPECT_FALSE(score(readings().front(), {{"pill.depth_um", 28.89}}));
   // One number at the edge of its tolerance.
   printed["pill.rest_min"] += 0.75;
-  EXPECT_NEAR(score(chosen_reading(), printed)->rms, 1 / std::sqrt(static_cast<double>(printed_numbers().size())),
+  EXPECT_NEAR(score(readings().front(), printed)->rms, 1 / std::sqrt(static_cast<double>(printed_numbers().size())),
               1e-12);
 }
 

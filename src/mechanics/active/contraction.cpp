@@ -1,7 +1,6 @@
 #include "mechanics/active/contraction.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "tissue/division.hpp"
 

@@ -27,7 +27,6 @@ void add_volume_hessian(const std::array<NodeId, 8>& nodes, const HexPoints& poi
 VolumeElements::VolumeElements(const Tissue& tissue, Kernels kernels)
     : kernels_(kernels), chunks_(tissue.elements, tissue.element_cell), batches_(chunks_.batch_count()) {
   parallel_for(batches_.size() * ElementChunks::batch_size, [&](std::size_t place) { fit(tissue, place); });
-  chunks_.put_new_nodes(std::span(batches_));
 }
 
 void VolumeElements::fit(const Tissue& tissue, std::size_t place) {
@@ -163,9 +162,11 @@ VolumeStep Dilatation::kernel_step(const Step& step) const {
 
 double Dilatation::energy(const Step& step) const {
   if (elements_.empty()) return 0;
-  const VolumeStep at = kernel_step(step);
-  return volumes_.chunks().sum_over_batches(
-      [&](std::size_t first, std::size_t last) { return volumes_.kernels().energy(at, first, last); });
+  return volumes_.chunks().sum_over_elements([&](std::size_t e) {
+    const double rest_volume = volumes_.rest_volume(e);
+    const double strain = hex_volume(gather(step.positions, elements_[e])) / rest_volume - 1;
+    return bulk_modulus_ * rest_volume * strain * strain / 2;
+  });
 }
 
 void Dilatation::add_forces(const Step& step, std::span<Vec3> forces) const {

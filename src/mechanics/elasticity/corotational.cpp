@@ -19,6 +19,38 @@ void put_vector(const Vec3& v, int lane, double (&vectors)[3][batch_size]) {
   for (int axis = 0; axis < 3; ++axis) vectors[axis][lane] = v[axis];
 }
 
+// dev S, nine numbers, and h, for an energy without a kernel: nothing that is timed asks for it.
+using Deformation = Eigen::Matrix<double, 21, 1>;
+
+Deformation deformation(const CorotationalBatch& batch, std::size_t lane, std::span<const Vec3> positions) {
+  const auto vector = [&](const double(&of)[3][batch_size]) { return Vec3(of[0][lane], of[1][lane], of[2][lane]); };
+  const auto place = [&](int i) -> const Vec3& { return positions[batch.nodes[i][lane] / 3]; };
+  std::array<Vec3, 7> m;
+  for (int mode = 0; mode < 7; ++mode) {
+    m[mode] = Vec3::Zero();
+    for (int i = 0; i < 8; ++i) m[mode] += hex_modes[mode][i] * (place(i) - place(0));
+  }
+  Mat3 F = Mat3::Zero(), R, S;
+  for (int mode = 0; mode < 6; ++mode) F += m[mode] * vector(batch.gradients[mode]).transpose();
+  polar(F, R, S);
+  Deformation result;
+  for (int a = 0; a < 4; ++a)
+    result.segment<3>(9 + 3 * a) = R.transpose() * (m[3 + a] - F * vector(batch.hourglass[a]));
+  S.diagonal().array() -= S.trace() / 3;
+  result.head<9>() = S.reshaped();
+  return result;
+}
+
+// shear |dev S|^2 / 2 + h^T H h / 2.
+template <class Batch>
+double half_product(const Batch& batch, std::size_t lane, const Deformation& of) {
+  double product = batch.shear[lane] * of.head<9>().squaredNorm();
+  for (int row = 0, at = 0; row < 12; ++row)
+    for (int column = 0; column <= row; ++column, ++at)
+      product += (column < row ? 2 : 1) * batch.stiffness[at][lane] * of[9 + row] * of[9 + column];
+  return product / 2;
+}
+
 }  // namespace
 
 void nearest_rotation(const double (&F)[9], double (&R)[9]) {
@@ -37,7 +69,6 @@ Corotational::Corotational(const Tissue& tissue, const ElasticModuli& moduli, do
   require_upright_rest_shapes(tissue);
   parallel_for(
       batches_.size() * batch_size, [&](std::size_t place) { fit(tissue, place); }, long_bodies);
-  chunks_.put_new_nodes(std::span(batches_));
 }
 
 void Corotational::fit(const Tissue& tissue, std::size_t place) {
@@ -89,9 +120,16 @@ CorotationalStep Corotational::kernel_step(const Step& step) const {
 }
 
 double Corotational::energy(const Step& step) const {
-  const CorotationalStep at = kernel_step(step);
-  return chunks_.sum_over_batches(
-      [&](std::size_t first, std::size_t last) { return kernels().energy(at, first, last); });
+  return chunks_.sum_over_elements([&](std::size_t e) {
+    const std::size_t batch = e / batch_size, lane = e % batch_size;
+    const auto deformed = [&](std::span<const Vec3> positions) {
+      return deformation(batches_[batch], lane, positions);
+    };
+    const Deformation now = deformed(step.positions);
+    const double elastic = half_product(batches_[batch], lane, now);
+    if (viscous_batches_.empty()) return elastic;
+    return elastic + half_product(viscous_batches_[batch], lane, now - step.before(deformed)) / step.rate_s;
+  });
 }
 
 void Corotational::add_forces(const Step& step, std::span<Vec3> forces) const {

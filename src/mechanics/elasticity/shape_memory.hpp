@@ -21,7 +21,6 @@ struct AttractorSprings {
 struct AttractorModuli {
   Vec3 uniaxial;  // stress over strain along each axis; it gives no stress along the others
   Vec3 shear;     // of the planes yz, zx, xy
-  [[nodiscard]] double bulk() const { return uniaxial.sum() / 9; }
   /// The mean over all directions (Voigt); on a cube the shear modulus itself.
   [[nodiscard]] double mean_shear() const { return (uniaxial.sum() + 3 * shear.sum()) / 15; }
 };

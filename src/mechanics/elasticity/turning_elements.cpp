@@ -3,8 +3,6 @@
 // with H = (tr(S) I - S)^-1, g_i = q_i - t x b_i the gradient in the local frame.
 #include "mechanics/elasticity/turning_elements.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "core/parallel.hpp"

@@ -129,7 +129,7 @@ inline void store(const Mat& block, int lane, double (&numbers)[9][batch_size]) 
 void write_blocks(const CorotationalStep& step, std::size_t batch, CorotationalBlocks& blocks) {
   const ViscousBatch* viscous = step.viscous_batches ? step.viscous_batches + batch : nullptr;
   for (int lane = 0; lane < batch_size; lane += width)
-    write_lanes({step.batches[batch], step.batches[batch], viscous, step.rate, lane}, step, blocks);
+    write_lanes({step.batches[batch], viscous, step.rate, lane}, step, blocks);
 }
 
 }  // namespace plica::PLICA_KERNELS

@@ -14,14 +14,12 @@ inline void for_elements(const CorotationalStep& step, std::size_t first, std::s
     const int count = count_in_batch(step.elements, b);
     const ViscousBatch* viscous_batch = step.viscous_batches ? step.viscous_batches + b : nullptr;
     for (int lane = 0; lane < count; lane += width)
-      body(Elements{step.batches[b], step.batches[b + 1 < last ? b + 1 : b], viscous_batch, step.rate, lane},
-           count - lane < width ? count - lane : width);
+      body(Elements{step.batches[b], viscous_batch, step.rate, lane}, count - lane < width ? count - lane : width);
   }
 }
 
 // What is added to the nodes when the gradients in the frame are P by F and r by the hourglasses.
 inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P, const Hourglass& r, double* vectors) {
-  e.ask_for_next();
   const Mat RP = R * P;
   Vec g[7];
 #pragma GCC unroll copies
@@ -29,30 +27,9 @@ inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P,
 #pragma GCC unroll copies
   for (int a = 0; a < 3; ++a) g[3 + a] = g[3 + a] + R * r[a];
   g[6] = R * r[3];
-  e.ask_for_next();
   Vec f[8];
   from_modes(g, f);
-  e.ask_for_next();
   scatter(e.batch.nodes, e.lane, count, f, vectors);
-}
-
-template <bool viscous>
-[[gnu::flatten]] double energy(const CorotationalStep& step, std::size_t first, std::size_t last) {
-  double sum = 0;
-  for_elements(step, first, last, [&](const Elements& e, int count) {
-    const Deformation now = deformation(e, step.positions);
-    Hourglass q;
-    e.ask_for_next();
-    multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
-    e.ask_for_next();
-    e.ask_for_new_nodes(step.positions);
-    const Sym D = deviator(now.S);
-    Lanes energies = 0.5 * (e.shear() * contract(D, D) + dot(now.h, q));
-    Sym T = D;
-    if (viscous) energies += add_viscous(e, step, now, T, q);
-    for (int k = 0; k < count; ++k) sum += energies[k];
-  });
-  return sum;
 }
 
 template <bool viscous>
@@ -60,10 +37,7 @@ template <bool viscous>
   for_elements(step, first, last, [&](const Elements& e, int count) {
     const Deformation now = deformation(e, step.positions);
     Hourglass q;
-    e.ask_for_next();
-    e.ask_for_new_nodes(step.positions);
     multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
-    e.ask_for_new_nodes(forces);
     Sym T = e.shear() * deviator(now.S);
     Vec torque = cross(now.h, q);
     if (viscous) {
@@ -79,40 +53,20 @@ template <bool viscous>
   });
 }
 
-// Where the elements are and how they move: modes and gradients.
-struct Moving {
-  Vec m[7], d[7];
-  Mat F, dF;
-  Stretch stretched;
-};
-
-inline void gather_moving(const Elements& e, const double* positions, const double* direction, Moving& at) {
-  e.ask_for_next();
-  gather_modes(e.batch.nodes, e.lane, positions, at.m);
-  at.F = gradient(e, at.m);
-  set_stretch(at.F, at.stretched, [&] {
-    e.ask_for_next();
-    gather_modes(e.batch.nodes, e.lane, direction, at.d);
-  });
-  at.dF = gradient(e, at.d);
-}
-
 // R K R^T: the frame does not turn.
 template <bool viscous>
 [[gnu::flatten]] void add_warped_product(const CorotationalStep& step, std::size_t first, std::size_t last,
                                          const double* direction, double* product) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
-    Moving at;
-    gather_moving(e, step.positions, direction, at);
+    Vec m[7], d[7];
+    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    gather_modes(e.batch.nodes, e.lane, direction, d);
     Frame frame;
-    set_frame(at.F, at.stretched, frame);
+    set_frame(gradient(e, m), frame);
     const Mat& R = frame.R;
     Hourglass w, dq;
-    const Mat W = seen_from(e, R, at.dF, at.d, w);
-    e.ask_for_next();
-    e.ask_for_new_nodes(step.positions, direction);
+    const Mat W = seen_from(e, R, gradient(e, d), d, w);
     multiply<1>(e.batch.stiffness, e.lane, {&w}, {&dq});
-    e.ask_for_new_nodes(product);
     Lanes shear = e.shear();
     if (viscous) {
       Hourglass damped;
@@ -131,14 +85,14 @@ template <bool viscous>
 [[gnu::flatten]] void add_exact_product(const CorotationalStep& step, std::size_t first, std::size_t last,
                                         const double* direction, double* product) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
-    Moving at;
-    gather_moving(e, step.positions, direction, at);
-    const Deformation now = deformation(e, at.m, at.F, at.stretched);
+    const Deformation now = deformation(e, step.positions);
+    Vec d[7];
+    gather_modes(e.batch.nodes, e.lane, direction, d);
     const Mat& R = now.R;
     const Sym &S = now.S, &G = now.G;
     const Hourglass& h = now.h;
     Hourglass dh;
-    const Mat W = seen_from(e, R, at.dF, at.d, dh);
+    const Mat W = seen_from(e, R, gradient(e, d), d, dh);
     // How the frame turns, and what that leaves of the move as deformation.
     const Vec omega = -(G * axial(W));
     const Sym dS = upper_part(W - cross(omega, full(S)));
@@ -146,11 +100,7 @@ template <bool viscous>
     for (int a = 0; a < 4; ++a) dh.set(a, dh[a] - cross(omega, h[a]));
     // What answers it.
     Hourglass q, dq;
-    e.ask_for_next();
-    e.ask_for_new_nodes(step.positions, direction);
     multiply<2>(e.batch.stiffness, e.lane, {&h, &dh}, {&q, &dq});
-    e.ask_for_new_nodes(product);
-    e.ask_for_next();
     Sym T = e.shear() * deviator(S), dT = e.shear() * deviator(dS);
     Vec torque = cross(h, q), dtorque = cross(dh, q) + cross(h, dq);
     if (viscous) {
@@ -162,11 +112,9 @@ template <bool viscous>
       torque = cross(h, q) + axial(full(S) * full(T));
       dtorque = cross(dh, q) + cross(h, dq) + axial(full(dS) * full(T) + full(S) * full(dT));
     }
-    e.ask_for_next();
     const Vec t = G * torque, dt = G * (dtorque + dS * t - trace(dS) * t);
     // The turning of what was there, and the change.
     Mat dP = cross(omega, full(T) - cross_matrix(t)) + full(dT) - cross_matrix(dt);
-    e.ask_for_next();
 #pragma GCC unroll copies
     for (int a = 0; a < 4; ++a) {
       dq.set(a, dq[a] + cross(omega, q[a]));
@@ -177,10 +125,6 @@ template <bool viscous>
 }
 
 // One kernel without viscosity, one with: most elements have none, and it must not cost them anything.
-double energy(const CorotationalStep& step, std::size_t first, std::size_t last) {
-  return (step.viscous_batches ? energy<true> : energy<false>)(step, first, last);
-}
-
 void add_forces(const CorotationalStep& step, std::size_t first, std::size_t last, double* forces) {
   (step.viscous_batches ? add_forces<true> : add_forces<false>)(step, first, last, forces);
 }
@@ -195,6 +139,6 @@ void add_product(const CorotationalStep& step, std::size_t first, std::size_t la
 
 }  // namespace
 
-const CorotationalKernels corotational_kernels = {energy, add_forces, add_product, write_blocks};
+const CorotationalKernels corotational_kernels = {add_forces, add_product, write_blocks};
 
 }  // namespace plica::PLICA_KERNELS

@@ -4,14 +4,11 @@
 
 #include <cstddef>
 
-#include "mechanics/kernels/new_nodes.hpp"
-
 namespace plica {
 
 /// Eight elements side by side: the last index is the element's. A batch that is not full repeats its last element.
 struct alignas(64) CorotationalBatch {
-  int nodes[8][8];  // corners; three times the node's number
-  NewNodes new_nodes;
+  int nodes[8][8];            // corners; three times the node's number
   double gradients[6][3][8];  // of the first six modes, 1/um; that of the seventh is zero
   double hourglass[4][3][8];  // X_a: hourglasses of the rest shape, um
   double shear[8];            // 2 mu V0, nN um
@@ -46,8 +43,6 @@ struct CorotationalStep {
 
 /// Kernels for the batches from `first` to before `last`. Each comes from one instruction set.
 struct CorotationalKernels {
-  /// Their energy, nN um.
-  double (*energy)(const CorotationalStep&, std::size_t first, std::size_t last);
   /// Adds their forces, nN.
   void (*add_forces)(const CorotationalStep&, std::size_t first, std::size_t last, double* forces);
   /// Adds their tangent times a direction.

@@ -11,36 +11,14 @@ namespace plica::PLICA_KERNELS {
 /// A register's worth of a batch's elements, from `lane` on.
 struct Elements {
   const CorotationalBatch& batch;
-  const CorotationalBatch& next_batch;  // or the same, where there is none
-  const ViscousBatch* viscous;          // null: not viscous
+  const ViscousBatch* viscous;  // null: not viscous
   double rate;
   int lane;
-  mutable int asked = 0;  // lines of the next batch
 
   [[nodiscard]] Vec b(int mode) const { return load(batch.gradients[mode], lane); }
   [[nodiscard]] Vec X(int a) const { return load(batch.hourglass[a], lane); }
   [[nodiscard]] Lanes shear() const { return load(batch.shear + lane); }
   [[nodiscard]] Lanes viscous_shear() const { return rate * load(viscous->shear + lane); }
-
-  /// Asks memory for a sixth of the next batch. A kernel that does so at six places or more, of which the first six are
-  /// not at its end, calculates while memory answers; for what it did not ask for, or asked for all at once, it waits.
-  void ask_for_next() const {
-    constexpr int lines = sizeof(CorotationalBatch) / 64 * width / batch_size, at_once = (lines + 5) / 6;
-    const char* next = reinterpret_cast<const char*>(&next_batch) + 64 * (lane / width * lines);
-    // Compilers would put all requests of a kernel together, but for the statements that touch "memory".
-    asm volatile("" ::: "memory");
-    for (int k = 0; k < at_once && asked < lines; ++k) __builtin_prefetch(next + 64 * asked++, 0, 2);
-    asm volatile("" ::: "memory");
-  }
-
-  /// Asks memory for vectors that the next batch will look at, or add to, at its new nodes. To be called when their
-  /// numbers have come by ask_for_next: about in the middle. Of many vectors not all at once.
-  template <class... Vectors>
-  void ask_for_new_nodes(const Vectors*... vectors) const {
-    asm volatile("" ::: "memory");
-    prefetch(next_batch.new_nodes, lane, vectors...);
-    asm volatile("" ::: "memory");
-  }
 };
 
 /// See CorotationalKernels.
@@ -55,34 +33,17 @@ struct Hourglass {
 
 /// sum_j m_j b_j^T.
 inline Mat gradient(const Elements& e, const Vec (&m)[7]) {
-  e.ask_for_next();
   Mat F = outer(m[0], e.b(0));
 #pragma GCC unroll copies
   for (int j = 1; j < 6; ++j) F = F + outer(m[j], e.b(j));
   return F;
 }
 
-// Stretch and Frame are written where they are wanted, not returned: without AVX-512, GCC 12 would copy them, in pieces
-// of 8 bytes.
-
-/// What F's rotation follows from, F = R S: cof F, C = F^T F = S^2, J = det F and s = tr S.
-struct Stretch {
-  Mat cofactors;
-  Sym C;
-  Lanes J, s;
-};
-
-/// s is the largest root of the quartic (s^2 - a)^2/4 - b - 2 J s, where a = tr S^2 and b = |cof S|^2 = |cof F|^2. All
-/// its roots are real, so Halley's iteration comes down to it from any larger number, cubically in the end. Each of its
-/// steps waits for what is before it: `meanwhile()` is done while the first does.
-template <class Meanwhile>
-inline void set_stretch(const Mat& F, Stretch& of, const Meanwhile& meanwhile) {
-  of.cofactors = {cross(F.y, F.z), cross(F.z, F.x), cross(F.x, F.y)};
-  of.C = {dot(F.x, F.x), dot(F.y, F.y), dot(F.z, F.z), dot(F.x, F.y), dot(F.y, F.z), dot(F.z, F.x)};
-  of.J = dot(F.x, of.cofactors.x);
-  const Lanes a = trace(of.C), J2 = of.J + of.J;
-  const Lanes b =
-      dot(of.cofactors.x, of.cofactors.x) + dot(of.cofactors.y, of.cofactors.y) + dot(of.cofactors.z, of.cofactors.z);
+/// tr S of F = R S, from a = tr S^2, b = |cof S|^2 and J = det F: the largest root of the quartic
+/// (s^2 - a)^2/4 - b - 2 J s. All its roots are real, so Halley's iteration comes down to it from any larger number,
+/// cubically in the end.
+inline Lanes stretch_trace(Lanes a, Lanes b, Lanes J) {
+  const Lanes J2 = J + J;
   const auto halley = [&](Lanes s) {
     const Lanes s2 = s * s, u = s2 - a;
     const Lanes value = 0.25 * u * u - b - J2 * s, slope = s * u - J2, half_bend = s2 + 0.5 * u;
@@ -90,16 +51,15 @@ inline void set_stretch(const Mat& F, Stretch& of, const Meanwhile& meanwhile) {
   };
   const Lanes first = 0.5 * a + 1.5;  // at least sqrt(3 a), and so at least the trace
   Lanes s = first - halley(first);
-  meanwhile();
   for (int iteration = 1; iteration < 30; ++iteration) {  // hardly any element is done after the first
     const Lanes step = halley(s);
     s -= step;
     if (!any(step > 1e-5 * s)) break;
   }
-  of.s = s;
+  return s;
 }
 
-/// R, and G = (s I - S)^-1.
+/// R, and G = (s I - S)^-1, where s = tr S.
 struct Frame {
   Mat R;
   Sym G;
@@ -119,10 +79,13 @@ struct Frame {
   return R;
 }
 
-/// With c = (s^2 - tr C)/2, the second invariant of S, and D = s c - J = det(s I - S), the theorem of Cayley and
-/// Hamilton gives D G = C + c I and D R = F ((s^2 - c) I - C) + s cof F.
-inline void set_frame(const Mat& F, const Stretch& of, Frame& result) {
-  const auto& [K, C, J, s] = of;
+/// With K = cof F, C = F^T F = S^2, c = (s^2 - tr C)/2, the second invariant of S, and D = s c - J = det(s I - S), the
+/// theorem of Cayley and Hamilton gives D G = C + c I and D R = F ((s^2 - c) I - C) + s K. (Written where it is wanted,
+/// not returned: without AVX-512, GCC 12 would copy it, in pieces of 8 bytes.)
+inline void set_frame(const Mat& F, Frame& result) {
+  const Mat K = {cross(F.y, F.z), cross(F.z, F.x), cross(F.x, F.y)};
+  const Sym C = {dot(F.x, F.x), dot(F.y, F.y), dot(F.z, F.z), dot(F.x, F.y), dot(F.y, F.z), dot(F.z, F.x)};
+  const Lanes J = dot(F.x, K.x), s = stretch_trace(trace(C), dot(K.x, K.x) + dot(K.y, K.y) + dot(K.z, K.z), J);
   const Lanes s2 = s * s, c = 0.5 * (s2 - trace(C)), D = s * c - J;
   const Lanes scale = 1 / D, own = scale * c, rest = scale * (s2 - c);
   const Sym part = scale * C;
@@ -141,7 +104,6 @@ inline void set_frame(const Mat& F, const Stretch& of, Frame& result) {
 /// What moves with velocities or small displacements, seen in the frame: W = R^T sum m_j b_j^T and the hourglasses that
 /// are not part of it, w_a = R^T m_a - W X_a.
 inline Mat seen_from(const Elements& e, const Mat& R, const Mat& F, const Vec (&m)[7], Hourglass& w) {
-  e.ask_for_next();
 #pragma GCC unroll copies
   for (int a = 0; a < 4; ++a) w.set(a, turn_back(R, m[3 + a] - F * e.X(a)));
   return turn_back(R, F);
@@ -153,21 +115,14 @@ struct Deformation : Frame {
   Hourglass h;
 };
 
-inline Deformation deformation(const Elements& e, const Vec (&m)[7], const Mat& F, const Stretch& of) {
-  Deformation now;
-  set_frame(F, of, now);
-  now.S = upper_part(seen_from(e, now.R, F, m, now.h));
-  return now;
-}
-
 inline Deformation deformation(const Elements& e, const double* positions) {
-  e.ask_for_next();
   Vec m[7];
   gather_modes(e.batch.nodes, e.lane, positions, m);
   const Mat F = gradient(e, m);
-  Stretch of;
-  set_stretch(F, of, [&] { e.ask_for_next(); });
-  return deformation(e, m, F, of);
+  Deformation now;
+  set_frame(F, now);
+  now.S = upper_part(seen_from(e, now.R, F, m, now.h));
+  return now;
 }
 
 /// q = H h for each of `n`, by blocks of 3 x 3: row by row every entry would cost each of them two loads and a store.
@@ -222,29 +177,20 @@ inline Strain strain(const Elements& e, const CorotationalStep& step, const Defo
   return change;
 }
 
-/// sum_a a_a . b_a and sum_a a_a x b_a.
-inline Lanes dot(const Hourglass& a, const Hourglass& b) {
-  Lanes sum = a.at[0] * b.at[0];
-  for (int i = 1; i < 12; ++i) sum += a.at[i] * b.at[i];
-  return sum;
-}
-
+/// sum_a a_a x b_a.
 inline Vec cross(const Hourglass& a, const Hourglass& b) {
   Vec sum = cross(a[0], b[0]);
   for (int k = 1; k < 4; ++k) sum = sum + cross(a[k], b[k]);
   return sum;
 }
 
-/// The viscosity's part: adds to T and q; returns the energy.
-inline Lanes add_viscous(const Elements& e, const CorotationalStep& step, const Deformation& now, Sym& T,
-                         Hourglass& q) {
+/// Adds the viscosity's part of T and q.
+inline void add_viscous(const Elements& e, const CorotationalStep& step, const Deformation& now, Sym& T, Hourglass& q) {
   const Strain change = strain(e, step, now);
   Hourglass viscous;
   multiply<1>(e.viscous->stiffness, e.lane, {&change.h}, {&viscous});
   for (int i = 0; i < 12; ++i) q.at[i] += e.rate * viscous.at[i];
-  const Sym D = deviator(change.S);
-  T = T + e.viscous_shear() * D;
-  return 0.5 * (e.viscous_shear() * contract(D, D) + e.rate * dot(change.h, viscous));
+  T = T + e.viscous_shear() * deviator(change.S);
 }
 
 }  // namespace plica::PLICA_KERNELS

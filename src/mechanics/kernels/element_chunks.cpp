@@ -38,22 +38,4 @@ ElementChunks::ElementChunks(std::span<const std::array<NodeId, 8>> elements, st
   }
 }
 
-void ElementChunks::put_new_nodes(std::size_t batch, const int (&nodes)[8][batch_size], std::vector<std::size_t>& seen,
-                                  NewNodes& new_nodes) const {
-  const std::size_t first_of_chunk = batch / batches_in_chunk_ * batches_in_chunk_;
-  const std::size_t since = std::max(first_of_chunk + looked_back, batch) - looked_back;
-  std::vector<int> found;
-  for (const auto& corner : nodes)
-    for (const int node : corner) {
-      const auto n = static_cast<std::size_t>(node) / 3;
-      if (n >= seen.size()) seen.resize(n + 1);
-      if (seen[n] <= since) found.push_back(node);
-      seen[n] = batch + 1;
-    }
-  if (found.empty()) found.push_back(nodes[0][0]);
-  std::ranges::sort(found);
-  const std::size_t room = std::size(new_nodes), asked = std::min(room, found.size());
-  for (std::size_t k = 0; k < room; ++k) new_nodes[k] = found[std::min(k, asked - 1) * found.size() / asked];
-}
-
 }  // namespace plica

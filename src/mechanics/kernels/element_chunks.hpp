@@ -14,7 +14,6 @@
 
 #include "core/ids.hpp"
 #include "core/vector.hpp"
-#include "mechanics/kernels/new_nodes.hpp"
 
 namespace plica {
 
@@ -28,22 +27,12 @@ class ElementChunks {
   /// Elements that kernels take at once. Chunks begin at multiples of it.
   static constexpr std::size_t batch_size = 8;
   static constexpr std::size_t most_chunks = 64;
-  /// Batches of which it is known what they have touched; 5 to 100 do alike (docs/performance-notebook.md).
-  static constexpr std::size_t looked_back = 32;
 
   /// With the cells of elements, chunks of one colour have no cell in common either.
   explicit ElementChunks(std::span<const std::array<NodeId, 8>> elements, std::span<const CellId> element_cell = {});
 
   [[nodiscard]] std::size_t element_count() const { return elements_; }
   [[nodiscard]] std::size_t batch_count() const { return (elements_ + batch_size - 1) / batch_size; }
-
-  /// Fills in the new nodes of all batches: those that none of the `looked_back` before them in their chunk has. (To a
-  /// chunk all are new as it begins: what was before it may have been another thread's.)
-  template <class Batch>
-  void put_new_nodes(std::span<Batch> batches) const {
-    std::vector<std::size_t> seen;
-    for (std::size_t b = 0; b < batches.size(); ++b) put_new_nodes(b, batches[b].nodes, seen, batches[b].new_nodes);
-  }
 
   /// Calls body(first batch, last batch) for every chunk. `last` is the one after. On one thread unless `shared`.
   template <class Body>
@@ -61,24 +50,16 @@ class ElementChunks {
         shared);
   }
 
-  /// The sum of body(first batch, last batch) over all chunks.
-  template <class Body>
-  [[nodiscard]] double sum_over_batches(const Body& body) const {
-    std::array<double, most_chunks> parts;
-    for_chunks([&](std::size_t chunk) { parts[chunk] = body(first_batch(chunk), last_batch(chunk)); });
-    double sum = 0;
-    for (std::size_t chunk = 0; chunk < order_.size(); ++chunk) sum += parts[chunk];
-    return sum;
-  }
-
   /// The sum of body(element) over all elements.
   template <class Body>
   [[nodiscard]] double sum_over_elements(const Body& body) const {
-    return sum_over_batches([&](std::size_t first, std::size_t last) {
-      double sum = 0;
-      for (std::size_t e = first * batch_size; e < std::min(last * batch_size, elements_); ++e) sum += body(e);
-      return sum;
+    std::array<double, most_chunks> parts = {};
+    for_chunks([&](std::size_t chunk) {
+      for (std::size_t e = first_batch(chunk) * batch_size; e < last_element(chunk); ++e) parts[chunk] += body(e);
     });
+    double sum = 0;
+    for (const double part : parts) sum += part;
+    return sum;
   }
 
  private:
@@ -95,10 +76,6 @@ class ElementChunks {
       for (std::size_t k = phase_start_[phase]; k < phase_start_[phase + 1]; ++k) body(order_[k]);
     }
   }
-
-  // Also counts the batch's nodes as seen: for each node, 1 + the batch that had it last.
-  void put_new_nodes(std::size_t batch, const int (&nodes)[8][batch_size], std::vector<std::size_t>& seen,
-                     NewNodes& new_nodes) const;
 
   [[nodiscard]] std::size_t first_batch(std::size_t chunk) const { return chunk * batches_in_chunk_; }
   [[nodiscard]] std::size_t last_batch(std::size_t chunk) const {

@@ -7,7 +7,6 @@
 #pragma once
 
 #include "mechanics/kernels/lanes.hpp"
-#include "mechanics/kernels/new_nodes.hpp"
 
 namespace plica::PLICA_KERNELS {
 
@@ -54,15 +53,6 @@ inline Vec gather(const double* vectors, const int* at) {
 inline void gather(const BatchNodes& nodes, int lane, const double* vectors, Vec (&x)[8]) {
 #pragma GCC unroll copies
   for (int i = 0; i < 8; ++i) x[i] = gather(vectors, nodes[i] + lane);
-}
-
-/// Asks memory for the vectors of those of the nodes whose turn it is with the elements from `lane` on.
-template <class... Vectors>
-inline void prefetch(const NewNodes& nodes, int lane, const Vectors*... vectors) {
-  constexpr int at_once = sizeof(NewNodes) / sizeof(int) * width / batch_size;
-  const int* from = nodes + lane / width * at_once;
-#pragma GCC unroll 16
-  for (int k = 0; k < at_once; ++k) (__builtin_prefetch(vectors + from[k]), ...);
 }
 
 #if PLICA_LANES == 1

@@ -10,8 +10,7 @@ namespace {
 // A register's worth of a batch's elements, from `lane` on, of which the first `count` count.
 struct Elements {
   const VolumeBatch& batch;
-  const VolumeBatch& next_batch;  // or the same, where there is none
-  std::size_t first;              // element
+  std::size_t first;  // element
   int lane, count;
 
   [[nodiscard]] Lanes rest_volume() const { return load(batch.rest_volumes + lane); }
@@ -22,8 +21,7 @@ inline void for_elements(const VolumeStep& step, std::size_t first, std::size_t 
   for (std::size_t b = first; b < last; ++b) {
     const int count = count_in_batch(step.elements, b);
     for (int lane = 0; lane < count; lane += width)
-      body(Elements{step.batches[b], step.batches[b + 1 < last ? b + 1 : b],
-                    b * batch_size + static_cast<std::size_t>(lane), lane,
+      body(Elements{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane,
                     count - lane < width ? count - lane : width});
   }
 }
@@ -44,7 +42,6 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
 [[gnu::flatten]] void add_volumes(const VolumeStep& step, std::size_t first, std::size_t last, double* volumes) {
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7];
-    prefetch(e.next_batch.new_nodes, e.lane, step.positions);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     const Lanes V = volume(m);
     for (int k = 0; k < e.count; ++k) volumes[e.batch.cells[e.lane + k]] += V[k];
@@ -54,7 +51,6 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
 [[gnu::flatten]] void write_gradients(const VolumeStep& step, std::size_t first, std::size_t last, double* gradients) {
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7], g[7], f[8];
-    prefetch(e.next_batch.new_nodes, e.lane, step.positions);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     volume_gradient(m, g);
     from_modes(g, f);
@@ -68,23 +64,9 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
   });
 }
 
-[[gnu::flatten]] double energy(const VolumeStep& step, std::size_t first, std::size_t last) {
-  double sum = 0;
-  for_elements(step, first, last, [&](const Elements& e) {
-    Vec m[7];
-    prefetch(e.next_batch.new_nodes, e.lane, step.positions);
-    gather_modes(e.batch.nodes, e.lane, step.positions, m);
-    const Lanes strain = volume(m) / e.rest_volume() - 1.0;
-    const Lanes energies = (0.5 * step.bulk_modulus) * e.rest_volume() * strain * strain;
-    for (int k = 0; k < e.count; ++k) sum += energies[k];
-  });
-  return sum;
-}
-
 [[gnu::flatten]] void add_forces(const VolumeStep& step, std::size_t first, std::size_t last, double* forces) {
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7], g[7];
-    prefetch(e.next_batch.new_nodes, e.lane, step.positions, forces);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     volume_gradient(m, g);
     const Lanes p = pressure(step, e, m);
@@ -98,7 +80,6 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
   const bool dilatation = !step.pressures;
   for_elements(step, first, last, [&](const Elements& e) {
     Vec m[7], d[7], result[7] = {};
-    prefetch(e.next_batch.new_nodes, e.lane, step.positions, direction, product);
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     gather_modes(e.batch.nodes, e.lane, direction, d);
     if (!dilatation || !step.semidefinite_tangent) {
@@ -120,6 +101,6 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
 
 }  // namespace
 
-const VolumeKernels volume_kernels = {add_volumes, write_gradients, energy, add_forces, add_product};
+const VolumeKernels volume_kernels = {add_volumes, write_gradients, add_forces, add_product};
 
 }  // namespace plica::PLICA_KERNELS

@@ -4,14 +4,11 @@
 
 #include <cstddef>
 
-#include "mechanics/kernels/new_nodes.hpp"
-
 namespace plica {
 
 /// Eight elements side by side: the last index is the element's. A batch that is not full repeats its last element.
 struct alignas(64) VolumeBatch {
-  int nodes[8][8];  // corners; three times the node's number
-  NewNodes new_nodes;
+  int nodes[8][8];         // corners; three times the node's number
   double rest_volumes[8];  // um^3
   int cells[8];            // whose pressure they have
 };
@@ -33,8 +30,6 @@ struct VolumeKernels {
   void (*add_volumes)(const VolumeStep&, std::size_t first, std::size_t last, double* volumes);
   /// dV/dx of every element's corners, x y z each, um^2.
   void (*write_gradients)(const VolumeStep&, std::size_t first, std::size_t last, double* gradients);
-  /// The energy of dilatation, nN um.
-  double (*energy)(const VolumeStep&, std::size_t first, std::size_t last);
   /// Adds pressure dV/dx, nN.
   void (*add_forces)(const VolumeStep&, std::size_t first, std::size_t last, double* forces);
   /// Adds (- pressure d2V/dx2 + kappa/V0 dV/dx dV/dx^T, the latter of dilatation) times a direction.

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "mechanics/constraints/cell_volume.hpp"
 #include "support/tissues.hpp"

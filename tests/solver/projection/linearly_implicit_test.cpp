@@ -1,7 +1,6 @@
 #include "solver/projection/linearly_implicit.hpp"
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <cmath>
 #include <cstdio>
