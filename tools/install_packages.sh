@@ -1,5 +1,5 @@
 #!/bin/bash
-# Installs the Debian 12 packages that plica needs: with root or sudo, and only when some are missing.
+# Installs the packages of Debian (12 or 13) that plica needs: with root or sudo, and only when some are missing.
 # Usage: tools/install_packages.sh [GROUP...], of: build libraries viewer browser tests checks tidy pictures fuzz. Without a
 # group: all of them.
 set -euo pipefail
@@ -20,9 +20,9 @@ declare -A packages=(
   # What plica render draws with where there is no screen: an X server without one, and OpenGL in software. (xauth: for
   # xvfb-run, by which ParaView's test does so.)
   [pictures]="xvfb xauth libgl1-mesa-dri"
-  # To fuzz the readers, fuzz/run, and for the preset tsan. (Clang 14 with libFuzzer and the sanitizers; its OpenMP with
+  # To fuzz the readers, fuzz/run, and for the preset tsan. (Clang with libFuzzer and the sanitizers; its OpenMP with
   # Archer.)
-  [fuzz]="clang libclang-rt-14-dev libomp-14-dev"
+  [fuzz]="clang libclang-rt-dev libomp-dev"
 )
 
 groups=("$@")

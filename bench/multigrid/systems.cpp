@@ -4,6 +4,7 @@
 
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
+#include "solver/linear/step_matrix.hpp"
 
 namespace plica::multigrid_bench {
 namespace {
@@ -16,30 +17,6 @@ std::unique_ptr<const Model> drosophila(const SystemSettings& s) {
       {"embryo.elements_per_cell=[" + n(0) + "," + n(1) + "," + n(2) + "]", "embryo.length_um=" + times(460),
        "embryo.diameter_um=" + times(280), "embryo.cells=[" + times(18) + "," + times(9) + "," + times(8) + "]",
        "region.furrow.cells_along=" + times(14), "region.furrow.cells_across=" + times(5)}));
-}
-
-BlockPattern pattern_of(const Model& model) {
-  std::vector<std::vector<int>> below(model.tissue.free_node_count());
-  for (std::size_t n = 0; n < below.size(); ++n) below[n].push_back(static_cast<int>(n));
-  const auto join = [&](const auto& group) {
-    for (const NodeId a : group)
-      for (const NodeId b : group)
-        if (b < a) below[a.index()].push_back(b.number());
-  };
-  for (const auto& law : model.laws) {
-    const NodeGroups groups = law->node_groups({});
-    for (std::size_t k = 0; k < groups.size(); ++k) join(groups[k]);
-  }
-  for (const auto& element : model.tissue.elements) join(element);
-  BlockPattern pattern;
-  for (auto& row : below) {
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-    pattern.columns.insert(pattern.columns.end(), row.begin(), row.end());
-    pattern.starts.push_back(static_cast<int>(pattern.columns.size()));
-    std::vector<int>().swap(row);
-  }
-  return pattern;
 }
 
 class Blocks final : public TangentSink {
@@ -108,8 +85,10 @@ System make_system(const SystemSettings& settings) {
   const State state = rest_state(*model);
   Step step{state.positions, state.positions, state.velocities, settings.step_s, settings.step_s};
   step.semidefinite_tangent = true;
-  System system{
-      .pattern = pattern_of(*model), .values = {}, .near_kernel = {}, .elements = model->tissue.elements.size()};
+  System system{.pattern = StepMatrix(*model).layout(),
+                .values = {},
+                .near_kernel = {},
+                .elements = model->tissue.elements.size()};
   Blocks blocks(system.pattern);
   for (const auto& law : model->laws) law->add_tangent(step, blocks);
   add_volumes(*model, settings.bulk_modulus, blocks);

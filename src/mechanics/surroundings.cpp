@@ -98,14 +98,15 @@ void Inertia::add_tangent(const Step& step, TangentSink& tangent) const {
     tangent.add_block(NodeId(n), NodeId(n), masses_[n] / (step.rate_s * step.rate_s) * Mat3::Identity());
 }
 
-FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellSet cells, double pressure, Program program)
+FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellPattern pattern, double pressure, Program program)
     : on_apical_(on_apical),
-      cells_(std::move(cells)),
+      pattern_(std::move(pattern)),
       pressure_(pressure),
       loads_(tissue.node_count(), Vec3::Zero()),
       program_(std::move(program)) {
   for (const Facet& facet : on_apical ? tissue.apical_facets : tissue.basal_facets) {
-    if (!cells_[facet.cell.index()]) continue;
+    if (!pattern_.cells[facet.cell.index()]) continue;
+    const double own = pressure * pattern_.strengths[facet.cell.index()];
     // The consistent load of a uniform pressure on a bilinear facet: integral of N_i n dA, 2 x 2 Gauss points.
     std::array<Vec3, 4> x;
     for (int i = 0; i < 4; ++i) x[i] = tissue.rest_positions[facet.nodes[i].index()];
@@ -114,7 +115,7 @@ FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellSet cells, 
       for (const double t : {-g, g}) {
         const Vec3 by_s = 0.25 * ((1 - t) * (x[1] - x[0]) + (1 + t) * (x[2] - x[3]));
         const Vec3 by_t = 0.25 * ((1 - s) * (x[3] - x[0]) + (1 + s) * (x[2] - x[1]));
-        const Vec3 push = -pressure * by_s.cross(by_t);
+        const Vec3 push = -own * by_s.cross(by_t);
         const std::array<double, 4> shape = {(1 - s) * (1 - t) / 4, (1 + s) * (1 - t) / 4, (1 + s) * (1 + t) / 4,
                                              (1 - s) * (1 + t) / 4};
         for (int i = 0; i < 4; ++i) loads_[facet.nodes[i].index()] += shape[i] * push;
@@ -135,7 +136,7 @@ void FacePressure::add_forces(const Step& step, std::span<Vec3> forces) const {
 
 std::unique_ptr<Law> FacePressure::after_division(const Tissue& tissue, const Division& division,
                                                   std::span<const Vec3>) const {
-  return std::make_unique<FacePressure>(tissue, on_apical_, inherited(division, cells_), pressure_, program_);
+  return std::make_unique<FacePressure>(tissue, on_apical_, pattern_.after_division(division), pressure_, program_);
 }
 
 }  // namespace plica

@@ -1,6 +1,7 @@
 // Laws that act on single nodes: drag of the surroundings, inertia, and pressure on faces as a dead load.
 #pragma once
 
+#include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/law.hpp"
 #include "tissue/tissue.hpp"
@@ -53,8 +54,8 @@ class Inertia final : public Law {
 /// A pressure on the apical or basal facets of some cells, pushing into the cell: a dead load on the faces at rest.
 class FacePressure final : public Law {
  public:
-  /// `pressure` in kPa.
-  FacePressure(const Tissue& tissue, bool on_apical, CellSet cells, double pressure, Program program);
+  /// `pressure` in kPa, times the cells' strengths; on all at once, without their delays.
+  FacePressure(const Tissue& tissue, bool on_apical, CellPattern pattern, double pressure, Program program);
 
   [[nodiscard]] std::string_view name() const override { return "pressure"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<FacePressure>(*this); }
@@ -68,7 +69,7 @@ class FacePressure final : public Law {
 
  private:
   bool on_apical_;
-  CellSet cells_;
+  CellPattern pattern_;
   double pressure_;
   Vectors loads_;  // nodes; nN at activity 1
   Program program_;

@@ -58,7 +58,7 @@ NetworkTension network_tension(const Tissue& tissue, const FurrowSites& sites) {
   for (const CellId id : sites.midline) {
     double along = 0, across = 0;
     for (const CellEdge& edge : tissue.cells[id.index()].edges) {
-      if (edge.side != EdgeSide::apical) continue;
+      if (edge.side != CellSide::apical) continue;
       const double length =
           (tissue.rest_positions[edge.nodes.back().index()] - tissue.rest_positions[edge.nodes.front().index()]).norm();
       (edge.direction == EdgeDirection::along ? along : across) += length;

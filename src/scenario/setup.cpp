@@ -80,8 +80,8 @@ void add_elasticity(const Scenario& scenario, Model& model) {
   model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus(), model.volumes().is_held()));
 }
 
-ContractionPattern make_pattern(const ContractionInput& input) {
-  ContractionPattern pattern;
+PatternRule make_pattern(const ContractionInput& input) {
+  PatternRule pattern;
   const ProfileInput& profile = input.profile;
   pattern.profile.shape = meaning_of(words::profile_shapes, profile.shape, pattern.profile.shape);
   pattern.profile.axis = meaning_of(words::profile_axes, profile.axis, pattern.profile.axis);
@@ -98,7 +98,6 @@ ContractionPattern make_pattern(const ContractionInput& input) {
 
 void add_contractions(const Scenario& scenario, Model& model) {
   for (const auto& [name, input] : scenario.contractions) {
-    const CellSet& cells = model.tissue.regions.at(input.region);
     ContractionRule rule;
     rule.side = meaning_of(words::edges, input.edges);
     rule.stiffness = input.stiffness_nN_per_um;
@@ -108,10 +107,10 @@ void add_contractions(const Scenario& scenario, Model& model) {
     rule.rest_length_ratio = input.rest_length_ratio;
     rule.preload = input.preload_nN;
     rule.damping = input.damping_nN_s_per_um;
-    CellPattern pattern = cell_pattern(model.tissue, cells, make_pattern(input));
-    auto law = std::make_unique<Contraction>(contraction_springs(model.tissue, cells, rule, pattern),
-                                             make_program(input.program), cells, std::move(pattern.delays_s));
-    model.laws.push_back(std::move(law));
+    CellPattern pattern = cell_pattern(model.tissue, model.tissue.regions.at(input.region), make_pattern(input));
+    std::vector<Spring> springs = contraction_springs(model.tissue, pattern, rule);
+    model.laws.push_back(
+        std::make_unique<Contraction>(std::move(springs), make_program(input.program), std::move(pattern)));
   }
 }
 

@@ -10,7 +10,7 @@
 
 #include "measure/monitor.hpp"
 #include "measure/stop_rule.hpp"
-#include "mechanics/active/contraction_pattern.hpp"
+#include "mechanics/active/cell_pattern.hpp"
 #include "scenario/scenario.hpp"
 #include "solver/make_stepper.hpp"
 #include "tissue/tissue.hpp"
@@ -66,21 +66,20 @@ inline constexpr auto projection_weights = std::to_array<Word<ProjectionRule::We
     {{"equal", ProjectionRule::Weights::equal}, {"mobility", ProjectionRule::Weights::mobility}});
 
 // [contraction.NAME]
-inline constexpr auto edges = std::to_array<Word<EdgeSide>>(
-    {{"apical", EdgeSide::apical}, {"basal", EdgeSide::basal}, {"lateral", EdgeSide::lateral}});
+inline constexpr auto edges = std::to_array<Word<CellSide>>(
+    {{"apical", CellSide::apical}, {"basal", CellSide::basal}, {"lateral", CellSide::lateral}});
 inline constexpr auto profile_shapes =
-    std::to_array<Word<ContractionProfile::Shape>>({{"constant", ContractionProfile::Shape::constant},
-                                                    {"linear", ContractionProfile::Shape::linear},
-                                                    {"gaussian", ContractionProfile::Shape::gaussian}});
+    std::to_array<Word<StrengthProfile::Shape>>({{"constant", StrengthProfile::Shape::constant},
+                                                 {"linear", StrengthProfile::Shape::linear},
+                                                 {"gaussian", StrengthProfile::Shape::gaussian}});
 inline constexpr auto profile_axes =
     std::to_array<Word<PatternAxis>>({{"across", PatternAxis::across}, {"along", PatternAxis::along}});
 inline constexpr auto delay_axes =
     std::to_array<Word<PatternAxis>>({{"along", PatternAxis::along}, {"across", PatternAxis::across}});
-inline constexpr auto delay_starts =
-    std::to_array<Word<ContractionDelay::From>>({{"middle", ContractionDelay::From::middle},
-                                                 {"ends", ContractionDelay::From::ends},
-                                                 {"low", ContractionDelay::From::low},
-                                                 {"high", ContractionDelay::From::high}});
+inline constexpr auto delay_starts = std::to_array<Word<StartDelay::From>>({{"middle", StartDelay::From::middle},
+                                                                            {"ends", StartDelay::From::ends},
+                                                                            {"low", StartDelay::From::low},
+                                                                            {"high", StartDelay::From::high}});
 
 // [pressure.NAME]: whether it is the apical face.
 inline constexpr auto pressure_faces = std::to_array<Word<bool>>({{"apical", true}, {"basal", false}});

@@ -40,18 +40,18 @@ void set_corners_and_edges(const CellLattice& lattice, const Vectors& rest_posit
     edge.nodes = edge_chain(lattice, hex_edges[e]);
     if (e >= 8) {
       edge.direction = EdgeDirection::lateral;
-      edge.side = EdgeSide::lateral;
+      edge.side = CellSide::lateral;
     } else {
       edge.direction = (e < 4) == u_is_along ? EdgeDirection::along : EdgeDirection::across;
-      edge.side = e % 4 < 2 ? EdgeSide::basal : EdgeSide::apical;
+      edge.side = e % 4 < 2 ? CellSide::basal : CellSide::apical;
     }
   }
 }
 
 // The lines of element edges on the apical and basal faces, those of the rim with half a share, and the lateral edges.
 void set_lines(const CellLattice& lattice, Cell& cell) {
-  for (const EdgeSide side : {EdgeSide::basal, EdgeSide::apical}) {
-    const int w = side == EdgeSide::apical ? lattice.elements[2] : 0;
+  for (const CellSide side : {CellSide::basal, CellSide::apical}) {
+    const int w = side == CellSide::apical ? lattice.elements[2] : 0;
     for (const int axis : {0, 1}) {  // the axis along which the line runs
       const int segments = lattice.elements[axis], lines = lattice.elements[1 - axis];
       for (int across = 0; across <= lines; ++across) {

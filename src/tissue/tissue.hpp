@@ -27,13 +27,13 @@ struct Facet {
 enum class EdgeDirection { along, across, lateral };
 
 /// The side of the cell on which an edge lies. Lateral edges run from one to the other.
-enum class EdgeSide { basal, apical, lateral };
+enum class CellSide { basal, apical, lateral };
 
 /// One of a cell's twelve edges, as the chain of nodes of its elements' edges (two nodes with one element a cell).
 struct CellEdge {
   std::vector<NodeId> nodes;
   EdgeDirection direction;
-  EdgeSide side;
+  CellSide side;
 };
 
 /// A line along which a cell may contract: one of its edges or, in a cell of several elements, a line of element edges

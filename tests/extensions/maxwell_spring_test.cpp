@@ -29,7 +29,7 @@ class MaxwellSprings final : public Law {
       : relaxation_s_(relaxation_s) {
     for (const Cell& cell : tissue.cells)
       for (const CellEdge& edge : cell.edges)
-        if (edge.side == EdgeSide::apical) {
+        if (edge.side == CellSide::apical) {
           const NodeId a = edge.nodes.front(), b = edge.nodes.back();
           springs_.push_back({a, b, stiffness, rest_ratio * length(tissue.rest_positions, a, b)});
         }

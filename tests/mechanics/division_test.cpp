@@ -57,8 +57,8 @@ TEST(DivideCells, KeepsTheTensionOfSprings) {
   for (const auto& rule :
        {ContractionRule{.stiffness = 3, .across_ratio = 0.4, .rest_length_ratio = 0.5},
         ContractionRule{.stiffness = 3, .preload = 7, .damping = 2}, ContractionRule{.stiffness = 3, .diagonals = true},
-        ContractionRule{.side = EdgeSide::lateral, .stiffness = 1},
-        ContractionRule{.side = EdgeSide::basal, .stiffness = 1}}) {
+        ContractionRule{.side = CellSide::lateral, .stiffness = 1},
+        ContractionRule{.side = CellSide::basal, .stiffness = 1}}) {
     Model model(distorted_block(sheet, 2, 3));
     CellSet some(12, false);
     for (const int c : {1, 2, 5, 6, 7}) some[c] = true;

@@ -89,21 +89,21 @@ TEST(Inertia, ForceIsMassTimesChangeOfVelocityOverTime) {
 
 TEST(FacePressure, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block(two_cells, 2, 4);
-  check_derivatives(FacePressure(tissue, true, {true, false}, 0.5, {}), tissue, 4);
+  check_derivatives(FacePressure(tissue, true, CellSet{true, false}, 0.5, {}), tissue, 4);
 }
 
 TEST(FacePressure, PushesIntoTheCellsWithPressureTimesArea) {
   const Tissue tissue = build_block(two_cells);
   const Motion rest = at_rest(tissue);
-  const FacePressure above(tissue, true, {true, true}, 0.5, {});
-  const FacePressure below(tissue, false, {true, true}, 0.5, {});
+  const FacePressure above(tissue, true, CellSet{true, true}, 0.5, {});
+  const FacePressure below(tissue, false, CellSet{true, true}, 0.5, {});
   EXPECT_LE((resultant(forces_of(above, rest.step())) - Vec3(0, 0, -400)).norm(), 1e-11);
   EXPECT_LE((resultant(forces_of(below, rest.step())) - Vec3(0, 0, 400)).norm(), 1e-11);
 }
 
 TEST(FacePressure, ActsOnChosenCellsAndFollowsItsProgram) {
   const Tissue tissue = build_block(two_cells);
-  const FacePressure law(tissue, true, {true, false}, 0.5, Program({0, 2}, {0, 1}));
+  const FacePressure law(tissue, true, CellSet{true, false}, 0.5, Program({0, 2}, {0, 1}));
   Motion rest = at_rest(tissue);
   rest.end_time_s = 0.5;
   const Vectors forces = forces_of(law, rest.step());

@@ -68,9 +68,9 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
 }
 
 TEST(Words, MeanWhatTheySay) {
-  EXPECT_EQ(meaning_of(words::edges, "basal"), EdgeSide::basal);
+  EXPECT_EQ(meaning_of(words::edges, "basal"), CellSide::basal);
   EXPECT_EQ(meaning_of(words::integrators, "bdf2"), TimeOrder::second);
-  EXPECT_EQ(meaning_of(words::delay_starts, "ends"), ContractionDelay::From::ends);
+  EXPECT_EQ(meaning_of(words::delay_starts, "ends"), StartDelay::From::ends);
   EXPECT_EQ(meaning_of(words::division_planes, "longest-axis"), DivisionPlane::longest_axis);
   EXPECT_EQ(meaning_of(words::overs, "rms"), Over::rms);
 }

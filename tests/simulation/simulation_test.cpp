@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <thread>
 
 #include "scenario/load.hpp"
 #include "support/loads.hpp"
@@ -131,12 +132,11 @@ TEST(Simulation, EquilibriumCountsOnlyAfterTheProgram) {
 TEST(Simulation, EquilibriumCountsOnlyAfterTheWave) {
   Model model(build_block({.length_um = 60, .width_um = 60, .cell_height_um = 40, .cells = {3, 3, 1}}));
   add_elasticity(model);
-  ContractionPattern wave;
-  wave.delay = {PatternAxis::along, ContractionDelay::From::low, 0.1};
+  PatternRule wave;
+  wave.delay = {PatternAxis::along, StartDelay::From::low, 0.1};
   const CellPattern pattern = cell_pattern(model.tissue, CellSet(9, true), wave);
   auto law =
-      std::make_unique<Contraction>(contraction_springs(model.tissue, CellSet(9, true), {.stiffness = 1}, pattern),
-                                    Program(), CellSet{}, pattern.delays_s);
+      std::make_unique<Contraction>(contraction_springs(model.tissue, pattern, {.stiffness = 1}), Program(), pattern);
   RunControls controls;
   controls.program_points_s = law->program_points_s();
   EXPECT_EQ(controls.program_points_s.size(), 3u);
@@ -241,6 +241,25 @@ TEST(Simulation, ACopyIsAForkInTime) {
     EXPECT_EQ(end->steps(), whole.steps());
     EXPECT_EQ(end->state().positions, whole.state().positions);
     EXPECT_EQ(end->measures()["vml_speed_um_per_s"], whole.measures()["vml_speed_um_per_s"]);
+  }
+}
+
+// In two threads, with every linear solver: MUMPS and METIS keep things to themselves.
+TEST(Simulation, TwoAtOnceDoNotDisturbEachOther) {
+  const auto end_of = [](const std::string& method, const std::string& scenario) {
+    Simulation simulation(
+        load_scenario(find_scenario(scenario), {"time.end_s=2", "time.linear_solver=\"" + method + "\""}));
+    EXPECT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
+    return simulation.state().positions;
+  };
+  for (const std::string method : {"direct", "cholesky", "multigrid"}) {
+    const Vectors alone = end_of(method, "drosophila"), other_alone = end_of(method, "xenopus");
+    Vectors together, other_together;
+    std::thread other([&] { other_together = end_of(method, "xenopus"); });
+    together = end_of(method, "drosophila");
+    other.join();
+    EXPECT_TRUE(together == alone) << method;
+    EXPECT_TRUE(other_together == other_alone) << method;
   }
 }
 

@@ -11,7 +11,7 @@ namespace plica {
 namespace {
 
 using Segment = std::pair<NodeId, NodeId>;
-using Place = std::pair<EdgeSide, EdgeDirection>;
+using Place = std::pair<CellSide, EdgeDirection>;
 
 const ShellShape refined{.cells = {6, 5, 4}, .elements_per_cell = {3, 2, 2}};
 
@@ -32,16 +32,16 @@ TEST(Lattice, SharesOfTheLinesOfASideAndDirectionAddUpToTwo) {
       segments[place] = line.chain.nodes.size() - 1;
     }
     ASSERT_EQ(sums.size(), 5u);  // two directions on two sides, and the lateral edges
-    for (const EdgeSide side : {EdgeSide::basal, EdgeSide::apical})
+    for (const CellSide side : {CellSide::basal, CellSide::apical})
       for (const EdgeDirection direction : {EdgeDirection::along, EdgeDirection::across}) {
         const EdgeDirection other = direction == EdgeDirection::along ? EdgeDirection::across : EdgeDirection::along;
         EXPECT_NEAR(sums.at({side, direction}), 2, 1e-15);
         EXPECT_EQ((lines.at({side, direction})), (segments.at({side, other})) + 1);
         ++cases;
       }
-    EXPECT_EQ((sums.at({EdgeSide::lateral, EdgeDirection::lateral})), 4);
-    EXPECT_EQ((lines.at({EdgeSide::lateral, EdgeDirection::lateral})), 4u);
-    EXPECT_EQ((segments.at({EdgeSide::lateral, EdgeDirection::lateral})), 2u);
+    EXPECT_EQ((sums.at({CellSide::lateral, EdgeDirection::lateral})), 4);
+    EXPECT_EQ((lines.at({CellSide::lateral, EdgeDirection::lateral})), 4u);
+    EXPECT_EQ((segments.at({CellSide::lateral, EdgeDirection::lateral})), 2u);
   }
   RecordProperty("cases", cases);
 }
@@ -58,7 +58,7 @@ TEST(Lattice, LinesOnTheRimAreTheCellsEdgesAndHaveHalfAShare) {
       most[place] = std::max(most[place], line.share);
     }
     for (const CellLine& line : cell.lines) {
-      if (line.chain.side == EdgeSide::lateral) continue;
+      if (line.chain.side == CellSide::lateral) continue;
       bool is_edge = false;
       for (const CellEdge& edge : cell.edges)
         is_edge = is_edge || (edge.nodes == line.chain.nodes && edge.side == line.chain.side &&
@@ -83,7 +83,7 @@ TEST(Lattice, LinesAreTheElementEdgesOfTheFaceEachOnce) {
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     std::multiset<Segment> found;
     for (const CellLine& line : tissue.cells[c].lines)
-      if (line.chain.side != EdgeSide::lateral) add_segments(line.chain.nodes, found);
+      if (line.chain.side != CellSide::lateral) add_segments(line.chain.nodes, found);
     EXPECT_EQ(found, std::multiset<Segment>(expected[c].begin(), expected[c].end())) << "cell " << c;
   }
 }
@@ -92,7 +92,7 @@ TEST(Lattice, WithOneElementACellTheLinesAreExactlyTheEdges) {
   int cases = 0;
   for (const Tissue& tissue : {build_shell({.cells = {6, 5, 4}}), build_block({.cells = {3, 2, 1}})})
     for (const Cell& cell : tissue.cells) {
-      using Line = std::tuple<std::vector<NodeId>, EdgeSide, EdgeDirection>;
+      using Line = std::tuple<std::vector<NodeId>, CellSide, EdgeDirection>;
       std::set<Line> edges, lines;
       for (const CellEdge& edge : cell.edges) edges.insert({edge.nodes, edge.side, edge.direction});
       for (const auto& [line, share] : cell.lines) {

@@ -28,8 +28,7 @@ Mat3 turning_stiffness(const Segment& s) {
 
 }  // namespace
 
-std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule,
-                                        const CellPattern& pattern) {
+std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern& pattern, const ContractionRule& rule) {
   std::vector<Spring> springs;
   double factor = 1, delay = 0;  // of the cell at hand
   // One spring a segment, in series: a part of the chain is stiffer than the whole by as much as it is shorter.
@@ -47,10 +46,10 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cel
     }
   };
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
-    if (!cells[c]) continue;
+    if (!pattern.cells[c]) continue;
     const Cell& cell = tissue.cells[c];
-    if (!pattern.factors.empty()) factor = pattern.factors[c];
-    if (!pattern.delays_s.empty()) delay = pattern.delays_s[c];
+    factor = pattern.strengths[c];
+    delay = pattern.delays_s[c];
     for (const auto& [line, share] : cell.lines) {
       if (line.side != rule.side) continue;
       const double ratio = line.direction == EdgeDirection::along    ? rule.along_ratio
@@ -58,8 +57,8 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cel
                                                                      : 1;
       add(c, line.nodes, ratio, share);
     }
-    if (rule.diagonals && rule.side != EdgeSide::lateral) {
-      const int first = rule.side == EdgeSide::apical ? 4 : 0;
+    if (rule.diagonals && rule.side != CellSide::lateral) {
+      const int first = rule.side == CellSide::apical ? 4 : 0;
       for (const int i : {0, 1})
         add(c, {cell.corners[first + i], cell.corners[first + i + 2]}, 0.5 * (rule.along_ratio + rule.across_ratio), 1);
     }
@@ -73,8 +72,8 @@ double Contraction::activity(double delay_s, double time_s) const {
 }
 
 std::optional<double> Contraction::activity_of(CellId cell, double time_s) const {
-  if (cells_.empty() || !cells_[cell.index()]) return std::nullopt;
-  return activity(cell_delays_s_.empty() ? 0 : cell_delays_s_[cell.index()], time_s);
+  if (pattern_.cells.empty() || !pattern_.cells[cell.index()]) return std::nullopt;
+  return activity(pattern_.delays_s[cell.index()], time_s);
 }
 
 std::vector<double> Contraction::program_points_s() const {
@@ -129,11 +128,8 @@ struct Contraction::Pulled {
   }
 };
 
-Contraction::Contraction(std::vector<Spring> springs, Program program, CellSet cells, std::vector<double> cell_delays_s)
-    : springs_(std::move(springs)),
-      program_(std::move(program)),
-      cells_(std::move(cells)),
-      cell_delays_s_(std::move(cell_delays_s)) {
+Contraction::Contraction(std::vector<Spring> springs, Program program, CellPattern pattern)
+    : springs_(std::move(springs)), program_(std::move(program)), pattern_(std::move(pattern)) {
   start_.push_back(0);
   for (const Spring& spring : springs_) {
     nodes_.insert(nodes_.end(), spring.nodes.begin(), spring.nodes.end());
@@ -270,9 +266,7 @@ std::unique_ptr<Law> Contraction::after_division(const Tissue& tissue, const Div
     for (Spring& part : inherit(spring, daughter->first, daughter->second, tissue, positions))
       springs.push_back(std::move(part));
   }
-  return std::make_unique<Contraction>(
-      std::move(springs), program_, cells_.empty() ? CellSet{} : inherited(division, cells_),
-      cell_delays_s_.empty() ? std::vector<double>{} : inherited(division, cell_delays_s_));
+  return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_division(division));
 }
 
 }  // namespace plica

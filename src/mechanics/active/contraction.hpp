@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "mechanics/active/contraction_pattern.hpp"
+#include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/law.hpp"
 #include "tissue/tissue.hpp"
@@ -23,7 +23,7 @@ struct Spring {
 
 /// What a contraction asks of each edge. Lengths and stiffness as in the scenario's [contraction.NAME].
 struct ContractionRule {
-  EdgeSide side = EdgeSide::apical;
+  CellSide side = CellSide::apical;
   double stiffness = 0;          // nN/um
   double along_ratio = 1;        // factor on stiffness and preload of edges along the axis
   double across_ratio = 1;       // and across it; lateral edges have neither
@@ -33,18 +33,16 @@ struct ContractionRule {
   double damping = 0;            // nN s/um
 };
 
-/// The springs of all cells of `cells`. Two contractile cells that share an edge have a spring each. In a cell of
-/// several elements the tension of its edges is spread over the lines of its face, and each element edge of a line is a
-/// spring (docs/decisions/0005-spread-springs.md). A cell's factor of `pattern` scales k and P, its delay is its
-/// springs'.
-std::vector<Spring> contraction_springs(const Tissue& tissue, const CellSet& cells, const ContractionRule& rule,
-                                        const CellPattern& pattern = {});
+/// The springs of the cells that act. Two that share an edge have a spring each. In a cell of several elements the
+/// tension of its edges is spread over the lines of its face, and each element edge of a line is a spring
+/// (docs/decisions/0005-spread-springs.md). A cell's strength scales k and P, its delay is its springs'.
+std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern& pattern, const ContractionRule& rule);
 
 /// Its semidefinite tangent leaves out the turning of springs that push.
 class Contraction final : public Law {
  public:
-  /// `cells`: who contracts, and `cell_delays_s`: cells, empty for none; for activity_of, the springs carry their own.
-  Contraction(std::vector<Spring> springs, Program program, CellSet cells = {}, std::vector<double> cell_delays_s = {});
+  /// `pattern`: for activity_of, the springs carry their own delays.
+  Contraction(std::vector<Spring> springs, Program program, CellPattern pattern = {});
 
   [[nodiscard]] std::string_view name() const override { return "contraction"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Contraction>(*this); }
@@ -78,8 +76,7 @@ class Contraction final : public Law {
   std::vector<std::size_t> start_;  // springs + 1, in nodes_
   std::size_t longest_ = 0;         // nodes of the longest chain
   Program program_;
-  CellSet cells_;
-  std::vector<double> cell_delays_s_;
+  CellPattern pattern_;
 };
 
 }  // namespace plica

@@ -63,7 +63,7 @@ TEST(Contraction, DerivativesAgreeWithFiniteDifferencesInRefinedCells) {
 
 TEST(Contraction, DerivativesAgreeWithFiniteDifferencesOnLateralEdges) {
   const Tissue tissue = distorted_block(two_cells, 1, 4);
-  check_derivatives(law_of(tissue, {.side = EdgeSide::lateral, .stiffness = 2, .damping = 1}), tissue, 3);
+  check_derivatives(law_of(tissue, {.side = CellSide::lateral, .stiffness = 2, .damping = 1}), tissue, 3);
 }
 
 TEST(Contraction, SemidefiniteTangentLeavesOutTheTurningOfSpringsThatPush) {
@@ -133,9 +133,11 @@ TEST(Contraction, DelayedSpringStartsItsProgramLater) {
 TEST(Contraction, DerivativesAgreeWithFiniteDifferencesInAWave) {
   const Tissue tissue = distorted_block(two_cells, 1, 6);
   // At 1.3 s, when random_motion's step ends, one cell is in the middle of its program and one before its end.
-  const CellPattern pattern{{1, 0.3}, {0.2, 0.8}};
-  check_derivatives(Contraction(contraction_springs(tissue, CellSet(2, true), {.stiffness = 2, .preload = 3}, pattern),
-                                Program({0, 1}, {0, 1}), CellSet(2, true), pattern.delays_s),
+  CellPattern pattern(CellSet(2, true));
+  pattern.strengths = {1, 0.3};
+  pattern.delays_s = {0.2, 0.8};
+  check_derivatives(Contraction(contraction_springs(tissue, pattern, {.stiffness = 2, .preload = 3}),
+                                Program({0, 1}, {0, 1}), pattern),
                     tissue, 3);
 }
 
@@ -195,7 +197,7 @@ TEST(Contraction, NeighboursThatShareAnEdgeHaveASpringEach) {
 
 TEST(Contraction, OnlyChosenCellsContract) {
   const Tissue tissue = build_block(two_cells);
-  for (const Spring& spring : contraction_springs(tissue, {false, true}, {.stiffness = 1}))
+  for (const Spring& spring : contraction_springs(tissue, CellSet{false, true}, {.stiffness = 1}))
     for (const NodeId node : spring.nodes) EXPECT_GE(tissue.rest_positions[node.index()].x(), 0);
 }
 
@@ -228,7 +230,7 @@ TEST(Contraction, RatiosScaleStiffnessAndPreloadByDirection) {
 TEST(Contraction, RefinedElementsKeepTheEnergyOfTheCells) {
   BlockShape shape{.length_um = 60, .width_um = 30, .cell_height_um = 40, .cells = {3, 2, 1}};
   int cases = 0;
-  for (const EdgeSide side : {EdgeSide::apical, EdgeSide::basal, EdgeSide::lateral}) {
+  for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
     const ContractionRule rule{side, 2, 1.5, 0.4, false, 0.3, 1, 3};
     std::vector<double> energies;
     for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 2, 2}, {4, 4, 4}, {5, 2, 3}}) {

@@ -247,9 +247,9 @@ TEST(Embryo, EdgesOfCellsRunAlongAcrossAndUp) {
       const CellEdge& edge = cell.edges[e];
       EXPECT_EQ(edge.nodes.front(), cell.corners[hex_edges[e][0]]);
       EXPECT_EQ(edge.nodes.back(), cell.corners[hex_edges[e][1]]);
-      EXPECT_EQ(edge.side == EdgeSide::lateral, edge.direction == EdgeDirection::lateral);
-      EXPECT_EQ(edge.side, e >= 8 ? EdgeSide::lateral : e % 4 < 2 ? EdgeSide::basal : EdgeSide::apical);
-      if (edge.side == EdgeSide::lateral) {
+      EXPECT_EQ(edge.side == CellSide::lateral, edge.direction == EdgeDirection::lateral);
+      EXPECT_EQ(edge.side, e >= 8 ? CellSide::lateral : e % 4 < 2 ? CellSide::basal : CellSide::apical);
+      if (edge.side == CellSide::lateral) {
         EXPECT_EQ(edge.nodes.size(), 3u);
       }
     }
@@ -260,7 +260,7 @@ TEST(Embryo, EdgesOfCellsRunAlongAcrossAndUp) {
     for (const CellEdge& edge : cell.edges) {
       const Vec3 d =
           tissue.rest_positions[edge.nodes.back().index()] - tissue.rest_positions[edge.nodes.front().index()];
-      if (std::abs(cell_centre(cell, tissue.rest_positions).x()) > 60 || edge.side == EdgeSide::lateral) continue;
+      if (std::abs(cell_centre(cell, tissue.rest_positions).x()) > 60 || edge.side == CellSide::lateral) continue;
       EXPECT_EQ(edge.direction == EdgeDirection::along, std::abs(d.x()) > 0.8 * d.norm());
       EXPECT_EQ(edge.nodes.size(), edge.direction == EdgeDirection::along ? 3u : 4u);
       along += edge.direction == EdgeDirection::along;

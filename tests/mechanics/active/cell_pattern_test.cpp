@@ -1,4 +1,4 @@
-#include "mechanics/active/contraction_pattern.hpp"
+#include "mechanics/active/cell_pattern.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,18 +11,18 @@ namespace plica {
 namespace {
 
 using namespace support;
-using Shape = ContractionProfile::Shape;
-using From = ContractionDelay::From;
+using Shape = StrengthProfile::Shape;
+using From = StartDelay::From;
 
 /// Seven cells along x with centres at -60, -40, .. 60, three across at -20, 0, 20; number 7 j + i.
 Tissue sheet() { return build_block({.length_um = 140, .width_um = 60, .cell_height_um = 40, .cells = {7, 3, 1}}); }
 
-TEST(ContractionPattern, ProfileFallsFromTheMiddleOfTheRegion) {
+TEST(PatternRule, ProfileFallsFromTheMiddleOfTheRegion) {
   const Tissue tissue = sheet();
   // All but the first column: the middle lies at x = 10.
   CellSet cells(21, true);
   for (const int first : {0, 7, 14}) cells[first] = false;
-  ContractionPattern pattern;
+  PatternRule pattern;
   int checked = 0;
   for (const Shape shape : {Shape::constant, Shape::linear, Shape::gaussian}) {
     pattern.profile = {shape, PatternAxis::along, 40, 0.2, 30};
@@ -32,7 +32,7 @@ TEST(ContractionPattern, ProfileFallsFromTheMiddleOfTheRegion) {
       const double factor = shape == Shape::constant ? 1
                             : shape == Shape::linear ? std::max(0.2, 1 - 0.8 * d / 40)
                                                      : std::exp(-d * d / 1800);
-      EXPECT_NEAR(found.factors[c], cells[c] ? factor : 0, 1e-14) << "cell " << c;
+      EXPECT_NEAR(found.strengths[c], cells[c] ? factor : 0, 1e-14) << "cell " << c;
       EXPECT_EQ(found.delays_s[c], 0);
       ++checked;
     }
@@ -40,18 +40,18 @@ TEST(ContractionPattern, ProfileFallsFromTheMiddleOfTheRegion) {
   RecordProperty("cells", checked);
 }
 
-TEST(ContractionPattern, AcrossABlockIsY) {
-  ContractionPattern pattern;
+TEST(PatternRule, AcrossABlockIsY) {
+  PatternRule pattern;
   pattern.profile = {Shape::linear, PatternAxis::across, 40, 0, 1};
   const CellPattern found = cell_pattern(sheet(), CellSet(21, true), pattern);
-  for (int c = 0; c < 21; ++c) EXPECT_NEAR(found.factors[c], c / 7 == 1 ? 1 : 0.5, 1e-14);
+  for (int c = 0; c < 21; ++c) EXPECT_NEAR(found.strengths[c], c / 7 == 1 ? 1 : 0.5, 1e-14);
 }
 
 // On a closed embryo the distance is the arc through the cell's centre, from the region's mean direction: on the belly
 // and on a side alike.
-TEST(ContractionPattern, AcrossAClosedEmbryoIsTheArc) {
+TEST(PatternRule, AcrossAClosedEmbryoIsTheArc) {
   const Tissue tissue = build_shell({.length_um = 460, .cells = {18, 9, 8}});
-  ContractionPattern pattern;
+  PatternRule pattern;
   pattern.profile = {Shape::linear, PatternAxis::across, 1000, 0, 1};
   int checked = 0;
   for (const auto face : {GridPlace::Face::ventral, GridPlace::Face::left}) {
@@ -65,16 +65,16 @@ TEST(ContractionPattern, AcrossAClosedEmbryoIsTheArc) {
       if (!cells[c]) continue;
       const Vec3 x = cell_centre(tissue.cells[c], tissue.rest_positions);
       const double angle = face == GridPlace::Face::ventral ? std::atan2(x.y(), -x.z()) : std::atan2(x.z(), -x.y());
-      EXPECT_NEAR(1000 * (1 - found.factors[c]), std::hypot(x.y(), x.z()) * std::abs(angle), 1e-9);
+      EXPECT_NEAR(1000 * (1 - found.strengths[c]), std::hypot(x.y(), x.z()) * std::abs(angle), 1e-9);
       ++checked;
     }
   }
   EXPECT_EQ(checked, 17);
 }
 
-TEST(ContractionPattern, WaveArrivesAfterDistanceOverSpeed) {
+TEST(PatternRule, WaveArrivesAfterDistanceOverSpeed) {
   const Tissue tissue = sheet();
-  ContractionPattern pattern;
+  PatternRule pattern;
   int checked = 0;
   for (const From from : {From::middle, From::ends, From::low, From::high}) {
     pattern.delay = {PatternAxis::along, from, 4};
@@ -86,14 +86,14 @@ TEST(ContractionPattern, WaveArrivesAfterDistanceOverSpeed) {
                           : from == From::low  ? i
                                                : 6 - i;
       EXPECT_NEAR(found.delays_s[c], 20 * columns / 4.0, 1e-12);
-      EXPECT_EQ(found.factors[c], 1);
+      EXPECT_EQ(found.strengths[c], 1);
       ++checked;
     }
   }
   RecordProperty("cells", checked);
 }
 
-TEST(ContractionPattern, ChanceHasMeanOneAndTheGivenSpread) {
+TEST(PatternRule, ChanceHasMeanOneAndTheGivenSpread) {
   const int count = 200000;
   for (const double spread : {0.2, 0.8}) {
     double sum = 0, squares = 0;
@@ -110,7 +110,7 @@ TEST(ContractionPattern, ChanceHasMeanOneAndTheGivenSpread) {
 }
 
 // Values as computed once: another compiler, library or order of cells must give them again.
-TEST(ContractionPattern, ChanceIsAFunctionOfSeedAndCell) {
+TEST(PatternRule, ChanceIsAFunctionOfSeedAndCell) {
   int checked = 0;
   for (const auto& [seed, cell, factor] : {std::tuple{1u, 0u, 0.8896738708345175},
                                            {1u, 1u, 1.095626087027849},
@@ -122,27 +122,27 @@ TEST(ContractionPattern, ChanceIsAFunctionOfSeedAndCell) {
   }
   RecordProperty("factors", checked);
   const Tissue tissue = sheet();
-  ContractionPattern pattern;
+  PatternRule pattern;
   pattern.spread = 0.2;
   pattern.seed = 5;
   CellSet some(21, false);
   some[4] = some[20] = true;
   const CellPattern all = cell_pattern(tissue, CellSet(21, true), pattern), few = cell_pattern(tissue, some, pattern);
-  EXPECT_EQ(all.factors[4], few.factors[4]);
-  EXPECT_EQ(all.factors[20], few.factors[20]);
-  EXPECT_NE(all.factors[4], all.factors[20]);
+  EXPECT_EQ(all.strengths[4], few.strengths[4]);
+  EXPECT_EQ(all.strengths[20], few.strengths[20]);
+  EXPECT_NE(all.strengths[4], all.strengths[20]);
   pattern.seed = 6;
-  EXPECT_NE(cell_pattern(tissue, some, pattern).factors[4], few.factors[4]);
+  EXPECT_NE(cell_pattern(tissue, some, pattern).strengths[4], few.strengths[4]);
 }
 
-TEST(ContractionPattern, ScalesStiffnessAndPreloadOfACellsSprings) {
+TEST(PatternRule, ScalesStiffnessAndPreloadOfACellsSprings) {
   const Tissue tissue = sheet();
-  CellPattern pattern{std::vector<double>(21, 1.0), std::vector<double>(21, 0.0)};
-  pattern.factors[3] = 0.25;
-  pattern.delays_s[3] = 12;
   CellSet one(21, false);
   one[3] = true;
-  const auto springs = contraction_springs(tissue, one, {.stiffness = 2, .preload = 3, .damping = 4}, pattern);
+  CellPattern pattern(one);
+  pattern.strengths[3] = 0.25;
+  pattern.delays_s[3] = 12;
+  const auto springs = contraction_springs(tissue, pattern, {.stiffness = 2, .preload = 3, .damping = 4});
   ASSERT_EQ(springs.size(), 4u);
   for (const Spring& spring : springs) {
     EXPECT_EQ(spring.stiffness, 0.5);

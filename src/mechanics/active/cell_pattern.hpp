@@ -1,10 +1,11 @@
-// How a contraction differs from cell to cell: strength over the region, chance, and a wave
+// Who acts, how strongly and how late: region, profile over it, chance, and a wave, for every law by which cells act
 // (docs/theory/contraction.md, "From cell to cell").
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "tissue/division.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -14,7 +15,7 @@ namespace plica {
 enum class PatternAxis { along, across };
 
 /// A factor by the distance d from the region's middle along an axis.
-struct ContractionProfile {
+struct StrengthProfile {
   enum class Shape { constant, linear, gaussian };
   Shape shape = Shape::constant;
   PatternAxis axis = PatternAxis::across;
@@ -26,29 +27,37 @@ struct ContractionProfile {
 };
 
 /// A wave that starts at a place of the region at time 0 and reaches a cell after distance / speed.
-struct ContractionDelay {
+struct StartDelay {
   enum class From { middle, ends, low, high };  // low: the region's least coordinate; ends: both, whichever is nearer
   PatternAxis axis = PatternAxis::along;
   From from = From::middle;
   double speed = 0;  // um/s; 0: no wave, all cells at once
 };
 
-struct ContractionPattern {
-  ContractionProfile profile;
-  ContractionDelay delay;
+struct PatternRule {
+  StrengthProfile profile;
+  StartDelay delay;
   double spread = 0;       // standard deviation of the cells' chance factors, whose mean is 1
   std::uint64_t seed = 1;  // of these factors
 };
 
-/// What the pattern is on each cell. Empty: 1 and 0 everywhere.
+/// What a law by which cells act is told of each cell.
 struct CellPattern {
-  std::vector<double> factors;   // cells; on stiffness and preload
-  std::vector<double> delays_s;  // cells
+  CellSet cells;                  // who acts; empty: nobody
+  std::vector<double> strengths;  // cells; a factor, 0 of those that do not act
+  std::vector<double> delays_s;   // cells
+
+  CellPattern() = default;
+  /// All alike, and at once.
+  CellPattern(const CellSet& who);  // NOLINT: meant to convert
+
+  /// Daughters have what their mother had.
+  [[nodiscard]] CellPattern after_division(const Division& division) const;
 };
 
 /// The pattern of `cells` on `tissue` at rest; 0 in both for other cells. The region's middle lies halfway between its
 /// outermost cell centres.
-CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const ContractionPattern& pattern);
+CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const PatternRule& pattern);
 
 /// A log-normal factor with mean 1 and standard deviation `spread`: a function of seed and cell only, the same on every
 /// machine but for the last bit of its exp, log and cos.

@@ -1,4 +1,4 @@
-#include "mechanics/active/contraction_pattern.hpp"
+#include "mechanics/active/cell_pattern.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,8 +47,8 @@ Extent extent_of(const std::vector<double>& values, const CellSet& cells) {
   return extent;
 }
 
-double distance_from(ContractionDelay::From from, double value, const Extent& extent) {
-  using From = ContractionDelay::From;
+double distance_from(StartDelay::From from, double value, const Extent& extent) {
+  using From = StartDelay::From;
   switch (from) {
     case From::middle:
       return std::abs(value - 0.5 * (extent.low + extent.high));
@@ -75,7 +75,7 @@ double uniform(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 1
 
 }  // namespace
 
-double ContractionProfile::factor(double distance) const {
+double StrengthProfile::factor(double distance) const {
   switch (shape) {
     case Shape::constant:
       return 1;
@@ -96,15 +96,27 @@ double chance_factor(double spread, std::uint64_t seed, std::size_t cell) {
   return std::exp(std::sqrt(s2) * normal - 0.5 * s2);
 }
 
-CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const ContractionPattern& pattern) {
-  CellPattern result{std::vector<double>(cells.size(), 0.0), std::vector<double>(cells.size(), 0.0)};
+CellPattern::CellPattern(const CellSet& who)
+    : cells(who), strengths(who.begin(), who.end()), delays_s(who.size(), 0.0) {}
+
+CellPattern CellPattern::after_division(const Division& division) const {
+  CellPattern after;
+  if (cells.empty()) return after;
+  after.cells = inherited(division, cells);
+  after.strengths = inherited(division, strengths);
+  after.delays_s = inherited(division, delays_s);
+  return after;
+}
+
+CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const PatternRule& pattern) {
+  CellPattern result(cells);
   const std::vector<double> place = coordinates(tissue, cells, pattern.profile.axis);
   const std::vector<double> way = coordinates(tissue, cells, pattern.delay.axis);
   const Extent places = extent_of(place, cells), ways = extent_of(way, cells);
   const double middle = 0.5 * (places.low + places.high);
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (!cells[c]) continue;
-    result.factors[c] =
+    result.strengths[c] =
         pattern.profile.factor(std::abs(place[c] - middle)) * chance_factor(pattern.spread, pattern.seed, c);
     if (pattern.delay.speed > 0)
       result.delays_s[c] = std::max(0.0, distance_from(pattern.delay.from, way[c], ways)) / pattern.delay.speed;

@@ -1,0 +1,52 @@
+#include "tissue/faces.hpp"
+
+#include <stdexcept>
+
+#include "tissue/mesh_faces.hpp"
+
+namespace plica {
+namespace {
+
+std::vector<Face> lateral_faces(const Tissue& tissue) {
+  const MeshFaces pairs(tissue.elements);
+  std::vector<char> is_outer(6 * tissue.elements.size(), 0);  // whether an apical or basal face of elements
+  const auto place_of = [&](const Facet& facet) {
+    // The face of its element that has the facet's nodes.
+    const std::size_t e = facet.element.index();
+    for (int f = 0; f < 6; ++f) {
+      int common = 0;
+      for (const int corner : hex_faces[f])
+        for (const NodeId node : facet.nodes) common += tissue.elements[e][corner] == node;
+      if (common == 4) return 6 * e + f;
+    }
+    throw std::logic_error("a facet is no face of its element");
+  };
+  for (const auto* facets : {&tissue.apical_facets, &tissue.basal_facets})
+    for (const Facet& facet : *facets) is_outer[place_of(facet)] = 1;
+
+  std::vector<Face> faces;
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
+    for (int f = 0; f < 6; ++f) {
+      if (is_outer[6 * e + f] != 0) continue;
+      const auto other = pairs.neighbour({e, f});
+      const CellId cell = tissue.element_cell[e];
+      if (other && (other->cell < e || tissue.element_cell[other->cell] == cell)) continue;
+      Face face{{}, cell, {}};
+      for (int i = 0; i < 4; ++i) face.nodes[i] = tissue.elements[e][hex_faces[f][i]];
+      if (other) face.beyond = tissue.element_cell[other->cell];
+      faces.push_back(face);
+    }
+  return faces;
+}
+
+}  // namespace
+
+std::vector<Face> faces_of(const Tissue& tissue, CellSide side) {
+  if (side == CellSide::lateral) return lateral_faces(tissue);
+  std::vector<Face> faces;
+  for (const Facet& facet : side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets)
+    faces.push_back({facet.nodes, facet.cell, {}});
+  return faces;
+}
+
+}  // namespace plica

@@ -1,0 +1,24 @@
+// The faces of a tissue as laws on faces are told them: apical, basal, and lateral ones, each of these once.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// A bilinear face, counter-clockwise seen from outside its cell.
+struct Face {
+  std::array<NodeId, 4> nodes;
+  CellId cell;
+  std::optional<CellId> beyond;  // of a lateral face: the neighbour, which shares it; none at a rim
+};
+
+/// All faces of a side, in the order of the elements. A cell of several elements has several on each side. A lateral
+/// face stands once, for the first of its two cells. After a division a wall is cut where the neighbour has been, so
+/// that each face has one cell on either side.
+std::vector<Face> faces_of(const Tissue& tissue, CellSide side);
+
+}  // namespace plica

@@ -1,0 +1,75 @@
+// Each face once, outward, and what they enclose is the cells' volumes: also after divisions.
+#include "tissue/faces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "support/divided.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+struct Counted {
+  std::size_t lateral = 0, rims = 0;
+};
+
+// By the cones from the origin over all faces of a cell, of lateral faces for both their cells.
+Counted expect_faces_enclose_the_cells(const Tissue& tissue) {
+  std::vector<double> volumes(tissue.cells.size(), 0.0);
+  Counted counted;
+  for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral})
+    for (const Face& face : faces_of(tissue, side)) {
+      const double volume = cone(face.nodes, tissue.rest_positions);
+      volumes[face.cell.index()] += volume;
+      if (side != CellSide::lateral) continue;
+      ++counted.lateral;
+      if (face.beyond) {
+        EXPECT_NE(*face.beyond, face.cell);
+        volumes[face.beyond->index()] -= volume;
+      } else {
+        ++counted.rims;
+      }
+    }
+  for (std::size_t c = 0; c < volumes.size(); ++c)
+    EXPECT_NEAR(volumes[c] / cell_volume(tissue, tissue.cells[c], tissue.rest_positions), 1, 1e-9) << "cell " << c;
+  return counted;
+}
+
+TEST(Faces, OfABlockAreItsWalls) {
+  const Tissue tissue = build_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}});
+  const Counted counted = expect_faces_enclose_the_cells(tissue);
+  EXPECT_EQ(counted.lateral, 3u * 3 + 4 * 2);  // walls along, walls across
+  EXPECT_EQ(counted.rims, 2u * (3 + 2));
+}
+
+TEST(Faces, OfCellsOfSeveralElementsAreTheirElements) {
+  const Tissue tissue = build_block(
+      {.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}, .elements_per_cell = {2, 1, 2}});
+  const Counted counted = expect_faces_enclose_the_cells(tissue);
+  EXPECT_EQ(counted.lateral, (3u * 3 * 2 + 4 * 2) * 2);
+}
+
+TEST(Faces, OfAnEmbryoHaveTwoCellsEach) {
+  const Counted counted = expect_faces_enclose_the_cells(build_shell({200, 100, 20, {6, 4, 4}, {1, 1, 1}}));
+  EXPECT_EQ(counted.rims, 0u);
+  EXPECT_EQ(counted.lateral, 2u * 128);  // four sides a cell, two cells a side
+}
+
+// One wall may face two daughters: it is two faces then.
+TEST(Faces, FollowDivisions) {
+  Tissue tissue = distorted_block({.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 3, 1}}, 2, 1);
+  Random random(3);
+  std::size_t before = expect_faces_enclose_the_cells(tissue).lateral;
+  for (int round = 0; round < 3; ++round) {
+    divide(tissue, cuts_of(random_divisions(tissue, 0.5, random)), 0);
+    const Counted counted = expect_faces_enclose_the_cells(tissue);
+    EXPECT_GT(counted.lateral, before);
+    before = counted.lateral;
+  }
+}
+
+}  // namespace
+}  // namespace plica
