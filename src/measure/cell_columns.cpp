@@ -5,6 +5,7 @@
 
 #include "core/units.hpp"
 #include "measure/cells.hpp"
+#include "measure/columns.hpp"
 
 namespace plica {
 namespace {
@@ -134,13 +135,6 @@ const std::vector<LineageColumn>& lineage_table() {
   return table;
 }
 
-template <class Columns>
-std::vector<std::string> names_of(Columns&& columns) {
-  std::vector<std::string> names;
-  for (const auto& column : columns) names.emplace_back(column.name);
-  return names;
-}
-
 }  // namespace
 
 MeasuredCells::MeasuredCells(const Model& of_model, const State& at_state)
@@ -162,7 +156,5 @@ std::span<const MidlineColumn> midline_columns() { return midline_table(); }
 std::span<const LineageColumn> lineage_columns() { return lineage_table(); }
 
 std::vector<std::string> cells_csv_names() { return names_of(cells_table() | std::views::filter(&CellColumn::in_csv)); }
-std::vector<std::string> midline_csv_names() { return names_of(midline_table()); }
-std::vector<std::string> lineage_csv_names() { return names_of(lineage_table()); }
 
 }  // namespace plica

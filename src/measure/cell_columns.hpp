@@ -62,7 +62,6 @@ struct MidlineColumn {
 
 /// In the order of midline.csv.
 std::span<const MidlineColumn> midline_columns();
-std::vector<std::string> midline_csv_names();
 
 /// A value of a daughter when she is born, in lineage.csv.
 struct LineageColumn {
@@ -72,6 +71,5 @@ struct LineageColumn {
 };
 
 std::span<const LineageColumn> lineage_columns();
-std::vector<std::string> lineage_csv_names();
 
 }  // namespace plica

@@ -1,6 +1,7 @@
 #include "measure/columns.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <stdexcept>
 
 #include "measure/cells.hpp"
@@ -189,12 +190,7 @@ std::size_t column_index(std::string_view name) {
   return static_cast<std::size_t>(found - columns().begin());
 }
 
-std::vector<std::string> series_names() {
-  std::vector<std::string> names;
-  for (const Column& column : columns())
-    if (column.in_series) names.emplace_back(column.name);
-  return names;
-}
+std::vector<std::string> series_names() { return names_of(columns() | std::views::filter(&Column::in_series)); }
 
 std::vector<const Column*> summary_columns() {
   std::vector<const Column*> found;

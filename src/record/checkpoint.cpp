@@ -185,14 +185,8 @@ std::vector<std::string> of_lines(const std::string& lines) {
   return texts;
 }
 
-// Of the table and not of this file: a checkpoint of another table has other names.
-std::vector<std::string> column_names() {
-  std::vector<std::string> names;
-  for (const Column& column : columns()) names.emplace_back(column.name);
-  return names;
-}
-
-// A number a column, then one a monitor, and whether the row has it.
+// A number a column, then one a monitor, and whether the row has it. The columns' names stand beside them, so that rows
+// of another table are refused and not misread.
 void save_rows(ArchiveWriter& archive, const std::vector<Observation>& rows) {
   std::vector<double> numbers;
   std::vector<char> has;
@@ -204,7 +198,7 @@ void save_rows(ArchiveWriter& archive, const std::vector<Observation>& rows) {
   archive.put("record/rows", numbers, rows.empty() ? 0 : numbers.size() / rows.size());
   archive.put("record/has", has);
   Saving save(archive);
-  save("record/columns", in_lines(column_names()));
+  save("record/columns", in_lines(names_of(columns())));
   save("record/monitors", static_cast<int>(monitors));
   save("record/criteria_met", in_lines(rows.empty() ? std::vector<std::string>() : rows.back().criteria_met));
 }
@@ -220,7 +214,7 @@ std::vector<Observation> load_rows(const ArchiveReader& archive) {
   load("record/columns", names);
   load("record/monitors", monitors);
   load("record/criteria_met", criteria);
-  if (of_lines(names) != column_names())
+  if (of_lines(names) != names_of(columns()))
     throw FileError("another version of plica wrote it, whose rows have other columns");
   const std::size_t fixed = columns().size(), width = fixed + static_cast<std::size_t>(std::max(monitors, 0));
   if (numbers.empty() || numbers.size() % width != 0 || has.size() != numbers.size()) Loading::refuse("record/rows");

@@ -74,10 +74,10 @@ WallTimes Recorder::wall() const {
 
 void Recorder::open_tables(const RecordMemory& memory) {
   series_ = table(directory_ / "series.csv", all_series_names(simulation_.observer()), memory.series_bytes);
-  midline_ = table(directory_ / "midline.csv", midline_csv_names(), memory.midline_bytes);
+  midline_ = table(directory_ / "midline.csv", names_of(midline_columns()), memory.midline_bytes);
   if (frame_taker_.with_cell_rows()) cells_ = table(directory_ / "cells.csv", cells_csv_names(), memory.cells_bytes);
   if (!scenario_.divisions.empty())
-    lineage_ = table(directory_ / "lineage.csv", lineage_csv_names(), memory.lineage_bytes);
+    lineage_ = table(directory_ / "lineage.csv", names_of(lineage_columns()), memory.lineage_bytes);
 }
 
 std::shared_ptr<Recorder::StepRecord> Recorder::step_record() const {

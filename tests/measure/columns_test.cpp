@@ -126,9 +126,9 @@ TEST(Columns, ThoseOfTheContractStayInTheirOrder) {
   for (const Column* column : summary_columns())
     if (first.size() < summary.size()) first.push_back(column->name);
   EXPECT_EQ(first, summary);
-  EXPECT_EQ(midline_csv_names(),
+  EXPECT_EQ(names_of(midline_columns()),
             (std::vector<std::string>{"time_s", "ap_um", "depth_um", "normal_speed_um_per_s", "apical_area_ratio"}));
-  EXPECT_EQ(lineage_csv_names(), (std::vector<std::string>{"cell_id", "mother_id", "generation", "birth_s"}));
+  EXPECT_EQ(names_of(lineage_columns()), (std::vector<std::string>{"cell_id", "mother_id", "generation", "birth_s"}));
   EXPECT_EQ(cells_csv_names(),
             (std::vector<std::string>{"time_s", "cell_id", "mother_id", "generation", "x_um", "y_um", "z_um",
                                       "volume_um3", "apical_area_um2", "basal_area_um2", "height_um",
