@@ -96,7 +96,7 @@ std::string checksum(const Vectors& positions) {
 /// Apart and never inlined: bench/run counts its instructions by this name.
 [[gnu::noinline]] StepReport take_step(const Scenario& scenario, const Model& model, const State& rest,
                                        double duration_s, State& next) {
-  return make_stepper(model, make_controls(scenario, model).scheme)->advance(rest, duration_s, true, next);
+  return make_stepper(model, make_controls(scenario).scheme)->advance(rest, duration_s, true, next);
 }
 
 int run(const Options& options) {

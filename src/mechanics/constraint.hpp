@@ -29,13 +29,15 @@ class Constraint {
   [[nodiscard]] virtual std::string_view name() const = 0;
   [[nodiscard]] virtual std::unique_ptr<Constraint> clone() const = 0;
 
+  /// These, parts() and is_dense() stay as they are until a division. Targets may change between steps; none is 0,
+  /// since errors are relative to it.
   [[nodiscard]] virtual std::size_t count() const = 0;
   [[nodiscard]] virtual std::span<const double> targets() const = 0;
 
   /// Whether a function depends on so many nodes (thousands) that its gradient times itself would fill a matrix.
   [[nodiscard]] virtual bool is_dense() const { return false; }
 
-  /// Whether a step holds it, with multipliers among its unknowns. Else somebody else does, or nobody.
+  /// Whether a step holds it, with multipliers among its unknowns. Else the projection does, or nothing.
   [[nodiscard]] virtual bool is_held() const { return true; }
 
   /// c_k at the given positions.
@@ -45,7 +47,8 @@ class Constraint {
   /// The gradient of each part by its nodes, part after part, node after node as in parts().
   virtual void gradients(std::span<const Vec3> positions, std::span<Vec3> of_parts) const = 0;
 
-  /// Calls body(part) for every part; with `shared`, perhaps at once for parts that have no node in common.
+  /// Calls body(part) for every part; with `shared`, perhaps on several threads at once, for parts without a common
+  /// node.
   virtual void for_parts(const std::function<void(std::size_t)>& body, bool shared) const = 0;
 
   /// Adds sum_k m_k dc_k/dx.
@@ -60,7 +63,7 @@ class Constraint {
 
   /// |dc_k/dx|^2 at rest, about: by this, functions of any unit are weighed against each other and against forces.
   [[nodiscard]] virtual double gradient_scale(std::size_t function) const = 0;
-  /// What rounding of positions (um) makes of c_k / target_k: nothing solves below that.
+  /// What rounding of positions (um) makes of c_k / target_k at most, over the functions: nothing solves below that.
   [[nodiscard]] virtual double rounding(const Tissue& tissue, double position_rounding) const = 0;
 
   /// The cell that a function is of, where it is of one: to say where something failed.

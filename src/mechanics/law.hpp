@@ -94,8 +94,9 @@ class Law {
   virtual void add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                    std::span<Vec3> product) const = 0;
 
-  /// Adds the same as a matrix: every block (a, b) and (b, a) of nodes that the law joins. A law may leave out blocks
-  /// that its product has, where they would fill the matrix: directions are then found by more iterations.
+  /// Adds the same as a matrix: the blocks of nodes that the law joins, each pair in one order (TangentSink). A law may
+  /// leave out blocks that its product has, where they would fill the matrix: directions are then found by more
+  /// iterations.
   virtual void add_tangent(const Step& step, TangentSink& tangent) const = 0;
 
   /// The nodes that the law joins, as long as its internal state has this revision of the pattern: only their blocks
@@ -108,14 +109,16 @@ class Law {
     return 1;
   }
 
-  /// The internal state before the first step, and at the end of a step that has been accepted.
+  /// The internal state before the first step, and at the end of a step that has been solved (and may still be refused,
+  /// for its error: the law is not told).
   [[nodiscard]] virtual std::vector<double> first_internal(const Tissue& /*tissue*/) const { return {}; }
   [[nodiscard]] virtual std::vector<double> next_internal(const Step& step) const {
     return {step.internal.begin(), step.internal.end()};
   }
 
   /// The same law for the tissue after a division, with nodes at `positions`. Existing nodes feel the same forces, but
-  /// for what finer elements change.
+  /// for what finer elements change. Also asked for a tissue of which only some cells are kept (forces_of_cells), so
+  /// not every cell of before need be there.
   [[nodiscard]] virtual std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                             std::span<const Vec3> positions) const = 0;
   /// And its internal state, from that before; asked of the law before the division.
@@ -131,12 +134,12 @@ class Law {
   /// Times at which its programs begin or bend, s: steps end on them.
   [[nodiscard]] virtual std::vector<double> program_points_s() const { return {}; }
 
-  /// Of a law by which cells act: the activity of the cell's program, 0 to 1; empty for cells that it leaves alone, and
-  /// of laws that are none. The forces of such laws at rest are the active ones.
+  /// Whether cells act by this law: its forces are then shown as the active ones. activity_of: of the cell's program at
+  /// a time; empty for a cell that the law leaves alone.
   [[nodiscard]] virtual bool is_active() const { return false; }
   [[nodiscard]] virtual std::optional<double> activity_of(CellId /*cell*/, double /*time_s*/) const { return {}; }
 
-  /// Mass that the law gives to nodes, g; empty for none.
+  /// Mass that the law gives to nodes, g; empty for none. At most one law of a model has any.
   [[nodiscard]] virtual std::span<const double> masses() const { return {}; }
 };
 

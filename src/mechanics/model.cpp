@@ -57,6 +57,12 @@ double Model::force_rounding() const {
   return stiffness_scale * thinnest * position_rounding() * std::sqrt(static_cast<double>(tissue.node_count()));
 }
 
+std::vector<std::vector<double>> next_internals(const Model& model, const Step& step) {
+  std::vector<std::vector<double>> internals;
+  for_laws(model, step, [&](const Law& law, const Step& own) { internals.push_back(law.next_internal(own)); });
+  return internals;
+}
+
 State rest_state(const Model& model) {
   State state;
   state.positions = model.tissue.rest_positions;

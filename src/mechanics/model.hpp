@@ -70,6 +70,9 @@ void for_laws(const Model& model, const Step& step, const Body& body) {
   }
 }
 
+/// The internal states of all laws at the end of a step, whose positions are there.
+std::vector<std::vector<double>> next_internals(const Model& model, const Step& step);
+
 /// Calls body(constraint, where its multipliers begin among all) for every constraint that a step holds.
 template <class Body>
 void for_held_constraints(const Model& model, const Body& body) {
@@ -80,7 +83,7 @@ void for_held_constraints(const Model& model, const Body& body) {
   }
 }
 
-/// Where the run is. Enough, with the Model, to go on from here to the same bits.
+/// Where the body is. What a run needs beside it to go on to the same bits is in RunMemory.
 struct State {
   double time_s = 0;
   Vectors positions;                           // nodes; um

@@ -41,7 +41,7 @@ StepScheme make_scheme(const Scenario& scenario) {
 
 }  // namespace
 
-RunControls make_controls(const Scenario& scenario, const Model& model) {
+RunControls make_controls(const Scenario& scenario) {
   RunControls controls;
   controls.scheme = make_scheme(scenario);
   controls.fixed_step_s = scenario.time.step_s;
@@ -54,10 +54,6 @@ RunControls make_controls(const Scenario& scenario, const Model& model) {
   const bool all_at_once = meaning_of(words::combinations, scenario.stop.combine) && !scenario.criteria.empty();
   controls.stop_at_equilibrium = scenario.stop.at_equilibrium && !all_at_once;
   controls.frame_every_s = scenario.output.frame_every_s;
-  const auto add_points = [&](const std::vector<double>& points) {
-    controls.program_points_s.insert(controls.program_points_s.end(), points.begin(), points.end());
-  };
-  for (const auto& law : model.laws) add_points(law->program_points_s());
   for (const auto& [name, input] : scenario.divisions) {
     controls.divisions.push_back(make_division_rule(input));
     if (input.at_s) controls.program_points_s.push_back(*input.at_s);

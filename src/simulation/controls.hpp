@@ -25,7 +25,7 @@ struct RunControls {
   std::vector<DivisionRule> divisions;   // their times are among the program points
 };
 
-/// Those of a scenario. `model` is made from it: only its laws know when the last of their programs bends.
-RunControls make_controls(const Scenario& scenario, const Model& model);
+/// Those of a scenario. The points of its laws' programs are added by the simulation.
+RunControls make_controls(const Scenario& scenario);
 
 }  // namespace plica

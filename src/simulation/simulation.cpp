@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "mechanics/division.hpp"
@@ -39,7 +40,7 @@ std::string failure_text(StepReport report, const Model& model, const State& sta
 Simulation::Parts parts_of(const Scenario& scenario) {
   Simulation::Parts parts;
   parts.model = make_model(scenario);
-  parts.controls = make_controls(scenario, *parts.model);
+  parts.controls = make_controls(scenario);
   parts.sites = make_furrow_sites(scenario, parts.model->tissue);
   parts.watch = make_watch(scenario, parts.model->tissue);
   return parts;
@@ -52,6 +53,8 @@ Simulation::Simulation(Parts parts)
       controls_(std::move(parts.controls)),
       step_length_(controls_),
       observer_(std::make_unique<Observer>(*model_, std::move(parts.sites), std::move(parts.watch))) {
+  for (const auto& law : model_->laws)
+    std::ranges::copy(law->program_points_s(), std::back_inserter(controls_.program_points_s));
   now_.state = rest_state(*model_);
   measures_ = observer_->observe_rest(now_.state);
   renew_stepper();

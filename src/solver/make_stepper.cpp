@@ -23,7 +23,7 @@ std::unique_ptr<Stepper> make_stepper(const Model& model, const StepScheme& sche
     });
   if (scheme.forces == StepScheme::Forces::newton && !scheme.projection)
     return std::make_unique<NewtonStepper>(model, StepTolerances{}, scheme.linear_method, scheme.order);
-  // Only Newton's step keeps nodes in the shell by itself.
+  // Only Newton's step holds obstacles by itself.
   if (scheme.forces == StepScheme::Forces::linearly_implicit)
     return std::make_unique<ProjectedStepper>(
         model, std::make_unique<LinearlyImplicit>(model, scheme.linear_tolerance, scheme.most_linear_iterations),

@@ -1,5 +1,5 @@
-// Many runs of this program, each in a process of its own, some at a time: the sequential MUMPS is not safe in several
-// threads of one process.
+// Many runs of this program, each in a process of its own, some at a time, so that one that crashes takes no other with
+// it. It starts /proc/self/exe: from plica itself only. What a run came to is read from DIR/runs/ID.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 #include "solver/linear/constraint_jacobian.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/parallel.hpp"
 
@@ -31,11 +32,17 @@ ConstraintJacobian::ConstraintJacobian(const Model& model) : node_start_(model.t
 
 void ConstraintJacobian::add_sparse(const Tissue& tissue, Source& source, std::size_t functions) {
   const NodeGroups& parts = source.parts.nodes;
-  std::vector<std::vector<std::size_t>> of_function(functions);
-  for (std::size_t part = 0; part < parts.size(); ++part) of_function[source.parts.function[part]].push_back(part);
+  // The parts of each function, one function after the other.
+  std::vector<std::size_t> first_part(functions + 1, 0), by_function(parts.size());
+  for (const int function : source.parts.function) ++first_part[function + 1];
+  std::partial_sum(first_part.begin(), first_part.end(), first_part.begin());
+  std::vector<std::size_t> next(first_part.begin(), first_part.end() - 1);
+  for (std::size_t part = 0; part < parts.size(); ++part) by_function[next[source.parts.function[part]]++] = part;
   source.slots.resize(parts.start(parts.size()));
   std::vector<NodeId> members;
-  for (const std::vector<std::size_t>& own_parts : of_function) {
+  for (std::size_t function = 0; function < functions; ++function) {
+    const auto own_parts =
+        std::span(by_function).subspan(first_part[function], first_part[function + 1] - first_part[function]);
     members.clear();
     for (const std::size_t part : own_parts)
       for (const NodeId node : parts[part])

@@ -1,6 +1,6 @@
-// Lets a factor serve while nodes leave the shell or come to it. The factor has the directions that were fixed when it
-// was made; each node that has changed since borders it with one more unknown (its free normal) or condition (its fixed
-// one):
+// Lets a factor serve while nodes leave obstacles or come to them. The factor has the directions that were fixed when
+// it was made; each node that has changed since borders it with one more unknown (its free normal) or condition (its
+// fixed one):
 //   [ A0   B ] [ x  ]   [ f        ]     B: columns A n of nodes that have left, n of nodes that have come,
 //   [ B^T  D ] [ xi ] = [ n^T f, 0 ]     D: n^T A n among those that have left.
 // With A0 = L L^T and Y = L^-1 B this is, between the two halves of a solve with the factor,

@@ -1,5 +1,5 @@
 // Dense rows beside a system that is solved without them: functions of thousands of nodes (the volume inside a closed
-// surface), whose gradients times themselves would fill any matrix. Each costs one solve when the inverse is new.
+// surface), whose gradients times themselves would fill any matrix. Each costs one solve a direction.
 //   [ K  -B^T ] [ x ]   [ f ]
 //   [ -B   0  ] [ m ] = [ g ]     x = K^-1 f + Y m,  S m = -(g + B K^-1 f),  Y = K^-1 B^T,  S = B Y.
 #pragma once

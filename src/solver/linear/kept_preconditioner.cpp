@@ -13,7 +13,7 @@ constexpr std::size_t most_contact_changes = 32;  // before the factor is made a
 
 // gamma times the size of a cell, over the mean stiffness of a node. Large, so that few iterations are left for the
 // multipliers; but single precision has to carry A beside it, multigrid finds nearly incompressible cells hard (and has
-// PressureFactor for the pressures: twice or half of gamma changes little), and within cells of several elements it
+// ChequerboardFactor for the pressures: twice or half of gamma changes little), and within cells of several elements it
 // resists what the exact volumes allow. With a factor, a third takes a fifth more iterations, three times as much no
 // fewer.
 double regularisation(KeptPreconditioner::Inverse inverse, int parts) {
@@ -36,7 +36,7 @@ KeptPreconditioner::KeptPreconditioner(const Model& model, const LinearisedStep&
   // Cells of several elements have nodes inside that feel the difference of any two pressures.
   const bool is_refined = model.tissue.elements.size() >= 2 * model.tissue.cells.size();
   if (inverse == Inverse::multigrid && matrix_.jacobian().sparse_rows() > 0 && !is_refined)
-    pressures_.emplace(matrix_.jacobian(), model.tissue.free_node_count());
+    chequerboards_.emplace(matrix_.jacobian(), model.tissue.free_node_count());
 }
 
 void KeptPreconditioner::weigh() {
@@ -56,7 +56,7 @@ bool KeptPreconditioner::make(const Step& step, const Iterate& at) {
     here.semidefinite_tangent = semidefinite;
     matrix_.assemble(model_, system_.contacts(), here, at);
     weigh();
-    if (pressures_ && !pressures_->factorise(matrix_.jacobian(), matrix_, frames)) continue;
+    if (chequerboards_ && !chequerboards_->factorise(matrix_.jacobian(), matrix_, frames)) continue;
     matrix_.add_constraint_stiffness(model_, at.positions, weights_);
     matrix_.write_projected_blocks(frames, values_);
     if (!preconditioner_->factorise(values_, rigid_motions(at))) continue;
@@ -125,7 +125,7 @@ void KeptPreconditioner::apply_sparse(std::span<Vec3> dx, std::span<double> mult
   const std::size_t rows = multipliers.size(), free = system_.frames().size();
   // J as in the factor: with another, gamma would carry the difference into directions that hardly resist.
   const ConstraintJacobian& J = matrix_.jacobian();
-  if (pressures_) chequered_.assign(multipliers.begin(), multipliers.end());
+  if (chequerboards_) chequered_.assign(multipliers.begin(), multipliers.end());
   parallel_for(rows, [&](std::size_t row) { multipliers[row] *= -weights_[row]; });
   J.add_forces(multipliers, 1, dx);
   system_.project(dx);
@@ -133,16 +133,16 @@ void KeptPreconditioner::apply_sparse(std::span<Vec3> dx, std::span<double> mult
   system_.project(dx);
   model_.tissue.place_hanging(dx);
   J.add_rates(dx, weights_, -1, multipliers);
-  if (!pressures_) return;
+  if (!chequerboards_) return;
   // What gamma W leaves of the volumes' rates: p = L^-1 (g + J dx), dm -= p, dx -= D^-1 J^T p.
   const std::vector<double> unit(rows, 1.0);
   J.add_rates(dx, unit, 1, chequered_);
-  pressures_->solve(chequered_);
+  chequerboards_->solve(chequered_);
   parallel_for(rows, [&](std::size_t row) { multipliers[row] -= chequered_[row]; });
   moved_.resize(free);
   parallel_for(moved_.size(), [&](std::size_t n) { moved_[n].setZero(); });
   J.add_forces(chequered_, -1, moved_);
-  pressures_->displace(moved_);
+  chequerboards_->displace(moved_);
   parallel_for(moved_.size(), [&](std::size_t n) { dx[n] += moved_[n]; });
   system_.project(dx);
   model_.tissue.place_hanging(dx);

@@ -12,10 +12,10 @@
 
 #include "core/uninitialised.hpp"
 #include "solver/algebra/preconditioner.hpp"
+#include "solver/linear/chequerboard_factor.hpp"
 #include "solver/linear/contact_border.hpp"
 #include "solver/linear/dense_border.hpp"
 #include "solver/linear/linearised_step.hpp"
-#include "solver/linear/pressure_factor.hpp"
 #include "solver/linear/step_matrix.hpp"
 
 namespace plica {
@@ -63,7 +63,7 @@ class KeptPreconditioner {
   std::unique_ptr<Preconditioner> preconditioner_;
   const BlockCholesky* factor_ = nullptr;  // it, where it is one; with its border
   ContactBorder contacts_;
-  std::optional<PressureFactor> pressures_;  // for what gamma W does not see
+  std::optional<ChequerboardFactor> chequerboards_;  // for what gamma W does not see
   DenseBorder dense_;
   FactorMemory made_from_;
   std::vector<double> weights_;  // rows

@@ -195,7 +195,7 @@ void StepMatrix::write_values(std::span<const NodeFrame> frames, std::vector<dou
         can_change = can_change || (j >= frame.fixed && local[j] != 0);
       }
     }
-    // A cell all of whose nodes are held needs no pressure; a pivot keeps its row from being empty.
+    // A function none of whose nodes can move needs no multiplier; a pivot keeps its row from being empty.
     values.push_back(can_change ? 0.0 : -1.0);
   }
 }

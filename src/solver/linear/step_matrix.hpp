@@ -1,10 +1,10 @@
 // The symmetric system of one Newton iteration:
-//   [ A  -J^T ] [ dx      ]
-//   [ -J   0  ] [ dlambda ]
-// A: tangent of all laws, 3 x 3 blocks a pair of nodes; J: the sparse rows of the constraints' gradients. Nodes are the
-// free ones: what acts on a hanging node acts on those that carry it. Some nodes have directions
-// in which they are fixed (held, or in contact): their unknowns are turned into a frame whose first axes are those
-// directions, and those rows and columns are taken out.
+//   [ A  -J^T ] [ dx           ]
+//   [ -J   0  ] [ dmultipliers ]
+// A: tangent of all laws, constraints and obstacles, 3 x 3 blocks a pair of nodes; J: the sparse rows of the
+// constraints' gradients. Nodes are the free ones: what acts on a hanging node acts on those that carry it. Some nodes
+// have directions in which they are fixed (held, or in contact): their unknowns are turned into a frame whose first
+// axes are those directions, and those rows and columns are taken out.
 #pragma once
 
 #include <atomic>

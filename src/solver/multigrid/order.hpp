@@ -1,5 +1,5 @@
 // An order of nodes in which neighbours are near each other, so that a few products can follow one another through
-// memory (multigrid_smoother.hpp).
+// memory (smoother.hpp).
 #pragma once
 
 #include "solver/algebra/block_pattern.hpp"

@@ -87,9 +87,8 @@ StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool
   next.multipliers.assign(state.multipliers.size(), 0.0);
   next.contact_forces.assign(state.contact_forces.size(), 0.0);
   next.in_contact.assign(state.in_contact.size(), 0);
-  next.internals.clear();
   step.positions = next.positions;
-  for_laws(model_, step, [&](const Law& law, const Step& own) { next.internals.push_back(law.next_internal(own)); });
+  next.internals = next_internals(model_, step);
   record_motion(state, duration_s, TimeOrder::first, next);
   report.outcome = StepReport::Outcome::converged;
   return report;

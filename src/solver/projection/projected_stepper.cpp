@@ -26,6 +26,9 @@ StepReport ProjectedStepper::advance(const State& state, double duration_s, bool
     return report;
   }
   record_motion(state, duration_s, TimeOrder::first, moved);  // of the whole step
+  Step step{moved.positions, state.positions, state.velocities, duration_s, moved.time_s};
+  step.internals = state.internals;
+  moved.internals = next_internals(model_, step);
   next = std::move(moved);
   return report;
 }

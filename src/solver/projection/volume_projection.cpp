@@ -48,10 +48,11 @@ VolumeProjection::VolumeProjection(const Model& model, const std::optional<Proje
 }
 
 // Mobility: one over what resists a node's motion in a step, drag and mass, which the laws on single nodes say.
-void VolumeProjection::set_weights(double duration_s) {
+void VolumeProjection::set_weights(const State& before, double duration_s) {
   const std::size_t nodes = model_.tissue.node_count();
   const Vectors &at = model_.tissue.rest_positions, along_x(nodes, Vec3::UnitX()), still(nodes, Vec3::Zero());
-  const Step step{at, at, still, duration_s, 0};
+  Step step{at, at, still, duration_s, 0};
+  step.internals = before.internals;
   Vectors resistance(nodes, Vec3::Zero());
   for_laws(model_, step, [&](const Law& law, const Step& own) {
     if (law.node_groups(own.internal).empty()) law.add_tangent_product(own, along_x, resistance);
@@ -78,9 +79,10 @@ void VolumeProjection::push(std::size_t k, double distance_um, Vectors& position
   pushed_[k] += distance_um;
 }
 
-// Puts nodes outside the shell back onto it. A node that was pushed and now has a gap goes back to the shell, at most
-// as far as it was pushed: so the end is the nearest place that obeys shell and volumes, on whatever way it is reached.
-bool VolumeProjection::project_shell(Vectors& positions) {
+// Puts nodes beyond an obstacle back onto it. A node that was pushed and now has a gap goes back to it, at most
+// as far as it was pushed: so the end is the nearest place that obeys obstacles and volumes, on whatever way it is
+// reached.
+bool VolumeProjection::project_obstacles(Vectors& positions) {
   bool moved = false;
   for (std::size_t k = 0; k < pushed_.size(); ++k) {
     const double gap = contacts_.gap(k, positions).value;
@@ -146,7 +148,7 @@ double VolumeProjection::contact_weight(std::size_t k, double duration_s) const 
   return weights_[contacts_.node(k).index()] * duration_s;
 }
 
-// How far off volumes and shell are left.
+// How far off volumes and obstacles are left.
 void VolumeProjection::judge(const Vectors& positions, StepReport& report) const {
   report.constraint_error = report.outside_um = 0;
   for (const auto& [surface, target, cell] : kept_) {
@@ -161,7 +163,7 @@ void VolumeProjection::judge(const Vectors& positions, StepReport& report) const
 
 void VolumeProjection::apply(const State& before, double duration_s, const std::function<bool()>& stop_requested,
                              State& after, StepReport& report) {
-  set_weights(duration_s);
+  set_weights(before, duration_s);
   repeat_last_step(before, duration_s, after);
   bool moved = true;
   for (report.projection_sweeps = 0; moved && report.projection_sweeps < rule_.most_sweeps;
@@ -170,7 +172,7 @@ void VolumeProjection::apply(const State& before, double duration_s, const std::
       report.outcome = StepReport::Outcome::interrupted;
       return;
     }
-    moved = project_shell(after.positions);
+    moved = project_obstacles(after.positions);
     for (std::size_t k = 0; k < kept_.size(); ++k) moved = project(k, after.positions, report) || moved;
   }
   judge(after.positions, report);

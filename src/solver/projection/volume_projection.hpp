@@ -1,5 +1,5 @@
 // The paper's incompressibility (2.5): after the force step, X <- X + l W dV/dX with the real root l nearest zero of
-// the cubic V(X + l W dV/dX) = V0, a closed surface after another, shell and volumes in turn, until all hold.
+// the cubic V(X + l W dV/dX) = V0, a closed surface after another, obstacles and volumes in turn, until all hold.
 // Theory: docs/theory/paper_algorithm.md.
 #pragma once
 
@@ -24,14 +24,14 @@ struct ProjectionRule {
 
 class VolumeProjection {
  public:
-  /// Without a rule only the shell is kept.
+  /// Without a rule only obstacles are kept.
   VolumeProjection(const Model& model, const std::optional<ProjectionRule>& rule);
 
-  /// Moves `after`, where a force step has led from `before`, onto volumes and shell; held directions of nodes stay.
-  /// Multipliers over the step's length are added to the pressures and contact forces of `after`, which come with the
-  /// force step's own part; where weights are equal, as if every node had the mean mobility. The sweeps start from what
-  /// of this `before` has. What was done goes into the report; the outcome is converged, not_projected (with the cell
-  /// that is off most), or interrupted.
+  /// Moves `after`, where a force step has led from `before`, onto volumes and obstacles; held directions of nodes
+  /// stay. Multipliers over the step's length are added to the multipliers of the volumes and contact forces of
+  /// `after`, which come with the force step's own part; where weights are equal, as if every node had the mean
+  /// mobility. The sweeps start from what of this `before` has. What was done goes into the report; the outcome is
+  /// converged, not_projected (with the cell that is off most), or interrupted.
   void apply(const State& before, double duration_s, const std::function<bool()>& stop_requested, State& after,
              StepReport& report);
 
@@ -42,11 +42,11 @@ class VolumeProjection {
     std::optional<CellId> cell;
   };
 
-  void set_weights(double duration_s);
+  void set_weights(const State& before, double duration_s);
   [[nodiscard]] double contact_weight(std::size_t k, double duration_s) const;  // um/nN
   void repeat_last_step(const State& before, double duration_s, State& after);
   void push(std::size_t k, double distance_um, Vectors& positions);
-  bool project_shell(Vectors& positions);
+  bool project_obstacles(Vectors& positions);
   bool project(std::size_t k, Vectors& positions, StepReport& report);
   double look_at(const Kept& kept, const Vectors& positions);
   void move(std::size_t k, double l, Vectors& positions);

@@ -27,7 +27,7 @@ TimeOrder possible_order(const State& before, double step_s);
 /// Mean velocities over the last step, um/s; nodes.
 const Vectors& mean_velocities(const State& state);
 
-/// Velocities and trend of `after`, whose positions and pressures are known, after a step of this length and order.
+/// Velocities and trend of `after`, whose positions and multipliers are known, after a step of this length and order.
 void record_motion(const State& before, double step_s, TimeOrder order, State& after);
 
 /// The error of a step at the node where it is largest, and the order of its estimate: it goes with the length of the

@@ -145,15 +145,13 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
 
 void NewtonStepper::accept(const State& state, const Step& step, double duration_s, TimeOrder order, Iterate at,
                            State& next) const {
-  std::vector<std::vector<double>> internals;
-  for_laws(model_, step, [&](const Law& law, const Step& own) { internals.push_back(law.next_internal(own)); });
+  next.internals = next_internals(model_, step);
   next.time_s = state.time_s + duration_s;
   next.divided_until_s = state.divided_until_s;
   next.positions = std::move(at.positions);
   next.multipliers = std::move(at.multipliers);
   next.contact_forces = std::move(at.contact_forces);
   next.in_contact = std::move(at.in_contact);
-  next.internals = std::move(internals);
   record_motion(state, duration_s, order, next);
 }
 

@@ -30,7 +30,7 @@ struct StepReport {
   int linear_solves = 0;        // back substitutions of a factor, or iterations of conjugate gradients
   double residual = 0;          // relative: of the forces (Newton) or of the linear system (linearly implicit)
   double constraint_error = 0;  // largest relative one
-  double outside_um = 0;        // how far a node is left outside the shell by the projection
+  double outside_um = 0;        // how far a node is left beyond an obstacle by the projection
   int projection_sweeps = 0;
   int cubics = 0;                   // solved by the projection,
   int cubics_with_three_roots = 0;  // and how many of them had three real roots

@@ -11,18 +11,18 @@
 
 namespace plica {
 
-/// L = J D^-1 J^T, cell by cell, and its factor. Cells that share a node are neighbours.
-class PressureFactor {
+/// L = J D^-1 J^T of the sparse rows (cells), and its factor. Rows that share a node are neighbours.
+class ChequerboardFactor {
  public:
-  /// Cells and nodes that join them: analysed once a topology.
-  PressureFactor(const ConstraintJacobian& jacobian, std::size_t free_nodes);
+  /// Rows and nodes that join them: analysed once a topology.
+  ChequerboardFactor(const ConstraintJacobian& jacobian, std::size_t free_nodes);
 
   /// Makes the factor with the diagonal of `matrix` (of A alone) and without the directions that frames fix. False when
   /// a node has no stiffness.
   [[nodiscard]] bool factorise(const ConstraintJacobian& jacobian, const StepMatrix& matrix,
                                std::span<const NodeFrame> frames);
 
-  /// Pressures p with L p = rates, in place; cells: um^3 in, kPa out.
+  /// Multipliers m with L m = rates, in place; sparse rows.
   void solve(std::span<double> rates) const;
 
   /// Displacements by forces where each node is alone: D^-1 f, in place. Fixed directions are the caller's.
@@ -30,7 +30,7 @@ class PressureFactor {
 
  private:
   // The factor's blocks are of three cells, neighbours where there are any.
-  static constexpr int cells_a_block = 3;
+  static constexpr int rows_a_block = 3;
   struct Place {
     int block = 0, row = 0;
   };

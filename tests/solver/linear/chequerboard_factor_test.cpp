@@ -1,4 +1,4 @@
-#include "solver/linear/pressure_factor.hpp"
+#include "solver/linear/chequerboard_factor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,12 +31,12 @@ struct Ball {
 };
 
 // L as it is defined, from products with J and its transpose.
-TEST(PressureFactor, IsTheInverseOfWhatForcesOnSingleNodesDo) {
+TEST(ChequerboardFactor, IsTheInverseOfWhatForcesOnSingleNodesDo) {
   const Ball ball(8);
   StepMatrix matrix(ball.model);
   matrix.assemble(ball.model, Contacts(ball.model), ball.step(), ball.at);
   const ConstraintJacobian& jacobian = matrix.jacobian();
-  PressureFactor factor(jacobian, ball.frames.size());
+  ChequerboardFactor factor(jacobian, ball.frames.size());
   ASSERT_TRUE(factor.factorise(jacobian, matrix, ball.frames));
   Random random(1);
   std::vector<double> pressures(jacobian.sparse_rows());
@@ -53,7 +53,7 @@ TEST(PressureFactor, IsTheInverseOfWhatForcesOnSingleNodesDo) {
 
 // Neighbours with opposite pressures, all over the ball: the more cells, the less they move, and the more iterations
 // it took before.
-TEST(PressureFactor, IterationsHardlyGrowWithTheNumberOfCells) {
+TEST(ChequerboardFactor, IterationsHardlyGrowWithTheNumberOfCells) {
   std::vector<int> iterations;
   for (const int n : {16, 24, 36}) {
     const Ball ball(n);
@@ -73,7 +73,7 @@ TEST(PressureFactor, IterationsHardlyGrowWithTheNumberOfCells) {
 }
 
 // A cell all of whose nodes are held has no row; a node without stiffness has no place.
-TEST(PressureFactor, TakesCellsThatAreHeld) {
+TEST(ChequerboardFactor, TakesCellsThatAreHeld) {
   Ball ball(8);
   for (const NodeId node : ball.model.tissue.elements[7]) ball.model.held[node.index()] = {true, true, true};
   const auto on_shell = ball.model.obstacles.front()->nodes();  // held nodes are never in contact
@@ -82,7 +82,7 @@ TEST(PressureFactor, TakesCellsThatAreHeld) {
   ball.frames = node_frames(ball.model, Contacts(ball.model), ball.at);
   StepMatrix matrix(ball.model);
   matrix.assemble(ball.model, Contacts(ball.model), ball.step(), ball.at);
-  PressureFactor factor(matrix.jacobian(), ball.frames.size());
+  ChequerboardFactor factor(matrix.jacobian(), ball.frames.size());
   ASSERT_TRUE(factor.factorise(matrix.jacobian(), matrix, ball.frames));
   std::vector<double> rates(matrix.jacobian().sparse_rows(), 1.0);
   factor.solve(rates);

@@ -1,4 +1,4 @@
-#include "solver/linear/pressure_factor.hpp"
+#include "solver/linear/chequerboard_factor.hpp"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace plica {
 
-PressureFactor::PressureFactor(const ConstraintJacobian& jacobian, std::size_t free_nodes)
+ChequerboardFactor::ChequerboardFactor(const ConstraintJacobian& jacobian, std::size_t free_nodes)
     : places_(jacobian.sparse_rows(), {-1, 0}), compliances_(free_nodes, 0.0) {
   gather_blocks(jacobian);
   pattern_ = {collect_rows(static_cast<int>(blocks_.size()), [&](int block, const auto& take) {
@@ -18,17 +18,17 @@ PressureFactor::PressureFactor(const ConstraintJacobian& jacobian, std::size_t f
     }
   })};
   factor_.emplace(pattern_);
-  single_.resize(cells_a_block * blocks_.size());
+  single_.resize(rows_a_block * blocks_.size());
 }
 
 // Each cell that is left takes neighbours that are left, those with most nodes in common first.
-void PressureFactor::gather_blocks(const ConstraintJacobian& jacobian) {
+void ChequerboardFactor::gather_blocks(const ConstraintJacobian& jacobian) {
   for (int cell = 0; cell < static_cast<int>(places_.size()); ++cell) {
     if (places_[cell].block >= 0) continue;
     const int block = static_cast<int>(blocks_.size());
     std::array<int, 3> members = {cell, -1, -1};
     places_[cell] = {block, 0};
-    for (int row = 1; row < cells_a_block; ++row) {
+    for (int row = 1; row < rows_a_block; ++row) {
       std::vector<int> around;
       for (const auto& [node, value] : jacobian.of_row(members[row - 1]))
         for (const auto& touch : jacobian.around(node.index()))
@@ -51,8 +51,8 @@ void PressureFactor::gather_blocks(const ConstraintJacobian& jacobian) {
   }
 }
 
-void PressureFactor::write_rows(const ConstraintJacobian& jacobian, std::span<const NodeFrame> frames, int block,
-                                std::span<float> values) const {
+void ChequerboardFactor::write_rows(const ConstraintJacobian& jacobian, std::span<const NodeFrame> frames, int block,
+                                    std::span<float> values) const {
   for (const int cell : blocks_[block]) {
     if (cell < 0) continue;
     for (const auto& [node, value] : jacobian.of_row(cell)) {
@@ -68,14 +68,14 @@ void PressureFactor::write_rows(const ConstraintJacobian& jacobian, std::span<co
   // What is left of modes that resist nothing, for single precision; and cells that are not there, or held altogether.
   constexpr float least = 1e-5F;
   float* diagonal = &values[9 * static_cast<std::size_t>(pattern_.starts[block + 1] - 1)];
-  for (int row = 0; row < cells_a_block; ++row) {
+  for (int row = 0; row < rows_a_block; ++row) {
     float& value = diagonal[4 * row];
     value = value > 0 ? (1 + least) * value : 1;
   }
 }
 
-bool PressureFactor::factorise(const ConstraintJacobian& jacobian, const StepMatrix& matrix,
-                               std::span<const NodeFrame> frames) {
+bool ChequerboardFactor::factorise(const ConstraintJacobian& jacobian, const StepMatrix& matrix,
+                                   std::span<const NodeFrame> frames) {
   parallel_for(compliances_.size(), [&](std::size_t n) { compliances_[n] = 3 / matrix.block(n, n).trace(); });
   if (!std::ranges::all_of(compliances_, [](double c) { return c > 0; })) return false;
   std::vector<float> values(9 * pattern_.columns.size(), 0.0F);
@@ -84,17 +84,17 @@ bool PressureFactor::factorise(const ConstraintJacobian& jacobian, const StepMat
   return factor_->factorise(values);
 }
 
-void PressureFactor::solve(std::span<double> rates) const {
+void ChequerboardFactor::solve(std::span<double> rates) const {
   std::ranges::fill(single_, 0.0F);
   const auto at = [&](std::size_t cell) -> float& {
-    return single_[cells_a_block * static_cast<std::size_t>(places_[cell].block) + places_[cell].row];
+    return single_[rows_a_block * static_cast<std::size_t>(places_[cell].block) + places_[cell].row];
   };
   parallel_for(rates.size(), [&](std::size_t cell) { at(cell) = static_cast<float>(rates[cell]); });
   factor_->solve(single_);
   parallel_for(rates.size(), [&](std::size_t cell) { rates[cell] = at(cell); });
 }
 
-void PressureFactor::displace(std::span<Vec3> forces) const {
+void ChequerboardFactor::displace(std::span<Vec3> forces) const {
   parallel_for(compliances_.size(), [&](std::size_t n) { forces[n] *= compliances_[n]; });
 }
 
