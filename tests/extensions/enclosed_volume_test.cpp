@@ -145,7 +145,6 @@ TEST(EnclosedVolume, IsHeldAsCellsAreAndThePressureIsNotNothing) {
   EXPECT_LE(*held.measures()["max_volume_error"], 1e-9);
 }
 
-// What a dense row costs: about one more solve when the inverse is new, and no blocks.
 // What a dense row costs: one more solve each time, and no blocks. The shell is a little away, since with the lumen
 // held in a sheet that lies on it nothing can move at first, and the constraints are nearly one.
 TEST(EnclosedVolume, CostsFewIterationsMore) {
