@@ -64,8 +64,8 @@ std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> p
 
 double shell_penetration(const Model& model, std::span<const Vec3> positions) {
   double deepest = 0;
-  const Contacts contacts(model);
-  for (std::size_t k = 0; k < contacts.size(); ++k) deepest = std::max(deepest, -contacts.gap(k, positions).value);
+  for (const auto& obstacle : model.obstacles)
+    for (const NodeId n : obstacle->nodes()) deepest = std::max(deepest, -obstacle->gap(positions[n.index()]).value);
   return deepest;
 }
 

@@ -73,13 +73,15 @@ void for_laws(const Model& model, const Step& step, const Body& body) {
 /// The internal states of all laws at the end of a step, whose positions are there.
 std::vector<std::vector<double>> next_internals(const Model& model, const Step& step);
 
-/// Calls body(constraint, where its multipliers begin among all) for every constraint that a step holds.
+/// Calls body(constraint, where its multipliers begin among all, its place in the model) for every constraint that a
+/// step holds.
 template <class Body>
 void for_held_constraints(const Model& model, const Body& body) {
   std::size_t first = 0;
-  for (const auto& constraint : model.constraints) {
-    if (constraint->is_held()) body(*constraint, first);
-    first += constraint->count();
+  for (std::size_t place = 0; place < model.constraints.size(); ++place) {
+    const Constraint& constraint = *model.constraints[place];
+    if (constraint.is_held()) body(constraint, first, place);
+    first += constraint.count();
   }
 }
 

@@ -15,7 +15,7 @@ std::unique_ptr<Stepper> make_stepper(const Model& model, const StepScheme& sche
       (scheme.projection || scheme.forces != StepScheme::Forces::newton || !model.masses().empty()))
     throw std::logic_error("steps of second order are Newton's, without projection or inertia");
   if (scheme.forces != StepScheme::Forces::newton || scheme.projection)
-    for_held_constraints(model, [&](const Constraint& constraint, std::size_t) {
+    for_held_constraints(model, [&](const Constraint& constraint, std::size_t, std::size_t) {
       throw std::logic_error(
           fmt::format("\"{}\" goes with Newton's steps only: the projection keeps the volumes of "
                       "cells, and the linearly implicit scheme none",

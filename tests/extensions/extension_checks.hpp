@@ -40,7 +40,7 @@ inline void expect_same_run_with_every_solver(const Extension& extension) {
   for (std::size_t m = 1; m < ends.size(); ++m)
     for (std::size_t n = 0; n < ends[0].size(); ++n) apart = std::max(apart, (ends[m][n] - ends[0][n]).norm());
   std::printf("direct, cholesky and multigrid end %.1e um apart\n", apart);
-  EXPECT_LE(apart, 1e-4);
+  EXPECT_LE(apart, 1e-6);
 }
 
 /// From every few steps on, by the bytes of a checkpoint where this plica has them.

@@ -10,9 +10,9 @@ ChequerboardFactor::ChequerboardFactor(const ConstraintJacobian& jacobian, std::
     : places_(jacobian.sparse_rows(), {-1, 0}), compliances_(free_nodes, 0.0) {
   gather_blocks(jacobian);
   pattern_ = {collect_rows(static_cast<int>(blocks_.size()), [&](int block, const auto& take) {
-    for (const int cell : blocks_[block]) {
-      if (cell < 0) continue;
-      for (const auto& [node, value] : jacobian.of_row(cell))
+    for (const int row : blocks_[block]) {
+      if (row < 0) continue;
+      for (const auto& [node, value] : jacobian.of_row(row))
         for (const auto& touch : jacobian.around(node.index()))
           if (const int other = places_[touch.row].block; other <= block) take(other);
     }
@@ -21,16 +21,16 @@ ChequerboardFactor::ChequerboardFactor(const ConstraintJacobian& jacobian, std::
   single_.resize(rows_a_block * blocks_.size());
 }
 
-// Each cell that is left takes neighbours that are left, those with most nodes in common first.
+// Each row that is left takes neighbours that are left, those with most nodes in common first.
 void ChequerboardFactor::gather_blocks(const ConstraintJacobian& jacobian) {
-  for (int cell = 0; cell < static_cast<int>(places_.size()); ++cell) {
-    if (places_[cell].block >= 0) continue;
+  for (int row = 0; row < static_cast<int>(places_.size()); ++row) {
+    if (places_[row].block >= 0) continue;
     const int block = static_cast<int>(blocks_.size());
-    std::array<int, 3> members = {cell, -1, -1};
-    places_[cell] = {block, 0};
-    for (int row = 1; row < rows_a_block; ++row) {
+    std::array<int, 3> members = {row, -1, -1};
+    places_[row] = {block, 0};
+    for (int within = 1; within < rows_a_block; ++within) {
       std::vector<int> around;
-      for (const auto& [node, value] : jacobian.of_row(members[row - 1]))
+      for (const auto& [node, value] : jacobian.of_row(members[within - 1]))
         for (const auto& touch : jacobian.around(node.index()))
           if (places_[touch.row].block < 0) around.push_back(touch.row);
       if (around.empty()) break;
@@ -44,8 +44,8 @@ void ChequerboardFactor::gather_blocks(const ConstraintJacobian& jacobian) {
         }
         i = end;
       }
-      members[row] = best;
-      places_[best] = {block, row};
+      members[within] = best;
+      places_[best] = {block, within};
     }
     blocks_.push_back(members);
   }
@@ -53,23 +53,24 @@ void ChequerboardFactor::gather_blocks(const ConstraintJacobian& jacobian) {
 
 void ChequerboardFactor::write_rows(const ConstraintJacobian& jacobian, std::span<const NodeFrame> frames, int block,
                                     std::span<float> values) const {
-  for (const int cell : blocks_[block]) {
-    if (cell < 0) continue;
-    for (const auto& [node, value] : jacobian.of_row(cell)) {
+  for (const int row : blocks_[block]) {
+    if (row < 0) continue;
+    for (const auto& [node, value] : jacobian.of_row(row)) {
       const Vec3 moved = compliances_[node.index()] * frames[node.index()].free_part(value);
       for (const auto& [other, slot] : jacobian.around(node.index())) {
         if (places_[other].block > block) continue;
         const std::size_t at = 9 * static_cast<std::size_t>(pattern_.find(block, places_[other].block)) +
-                               3 * places_[cell].row + places_[other].row;
+                               3 * places_[row].within + places_[other].within;
         values[at] += static_cast<float>(moved.dot(jacobian.of_row(other)[slot].value));
       }
     }
   }
-  // What is left of modes that resist nothing, for single precision; and cells that are not there, or held altogether.
+  // What is left of modes that resist nothing, for single precision; and rows that are not there, or of nodes that are
+  // all held.
   constexpr float least = 1e-5F;
   float* diagonal = &values[9 * static_cast<std::size_t>(pattern_.starts[block + 1] - 1)];
-  for (int row = 0; row < rows_a_block; ++row) {
-    float& value = diagonal[4 * row];
+  for (int within = 0; within < rows_a_block; ++within) {
+    float& value = diagonal[4 * within];
     value = value > 0 ? (1 + least) * value : 1;
   }
 }
@@ -86,12 +87,12 @@ bool ChequerboardFactor::factorise(const ConstraintJacobian& jacobian, const Ste
 
 void ChequerboardFactor::solve(std::span<double> rates) const {
   std::ranges::fill(single_, 0.0F);
-  const auto at = [&](std::size_t cell) -> float& {
-    return single_[rows_a_block * static_cast<std::size_t>(places_[cell].block) + places_[cell].row];
+  const auto at = [&](std::size_t row) -> float& {
+    return single_[rows_a_block * static_cast<std::size_t>(places_[row].block) + places_[row].within];
   };
-  parallel_for(rates.size(), [&](std::size_t cell) { at(cell) = static_cast<float>(rates[cell]); });
+  parallel_for(rates.size(), [&](std::size_t row) { at(row) = static_cast<float>(rates[row]); });
   factor_->solve(single_);
-  parallel_for(rates.size(), [&](std::size_t cell) { rates[cell] = at(cell); });
+  parallel_for(rates.size(), [&](std::size_t row) { rates[row] = at(row); });
 }
 
 void ChequerboardFactor::displace(std::span<Vec3> forces) const {

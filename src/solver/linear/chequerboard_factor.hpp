@@ -11,7 +11,8 @@
 
 namespace plica {
 
-/// L = J D^-1 J^T of the sparse rows (cells), and its factor. Rows that share a node are neighbours.
+/// L = J D^-1 J^T of the sparse rows, each a cell's volume or another function of few nodes, and its factor. Rows that
+/// share a node are neighbours.
 class ChequerboardFactor {
  public:
   /// Rows and nodes that join them: analysed once a topology.
@@ -29,17 +30,17 @@ class ChequerboardFactor {
   void displace(std::span<Vec3> forces) const;
 
  private:
-  // The factor's blocks are of three cells, neighbours where there are any.
+  // The factor's blocks are of three rows of J, neighbours where there are any.
   static constexpr int rows_a_block = 3;
   struct Place {
-    int block = 0, row = 0;
+    int block = 0, within = 0;
   };
   void gather_blocks(const ConstraintJacobian& jacobian);
   void write_rows(const ConstraintJacobian& jacobian, std::span<const NodeFrame> frames, int block,
                   std::span<float> values) const;
 
-  std::vector<Place> places_;               // cells
-  std::vector<std::array<int, 3>> blocks_;  // their cells; -1: none
+  std::vector<Place> places_;               // rows
+  std::vector<std::array<int, 3>> blocks_;  // their rows; -1: none
   BlockPattern pattern_;
   std::optional<BlockCholesky> factor_;
   std::vector<double> compliances_;  // of D^-1; nodes, um/nN

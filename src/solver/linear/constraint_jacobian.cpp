@@ -9,9 +9,7 @@ namespace plica {
 
 ConstraintJacobian::ConstraintJacobian(const Model& model) : node_start_(model.tissue.free_node_count() + 1, 0) {
   for (const bool dense : {false, true}) {
-    std::size_t place = 0;
-    for_held_constraints(model, [&](const Constraint& constraint, std::size_t first_multiplier) {
-      while (model.constraints[place].get() != &constraint) ++place;
+    for_held_constraints(model, [&](const Constraint& constraint, std::size_t first_multiplier, std::size_t place) {
       if (constraint.is_dense() != dense) return;
       const std::size_t first_row = multiplier_.size(), functions = constraint.count();
       for (std::size_t f = 0; f < functions; ++f) multiplier_.push_back(first_multiplier + f);
@@ -59,7 +57,7 @@ void ConstraintJacobian::add_sparse(const Tissue& tissue, Source& source, std::s
           const int slot = offset + static_cast<int>(at - members.begin());
           const bool hangs = n != node;
           source.slots[place] = hangs ? -1 : slot;
-          if (hangs) source.hanging.push_back({place, slot, weight});
+          if (hangs) source.hanging.push_back({part, place, slot, weight});
         });
       }
     for (const NodeId node : members) gradients_.push_back({node, Vec3::Zero()});
@@ -76,7 +74,7 @@ void ConstraintJacobian::add_dense(const Tissue& tissue, Source& source, std::si
       const std::size_t place = parts.start(part) + i;
       tissue.for_free_nodes(node, [&](NodeId n, double weight) {
         source.slots[place] = n == node ? n.number() : -1;
-        if (n != node) source.hanging.push_back({place, n.number(), weight});
+        if (n != node) source.hanging.push_back({part, place, n.number(), weight});
       });
     }
   dense_.resize(dense_.size() + functions, Vectors(tissue.free_node_count()));
@@ -116,13 +114,7 @@ void ConstraintJacobian::update(const Model& model, std::span<const Vec3> positi
             if (source.slots[place] >= 0) at(part, source.slots[place]) += of_parts[place];
         },
         true);
-    std::size_t part = 0;
-    for (const auto& [place, slot, weight] : source.hanging) {
-      // By function, not by part: look for the part from the beginning where they go back.
-      if (place < source.parts.nodes.start(part)) part = 0;
-      while (place >= source.parts.nodes.start(part + 1)) ++part;
-      at(part, slot) += weight * of_parts[place];
-    }
+    for (const auto& [part, place, slot, weight] : source.hanging) at(part, slot) += weight * of_parts[place];
   }
 }
 

@@ -83,7 +83,7 @@ class ConstraintJacobian {
 
  private:
   struct HangingSlot {
-    std::size_t place;  // among the nodes of all parts
+    std::size_t part, place;  // place: among the nodes of all parts
     int slot;
     double weight;
   };

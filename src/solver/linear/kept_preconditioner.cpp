@@ -125,7 +125,6 @@ void KeptPreconditioner::apply_sparse(std::span<Vec3> dx, std::span<double> mult
   const std::size_t rows = multipliers.size(), free = system_.frames().size();
   // J as in the factor: with another, gamma would carry the difference into directions that hardly resist.
   const ConstraintJacobian& J = matrix_.jacobian();
-  if (chequerboards_) chequered_.assign(multipliers.begin(), multipliers.end());
   parallel_for(rows, [&](std::size_t row) { multipliers[row] *= -weights_[row]; });
   J.add_forces(multipliers, 1, dx);
   system_.project(dx);
@@ -134,9 +133,9 @@ void KeptPreconditioner::apply_sparse(std::span<Vec3> dx, std::span<double> mult
   model_.tissue.place_hanging(dx);
   J.add_rates(dx, weights_, -1, multipliers);
   if (!chequerboards_) return;
-  // What gamma W leaves of the volumes' rates: p = L^-1 (g + J dx), dm -= p, dx -= D^-1 J^T p.
-  const std::vector<double> unit(rows, 1.0);
-  J.add_rates(dx, unit, 1, chequered_);
+  // What gamma W leaves of the volumes' rates, g + J dx = -dm / (gamma W): p = L^-1 of it, dm -= p, dx -= D^-1 J^T p.
+  chequered_.resize(rows);
+  parallel_for(rows, [&](std::size_t row) { chequered_[row] = -multipliers[row] / weights_[row]; });
   chequerboards_->solve(chequered_);
   parallel_for(rows, [&](std::size_t row) { multipliers[row] -= chequered_[row]; });
   moved_.resize(free);

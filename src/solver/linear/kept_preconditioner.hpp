@@ -68,7 +68,7 @@ class KeptPreconditioner {
   FactorMemory made_from_;
   std::vector<double> weights_;  // rows
 
-  mutable std::vector<double> chequered_, sparse_;  // scratch
+  mutable std::vector<double> chequered_;  // scratch
   mutable Vectors moved_;
   mutable std::vector<float> single_;
   UninitialisedVector<float> values_;

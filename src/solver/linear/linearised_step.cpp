@@ -50,7 +50,7 @@ void LinearisedStep::multiply(const Step& step, const Iterate& at, const KrylovV
   parallel_for(forces.size(), [&](std::size_t n) { forces[n].setZero(); });
   for_laws(model_, step, [&](const Law& law, const Step& own) { law.add_tangent_product(own, dx, forces); });
   if (!step.semidefinite_tangent)
-    for_held_constraints(model_, [&](const Constraint& constraint, std::size_t first) {
+    for_held_constraints(model_, [&](const Constraint& constraint, std::size_t first, std::size_t) {
       constraint.add_tangent_product(at.positions, std::span(at.multipliers).subspan(first, constraint.count()), dx,
                                      forces);
     });

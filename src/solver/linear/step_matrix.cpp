@@ -18,7 +18,8 @@ Rows joined_nodes(const Model& model, const Step& step) {
     if (std::ranges::find(lists, groups) == lists.end()) lists.push_back(std::move(groups));
   };
   for_laws(model, step, [&](const Law& law, const Step& own) { take(law.node_groups(own.internal)); });
-  for_held_constraints(model, [&](const Constraint& constraint, std::size_t) { take(constraint.parts().nodes); });
+  for_held_constraints(model,
+                       [&](const Constraint& constraint, std::size_t, std::size_t) { take(constraint.parts().nodes); });
   Rows joined;
   for (const NodeGroups& groups : lists)
     for (std::size_t k = 0; k < groups.size(); ++k) {
@@ -116,7 +117,7 @@ void StepMatrix::assemble(const Model& model, const Contacts& contacts, const St
     law.add_tangent(own, *this);
     refuse_outside(law.name());
   });
-  for_held_constraints(model, [&](const Constraint& constraint, std::size_t first) {
+  for_held_constraints(model, [&](const Constraint& constraint, std::size_t first, std::size_t) {
     if (step.semidefinite_tangent) return;
     constraint.add_tangent(at.positions, std::span(at.multipliers).subspan(first, constraint.count()), *this);
     refuse_outside(constraint.name());

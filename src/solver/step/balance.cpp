@@ -89,9 +89,7 @@ Residual Balance::residual(const Step& step, Iterate& at) const {
     take();
   });
   r.deficits.assign(at.multipliers.size(), 0.0);
-  std::size_t place = 0;
-  for_held_constraints(model_, [&](const Constraint& constraint, std::size_t first) {
-    while (model_.constraints[place].get() != &constraint) ++place;
+  for_held_constraints(model_, [&](const Constraint& constraint, std::size_t first, std::size_t place) {
     constraint.add_forces(at.positions, std::span(at.multipliers).subspan(first, constraint.count()), of_one);
     take();
     const std::span<double> deficits = std::span(r.deficits).subspan(first, constraint.count());
