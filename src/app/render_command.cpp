@@ -10,6 +10,7 @@
 #include "app/output_file.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/names.hpp"
 #include "scenario/suggest.hpp"
 #include "show/run_pictures.hpp"
 #include "tissue/hexahedral_mesh.hpp"
@@ -24,13 +25,6 @@ struct RenderCommand {
   std::vector<std::string> views, times;
   bool strip = false, movie = false, no_edges = false, shell = false, overwrite = false, quiet = false;
 };
-
-std::vector<std::string> names_of(const auto& things) {
-  std::vector<std::string> names;
-  names.reserve(things.size());
-  for (const auto& thing : things) names.push_back(thing.name);
-  return names;
-}
 
 /// The view or quantity of that name.
 template <class Thing>

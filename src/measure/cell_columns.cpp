@@ -1,7 +1,6 @@
 #include "measure/cell_columns.hpp"
 
 #include <limits>
-#include <ranges>
 
 #include "core/units.hpp"
 #include "measure/cells.hpp"
@@ -155,6 +154,6 @@ std::span<const NodeColumn> node_columns() { return nodes_table(); }
 std::span<const MidlineColumn> midline_columns() { return midline_table(); }
 std::span<const LineageColumn> lineage_columns() { return lineage_table(); }
 
-std::vector<std::string> cells_csv_names() { return names_of(cells_table() | std::views::filter(&CellColumn::in_csv)); }
+std::vector<std::string> cells_csv_names() { return names_of(cells_table(), &CellColumn::in_csv); }
 
 }  // namespace plica

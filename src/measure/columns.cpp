@@ -1,7 +1,6 @@
 #include "measure/columns.hpp"
 
 #include <algorithm>
-#include <ranges>
 #include <stdexcept>
 
 #include "measure/cells.hpp"
@@ -190,7 +189,7 @@ std::size_t column_index(std::string_view name) {
   return static_cast<std::size_t>(found - columns().begin());
 }
 
-std::vector<std::string> series_names() { return names_of(columns() | std::views::filter(&Column::in_series)); }
+std::vector<std::string> series_names() { return names_of(columns(), &Column::in_series); }
 
 std::vector<const Column*> summary_columns() {
   std::vector<const Column*> found;

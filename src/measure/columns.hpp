@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/names.hpp"
 #include "measure/furrow.hpp"
 #include "measure/speed_history.hpp"
 
@@ -55,14 +56,6 @@ std::span<const Column> columns();
 
 /// The place of a column in the table. std::logic_error when there is none of that name.
 std::size_t column_index(std::string_view name);
-
-/// Names of a table's columns, in their order.
-template <class Columns>
-std::vector<std::string> names_of(Columns&& columns) {
-  std::vector<std::string> names;
-  for (const auto& column : columns) names.emplace_back(column.name);
-  return names;
-}
 
 /// Those of series.csv, monitors apart.
 std::vector<std::string> series_names();

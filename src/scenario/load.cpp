@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/files.hpp"
+#include "core/names.hpp"
 #include "scenario/builtin.hpp"
 #include "scenario/nesting.hpp"
 #include "scenario/read_layer.hpp"
@@ -23,12 +24,6 @@ struct Document {
   toml::table table;
 };
 
-std::vector<std::string> builtin_names() {
-  std::vector<std::string> names;
-  for (const BuiltinScenario& scenario : builtin_scenarios()) names.emplace_back(scenario.name);
-  return names;
-}
-
 /// The scenario that `base` of `document` names. Reports it and returns nothing where there is none.
 std::optional<ScenarioSource> find_base(const Document& document, const std::vector<Document>& chain,
                                         std::vector<Diagnostic>& diagnostics) {
@@ -40,7 +35,7 @@ std::optional<ScenarioSource> find_base(const Document& document, const std::vec
     diagnostics.push_back({document.source.file, line, "base", problem, remedy});
   };
   try {
-    const bool is_builtin = std::ranges::count(builtin_names(), *name) > 0;
+    const bool is_builtin = std::ranges::count(names_of(builtin_scenarios()), *name) > 0;
     ScenarioSource found =
         find_scenario(is_builtin ? *name : (fs::path(document.source.file).parent_path() / *name).string());
     const auto same = [&](const Document& other) {
@@ -154,7 +149,7 @@ ScenarioSource find_scenario(const std::string& name_or_path) {
   std::error_code error;
   if (!fs::exists(path, error)) {
     throw UsageError(fmt::format("\"{}\" is neither a built-in scenario nor a file; {}", name_or_path,
-                                 did_you_mean(path.stem().string(), builtin_names())));
+                                 did_you_mean(path.stem().string(), names_of(builtin_scenarios()))));
   }
   return {path.stem().string(), name_or_path, read_file(path, largest_scenario_bytes)};
 }
@@ -173,7 +168,7 @@ Scenario load_scenario(const ScenarioSource& source, const std::vector<std::stri
     read_layer(document.table, {document.source.file, layer++, true}, scenario, input);
     // What a built-in expects holds for the built-in as it is, not for what is made of it.
     const bool changed = &document != &documents.back() || !overrides.empty();
-    if (changed && std::ranges::count(builtin_names(), document.source.file) > 0) forget_expectations(scenario, input);
+    if (changed && std::ranges::count(names_of(builtin_scenarios()), document.source.file) > 0) forget_expectations(scenario, input);
   }
   read_overrides(overrides, layer, scenario, input);
   // Without a base, what it gives would be missed everywhere.

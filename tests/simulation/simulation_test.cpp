@@ -183,7 +183,9 @@ TEST(Simulation, StopsWhenAskedAndGoesOnWhenAskedAgain) {
 
 TEST(Simulation, ACriterionEndsItAsPlannedAndAtRestAsEquilibrium) {
   Watch soon;
-  soon.monitors.push_back({.name = "clock", .quantity = Quantity::time});
+  Monitor& clock = soon.monitors.emplace_back();
+  clock.name = "clock";
+  clock.quantity = Quantity::time;
   soon.stop.criteria.push_back({.name = "late", .monitor = 0, .above = 0.1});
   const Simulation early = ran(dimpling_sheet(), RunControls{}, {}, soon);
   EXPECT_EQ(early.status(), RunStatus::end_time);

@@ -1,0 +1,21 @@
+// Names of the rows of a table.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace plica {
+
+inline constexpr auto every_row = [](const auto&) { return true; };
+
+/// Names in the table's order: of all rows, or of those for which `which` (a member, or a function) is true.
+template <class Rows, class Which = decltype(every_row)>
+std::vector<std::string> names_of(const Rows& rows, Which which = every_row) {
+  std::vector<std::string> names;
+  for (const auto& row : rows)
+    if (std::invoke(which, row)) names.emplace_back(row.name);
+  return names;
+}
+
+}  // namespace plica
