@@ -1,7 +1,6 @@
 #include "mechanics/division.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -170,12 +169,6 @@ void grow(Model& model, double time_s) {
   }
   if (!changed.empty())
     for (const auto& law : model.laws) law->take_rest_shapes(model.tissue, changed);
-}
-
-double growth_end_s(const Model& model) {
-  double end = std::numeric_limits<double>::lowest();
-  for (const Growth& growth : model.growths) end = std::max(end, growth.end_s);
-  return end;
 }
 
 }  // namespace plica

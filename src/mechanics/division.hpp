@@ -25,8 +25,4 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
 /// be taken again.
 void grow(Model& model, double time_s);
 
-/// When the last daughter has grown up, s; the beginning of time when none has to. Who had before the last division is
-/// not counted.
-double growth_end_s(const Model& model);
-
 }  // namespace plica

@@ -4,6 +4,7 @@
 #include "core/files.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "scenario/load.hpp"
+#include "scenario/words.hpp"
 
 namespace plica {
 
@@ -20,9 +21,11 @@ std::optional<Scenario> scenario_of_run(const std::filesystem::path& directory) 
 
 std::optional<Capsule> shell_of_run(const Scenario& scenario, const Vectors& rest_positions) {
   const EmbryoInput& embryo = scenario.embryo;
-  if (!scenario.vitelline.enabled || embryo.shape == "block") return {};
-  const double radius = embryo.diameter_um / 2, half_axis = embryo.shape == "pill" ? embryo.length_um / 2 - radius : 0;
-  Capsule shell = embryo.shape == "file" ? enclosing_capsule(rest_positions) : Capsule{half_axis, radius};
+  if (!scenario.vitelline.enabled || shape_of(embryo) == EmbryoShape::block) return {};
+  const double radius = embryo.diameter_um / 2,
+               half_axis = shape_of(embryo) == EmbryoShape::pill ? embryo.length_um / 2 - radius : 0;
+  Capsule shell =
+      shape_of(embryo) == EmbryoShape::file ? enclosing_capsule(rest_positions) : Capsule{half_axis, radius};
   shell.radius_um += scenario.vitelline.gap_um;
   return shell;
 }

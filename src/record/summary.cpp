@@ -13,6 +13,7 @@
 #include "core/version.hpp"
 #include "scenario/print.hpp"
 #include "scenario/regions.hpp"
+#include "scenario/words.hpp"
 
 namespace plica {
 namespace {
@@ -94,7 +95,7 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   for (const auto& [column, value] : values)
     if (!column->of_projection) summary[column->name] = in_json(*column, value);
   for (std::size_t m = 0; m < monitors.size(); ++m) summary[monitors[m].column()] = number(last_value(rows, m));
-  const bool projects = scenario.volume.method == "projection";
+  const bool projects = method_of(scenario.volume) == VolumeMethod::projection;
   for (const auto& [column, value] : values)
     if (column->of_projection) summary[column->name] = projects ? in_json(*column, value) : Json(nullptr);
   summary["provenance"] = {{"version", version()},

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "mechanics/elasticity/shape_memory.hpp"
+#include "scenario/words.hpp"
 #include "tissue/mesh_quality.hpp"
 
 namespace plica {
@@ -55,12 +56,13 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   if (scenario.time.step_s && *scenario.time.step_s > scenario.time.end_s)
     warn("time.step_s is longer than the whole run");
   advise_on_shape_memory(scenario, model, note, warn);
-  if (scenario.volume.method == "coupled" && scenario.elasticity.model == "corotational")
+  if (method_of(scenario.volume) == VolumeMethod::coupled &&
+      model_of(scenario.elasticity) == ElasticModel::corotational)
     note(
         "every cell's volume is held exactly, so Poisson's ratio sets only the shear modulus and how far parts of a "
         "cell "
         "may swell at each other's cost");
-  if (scenario.volume.method == "projection") {
+  if (method_of(scenario.volume) == VolumeMethod::projection) {
     note("volumes are projected after the forces: where the embryo comes to rest depends on time.step_s");
     if (!scenario.time.step_s && scenario.volume.projection_weights == "equal")
       warn(
@@ -71,7 +73,7 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   if (scenario.vitelline.enabled && scenario.vitelline.gap_um > 0)
     note(fmt::format("the embryo starts {} um away from its shell", scenario.vitelline.gap_um));
 
-  if (scenario.vitelline.enabled && scenario.embryo.shape == "file") {
+  if (scenario.vitelline.enabled && shape_of(scenario.embryo) == EmbryoShape::file) {
     const Capsule& mesh = *model.tissue.outer_shape;
     const double radius_um = mesh.radius_um + scenario.vitelline.gap_um;
     note(fmt::format("the shell is the capsule along x around the mesh, {:.4g} um long and {:.4g} um across",

@@ -6,6 +6,7 @@
 
 #include "measure/monitor.hpp"
 #include "scenario/suggest.hpp"
+#include "scenario/words.hpp"
 
 namespace plica {
 namespace {
@@ -43,7 +44,8 @@ void check_monitor(const std::string& path, const MonitorInput& monitor, const S
       input.sound("dynamics.density_kg_per_m3"))
     input.report(address, "a body without mass has no kinetic energy",
                  "give a density in [dynamics], or monitor speed");
-  if (info->quantity == Quantity::pressure && scenario.volume.method == "none" && input.sound("volume.method"))
+  if (info->quantity == Quantity::pressure && method_of(scenario.volume) == VolumeMethod::none &&
+      input.sound("volume.method"))
     input.report(address, "cells that do not hold their volume have no pressure", "give volume.method = \"coupled\"");
 }
 

@@ -29,6 +29,8 @@ struct RegionInput {
   std::vector<std::string> unite, intersect, except;  // TOML keys: union, intersect, except
 };
 
+enum class EmbryoShape { pill, sphere, block, file };
+
 struct EmbryoInput {
   std::string shape = "pill";  // pill | sphere | block | file
   double length_um = 460;      // pill, block: along x
@@ -42,14 +44,18 @@ struct EmbryoInput {
                              // empty: the outer surface
 };
 
+enum class ElasticModel { corotational, shape_memory };
+
 struct ElasticityInput {
-  std::string model = "corotational";
+  std::string model = "corotational";  // corotational | shape-memory
   double young_modulus_Pa = 1000;
   double poisson_ratio = 0.45;
   std::optional<double> attractor_stiffness_nN_per_um;  // shape-memory; empty: derived from the two above
   double attractor_preload_nN = 0;                      // shape-memory
   double attractor_preload_length_um = 0.5;             // shape-memory: the preload acts in full farther off than this
 };
+
+enum class VolumeMethod { coupled, projection, none };
 
 struct VolumeInput {
   std::string method = "coupled";            // coupled | projection | none

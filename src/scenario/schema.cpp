@@ -85,7 +85,7 @@ const std::vector<Row>& rows() {
       row("", "base", no_field(), anything,
           "Built-in name, or path relative to this file, of the scenario to inherit from key by key."),
 
-      row("embryo", "shape", at(&S::embryo, &E::shape), one_of({"pill", "sphere", "block", "file"}),
+      row("embryo", "shape", at(&S::embryo, &E::shape), one_of(words::embryo_shapes),
           "Closed sheets (pill, sphere), a block of cells, or a mesh file."),
       row("embryo", "length_um", at(&S::embryo, &E::length_um), positive, "Length along x (µm).",
           {.shapes = {"pill", "block"}}),
@@ -123,7 +123,7 @@ const std::vector<Row>& rows() {
       row("region.*", "intersect", at(&S::regions, &R::intersect), anything, "Only cells of each of these regions."),
       row("region.*", "except", at(&S::regions, &R::except), anything, "No cells of these regions."),
 
-      row("elasticity", "model", at(&S::elasticity, &ElasticityInput::model), one_of({"corotational", "shape-memory"}),
+      row("elasticity", "model", at(&S::elasticity, &ElasticityInput::model), one_of(words::elastic_models),
           "Elastic law of a cell: isotropic in a frame that turns with it, or springs from its nodes to their places "
           "in "
           "the rest shape that follows it."),
@@ -144,7 +144,7 @@ const std::vector<Row>& rows() {
           at(&S::elasticity, &ElasticityInput::attractor_preload_length_um), positive,
           "Model shape-memory: how far from its place a node feels 0.7 of the preload (µm); it has no direction at 0."),
 
-      row("volume", "method", at(&S::volume, &VolumeInput::method), one_of({"coupled", "projection", "none"}),
+      row("volume", "method", at(&S::volume, &VolumeInput::method), one_of(words::volume_methods),
           "How cells keep their volume: as constraints of each step; by the paper's projection after it, so that the "
           "state of rest depends on the step; or not."),
       row("volume", "projection_surface", at(&S::volume, &VolumeInput::projection_surface),

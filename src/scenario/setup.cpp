@@ -21,22 +21,30 @@ namespace {
 
 Program make_program(const ProgramInput& input) { return {input.time_s, input.activity}; }
 
-Tissue build_tissue(const Scenario& scenario) {
+Tissue read_tissue(const Scenario& scenario) {
   const EmbryoInput& embryo = scenario.embryo;
-  if (embryo.shape == "block")
-    return build_block(
-        {embryo.length_um, embryo.width_um, embryo.cell_height_um, embryo.cells, embryo.elements_per_cell});
-  if (embryo.shape == "file") {
-    try {
-      Tissue tissue = read_mesh_file(embryo.file, embryo.apical_array, embryo.elements_per_cell);
-      if (scenario.vitelline.enabled) tissue.outer_shape = enclosing_capsule(tissue.rest_positions);
-      return tissue;
-    } catch (const MeshError& error) {
-      throw ScenarioError({diagnostic_at(scenario, "embryo.file", error.what(), "")});
-    }
+  try {
+    Tissue tissue = read_mesh_file(embryo.file, embryo.apical_array, embryo.elements_per_cell);
+    if (scenario.vitelline.enabled) tissue.outer_shape = enclosing_capsule(tissue.rest_positions);
+    return tissue;
+  } catch (const MeshError& error) {
+    throw ScenarioError({diagnostic_at(scenario, "embryo.file", error.what(), "")});
   }
-  const double length = embryo.shape == "sphere" ? embryo.diameter_um : embryo.length_um;
-  return build_shell({length, embryo.diameter_um, embryo.cell_height_um, embryo.cells, embryo.elements_per_cell});
+}
+
+Tissue build_tissue(const Scenario& scenario) {
+  const EmbryoInput& e = scenario.embryo;
+  switch (shape_of(e)) {
+    case EmbryoShape::pill:
+      return build_shell({e.length_um, e.diameter_um, e.cell_height_um, e.cells, e.elements_per_cell});
+    case EmbryoShape::sphere:
+      return build_shell({e.diameter_um, e.diameter_um, e.cell_height_um, e.cells, e.elements_per_cell});
+    case EmbryoShape::block:
+      return build_block({e.length_um, e.width_um, e.cell_height_um, e.cells, e.elements_per_cell});
+    case EmbryoShape::file:
+      break;
+  }
+  return read_tissue(scenario);
 }
 
 // A mesh may be so coarse, thick or short that cells turn inside out where it is bent most.
@@ -66,7 +74,7 @@ void add_elasticity(const Scenario& scenario, Model& model) {
   const double viscosity = scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second;
   const ElasticModuli moduli = ElasticModuli::from_young(young_modulus, input.poisson_ratio);
   model.stiffness_scale = young_modulus;
-  if (input.model == "shape-memory") {
+  if (model_of(input) == ElasticModel::shape_memory) {
     const AttractorSprings springs{input.attractor_stiffness_nN_per_um.value_or(0), moduli.shear_modulus,
                                    input.attractor_preload_nN, input.attractor_preload_length_um};
     auto law = std::make_unique<ShapeMemory>(model.tissue, springs, viscosity);
@@ -179,7 +187,7 @@ Tissue make_tissue(const Scenario& scenario) {
 std::unique_ptr<Model> make_model(const Scenario& scenario) {
   auto model = std::make_unique<Model>(make_tissue(scenario));
   const Tissue& tissue = model->tissue;
-  model->volumes().hold(scenario.volume.method == "coupled");
+  model->volumes().hold(method_of(scenario.volume) == VolumeMethod::coupled);
   add_elasticity(scenario, *model);
   add_contractions(scenario, *model);
   add_pressures(scenario, *model);

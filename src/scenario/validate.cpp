@@ -10,6 +10,7 @@
 #include "scenario/monitor_rules.hpp"
 #include "scenario/suggest.hpp"
 #include "scenario/validate_laws.hpp"
+#include "scenario/words.hpp"
 
 namespace plica {
 namespace {
@@ -19,7 +20,7 @@ constexpr std::int64_t max_elements = 20'000'000;
 /// Cells of a built shape. A closed sheet has one layer of cells on each of its six sides.
 std::int64_t cell_count(const EmbryoInput& embryo) {
   const std::int64_t a = embryo.cells[0], b = embryo.cells[1], c = embryo.cells[2];
-  return embryo.shape == "block" ? a * b * c : 2 * (a * b + b * c + c * a);
+  return shape_of(embryo) == EmbryoShape::block ? a * b * c : 2 * (a * b + b * c + c * a);
 }
 
 /// A key that the shape does not use is an error where it was given along with the shape or after it, and is dropped
@@ -37,7 +38,7 @@ void check_unused_keys(Scenario& scenario, Input& input) {
     }
     reset_to_default(*row, scenario, "");
   }
-  if (shape == "sphere") scenario.embryo.length_um = scenario.embryo.diameter_um;
+  if (shape_of(scenario.embryo) == EmbryoShape::sphere) scenario.embryo.length_um = scenario.embryo.diameter_um;
 }
 
 void check_element_count(const EmbryoInput& embryo, Input& input) {
@@ -54,18 +55,19 @@ void check_embryo(Scenario& scenario, Input& input) {
   check_unused_keys(scenario, input);
   const EmbryoInput& embryo = scenario.embryo;
   const auto sound = [&](std::string_view key) { return input.sound(fmt::format("embryo.{}", key)); };
-  if (embryo.shape == "file") {
+  if (shape_of(embryo) == EmbryoShape::file) {
     if (embryo.file.empty() && sound("file")) {
       input.report("embryo.file", "is missing", "name the mesh file for shape \"file\"");
     }
     return;
   }
-  if (embryo.shape == "pill" && sound("length_um") && sound("diameter_um") && embryo.length_um < embryo.diameter_um) {
+  if (shape_of(embryo) == EmbryoShape::pill && sound("length_um") && sound("diameter_um") &&
+      embryo.length_um < embryo.diameter_um) {
     input.report("embryo.length_um",
                  fmt::format("{} is less than the diameter, {}", embryo.length_um, embryo.diameter_um),
                  "give a length of at least diameter_um");
   }
-  if (embryo.shape != "block" && sound("cell_height_um") && sound("diameter_um") &&
+  if (shape_of(embryo) != EmbryoShape::block && sound("cell_height_um") && sound("diameter_um") &&
       embryo.cell_height_um >= embryo.diameter_um / 2) {
     input.report("embryo.cell_height_um", fmt::format("{} leaves no room inside the embryo", embryo.cell_height_um),
                  fmt::format("give less than half of diameter_um, {}", embryo.diameter_um / 2));
@@ -74,7 +76,7 @@ void check_embryo(Scenario& scenario, Input& input) {
 }
 
 void check_vitelline(Scenario& scenario, Input& input) {
-  if (scenario.embryo.shape != "block" || !input.sound("vitelline.enabled")) return;
+  if (shape_of(scenario.embryo) != EmbryoShape::block || !input.sound("vitelline.enabled")) return;
   if (input.place("vitelline.enabled") == nullptr) scenario.vitelline.enabled = false;
   if (scenario.vitelline.enabled) {
     input.report("vitelline.enabled", "a shell needs a closed embryo, and a block is none", "give false");
@@ -103,7 +105,8 @@ void check_keys_of_choices(Scenario& scenario, Input& input) {
     std::string_view table, key, chosen_by, value;
     bool made;
   };
-  const bool projection = scenario.volume.method == "projection", cg = scenario.time.scheme == "linearly-implicit";
+  const bool projection = method_of(scenario.volume) == VolumeMethod::projection,
+             cg = scenario.time.scheme == "linearly-implicit";
   for (const Choice& choice : {Choice{"volume", "projection_surface", "volume.method", "projection", projection},
                                {"volume", "projection_weights", "volume.method", "projection", projection},
                                {"time", "cg_tolerance", "time.scheme", "linearly-implicit", cg},
@@ -123,15 +126,16 @@ void check_keys_of_choices(Scenario& scenario, Input& input) {
 
 void check_scheme(const Scenario& scenario, Input& input) {
   if (!input.sound("time.scheme") || !input.sound("volume.method") || !input.sound("embryo.shape")) return;
-  if (scenario.time.scheme == "linearly-implicit" && scenario.volume.method == "coupled")
+  if (scenario.time.scheme == "linearly-implicit" && method_of(scenario.volume) == VolumeMethod::coupled)
     input.report("time.scheme",
                  "solves forces only, it cannot hold volumes as constraints (volume.method is \"coupled\")",
                  "give volume.method = \"projection\" or \"none\", or scheme = \"newton\"");
-  if (!scenario.divisions.empty() && (scenario.volume.method == "projection" || scenario.time.scheme != "newton"))
-    input.report(scenario.volume.method == "projection" ? "volume.method" : "time.scheme",
+  if (!scenario.divisions.empty() &&
+      (method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton"))
+    input.report(method_of(scenario.volume) == VolumeMethod::projection ? "volume.method" : "time.scheme",
                  "cells cannot divide under the paper's algorithm",
                  "give method = \"coupled\" or \"none\" and scheme = \"newton\", or no [division]");
-  if (scenario.volume.projection_surface == "embryo" && scenario.embryo.shape == "block" &&
+  if (scenario.volume.projection_surface == "embryo" && shape_of(scenario.embryo) == EmbryoShape::block &&
       input.sound("volume.projection_surface"))
     input.report("volume.projection_surface", "the apical surface of a block encloses nothing",
                  "give \"cells\" or \"tissue\"");
@@ -143,7 +147,7 @@ void check_integrator(const Scenario& scenario, Input& input) {
     input.report("time.integrator", "second order in time does not go with " + why, "give \"backward-euler\"");
   };
   if (scenario.time.scheme != "newton") return refuse(fmt::format("time.scheme = \"{}\"", scenario.time.scheme));
-  if (scenario.volume.method == "projection") return refuse("volume.method = \"projection\"");
+  if (method_of(scenario.volume) == VolumeMethod::projection) return refuse("volume.method = \"projection\"");
   if (scenario.dynamics.density_kg_per_m3 > 0) return refuse("dynamics.density_kg_per_m3 above 0");
 }
 
@@ -244,7 +248,7 @@ class RegionCheck {
       input_.report(path, "selects nothing", "give face, ids, array, x_um, y_um, z_um, union, intersect or except");
     }
     if (!input_.sound("embryo.shape")) return;
-    const bool is_file = scenario_.embryo.shape == "file";
+    const bool is_file = shape_of(scenario_.embryo) == EmbryoShape::file;
     if (!region.array.empty() && !is_file) {
       input_.report(path + ".array", "a built embryo has no arrays", "use it with shape \"file\" only");
     }

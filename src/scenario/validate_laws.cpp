@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "scenario/words.hpp"
+
 namespace plica {
 namespace {
 
@@ -70,7 +72,7 @@ void check_delay(const std::string& path, DelayInput& delay, Input& input) {
 }  // namespace
 
 void check_elasticity(ElasticityInput& elasticity, Input& input) {
-  if (!input.sound("elasticity.model") || elasticity.model == "shape-memory") return;
+  if (!input.sound("elasticity.model") || model_of(elasticity) == ElasticModel::shape_memory) return;
   const ElasticityInput defaults;
   const auto check = [&](const std::string& key, auto ElasticityInput::*field) {
     drop("elasticity." + key, elasticity.*field, defaults.*field, "elasticity.model",

@@ -57,7 +57,17 @@ inline constexpr auto sides = std::to_array<Word<GridPlace::Face>>({{"ventral", 
                                                                     {"anterior", GridPlace::Face::anterior},
                                                                     {"posterior", GridPlace::Face::posterior}});
 
+inline constexpr auto embryo_shapes = std::to_array<Word<EmbryoShape>>({{"pill", EmbryoShape::pill},
+                                                                        {"sphere", EmbryoShape::sphere},
+                                                                        {"block", EmbryoShape::block},
+                                                                        {"file", EmbryoShape::file}});
+
+inline constexpr auto elastic_models = std::to_array<Word<ElasticModel>>(
+    {{"corotational", ElasticModel::corotational}, {"shape-memory", ElasticModel::shape_memory}});
+
 // [volume]
+inline constexpr auto volume_methods = std::to_array<Word<VolumeMethod>>(
+    {{"coupled", VolumeMethod::coupled}, {"projection", VolumeMethod::projection}, {"none", VolumeMethod::none}});
 inline constexpr auto projection_surfaces =
     std::to_array<Word<ProjectionRule::Surfaces>>({{"cells", ProjectionRule::Surfaces::cells},
                                                    {"tissue", ProjectionRule::Surfaces::tissue},
@@ -118,4 +128,9 @@ inline constexpr auto reference_times = std::to_array<Word<Monitor::ReferenceAt>
     {{"same-time", Monitor::ReferenceAt::same_time}, {"end", Monitor::ReferenceAt::end}});
 
 }  // namespace words
+
+inline EmbryoShape shape_of(const EmbryoInput& embryo) { return meaning_of(words::embryo_shapes, embryo.shape); }
+inline ElasticModel model_of(const ElasticityInput& input) { return meaning_of(words::elastic_models, input.model); }
+inline VolumeMethod method_of(const VolumeInput& volume) { return meaning_of(words::volume_methods, volume.method); }
+
 }  // namespace plica

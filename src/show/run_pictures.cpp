@@ -8,6 +8,7 @@
 
 #include "core/errors.hpp"
 #include "record/run_scenario.hpp"
+#include "scenario/words.hpp"
 
 namespace plica {
 namespace {
@@ -27,7 +28,7 @@ RunPictures::RunPictures(std::filesystem::path directory, PictureOptions options
   for (const View& view : options_.views) rows_.push_back({view, {0, 0}});
   look_through();
   const std::optional<Scenario> scenario = scenario_of_run(run_.directory());
-  is_embryo_ = !scenario || scenario->embryo.shape != "block";
+  is_embryo_ = !scenario || shape_of(scenario->embryo) != EmbryoShape::block;
   if (!options_.shell) return;
   if (!scenario)
     throw FileError(run_.directory().string() + ": holds no scenario.toml that says what the vitelline shell is");

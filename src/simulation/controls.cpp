@@ -32,7 +32,7 @@ StepScheme make_scheme(const Scenario& scenario) {
   scheme.linear_method = meaning_of(words::linear_solvers, scenario.time.linear_solver);
   scheme.linear_tolerance = scenario.time.cg_tolerance;
   scheme.most_linear_iterations = scenario.time.cg_max_iterations;
-  if (scenario.volume.method == "projection") {
+  if (method_of(scenario.volume) == VolumeMethod::projection) {
     scheme.projection = ProjectionRule{meaning_of(words::projection_surfaces, scenario.volume.projection_surface),
                                        meaning_of(words::projection_weights, scenario.volume.projection_weights)};
   }

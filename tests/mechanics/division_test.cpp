@@ -116,7 +116,6 @@ TEST(Grow, TakesDaughtersFromHalvesToTheirMothersShapeAndVolume) {
   EXPECT_NEAR(sum(), mothers_volume, 1e-12 * mothers_volume);
   grow(model, 60);
   EXPECT_NEAR(sum(), 1.5 * mothers_volume, 1e-12 * mothers_volume);
-  EXPECT_EQ(growth_end_s(model), 110);
   grow(model, 110);
   for (const int daughter : {1, 3}) {
     EXPECT_EQ(model.volumes().targets()[daughter], mothers_volume);

@@ -186,7 +186,7 @@ TEST(Simulation, ACriterionEndsItAsPlannedAndAtRestAsEquilibrium) {
   Monitor& clock = soon.monitors.emplace_back();
   clock.name = "clock";
   clock.quantity = Quantity::time;
-  soon.stop.criteria.push_back({.name = "late", .monitor = 0, .above = 0.1});
+  soon.stop.criteria.push_back({.name = "late", .monitor = 0, .above = 0.1, .below = {}});
   const Simulation early = ran(dimpling_sheet(), RunControls{}, {}, soon);
   EXPECT_EQ(early.status(), RunStatus::end_time);
   EXPECT_TRUE(early.criterion_met());
