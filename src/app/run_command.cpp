@@ -14,6 +14,7 @@
 #include "core/directory_lock.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
+#include "measure/self_intersections.hpp"
 #include "record/archive.hpp"
 #include "record/recorder.hpp"
 #include "record/run_directory.hpp"
@@ -74,12 +75,39 @@ int exit_status(RunStatus status, bool missed) {
 // for 10 s and more.
 constexpr double step_patience_s = 3;
 
+// A tissue that passes through itself is a tissue no more: said once, with place and time, also with --quiet.
+std::string crossing_warning(const Simulation& simulation) {
+  const Tissue& tissue = simulation.model().tissue;
+  const Vectors& positions = simulation.state().positions;
+  for (const auto& [side, facets] : {std::pair("apical", &tissue.apical_facets), {"basal", &tissue.basal_facets}}) {
+    const auto pairs = crossing_facets(*facets, positions);
+    if (pairs.empty()) continue;
+    const Facet &one = (*facets)[pairs.front().first], &other = (*facets)[pairs.front().second];
+    Vec3 place = Vec3::Zero();
+    for (const NodeId node : one.nodes) place += positions[node.index()] / 4;
+    const auto id = [&](const Facet& facet) { return tissue.cells[facet.cell.index()].lineage.id; };
+    return fmt::format(
+        "warning: the tissue passes through itself: at t = {:.4g} min the {} faces of cells {} and {} cross, at x = "
+        "{:.1f}, y = {:.1f}, z = {:.1f} um ({} pairs in all); nothing stops that, and what comes after is no tissue "
+        "any "
+        "more\n",
+        simulation.time_s() / units::minute, side, id(one), id(other), place.x(), place.y(), place.z(), pairs.size());
+  }
+  return "";
+}
+
 // To the end, or an interruption.
 nlohmann::ordered_json simulate(Simulation& simulation, Recorder& recorder, bool quiet) {
   Progress progress(simulation.controls(), quiet);
   simulation.listen(recorder);
   simulation.stop_when([&] { return interrupted_for(step_patience_s) || recorder.has_failed(); });
+  bool has_crossed = false;
   while (simulation.step()) {
+    if (!has_crossed && simulation.measures()["self_intersections"] > 0) {
+      has_crossed = true;
+      progress.finish();
+      fmt::print(stderr, "{}", crossing_warning(simulation));
+    }
     progress.show(simulation.measures());
     if (interrupted()) break;
   }
@@ -104,7 +132,10 @@ void report_ending(const Simulation& simulation, const nlohmann::ordered_json& s
                    const std::vector<std::string>& missed, const RunOptions& options) {
   for (const std::string& line : missed) fmt::print(stderr, "{}\n", line);
   if (!simulation.failure().empty())
-    fmt::print(stderr, "plica: gave up: {}; the last good state is in {}\n", simulation.failure(), options.out);
+    fmt::print(
+        stderr,
+        "plica: gave up: {0}; the last good state is in {1}, seen by: plica render {1} --time last --out last.png\n",
+        simulation.failure(), options.out);
   if (simulation.status() == RunStatus::under_way && can_archive())
     fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");
   if (!options.quiet) print_result(summary, options.out);

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstring>
+#include <exception>
 #include <span>
 #include <vector>
 
@@ -16,20 +17,48 @@
 
 namespace plica {
 
+/// Takes an exception out of a parallel region, which none may leave by itself: one that memory runs out, say.
+class FirstError {
+ public:
+  /// body(), on any thread. What it throws is kept, the first of all.
+  template <class Body>
+  void take(const Body& body) {
+    try {
+      body();
+    } catch (...) {
+      if (!has_one_.exchange(true)) error_ = std::current_exception();
+    }
+  }
+  /// After the region.
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  std::atomic<bool> has_one_ = false;
+  std::exception_ptr error_;
+};
+
 /// For parallel_for's `worth_sharing`: of iterations that take microseconds.
 inline constexpr std::size_t long_bodies = 256;
 
-/// Calls body(i) for i in [0, count). Iterations must not write to the same place. Loops shorter than `worth_sharing`
-/// stay on one thread: waking the others costs more than they save, and on a machine that has other work, where one may
-/// have to wait for its turn, a hundred times as much.
+/// Calls body(i) for i in [0, count). Iterations must not write to the same place. What one throws comes out; a
+/// thread's later ones are left out then. Loops shorter than `worth_sharing` stay on one thread: waking the others
+/// costs more than they save, and on a machine that has other work, where one may have to wait for its turn, a hundred
+/// times as much.
 template <class Body>
 void parallel_for(std::size_t count, const Body& body, std::size_t worth_sharing = 8192) {
   if (count < worth_sharing || omp_get_max_threads() == 1) {
     for (std::size_t i = 0; i < count; ++i) body(i);
     return;
   }
-#pragma omp parallel for schedule(static)
-  for (std::size_t i = 0; i < count; ++i) body(i);
+  FirstError error;
+#pragma omp parallel
+  error.take([&] {
+    const std::size_t thread = omp_get_thread_num(), threads = omp_get_num_threads();
+    for (std::size_t i = count * thread / threads, end = count * (thread + 1) / threads; i < end; ++i) body(i);
+  });
+  error.rethrow();
 }
 
 /// The least i in [0, count) for which is_one(i) holds; `count` when there is none.

@@ -5,13 +5,13 @@
 #include "core/units.hpp"
 #include "measure/cells.hpp"
 #include "measure/columns.hpp"
+#include "measure/self_intersections.hpp"
 
 namespace plica {
 namespace {
 
 using Values = std::vector<double>;
 using C = MeasuredCells;
-using Midline = std::vector<CellId>;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr bool csv = true, no_csv = false;
@@ -36,6 +36,11 @@ Values pressures_Pa(const C& c) {
   Values values(pressures.begin(), pressures.end());
   for (double& value : values) value /= units::pascal;
   return values;
+}
+
+Values crossing(const C& c) {
+  const CellSet cells = self_intersecting_cells(c.model.tissue, c.state.positions);
+  return {cells.begin(), cells.end()};
 }
 
 const std::vector<CellColumn>& cells_table() {
@@ -70,42 +75,44 @@ const std::vector<CellColumn>& cells_table() {
       {"activity", csv, numbers,
        "Of the cell's program, delay included, in the first contraction by name that it belongs to; 0 outside. Profile "
        "and variation are no part of it.",
-       [](const C& c) { return activities(c.model, c.state.time_s); }}};
+       [](const C& c) { return activities(c.model, c.state.time_s); }},
+      {"self_intersecting", csv, integers,
+       "1 where an apical or a basal facet of the cell passes through another of the same surface.", crossing}};
   return table;
 }
 
-Values depths_um(const C& c, const Midline& midline) {
+Values depths_um(const C& c, const FurrowSites& sites) {
   Values values;
-  for (const auto& depth : cell_depths_um(c.model.tissue, midline, c.state.positions))
+  for (const auto& depth : cell_depths_um(c.model.tissue, sites, sites.midline, c.state.positions))
     values.push_back(depth.value_or(none));
   return values;
 }
 
-Values inward_speeds(const C& c, const Midline& midline) {
-  const std::vector<Vec3> normals = rest_apical_normals(c.model.tissue, midline);
+Values inward_speeds(const C& c, const FurrowSites& sites) {
+  const std::vector<Vec3> normals = rest_apical_normals(c.model.tissue, sites.midline);
   Values values;
-  for (std::size_t i = 0; i < midline.size(); ++i)
-    values.push_back(-normals[i].dot(mean_apical(c.model.tissue.cells[midline[i].index()], c.state.velocities)));
+  for (std::size_t i = 0; i < sites.midline.size(); ++i)
+    values.push_back(-normals[i].dot(mean_apical(c.model.tissue.cells[sites.midline[i].index()], c.state.velocities)));
   return values;
 }
 
 const std::vector<MidlineColumn>& midline_table() {
   static const std::vector<MidlineColumn> table = {
       {"time_s", "Of the frame.",
-       [](const C& c, const Midline& midline) { return Values(midline.size(), c.state.time_s); }},
+       [](const C& c, const FurrowSites& sites) { return Values(sites.midline.size(), c.state.time_s); }},
       {"ap_um", "The cell's x at rest, from anterior to posterior.",
-       [](const C& c, const Midline& midline) {
+       [](const C& c, const FurrowSites& sites) {
          Values values;
-         for (const CellId id : midline)
+         for (const CellId id : sites.midline)
            values.push_back(cell_centre(c.model.tissue.cells[id.index()], c.model.tissue.rest_positions).x());
          return values;
        }},
       {"depth_um", "Mean depth of the cell's points on the cut; as `furrow_depth_um`.", depths_um},
       {"normal_speed_um_per_s", "Inward speed of its apical corners along the normal at rest.", inward_speeds},
-      {"apical_area_ratio", "Apical area over that at rest.", [](const C& c, const Midline& midline) {
+      {"apical_area_ratio", "Apical area over that at rest.", [](const C& c, const FurrowSites& sites) {
          const Values ratios = c.apical_area_ratios();
          Values values;
-         for (const CellId id : midline) values.push_back(ratios[id.index()]);
+         for (const CellId id : sites.midline) values.push_back(ratios[id.index()]);
          return values;
        }}};
   return table;

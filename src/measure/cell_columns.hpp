@@ -57,7 +57,7 @@ std::span<const NodeColumn> node_columns();
 struct MidlineColumn {
   std::string_view name;
   std::string_view meaning;
-  std::function<std::vector<double>(const MeasuredCells&, const std::vector<CellId>& midline)> values;
+  std::function<std::vector<double>(const MeasuredCells&, const FurrowSites&)> values;
 };
 
 /// In the order of midline.csv.

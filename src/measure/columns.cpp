@@ -5,6 +5,7 @@
 
 #include "measure/cells.hpp"
 #include "measure/observation.hpp"
+#include "measure/self_intersections.hpp"
 
 namespace plica {
 namespace {
@@ -60,10 +61,12 @@ std::vector<Column> table() {
   return {
       {"time_s", series, nothing, "End of the step; 0 at rest.", [](const M& m) { return m.state.time_s; }},
       {"furrow_depth_um", series, last,
-       "The apical surface of the contractile cells cut by the plane y = 0; of all points on the cut, the largest "
-       "distance along z inside the ventral side of the shell, less the same distance of the same material point at "
-       "rest (flat facets lie a little inside a round shell). Without a built shape (a mesh from a file): the largest "
-       "rise along z.",
+       "The apical surface of the furrow's cells cut by the plane y = 0; of all points on the cut, the largest "
+       "distance "
+       "inside the shell, less the same of the same material point at rest (flat facets lie a little inside a round "
+       "shell). Inward is against the mean apical normal of these cells at rest: up for a belly, down for a sheet "
+       "whose "
+       "apices are on top. Without a shell's shape (a block): how far the point has gone in.",
        [](const M& m) { return m.furrow.depth_um; }},
       {"furrow_depth_below_lips_um", series, last,
        "In the mid cross-section (x = 0): height of the floor (the cut at y = 0) over the mean height of the two lips, "
@@ -75,7 +78,7 @@ std::vector<Column> table() {
        "points, fixed for the run.",
        [](const M& m) { return m.furrow.lip_distance_um; }},
       {"highest_points_distance_um", no_series, last,
-       "The paper's pair beside it: between the most ventral points of the mid cross-section left and right of the "
+       "The paper's pair beside it: between the outermost points of the mid cross-section left and right of the "
        "midline. They may jump.",
        [](const M& m) { return m.furrow.highest_points_distance_um; }},
       {"vml_speed_um_per_s", series, nothing,
@@ -129,6 +132,10 @@ std::vector<Column> table() {
       count({"linear_iterations", series, sum,
              "Newton: solves with a factor. Linearly implicit: iterations of conjugate gradients.",
              reported(&StepReport::linear_solves)}),
+      count({"self_intersections", series, largest,
+             "Pairs of facets of the apical surface, or of the basal one, that pass through each other. Nothing stops "
+             "that: what comes after the first is no tissue any more.",
+             [](const M& m) { return self_intersections(m.model.tissue, m.state.positions); }}),
       of_projection({"projection_sweeps", no_series, sum,
                      "With `volume.method = \"projection\"` only: sweeps over the volumes "
                      "([theory/paper_algorithm.md](theory/paper_algorithm.md)).",

@@ -18,24 +18,43 @@ std::vector<bool> facets_of(const Tissue& tissue, const CellSet& cells) {
   return wanted;
 }
 
-// Ventral facets, by their middle at rest.
-std::vector<bool> ventral_facets(const Tissue& tissue) {
-  std::vector<bool> wanted;
+// The area of a facet at rest, as a vector along its normal.
+Vec3 area_vector(const Tissue& tissue, const Facet& facet) {
+  const auto x = [&](int i) { return tissue.rest_positions[facet.nodes[i].index()]; };
+  return 0.5 * (x(2) - x(0)).cross(x(3) - x(1));
+}
+
+// The mean apical normal of cells at rest, in the plane y = 0; towards the belly where they face every way.
+Vec3 mean_outward(const Tissue& tissue, const CellSet& cells) {
+  Vec3 sum = Vec3::Zero();
+  double area = 0;
   for (const Facet& facet : tissue.apical_facets) {
-    double z = 0;
-    for (const NodeId node : facet.nodes) z += tissue.rest_positions[node.index()].z();
-    wanted.push_back(z < 0);
+    if (!cells[facet.cell.index()]) continue;
+    const Vec3 of_facet = area_vector(tissue, facet);
+    sum += of_facet;
+    area += of_facet.norm();
   }
+  sum.y() = 0;
+  if (sum.norm() <= 1e-6 * area) return -Vec3::UnitZ();
+  // Of cells that lie evenly about an axis, just along it.
+  for (double& component : sum)
+    if (std::abs(component) < 1e-6 * sum.norm()) component = 0;
+  return sum.normalized();
+}
+
+// Facets that face outward at rest.
+std::vector<bool> outward_facets(const Tissue& tissue, const Vec3& outward) {
+  std::vector<bool> wanted;
+  for (const Facet& facet : tissue.apical_facets) wanted.push_back(area_vector(tissue, facet).dot(outward) > 0);
   return wanted;
 }
 
-// How far a material point lies inside the ventral shell along z, less the same at rest. Without a shell: how far it
-// has risen.
-double depth_of(const Tissue& tissue, const MaterialPoint& point, std::span<const Vec3> positions) {
+// How far a material point lies inside the shell, less the same at rest. Without a shell: how far it has gone in.
+double depth_of(const Tissue& tissue, const MaterialPoint& point, const Vec3& outward,
+                std::span<const Vec3> positions) {
   const Vec3 now = point.at(positions), rest = point.at(tissue.rest_positions);
-  if (!tissue.outer_shape) return now.z() - rest.z();
-  return (now.z() - ventral_height(*tissue.outer_shape, now.x())) -
-         (rest.z() - ventral_height(*tissue.outer_shape, rest.x()));
+  if (!tissue.outer_shape) return (rest - now).dot(outward);
+  return depth_inside(*tissue.outer_shape, now, outward) - depth_inside(*tissue.outer_shape, rest, outward);
 }
 
 // Cells with an apical facet that meets y = 0 at rest.
@@ -69,9 +88,9 @@ bool find_lips(const Tissue& tissue, FurrowSites& sites) {
   return left < 0 && right > 0;
 }
 
-// Ventral cells on the midline at rest, anterior to posterior.
-std::vector<CellId> ventral_midline(const Tissue& tissue) {
-  std::vector<CellId> midline = cells_on_midline(tissue, ventral_facets(tissue));
+// Cells on the midline of the furrow's side at rest, anterior to posterior.
+std::vector<CellId> midline_of(const Tissue& tissue, const Vec3& outward) {
+  std::vector<CellId> midline = cells_on_midline(tissue, outward_facets(tissue, outward));
   std::ranges::stable_sort(
       midline, {}, [&](CellId cell) { return cell_centre(tissue.cells[cell.index()], tissue.rest_positions).x(); });
   return midline;
@@ -82,7 +101,8 @@ std::vector<CellId> ventral_midline(const Tissue& tissue) {
 FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile, int vce_from_end) {
   FurrowSites sites;
   sites.contractile = contractile;
-  sites.midline = ventral_midline(tissue);
+  sites.outward = mean_outward(tissue, contractile);
+  sites.midline = midline_of(tissue, sites.outward);
   const auto rest_x = [&](CellId cell) { return cell_centre(tissue.cells[cell.index()], tissue.rest_positions).x(); };
 
   // Distances from the middle that contractile midline cells have, each once, with the cells that have it.
@@ -110,7 +130,7 @@ FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile
 
 void follow_division(FurrowSites& sites, const Tissue& tissue, const Division& division) {
   sites.contractile = inherited(division, sites.contractile);
-  sites.midline = ventral_midline(tissue);
+  sites.midline = midline_of(tissue, sites.outward);
   for (MonitoredCells* cells : {&sites.vml, &sites.vce}) {
     const MonitoredCells before = *cells;
     for (const auto& [low, high] : division.daughters)
@@ -121,32 +141,34 @@ void follow_division(FurrowSites& sites, const Tissue& tissue, const Division& d
 FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions) {
   FurrowShape shape;
   for (const SurfacePoint& point : cut_apical_surface(tissue, positions, axis_y, facets_of(tissue, sites.contractile)))
-    shape.depth_um = std::max(shape.depth_um.value_or(-1e300), depth_of(tissue, point, positions));
+    shape.depth_um = std::max(shape.depth_um.value_or(-1e300), depth_of(tissue, point, sites.outward, positions));
   if (!sites.has_lips) return shape;
 
   const Vec3 left = sites.lips[0].at(positions), right = sites.lips[1].at(positions);
   shape.lip_distance_um = (right - left).norm();
   // The floor: the cross-section's height at y = 0, between the nearest points on either side.
-  Vec3 before(0, -1e300, 0), after(0, 1e300, 0), highest_left = Vec3::Zero(), highest_right = Vec3::Zero();
-  for (const SurfacePoint& cut : cut_apical_surface(tissue, positions, axis_x, ventral_facets(tissue))) {
+  const auto height = [&](const Vec3& p) { return p.dot(sites.outward); };
+  Vec3 before(0, -1e300, 0), after(0, 1e300, 0);
+  Vec3 highest_left = -1e300 * sites.outward, highest_right = highest_left;
+  for (const SurfacePoint& cut : cut_apical_surface(tissue, positions, axis_x, outward_facets(tissue, sites.outward))) {
     const Vec3 p = cut.at(positions);
     if (p.y() <= 0 && p.y() > before.y()) before = p;
     if (p.y() >= 0 && p.y() < after.y()) after = p;
-    if (p.y() <= 0 && p.z() < highest_left.z()) highest_left = p;
-    if (p.y() >= 0 && p.z() < highest_right.z()) highest_right = p;
+    if (p.y() <= 0 && height(p) > height(highest_left)) highest_left = p;
+    if (p.y() >= 0 && height(p) > height(highest_right)) highest_right = p;
   }
   if (before.y() > -1e300 && after.y() < 1e300) {
     const double width = after.y() - before.y();
     const double part = width > 0 ? -before.y() / width : 0;
-    const double floor = (1 - part) * before.z() + part * after.z();
-    shape.depth_below_lips_um = floor - 0.5 * (left.z() + right.z());
+    const double floor = (1 - part) * height(before) + part * height(after);
+    shape.depth_below_lips_um = 0.5 * (height(left) + height(right)) - floor;
     shape.highest_points_distance_um = (highest_right - highest_left).norm();
   }
   return shape;
 }
 
-std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, std::span<const CellId> cells,
-                                                  std::span<const Vec3> positions) {
+std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, const FurrowSites& sites,
+                                                  std::span<const CellId> cells, std::span<const Vec3> positions) {
   CellSet wanted(tissue.cells.size(), false);
   for (const CellId cell : cells) wanted[cell.index()] = true;
   struct Sum {
@@ -156,7 +178,7 @@ std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, std::spa
   std::map<CellId, Sum> sums;
   for (const SurfacePoint& point : cut_apical_surface(tissue, positions, axis_y, facets_of(tissue, wanted))) {
     Sum& sum = sums[tissue.apical_facets[point.facet].cell];
-    sum.depth += depth_of(tissue, point, positions);
+    sum.depth += depth_of(tissue, point, sites.outward, positions);
     ++sum.points;
   }
   std::vector<std::optional<double>> depths(cells.size());

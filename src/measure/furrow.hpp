@@ -19,10 +19,11 @@ using MonitoredCells = std::vector<CellId>;
 /// What is measured, chosen once from the tissue at rest.
 struct FurrowSites {
   CellSet contractile;                // the cells whose furrow is measured
+  Vec3 outward = -Vec3::UnitZ();      // their mean apical normal at rest, in the plane y = 0; depth is against it
   MonitoredCells vml;                 // centre of the midline
   MonitoredCells vce;                 // near its ends
   int midline_pairs = 0;              // contractile midline cells from an end to the middle
-  std::vector<CellId> midline;        // ventral cells on y = 0, anterior to posterior
+  std::vector<CellId> midline;        // cells on y = 0 whose apices face outward, anterior to posterior
   std::array<MaterialPoint, 2> lips;  // left, right: where the mid cross-section leaves the contractile cells
   bool has_lips = false;
 };
@@ -35,17 +36,17 @@ void follow_division(FurrowSites& sites, const Tissue& tissue, const Division& d
 
 /// Everything about the furrow at one moment. What has no value is empty.
 struct FurrowShape {
-  std::optional<double> depth_um;             // from the shell down to the midline, less what flat facets have at rest
+  std::optional<double> depth_um;             // from the shell to the midline, less what flat facets have at rest
   std::optional<double> depth_below_lips_um;  // from the lips' mean height down to the floor in the mid cross-section
   std::optional<double> lip_distance_um;      // between the material lips
-  std::optional<double> highest_points_distance_um;  // between the most ventral points left and right of the midline
+  std::optional<double> highest_points_distance_um;  // between the outermost points left and right of the midline
 };
 
 FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions);
 
-/// Depth along z of each cell's apical midline, mean over its points on y = 0; as furrow_shape's for the whole furrow.
-/// Empty where a cell has none.
-std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, std::span<const CellId> cells,
-                                                  std::span<const Vec3> positions);
+/// Depth of each cell's apical midline, mean over its points on y = 0; as furrow_shape's for the whole furrow. Empty
+/// where a cell has none.
+std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, const FurrowSites& sites,
+                                                  std::span<const CellId> cells, std::span<const Vec3> positions);
 
 }  // namespace plica

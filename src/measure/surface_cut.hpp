@@ -27,8 +27,8 @@ struct SurfacePoint : MaterialPoint {
 std::vector<SurfacePoint> cut_apical_surface(const Tissue& tissue, std::span<const Vec3> positions, int axis,
                                              const std::vector<bool>& wanted);
 
-/// Height z along the shell's ventral side at x, um: where a line along z through (x, 0) leaves the capsule below. The
-/// lowest point of the end where x lies beyond it.
-double ventral_height(const Capsule& shell, double x);
+/// How far a point on y = 0 lies inside the shell against `outward`, a direction in that plane, um: the way to where
+/// the line along it leaves the shell; negative outside. Where the line misses the shell, to its height at the end.
+double depth_inside(const Capsule& shell, const Vec3& point, const Vec3& outward);
 
 }  // namespace plica

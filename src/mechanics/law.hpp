@@ -104,6 +104,10 @@ class Law {
   [[nodiscard]] virtual NodeGroups node_groups(std::span<const double> /*internal*/) const { return {}; }
   [[nodiscard]] virtual int pattern_revision(std::span<const double> /*internal*/) const { return 0; }
 
+  /// What rounding of positions (um) makes of its forces, nN, norm over nodes: nothing solves below that. (That of
+  /// elasticity is Model::elastic_rounding.)
+  [[nodiscard]] virtual double rounding(const Step& /*step*/, double /*position_rounding*/) const { return 0; }
+
   /// How much of a change of positions may be tried at once, 0 to 1: for laws whose energy has a barrier.
   [[nodiscard]] virtual double max_fraction(const Step& /*step*/, std::span<const Vec3> /*direction*/) const {
     return 1;
@@ -133,6 +137,8 @@ class Law {
 
   /// Times at which its programs begin or bend, s: steps end on them.
   [[nodiscard]] virtual std::vector<double> program_points_s() const { return {}; }
+  /// Those at which forces jump: there, what is known of past motion says nothing of what comes.
+  [[nodiscard]] virtual std::vector<double> program_jumps_s() const { return {}; }
 
   /// Whether cells act by this law: its forces are then shown as the active ones. activity_of: of the cell's program at
   /// a time; empty for a cell that the law leaves alone.

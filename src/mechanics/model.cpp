@@ -46,7 +46,7 @@ double Model::position_rounding() const {
   return 16 * std::numeric_limits<double>::epsilon() * extent;
 }
 
-double Model::force_rounding() const {
+double Model::elastic_rounding() const {
   // Stiffness of a slab, E A / height = E A^2 / V, A its largest face, times the rounding of a position, over all
   // nodes.
   double thinnest = 0;

@@ -53,9 +53,9 @@ struct Model {
   /// Typical force of the body, nN: modulus times the mean area of an element's face. Residuals are zero against this.
   [[nodiscard]] double force_scale() const;
 
-  /// What rounding of positions makes of forces (nN, norm over nodes): nothing solves below that. Matters for cells
-  /// that are very thin beside the embryo.
-  [[nodiscard]] double force_rounding() const;
+  /// What rounding of positions makes of elastic forces (nN, norm over nodes): nothing solves below that. Matters for
+  /// cells that are very thin beside the embryo.
+  [[nodiscard]] double elastic_rounding() const;
   /// How far positions are rounded, with a margin for sums, um.
   [[nodiscard]] double position_rounding() const;
 };

@@ -20,6 +20,12 @@ Vec3 change(const Step& step, std::size_t node) {
   return step.positions[node] - step.before([node](std::span<const Vec3> x) { return x[node]; });
 }
 
+double norm(std::span<const double> numbers) {
+  double sum = 0;
+  for (const double number : numbers) sum += number * number;
+  return std::sqrt(sum);
+}
+
 std::vector<double> lumped_masses(const Tissue& tissue, double density) {
   std::vector<double> masses(tissue.node_count(), 0.0);
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
@@ -62,6 +68,10 @@ void SurfaceDrag::add_tangent(const Step& step, TangentSink& tangent) const {
     tangent.add_block(NodeId(n), NodeId(n), coefficients_[n] / step.rate_s * Mat3::Identity());
 }
 
+double SurfaceDrag::rounding(const Step& step, double position_rounding) const {
+  return norm(coefficients_) / step.rate_s * position_rounding;
+}
+
 Inertia::Inertia(const Tissue& tissue, double density) : density_(density), masses_(lumped_masses(tissue, density)) {}
 
 std::unique_ptr<Law> Inertia::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
@@ -96,6 +106,10 @@ void Inertia::add_tangent_product(const Step& step, std::span<const Vec3> direct
 void Inertia::add_tangent(const Step& step, TangentSink& tangent) const {
   for (std::size_t n = 0; n < masses_.size(); ++n)
     tangent.add_block(NodeId(n), NodeId(n), masses_[n] / (step.rate_s * step.rate_s) * Mat3::Identity());
+}
+
+double Inertia::rounding(const Step& step, double position_rounding) const {
+  return norm(masses_) / (step.rate_s * step.rate_s) * position_rounding;
 }
 
 FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellPattern pattern, double pressure, Program program)

@@ -77,7 +77,7 @@ void FrameTaker::add_cells(const MeasuredCells& measured, FrameRecord& frame) co
 
 void FrameTaker::add_midline(const MeasuredCells& measured, FrameRecord& frame) const {
   Columns of_csv;
-  for (const MidlineColumn& column : midline_columns()) of_csv.push_back(column.values(measured, sites_.midline));
+  for (const MidlineColumn& column : midline_columns()) of_csv.push_back(column.values(measured, sites_));
   frame.midline_rows = rows_of(of_csv);
 }
 

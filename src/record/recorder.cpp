@@ -167,7 +167,8 @@ nlohmann::ordered_json Recorder::finish() {
   if (last_frame_s_ != simulation_.time_s()) save_frame();
   writing_.finish();
   nlohmann::ordered_json summary = make_summary(scenario_, simulation_, rows_, wall());
-  write_file(directory_ / "summary.json", summary.dump(2) + "\n");
+  write_file(directory_ / "summary.json",
+             summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   for (RecordListener* listener : listeners_) listener->end();
   return summary;
 }

@@ -1,11 +1,13 @@
 #include "scenario/advice.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <functional>
 
 #include "mechanics/elasticity/shape_memory.hpp"
+#include "scenario/setup.hpp"
 #include "scenario/words.hpp"
 #include "tissue/mesh_quality.hpp"
 
@@ -37,13 +39,19 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   const auto note = [&](std::string text) { lines.push_back("note: " + std::move(text)); };
 
   const bool pulls = std::ranges::any_of(scenario.contractions, [](const auto& entry) {
-    return entry.second.stiffness_nN_per_um > 0 || entry.second.preload_nN > 0;
+    return entry.second.stiffness_nN_per_um > 0 || entry.second.preload_nN > 0 || entry.second.tension_mN_per_m > 0;
   });
   if (!pulls && scenario.pressures.empty() && scenario.divisions.empty())
     warn("nothing pushes or pulls: without [contraction], [pressure] or [division] the embryo stays at rest");
   for (const auto& [name, division] : scenario.divisions)
     if (division.at_s && *division.at_s >= scenario.time.end_s)
       warn(fmt::format("division.{}: it comes after the run's end at {} s", name, scenario.time.end_s));
+  for (const auto& [name, contraction] : scenario.contractions)
+    if (contraction.stiffness_nN_per_um > 0 || contraction.preload_nN > 0)
+      note(
+          fmt::format("contraction.{}: every edge is a spring, so the same region of smaller cells pulls harder; "
+                      "tension_mN_per_m does not depend on their size",
+                      name));
   for (const auto& [name, contraction] : scenario.contractions)
     if (!contraction.program.activity.empty() && std::ranges::max(contraction.program.activity) == 0)
       warn(fmt::format("contraction.{}: its program is 0 at every point", name));
@@ -79,6 +87,13 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
     note(fmt::format("the shell is the capsule along x around the mesh, {:.4g} um long and {:.4g} um across",
                      2 * (mesh.half_axis_um + radius_um), 2 * radius_um));
   }
+
+  if (const auto regions = contracting_regions(scenario, model.tissue);
+      scenario.furrow.region.empty() && regions.size() > 1)
+    warn(
+        fmt::format("contractions act on the regions {}: the furrow is measured where the largest is, {}; "
+                    "furrow.region names another",
+                    fmt::join(regions, ", "), regions.front()));
 
   const MeshQuality quality = mesh_quality(model.tissue, model.tissue.rest_positions);
   note(fmt::format(

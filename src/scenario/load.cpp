@@ -168,7 +168,8 @@ Scenario load_scenario(const ScenarioSource& source, const std::vector<std::stri
     read_layer(document.table, {document.source.file, layer++, true}, scenario, input);
     // What a built-in expects holds for the built-in as it is, not for what is made of it.
     const bool changed = &document != &documents.back() || !overrides.empty();
-    if (changed && std::ranges::count(names_of(builtin_scenarios()), document.source.file) > 0) forget_expectations(scenario, input);
+    if (changed && std::ranges::count(names_of(builtin_scenarios()), document.source.file) > 0)
+      forget_expectations(scenario, input);
   }
   read_overrides(overrides, layer, scenario, input);
   // Without a base, what it gives would be missed everywhere.

@@ -101,6 +101,7 @@ struct ContractionInput {
   bool diagonals = false;
   double rest_length_ratio = 0;
   double preload_nN = 0;
+  double tension_mN_per_m = 0;
   double damping_nN_s_per_um = 0;
   ProgramInput program;
   ProfileInput profile;

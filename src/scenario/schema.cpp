@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/clock.hpp"
 #include "measure/columns.hpp"
 #include "measure/monitor.hpp"
 #include "scenario/words.hpp"
@@ -185,10 +186,15 @@ const std::vector<Row>& rows() {
           "Length at which a spring is slack, over its initial length."),
       row("contraction.*", "preload_nN", at(&S::contractions, &C::preload_nN), anything,
           "Tension of a spring that does not depend on its length (nN)."),
+      row("contraction.*", "tension_mN_per_m", at(&S::contractions, &C::tension_mN_per_m), not_negative,
+          "Tension of the cells' faces, per length across it (mN/m, that is nN/µm), whatever the size of cells: what "
+          "stiffness and preload do, they do on every edge, so smaller cells pull harder."),
       row("contraction.*", "damping_nN_s_per_um", at(&S::contractions, &C::damping_nN_s_per_um), not_negative,
           "Damping of a spring (nN s/µm)."),
       row("contraction.*", "program.time_s", at(&S::contractions, &C::program, &ProgramInput::time_s), anything,
-          "Times of the points of the activity (s), increasing; without a program it is always 1."),
+          "Times of the points of the activity (s), increasing; the same time twice is a jump, on which a step ends. "
+          "Without "
+          "a program it is always 1."),
       row("contraction.*", "program.time_min", at(&S::contractions, &C::program, &ProgramInput::time_s), anything,
           "The same in minutes.", {.instead_of = "program.time_s", .scale = 60}),
       row("contraction.*", "program.activity", at(&S::contractions, &C::program, &ProgramInput::activity), not_negative,
@@ -237,7 +243,9 @@ const std::vector<Row>& rows() {
       row("pressure.*", "pressure_Pa", at(&S::pressures, &P::pressure_Pa), anything,
           "Pressure into the cell (Pa), a dead load on the face at rest.", {.required = true}),
       row("pressure.*", "program.time_s", at(&S::pressures, &P::program, &ProgramInput::time_s), anything,
-          "Times of the points of the activity (s), increasing; without a program it is always 1."),
+          "Times of the points of the activity (s), increasing; the same time twice is a jump, on which a step ends. "
+          "Without "
+          "a program it is always 1."),
       row("pressure.*", "program.time_min", at(&S::pressures, &P::program, &ProgramInput::time_s), anything,
           "The same in minutes.", {.instead_of = "program.time_s", .scale = 60}),
       row("pressure.*", "program.activity", at(&S::pressures, &P::program, &ProgramInput::activity), not_negative,
@@ -264,7 +272,7 @@ const std::vector<Row>& rows() {
       row("division.*", "max_generation", at(&S::divisions, &V::max_generation), between(1, 30),
           "Daughters of a later generation are not born; without it 1 with `when`, and no limit at a time."),
 
-      row("time", "step_s", at(&S::time, &T::step_s), {.low = 0, .low_included = false, .word_for_none = "adaptive"},
+      row("time", "step_s", at(&S::time, &T::step_s), {.low = instant_s, .word_for_none = "adaptive"},
           "Time step (s), or chosen by its error."),
       row("time", "first_step_s", at(&S::time, &T::first_step_s), positive, "First adaptive step (s)."),
       row("time", "max_step_s", at(&S::time, &T::max_step_s), positive, "Longest adaptive step (s)."),
@@ -322,7 +330,7 @@ const std::vector<Row>& rows() {
           "Which of the run's frames; without it, the one of the same time."),
 
       row("furrow", "region", at(&S::furrow, &FurrowInput::region), anything,
-          "Contractile cells whose furrow is measured; without it the first contraction's region."),
+          "Contractile cells whose furrow is measured; without it the largest region that contracts."),
       row("furrow", "vce_cell", at(&S::furrow, &FurrowInput::vce_cell), between(1, max_count),
           "VCE is this cell of the region's midline, counted from its ends."),
 

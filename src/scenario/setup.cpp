@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <set>
 
 #include "core/units.hpp"
 #include "mechanics/active/contraction.hpp"
@@ -68,6 +70,25 @@ void check_encloses(const Scenario& scenario, const Tissue& tissue, std::vector<
                                    "the apical surface of this mesh encloses nothing", "give \"cells\" or \"tissue\""));
 }
 
+// Cells without an apical or a basal face have nodes inside that no drag slows, and a projection throws them about.
+void check_is_one_layer(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
+  std::vector<int> faces(tissue.cells.size(), 0);
+  for (const auto* facets : {&tissue.apical_facets, &tissue.basal_facets}) {
+    std::set<CellId> cells;
+    for (const Facet& facet : *facets) cells.insert(facet.cell);
+    for (const CellId cell : cells) ++faces[cell.index()];
+  }
+  const auto inner = std::ranges::find_if(faces, [](int count) { return count < 2; });
+  if (inner == faces.end()) return;
+  errors.push_back(diagnostic_at(
+      scenario, "volume.method",
+      fmt::format(
+          "a projection needs one layer of cells, and cell {} has no apical or no basal face: nothing slows the "
+          "nodes between cells above each other",
+          inner - faces.begin()),
+      "give \"coupled\" or \"none\", or one layer of cells"));
+}
+
 void add_elasticity(const Scenario& scenario, Model& model) {
   const ElasticityInput& input = scenario.elasticity;
   const double young_modulus = input.young_modulus_Pa * units::pascal;
@@ -115,6 +136,7 @@ void add_contractions(const Scenario& scenario, Model& model) {
     rule.rest_length_ratio = input.rest_length_ratio;
     rule.preload = input.preload_nN;
     rule.damping = input.damping_nN_s_per_um;
+    rule.tension = input.tension_mN_per_m;  // nN/um is the same
     CellPattern pattern = cell_pattern(model.tissue, model.tissue.regions.at(input.region), make_pattern(input));
     std::vector<Spring> springs = contraction_springs(model.tissue, pattern, rule);
     model.laws.push_back(
@@ -210,14 +232,25 @@ std::unique_ptr<Model> make_model(const Scenario& scenario) {
                                    "the cells of this embryo cannot divide: " + *why,
                                    "take one element a cell and one layer of cells"));
   if (scenario.volume.projection_surface == "embryo") check_encloses(scenario, tissue, errors);
+  if (method_of(scenario.volume) == VolumeMethod::projection) check_is_one_layer(scenario, tissue, errors);
   if (!errors.empty()) throw ScenarioError(std::move(errors));
   check_forces_at_rest(scenario, *model);
   return model;
 }
 
+std::vector<std::string> contracting_regions(const Scenario& scenario, const Tissue& tissue) {
+  std::set<std::string> names;
+  for (const auto& [name, contraction] : scenario.contractions) names.insert(contraction.region);
+  std::vector<std::string> regions(names.begin(), names.end());
+  std::ranges::stable_sort(regions, std::greater(), [&](const std::string& region) {
+    return std::ranges::count(tissue.regions.at(region), true);
+  });
+  return regions;
+}
+
 FurrowSites make_furrow_sites(const Scenario& scenario, const Tissue& tissue) {
   std::string region = scenario.furrow.region;
-  if (region.empty() && !scenario.contractions.empty()) region = scenario.contractions.begin()->second.region;
+  if (region.empty() && !scenario.contractions.empty()) region = contracting_regions(scenario, tissue).front();
   if (region.empty()) return choose_furrow_sites(tissue, CellSet(tissue.cells.size(), false), 1);
   FurrowSites sites = choose_furrow_sites(tissue, tissue.regions.at(region), scenario.furrow.vce_cell);
   if (scenario.furrow.vce_cell > sites.midline_pairs && sites.midline_pairs > 0)

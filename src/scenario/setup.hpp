@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "measure/furrow.hpp"
 #include "mechanics/model.hpp"
@@ -15,6 +17,9 @@ Tissue make_tissue(const Scenario& scenario);
 
 /// The laws of a scenario on its tissue. Throws ScenarioError for what only the tissue shows to be wrong.
 std::unique_ptr<Model> make_model(const Scenario& scenario);
+
+/// The regions on which contractions act, the largest first: without [furrow], that is where the furrow is measured.
+std::vector<std::string> contracting_regions(const Scenario& scenario, const Tissue& tissue);
 
 /// VML, VCE, midline and lips of the scenario's furrow; none where there is no contraction.
 FurrowSites make_furrow_sites(const Scenario& scenario, const Tissue& tissue);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <set>
 
+#include "core/clock.hpp"
 #include "scenario/monitor_rules.hpp"
 #include "scenario/suggest.hpp"
 #include "scenario/validate_laws.hpp"
@@ -92,6 +93,9 @@ void check_dynamics(const DynamicsInput& dynamics, Input& input) {
 }
 
 void check_time(const TimeInput& time, Input& input) {
+  if (input.sound("time.end_s") && has_come(time.end_s, 0))
+    input.report("time.end_s", fmt::format("the run would end before its first step, at {} s", time.end_s),
+                 "give a later end");
   if (!input.sound("time.first_step_s") || !input.sound("time.max_step_s")) return;
   if (time.first_step_s > time.max_step_s) {
     input.report("time.first_step_s", fmt::format("{} is above max_step_s, {}", time.first_step_s, time.max_step_s),
@@ -185,9 +189,16 @@ void check_program(const std::string& table, const ProgramInput& program, Input&
     input.report(activity, fmt::format("{} activities for {} times", program.activity.size(), program.time_s.size()),
                  "give as many activities as times");
   }
-  const auto not_later = [](double earlier, double later) { return later <= earlier; };
-  if (std::ranges::adjacent_find(program.time_s, not_later) != program.time_s.end()) {
-    input.report(time, "the times do not increase", "give each time later than the one before");
+  const auto& times = program.time_s;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] < times[i - 1])
+      return input.report(time, "the times do not increase",
+                          "give each time later than the one before, or the same twice for a jump");
+    if (i > 1 && times[i] == times[i - 2])
+      return input.report(time, fmt::format("{} stands there three times", times[i]), "give it twice for a jump");
+    if (times[i] != times[i - 1] && has_come(times[i], times[i - 1]))
+      return input.report(time, fmt::format("{} and {} are closer than {} s", times[i - 1], times[i], instant_s),
+                          "give the same time twice for a jump");
   }
 }
 

@@ -67,6 +67,20 @@ const auto& required(const Arrays& arrays, const std::string& name) {
   return found->second;
 }
 
+// Of each element the smallest region that it is in, as a place in regions_of(), from 1; 0: none.
+std::vector<double> region_numbers(const Frame& frame) {
+  std::vector<double> numbers(frame.elements.size(), 0.0), sizes(frame.elements.size(), 1e300);
+  double number = 0;
+  for (const std::string& name : regions_of(frame)) {
+    ++number;
+    const std::vector<double>& members = frame.element_scalars.at(std::string(region_prefix) + name);
+    const auto size = static_cast<double>(std::ranges::count_if(members, [](double flag) { return flag > 0; }));
+    for (std::size_t e = 0; e < numbers.size(); ++e)
+      if (members[e] > 0 && size < sizes[e]) numbers[e] = number, sizes[e] = size;
+  }
+  return numbers;
+}
+
 }  // namespace
 
 const std::vector<ColourMap>& colour_maps() {
@@ -92,11 +106,24 @@ const std::vector<ColourField>& colour_fields() {
       {"volume-error", "volume error", "", "volume_error", false, ScaleKind::about, 0},
       {"volume", "volume", "µm³", "volume_um3"},
       {"contraction", "contraction's activity", "", "activity"},
-      {"generation", "generation", "", "generation", false, ScaleKind::steps}};
+      {"generation", "generation", "", "generation", false, ScaleKind::steps},
+      {"region", "region", "", "region", false, ScaleKind::steps},
+      {"self-intersections", "passes through itself", "", "self_intersecting", false, ScaleKind::steps}};
   return fields;
 }
 
+std::vector<std::string> regions_of(const Frame& frame) {
+  std::vector<std::string> names;
+  for (const auto& [name, values] : frame.element_scalars)
+    if (name.starts_with(region_prefix)) names.push_back(name.substr(region_prefix.size()));
+  return names;
+}
+
 std::vector<double> field_values(const Frame& frame, const ColourField& field) {
+  if (field.array == "region") return region_numbers(frame);
+  // Frames of older versions have no such array, and nobody knows.
+  if (field.array == "self_intersecting" && !frame.element_scalars.contains(field.array))
+    return std::vector<double>(frame.elements.size(), 0.0);
   if (!field.on_nodes) return required(frame.element_scalars, field.array);
   const Vectors& vectors = required(frame.node_vectors, field.array);
   std::vector<double> lengths;

@@ -9,7 +9,7 @@ namespace plica {
 namespace {
 
 using nlohmann::ordered_json;
-constexpr const char* region_prefix = "region_";
+constexpr std::size_t most_regions = 32;  // bits
 
 const std::vector<double>& cell_ids(const Frame& frame) {
   const auto found = frame.element_scalars.find("cell_id");
@@ -21,7 +21,7 @@ const std::vector<double>& cell_ids(const Frame& frame) {
 std::uint32_t region_bits(const Frame& frame, const std::vector<std::string>& regions, std::size_t element) {
   std::uint32_t bits = 0;
   for (std::size_t r = 0; r < regions.size(); ++r) {
-    const auto found = frame.element_scalars.find(region_prefix + regions[r]);
+    const auto found = frame.element_scalars.find(std::string(region_prefix) + regions[r]);
     if (found != frame.element_scalars.end() && found->second[element] != 0) bits |= std::uint32_t{1} << r;
   }
   return bits;
@@ -71,15 +71,6 @@ FrameMoment moment_of(const Frame& frame, const FrameTopology& topology, double 
     moment.fields.push_back(std::move(kept));
   }
   return moment;
-}
-
-std::vector<std::string> regions_of(const Frame& frame) {
-  constexpr std::size_t most = 32;  // bits
-  std::vector<std::string> names;
-  for (const auto& [name, values] : frame.element_scalars)
-    if (name.starts_with(region_prefix) && names.size() < most)
-      names.push_back(name.substr(std::string(region_prefix).size()));
-  return names;
 }
 
 template <class Ids>
@@ -171,6 +162,7 @@ double bytes_of(const FrameMoment& moment) {
 void ReportFrames::add(const Frame& frame, double time_s) {
   if (topologies_.empty()) {
     regions_ = regions_of(frame);
+    regions_.resize(std::min(regions_.size(), most_regions));
     rest_positions_ = frame.positions;
   }
   const bool new_cells = topologies_.empty() || !shows(topologies_.back(), frame);

@@ -21,6 +21,23 @@ double farthest_displacement_um(const Frame& frame) {
   return farthest;
 }
 
+// Views look at the origin: the middle of a body that lies elsewhere, as a mesh from a file may; else the origin.
+Vec3 far_middle(const Vectors& positions) {
+  Vec3 low = positions.front(), high = low;
+  for (const Vec3& position : positions) {
+    low = low.cwiseMin(position);
+    high = high.cwiseMax(position);
+  }
+  const Vec3 middle = 0.5 * (low + high);
+  return middle.norm() > 0.25 * (high - low).maxCoeff() ? middle : Vec3(Vec3::Zero());
+}
+
+bool passes_through_itself(const Frame& frame) {
+  const auto flags = frame.element_scalars.find("self_intersecting");
+  return flags != frame.element_scalars.end() &&
+         std::ranges::any_of(flags->second, [](double flag) { return flag > 0; });
+}
+
 }  // namespace
 
 RunPictures::RunPictures(std::filesystem::path directory, PictureOptions options)
@@ -44,11 +61,17 @@ RunPictures::RunPictures(std::filesystem::path directory, PictureOptions options
   }
 }
 
+void RunPictures::centre(Frame& frame) const {
+  for (Vec3& position : frame.positions) position -= middle_;
+}
+
 void RunPictures::look_through() {
   smallest_ = std::numeric_limits<double>::infinity();
   largest_ = -smallest_;
   for (std::size_t i = 0; i < times_s_.size(); ++i) {
     Frame frame = run_.frame(i);
+    if (i == 0) middle_ = far_middle(frame.positions);
+    centre(frame);
     for (const double value : field_values(frame, options_.field)) {
       if (!std::isfinite(value)) continue;
       smallest_ = std::min(smallest_, value);
@@ -88,9 +111,11 @@ std::vector<double> RunPictures::telling_times_s(int count) const {
 Picture RunPictures::picture(const std::vector<double>& times_s) const {
   Picture picture;
   for (const double time_s : times_s) {
-    const std::optional<Frame> frame = run_.frame_at(time_s);
+    std::optional<Frame> frame = run_.frame_at(time_s);
     if (!frame) throw FileError(fmt::format("{}: has no frame at {} s", run_.directory().string(), time_s));
-    picture.columns.push_back({time_text(time_s), *frame});
+    centre(*frame);
+    const char* mark = passes_through_itself(*frame) ? ", passes through itself" : "";
+    picture.columns.push_back({time_text(time_s) + mark, std::move(*frame)});
   }
   picture.rows = rows_;
   picture.field = options_.field;

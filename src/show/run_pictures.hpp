@@ -44,12 +44,14 @@ class RunPictures {
 
  private:
   void look_through();
+  void centre(Frame& frame) const;
 
   ReferenceRun run_;
   PictureOptions options_;
   std::vector<double> times_s_, farthest_um_;  // a frame each
   double smallest_ = 0, largest_ = 0;          // of the field, over all frames
   std::vector<PictureRow> rows_;
+  Vec3 middle_ = Vec3::Zero();  // of the body at rest, where it lies far from the origin
   Frame rest_;
   bool is_embryo_ = true;
   std::optional<Capsule> shell_;

@@ -22,6 +22,7 @@ struct RunControls {
   bool stop_at_equilibrium = true;
   double frame_every_s = 15;             // adaptive steps end on frames; 0: no frames in between
   std::vector<double> program_points_s;  // adaptive steps end on them, too; equilibrium counts only after the last
+  std::vector<double> program_jumps_s;   // those at which forces jump: fixed steps end on them, too
   std::vector<DivisionRule> divisions;   // their times are among the program points
 };
 

@@ -23,10 +23,6 @@ struct DivisionRule {
 /// Where a plane cuts the cell: across the side that lies nearest to the plane's normal, at current positions.
 CellCut cut_by(DivisionPlane plane, const Tissue& tissue, CellId cell, const Vectors& positions);
 
-/// Whether a point in time has come, but for rounding: a step that ends on it, or a sum of steps, may miss a last
-/// digit.
-inline bool has_come(double point_s, double time_s) { return point_s <= time_s * (1 + 1e-12); }
-
 /// The divisions due at the state's time. Rules at a time that has come since `State::divided_until_s` apply to every
 /// cell of their region; thresholds to cells that are not growing. A cell divides once at a time, by the first rule
 /// that says so.

@@ -1,5 +1,7 @@
 #include "simulation/run_memory.hpp"
 
+#include "core/clock.hpp"
+
 namespace plica {
 
 bool has_ended(const RunMemory& run, const RunControls& controls) {

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/clock.hpp"
 #include "mechanics/division.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/watch.hpp"
@@ -22,17 +23,39 @@ double max_speed(const State& state) {
 }
 
 bool passes_frame(double from_s, double to_s, double every_s) {
-  return every_s > 0 && std::floor(to_s / every_s + 1e-9) > std::floor(from_s / every_s + 1e-9);
+  const auto frames_until = [&](double time_s) { return std::floor((time_s + instant_s) / every_s + 1e-9); };
+  return every_s > 0 && frames_until(to_s) > frames_until(from_s);
 }
 
 double last_of(const std::vector<double>& times_s) {
   return times_s.empty() ? 0 : *std::max_element(times_s.begin(), times_s.end());
 }
 
+// Users know a cell by its id, which after divisions is not its place.
+int id_of(const Model& model, CellId cell) { return model.tissue.cells[cell.index()].lineage.id; }
+
+// A cell whose nodes are all held cannot take another volume.
+std::optional<CellId> held_cell_that_grows(const Model& model, const State& state) {
+  if (!model.volumes().is_held()) return std::nullopt;
+  const std::vector<double> errors = model.volumes().relative_errors(state.positions);
+  const auto is_held = [&](NodeId node) { return std::ranges::count(model.held[node.index()], true) == 3; };
+  for (std::size_t c = 0; c < errors.size(); ++c)
+    if (std::abs(errors[c]) > 1e-9 && std::ranges::all_of(model.tissue.cells[c].corners, is_held)) return CellId(c);
+  return std::nullopt;
+}
+
 std::string failure_text(StepReport report, const Model& model, const State& state, double duration_s) {
-  // Users know a cell by its id, which after divisions is not its place.
-  if (report.cell) report.cell = CellId(model.tissue.cells[report.cell->index()].lineage.id);
-  return fmt::format("{} at t = {:g} s, with steps down to {:g} s", report.reason(), state.time_s, duration_s);
+  const std::optional<CellId> held = held_cell_that_grows(model, state);
+  if (report.cell) report.cell = CellId(id_of(model, *report.cell));
+  std::string text =
+      fmt::format("{} at t = {:g} s, with steps down to {:g} s", report.reason(), state.time_s, duration_s);
+  if (held)
+    return text + fmt::format(
+                      "; cell {} is to have another volume, and all its corners are held: hold fewer nodes, or "
+                      "let it not divide or grow",
+                      id_of(model, *held));
+  if (const std::string remedy = report.remedy(); !remedy.empty()) text += "; " + remedy;
+  return text;
 }
 
 }  // namespace
@@ -53,8 +76,10 @@ Simulation::Simulation(Parts parts)
       controls_(std::move(parts.controls)),
       step_length_(controls_),
       observer_(std::make_unique<Observer>(*model_, std::move(parts.sites), std::move(parts.watch))) {
-  for (const auto& law : model_->laws)
+  for (const auto& law : model_->laws) {
     std::ranges::copy(law->program_points_s(), std::back_inserter(controls_.program_points_s));
+    std::ranges::copy(law->program_jumps_s(), std::back_inserter(controls_.program_jumps_s));
+  }
   now_.state = rest_state(*model_);
   measures_ = observer_->observe_rest(now_.state);
   renew_stepper();
@@ -146,6 +171,15 @@ void Simulation::divide(const std::vector<PlannedDivision>& due) {
   for (SimulationListener* listener : listeners_) listener->cells_divided(division);
 }
 
+// Where forces jump, the motion before says nothing of that to come: no forecast, no error, a short first step.
+void Simulation::begin_anew_at_a_jump() {
+  const double now_s = now_.state.time_s;
+  if (std::ranges::none_of(controls_.program_jumps_s, [&](double jump_s) { return is_same_instant(jump_s, now_s); }))
+    return;
+  now_.state.trend = {};
+  step_length_ = StepLength(controls_);
+}
+
 RunStatus Simulation::status() const {
   if (!failure_.empty()) return RunStatus::failed;
   if (!has_ended(now_, controls_)) return RunStatus::under_way;
@@ -163,6 +197,7 @@ bool Simulation::step_towards(double time_s) {
   has_begun_ = true;
   if (status() != RunStatus::under_way) return false;
 
+  begin_anew_at_a_jump();
   const auto start = std::chrono::steady_clock::now();
   State before;
   const std::optional<StepReport> report = take_step(time_s, before);
@@ -173,7 +208,8 @@ bool Simulation::step_towards(double time_s) {
   const double speed = max_speed(state);
   const std::vector<PlannedDivision> due = due_divisions(*model_, state, controls_.divisions);
   now_.at_equilibrium = speed < controls_.equilibrium_speed_um_per_s && due.empty() &&
-                        has_come(last_of(controls_.program_points_s), state.time_s);
+                        has_come(last_of(controls_.program_points_s), state.time_s) &&
+                        has_come(last_of(controls_.program_jumps_s), before.time_s);
   if (now_.at_equilibrium && !now_.equilibrium_time_s) now_.equilibrium_time_s = state.time_s;
   // At a division, the frame shows the daughters.
   const bool frame_is_due = due.empty() && passes_frame(before.time_s, state.time_s, controls_.frame_every_s);
@@ -191,12 +227,14 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
   State& next = before;
   int wasted_iterations = 0, wasted_solves = 0;
   while (true) {
-    const double duration_s = step_length_.propose(controls_, now_.state.time_s, until_s);
-    grow(*model_, now_.state.time_s + duration_s);
+    const double end_s = step_length_.propose_end_s(controls_, now_.state.time_s, until_s);
+    const double duration_s = end_s - now_.state.time_s;
+    grow(*model_, end_s);
     StepReport report = stepper_->advance(now_.state, duration_s, now_.steps == 0, next);
     if (report.outcome == StepReport::Outcome::interrupted) break;
     const bool solved = report.converged();
     if (solved) {
+      next.time_s = end_s;  // and not a sum, which rounding moves
       report.newton_iterations += std::exchange(wasted_iterations, 0);
       report.linear_solves += std::exchange(wasted_solves, 0);
     }

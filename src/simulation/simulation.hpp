@@ -102,6 +102,7 @@ class Simulation {
   std::optional<StepReport> take_step(double until_s, State& before);
   void divide(const std::vector<PlannedDivision>& due);
   Division make_division(State& state, const std::vector<PlannedDivision>& planned);
+  void begin_anew_at_a_jump();
   void renew_stepper();
   void recall_factor();
 

@@ -2,13 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "core/clock.hpp"
 
 namespace plica {
 namespace {
 
-// The first multiple of `period` after `time`, by more than rounding.
-double next_multiple(double time, double period) {
-  return (std::floor(time / period * (1 + 1e-12) + 1e-9) + 1) * period;
+// The first multiple of `period` after `time`, by more than `apart`.
+double next_multiple(double time, double period, double apart) {
+  return (std::floor((time + apart) / period + 1e-9) + 1) * period;
+}
+
+// Where an adaptive step has to end: at the last of the points that are one instant with the first to come.
+double next_stop(const RunControls& controls, double time_s, double latest_s) {
+  std::vector<double> points = {latest_s};
+  if (controls.frame_every_s > 0) points.push_back(next_multiple(time_s, controls.frame_every_s, instant_s));
+  for (const double point : controls.program_points_s)
+    if (!has_come(point, time_s)) points.push_back(point);
+  const double first = *std::ranges::min_element(points);
+  double last = first;
+  for (const double point : points)
+    if (has_come(point, first)) last = std::max(last, point);
+  return std::min(last, latest_s);
 }
 
 }  // namespace
@@ -16,24 +32,22 @@ double next_multiple(double time, double period) {
 StepLength::StepLength(const RunControls& controls, double wanted_s)
     : wanted_s_(controls.fixed_step_s.value_or(wanted_s > 0 ? wanted_s : controls.first_step_s)) {}
 
-double StepLength::propose(const RunControls& controls, double time_s, double until_s) const {
-  double stop = std::min(controls.end_s, until_s);
-  if (controls.fixed_step_s) {
+double StepLength::propose_end_s(const RunControls& controls, double time_s, double until_s) const {
+  const double latest = std::min(controls.end_s, until_s);
+  if (const auto& fixed_s = controls.fixed_step_s) {
     // On the grid of the given step, also after a step that had to be halved.
-    stop = std::min(stop, next_multiple(time_s, *controls.fixed_step_s));
-  } else {
-    if (controls.frame_every_s > 0) stop = std::min(stop, next_multiple(time_s, controls.frame_every_s));
-    for (const double point : controls.program_points_s)
-      if (point > time_s * (1 + 1e-12)) stop = std::min(stop, point);
+    double stop = std::min(latest, next_multiple(time_s, *fixed_s, 1e-6 * *fixed_s));
+    for (const double jump : controls.program_jumps_s)
+      if (!has_come(jump, time_s)) stop = std::min(stop, jump);
+    return wanted_s_ < (stop - time_s) * (1 - 1e-9) ? time_s + wanted_s_ : stop;
   }
-  const double left = stop - time_s;
-  if (controls.fixed_step_s) return std::min(wanted_s_, left);
+  const double stop = next_stop(controls, time_s, latest), left = stop - time_s;
   // Even steps to the next stop rather than long ones and a crumb; one a quarter longer than wanted if that saves one.
   // To second order a step that much longer than twice the last would be too long for it (possible_order).
   const double stretch = controls.scheme.order == TimeOrder::first ? 1.25 : 1.2;
   const double steps = std::ceil(left / wanted_s_ * (1 - 1e-12));
-  if (steps == 2 && left <= std::min(stretch * wanted_s_, controls.max_step_s)) return left;
-  return steps <= 3 ? left / steps : wanted_s_;
+  if (steps <= 1 || (steps == 2 && left <= std::min(stretch * wanted_s_, controls.max_step_s))) return stop;
+  return time_s + (steps <= 3 ? left / steps : wanted_s_);
 }
 
 bool StepLength::accept(const RunControls& controls, const State& before, const State& after) {
@@ -59,7 +73,7 @@ bool StepLength::accept(const RunControls& controls, const State& before, const 
 
 bool StepLength::halve(const RunControls& controls, double failed_s) {
   wanted_s_ = 0.5 * failed_s;
-  return wanted_s_ > 1e-4 * std::max(controls.first_step_s, controls.fixed_step_s.value_or(0));
+  return wanted_s_ > 1e-4 * controls.fixed_step_s.value_or(controls.first_step_s);
 }
 
 }  // namespace plica

@@ -13,9 +13,9 @@ class StepLength {
   /// Goes on with steps of about `wanted_s`; 0: begins.
   explicit StepLength(const RunControls& controls, double wanted_s = 0);
 
-  /// The length of a step that starts at `time_s` and ends at `until_s` at the latest.
-  [[nodiscard]] double propose(const RunControls& controls, double time_s,
-                               double until_s = std::numeric_limits<double>::infinity()) const;
+  /// When a step that starts at `time_s` ends: at `until_s` at the latest, and exactly on what it has to end on.
+  [[nodiscard]] double propose_end_s(const RunControls& controls, double time_s,
+                                     double until_s = std::numeric_limits<double>::infinity()) const;
 
   /// Whether the step from `before` to `after` stands. False when its error (step_error) is so large that it should
   /// be taken again, shorter.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "measure/energy_norm.hpp"
 #include "record/mesh_writer.hpp"
 #include "record/results.hpp"
@@ -90,6 +91,17 @@ double total_volume(const Frame& frame) {
   return volume;
 }
 
+std::vector<KeyDifference> compare_scenarios(const ReferenceRun& a, const ReferenceRun& b) {
+  std::vector<std::string> texts;
+  for (const ReferenceRun* run : {&a, &b}) {
+    const std::filesystem::path file = run->directory() / "scenario.toml";
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) return {};
+    texts.push_back(read_file(file));
+  }
+  return scenario_differences(texts[0], texts[1]);
+}
+
 std::vector<NumberPair> compare_summaries(const nlohmann::ordered_json& a, const nlohmann::ordered_json& b) {
   std::vector<NumberPair> pairs;
   const auto add = [&](const std::string& key) {
@@ -156,6 +168,7 @@ Comparison compare_runs(const ReferenceRun& run_a, const Frame& a, const Referen
   Comparison result;
   result.a = moment_of(run_a, a, summary_a);
   result.b = moment_of(run_b, b, summary_b);
+  result.scenario = compare_scenarios(run_a, run_b);
   if (a.elements == b.elements) result.nodes = compare_nodes(a, b, poisson_ratio_of(run_b));
   result.apical = compare_surfaces(a, apical_a, b, apical_b);
   result.geometry = {{"volume_um3", total_volume(a), total_volume(b)},

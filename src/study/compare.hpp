@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "measure/reference_run.hpp"
+#include "scenario/differences.hpp"
 #include "study/frame_surface.hpp"
 
 namespace plica {
@@ -51,6 +52,7 @@ struct SurfaceComparison {
 
 struct Comparison {
   RunMoment a, b;
+  std::vector<KeyDifference> scenario;  // keys that differ; none where a run has no scenario.toml
   std::optional<NodeComparison> nodes;  // only where both meshes have the same elements
   SurfaceComparison apical;
   std::vector<NumberPair> geometry;  // volume and areas at the moments compared

@@ -85,6 +85,15 @@ std::string distance_text(const Comparison& comparison) {
   return text;
 }
 
+std::string keys_text(const std::vector<KeyDifference>& keys) {
+  if (keys.empty()) return "";
+  std::string text = heading("keys of the scenario that differ", {"A", "B"});
+  const auto value = [](const std::string& of_key) { return of_key.empty() ? "none" : of_key; };
+  for (const auto& [key, a, b] : keys)
+    text += fmt::format("  {:<{}}{:>15}{:>15}\n", key, name_width - 2, value(a), value(b));
+  return text;
+}
+
 std::string pairs_text(const std::string& title, const std::vector<NumberPair>& pairs, bool all) {
   if (pairs.empty()) return "";
   std::string text = heading(title, {"A", "B", "A - B"});
@@ -120,6 +129,9 @@ Json comparison_json(const Comparison& comparison) {
   Json result;
   result["a"] = moment_json(comparison.a);
   result["b"] = moment_json(comparison.b);
+  result["scenario"] = Json::object();
+  const auto value = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+  for (const auto& [key, a, b] : comparison.scenario) result["scenario"][key] = {{"a", value(a)}, {"b", value(b)}};
   result["same_mesh"] = comparison.nodes.has_value();
   result["nodes"] = nullptr;
   result["relative_energy_norm"] = nullptr;
@@ -145,9 +157,9 @@ Json comparison_json(const Comparison& comparison) {
 }
 
 std::string comparison_text(const Comparison& comparison) {
-  return moment_line('A', comparison.a) + moment_line('B', comparison.b) + distance_text(comparison) +
-         pairs_text("at these frames", comparison.geometry, true) + series_text(comparison.series) +
-         pairs_text("summary.json, at the runs' ends", comparison.summary, false);
+  return moment_line('A', comparison.a) + moment_line('B', comparison.b) + keys_text(comparison.scenario) +
+         distance_text(comparison) + pairs_text("at these frames", comparison.geometry, true) +
+         series_text(comparison.series) + pairs_text("summary.json, at the runs' ends", comparison.summary, false);
 }
 
 }  // namespace plica

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <new>
+#include <vector>
+
 #include "support/threads.hpp"
 
 namespace plica {
@@ -25,6 +29,24 @@ TEST(Parallel, SquaredNormIsThatOfAllVectorsAndTheSameBitsOnAnyThreads) {
   };
   EXPECT_NEAR(on(1), 50'001 * 0.14, 1e-8);
   EXPECT_EQ(on(3), on(1));
+}
+
+// Out of a parallel region, where it would end the process: what one iteration throws.
+TEST(Parallel, WhatAnIterationThrowsComesOut) {
+  int cases = 0;
+  for (const int count : {1, 2, 4}) {
+    const support::Threads scope(count);
+    EXPECT_THROW(parallel_for(50'000,
+                              [](std::size_t i) {
+                                if (i == 31'234) throw std::bad_alloc();
+                              }),
+                 std::bad_alloc);
+    std::vector<int> times(50'000, 0);
+    parallel_for(times.size(), [&](std::size_t i) { ++times[i]; });
+    EXPECT_EQ(std::ranges::count(times, 1), 50'000) << "each once";
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
 }
 
 }  // namespace

@@ -129,10 +129,10 @@ TEST(Columns, ThoseOfTheContractStayInTheirOrder) {
   EXPECT_EQ(names_of(midline_columns()),
             (std::vector<std::string>{"time_s", "ap_um", "depth_um", "normal_speed_um_per_s", "apical_area_ratio"}));
   EXPECT_EQ(names_of(lineage_columns()), (std::vector<std::string>{"cell_id", "mother_id", "generation", "birth_s"}));
-  EXPECT_EQ(cells_csv_names(),
-            (std::vector<std::string>{"time_s", "cell_id", "mother_id", "generation", "x_um", "y_um", "z_um",
-                                      "volume_um3", "apical_area_um2", "basal_area_um2", "height_um",
-                                      "apical_area_ratio", "speed_um_per_s", "pressure_Pa", "activity"}));
+  EXPECT_EQ(cells_csv_names(), (std::vector<std::string>{"time_s", "cell_id", "mother_id", "generation", "x_um", "y_um",
+                                                         "z_um", "volume_um3", "apical_area_um2", "basal_area_um2",
+                                                         "height_um", "apical_area_ratio", "speed_um_per_s",
+                                                         "pressure_Pa", "activity", "self_intersecting"}));
 }
 
 }  // namespace

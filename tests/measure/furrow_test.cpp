@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "tissue/shapes/embryo.hpp"
@@ -113,7 +115,7 @@ TEST(Furrow, AtRestThereIsNone) {
   const FurrowShape shape = furrow_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
   EXPECT_NEAR(shape.depth_um.value(), 0, 1e-12);
   EXPECT_LT(shape.depth_below_lips_um.value(), 0) << "the belly is convex";
-  for (const auto& depth : cell_depths_um(pill.tissue, pill.sites.midline, pill.tissue.rest_positions))
+  for (const auto& depth : cell_depths_um(pill.tissue, pill.sites, pill.sites.midline, pill.tissue.rest_positions))
     EXPECT_NEAR(depth.value(), 0, 1e-12);
 }
 
@@ -127,9 +129,9 @@ TEST(Furrow, DepthIsTheShiftOfTheMiddle) {
     EXPECT_NEAR(shape.depth_um.value(), shift, 1e-10);
     EXPECT_NEAR(shape.depth_below_lips_um.value(), rest.depth_below_lips_um.value() + shift, 1e-10);
     EXPECT_NEAR(shape.lip_distance_um.value(), rest.lip_distance_um.value(), 1e-12);
-    for (const auto& depth : cell_depths_um(pill.tissue, pill.sites.vml, positions))
+    for (const auto& depth : cell_depths_um(pill.tissue, pill.sites, pill.sites.vml, positions))
       EXPECT_NEAR(depth.value(), shift, 1e-10);
-    for (const auto& depth : cell_depths_um(pill.tissue, pill.sites.vce, positions))
+    for (const auto& depth : cell_depths_um(pill.tissue, pill.sites, pill.sites.vce, positions))
       EXPECT_NEAR(depth.value(), 0, 1e-12);
     ++cases;
   }
@@ -161,6 +163,53 @@ TEST(Furrow, WithoutContractileCellsNothingHasAValue) {
   const FurrowShape shape = furrow_shape(tissue, sites, tissue.rest_positions);
   EXPECT_FALSE(shape.depth_um || shape.depth_below_lips_um || shape.lip_distance_um ||
                shape.highest_points_distance_um);
+}
+
+// Whatever side of an embryo, or of a sheet, the apices of the region face: inward is against them.
+TEST(Furrow, DepthIsAgainstTheRegionsApices) {
+  const Pill pill;
+  CellSet dorsal(pill.contractile.size());
+  for (std::size_t c = 0; c < dorsal.size(); ++c) {
+    const GridPlace& place = *pill.tissue.cells[c].grid_place;
+    dorsal[c] = place.face == GridPlace::Face::dorsal && 6 <= place.place[0] && place.place[0] < 12 &&
+                2 <= place.place[1] && place.place[1] < 7;
+  }
+  const FurrowSites sites = choose_furrow_sites(pill.tissue, dorsal, 1);
+  EXPECT_EQ(sites.outward, Vec3::UnitZ());
+  const Vectors positions = pill.shifted(sites.vml, Vec3(0, 0, -7));
+  const FurrowShape shape = furrow_shape(pill.tissue, sites, positions);
+  EXPECT_NEAR(shape.depth_um.value(), 7, 1e-10);
+  EXPECT_NEAR(shape.depth_below_lips_um.value(),
+              7 + furrow_shape(pill.tissue, sites, pill.tissue.rest_positions).depth_below_lips_um.value(), 1e-10);
+
+  const Tissue block = build_block({90, 90, 10, {9, 9, 1}, {1, 1, 1}});
+  CellSet middle(block.cells.size());
+  for (std::size_t c = 0; c < middle.size(); ++c)
+    middle[c] = cell_centre(block.cells[c], block.rest_positions).norm() < 25;
+  const FurrowSites sheet = choose_furrow_sites(block, middle, 1);
+  EXPECT_EQ(sheet.outward, Vec3::UnitZ());
+  EXPECT_EQ(sheet.midline.size(), 9u);
+  Vectors bent = block.rest_positions;
+  for (Vec3& x : bent)
+    if (Eigen::Vector2d(x.x(), x.y()).norm() < 10) x.z() -= 16.86;
+  const FurrowShape furrow = furrow_shape(block, sheet, bent);
+  EXPECT_NEAR(furrow.depth_um.value(), 16.86, 1e-10);
+  EXPECT_GT(furrow.depth_below_lips_um.value(), 5);
+}
+
+// From the shell along any direction in y = 0: a sphere's chord, a pill's straight side and caps.
+TEST(Furrow, DepthInsideACapsuleIsTheWayOut) {
+  const Capsule sphere{0, 10}, pill{20, 10};
+  int cases = 0;
+  for (double angle = 0; angle < 6.28; angle += 0.1, ++cases) {
+    const Vec3 outward(std::sin(angle), 0, std::cos(angle)), across(outward.z(), 0, -outward.x());
+    EXPECT_NEAR(depth_inside(sphere, 3 * outward + 6 * across, outward), 5, 1e-12);
+    EXPECT_NEAR(depth_inside(sphere, 9 * outward + 6 * across, outward), -1, 1e-12);
+    // Where the way out ends, the shell is R from the axis.
+    const Vec3 from(7, 0, -4), out = from + depth_inside(pill, from, outward) * outward;
+    EXPECT_NEAR(Vec3(out.x() - std::clamp(out.x(), -20.0, 20.0), 0, out.z()).norm(), 10, 1e-9) << angle;
+  }
+  EXPECT_EQ(cases, 63);
 }
 
 }  // namespace

@@ -174,7 +174,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {"[elasticity]\nmodel = \"shape-memory\"\nattractor_preload_nN = -1",
        "test.toml:3: elasticity.attractor_preload_nN: -1 is out of range; give a number >= 0"},
       {"[time]\nstep_s = \"fast\"",
-       "test.toml:2: time.step_s: \"fast\" is of the wrong type; give a number > 0 or \"adaptive\""},
+       "test.toml:2: time.step_s: \"fast\" is of the wrong type; give a number >= 1e-06 or \"adaptive\""},
       {"[stop]\nat_equilibrium = 1", "test.toml:2: stop.at_equilibrium: 1 is of the wrong type; give true or false"},
       {"format = 2", "test.toml:1: format: 2 is out of range; give an integer, 1"},
       {"[region.a]\nx_um = [2, 1]", "test.toml:2: region.a.x_um: low is above high; give [low, high]"},
@@ -232,9 +232,9 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:3: contraction.a.program.time_s: is missing; give time_s or time_min beside activity"},
       {program + "program = { time_s = [1] }",
        "test.toml:3: contraction.a.program.activity: is missing; give as many activities as times"},
-      {program + "program = { time_min = [0, 1, 1], activity = [1, 1, 1] }",
+      {program + "program = { time_min = [0, 1, 0.5], activity = [1, 1, 1] }",
        "test.toml:3: contraction.a.program.time_min: the times do not increase; give each time later than the one "
-       "before"},
+       "before, or the same twice for a jump"},
       {program + "program = { time_s = [0], activity = [-1] }",
        "test.toml:3: contraction.a.program.activity: -1 is out of range; give a list of numbers >= 0"},
       // Patterns of a contraction.
@@ -473,7 +473,7 @@ TEST_F(LoadFiles, ReportsErrorsWhereTheyAreWritten) {
   const std::string base = write("base.toml", "format = 1\n[time]\nend_s = -5\n");
   const std::string top = write("top.toml", "base = \"base.toml\"\n[time]\nstep_s = -1\n");
   EXPECT_EQ(errors_in(top), base + ":3: time.end_s: -5 is out of range; give a number > 0\n" + top +
-                                ":3: time.step_s: -1 is out of range; give a number > 0 or \"adaptive\"");
+                                ":3: time.step_s: -1 is out of range; give a number >= 1e-06 or \"adaptive\"");
 }
 
 TEST_F(LoadFiles, RefusesCircularBases) {

@@ -122,7 +122,7 @@ TEST(Reference, SaysTypeDefaultAndRange) {
   for (const std::string line : {
            "| `poisson_ratio` | number | `0.45` | > -1 and < 0.5 |",
            "| `shape` | word | `\"pill\"` | pill \\| sphere \\| block \\| file |",
-           "| `step_s` | number | `\"adaptive\"` | > 0 or \"adaptive\" |",
+           "| `step_s` | number | `\"adaptive\"` | >= 1e-06 or \"adaptive\" |",
            "| `cells` | 3 integers | `[18, 9, 8]` | 1 to 100000; with shape pill, sphere, block |",
            "| `end_min` | number | see `end_s` | > 0; not with `end_s` |",
            "| `region` | text | required | any |",

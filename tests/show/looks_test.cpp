@@ -102,11 +102,22 @@ TEST(ColourOf, EndsAreHeldAndTheMiddleIsTheMiddle) {
 
 TEST(ColourFields, ComeFromArraysThatFramesHave) {
   for (const ColourField& field : colour_fields()) {
+    if (field.name == "region") continue;  // of the arrays of all regions
     const bool of_nodes = std::ranges::find(node_columns(), field.array, &NodeColumn::name) != node_columns().end();
     const auto of_cells = std::ranges::find(cell_columns(), field.array, &CellColumn::name);
     const bool in_frames = of_cells != cell_columns().end() && of_cells->in_frames != InFrames::nothing;
     EXPECT_TRUE(field.on_nodes ? of_nodes : in_frames) << field.name;
   }
+}
+
+// Where regions overlap, a cell has the number of the smallest.
+TEST(FieldValues, RegionsAreNumberedByName) {
+  Frame frame;
+  frame.elements.resize(4);
+  frame.element_scalars = {{"region_belly", {1, 1, 1, 0}}, {"region_row", {0, 1, 0, 0}}, {"cell_id", {0, 1, 2, 3}}};
+  const auto field = std::ranges::find(colour_fields(), "region", &ColourField::name);
+  EXPECT_EQ(regions_of(frame), (std::vector<std::string>{"belly", "row"}));
+  EXPECT_EQ(field_values(frame, *field), (std::vector<double>{1, 2, 1, 0}));
 }
 
 TEST(FieldValues, RefusesAFrameWithoutTheArray) {

@@ -276,5 +276,60 @@ TEST(Simulation, RunsUntilATimeOnWhichAStepEnds) {
   EXPECT_FALSE(simulation.step());
 }
 
+// Drag is far stiffer than the tissue in a short step, and what rounding of positions makes of it is all that is left
+// to solve.
+TEST(Simulation, ShortStepsAndStrongDragAreSolved) {
+  const std::vector<std::vector<std::string>> cases = {
+      {"output.frame_every_min=0.333333333", "time.end_s=60"},
+      {"time.first_step_s=1e-6", "time.end_s=1"},
+      {"time.first_step_s=1e-6", "time.end_s=1", "time.integrator=bdf2"},
+      {"time.step_s=1e-6", "time.end_s=2e-5"},
+      {"time.step_s=1e-6", "time.end_s=2e-5", "time.linear_solver=multigrid"},
+      {"time.step_s=1e-6", "time.end_s=2e-5", "time.linear_solver=direct"},
+      {"dynamics.surface_drag_Pa_s_per_um=1e9", "time.end_s=60", "stop.at_equilibrium=false"},
+      {"contraction.apical.program.time_min=[0, 0.16666667]", "contraction.apical.program.activity=[0, 1]",
+       "output.frame_every_s=10", "time.end_s=20"}};
+  int ran = 0;
+  for (const auto& overrides : cases) {
+    Simulation simulation(load_scenario(find_scenario("drosophila"), overrides));
+    EXPECT_EQ(simulation.run(), RunStatus::end_time) << overrides[0] << ": " << simulation.failure();
+    ++ran;
+  }
+  EXPECT_EQ(ran, 8);
+}
+
+// Contraction that is switched off at 20 s: a step ends there, still under tension, and the next is a short one.
+TEST(Simulation, TakesAJumpOnAStepsEnd) {
+  for (const char* integrator : {"backward-euler", "bdf2"}) {
+    Simulation simulation(load_scenario(
+        find_scenario("drosophila"),
+        std::vector<std::string>{"contraction.apical.program.time_s=[0, 20, 20]", "time.end_s=60",
+                                 "contraction.apical.program.activity=[1, 1, 0]", "output.frame_every_s=0",
+                                 std::string("time.integrator=") + integrator}));
+    ASSERT_EQ(simulation.run_until(20), RunStatus::under_way) << simulation.failure();
+    const double depth = *simulation.measures()["furrow_depth_um"],
+                 area = *simulation.measures()["vml_apical_area_ratio"];
+    EXPECT_GT(depth, 4);
+    EXPECT_LT(area, 0.9);
+    simulation.step();
+    EXPECT_GT(*simulation.measures()["vml_apical_area_ratio"], area) << "apices open at once";
+    EXPECT_NEAR(simulation.time_s(), 20 + simulation.controls().first_step_s, 1e-9);
+    EXPECT_EQ(simulation.run(), RunStatus::end_time);
+    EXPECT_LT(*simulation.measures()["furrow_depth_um"], 0.7 * depth) << integrator;
+    EXPECT_GT(*simulation.measures()["vml_apical_area_ratio"], 0.95) << integrator;
+  }
+}
+
+// At rest when the jump comes is not at rest for good.
+TEST(Simulation, IsNotAtEquilibriumBeforeTheLastJump) {
+  Simulation simulation(
+      load_scenario(find_scenario("drosophila"),
+                    std::vector<std::string>{"contraction.apical.program.time_min=[0, 40, 40]", "time.end_min=60",
+                                             "contraction.apical.program.activity=[1, 1, 0]"}));
+  EXPECT_EQ(simulation.run(), RunStatus::equilibrium) << simulation.failure();
+  EXPECT_GT(simulation.time_s(), 41 * 60);
+  EXPECT_LT(std::abs(*simulation.measures()["furrow_depth_um"]), 1);
+}
+
 }  // namespace
 }  // namespace plica

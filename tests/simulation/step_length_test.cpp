@@ -30,30 +30,73 @@ class Path {
   State state_;
 };
 
+double proposed(const StepLength& length, const RunControls& controls, double time_s) {
+  return length.propose_end_s(controls, time_s) - time_s;
+}
+
 TEST(StepLength, FixedStepsStayOnTheirGridAndEndOnTime) {
   RunControls controls;
   controls.fixed_step_s = 0.3;
   controls.end_s = 1;
   const StepLength length(controls);
-  EXPECT_DOUBLE_EQ(length.propose(controls, 0), 0.3);
-  EXPECT_NEAR(length.propose(controls, 0.6), 0.3, 1e-12);
-  EXPECT_NEAR(length.propose(controls, 0.9), 0.1, 1e-12);
-  EXPECT_NEAR(length.propose(controls, 0.45), 0.15, 1e-12);  // back to the grid after a halved step
+  EXPECT_DOUBLE_EQ(proposed(length, controls, 0), 0.3);
+  EXPECT_NEAR(proposed(length, controls, 0.6), 0.3, 1e-12);
+  EXPECT_NEAR(proposed(length, controls, 0.9), 0.1, 1e-12);
+  EXPECT_NEAR(proposed(length, controls, 0.45), 0.15, 1e-12);  // back to the grid after a halved step
 }
 
 TEST(StepLength, AFailedStepIsHalvedUntilItIsNotWorthIt) {
   RunControls controls;
   controls.fixed_step_s = 1;
   StepLength length(controls);
-  double tried = length.propose(controls, 0);
+  double tried = proposed(length, controls, 0);
   int halvings = 0;
   while (length.halve(controls, tried)) {
-    const double next = length.propose(controls, 0);
+    const double next = proposed(length, controls, 0);
     EXPECT_NEAR(next, tried / 2, 1e-12);
     tried = next;
     ASSERT_LT(++halvings, 100);
   }
   EXPECT_GT(halvings, 10);
+}
+
+// Ten sums of 0.3 make 2.9999999999999996; the clock shows the grid's 3.
+TEST(StepLength, TheClockOfFixedStepsDoesNotDrift) {
+  RunControls controls;
+  controls.fixed_step_s = 0.3;
+  const StepLength length(controls);
+  double time_s = 0;
+  int steps = 0;
+  for (; time_s < 300 - 1e-3; ++steps) {
+    time_s = length.propose_end_s(controls, time_s);
+    ASSERT_EQ(time_s, (steps + 1) * 0.3);
+  }
+  EXPECT_EQ(steps, 1000);
+}
+
+// A frame at 59.9999999 s, the end at 60 s: one stop, the later.
+TEST(StepLength, StopsOfOneInstantAreOne) {
+  RunControls controls;
+  controls.end_s = 60;
+  controls.frame_every_s = 59.9999999;
+  controls.program_points_s = {10, 10 + 3e-7, 10 + 1e-3};
+  const StepLength length(controls, 1000);
+  std::vector<double> ends;
+  for (double time_s = 0; time_s < 60; ends.push_back(time_s)) {
+    const double end_s = length.propose_end_s(controls, time_s);
+    ASSERT_GT(end_s, time_s + 1e-4) << "no crumbs";
+    time_s = end_s;
+  }
+  EXPECT_EQ(ends, (std::vector<double>{10 + 3e-7, 10 + 1e-3, 60}));
+}
+
+TEST(StepLength, FixedStepsEndOnJumpsToo) {
+  RunControls controls;
+  controls.fixed_step_s = 0.5;
+  controls.program_jumps_s = {0.7};
+  const StepLength length(controls);
+  EXPECT_EQ(length.propose_end_s(controls, 0.5), 0.7);
+  EXPECT_EQ(length.propose_end_s(controls, 0.7), 1);
 }
 
 TEST(StepLength, AdaptiveStepsLandOnFrames) {
@@ -64,7 +107,7 @@ TEST(StepLength, AdaptiveStepsLandOnFrames) {
   double time = 0;
   int steps = 0;
   while (time < 15 - 1e-9) {
-    const double step = length.propose(controls, time);
+    const double step = proposed(length, controls, time);
     EXPECT_LE(step, 4 * (1 + 1e-9));
     time += step;
     ASSERT_LT(++steps, 10);
@@ -85,7 +128,7 @@ TEST(StepLength, RejectsAStepWhoseErrorIsFarTooLarge) {
   EXPECT_TRUE(length.accept(controls, path.here(), first)) << "nothing is known on the first step";
   path.go_to(first);
   EXPECT_FALSE(length.accept(controls, path.here(), path.after(1, 3)));
-  EXPECT_LT(length.propose(controls, 1), 0.5);
+  EXPECT_LT(proposed(length, controls, 1), 0.5);
 }
 
 TEST(StepLength, GrowsWhileStepsAreAccurateUpToItsLimit) {
@@ -95,12 +138,12 @@ TEST(StepLength, GrowsWhileStepsAreAccurateUpToItsLimit) {
   controls.frame_every_s = 0;
   StepLength length(controls);
   Path steady;
-  double step = length.propose(controls, 0);
+  double step = proposed(length, controls, 0);
   for (int k = 0; k < 10; ++k) {
     const State next = steady.after(step, steady.here().time_s + step);
     EXPECT_TRUE(length.accept(controls, steady.here(), next));
     steady.go_to(next);
-    const double longer = length.propose(controls, next.time_s);
+    const double longer = proposed(length, controls, next.time_s);
     EXPECT_GE(longer, step * (1 - 1e-12));
     EXPECT_LE(longer, 5);
     step = longer;
@@ -120,7 +163,7 @@ double settled_step(TimeOrder order, double tolerance_um, const Way& x_um) {
   Path path(order);
   double step = 0;
   for (int k = 0; k < 60; ++k) {
-    step = length.propose(controls, path.here().time_s);
+    step = proposed(length, controls, path.here().time_s);
     State next = path.after(step, x_um(path.here().time_s + step));
     if (length.accept(controls, path.here(), next)) path.go_to(std::move(next));
   }
@@ -151,7 +194,7 @@ TEST(StepLength, OfSecondOrderStepsGrowByNoMoreThanThatOrderAllows) {
   StepLength length(controls);
   Path steady(TimeOrder::second);
   for (int k = 0; k < 40; ++k) {
-    const double step = length.propose(controls, steady.here().time_s);
+    const double step = proposed(length, controls, steady.here().time_s);
     EXPECT_EQ(possible_order(steady.here(), step), k == 0 ? TimeOrder::first : TimeOrder::second) << "step " << k;
     const State next = steady.after(step, steady.here().time_s + step);
     EXPECT_TRUE(length.accept(controls, steady.here(), next));

@@ -37,10 +37,24 @@ function showHeadline(runs: Run[]): void {
   const parts = runs.map((run) => {
     const summary = run.data.summary;
     if (!summary) return `${run.name}: not finished`;
+    const crossing = Number(summary.self_intersections ?? 0) > 0 ? ", passes through itself" : "";
     const depth = typeof summary.furrow_depth_um === "number" ? `, furrow ${number(summary.furrow_depth_um)} µm deep` : "";
-    return `${runs.length > 1 ? `${run.name}: ` : ""}${summary.cells} cells, ${summary.status} at ${number(Number(summary.time_s) / 60)} min${depth}`;
+    return `${runs.length > 1 ? `${run.name}: ` : ""}${summary.cells} cells, ${summary.status} at ${number(Number(summary.time_s) / 60)} min${depth}${crossing}`;
   });
   byId("headline").textContent = parts.join("; ");
+}
+
+// A tissue that has passed through itself is none any more: since when, before all else.
+function showCrossings(runs: Run[]): void {
+  const since = runs.flatMap((run) => {
+    const first = run.series.column("self_intersections").findIndex((pairs) => (pairs ?? 0) > 0);
+    if (first < 0) return [];
+    return [`${runs.length > 1 ? `${run.name}: from` : "From"} ${number((run.series.column("time_s")[first] ?? 0) / 60)} min`];
+  });
+  if (since.length === 0) return;
+  const notice = byId("crossing");
+  notice.textContent = `${since.join("; ")} on, the tissue passes through itself: colour it by “passes through itself” to see where. What comes after is no tissue any more.`;
+  notice.hidden = false;
 }
 
 function showThinning(runs: Run[]): void {
@@ -151,6 +165,7 @@ async function start(): Promise<void> {
   const runs = await Promise.all(page.runs.map((data, i) => Run.read(data, i)));
   const state = firstState(page, runs);
   showHeadline(runs);
+  showCrossings(runs);
   showThinning(runs);
   const views = makeViews(runs, page, state);
   let plots: Plots | null = null;

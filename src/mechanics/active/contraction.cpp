@@ -26,25 +26,74 @@ Mat3 turning_stiffness(const Segment& s) {
   return (Mat3::Identity() - s.direction * s.direction.transpose()) / s.length;
 }
 
+// Area at rest of each cell's apical or basal face, or of its walls together, um^2.
+std::vector<double> rest_face_areas(const Tissue& tissue, CellSide side) {
+  std::vector<double> areas(tissue.cells.size(), 0.0);
+  if (side == CellSide::lateral) {
+    for (std::size_t c = 0; c < areas.size(); ++c)
+      for (int i = 0; i < 4; ++i) {
+        const auto& corners = tissue.cells[c].corners;
+        std::array<Vec3, 4> wall;
+        for (const auto& [k, corner] : {std::pair(0, i), {1, (i + 1) % 4}, {2, 4 + (i + 1) % 4}, {3, 4 + i}})
+          wall[k] = tissue.rest_positions[corners[corner].index()];
+        areas[c] += facet_area(wall);
+      }
+    return areas;
+  }
+  for (const Facet& facet : side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets)
+    areas[facet.cell.index()] += facet_area(rest_corners(tissue, facet));
+  return areas;
+}
+
+// How many shares the cell's lines of that side and direction have together, and how long they are, in the mean.
+std::pair<double, double> lines_of(const Tissue& tissue, const Cell& cell, const CellEdge& like) {
+  double shares = 0, length = 0;
+  for (const auto& [line, share] : cell.lines) {
+    if (line.side != like.side || line.direction != like.direction) continue;
+    shares += share;
+    length += share * chain_length(line.nodes, tissue.rest_positions);
+  }
+  return {shares, length / shares};
+}
+
+// Points of a program, each shifted by every delay; delays closer than `apart` times the longest count as one.
+std::vector<double> delayed(const std::vector<double>& points, std::span<const Spring> springs, double apart) {
+  std::vector<double> delays = {0};
+  for (const Spring& spring : springs) delays.push_back(spring.delay_s);
+  std::ranges::sort(delays);
+  std::vector<double> kept = {0};
+  for (const double delay : delays)
+    if (delay > kept.back() && (delay >= kept.back() + apart * delays.back() || delay == delays.back()))
+      kept.push_back(delay);
+  std::vector<double> shifted;
+  for (const double point : points)
+    for (const double delay : kept) shifted.push_back(point + delay);
+  std::ranges::sort(shifted);
+  shifted.erase(std::unique(shifted.begin(), shifted.end()), shifted.end());
+  return shifted;
+}
+
 }  // namespace
 
 std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern& pattern, const ContractionRule& rule) {
   std::vector<Spring> springs;
   double factor = 1, delay = 0;  // of the cell at hand
   // One spring a segment, in series: a part of the chain is stiffer than the whole by as much as it is shorter.
-  const auto add = [&](std::size_t cell, const std::vector<NodeId>& chain, double ratio, double share) {
+  const auto add = [&](std::size_t cell, const std::vector<NodeId>& chain, double ratio, double share,
+                       double tension = 0) {
     if (ratio <= 0) return;
     const double strength = factor * share * ratio, whole = chain_length(chain, tissue.rest_positions);
     for (std::size_t s = 1; s < chain.size(); ++s) {
       Spring spring{.nodes = {chain[s - 1], chain[s]}, .delay_s = delay, .cell = CellId(cell)};
       const double length = chain_length(spring.nodes, tissue.rest_positions), shorter = whole / length;
       spring.stiffness = shorter * (strength * rule.stiffness);
-      spring.preload = strength * rule.preload;
+      spring.preload = strength * (rule.preload + tension);
       spring.damping = shorter * (share * rule.damping);
       spring.rest_length = rule.rest_length_ratio * length;
       springs.push_back(std::move(spring));
     }
   };
+  const std::vector<double> areas = rest_face_areas(tissue, rule.side);
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     if (!pattern.cells[c]) continue;
     const Cell& cell = tissue.cells[c];
@@ -55,7 +104,9 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
       const double ratio = line.direction == EdgeDirection::along    ? rule.along_ratio
                            : line.direction == EdgeDirection::across ? rule.across_ratio
                                                                      : 1;
-      add(c, line.nodes, ratio, share);
+      // Of the tension times the width, area over length, each line its share.
+      const auto [shares, length] = lines_of(tissue, cell, line);
+      add(c, line.nodes, ratio, share, rule.tension * areas[c] / length / shares);
     }
     if (rule.diagonals && rule.side != CellSide::lateral) {
       const int first = rule.side == CellSide::apical ? 4 : 0;
@@ -77,21 +128,12 @@ std::optional<double> Contraction::activity_of(CellId cell, double time_s) const
 }
 
 std::vector<double> Contraction::program_points_s() const {
-  std::vector<double> delays = {0};
-  for (const Spring& spring : springs_) delays.push_back(spring.delay_s);
-  std::ranges::sort(delays);
-  const double apart = 0.01 * delays.back();
-  std::vector<double> kept = {0};
-  for (const double delay : delays)
-    if (delay > 0 && (delay >= kept.back() + apart || delay == delays.back())) kept.push_back(delay);
+  const bool has_jumps = !program_.jumps_s().empty();
   const std::vector<double> from_start = {0};  // a program without points: from nothing to 1 at its time 0
-  std::vector<double> points;
-  for (const double point : program_.times_s().empty() ? from_start : program_.times_s())
-    for (const double delay : kept) points.push_back(point + delay);
-  std::ranges::sort(points);
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return points;
+  return delayed(program_.times_s().empty() ? from_start : program_.times_s(), springs_, has_jumps ? 0 : 0.01);
 }
+
+std::vector<double> Contraction::program_jumps_s() const { return delayed(program_.jumps_s(), springs_, 0); }
 
 // The tension T(l) of a spring over a step, its derivative dT/dl, and the energy it derives from.
 struct Contraction::Pulled {

@@ -31,11 +31,14 @@ struct ContractionRule {
   double rest_length_ratio = 0;  // U over the length at rest
   double preload = 0;            // nN
   double damping = 0;            // nN s/um
+  double tension = 0;            // of the face, nN/um: what its lines carry together over its width
 };
 
 /// The springs of the cells that act. Two that share an edge have a spring each. In a cell of several elements the
 /// tension of its edges is spread over the lines of its face, and each element edge of a line is a spring
 /// (docs/decisions/0005-spread-springs.md). A cell's strength scales k and P, its delay is its springs'.
+/// A tension of the face is divided among its lines of a direction, which together carry it times the face's width at
+/// rest (of lateral faces: times the cell's perimeter), so it does not depend on the size of cells.
 std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern& pattern, const ContractionRule& rule);
 
 /// Its semidefinite tangent leaves out the turning of springs that push.
@@ -61,9 +64,10 @@ class Contraction final : public Law {
   [[nodiscard]] double activity(double delay_s, double time_s) const;
   [[nodiscard]] bool is_active() const override { return true; }
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s) const override;
-  /// Increasing: the program's points shifted by the delays. Delays closer than a hundredth of the longest count as
-  /// one.
+  /// Increasing: the program's points shifted by the delays. Of a program without jumps, delays closer than a hundredth
+  /// of the longest count as one.
   [[nodiscard]] std::vector<double> program_points_s() const override;
+  [[nodiscard]] std::vector<double> program_jumps_s() const override;
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
 
  private:

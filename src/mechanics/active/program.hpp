@@ -1,4 +1,5 @@
-// Activity over time: linear between points, held before the first and after the last.
+// Activity over time: linear between points, held before the first and after the last. Two points of one time are a
+// jump: until that time and at it the activity is the first's, later the second's.
 #pragma once
 
 #include <vector>
@@ -8,7 +9,7 @@ namespace plica {
 class Program {
  public:
   Program() = default;  // always 1
-  /// Times in s, strictly increasing, one activity each. Empty: always 1.
+  /// Times in s, increasing, one activity each. Empty: always 1.
   Program(std::vector<double> times_s, std::vector<double> activities)
       : times_(std::move(times_s)), activities_(std::move(activities)) {}
 
@@ -16,6 +17,8 @@ class Program {
   /// The time of the last point, s: from then on the activity is constant.
   [[nodiscard]] double end_s() const { return times_.empty() ? 0 : times_.back(); }
   [[nodiscard]] const std::vector<double>& times_s() const { return times_; }
+  /// Times at which it jumps.
+  [[nodiscard]] std::vector<double> jumps_s() const;
 
  private:
   std::vector<double> times_, activities_;

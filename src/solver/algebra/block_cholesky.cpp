@@ -182,7 +182,7 @@ void BlockCholesky::assemble(const Supernode& node, std::span<const float> value
   const std::size_t stride = node.stride();
   std::fill_n(panel, stride * node.width(), 0.0F);
   for (const auto& [block, row, column, turned] : node.blocks) {
-    const float* value = &values[9 * block];
+    const float* value = &values[9 * static_cast<std::size_t>(block)];
     float* to = panel + 3 * (static_cast<std::size_t>(column) * stride + static_cast<std::size_t>(row));
     for (std::size_t j = 0; j < 3; ++j)
       for (std::size_t i = 0; i < 3; ++i) to[j * stride + i] = turned ? value[3 * j + i] : value[3 * i + j];

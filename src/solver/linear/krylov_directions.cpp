@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.hpp"
+
 namespace plica {
 namespace {
 
@@ -13,6 +15,15 @@ constexpr double far_from_balance = 0.1;  // residual's forces, relative
 double useful_tolerance(const Residual& residual, const NewtonDirections::Wish& wish) {
   const double useful = std::clamp(std::max(0.05 * residual.force, 0.5 * wish.left * wish.left), 1e-4, 1e-2);
   return std::clamp(wish.accuracy, useful, 0.1);
+}
+
+/// What accuracy of the whole system gives its forces `accuracy`. In a short step, where drag makes the system stiff,
+/// what constraints lack weighs thousands of times what is unbalanced. (Up to a thousand times, as their weights have
+/// it, forces come out well enough.)
+double accuracy_of_whole(double accuracy, const KrylovVector& right, std::size_t nodes) {
+  const std::span<const double> all(right), forces = all.first(3 * nodes);
+  const double share = std::sqrt(parallel_dot(forces, forces) / parallel_dot(all, all));
+  return share < 1e-3 ? accuracy * 1e3 * share : accuracy;
 }
 
 /// The share that reducing the residual to this has of a solve to 1e-4.
@@ -92,9 +103,11 @@ NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate
   KrylovVector solution;
   while (true) {
     system_.set_units(kept_->weights());  // and not on the way, should weights become others
+    const KrylovVector right = system_.right_side(residual);
+    const double accuracy = accuracy_of_whole(wish.accuracy, right, at.positions.size());
     report = solver_.solve(
-        multiply, [&](const KrylovVector& r, KrylovVector& z) { kept_->apply(r, z); }, system_.right_side(residual),
-        {.tolerance = useful_tolerance(residual, wish)}, go_on, solution);
+        multiply, [&](const KrylovVector& r, KrylovVector& z) { kept_->apply(r, z); }, right,
+        {.tolerance = useful_tolerance(residual, {wish.left, accuracy})}, go_on, solution);
     cost.linear_solves += report.iterations;
     if (report.converged) break;
     if (is_indefinite) {

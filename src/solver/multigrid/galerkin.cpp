@@ -31,11 +31,11 @@ Galerkin<B>::Galerkin(const Rows& matrix, const Transfer<B>& transfer)
 template <int B>
 UninitialisedVector<float> Galerkin<B>::times_transfer(const Matrix<B>& matrix, const Transfer<B>& transfer) const {
   UninitialisedVector<float> values(std::size_t{B * motions} * product_.columns.size() + spare);
+  FirstError error;
 #pragma omp parallel
   {
     std::vector<float> sums;  // of a row, with room for the lanes
-#pragma omp for schedule(static)
-    for (int node = 0; node < matrix.nodes(); ++node) {
+    const auto make_row = [&](int node) {
       const auto columns = product_.of(node);
       sums.assign(B * wide * columns.size(), 0.0F);
       for (int place = matrix.rows().starts[node]; place < matrix.rows().starts[node + 1]; ++place) {
@@ -55,8 +55,11 @@ UninitialisedVector<float> Galerkin<B>::times_transfer(const Matrix<B>& matrix, 
       }
       float* to = &values[std::size_t{B * motions} * product_.starts[node]];
       for (std::size_t row = 0; row < B * columns.size(); ++row) to = std::copy_n(&sums[wide * row], motions, to);
-    }
+    };
+#pragma omp for schedule(static)
+    for (int node = 0; node < matrix.nodes(); ++node) error.take([&] { make_row(node); });
   }
+  error.rethrow();
   return values;
 }
 
@@ -65,11 +68,11 @@ UninitialisedVector<float> Galerkin<B>::values(const Matrix<B>& matrix, const Tr
   const auto product = times_transfer(matrix, transfer);
   UninitialisedVector<float> values(std::size_t{motions * motions} * pattern_.columns.size());
   const auto& of_aggregates = transfer.columns();
+  FirstError error;
 #pragma omp parallel
   {
     std::vector<float> sums;
-#pragma omp for schedule(dynamic, 64)
-    for (int row = 0; row < pattern_.nodes(); ++row) {
+    const auto make_row = [&](int row) {
       const auto columns =
           std::span(pattern_.columns).subspan(pattern_.starts[row], pattern_.starts[row + 1] - pattern_.starts[row]);
       sums.assign(motions * wide * columns.size(), 0.0F);
@@ -93,8 +96,11 @@ UninitialisedVector<float> Galerkin<B>::values(const Matrix<B>& matrix, const Tr
         if (diagonal[(wide + 1) * motion] == 0) diagonal[(wide + 1) * motion] = 1;
       float* to = &values[std::size_t{motions * motions} * pattern_.starts[row]];
       for (std::size_t k = 0; k < motions * columns.size(); ++k) to = std::copy_n(&sums[wide * k], motions, to);
-    }
+    };
+#pragma omp for schedule(dynamic, 64)
+    for (int row = 0; row < pattern_.nodes(); ++row) error.take([&] { make_row(row); });
   }
+  error.rethrow();
   return values;
 }
 

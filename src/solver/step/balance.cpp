@@ -24,9 +24,10 @@ Balance::Balance(const Model& model, const StepTolerances& tolerances)
       tolerances_(tolerances),
       contacts_(model),
       force_scale_(model.force_scale()),
-      force_rounding_(model.force_rounding()) {
+      position_rounding_(model.position_rounding()),
+      elastic_rounding_(model.elastic_rounding()) {
   for (const auto& constraint : model.constraints)
-    constraint_rounding_.push_back(constraint->rounding(model.tissue, model.position_rounding()));
+    constraint_rounding_.push_back(constraint->rounding(model.tissue, position_rounding_));
 }
 
 bool Balance::is_solved(const Residual& residual) const {
@@ -76,6 +77,7 @@ Residual Balance::residual(const Step& step, Iterate& at) const {
   r.forces.assign(at.positions.size(), Vec3::Zero());
   Vectors of_one(at.positions.size(), Vec3::Zero());
   double balanced = 0;  // squared norm of the forces that have to balance
+  double rounding = elastic_rounding_;
   const auto take = [&] {
     model_.tissue.carry_hanging(of_one);
     balanced += parallel_squared_norm(of_one);
@@ -87,6 +89,7 @@ Residual Balance::residual(const Step& step, Iterate& at) const {
   for_laws(model_, step, [&](const Law& law, const Step& own) {
     law.add_forces(own, of_one);
     take();
+    rounding += law.rounding(own, position_rounding_);
   });
   r.deficits.assign(at.multipliers.size(), 0.0);
   for_held_constraints(model_, [&](const Constraint& constraint, std::size_t first, std::size_t place) {
@@ -111,7 +114,7 @@ Residual Balance::residual(const Step& step, Iterate& at) const {
   take_out_normals(at, free);
   // Relative to the forces that balance; but where those are next to none, or as small as what rounding makes, to a
   // floor.
-  const double floor = std::max(1e-4 * force_scale_, force_rounding_ / tolerances_.force);
+  const double floor = std::max(1e-4 * force_scale_, rounding / tolerances_.force);
   r.force = std::sqrt(parallel_squared_norm(free)) / (std::sqrt(balanced) + floor);
   return r;
 }

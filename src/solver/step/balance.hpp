@@ -37,7 +37,8 @@ class Balance {
   StepTolerances tolerances_;
   Contacts contacts_;
   double force_scale_;                       // nN
-  double force_rounding_;                    // nN: what rounding of positions makes of forces
+  double position_rounding_;                 // um
+  double elastic_rounding_;                  // nN: what that makes of elastic forces
   std::vector<double> constraint_rounding_;  // the same of relative values; constraints
 };
 

@@ -32,6 +32,23 @@ std::string StepReport::reason() const {
   return "";
 }
 
+std::string StepReport::remedy() const {
+  switch (outcome) {
+    case Outcome::inverted_element:
+      return "it is pulled or pushed more than its shape bears: lower stiffness_nN_per_um, preload_nN or pressure_Pa "
+             "of "
+             "what acts there, raise elasticity.young_modulus_Pa, or give it more elements (embryo.elements_per_cell)";
+    case Outcome::no_convergence:
+      return "lower the forces that act there, raise elasticity.young_modulus_Pa, or give a shorter time.max_step_s";
+    case Outcome::no_linear_convergence:
+      return "give a shorter time.step_s, or a larger time.cg_max_iterations";
+    case Outcome::not_projected:
+      return "give a shorter time.step_s";
+    default:
+      return "";
+  }
+}
+
 std::optional<CellId> cell_with_largest(const Tissue& tissue, std::span<const Vec3> vectors) {
   std::size_t largest = 0;
   for (std::size_t n = 0; n < vectors.size(); ++n) {

@@ -39,6 +39,8 @@ struct StepReport {
   [[nodiscard]] bool converged() const { return outcome == Outcome::converged; }
   /// "cell 37 turns inside out" and the like.
   [[nodiscard]] std::string reason() const;
+  /// What to try, with the keys of the scenario that matter; empty where nothing is known.
+  [[nodiscard]] std::string remedy() const;
 };
 
 /// Takes steps of one model.

@@ -1,0 +1,146 @@
+#include "measure/self_intersections.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace plica {
+namespace {
+
+struct Box {
+  Vec3 low, high;
+
+  [[nodiscard]] bool overlaps(const Box& other) const {
+    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+  }
+};
+
+Box box_of(std::span<const Vec3> points) {
+  Box box{points[0], points[0]};
+  for (const Vec3& point : points.subspan(1)) {
+    box.low = box.low.cwiseMin(point);
+    box.high = box.high.cwiseMax(point);
+  }
+  return box;
+}
+
+using Triangle = std::array<Vec3, 3>;
+
+// Where a triangle's edges cross a plane, along `line` in that plane. Nothing when it does not reach to both sides of
+// it by more than `least`.
+std::optional<std::pair<double, double>> cut(const Triangle& t, const Vec3& origin, const Vec3& normal,
+                                             const Vec3& line, double least) {
+  std::array<double, 3> height{};
+  for (int i = 0; i < 3; ++i) height[i] = normal.dot(t[i] - origin);
+  if (*std::ranges::min_element(height) > -least || *std::ranges::max_element(height) < least) return std::nullopt;
+  std::pair<double, double> range{1e300, -1e300};
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3;
+    if ((height[i] > 0) == (height[next] > 0)) continue;
+    const double at = line.dot(t[i] + height[i] / (height[i] - height[next]) * (t[next] - t[i]));
+    range = {std::min(range.first, at), std::max(range.second, at)};
+  }
+  return range;
+}
+
+// Whether two triangles pass through each other: each reaches to both sides of the other's plane, and on the line in
+// which the planes meet they have more in common than a point (Moller 1997).
+bool cross(const Triangle& a, const Triangle& b, double least) {
+  const auto normal = [](const Triangle& t) { return Vec3((t[1] - t[0]).cross(t[2] - t[0]).normalized()); };
+  const Vec3 normal_a = normal(a), normal_b = normal(b), line = normal_a.cross(normal_b).normalized();
+  const auto of_a = cut(a, b[0], normal_b, line, least), of_b = cut(b, a[0], normal_a, line, least);
+  return of_a && of_b && std::min(of_a->second, of_b->second) - std::max(of_a->first, of_b->first) > least;
+}
+
+// A facet's corners and their mean, and the fan of four triangles between them.
+struct Fan {
+  std::array<Vec3, 5> points;
+
+  [[nodiscard]] Triangle triangle(int i) const { return {points[i], points[(i + 1) % 4], points[4]}; }
+};
+
+Fan fan_of(const Facet& facet, std::span<const Vec3> positions) {
+  Fan fan;
+  fan.points[4].setZero();
+  for (int i = 0; i < 4; ++i) {
+    fan.points[i] = positions[facet.nodes[i].index()];
+    fan.points[4] += fan.points[i] / 4;
+  }
+  return fan;
+}
+
+bool cross(const Fan& a, const Fan& b) {
+  const Box box_a = box_of(a.points), box_b = box_of(b.points);
+  const double size = std::max((box_a.high - box_a.low).maxCoeff(), (box_b.high - box_b.low).maxCoeff());
+  for (int i = 0; i < 4; ++i) {
+    const Triangle of_a = a.triangle(i);
+    const Box box = box_of(of_a);
+    if (!box.overlaps(box_b)) continue;
+    for (int k = 0; k < 4; ++k) {
+      const Triangle of_b = b.triangle(k);
+      if (box.overlaps(box_of(of_b)) && cross(of_a, of_b, 1e-9 * size)) return true;
+    }
+  }
+  return false;
+}
+
+bool have_common_node(const Facet& a, const Facet& b) {
+  return std::ranges::any_of(a.nodes, [&](NodeId node) { return std::ranges::find(b.nodes, node) != b.nodes.end(); });
+}
+
+}  // namespace
+
+std::vector<std::pair<std::size_t, std::size_t>> crossing_facets(std::span<const Facet> facets,
+                                                                 std::span<const Vec3> positions) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  if (facets.empty()) return pairs;
+  struct Place {
+    Box box;
+    std::size_t facet;
+  };
+  std::vector<Place> places;
+  places.reserve(facets.size());
+  Box whole{positions[facets[0].nodes[0].index()], positions[facets[0].nodes[0].index()]};
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    std::array<Vec3, 4> corners;  // their mean lies among them
+    for (int i = 0; i < 4; ++i) corners[i] = positions[facets[f].nodes[i].index()];
+    places.push_back({box_of(corners), f});
+    whole = {whole.low.cwiseMin(places.back().box.low), whole.high.cwiseMax(places.back().box.high)};
+  }
+
+  // Along the axis in which the surface is longest, each box with those that begin before it ends.
+  int x = 0;
+  (whole.high - whole.low).maxCoeff(&x);
+  const int y = (x + 1) % 3, z = (x + 2) % 3;
+  std::ranges::sort(places, {}, [&](const Place& place) { return place.box.low[x]; });
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Box& box = places[i].box;
+    for (std::size_t k = i + 1; k < places.size() && places[k].box.low[x] <= box.high[x]; ++k) {
+      const Box& other = places[k].box;
+      if (other.low[y] > box.high[y] || box.low[y] > other.high[y] || other.low[z] > box.high[z] ||
+          box.low[z] > other.high[z])
+        continue;
+      const auto [a, b] = std::minmax(places[i].facet, places[k].facet);
+      if (!have_common_node(facets[a], facets[b]) && cross(fan_of(facets[a], positions), fan_of(facets[b], positions)))
+        pairs.emplace_back(a, b);
+    }
+  }
+  std::ranges::sort(pairs);
+  return pairs;
+}
+
+std::size_t self_intersections(const Tissue& tissue, std::span<const Vec3> positions) {
+  return crossing_facets(tissue.apical_facets, positions).size() +
+         crossing_facets(tissue.basal_facets, positions).size();
+}
+
+CellSet self_intersecting_cells(const Tissue& tissue, std::span<const Vec3> positions) {
+  CellSet cells(tissue.cells.size(), false);
+  for (const auto* facets : {&tissue.apical_facets, &tissue.basal_facets})
+    for (const auto& [a, b] : crossing_facets(*facets, positions))
+      for (const std::size_t facet : {a, b}) cells[(*facets)[facet].cell.index()] = true;
+  return cells;
+}
+
+}  // namespace plica
