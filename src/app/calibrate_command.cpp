@@ -207,7 +207,7 @@ void add_calibrate_command(CLI::App& app, int& status) {
                    "as 2%; without it, 0.5%); repeatable")
       ->required()
       ->allow_extra_args(false);
-  command->add_option("--out", options->out, "FILE.toml to write: the calibrated scenario");
+  command->add_option("--out,--output,-o", options->out, "FILE.toml to write: the calibrated scenario");
   command->add_option("--trials", options->trials, "runs to make at most (40)")->check(CLI::Range(1, 100000));
   command->add_option("--threads", options->threads, "threads to use; results do not depend on it")
       ->check(CLI::Range(1, 1024));

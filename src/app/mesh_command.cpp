@@ -37,7 +37,7 @@ void add_mesh_command(CLI::App& app, int&) {
   auto out = std::make_shared<std::string>();
   auto overwrite = std::make_shared<bool>(false);
   options->add_to(*command);
-  command->add_option("--out", *out, "FILE.vtu to write")->required();
+  command->add_option("--out,--output,-o", *out, "FILE.vtu to write")->required();
   command->add_flag("--overwrite", *overwrite, "replace FILE.vtu where it is there");
   command->footer("Example: plica mesh drosophila --out rest.vtu");
   command->callback([options, out, overwrite] {

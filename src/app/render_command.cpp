@@ -183,7 +183,7 @@ void add_render_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("render", "a picture of a run without a screen: one moment, several, or all");
   auto options = std::make_shared<RenderCommand>();
   command->add_option("DIR", options->directory, "results of a run")->required();
-  command->add_option("--out", options->out, "FILE.png to write; with --movie FILE_00000.png and so on")->required();
+  command->add_option("--out,--output,-o", options->out, "FILE.png to write; with --movie FILE_00000.png and so on")->required();
   command
       ->add_option("--view", options->views,
                    fmt::format("from where: {}; several, a row each", fmt::join(names_of(views()), ", ")))
@@ -196,7 +196,7 @@ void add_render_command(CLI::App& app, int& status) {
                     "five moments from 0 to the end, from outside and cut across; --time and --view change that");
   command->add_flag("--movie", options->movie, "every frame, a file each; says how to make a movie of them");
   command
-      ->add_option("--colour", options->colour,
+      ->add_option("--colour,--color", options->colour,
                    fmt::format("coloured by: {}", fmt::join(names_of(colour_fields()), ", ")))
       ->type_name("NAME")
       ->capture_default_str();

@@ -42,7 +42,7 @@ void add_report_command(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand("report", "make one HTML page of a run, or of several side by side");
   auto options = std::make_shared<ReportOptions>();
   command->add_option("DIR", options->directories, "results of a run, repeatable")->required();
-  command->add_option("--out", options->out, "FILE.html to write; for one run, DIR/report.html without it");
+  command->add_option("--out,--output,-o", options->out, "FILE.html to write; for one run, DIR/report.html without it");
   command->add_flag("--overwrite", options->overwrite, "replace FILE.html where it is there");
   command->footer(
       "The page needs no network: mail it, open it by double click.\n"

@@ -192,7 +192,7 @@ void add_run_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("run", "run a scenario");
   auto options = std::make_shared<RunOptions>();
   options->scenario.add_to(*command);
-  command->add_option("--out", options->out, "directory for the results")->required();
+  command->add_option("--out,--output,-o", options->out, "directory for the results")->required();
   command->add_option("--threads", options->threads, "threads to use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--quiet", options->quiet, "no progress and no result on the terminal");
