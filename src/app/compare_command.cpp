@@ -41,7 +41,8 @@ void add_compare_command(CLI::App& app, int&) {
   command->add_option("DIR_A", options->a, "results of a run")->required();
   command->add_option("DIR_B", options->b, "results of another, the reference")->required();
   command->add_option("--time_s", options->time_s, "compare the frames of this time; without it, the last ones");
-  command->add_option("--out,--output,-o", options->out, "FILE.vtu to write: the mesh of A, coloured by its distance from B");
+  command->add_option("--out,--output,-o", options->out,
+                      "FILE.vtu to write: the mesh of A, coloured by its distance from B");
   command->add_flag("--json", options->json, "print JSON instead of a table");
   command->add_flag("--overwrite", options->overwrite, "replace FILE.vtu where it is there");
   command->footer(

@@ -183,7 +183,8 @@ void add_render_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("render", "a picture of a run without a screen: one moment, several, or all");
   auto options = std::make_shared<RenderCommand>();
   command->add_option("DIR", options->directory, "results of a run")->required();
-  command->add_option("--out,--output,-o", options->out, "FILE.png to write; with --movie FILE_00000.png and so on")->required();
+  command->add_option("--out,--output,-o", options->out, "FILE.png to write; with --movie FILE_00000.png and so on")
+      ->required();
   command
       ->add_option("--view", options->views,
                    fmt::format("from where: {}; several, a row each", fmt::join(names_of(views()), ", ")))

@@ -78,7 +78,8 @@ int reproduce_paper(const ReproduceCommand& command) {
 void add_reproduce_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("reproduce", "run every experiment of the paper; its figures beside ours");
   auto options = std::make_shared<ReproduceCommand>();
-  command->add_option("--out,--output,-o", options->out, "directory for the page, its figures and all runs")->required();
+  command->add_option("--out,--output,-o", options->out, "directory for the page, its figures and all runs")
+      ->required();
   command->add_option("--jobs", options->at_a_time, "runs at a time, each on one thread")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

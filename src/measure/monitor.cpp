@@ -79,12 +79,16 @@ Vectors forces_of_cells(const Model& model, const State& state, const CellSet& c
   const Division kept = keep_only(part, cells);
   const Vectors no_velocity(state.positions.size(), Vec3::Zero());
   const Step still{state.positions, state.positions, no_velocity, 1, state.time_s};
+  const std::vector<double> volumes =
+      inherited(kept, std::vector<double>(model.volumes().targets().begin(), model.volumes().targets().end()));
   Vectors forces(state.positions.size(), Vec3::Zero());
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
     const std::vector<double> internal = model.laws[l]->internal_after_division(state.internals[l], part, kept);
     Step own = still;
     own.internal = internal;
-    model.laws[l]->after_division(part, kept, state.positions)->add_forces(own, forces);
+    const auto law = model.laws[l]->after_division(part, kept, state.positions);
+    law->take_cell_volumes(part, volumes);
+    law->add_forces(own, forces);
   }
   const std::span<const double> pressures = state.pressures(model);
   CellVolumes(part).add_forces(state.positions,

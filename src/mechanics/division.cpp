@@ -144,6 +144,7 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
     }
 
   divide_laws(model, state, division);
+  for (const auto& law : model.laws) law->take_cell_volumes(model.tissue, model.volumes().targets());
   divide_holds(model, division);
   divide_obstacles(model, state, division);
   if (!model.masses().empty()) restore_momentum(model, division, momentum_before, state.velocities);
@@ -167,8 +168,10 @@ void grow(Model& model, double time_s) {
     set_element_rest_shapes(model.tissue, growth.cell);
     for (int e = 0; e < cell.element_count; ++e) changed.emplace_back(cell.first_element.index() + e);
   }
-  if (!changed.empty())
-    for (const auto& law : model.laws) law->take_rest_shapes(model.tissue, changed);
+  for (const auto& law : model.laws) {
+    if (!changed.empty()) law->take_rest_shapes(model.tissue, changed);
+    if (!model.growths.empty()) law->take_cell_volumes(model.tissue, model.volumes().targets());
+  }
 }
 
 }  // namespace plica

@@ -135,6 +135,10 @@ class Law {
   /// Daughters have grown: the rest shapes of these elements are new. Between steps only.
   virtual void take_rest_shapes(const Tissue& /*tissue*/, std::span<const ElementId> /*elements*/) {}
 
+  /// The volumes that cells are held at, um^3, where they are: after a division, and as daughters grow. Between steps
+  /// only.
+  virtual void take_cell_volumes(const Tissue& /*tissue*/, std::span<const double> /*volumes*/) {}
+
   /// Times at which its programs begin or bend, s: steps end on them.
   [[nodiscard]] virtual std::vector<double> program_points_s() const { return {}; }
   /// Those at which forces jump: there, what is known of past motion says nothing of what comes.

@@ -153,6 +153,35 @@ TEST(Grow, OfDaughtersThatStayHalvesChangesNothing) {
   EXPECT_EQ(times, 18);
 }
 
+// An element's part of the volume that its cell is held at, whatever that of its rest shape is: otherwise the bulk
+// modulus would press, and a daughter's pressure would show it.
+TEST(Grow, BulkModulusIsAgainstTheVolumesThatCellsAreHeldAt) {
+  Model model(distorted_block(three_cells, 2, 7));
+  model.volumes().hold(true);
+  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, 3.0, true));
+  State state = rest_state(model);
+  for (Vec3& x : state.positions) x = Vec3(1.3 * x.x(), 0.9 * x.y() + 0.002 * x.x() * x.z(), x.z());
+  divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 1}, 100, 0.8}});
+  ASSERT_GT(model.tissue.elements.size(), model.tissue.cells.size());
+  int differ = 0;
+  for (const double time_s : {0.0, 50.0, 100.0}) {
+    grow(model, time_s);
+    double expected = 0, by_rest_shapes = 0;
+    for (std::size_t e = 0; e < model.tissue.elements.size(); ++e) {
+      const std::size_t c = model.tissue.element_cell[e].index();
+      const double rest = hex_volume(model.tissue.element_rest_shape[e]),
+                   held = rest * model.volumes().targets()[c] / hex_volume(model.tissue.cells[c].rest_shape),
+                   now = hex_volume(gather(state.positions, model.tissue.elements[e]));
+      expected += 3.0 / 2 * held * std::pow(now / held - 1, 2);
+      by_rest_shapes += 3.0 / 2 * rest * std::pow(now / rest - 1, 2);
+    }
+    EXPECT_NEAR(model.laws[0]->energy(Step{state.positions, state.positions, state.velocities, 1, time_s}), expected,
+                1e-9 * expected);
+    differ += std::abs(by_rest_shapes - expected) > 1e-3 * expected;
+  }
+  EXPECT_GE(differ, 2);
+}
+
 TEST(DivideCells, IsDoneWithWhoHasGrownUp) {
   Model model(build_block(sheet));
   add_elasticity(model);

@@ -42,6 +42,14 @@ void VolumeElements::take_rest_shapes(const Tissue& tissue, std::span<const Elem
   for (const ElementId e : elements) fit(tissue, e.index());
 }
 
+// In the last batch, lanes after the last element repeat it.
+void VolumeElements::set_rest_volume(std::size_t element, double volume) {
+  const bool is_last = element + 1 == chunks_.element_count();
+  const std::size_t end = is_last ? batches_.size() * ElementChunks::batch_size : element + 1;
+  for (std::size_t place = element; place < end; ++place)
+    batches_[place / ElementChunks::batch_size].rest_volumes[place % ElementChunks::batch_size] = volume;
+}
+
 const VolumeKernels& VolumeElements::kernels() const {
   return kernels_for(kernels_, generic::volume_kernels, avx2::volume_kernels, avx512::volume_kernels);
 }
@@ -213,6 +221,24 @@ std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Divi
 
 void Dilatation::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
   volumes_.take_rest_shapes(tissue, elements);
+}
+
+// A daughter that grows is held at another volume than that of her rest shape. Against the latter, every one of her
+// elements would press, and the multiplier, which is shown as her pressure, would only undo that.
+void Dilatation::take_cell_volumes(const Tissue& tissue, std::span<const double> volumes) {
+  if (!cells_are_exact_ || elements_.empty()) return;
+  for (std::size_t c = 0; c < volumes.size(); ++c) {
+    const Cell& cell = tissue.cells[c];
+    double at_rest = 0;
+    for (int e = 0; e < cell.element_count; ++e)
+      at_rest += hex_volume(tissue.element_rest_shape[cell.first_element.index() + e]);
+    const double part = volumes[c] / at_rest;
+    for (int e = 0; e < cell.element_count; ++e) {
+      const std::size_t element = cell.first_element.index() + e;
+      const double rest = hex_volume(tissue.element_rest_shape[element]);
+      volumes_.set_rest_volume(element, std::abs(part - 1) < 1e-12 ? rest : part * rest);
+    }
+  }
 }
 
 }  // namespace plica

@@ -20,6 +20,7 @@ class VolumeElements {
  public:
   VolumeElements(const Tissue& tissue, Kernels kernels);
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements);
+  void set_rest_volume(std::size_t element, double volume);
 
   [[nodiscard]] const VolumeKernels& kernels() const;
   [[nodiscard]] const ElementChunks& chunks() const { return chunks_; }
@@ -91,10 +92,11 @@ class CellVolumes final : public Constraint {
   bool is_held_ = true;
 };
 
-/// The bulk modulus at work: energy kappa V0 (V/V0 - 1)^2 / 2 an element, with exact volumes. It replaces the mean
-/// volumetric part that Corotational leaves out. Where a cell is one element of exact volume it is zero; within a cell
-/// of several it resists one element growing at another's cost; without the constraint it is the whole volume
-/// elasticity. Its semidefinite tangent leaves out the pressure times d2V/dx2.
+/// The bulk modulus at work: energy kappa V0 (V/V0 - 1)^2 / 2 an element, with exact volumes; V0 is the element's part
+/// of the volume that its cell is held at, else its rest volume. It replaces the mean volumetric part that Corotational
+/// leaves out. Where a cell is one element of exact volume it is zero; within a cell of several it resists one element
+/// growing at another's cost; without the constraint it is the whole volume elasticity. Its semidefinite tangent leaves
+/// out the pressure times d2V/dx2.
 class Dilatation final : public Law {
  public:
   /// `bulk_modulus` in kPa. With `cells_are_exact` (cells' volumes are held) it is left out while every cell is one
@@ -112,6 +114,7 @@ class Dilatation final : public Law {
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
+  void take_cell_volumes(const Tissue& tissue, std::span<const double> volumes) override;
 
  private:
   [[nodiscard]] VolumeStep kernel_step(const Step& step) const;
