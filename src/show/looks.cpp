@@ -67,14 +67,18 @@ const auto& required(const Arrays& arrays, const std::string& name) {
   return found->second;
 }
 
-// Of each element the smallest region that it is in, as a place in regions_of(), from 1; 0: none.
+double size_of(const std::vector<double>& members) {
+  return static_cast<double>(std::ranges::count_if(members, [](double flag) { return flag > 0; }));
+}
+
+// Of each element the smallest region that it is in, as a place in coloured_regions(), from 1; 0: none.
 std::vector<double> region_numbers(const Frame& frame) {
   std::vector<double> numbers(frame.elements.size(), 0.0), sizes(frame.elements.size(), 1e300);
   double number = 0;
-  for (const std::string& name : regions_of(frame)) {
+  for (const std::string& name : coloured_regions(frame)) {
     ++number;
     const std::vector<double>& members = frame.element_scalars.at(std::string(region_prefix) + name);
-    const auto size = static_cast<double>(std::ranges::count_if(members, [](double flag) { return flag > 0; }));
+    const double size = size_of(members);
     for (std::size_t e = 0; e < numbers.size(); ++e)
       if (members[e] > 0 && size < sizes[e]) numbers[e] = number, sizes[e] = size;
   }
@@ -89,7 +93,13 @@ const std::vector<ColourMap>& colour_maps() {
       lab_map("still", {{96, -3, 10}, {78, -18, 2}, {59, -20, -18}, {40, -4, -33}, {21, 8, -30}}),
       lab_map("about", {{25, 8, -38}, {60, -10, -32}, {95, 0, 3}, {60, 22, 42}, {25, 24, 32}}),
       // Okabe and Ito's colours for any kind of colour vision, from their light ones.
-      {"steps", {{0.90, 0.90, 0.88}, {0.90, 0.62, 0}, {0.34, 0.71, 0.91}, {0, 0.62, 0.45}, {0.80, 0.47, 0.65}}}};
+      {"steps",
+       {{0.90, 0.90, 0.88},
+        {0.90, 0.62, 0},
+        {0.34, 0.71, 0.91},
+        {0, 0.62, 0.45},
+        {0.80, 0.47, 0.65},
+        {0.84, 0.37, 0}}}};
   return maps;
 }
 
@@ -116,6 +126,15 @@ std::vector<std::string> regions_of(const Frame& frame) {
   std::vector<std::string> names;
   for (const auto& [name, values] : frame.element_scalars)
     if (name.starts_with(region_prefix)) names.push_back(name.substr(region_prefix.size()));
+  return names;
+}
+
+std::vector<std::string> coloured_regions(const Frame& frame) {
+  std::vector<std::string> names = regions_of(frame);
+  std::erase_if(names, [&](const std::string& name) {
+    const std::vector<double>& members = frame.element_scalars.at(std::string(region_prefix) + name);
+    return size_of(members) == static_cast<double>(members.size());
+  });
   return names;
 }
 

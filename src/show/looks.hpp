@@ -50,9 +50,12 @@ const std::vector<ColourField>& colour_fields();
 /// Of a frame's arrays: 1 in the cells of the region whose name follows.
 inline constexpr std::string_view region_prefix = "region_";
 
-/// Names of a frame's regions. Where it is coloured by region, a cell has the place from 1 of the smallest region that
-/// it is in; 0: none.
+/// Names of a frame's regions.
 std::vector<std::string> regions_of(const Frame& frame);
+
+/// Those of them that hold some of the cells and not all. Coloured by region, a cell has the place from 1 of the
+/// smallest of these that it is in; 0: none.
+std::vector<std::string> coloured_regions(const Frame& frame);
 
 /// The field's values of a frame: one a node where `on_nodes`, else one an element. FileError when the frame lacks the
 /// array that they come from.

@@ -32,6 +32,17 @@ Vec3 far_middle(const Vectors& positions) {
   return middle.norm() > 0.25 * (high - low).maxCoeff() ? middle : Vec3(Vec3::Zero());
 }
 
+// "region: 1=belly, 2=floor", as the legend's title.
+std::string region_key(const Frame& frame) {
+  std::string key = "region:";
+  int number = 0;
+  for (const std::string& name : coloured_regions(frame)) {
+    key += fmt::format("{} {}={}", number > 0 ? "," : "", number + 1, name);
+    ++number;
+  }
+  return key;
+}
+
 bool passes_through_itself(const Frame& frame) {
   const auto flags = frame.element_scalars.find("self_intersecting");
   return flags != frame.element_scalars.end() &&
@@ -119,6 +130,7 @@ Picture RunPictures::picture(const std::vector<double>& times_s) const {
   }
   picture.rows = rows_;
   picture.field = options_.field;
+  if (picture.field.name == "region") picture.field.label = region_key(rest_);
   picture.range = options_.range.value_or(colour_range(options_.field, smallest_, largest_));
   if (is_embryo_) picture.rest = rest_;
   picture.shell = shell_;

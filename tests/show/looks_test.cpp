@@ -114,9 +114,13 @@ TEST(ColourFields, ComeFromArraysThatFramesHave) {
 TEST(FieldValues, RegionsAreNumberedByName) {
   Frame frame;
   frame.elements.resize(4);
-  frame.element_scalars = {{"region_belly", {1, 1, 1, 0}}, {"region_row", {0, 1, 0, 0}}, {"cell_id", {0, 1, 2, 3}}};
+  frame.element_scalars = {{"region_belly", {1, 1, 1, 0}},
+                           {"region_everything", {1, 1, 1, 1}},
+                           {"region_row", {0, 1, 0, 0}},
+                           {"cell_id", {0, 1, 2, 3}}};
   const auto field = std::ranges::find(colour_fields(), "region", &ColourField::name);
-  EXPECT_EQ(regions_of(frame), (std::vector<std::string>{"belly", "row"}));
+  EXPECT_EQ(regions_of(frame), (std::vector<std::string>{"belly", "everything", "row"}));
+  EXPECT_EQ(coloured_regions(frame), (std::vector<std::string>{"belly", "row"}));
   EXPECT_EQ(field_values(frame, *field), (std::vector<double>{1, 2, 1, 0}));
 }
 
