@@ -31,6 +31,18 @@ void advise_on_shape_memory(const Scenario& scenario, const Model& model, const 
     }
 }
 
+int longest_axis(const Vectors& positions) {
+  Vec3 low = positions.front(), high = low;
+  for (const Vec3& position : positions) {
+    low = low.cwiseMin(position);
+    high = high.cwiseMax(position);
+  }
+  int axis = 0;
+  // Not for a ball's last digits.
+  if (const Vec3 size = high - low; size.maxCoeff(&axis) <= 1.05 * size.x()) axis = 0;
+  return axis;
+}
+
 }  // namespace
 
 std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
@@ -86,6 +98,11 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
     const double radius_um = mesh.radius_um + scenario.vitelline.gap_um;
     note(fmt::format("the shell is the capsule along x around the mesh, {:.4g} um long and {:.4g} um across",
                      2 * (mesh.half_axis_um + radius_um), 2 * radius_um));
+    if (const int axis = longest_axis(model.tissue.rest_positions); axis != 0)
+      warn(fmt::format(
+          "the mesh is longest along {}, and the shell's axis is x, so the shell is far wider than the mesh; "
+          "turn the mesh so that its long axis is x",
+          axis == 1 ? "y" : "z"));
   }
 
   if (const auto regions = contracting_regions(scenario, model.tissue);

@@ -44,6 +44,12 @@ TEST(SpeedHistory, SpeedsThatAreEqualInARowMeetThere) {
   EXPECT_EQ(history.vce_displacement_at_equal_speed_um.value(), 7);
 }
 
+TEST(SpeedHistory, AMiddleThatMovesByRoundingOnlyHasNoRatio) {
+  EXPECT_FALSE(row(1, 4.5e-23, 0.96, 0, 0).speed_ratio());
+  EXPECT_FALSE(row(1, 0, 0, 0, 0).speed_ratio());
+  EXPECT_DOUBLE_EQ(*row(1, 0.1, 0.3, 0, 0).speed_ratio(), 0.3 / 0.1);
+}
+
 TEST(SpeedHistory, WhatNeverHappensHasNoValue) {
   for (const auto& rows : {std::vector<SpeedRow>{}, {SpeedRow{}}, {row(1, 0, 0, 0, 0)}}) {
     const SpeedHistory none = speed_history(rows);

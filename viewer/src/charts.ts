@@ -108,10 +108,14 @@ export class Chart {
   }
 
   private data(): uPlot.AlignedData {
+    // A logarithmic axis has no place for zero and less, nor for what only rounding leaves: it would be all of the axis.
+    let largest = 0;
+    for (const { points } of this.content.curves)
+      for (const point of points) largest = Math.max(largest, point.value ?? 0);
+    const least = 1e-9 * largest;
     const tables = this.content.curves.map(({ points }) => {
       const shown = points.filter(({ time }) => !this.logarithmicTime || time > 0);
-      // A logarithmic axis has no place for zero and less.
-      const value = (v: number | null) => (this.content.logarithmic && v !== null && v <= 0 ? null : v);
+      const value = (v: number | null) => (this.content.logarithmic && v !== null && v <= least ? null : v);
       return [shown.map(({ time }) => time), shown.map((point) => value(point.value))] as uPlot.AlignedData;
     });
     return uPlot.join(tables, tables.map((table) => table.map(() => 1 as uPlot.JoinNullMode)));

@@ -29,6 +29,10 @@ before(async () => {
   writeFileSync(join(folder, "hostile.toml"),
     `base = "division-demo"\ntitle = ${JSON.stringify(hostileTitle).replaceAll("\u{1F9EC}", "\\U0001F9EC")}\n[time]\nend_min = 0.2\n`);
   run(join(folder, "hostile.toml"), "hostile");
+  // A strip that curls up until its ends pass through it.
+  writeFileSync(join(folder, "curl.toml"), `[embryo]\nshape = "block"\nlength_um = 600\nwidth_um = 20\ncell_height_um = 10\ncells = [60, 2, 1]
+[dynamics]\nsurface_drag_Pa_s_per_um = 20\n[contraction.apical]\nregion = "all"\ntension_mN_per_m = 2\nacross_ratio = 0\n[time]\nend_min = 10\n`);
+  run(join(folder, "curl.toml"), "curl");
   execFileSync(plica, ["report", join(folder, "drosophila"), join(folder, "division"), "--out", join(folder, "both.html")]);
   browser = await chromium.launch({ executablePath: chromiumPath, args: [...quiet, ...software] });
 });
@@ -386,4 +390,15 @@ test("the page is small, and its first picture quick", async () => {
   const ms = await page.evaluate(() => performance.getEntriesByName("first-picture")[0].startTime);
   console.log(`${(bytes / 1e6).toFixed(2)} MB; first picture after ${ms.toFixed(0)} ms`);
   await done();
+});
+
+test("a tissue that passes through itself is announced, and none other", async () => {
+  const crossing = await open("curl/report.html");
+  assert.match(await crossing.page.textContent("#crossing"), /^From [\d.]+ min on, the tissue passes through itself/);
+  assert.ok(await crossing.page.isVisible("#crossing"));
+  assert.match(await crossing.page.textContent("#headline"), /passes through itself/);
+  await crossing.done();
+  const sound = await open("drosophila/report.html");
+  assert.ok(!(await sound.page.isVisible("#crossing")));
+  await sound.done();
 });

@@ -1,0 +1,84 @@
+"""A tissue that passes through itself says so: on the terminal, in summary, series, cells and pictures; the report's own
+notice is in viewer/tests."""
+import csv
+
+import support
+from support import CommandLine, plica
+
+# A strip that curls up until its ends pass through it, and a belly that is pushed through the back.
+SHEET = """
+[embryo]
+shape = "block"
+length_um = 600
+width_um = 20
+cell_height_um = 10
+cells = [60, 2, 1]
+[dynamics]
+surface_drag_Pa_s_per_um = 20
+[contraction.apical]
+region = "all"
+tension_mN_per_m = 2
+across_ratio = 0
+[time]
+end_min = 10
+"""
+PILL = """
+base = "drosophila"
+[embryo]
+cell_height_um = 15
+[region.wide]
+face = "ventral"
+cells_along = 14
+cells_across = 7
+[contraction.apical]
+stiffness_nN_per_um = 0
+preload_nN = 0
+[pressure.push]
+region = "wide"
+face = "apical"
+pressure_Pa = 60
+program = { time_min = [0, 20], activity = [0, 1] }
+[time]
+end_min = 37
+[output]
+frame_every_min = 1
+"""
+
+
+class Crossing(CommandLine):
+    def check(self, text, cells):
+        result = self.run_scenario(text, "--quiet")
+        warnings = [line for line in result.stderr.splitlines() if line.startswith("warning: the tissue passes through")]
+        self.assertEqual(len(warnings), 1, result.stderr)
+        self.assertRegex(warnings[0], r"at t = [\d.]+ min the \w+ faces of cells \d+ and \d+ cross, at x = .* um \(\d+ pairs")
+        with open(self.out / "series.csv", encoding="utf-8") as file:
+            pairs = [int(row["self_intersections"]) for row in csv.DictReader(file)]
+        self.assertEqual(pairs[0], 0)
+        self.assertEqual(self.summary()["self_intersections"], max(pairs))
+        self.assertGreater(max(pairs), 0)
+        with open(self.out / "cells.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        flagged = [row for row in rows if row["self_intersecting"] == "1"]
+        self.assertTrue(0 < len(flagged) < len(rows))
+        last = [row for row in rows if row["time_s"] == rows[-1]["time_s"]]
+        self.assertEqual(len(last), cells)
+        picture = self.folder / "last.png"
+        drawn = plica("render", self.out, "--out", picture, "--time", "last", "--color", "self-intersections")
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        self.assertTrue(picture.exists())
+        self.assertIn('id="crossing"', (self.out / "report.html").read_text(encoding="utf-8"))
+
+    def test_of_a_sheet(self):
+        self.check(SHEET, 120)
+
+    def test_of_a_pill(self):
+        self.check(PILL, 756)
+
+    def test_of_a_furrow_there_is_none(self):
+        result = self.run_scenario('base = "drosophila"\n[time]\nend_min = 1\n', "--quiet")
+        self.assertNotIn("passes through", result.stderr)
+        self.assertEqual(self.summary()["self_intersections"], 0)
+
+
+if __name__ == "__main__":
+    support.main()
