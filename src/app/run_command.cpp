@@ -89,8 +89,7 @@ std::string crossing_warning(const Simulation& simulation) {
     return fmt::format(
         "warning: the tissue passes through itself: at t = {:.4g} min the {} faces of cells {} and {} cross, at x = "
         "{:.1f}, y = {:.1f}, z = {:.1f} um ({} pairs in all); nothing stops that, and what comes after is no tissue "
-        "any "
-        "more\n",
+        "any more\n",
         simulation.time_s() / units::minute, side, id(one), id(other), place.x(), place.y(), place.z(), pairs.size());
   }
   return "";

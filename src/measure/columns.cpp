@@ -62,11 +62,9 @@ std::vector<Column> table() {
       {"time_s", series, nothing, "End of the step; 0 at rest.", [](const M& m) { return m.state.time_s; }},
       {"furrow_depth_um", series, last,
        "The apical surface of the furrow's cells cut by the plane y = 0; of all points on the cut, the largest "
-       "distance "
-       "inside the shell, less the same of the same material point at rest (flat facets lie a little inside a round "
-       "shell). Inward is against the mean apical normal of these cells at rest: up for a belly, down for a sheet "
-       "whose "
-       "apices are on top. Without a shell's shape (a block): how far the point has gone in.",
+       "distance inside the shell, less the same of the same material point at rest (flat facets lie a little inside "
+       "a round shell). Inward is against the mean apical normal of these cells at rest: up for a belly, down for a "
+       "sheet whose apices are on top. Without a shell's shape (a block): how far the point has gone in.",
        [](const M& m) { return m.furrow.depth_um; }},
       {"furrow_depth_below_lips_um", series, last,
        "In the mid cross-section (x = 0): height of the floor (the cut at y = 0) over the mean height of the two lips, "

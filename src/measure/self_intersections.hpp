@@ -12,8 +12,8 @@ namespace plica {
 
 /// Pairs of facets (places among `facets`, the lower first, in order) that cross at the given positions. A facet is the
 /// four triangles from its edges to the mean of its corners. Facets with a common node are never a pair, and what only
-/// touches does not cross: an edge has to pass through, with an end on either side by more than 1e-9 of the facets'
-/// size. Boxes are sorted along one axis, then pairs of triangles are tried: n log n and the pairs whose boxes overlap.
+/// touches does not cross: two triangles have to reach through each other by more than 1e-9 of the facets' size. Boxes
+/// are sorted along one axis, then pairs of triangles are tried: n log n and the pairs whose boxes overlap.
 std::vector<std::pair<std::size_t, std::size_t>> crossing_facets(std::span<const Facet> facets,
                                                                  std::span<const Vec3> positions);
 

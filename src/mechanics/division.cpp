@@ -155,6 +155,7 @@ void grow(Model& model, double time_s) {
   // Exactly `to` at the end, and where there is no way to go: stiffness is made anew for shapes that change only.
   const auto between = [](double from, double to, double part) { return part < 1 ? from + part * (to - from) : to; };
   std::vector<ElementId> changed;
+  bool targets_changed = false;
   for (const Growth& growth : model.growths) {
     const double part = growth.part(time_s);
     HexPoints rest;
@@ -162,7 +163,9 @@ void grow(Model& model, double time_s) {
       for (int axis = 0; axis < 3; ++axis)
         rest[i][axis] = between(growth.rest_from[i][axis], growth.rest_to[i][axis], part);
     Cell& cell = model.tissue.cells[growth.cell.index()];
-    model.volumes().set_target(growth.cell, between(growth.target_from, growth.target_to, part));
+    const double target = between(growth.target_from, growth.target_to, part);
+    targets_changed = targets_changed || target != model.volumes().targets()[growth.cell.index()];
+    model.volumes().set_target(growth.cell, target);
     if (rest == cell.rest_shape) continue;
     cell.rest_shape = rest;
     set_element_rest_shapes(model.tissue, growth.cell);
@@ -170,7 +173,7 @@ void grow(Model& model, double time_s) {
   }
   for (const auto& law : model.laws) {
     if (!changed.empty()) law->take_rest_shapes(model.tissue, changed);
-    if (!model.growths.empty()) law->take_cell_volumes(model.tissue, model.volumes().targets());
+    if (targets_changed || !changed.empty()) law->take_cell_volumes(model.tissue, model.volumes().targets());
   }
 }
 

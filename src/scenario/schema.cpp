@@ -193,8 +193,7 @@ const std::vector<Row>& rows() {
           "Damping of a spring (nN s/µm)."),
       row("contraction.*", "program.time_s", at(&S::contractions, &C::program, &ProgramInput::time_s), anything,
           "Times of the points of the activity (s), increasing; the same time twice is a jump, on which a step ends. "
-          "Without "
-          "a program it is always 1."),
+          "Without a program it is always 1."),
       row("contraction.*", "program.time_min", at(&S::contractions, &C::program, &ProgramInput::time_s), anything,
           "The same in minutes.", {.instead_of = "program.time_s", .scale = 60}),
       row("contraction.*", "program.activity", at(&S::contractions, &C::program, &ProgramInput::activity), not_negative,
@@ -244,8 +243,7 @@ const std::vector<Row>& rows() {
           "Pressure into the cell (Pa), a dead load on the face at rest.", {.required = true}),
       row("pressure.*", "program.time_s", at(&S::pressures, &P::program, &ProgramInput::time_s), anything,
           "Times of the points of the activity (s), increasing; the same time twice is a jump, on which a step ends. "
-          "Without "
-          "a program it is always 1."),
+          "Without a program it is always 1."),
       row("pressure.*", "program.time_min", at(&S::pressures, &P::program, &ProgramInput::time_s), anything,
           "The same in minutes.", {.instead_of = "program.time_s", .scale = 60}),
       row("pressure.*", "program.activity", at(&S::pressures, &P::program, &ProgramInput::activity), not_negative,

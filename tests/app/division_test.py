@@ -26,13 +26,7 @@ CUT = '[division.cut]\nregion = "middle"\nat_s = 15\nplane = "transverse"\ngrowt
 
 class Divisions(CommandLine):
     def test_a_held_cell_that_is_to_grow_is_named(self):
-        held = """
-[embryo]
-shape = "block"
-length_um = 60
-width_um = 40
-cell_height_um = 40
-cells = [3, 2, 1]
+        held = BLOCK.replace("end_s = 0.5", "end_s = 20") + """
 [hold.all]
 region = "all"
 [region.one]
@@ -41,10 +35,6 @@ ids = [1]
 region = "one"
 at_s = 1
 growth_s = 10
-[time]
-end_s = 20
-[stop]
-at_equilibrium = false
 """
         result = self.run_scenario(held, "--quiet", status=3)
         self.assertRegex(result.stderr, r"cell \d+ is to have another volume, and all its corners are held: hold fewer")
