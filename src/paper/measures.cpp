@@ -7,7 +7,6 @@
 
 #include "core/units.hpp"
 #include "measure/speed_history.hpp"
-#include "record/results.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;
@@ -66,22 +65,6 @@ void add_speeds(Figures& figures, const Series& series, int vce, const std::stri
   put(figures, "vce_at_equal_um" + ending, history.vce_displacement_at_equal_speed_um);
 }
 
-// When both displacements are in the printed ranges, s; and when every node is slower than the printed 0.2 um/s.
-void add_times(Figures& figures, const Series& series) {
-  std::optional<double> fast_until_s;
-  for (const auto& row : series.rows) {
-    const double time_s = *row.front();
-    const auto vml = in_row(series, row, "vml_displacement_um"), vce = in_row(series, row, "vce_displacement_um");
-    if (vml && vce && *vml >= vml_low_um && *vml <= vml_high_um && *vce >= vce_low_um && *vce <= vce_high_um) {
-      figures.try_emplace("both_in_range_from_s", time_s);
-      figures["both_in_range_until_s"] = time_s;
-    }
-    if (in_row(series, row, "max_node_speed_um_per_s").value_or(0) >= 0.2) fast_until_s = time_s;
-  }
-  put(figures, "slower_than_printed_s", fast_until_s);
-  if (fast_until_s) put(figures, "depth_then_um", value_at(series, "furrow_depth_um", *fast_until_s));
-}
-
 // First time at which a column reaches a value, linear between rows.
 std::optional<double> time_of(const Series& series, const std::string& column, double value) {
   std::optional<double> before, before_s;
@@ -94,6 +77,17 @@ std::optional<double> time_of(const Series& series, const std::string& column, d
     before = now, before_s = row.front();
   }
   return std::nullopt;
+}
+
+// Leaves of a part of the way from one row to the next, 0 to 1, that on which a value that goes from a to b is in the
+// range. Nothing is left where from > to.
+void keep_in_range(std::pair<double, double>& part, double a, double b, double low, double high) {
+  if (a == b) {
+    if (a < low || a > high) part = {1, 0};
+    return;
+  }
+  const auto [enters, leaves] = std::minmax({(low - a) / (b - a), (high - a) / (b - a)});
+  part = {std::max(part.first, enters), std::min(part.second, leaves)};
 }
 
 void add_extreme_ratios(Figures& figures, const Series& series) {
@@ -111,6 +105,36 @@ void add_extreme_ratios(Figures& figures, const Series& series) {
 }
 
 }  // namespace
+
+Figures printed_times(const Series& series) {
+  constexpr double printed_um_per_s = 0.2;  // section 2.7
+  Figures figures;
+  for (std::size_t k = 1; k < series.rows.size(); ++k) {
+    const auto &before = series.rows[k - 1], &now = series.rows[k];
+    const double start_s = *before.front(), length_s = *now.front() - start_s;
+    const auto ends = [&](const char* column) {
+      return std::pair(in_row(series, before, column), in_row(series, now, column));
+    };
+    const auto [vml, vml_now] = ends("vml_displacement_um");
+    const auto [vce, vce_now] = ends("vce_displacement_um");
+    if (vml && vce && vml_now && vce_now) {
+      std::pair<double, double> part(0, 1);
+      keep_in_range(part, *vml, *vml_now, vml_low_um, vml_high_um);
+      keep_in_range(part, *vce, *vce_now, vce_low_um, vce_high_um);
+      if (part.first <= part.second) {
+        figures.try_emplace("both_in_range_from_s", start_s + part.first * length_s);
+        figures["both_in_range_until_s"] = start_s + part.second * length_s;
+      }
+    }
+    const auto [speed, speed_now] = ends("max_node_speed_um_per_s");
+    if (speed && speed_now && *speed >= printed_um_per_s && *speed_now < printed_um_per_s)
+      figures.try_emplace("slower_than_printed_s",
+                          start_s + (*speed - printed_um_per_s) / (*speed - *speed_now) * length_s);
+  }
+  if (const auto then = figures.find("slower_than_printed_s"); then != figures.end())
+    put(figures, "depth_then_um", value_at(series, "furrow_depth_um", then->second));
+  return figures;
+}
 
 void add_prefixed(Figures& figures, const std::string& prefix, const Figures& more) {
   for (const auto& [name, value] : more) figures[prefix + name] = value;
@@ -171,7 +195,7 @@ Figures figures_of_run(const fs::path& run) {
   if (vml && vce && *vml > 0) figures["ratio_at_15min"] = *vce / *vml;
   add_speeds(figures, series, 2, "");
   for (const int vce_cell : {1, 2, 3}) add_speeds(figures, series, vce_cell, fmt::format("_{}", vce_cell));
-  add_times(figures, series);
+  figures.merge(printed_times(series));
   add_extreme_ratios(figures, series);
   if (figures.contains("depth_um"))
     put(figures, "sets_off_s", time_of(series, "furrow_depth_um", figures["depth_um"] / 100));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "record/results.hpp"
 #include "scenario/scenario.hpp"
 
 namespace plica {
@@ -24,6 +25,11 @@ void watch_ends(Scenario& scenario, int along);
 /// the end where rest was not reached. Speeds and displacements with VCE the last, second-last, third-last cell end in
 /// _1, _2, _3; those of the second-last have no ending.
 Figures figures_of_run(const std::filesystem::path& run);
+
+/// When both displacements are in the ranges that the paper prints (both_in_range_from_s, _until_s), and when every
+/// node is slower than its 0.2 um/s for the first time (slower_than_printed_s) and how deep the furrow is then
+/// (depth_then_um). Linear between rows.
+Figures printed_times(const Series& series);
 
 /// When each contractile midline cell sets off.
 struct Onsets {

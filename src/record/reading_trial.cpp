@@ -24,7 +24,7 @@ void limit_time(std::size_t bytes) {
 
 void read_on_trial(const std::function<void()>& read, std::size_t bytes) {
   // A letter for the kind of answer, then the error.
-  const std::optional<std::string> answer = output_of_child([&]() -> std::string {
+  const std::optional<std::string> answer = output_of_child("reading it on trial", [&]() -> std::string {
     limit_time(bytes);
     try {
       read();

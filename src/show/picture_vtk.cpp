@@ -321,7 +321,8 @@ std::string Painter::png(const Picture& picture) {
     scenes.push_back(make_scene(picture, picture.columns[panel.column], picture.rows[panel.row].view, band_um));
   Display& display = screen_->display;
   while (true) {
-    const auto bytes = output_of_child([&] { return draw(picture, layout, scenes, display.name()); });
+    const auto bytes = output_of_child("drawing a picture on display " + display.name(),
+                                       [&] { return draw(picture, layout, scenes, display.name()); });
     if (bytes && !bytes->empty()) return *bytes;
     if (display.is_ours())
       throw FileError("pictures cannot be drawn: VTK's OpenGL failed; apt-get install libgl1-mesa-dri");

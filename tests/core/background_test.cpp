@@ -59,7 +59,7 @@ TEST(Background, ChildProcessesStartBetweenJobs) {
       is_at_work = false;
     });
   for (int i = 0; i < 5; ++i)
-    EXPECT_EQ(output_of_child([&] { return std::string(is_at_work ? "at work" : "at rest"); }), "at rest");
+    EXPECT_EQ(output_of_child("a test", [&] { return std::string(is_at_work ? "at work" : "at rest"); }), "at rest");
   background.finish();
 }
 

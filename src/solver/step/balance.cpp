@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "core/parallel.hpp"
@@ -119,28 +118,41 @@ Residual Balance::residual(const Step& step, Iterate& at) const {
   return r;
 }
 
-bool Balance::revise_contacts(Iterate& at) const {
-  std::atomic<bool> changed = false;
-  parallel_for(at.in_contact.size(), [&](std::size_t k) {
+bool Balance::revise_contacts(Iterate& at, std::span<unsigned char> changes) const {
+  constexpr unsigned char many = 3;
+  std::vector<char> wanted(at.in_contact.begin(), at.in_contact.end());
+  parallel_for(wanted.size(), [&](std::size_t k) {
     const Obstacle::Gap gap = contacts_.gap(k, at.positions);
     // A node that is held where an obstacle would push it is the hold's business.
     if (without_held(model_, contacts_.node(k).index(), gap.inward).norm() < 1e-6) {
-      at.in_contact[k] = 0;
+      at.in_contact[k] = wanted[k] = 0;
       at.contact_forces[k] = 0;
     } else if (at.in_contact[k]) {
       // Pulled inward for real: let go. Forces of rounding's size are none.
-      if (at.contact_forces[k] < -1e-12 * force_scale_) {
-        at.in_contact[k] = 0;
-        changed = true;
-      }
+      if (at.contact_forces[k] < -1e-12 * force_scale_) wanted[k] = 0;
       if (at.contact_forces[k] < 0) at.contact_forces[k] = 0;
     } else if (gap.value < -tolerances_.gap_um) {
-      at.in_contact[k] = 1;
-      changed = true;
+      wanted[k] = 1;
     }
   });
+  // Changed all at once, contacts that pull at each other may come and go in turns for ever. Those that have changed
+  // often change one at a time, the first of them, which ends (Murty 1974), as long as forces are linear.
+  bool changed = false, any_waits = false;
+  std::size_t first_waiting = 0;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    if (wanted[k] == at.in_contact[k]) continue;
+    if (changes[k] >= many) {
+      if (!any_waits) first_waiting = k;
+      any_waits = true;
+      continue;
+    }
+    at.in_contact[k] = wanted[k];
+    ++changes[k];
+    changed = true;
+  }
+  if (any_waits && !changed) at.in_contact[first_waiting] = wanted[first_waiting];
   return_to_obstacles(model_, contacts_, at);
-  return changed;
+  return changed || any_waits;
 }
 
 }  // namespace plica

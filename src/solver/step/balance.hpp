@@ -24,8 +24,8 @@ class Balance {
   [[nodiscard]] bool is_solved(const Residual& residual) const;
 
   /// Lets nodes go that are pulled inward, takes up those that are outside, and puts all on their obstacles. Whether
-  /// any has changed.
-  bool revise_contacts(Iterate& at) const;
+  /// any has changed. `changes`: contacts; how often each has in this step, counted here.
+  bool revise_contacts(Iterate& at, std::span<unsigned char> changes) const;
 
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
 

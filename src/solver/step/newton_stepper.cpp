@@ -88,8 +88,17 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
             .ahead = rates.ahead,
             .internals = state.internals};
   StepReport report;
-  bool contacts_settled = !balance_.revise_contacts(at);
+  std::vector<unsigned char> contact_changes(at.in_contact.size());
+  balance_.revise_contacts(at, contact_changes);
   Residual now = balance_.residual(step, at);
+  // Whether nothing wants to leave or join an obstacle, by the forces of this iterate.
+  const auto settle_contacts = [&] {
+    if (!balance_.revise_contacts(at, contact_changes)) return true;
+    step.positions = at.positions;
+    now = balance_.residual(step, at);
+    return false;
+  };
+  bool contacts_settled = false;
   constexpr int most_slow_iterations = 12;  // in a row, none of which halves the residual
   double left = 0;
   int slow_iterations = 0;
@@ -101,7 +110,7 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
       report.cell = cell_with_largest(model_.tissue, now.forces);
       return report;
     }
-    if (contacts_settled && balance_.is_solved(now)) break;
+    if (balance_.is_solved(now) && (contacts_settled || settle_contacts())) break;
     if (stop_requested_ && stop_requested_()) {
       report.outcome = StepReport::Outcome::interrupted;
       return report;
@@ -131,11 +140,7 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
     if (!search_line(step, direction, at, now, report)) return report;
     left = now.merit() / before;
     slow_iterations = left > 0.5 ? slow_iterations + 1 : 0;
-    contacts_settled = !balance_.revise_contacts(at);
-    if (!contacts_settled) {
-      step.positions = at.positions;
-      now = balance_.residual(step, at);
-    }
+    contacts_settled = settle_contacts();
   }
   step.positions = at.positions;
   accept(state, step, duration_s, order, std::move(at), next);

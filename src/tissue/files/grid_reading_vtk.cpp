@@ -139,7 +139,7 @@ void throw_unread(const std::filesystem::path& file, const std::string& why) {
 
 std::string read_in_child(const std::filesystem::path& file, const std::function<std::string()>& read) {
   // A letter for the kind of answer, then what was read or the error.
-  const std::optional<std::string> answer = output_of_child([&] {
+  const std::optional<std::string> answer = output_of_child("reading " + file.string(), [&] {
     try {
       return 'r' + read();
     } catch (const FileError& error) {
