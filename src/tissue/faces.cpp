@@ -1,5 +1,6 @@
 #include "tissue/faces.hpp"
 
+#include <map>
 #include <stdexcept>
 
 #include "tissue/mesh_faces.hpp"
@@ -39,10 +40,31 @@ std::vector<Face> lateral_faces(const Tissue& tissue) {
   return faces;
 }
 
+// Where lines of a cell end on a wall between its stops, elements on the two sides do not match; the stops do.
+std::vector<Face> faces_between_stops(const Tissue& tissue) {
+  std::vector<Face> faces;
+  std::map<std::pair<NodeId, NodeId>, std::size_t> place;  // in faces, by the apical nodes
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c)
+    for (int wall = 0; wall < 4; ++wall) {
+      const auto& stops = tissue.cells[c].walls[wall];
+      for (std::size_t i = 1; i < stops.size(); ++i) {
+        WallStop from = stops[i - 1], to = stops[i];
+        const auto [found, is_new] = place.emplace(std::minmax(from.apical, to.apical), faces.size());
+        if (!is_new) {
+          faces[found->second].beyond = CellId(c);
+          continue;
+        }
+        if (wall >= 2) std::swap(from, to);  // counter-clockwise seen from outside
+        faces.push_back({{from.basal, to.basal, to.apical, from.apical}, CellId(c), {}});
+      }
+    }
+  return faces;
+}
+
 }  // namespace
 
 std::vector<Face> faces_of(const Tissue& tissue, CellSide side) {
-  if (side == CellSide::lateral) return lateral_faces(tissue);
+  if (side == CellSide::lateral) return tissue.hanging.empty() ? lateral_faces(tissue) : faces_between_stops(tissue);
   std::vector<Face> faces;
   for (const Facet& facet : side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets)
     faces.push_back({facet.nodes, facet.cell, {}});

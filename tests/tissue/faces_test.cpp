@@ -14,6 +14,7 @@ using namespace support;
 
 struct Counted {
   std::size_t lateral = 0, rims = 0;
+  double rim_area = 0;  // um^2
 };
 
 // By the cones from the origin over all faces of a cell, of lateral faces for both their cells.
@@ -31,6 +32,9 @@ Counted expect_faces_enclose_the_cells(const Tissue& tissue) {
         volumes[face.beyond->index()] -= volume;
       } else {
         ++counted.rims;
+        std::array<Vec3, 4> corners;
+        for (int i = 0; i < 4; ++i) corners[i] = tissue.rest_positions[face.nodes[i].index()];
+        counted.rim_area += facet_area(corners);
       }
     }
   for (std::size_t c = 0; c < volumes.size(); ++c)
@@ -60,14 +64,15 @@ TEST(Faces, OfAnEmbryoHaveTwoCellsEach) {
 
 // One wall may face two daughters: it is two faces then.
 TEST(Faces, FollowDivisions) {
-  Tissue tissue = distorted_block({.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 3, 1}}, 2, 1);
+  Tissue tissue = build_block({.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 3, 1}});
   Random random(3);
-  std::size_t before = expect_faces_enclose_the_cells(tissue).lateral;
+  Counted before = expect_faces_enclose_the_cells(tissue);
   for (int round = 0; round < 3; ++round) {
     divide(tissue, cuts_of(random_divisions(tissue, 0.5, random)), 0);
     const Counted counted = expect_faces_enclose_the_cells(tissue);
-    EXPECT_GT(counted.lateral, before);
-    before = counted.lateral;
+    EXPECT_GT(counted.lateral, before.lateral);
+    EXPECT_NEAR(counted.rim_area, before.rim_area, 1e-9 * before.rim_area);  // a wall inside has a cell on both sides
+    before = counted;
   }
 }
 

@@ -56,23 +56,6 @@ std::pair<double, double> lines_of(const Tissue& tissue, const Cell& cell, const
   return {shares, length / shares};
 }
 
-// Points of a program, each shifted by every delay; delays closer than `apart` times the longest count as one.
-std::vector<double> delayed(const std::vector<double>& points, std::span<const Spring> springs, double apart) {
-  std::vector<double> delays = {0};
-  for (const Spring& spring : springs) delays.push_back(spring.delay_s);
-  std::ranges::sort(delays);
-  std::vector<double> kept = {0};
-  for (const double delay : delays)
-    if (delay > kept.back() && (delay >= kept.back() + apart * delays.back() || delay == delays.back()))
-      kept.push_back(delay);
-  std::vector<double> shifted;
-  for (const double point : points)
-    for (const double delay : kept) shifted.push_back(point + delay);
-  std::ranges::sort(shifted);
-  shifted.erase(std::unique(shifted.begin(), shifted.end()), shifted.end());
-  return shifted;
-}
-
 }  // namespace
 
 std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern& pattern, const ContractionRule& rule) {
@@ -117,23 +100,18 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
   return springs;
 }
 
-double Contraction::activity(double delay_s, double time_s) const {
-  const double own_time = time_s - delay_s;
-  return own_time < -1e-9 ? 0 : program_.at(own_time);  // a step that ends on the delay does so but for rounding
-}
+double Contraction::activity(double delay_s, double time_s) const { return program_.delayed_at(delay_s, time_s); }
 
 std::optional<double> Contraction::activity_of(CellId cell, double time_s) const {
   if (pattern_.cells.empty() || !pattern_.cells[cell.index()]) return std::nullopt;
   return activity(pattern_.delays_s[cell.index()], time_s);
 }
 
-std::vector<double> Contraction::program_points_s() const {
-  const bool has_jumps = !program_.jumps_s().empty();
-  const std::vector<double> from_start = {0};  // a program without points: from nothing to 1 at its time 0
-  return delayed(program_.times_s().empty() ? from_start : program_.times_s(), springs_, has_jumps ? 0 : 0.01);
+std::vector<double> Contraction::delays_s() const {
+  std::vector<double> delays;
+  for (const Spring& spring : springs_) delays.push_back(spring.delay_s);
+  return delays;
 }
-
-std::vector<double> Contraction::program_jumps_s() const { return delayed(program_.jumps_s(), springs_, 0); }
 
 // The tension T(l) of a spring over a step, its derivative dT/dl, and the energy it derives from.
 struct Contraction::Pulled {

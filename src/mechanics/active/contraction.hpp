@@ -64,16 +64,15 @@ class Contraction final : public Law {
   [[nodiscard]] double activity(double delay_s, double time_s) const;
   [[nodiscard]] bool is_active() const override { return true; }
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s) const override;
-  /// Increasing: the program's points shifted by the delays. Of a program without jumps, delays closer than a hundredth
-  /// of the longest count as one.
-  [[nodiscard]] std::vector<double> program_points_s() const override;
-  [[nodiscard]] std::vector<double> program_jumps_s() const override;
+  [[nodiscard]] std::vector<double> program_points_s() const override { return program_.delayed_points_s(delays_s()); }
+  [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.delayed_jumps_s(delays_s()); }
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
 
  private:
   struct Pulled;  // a spring at given positions
   template <class Take>
   void for_springs(const Step& step, const Take& take) const;
+  [[nodiscard]] std::vector<double> delays_s() const;
 
   std::vector<Spring> springs_;
   std::vector<NodeId> nodes_;       // of all springs, one after the other: what the loops read

@@ -5,6 +5,25 @@
 #include "core/clock.hpp"
 
 namespace plica {
+namespace {
+
+// Points shifted by every delay; delays closer than `apart` times the longest count as one.
+std::vector<double> delayed(const std::vector<double>& points, std::vector<double> delays, double apart) {
+  delays.push_back(0);
+  std::ranges::sort(delays);
+  std::vector<double> kept = {0};
+  for (const double delay : delays)
+    if (delay > kept.back() && (delay >= kept.back() + apart * delays.back() || delay == delays.back()))
+      kept.push_back(delay);
+  std::vector<double> shifted;
+  for (const double point : points)
+    for (const double delay : kept) shifted.push_back(point + delay);
+  std::ranges::sort(shifted);
+  shifted.erase(std::unique(shifted.begin(), shifted.end()), shifted.end());
+  return shifted;
+}
+
+}  // namespace
 
 double Program::at(double time_s) const {
   if (times_.empty()) return 1;
@@ -24,6 +43,20 @@ std::vector<double> Program::jumps_s() const {
   for (std::size_t i = 1; i < times_.size(); ++i)
     if (times_[i] == times_[i - 1]) jumps.push_back(times_[i]);
   return jumps;
+}
+
+double Program::delayed_at(double delay_s, double time_s) const {
+  const double own_time = time_s - delay_s;
+  return own_time < -1e-9 ? 0 : at(own_time);  // a step that ends on the delay does so but for rounding
+}
+
+std::vector<double> Program::delayed_points_s(std::vector<double> delays_s) const {
+  const std::vector<double> from_start = {0};  // a program without points: from nothing to 1 at its time 0
+  return delayed(times_.empty() ? from_start : times_, std::move(delays_s), jumps_s().empty() ? 0.01 : 0);
+}
+
+std::vector<double> Program::delayed_jumps_s(std::vector<double> delays_s) const {
+  return delayed(jumps_s(), std::move(delays_s), 0);
 }
 
 }  // namespace plica

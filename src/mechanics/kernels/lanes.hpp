@@ -54,6 +54,27 @@ inline Pair pair(const Lanes& a) {
 
 inline Lanes load(const double* values) { return *reinterpret_cast<const Lanes*>(values); }
 
+/// The same from and to arrays that begin anywhere.
+#if PLICA_LANES != 1
+typedef double LooseLanes __attribute__((vector_size(8 * PLICA_LANES), aligned(8), may_alias));  // NOLINT
+#else
+using LooseLanes = Lanes;
+#endif
+inline Lanes load_loose(const double* values) { return *reinterpret_cast<const LooseLanes*>(values); }
+inline void store_loose(Lanes a, double* values) { *reinterpret_cast<LooseLanes*>(values) = a; }
+
+/// Square roots.
+inline Lanes root(Lanes a) {
+#if PLICA_LANES == 8
+  return _mm512_sqrt_pd(a);
+#elif PLICA_LANES == 4
+  return _mm256_sqrt_pd(a);
+#else
+  for (int k = 0; k < width; ++k) a[k] = __builtin_sqrt(a[k]);
+  return a;
+#endif
+}
+
 /// Whether a comparison holds in any lane.
 template <class Mask>
 inline bool any(Mask mask) {

@@ -1,0 +1,264 @@
+#include "mechanics/active/cortex.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "tissue/division.hpp"
+
+namespace plica {
+namespace {
+
+constexpr std::size_t batch_size = ElementChunks::batch_size;
+
+double area_at_rest(const Tissue& tissue, const Face& face) {
+  std::array<Vec3, 4> corners;
+  for (int i = 0; i < 4; ++i) corners[i] = tissue.rest_positions[face.nodes[i].index()];
+  return facet_area(corners);
+}
+
+// Strength of a face: of its cell, or the mean of the two whose wall it is.
+double strength_of(const Face& face, const CellPattern& pattern) {
+  const double own = pattern.strengths[face.cell.index()];
+  return face.beyond ? 0.5 * (own + pattern.strengths[face.beyond->index()]) : own;
+}
+
+std::vector<Face> acting_faces(const Tissue& tissue, CellSide side, const CellPattern& pattern) {
+  std::vector<Face> faces = faces_of(tissue, side);
+  std::erase_if(faces, [&](const Face& face) { return strength_of(face, pattern) == 0; });
+  return faces;
+}
+
+// As elements whose corners are those of the face, twice.
+ElementChunks chunks_of(const std::vector<Face>& faces) {
+  std::vector<std::array<NodeId, 8>> corners;
+  corners.reserve(faces.size());
+  for (const auto& [n, cell, beyond] : faces) corners.push_back({n[0], n[1], n[2], n[3], n[0], n[1], n[2], n[3]});
+  return ElementChunks(corners);
+}
+
+// The cells of a face as one key, whichever is first.
+std::pair<int, int> cells_of(CellId cell, std::optional<CellId> beyond) {
+  return std::minmax(cell.number(), beyond ? beyond->number() : -1);
+}
+
+std::vector<double> merged(std::vector<double> a, const std::vector<double>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  std::ranges::sort(a);
+  return a;
+}
+
+// Integral of v/(1 + q v) from 0 to w.
+double integral_of_yielding(double w, double q) {
+  const double x = q * w;
+  if (std::abs(x) < 1e-3) return w * w * (1.0 / 2 - x / 3 + x * x / 4 - x * x * x / 5);
+  return (x - std::log1p(x)) / (q * q);
+}
+
+}  // namespace
+
+Cortex::Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kernels kernels)
+    : rule_(std::move(rule)),
+      pattern_(std::move(pattern)),
+      kernels_(kernels),
+      faces_(acting_faces(tissue, rule_.side, pattern_)),
+      chunks_(chunks_of(faces_)),
+      batches_(chunks_.batch_count()) {
+  for (const Face& face : faces_) {
+    rest_areas_.push_back(area_at_rest(tissue, face));
+    strengths_.push_back(strength_of(face, pattern_));
+  }
+  for (std::size_t place = 0; place < batches_.size() * batch_size; ++place)
+    for (int i = 0; i < 4; ++i)
+      batches_[place / batch_size].nodes[i][place % batch_size] =
+          3 * faces_[std::min(place, faces_.size() - 1)].nodes[i].number();
+}
+
+const FaceKernels& Cortex::kernels() const {
+  return kernels_for(kernels_, generic::face_kernels, avx2::face_kernels, avx512::face_kernels);
+}
+
+std::optional<double> Cortex::activity_of(CellId cell, double time_s) const {
+  if (!is_active() || !pattern_.cells[cell.index()]) return std::nullopt;
+  return rule_.program.delayed_at(pattern_.delays_s[cell.index()], time_s);
+}
+
+double Cortex::rest_area_before(std::size_t face, const Step& step) const {
+  if (!flows()) return rest_areas_[face];
+  return (1 + step.ahead) * step.internal[face] - step.ahead * step.internal[faces_.size() + face];
+}
+
+Cortex::Response Cortex::respond(std::size_t f, double area, const Step& step, bool with_energy) const {
+  const double strength = strengths_[f], rest = rest_areas_[f];
+  Response response;
+  if (rule_.tension != 0) {
+    // Of a wall, each cell's own activity.
+    const auto of_cell = [&](CellId cell) {
+      const double own = pattern_.strengths[cell.index()];
+      return own == 0 ? 0 : own * rule_.program.delayed_at(pattern_.delays_s[cell.index()], step.end_time_s);
+    };
+    const Face& face = faces_[f];
+    const double acting = face.beyond ? 0.5 * (of_cell(face.cell) + of_cell(*face.beyond)) : of_cell(face.cell);
+    const double gamma = acting * rule_.tension, saturation = rule_.saturation * rest;
+    if (saturation > 0) {
+      response.tension += gamma * area / (area + saturation);
+      response.slope += gamma * saturation / ((area + saturation) * (area + saturation));
+      if (with_energy) response.energy += gamma * (area - saturation * std::log1p(area / saturation));
+    } else {
+      response.tension += gamma;
+      if (with_energy) response.energy += gamma * area;
+    }
+  }
+  if (rule_.stiffness != 0) {
+    // With the rest area at the step's end, (A_b + r A)/(1 + r), where A_b is that before (docs/theory/cortex.md).
+    const double before = rest_area_before(f, step), r = flows() ? step.rate_s / rule_.relaxation_s : 0;
+    const double yielding = before + r * area;
+    double k = strength * rule_.stiffness * rule_.stiffness_program.at(step.end_time_s);
+    if (area < before) k *= rule_.compression_ratio;
+    response.tension += k * (area - before) / yielding;
+    response.slope += k * (1 + r) * before / (yielding * yielding);
+    if (with_energy) response.energy += k * before / (1 + r) * integral_of_yielding(area / before - 1, r / (1 + r));
+  }
+  if (rule_.crowding != 0) {
+    const double c = strength * rule_.crowding, ratio = rest / area;
+    response.tension -= c * ratio * ratio;
+    response.slope += 2 * c * ratio * ratio / area;
+    if (with_energy) response.energy += c * rest * ratio;
+  }
+  return response;
+}
+
+std::vector<double> Cortex::areas(std::span<const Vec3> positions) const {
+  std::vector<double> areas(batches_.size() * batch_size);
+  const FaceStep at{batches_.data(), faces_.size(), numbers(positions), nullptr, nullptr, false};
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) { kernels().write_areas(at, first, last, areas.data()); });
+  areas.resize(faces_.size());
+  return areas;
+}
+
+struct Cortex::Pull {
+  std::vector<double> tensions, slopes;  // faces, filled up to whole batches
+  FaceStep step;
+};
+
+Cortex::Pull Cortex::pull(const Step& step) const {
+  Pull pull{areas(step.positions), std::vector<double>(batches_.size() * batch_size, 0.0), {}};
+  pull.tensions.resize(pull.slopes.size(), 0.0);
+  chunks_.for_elements([&](std::size_t f) {
+    const Response response = respond(f, pull.tensions[f], step, false);
+    pull.tensions[f] = response.tension;
+    pull.slopes[f] = response.slope;
+  });
+  pull.step = {batches_.data(),      faces_.size(),      numbers(step.positions),
+               pull.tensions.data(), pull.slopes.data(), step.semidefinite_tangent};
+  return pull;
+}
+
+std::vector<double> Cortex::tensions(const Step& step) const {
+  std::vector<double> tensions = pull(step).tensions;
+  tensions.resize(faces_.size());
+  return tensions;
+}
+
+double Cortex::energy(const Step& step) const {
+  const std::vector<double> now = areas(step.positions);
+  return chunks_.sum_over_elements([&](std::size_t f) { return respond(f, now[f], step, true).energy; });
+}
+
+void Cortex::add_forces(const Step& step, std::span<Vec3> forces) const {
+  const Pull at = pull(step);
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) { kernels().add_forces(at.step, first, last, numbers(forces)); });
+}
+
+void Cortex::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
+  const Pull at = pull(step);
+  chunks_.for_batches([&](std::size_t first, std::size_t last) {
+    kernels().add_product(at.step, first, last, numbers(direction), numbers(product));
+  });
+}
+
+void Cortex::add_tangent(const Step& step, TangentSink& tangent) const {
+  const Pull at = pull(step);
+  const auto add_batch = [&](std::size_t batch) {
+    FaceBlocks blocks;
+    kernels().write_blocks(at.step, batch, blocks);
+    for (std::size_t f = batch * batch_size; f < std::min((batch + 1) * batch_size, faces_.size()); ++f)
+      for (int i = 0; i < 4; ++i)
+        for (int j = 0; j <= i; ++j) {
+          Mat3 block;
+          for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = blocks.blocks[i * (i + 1) / 2 + j][k][f % batch_size];
+          tangent.add_block(faces_[f].nodes[i], faces_[f].nodes[j], block);
+        }
+  };
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) {
+        for (std::size_t batch = first; batch < last; ++batch) add_batch(batch);
+      },
+      tangent.takes_apart());
+}
+
+NodeGroups Cortex::node_groups(std::span<const double> /*internal*/) const {
+  NodeGroups groups;
+  for (const Face& face : faces_) groups.add(face.nodes);
+  return groups;
+}
+
+std::vector<double> Cortex::first_internal(const Tissue&) const {
+  if (!flows()) return {};
+  std::vector<double> internal = rest_areas_;
+  internal.insert(internal.end(), rest_areas_.begin(), rest_areas_.end());
+  return internal;
+}
+
+std::vector<double> Cortex::next_internal(const Step& step) const {
+  if (!flows()) return {};
+  std::vector<double> internal = areas(step.positions);
+  const double r = step.rate_s / rule_.relaxation_s;
+  for (std::size_t f = 0; f < faces_.size(); ++f) internal[f] = (rest_area_before(f, step) + r * internal[f]) / (1 + r);
+  internal.insert(internal.end(), step.internal.begin(),
+                  step.internal.begin() + static_cast<std::ptrdiff_t>(faces_.size()));
+  return internal;
+}
+
+std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const Division& division,
+                                            std::span<const Vec3>) const {
+  return std::make_unique<Cortex>(tissue, pattern_.after_division(division), rule_, kernels_);
+}
+
+std::vector<double> Cortex::internal_after_division(std::span<const double> internal, const Tissue& tissue,
+                                                    const Division& division) const {
+  if (!flows()) return {};
+  const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_division(division));
+  std::vector<double> after;
+  for (const std::size_t first : {std::size_t{0}, faces_.size()}) {
+    struct Areas {
+      double now = 0, at_rest = 0;
+    };
+    std::map<std::pair<int, int>, Areas> before;  // by the cells of faces
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      Areas& areas = before[cells_of(faces_[f].cell, faces_[f].beyond)];
+      areas.now += internal[first + f];
+      areas.at_rest += rest_areas_[f];
+    }
+    for (const Face& face : faces) {
+      const auto origin = [&](CellId cell) { return division.origin[cell.index()]; };
+      const auto found =
+          before.find(cells_of(origin(face.cell), face.beyond ? std::optional(origin(*face.beyond)) : std::nullopt));
+      const double strain = found == before.end() ? 1 : found->second.now / found->second.at_rest;
+      after.push_back(strain * area_at_rest(tissue, face));
+    }
+  }
+  return after;
+}
+
+std::vector<double> Cortex::program_points_s() const {
+  return merged(rule_.stiffness_program.times_s(), rule_.program.delayed_points_s(pattern_.delays_s));
+}
+
+std::vector<double> Cortex::program_jumps_s() const {
+  return merged(rule_.stiffness_program.jumps_s(), rule_.program.delayed_jumps_s(pattern_.delays_s));
+}
+
+}  // namespace plica

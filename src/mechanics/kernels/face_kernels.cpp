@@ -1,0 +1,197 @@
+// Letters as in docs/theory/cortex.md: at a Gauss point (s, t) of the bilinear face, a and b are dx/ds and dx/dt, n is
+// their product and |n| the area that the point stands for. a depends on t alone, b on s alone.
+#include "mechanics/kernels/face_kernels.hpp"
+
+#include "mechanics/kernels/hexahedron_lanes.hpp"
+
+namespace plica::PLICA_KERNELS {
+namespace {
+
+constexpr double gauss = 0.57735026918962576;  // 1/sqrt(3)
+constexpr double tiny = 1e-60;                 // um^4: an area this small has no direction, and does not pull
+
+// dx/ds at t = -gauss and gauss, dx/dt at s = -gauss and gauss: linear in the corners.
+struct Slants {
+  Vec a[2], b[2];
+};
+
+inline Slants slants(const Vec (&x)[4]) {
+  constexpr double low = (1 - gauss) / 4, high = (1 + gauss) / 4;
+  const Vec a0 = x[1] - x[0], a1 = x[2] - x[3], b0 = x[3] - x[0], b1 = x[2] - x[1];
+  const Lanes l = broadcast(low), h = broadcast(high);
+  return {{h * a0 + l * a1, l * a0 + h * a1}, {h * b0 + l * b1, l * b0 + h * b1}};
+}
+
+// The transpose: from what belongs to a and b to what belongs to the corners.
+inline void to_corners(const Slants& g, Vec (&f)[4]) {
+  constexpr double low = (1 - gauss) / 4, high = (1 + gauss) / 4;
+  const Lanes l = broadcast(low), h = broadcast(high);
+  const Vec a0 = h * g.a[0] + l * g.a[1], a1 = l * g.a[0] + h * g.a[1];
+  const Vec b0 = h * g.b[0] + l * g.b[1], b1 = l * g.b[0] + h * g.b[1];
+  f[0] = -(a0 + b0);
+  f[1] = a0 - b1;
+  f[2] = a1 + b1;
+  f[3] = b0 - a1;
+}
+
+// A register's worth of a batch's faces, from `lane` on, of which the first `count` count.
+struct Faces {
+  const FaceBatch& batch;
+  std::size_t first;  // face
+  int lane, count;
+
+  [[nodiscard]] Slants slants_of(const double* vectors) const {
+    Vec x[4];
+    for (int i = 0; i < 4; ++i) x[i] = gather(vectors, batch.nodes[i] + lane);
+    return slants(x);
+  }
+  void add(const Slants& g, double* vectors) const {
+    Vec f[4];
+    to_corners(g, f);
+    if (count < width) {
+      Lanes counts;
+      for (int k = 0; k < width; ++k) counts[k] = k < count ? 1 : 0;
+      for (Vec& v : f) v = counts * v;
+    }
+    for (int i = 0; i < 4; ++i) scatter(f[i], batch.nodes[i] + lane, vectors);
+  }
+};
+
+template <class Body>
+inline void for_faces(const FaceStep& step, std::size_t first, std::size_t last, const Body& body) {
+  for (std::size_t b = first; b < last; ++b) {
+    const int count = count_in_batch(step.faces, b);
+    for (int lane = 0; lane < count; lane += width)
+      body(Faces{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane,
+                 count - lane < width ? count - lane : width});
+  }
+}
+
+// n and what follows from it.
+struct Normal {
+  Vec unit;       // 0 where there is no area
+  Lanes length;   // |n|
+  Lanes inverse;  // 1/|n|, or 0
+};
+
+inline Normal normal(const Vec& a, const Vec& b) {
+  const Vec n = cross(a, b);
+  const Lanes square = dot(n, n), length = root(square);
+  Lanes inverse = 1 / root(square + tiny);
+  for (int k = 0; k < width; ++k) inverse[k] = square[k] > tiny ? inverse[k] : 0;
+  return {inverse * n, length, inverse};
+}
+
+// dA/da and dA/db at all points.
+inline Slants area_gradient(const Slants& x, const Normal (&n)[2][2]) {
+  Slants g = {};
+  for (int s = 0; s < 2; ++s)
+    for (int t = 0; t < 2; ++t) {
+      g.a[t] = g.a[t] + cross(x.b[s], n[s][t].unit);
+      g.b[s] = g.b[s] + cross(n[s][t].unit, x.a[t]);
+    }
+  return g;
+}
+
+inline void normals(const Slants& x, Normal (&n)[2][2]) {
+  for (int s = 0; s < 2; ++s)
+    for (int t = 0; t < 2; ++t) n[s][t] = normal(x.a[t], x.b[s]);
+}
+
+inline Lanes positive_part(Lanes value) {
+  for (int k = 0; k < width; ++k) value[k] = value[k] > 0 ? value[k] : 0;
+  return value;
+}
+
+[[gnu::flatten]] void write_areas(const FaceStep& step, std::size_t first, std::size_t last, double* areas) {
+  for (std::size_t b = first; b < last; ++b)
+    for (int lane = 0; lane < batch_size; lane += width) {
+      const Slants x = Faces{step.batches[b], 0, lane, width}.slants_of(step.positions);
+      Normal n[2][2];
+      normals(x, n);
+      const Lanes area = n[0][0].length + n[0][1].length + n[1][0].length + n[1][1].length;
+      store_loose(area, areas + b * batch_size + lane);
+    }
+}
+
+[[gnu::flatten]] void add_forces(const FaceStep& step, std::size_t first, std::size_t last, double* forces) {
+  for_faces(step, first, last, [&](const Faces& faces) {
+    const Slants x = faces.slants_of(step.positions);
+    Normal n[2][2];
+    normals(x, n);
+    Slants g = area_gradient(x, n);
+    const Lanes pull = -load_loose(step.tensions + faces.first);
+    for (int k = 0; k < 2; ++k) {
+      g.a[k] = pull * g.a[k];
+      g.b[k] = pull * g.b[k];
+    }
+    faces.add(g, forces);
+  });
+}
+
+// T d2A/dx2 times d, and dT/dA times dA/dx d along the gradient.
+inline Slants product(const Slants& x, const Normal (&n)[2][2], const Slants& g, const Slants& d, Lanes tension,
+                      Lanes slope, bool semidefinite) {
+  Lanes change = {};
+  for (int k = 0; k < 2; ++k) change += dot(g.a[k], d.a[k]) + dot(g.b[k], d.b[k]);
+  const Lanes along = slope * change;
+  Slants result;
+  for (int k = 0; k < 2; ++k) {
+    result.a[k] = along * g.a[k];
+    result.b[k] = along * g.b[k];
+  }
+  for (int s = 0; s < 2; ++s)
+    for (int t = 0; t < 2; ++t) {
+      const Vec& unit = n[s][t].unit;
+      const Vec turned = cross(d.a[t], x.b[s]) + cross(x.a[t], d.b[s]);
+      const Vec tilted = (tension * n[s][t].inverse) * (turned - dot(unit, turned) * unit);
+      result.a[t] = result.a[t] + cross(x.b[s], tilted);
+      result.b[s] = result.b[s] + cross(tilted, x.a[t]);
+      if (semidefinite) continue;
+      const Vec pull = tension * unit;
+      result.a[t] = result.a[t] + cross(d.b[s], pull);
+      result.b[s] = result.b[s] + cross(pull, d.a[t]);
+    }
+  return result;
+}
+
+[[gnu::flatten]] void add_product(const FaceStep& step, std::size_t first, std::size_t last, const double* direction,
+                                  double* product_of) {
+  for_faces(step, first, last, [&](const Faces& faces) {
+    const Slants x = faces.slants_of(step.positions), d = faces.slants_of(direction);
+    Normal n[2][2];
+    normals(x, n);
+    Lanes tension = load_loose(step.tensions + faces.first), slope = load_loose(step.slopes + faces.first);
+    if (step.semidefinite_tangent) tension = positive_part(tension), slope = positive_part(slope);
+    faces.add(product(x, n, area_gradient(x, n), d, tension, slope, step.semidefinite_tangent), product_of);
+  });
+}
+
+// Column by column: the tangent times unit vectors at a corner.
+[[gnu::flatten]] void write_blocks(const FaceStep& step, std::size_t batch, FaceBlocks& blocks) {
+  for (int lane = 0; lane < batch_size; lane += width) {
+    const Faces faces{step.batches[batch], batch * batch_size + static_cast<std::size_t>(lane), lane, width};
+    const Slants x = faces.slants_of(step.positions);
+    Normal n[2][2];
+    normals(x, n);
+    const Slants g = area_gradient(x, n);
+    Lanes tension = load_loose(step.tensions + faces.first), slope = load_loose(step.slopes + faces.first);
+    if (step.semidefinite_tangent) tension = positive_part(tension), slope = positive_part(slope);
+    for (int j = 0; j < 4; ++j)
+      for (int c = 0; c < 3; ++c) {
+        Vec unit[4] = {};
+        component(unit[j], c) = broadcast(1);
+        Vec f[4];
+        to_corners(product(x, n, g, slants(unit), tension, slope, step.semidefinite_tangent), f);
+        for (int i = j; i < 4; ++i)
+          for (int r = 0; r < 3; ++r)
+            store_loose(component(f[i], r), blocks.blocks[i * (i + 1) / 2 + j][3 * c + r] + lane);
+      }
+  }
+}
+
+}  // namespace
+
+const FaceKernels face_kernels = {write_areas, add_forces, add_product, write_blocks};
+
+}  // namespace plica::PLICA_KERNELS

@@ -1,0 +1,179 @@
+#include "mechanics/active/cortex.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mechanics/division.hpp"
+#include "support/divided.hpp"
+#include "support/law_checks.hpp"
+#include "support/models.hpp"
+#include "support/ran.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+CellSet all_cells(const Tissue& tissue) { return CellSet(tissue.cells.size(), true); }
+
+// All that a cortex can be, with numbers of the furrow's size.
+CortexRule whole_rule(CellSide side) {
+  return {.side = side,
+          .tension = 1.4,
+          .saturation = 0.16,
+          .stiffness = 0.7,
+          .compression_ratio = 0.1,
+          .crowding = 0.02,
+          .relaxation_s = 2,
+          .program = Program({0, 2}, {0, 1}),
+          .stiffness_program = Program({0, 4}, {1, 0.1})};
+}
+
+TEST(Cortex, DerivativesAgreeWithFiniteDifferences) {
+  const Tissue tissue =
+      distorted_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}}, 2, 3);
+  for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
+    check_derivatives(Cortex(tissue, all_cells(tissue), whole_rule(side)), tissue, 2);
+    check_semidefinite_tangent(Cortex(tissue, all_cells(tissue), whole_rule(side)), tissue, 2, true);
+  }
+  // Without flow, and with nothing but a tension.
+  CortexRule rule = whole_rule(CellSide::lateral);
+  rule.relaxation_s = 0;
+  check_derivatives(Cortex(tissue, all_cells(tissue), rule), tissue, 2);
+  check_derivatives(Cortex(tissue, all_cells(tissue), {.side = CellSide::apical, .tension = 1}), tissue, 2);
+}
+
+// Against the area as the rest of plica has it: T dA/dx by differences, with any kernels, any number of faces.
+TEST(Cortex, EveryInstructionSetHasTheSameAreas) {
+  for (const int cells : {1, 3, 9, 21}) {
+    const Tissue tissue = distorted_block(
+        {.length_um = 20.0 * cells, .width_um = 20, .cell_height_um = 30, .cells = {cells, 1, 1}}, 3, 5);
+    const Motion motion = random_motion(tissue, 3, 8);
+    Vectors expected;
+    for (const Kernels kernels : available_kernels()) {
+      const Cortex law(tissue, all_cells(tissue), {.side = CellSide::lateral, .tension = 1, .saturation = 0.2},
+                       kernels);
+      const std::vector<double> areas = law.areas(motion.positions);
+      ASSERT_EQ(law.faces().size(), static_cast<std::size_t>(3 * cells + 1));
+      for (std::size_t f = 0; f < areas.size(); ++f) {
+        std::array<Vec3, 4> corners;
+        for (int i = 0; i < 4; ++i) corners[i] = motion.positions[law.faces()[f].nodes[i].index()];
+        EXPECT_NEAR(areas[f], facet_area(corners), 1e-12 * areas[f]) << name(kernels);
+      }
+      const Vectors forces = forces_of(law, motion.step());
+      if (expected.empty()) expected = forces;
+      for (std::size_t n = 0; n < forces.size(); ++n)
+        EXPECT_LE((forces[n] - expected[n]).norm(), 1e-13 * largest(expected)) << name(kernels);
+    }
+  }
+}
+
+// A wall is one face, with half of each cell's strength; at a border of the region with half, at a rim with all.
+TEST(Cortex, AWallHasHalfOfEachOfItsCells) {
+  const Tissue tissue = build_block({.length_um = 60, .width_um = 20, .cell_height_um = 30, .cells = {3, 1, 1}});
+  CellSet first(3, false);
+  first[0] = true;
+  const Cortex law(tissue, first, {.side = CellSide::lateral, .tension = 2});
+  const std::vector<double> tensions = law.tensions(at_rest(tissue).step());
+  ASSERT_EQ(law.faces().size(), 4u);  // its own rim and two sides, and the wall to the second
+  int shared = 0;
+  for (std::size_t f = 0; f < tensions.size(); ++f) {
+    EXPECT_DOUBLE_EQ(tensions[f], law.faces()[f].beyond ? 1 : 2);
+    shared += law.faces()[f].beyond.has_value();
+  }
+  EXPECT_EQ(shared, 1);
+}
+
+// A flat sheet pulls at its held ends with tension times width, however fine, whatever its cells' size.
+TEST(Cortex, ASheetPullsWithTensionTimesWidth) {
+  for (const int cells : {1, 4}) {
+    const Tissue tissue =
+        build_block({.length_um = 60, .width_um = 24, .cell_height_um = 10, .cells = {3 * cells, cells, 1}});
+    const Cortex law(tissue, all_cells(tissue), {.side = CellSide::apical, .tension = 0.8});
+    const Vectors forces = forces_of(law, at_rest(tissue).step());
+    double pull = 0, end = 0;
+    for (const Vec3& x : tissue.rest_positions) end = std::max(end, x.x());
+    for (std::size_t n = 0; n < forces.size(); ++n)
+      if (tissue.rest_positions[n].x() > end - 1e-9) pull -= forces[n].x();
+    EXPECT_NEAR(pull, 0.8 * 24, 1e-12);
+  }
+}
+
+// Saturation: half the tension at A = A_s, next to none at area 0. Crowding pushes.
+TEST(Cortex, TensionFollowsTheArea) {
+  const Tissue tissue = build_block({.length_um = 20, .width_um = 20, .cell_height_um = 10, .cells = {1, 1, 1}});
+  const auto tension = [&](const CortexRule& rule, double ratio) {
+    Motion motion = at_rest(tissue);
+    for (Vec3& x : motion.positions) x.x() *= ratio;
+    return Cortex(tissue, all_cells(tissue), rule).tensions(motion.step()).front();
+  };
+  EXPECT_NEAR(tension({.tension = 2, .saturation = 0.25}, 0.25), 1, 1e-12);
+  EXPECT_NEAR(tension({.tension = 2, .saturation = 0.25}, 1e-3), 2 * 1e-3 / 0.251, 1e-12);
+  EXPECT_NEAR(tension({.stiffness = 3}, 1.5), 1.5, 1e-12);
+  EXPECT_NEAR(tension({.stiffness = 3}, 0.5), -1.5, 1e-12);
+  EXPECT_NEAR(tension({.stiffness = 3, .compression_ratio = 0.1}, 0.5), -0.15, 1e-12);
+  EXPECT_NEAR(tension({.crowding = 0.01}, 0.5), -0.04, 1e-12);
+}
+
+// A face that is held stretched: its elastic tension decays as a Maxwell element's, k (A/A_0 - 1) with dA_0/dt =
+// (A - A_0)/tau.
+TEST(Cortex, TensionDecaysAtConstantArea) {
+  Model model(build_block({.length_um = 20, .width_um = 20, .cell_height_um = 20, .cells = {1, 1, 1}}));
+  model.laws.push_back(std::make_unique<Cortex>(
+      model.tissue, all_cells(model.tissue), CortexRule{.side = CellSide::apical, .stiffness = 3, .relaxation_s = 10}));
+  for (auto& held : model.held) held = {true, true, true};
+  const Law& law = *model.laws.front();
+  // At rest the area is that of the face; the law is told that it began at half of it.
+  for (const TimeOrder order : {TimeOrder::first, TimeOrder::second}) {
+    std::vector<double> internal = {200, 200};
+    const double h = order == TimeOrder::first ? 0.001 : 0.01;
+    const Motion still = at_rest(model.tissue);
+    for (int k = 0; k < std::lround(10 / h); ++k) {
+      Step step = still.step();
+      step.rate_s = order == TimeOrder::first || k == 0 ? h : 2 * h / 3;
+      step.ahead = order == TimeOrder::first || k == 0 ? 0 : 1.0 / 3;
+      step.internal = internal;
+      internal = law.next_internal(step);
+    }
+    EXPECT_NEAR((400 - internal[0]) / 200, std::exp(-1.0), order == TimeOrder::first ? 2e-4 : 2e-5);
+  }
+}
+
+// Cutting cells changes nothing but the meshes: energies, tensions and resultants are what they were.
+TEST(Cortex, IsHandedOnToDaughters) {
+  for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
+    Tissue tissue = build_block({.length_um = 60, .width_um = 60, .cell_height_um = 30, .cells = {3, 3, 1}});
+    CellSet cells = all_cells(tissue);
+    cells[2] = false;
+    const Cortex before(tissue, cells, whole_rule(side));
+    std::vector<double> internal = before.first_internal(tissue);
+    for (double& area : internal) area *= 0.9;
+    Motion motion = at_rest(tissue);
+    motion.internal = internal;
+    const double energy = before.energy(motion.step());
+    const std::vector<CellCut> cuts = {{CellId(4), 0}, {CellId(7), 1}};
+    const Division division = divide(tissue, cuts, 0);
+    const auto after = before.after_division(tissue, division, tissue.rest_positions);
+    Motion now = at_rest(tissue);
+    now.internal = before.internal_after_division(internal, tissue, division);
+    const auto& faces = static_cast<const Cortex&>(*after).faces();
+    ASSERT_EQ(now.internal.size(), 2 * faces.size());
+    // Walls between daughters are new.
+    double of_new = 0;
+    if (side == CellSide::lateral) {
+      const std::vector<double> tensions = static_cast<const Cortex&>(*after).tensions(now.step());
+      for (std::size_t f = 0; f < faces.size(); ++f)
+        if (faces[f].beyond && division.origin[faces[f].cell.index()] == division.origin[faces[f].beyond->index()]) {
+          EXPECT_DOUBLE_EQ(now.internal[f], 30.0 * 20);
+          ++of_new;
+        }
+      EXPECT_EQ(of_new, 2);
+      continue;
+    }
+    EXPECT_NEAR(after->energy(now.step()), energy, 1e-12 * std::abs(energy));
+  }
+}
+
+}  // namespace
+}  // namespace plica
