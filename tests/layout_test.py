@@ -20,6 +20,7 @@ MOST_LINES = 500
 NOT_A_LAW = {"law", "constraint", "obstacle", "model", "program", "turning_elements", "cell_pattern",
              "hexahedron_stiffness"}
 MEASURES_MARK = "<!-- Below: what plica reference --measures prints. -->\n"
+UNIT_AT_END = re.compile(r"_(um|um2|um3|s|um_per_s|nN|nN_um|Pa)$")
 MARKDOWN_LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -140,6 +141,23 @@ def check_measures():
                      "plica reference --measures >> docs/measures.md")
 
 
+def check_units():
+    """Every column has its unit at the end of its name, or is among the pure numbers that docs/measures.md lists."""
+    page = root / "docs/measures.md"
+    pure = set(re.findall(r"`(\w+)`", page.read_text(encoding="utf-8").partition("## Which speed")[0].
+                          partition("pure numbers:\n")[2]))
+    columns, quantities = printed("reference", "--measures").split("### Quantities of monitors")
+    names = set(re.findall(r"^\| `(\w+)`", columns, re.MULTILINE))
+    # A monitor's column ends with its quantity and that one's unit.
+    monitored = re.findall(r"^\| `(\w+)` \| \w+ \| (?:`(\w+)`)? *\|", quantities, re.MULTILINE)
+    names |= {f"{quantity}_{unit}" if unit else quantity for quantity, unit in monitored}
+    count("columns with units", len(names))
+    count("quantities of monitors", len(monitored))
+    for name in sorted(names):
+        if bool(UNIT_AT_END.search(name)) == (name in pure):
+            breach(page, f"{name}: needs either a unit at its end or a place among the pure numbers")
+
+
 def check_reference():
     page = root / "docs/scenario.md"
     expected = printed("reference")
@@ -156,6 +174,7 @@ check_links()
 if program:
     check_reference()
     check_measures()
+    check_units()
 
 # A check that looked at nothing is a broken check.
 for what in ("includes", "headers", "source files", "laws", "pages", "links"):
