@@ -80,16 +80,16 @@ std::vector<Column> table() {
        "midline. They may jump.",
        [](const M& m) { return m.furrow.highest_points_distance_um; }},
       {"vml_speed_um_per_s", series, nothing,
-       "Speed of the VML's barycentre (mean of its eight corners; the paper's, 3.1) at the step's end; with backward "
-       "Euler that is the mean over the step. None at rest.",
+       "Speed of the VML's barycentre (the mean of its eight corners, as in the paper, 3.1), not of its nodes: at the "
+       "step's end with bdf2, the mean over the step with backward Euler. None at rest.",
        [](const M& m) { return m.speeds.vml_speed_um_per_s; }},
       {"vce_speed_um_per_s", series, nothing, "The same of the VCE.",
        [](const M& m) { return m.speeds.vce_speed_um_per_s; }},
       {"speed_ratio", series, nothing, "$v_c/v_m$: the speed of the VCE over that of the VML.",
        [](const M& m) { return m.speeds.speed_ratio(); }},
       {"vml_displacement_um", series, last,
-       "Mean over the VML's eight corner nodes of their displacement from rest: the paper gives displacements of "
-       "*nodes* (section 4, Figs. 9 and 10).",
+       "Mean length of the displacements of the VML's eight corner nodes from rest, not that of its barycentre: the "
+       "paper gives displacements of *nodes* (section 4, Figs. 9 and 10).",
        [](const M& m) { return m.speeds.vml_displacement_um; }},
       {"vce_displacement_um", series, last, "The same of the VCE.",
        [](const M& m) { return m.speeds.vce_displacement_um; }},
@@ -98,9 +98,11 @@ std::vector<Column> table() {
        [](const M& m) { return area_ratio(m, m.sites.vml); }},
       {"vce_apical_area_ratio", series, last, "The same of the VCE.",
        [](const M& m) { return area_ratio(m, m.sites.vce); }},
-      of_run("peak_speed_ratio",
-             "$v_c/v_m$ of the step for which $v_c-v_m$ is largest, among steps with $v_m$ over 1 % of its peak.",
-             &SpeedHistory::peak_ratio),
+      of_run(
+          "peak_speed_ratio",
+          "`speed_ratio` of the step for which $v_c-v_m$ (VCE's speed less VML's) is largest, among steps with $v_m$ "
+          "over 1 % of its peak. Not the largest `speed_ratio`.",
+          &SpeedHistory::peak_ratio),
       of_run("peak_speed_ratio_time_s", "End of that step.", &SpeedHistory::peak_ratio_time_s),
       of_run("ends_lead_until_s",
              "First time after that when $v_c\\le v_m$, linear between steps; null where the ends never lead.",
@@ -110,7 +112,7 @@ std::vector<Column> table() {
       of_run("vce_displacement_at_equal_speed_um", "The same of the VCE.",
              &SpeedHistory::vce_displacement_at_equal_speed_um),
       {"max_node_speed_um_per_s", series, last,
-       "Speed of the fastest node at the step's end; 0 at rest. Equilibrium goes by it.",
+       "Speed of the fastest node of the body, taken as that of the VML; 0 at rest. Equilibrium goes by it.",
        [](const M& m) { return m.step != nullptr ? m.step->max_node_speed_um_per_s : 0; }},
       {"max_volume_error", series, largest, "Largest $\\lvert V/V_{target}-1\\rvert$ over cells.",
        [](const M& m) { return max_volume_error(m.model, m.state.positions); }},
