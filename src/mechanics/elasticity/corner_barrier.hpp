@@ -1,0 +1,48 @@
+// An energy that keeps corners of elements from folding over (docs/theory/corner_barrier.md).
+//
+// Between the points at which elastic energies are taken, a corner may turn inside out and nothing says so. With J the
+// Jacobian of a corner (the product of its three edges), J_0 that at rest and r = J / (threshold J_0), each corner has
+//   E = -k V_0/8 (r - 1)^2 ln r   where r < 1, and nothing above,
+// V_0 the element's volume at rest: twice continuous, convex in r, infinite at J = 0.
+#pragma once
+
+#include "mechanics/kernels/element_chunks.hpp"
+#include "mechanics/law.hpp"
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// Its semidefinite tangent leaves out the change of a corner's gradient.
+class CornerBarrier final : public Law {
+ public:
+  /// `modulus` k in kPa; `threshold`: the part of its Jacobian at rest below which a corner is pushed back.
+  CornerBarrier(const Tissue& tissue, double modulus, double threshold = 0.15);
+
+  [[nodiscard]] std::string_view name() const override { return "corner barrier"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<CornerBarrier>(*this); }
+  [[nodiscard]] double energy(const Step& step) const override;
+  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                    std::span<const Vec3> positions) const override;
+  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
+
+  /// The smallest J / J_0 over all corners.
+  [[nodiscard]] double smallest_ratio(std::span<const Vec3> positions) const;
+
+ private:
+  struct Corner;  // one that is pushed back, at given positions
+  template <class Take>
+  void for_pushed(std::span<const Vec3> positions, std::size_t element, const Take& take) const;
+  void fit(const Tissue& tissue, std::size_t element);
+
+  double modulus_, threshold_;
+  ElementChunks chunks_;
+  std::vector<std::array<NodeId, 8>> elements_;
+  std::vector<std::array<double, 8>> rest_jacobians_;  // elements, corners; um^3
+  std::vector<double> rest_volumes_;                   // elements; um^3
+};
+
+}  // namespace plica
