@@ -6,6 +6,7 @@ import struct
 import time
 
 from vtkmodules.vtkIOImage import vtkPNGReader
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 import support
 from support import SPHERE, CommandLine, plica
@@ -29,6 +30,19 @@ def pixels_of(path):
     width, height, _ = image.GetDimensions()
     values = image.GetPointData().GetScalars()
     return [[tuple(map(int, values.GetTuple3(y * width + x))) for x in range(width)] for y in range(height)]
+
+
+def shift(mesh, moved, distance_um):
+    """Writes the mesh of a .vtu again with each coordinate of its points larger by the distance."""
+    reader, writer = vtkXMLUnstructuredGridReader(), vtkXMLUnstructuredGridWriter()
+    reader.SetFileName(str(mesh))
+    reader.Update()
+    points = reader.GetOutput().GetPoints()
+    for i in range(points.GetNumberOfPoints()):
+        points.SetPoint(i, *(x + distance_um for x in points.GetPoint(i)))
+    writer.SetFileName(str(moved))
+    writer.SetInputData(reader.GetOutput())
+    writer.Write()
 
 
 def servers(ancestor=None):
@@ -98,6 +112,25 @@ class Render(CommandLine):
         first = self.picture.read_bytes()
         self.render("--size", "300x250", "--overwrite")
         self.assertEqual(self.picture.read_bytes(), first)
+
+    def test_a_mesh_far_from_the_origin_is_in_the_middle(self):
+        at_origin, far = self.folder / "at_origin.vtu", self.folder / "far.vtu"
+        self.assertEqual(plica("mesh", self.write(SPHERE), "--out", at_origin).returncode, 0)
+        shift(at_origin, far, 1e5)
+        pictures = []
+        for mesh in (at_origin, far):
+            out = self.folder / mesh.stem
+            self.run_scenario(
+                f'[embryo]\nshape = "file"\nfile = "{mesh.name}"\n[vitelline]\nenabled = false\n[contraction.all]\n'
+                'region = "all"\nstiffness_nN_per_um = 8\n[time]\nend_s = 0.3\n', "--quiet", out=out)
+            result = plica("render", out, "--out", self.picture, "--size", "400x300", "--view", "ventral", "--overwrite")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            pictures.append([pixel for row in pixels_of(self.picture) for pixel in row])
+        drawn = [sum(pixel != (255, 255, 255) for pixel in picture) for picture in pictures]
+        self.assertGreater(drawn[0], 400 * 300 / 5)
+        # But for what rounding of places moves across a pixel's border.
+        others = sum(max(abs(a - b) for a, b in zip(*pair)) > 8 for pair in zip(*pictures))
+        self.assertLess(others, drawn[0] / 100)
 
     def test_rows_of_views_and_columns_of_times(self):
         result = self.render("--view", "ventral,side", "--view", "cross-section", "--time", "0,0.1s,0.004min,last", "--shell")

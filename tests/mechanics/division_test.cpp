@@ -196,28 +196,37 @@ TEST(DivideCells, IsDoneWithWhoHasGrownUp) {
   for (const int c : {1, 12, 6, 13, 9, 14}) EXPECT_NEAR(model.volumes().targets()[c], 16000, 1e-9) << c;
 }
 
-// New nodes between held ones are held, and make up for no momentum that the cut changes.
+// New nodes between held ones are held, those between a held and a free one are not; held ones make up for no momentum
+// that the cut changes.
 TEST(DivideCells, LeavesNewNodesThatAreHeldAtRest) {
-  Model model(distorted_block(sheet, 2, 3));
-  auto inertia = std::make_unique<Inertia>(model.tissue, 1e-12);
-  model.laws.push_back(std::move(inertia));
-  Random random(3);
-  State state = moved(model, 0.5, random);
-  for (std::size_t n = 0; n < state.velocities.size(); ++n)
-    if (model.tissue.rest_positions[n].x() < 10) {
-      model.held[n] = {true, false, false};
-      state.velocities[n].x() = 0;
+  for (const double side : {-1.0, 1.0}) {
+    Model model(distorted_block(sheet, 2, 3));
+    auto inertia = std::make_unique<Inertia>(model.tissue, 1e-12);
+    model.laws.push_back(std::move(inertia));
+    Random random(3);
+    State state = moved(model, 0.5, random);
+    const auto lies_beyond = [&](std::size_t n, double x_um) {
+      return side * model.tissue.rest_positions[n].x() > x_um;
+    };
+    for (std::size_t n = 0; n < state.velocities.size(); ++n)
+      if (lies_beyond(n, -10)) {
+        model.held[n] = {true, false, false};
+        state.velocities[n].x() = 0;
+      }
+    const Vec3 before = momentum_of(model, state);
+    std::vector<PlannedDivision> across;  // every cell: new nodes lie in the middle of the edges along x
+    for (int c = 0; c < 12; ++c) across.push_back({{CellId(c), 0}, 0, 0.5});
+    const Division division = divide_cells(model, state, across);
+    int held = 0, free = 0;
+    for (std::size_t n = division.free_nodes_before; n < model.tissue.free_node_count(); ++n) {
+      ++(model.held[n][0] ? held : free);
+      EXPECT_EQ(model.held[n], (std::array<bool, 3>{lies_beyond(n, -5), false, false})) << n;
+      EXPECT_TRUE(!model.held[n][0] || state.velocities[n].x() == 0) << n;
     }
-  const Vec3 before = momentum_of(model, state);
-  const Division division = divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
-  int held = 0, free = 0;
-  for (std::size_t n = division.free_nodes_before; n < model.tissue.free_node_count(); ++n) {
-    ++(model.held[n][0] ? held : free);
-    EXPECT_TRUE(!model.held[n][0] || state.velocities[n].x() == 0) << n;
+    EXPECT_EQ(held, 2 * 8);
+    EXPECT_EQ(free, 2 * 8);
+    EXPECT_LE((momentum_of(model, state) - before).norm(), 1e-14 * before.norm());
   }
-  EXPECT_GT(held, 0);
-  EXPECT_GT(free, 0);
-  EXPECT_LE((momentum_of(model, state) - before).norm(), 1e-14 * before.norm());
 }
 
 // A divided sheet under a homogeneous strain in its plane, with Poisson's ratio 0 so that no stress acts on the apical

@@ -151,6 +151,31 @@ TEST(StepLength, GrowsWhileStepsAreAccurateUpToItsLimit) {
   EXPECT_DOUBLE_EQ(step, 5);
 }
 
+// Errors grow with the square of a step to first order and its cube to second, so the next length goes by the root of
+// what is allowed over what was: 0.9 of it, to be on the safe side.
+TEST(StepLength, TheNextOneIsByTheRootOfTheErrorThatIsAllowed) {
+  RunControls controls;
+  controls.first_step_s = 1;
+  controls.position_tolerance_um = 0.01;
+  controls.frame_every_s = 0;
+  int cases = 0;
+  for (const TimeOrder order : {TimeOrder::first, TimeOrder::second}) {
+    controls.scheme.order = order;
+    for (const double part : {0.5, 0.6, 0.8, 1.0, 1.5, 2.0}) {  // the next length over 0.9 of this one
+      Path path(order);
+      StepLength length(controls);
+      for (const double x_um : {1.0, 2.0}) path.go_to(path.after(1, x_um));
+      // Off the straight way by d: the error is d/2 to first order, 2 d/9 to second.
+      const bool is_first = order == TimeOrder::first;
+      const double d = 0.01 * (is_first ? 2 / (part * part) : 4.5 / (part * part * part));
+      EXPECT_EQ(length.accept(controls, path.here(), path.after(1, 3 + d)), 0.9 * part >= 0.6) << part;
+      EXPECT_NEAR(length.wanted_s(), 0.9 * part, 1e-9);
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 12);
+}
+
 /// The length at which steps come to stand on the way x(t).
 template <class Way>
 double settled_step(TimeOrder order, double tolerance_um, const Way& x_um) {

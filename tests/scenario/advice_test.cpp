@@ -1,0 +1,57 @@
+// What `plica check` and `plica run` say of a scenario that is right and perhaps not meant so.
+#include "scenario/advice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mechanics/obstacles/vitelline.hpp"
+#include "scenario/load.hpp"
+#include "support/tissues.hpp"
+
+namespace plica {
+namespace {
+
+// The advice on a mesh file whose cells are a block of that size; no file is read.
+std::vector<std::string> advice_on_mesh(const Vec3& size_um, bool in_shell = true) {
+  const Scenario scenario = load_scenario({"mesh", "mesh.toml",
+                                           "[embryo]\nshape = \"file\"\nfile = \"mesh.vtu\"\n[vitelline]\nenabled = " +
+                                               std::string(in_shell ? "true" : "false") + "\n"});
+  Tissue tissue = build_block(
+      {.length_um = size_um.x(), .width_um = size_um.y(), .cell_height_um = size_um.z(), .cells = {2, 2, 1}});
+  if (in_shell) tissue.outer_shape = enclosing_capsule(tissue.rest_positions);
+  return advice(scenario, Model(std::move(tissue)));
+}
+
+std::vector<std::string> lines_with(const std::string& part, const std::vector<std::string>& lines) {
+  std::vector<std::string> found;
+  std::ranges::copy_if(lines, std::back_inserter(found),
+                       [&](const std::string& line) { return line.find(part) != std::string::npos; });
+  return found;
+}
+
+TEST(Advice, AMeshThatLiesAcrossTheShellIsWarnedOf) {
+  for (const auto& [size_um, axis] :
+       {std::pair(Vec3(50, 120, 60), "longest along y"), {Vec3(50, 60, 120), "longest along z"}}) {
+    const auto warnings = lines_with("the mesh is longest along", advice_on_mesh(size_um));
+    ASSERT_EQ(warnings.size(), 1U) << axis;
+    EXPECT_TRUE(warnings[0].starts_with("warning: ")) << warnings[0];
+    EXPECT_NE(warnings[0].find(axis), std::string::npos) << warnings[0];
+    EXPECT_NE(warnings[0].find("turn the mesh"), std::string::npos) << warnings[0];
+  }
+}
+
+// A ball has no longest axis; 5 % is none either. Without a shell any mesh may lie as it likes.
+TEST(Advice, AMeshThatLiesAlongTheShellIsNot) {
+  int cases = 0;
+  for (const Vec3& size_um : {Vec3(120, 60, 50), Vec3(100, 100, 100), Vec3(100, 104, 100)}) {
+    EXPECT_TRUE(lines_with("longest along", advice_on_mesh(size_um)).empty()) << size_um.transpose();
+    EXPECT_EQ(lines_with("the shell is the capsule along x", advice_on_mesh(size_um)).size(), 1U);
+    ++cases;
+  }
+  EXPECT_TRUE(lines_with("longest along", advice_on_mesh({50, 120, 60}, false)).empty());
+  EXPECT_EQ(cases, 3);
+}
+
+}  // namespace
+}  // namespace plica

@@ -1,0 +1,137 @@
+#include "support/checkpoint_fields.hpp"
+
+#include <concepts>
+
+namespace plica::support {
+namespace {
+
+void add(std::vector<double>& to, double number) { to.push_back(number); }
+
+void add(std::vector<double>& to, const Vec3& vector) { to.insert(to.end(), vector.begin(), vector.end()); }
+
+void add(std::vector<double>& to, const std::optional<double>& value) {
+  to.push_back(value ? 1 : 0);
+  to.push_back(value.value_or(0));
+}
+
+void add(std::vector<double>& to, const PlannedDivision& planned) {
+  const auto& [cut, growth_s, volume_ratio] = planned;
+  const auto& [cell, first_wall] = cut;
+  to.insert(to.end(), {static_cast<double>(cell.number()), static_cast<double>(first_wall), growth_s, volume_ratio});
+}
+
+// A list: how long it is, and what is in it.
+template <class List>
+requires requires(const List& list) {
+  list.size();
+  list.begin();
+} &&(!std::same_as<List, Vec3>)void add(std::vector<double>& to, const List& list) {
+  to.push_back(static_cast<double>(list.size()));
+  for (const auto& value : list) add(to, value);
+}
+
+struct Fields {
+  std::map<std::string, std::vector<double>> numbers;
+
+  template <class Value>
+  void take(const std::string& name, const Value& value) {
+    add(numbers[name], value);
+  }
+
+  void take_state(const State& state) {
+    const auto& [time_s, positions, velocities, multipliers, contact_forces, in_contact, internals, divided_until_s,
+                 trend] = state;
+    take("time_s", time_s), take("positions", positions), take("velocities", velocities);
+    take("multipliers", multipliers), take("contact_forces", contact_forces), take("in_contact", in_contact);
+    take("internals", internals), take("divided_until_s", divided_until_s);
+    const auto& [step_s, earlier_s, mean_velocities, accelerations, multiplier_rates] = trend;
+    take("trend.step_s", step_s), take("trend.earlier_s", earlier_s), take("trend.mean_velocities", mean_velocities);
+    take("trend.accelerations", accelerations), take("trend.multiplier_rates", multiplier_rates);
+  }
+
+  void take_factor(const FactorMemory& factor) {
+    const auto& [at, previous_positions, previous_velocities, earlier_positions, rate_s, end_time_s, ahead, internals,
+                 changed_contacts, has_left, normals, iterations_when_new, wasted_iterations] = factor;
+    const auto& [positions, multipliers, contact_forces, in_contact] = at;
+    take("factor.positions", positions), take("factor.multipliers", multipliers);
+    take("factor.contact_forces", contact_forces), take("factor.in_contact", in_contact);
+    take("factor.previous_positions", previous_positions), take("factor.previous_velocities", previous_velocities);
+    take("factor.earlier_positions", earlier_positions), take("factor.rate_s", rate_s);
+    take("factor.end_time_s", end_time_s), take("factor.ahead", ahead), take("factor.internals", internals);
+    take("factor.changed_contacts", changed_contacts), take("factor.has_left", has_left);
+    take("factor.normals", normals), take("factor.iterations_when_new", iterations_when_new);
+    take("factor.wasted_iterations", wasted_iterations);
+  }
+
+  void take_run(const RunMemory& run) {
+    const auto& [state, steps, divisions, equilibrium_time_s, at_equilibrium, criterion_met, wanted_step_s, computing_s,
+                 factor, past_divisions] = run;
+    take_state(state);
+    take_factor(factor);
+    take("steps", steps), take("divisions", divisions), take("equilibrium_time_s", equilibrium_time_s);
+    take("at_equilibrium", at_equilibrium), take("criterion_met", criterion_met);
+    take("wanted_step_s", wanted_step_s), take("computing_s", computing_s);
+    numbers["past_divisions"];
+    for (const auto& past : past_divisions) {
+      const auto& [time_s, positions, planned] = *past;
+      take("past_divisions", time_s), take("past_divisions", positions), take("past_divisions", planned);
+    }
+  }
+
+  void take_record(const RecordMemory& record) {
+    const auto& [rows, series_bytes, lineage_bytes, midline_bytes, cells_bytes, frame_times_s, wall_s, solver_s] =
+        record;
+    numbers["rows"], numbers["monitors"], numbers["criteria_met"];
+    for (const Observation& row : rows) {
+      const auto& [values, monitors, criteria_met, is_over] = row;  // is_over is the run's criterion_met
+      take("rows", values), take("monitors", monitors);
+    }
+    if (!rows.empty()) take("criteria_met", rows.back().criteria_met);  // of others nobody asks
+    take("series_bytes", static_cast<double>(series_bytes)), take("lineage_bytes", static_cast<double>(lineage_bytes));
+    take("midline_bytes", static_cast<double>(midline_bytes)), take("cells_bytes", static_cast<double>(cells_bytes));
+    take("frame_times_s", frame_times_s), take("wall_s", wall_s), take("solver_s", solver_s);
+  }
+};
+
+}  // namespace
+
+std::map<std::string, std::vector<double>> fields_of(const Checkpoint& checkpoint) {
+  const auto& [program, scenario, at_rest, run, record] = checkpoint;
+  Fields fields;
+  fields.take("program", program), fields.take("scenario", scenario), fields.take("at_rest", at_rest);
+  fields.take_run(run);
+  fields.take_record(record);
+  return fields.numbers;
+}
+
+Checkpoint marked(Checkpoint checkpoint) {
+  RunMemory& run = checkpoint.run;
+  run.equilibrium_time_s = 1.5;
+  run.at_equilibrium = run.criterion_met = true;
+  run.computing_s = 0.25;
+  run.state.contact_forces = {0.5, 0, 2};
+  run.state.in_contact = {1, 0, 1};
+  run.state.internals = {{1, 2}, {}, {3}};
+  run.state.trend.step_s = 0.75;
+  run.state.trend.earlier_s = 0.125;
+  run.state.trend.mean_velocities = run.state.trend.accelerations = {Vec3(1, 2, 3), Vec3(-4, 5, 6)};
+  run.state.trend.multiplier_rates = {7, 8};
+  FactorMemory& factor = run.factor;
+  factor.at = {{Vec3(1, 0, 2)}, {3}, {4, 5}, {0, 1}};
+  factor.previous_positions = {Vec3(1, 2, 4)};
+  factor.previous_velocities = {Vec3(2, 2, 4)};
+  factor.earlier_positions = {Vec3(3, 2, 4)};
+  factor.rate_s = 0.375, factor.end_time_s = 9, factor.ahead = 0.625;
+  factor.internals = {{}, {4, 5}};
+  factor.changed_contacts = {2, 0};
+  factor.has_left = {1, 0};
+  factor.normals = {Vec3::UnitX(), Vec3::UnitZ()};
+  factor.iterations_when_new = 11, factor.wasted_iterations = 13;
+  RecordMemory& record = checkpoint.record;
+  record.rows.back().criteria_met = {"folded", "at rest"};
+  record.series_bytes = 101, record.lineage_bytes = 102, record.midline_bytes = 103, record.cells_bytes = 104;
+  record.wall_s = 17, record.solver_s = 16;
+  return checkpoint;
+}
+
+}  // namespace plica::support
