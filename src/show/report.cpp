@@ -1,8 +1,11 @@
 #include "show/report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/base64.hpp"
@@ -10,6 +13,7 @@
 #include "core/markup.hpp"
 #include "core/version.hpp"
 #include "record/deflate.hpp"
+#include "scenario/differences.hpp"
 #include "show/looks.hpp"
 #include "show/report_run.hpp"
 
@@ -83,16 +87,63 @@ ordered_json views_json() {
   return list;
 }
 
+std::string title_of(const ReportRun& run) {
+  const ordered_json& summary = run.json["summary"];
+  const bool has_title = summary.is_object() && summary.contains("title") && summary["title"].is_string() &&
+                         !summary["title"].get_ref<const std::string&>().empty();
+  return has_title ? summary["title"].get<std::string>() : run.json["name"].get<std::string>();
+}
+
+// Each title once: runs of one scenario share theirs.
 std::string title_of(const std::vector<ReportRun>& runs) {
-  std::string title;
-  for (const ReportRun& run : runs) {
-    if (!title.empty()) title += " | ";
-    const ordered_json& summary = run.json["summary"];
-    const bool has_title = summary.is_object() && summary.contains("title") && summary["title"].is_string() &&
-                           !summary["title"].get_ref<const std::string&>().empty();
-    title += has_title ? summary["title"].get<std::string>() : run.json["name"].get<std::string>();
+  std::vector<std::string> titles;
+  for (const ReportRun& run : runs)
+    if (const std::string title = title_of(run); std::ranges::find(titles, title) == titles.end())
+      titles.push_back(title);
+  return fmt::format("{}", fmt::join(titles, " | "));
+}
+
+// The scenario's keys that are not the same in all runs, each with a value a run, as in TOML; "" where a run has none.
+// Runs that have left no scenario are not compared.
+ordered_json varied_json(const std::vector<ReportRun>& runs) {
+  const auto scenario = [&](std::size_t r) { return runs[r].json["scenario"].get<std::string>(); };
+  std::size_t first = 0;
+  while (first < runs.size() && scenario(first).empty()) ++first;
+  std::map<std::string, std::vector<std::string>> values;
+  for (std::size_t r = first + 1; r < runs.size(); ++r) {
+    if (scenario(r).empty()) continue;
+    for (const KeyDifference& difference : scenario_differences(scenario(first), scenario(r))) {
+      std::vector<std::string>& of_key = values[difference.key];
+      if (of_key.empty())
+        for (std::size_t i = 0; i < runs.size(); ++i) of_key.push_back(scenario(i).empty() ? "" : difference.a);
+      of_key[r] = difference.b;
+    }
   }
-  return title;
+  ordered_json varied = ordered_json::array();
+  for (const auto& [key, of_key] : values) varied.push_back({{"key", key}, {"values", of_key}});
+  return varied;
+}
+
+// Directories of one name, as of a sweep's "young-500/run" and "young-1000/run", are told apart by those above them.
+void make_names_unique(const std::vector<std::filesystem::path>& directories, std::vector<ReportRun>& runs) {
+  std::vector<std::filesystem::path> above;
+  for (const auto& directory : directories) {
+    const std::filesystem::path whole = std::filesystem::absolute(directory).lexically_normal();
+    above.push_back((whole.has_filename() ? whole : whole.parent_path()).parent_path());
+  }
+  for (bool any = true; any;) {
+    std::map<std::string, std::vector<std::size_t>> runs_of_name;
+    for (std::size_t r = 0; r < runs.size(); ++r) runs_of_name[runs[r].json["name"].get<std::string>()].push_back(r);
+    any = false;
+    for (const auto& [name, same] : runs_of_name)
+      if (same.size() > 1)
+        for (const std::size_t r : same) {
+          if (!above[r].has_filename()) continue;
+          runs[r].json["name"] = fmt::format("{}/{}", above[r].filename().string(), name);
+          above[r] = above[r].parent_path();
+          any = true;
+        }
+  }
 }
 
 std::string replaced(std::string_view text, std::string_view place, const std::string& by) {
@@ -110,6 +161,7 @@ std::string report_page_of(const std::vector<std::filesystem::path>& directories
   runs.reserve(directories.size());
   for (const auto& directory : directories)
     runs.push_back(read_report_run(directory, most_frame_bytes / static_cast<double>(directories.size())));
+  make_names_unique(directories, runs);
   return report_page(runs);
 }
 
@@ -122,6 +174,7 @@ std::string report_page(const std::vector<ReportRun>& runs) {
                        {"maps", maps_json()},
                        {"views", views_json()},
                        {"view_cut_um", view_cut_um},
+                       {"varied", varied_json(runs)},
                        {"runs", ordered_json::array()}};
   std::string frames;
   for (std::size_t r = 0; r < runs.size(); ++r) {

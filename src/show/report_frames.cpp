@@ -162,6 +162,7 @@ double bytes_of(const FrameMoment& moment) {
 void ReportFrames::add(const Frame& frame, double time_s) {
   if (topologies_.empty()) {
     regions_ = regions_of(frame);
+    coloured_regions_ = coloured_regions(frame);
     regions_.resize(std::min(regions_.size(), most_regions));
     rest_positions_ = frame.positions;
   }
@@ -201,6 +202,7 @@ void ReportFrames::pack_into(ReportRun& run) const {
   run.json["frames_saved"] = seen_;
   run.json["every"] = every_;
   run.json["regions"] = regions_;
+  run.json["coloured_regions"] = coloured_regions_;
   if (!topologies_.empty()) pack_frames(topologies_, run);
 }
 

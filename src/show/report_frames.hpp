@@ -51,7 +51,8 @@ class ReportFrames {
   [[nodiscard]] bool empty() const { return topologies_.empty(); }
   [[nodiscard]] const Vectors& rest_positions() const { return rest_positions_; }  // of the first frame, um
 
-  /// Puts the frames into the run: `frames_saved`, `every`, `box`, `fields`, `regions`, `topologies`, `arrays`.
+  /// Puts the frames into the run: `frames_saved`, `every`, `box`, `fields`, `regions`, `coloured_regions`,
+  /// `topologies`, `arrays`.
   void pack_into(ReportRun& run) const;
 
  private:
@@ -59,7 +60,7 @@ class ReportFrames {
 
   double most_bytes_, bytes_ = 0;
   std::size_t seen_ = 0, every_ = 1;
-  std::vector<std::string> regions_;
+  std::vector<std::string> regions_, coloured_regions_;
   std::vector<FrameTopology> topologies_;
   Vectors rest_positions_;
 };

@@ -2,7 +2,8 @@
 //
 // The JSON: `name`, `summary` or null, `scenario` (TOML), `series`, `midline` (CSV; empty where there is none), `shell`
 // {half_axis_um, radius_um} or null, `frames_saved`, `every` (each how many-th frame is shown), `box` and `fields`
-// (what 0 and 65535 stand for), `regions` (names), `arrays` (PackedArrays::index) and `topologies`: a list of {times_s,
+// (what 0 and 65535 stand for), `regions` (names), `coloured_regions` (those whose places are
+// values of the field region), `arrays` (PackedArrays::index) and `topologies`: a list of {times_s,
 // nodes, elements, cells}, each for the frames between two divisions. Arrays of topology i, named "i/...": elements (8
 // nodes each), cell_of_element, facets (4 nodes each), element_of_facet, face_of_facet, outlines (2 nodes each),
 // cell_id, mother_id (0: none, else one more), generation, regions (bits); then a frame after the other: positions (3

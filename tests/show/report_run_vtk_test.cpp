@@ -91,6 +91,7 @@ TEST_F(ReportRunTest, HoldsPositionsAndValuesOfEveryFrame) {
   EXPECT_EQ(pressures.back(), 65535u);
   EXPECT_DOUBLE_EQ(run.fields.at("pressure").high, 0.5);
   EXPECT_EQ(run.json["regions"], nlohmann::ordered_json({"some"}));
+  EXPECT_EQ(run.json["coloured_regions"], nlohmann::ordered_json({"some"}));
 }
 
 TEST_F(ReportRunTest, NewCellsAreANewTopology) {
@@ -120,6 +121,37 @@ TEST_F(ReportRunTest, ThinsFramesByItsRuleAndSaysSo) {
 TEST_F(ReportRunTest, RefusesWhatIsNoRun) {
   EXPECT_THROW(read_report_run(folder / "none", most_frame_bytes), FileError);
   EXPECT_THROW(read_report_run(folder, most_frame_bytes), FileError);
+}
+
+// What a page of several runs says of them.
+nlohmann::json data_of(const std::string& page) {
+  const std::string begin = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t from = page.find(begin) + begin.size();
+  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
+TEST_F(ReportRunTest, SeveralRunsAreToldApartByKeysAndNames) {
+  write_frames(1);
+  std::vector<fs::path> runs;
+  for (const auto& [name, scenario] : std::vector<std::pair<std::string, std::string>>{
+           {"soft/run", "title = \"Fold\"\n[elasticity]\nyoung_modulus_Pa = 500\npoisson_ratio = 0.45\n"},
+           {"stiff/run", "title = \"Fold\"\n[elasticity]\nyoung_modulus_Pa = 1000\npoisson_ratio = 0.45\n"},
+           {"none", ""}}) {
+    runs.push_back(folder / name);
+    fs::create_directories(runs.back());
+    fs::copy(folder / "frames", runs.back() / "frames");
+    fs::copy(folder / "frames.pvd", runs.back() / "frames.pvd");
+    std::ofstream(runs.back() / "summary.json") << R"({"title": "Fold"})";
+    if (!scenario.empty()) std::ofstream(runs.back() / "scenario.toml") << scenario;
+  }
+  const std::string page = report_page_of(runs);
+  EXPECT_NE(page.find("<title>Fold</title>"), std::string::npos);
+  const nlohmann::json data = data_of(page);
+  EXPECT_EQ(data["varied"],
+            nlohmann::json::parse(R"([{"key": "elasticity.young_modulus_Pa", "values": ["500", "1000", ""]}])"));
+  EXPECT_EQ(data["runs"][0]["name"], "soft/run");
+  EXPECT_EQ(data["runs"][1]["name"], "stiff/run");
+  EXPECT_EQ(data["runs"][2]["name"], "none");
 }
 
 TEST_F(ReportRunTest, PageHoldsNoMarkupOfTheScenario) {

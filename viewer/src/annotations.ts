@@ -3,7 +3,7 @@
 import * as three from "three";
 import { colourAt, css } from "./colour";
 import { styleColour } from "./dom";
-import { type Field, type PageData, titleOf, type Vec3 } from "./page_data";
+import { colouredRegions, type Field, nameOfStep, type PageData, titleOf, type Vec3 } from "./page_data";
 import { number } from "./text";
 
 const font = "system-ui, sans-serif";
@@ -21,9 +21,10 @@ export interface Frame {
   centre: Vec3;
   /** How far the embryo reaches from its centre in a direction of the picture (right, up), um. */
   reach: (right: three.Vector3, up: three.Vector3, along: three.Vector2) => number;
-  title: string;
-  time: string;
+  title: string; // "": none
+  time: string; // "": none
   showMarks: boolean;
+  isSmall: boolean; // the scale's length stands beside its bar, not above it
 }
 
 export function annotate(context: CanvasRenderingContext2D, frame: Frame): void {
@@ -72,18 +73,18 @@ function drawMarks(context: CanvasRenderingContext2D, frame: Frame): void {
 }
 
 function drawScaleBar(context: CanvasRenderingContext2D, frame: Frame): void {
-  const { camera, width, height } = frame;
+  const { camera, width, height, isSmall } = frame;
   const umPerPixel = (camera.right - camera.left) / camera.zoom / width;
   const longest = 0.25 * width * umPerPixel;
   const power = 10 ** Math.floor(Math.log10(longest));
   const length = [5, 2, 1].map((factor) => factor * power).find((candidate) => candidate <= longest) ?? power;
   const pixels = length / umPerPixel;
-  const [x, y] = [12, height - 14];
+  const [x, y] = isSmall ? [8, height - 11] : [12, height - 14];
   context.fillRect(x, y, pixels, 3);
-  context.font = `13px ${font}`;
+  context.font = `${isSmall ? 11 : 13}px ${font}`;
   context.textAlign = "left";
-  context.textBaseline = "bottom";
-  context.fillText(`${number(length)} µm`, x, y - 3);
+  context.textBaseline = isSmall ? "middle" : "bottom";
+  context.fillText(`${number(length)} µm`, isSmall ? x + pixels + 5 : x, isSmall ? y + 2 : y - 3);
 }
 
 export const legendHeight = 54;
@@ -99,6 +100,13 @@ export function drawLegend(context: CanvasRenderingContext2D, width: number, fie
   context.fillStyle = styleColour("ink");
   context.fillText(titleOf(field), width / 2, 2);
   const steps = field.scale === "steps";
+  const names = map.map((_, step) => nameOfStep(field, step, page)).filter((name) => name !== null);
+  const more = field.name === "region" ? colouredRegions(page).length + 1 - map.length : 0;
+  if (more > 0) names[names.length - 1] += ` and ${more} more`;
+  if (steps && names.length > 0) {
+    drawNames(context, width, top, names, map);
+    return;
+  }
   const count = steps ? map.length : Math.round(wide);
   for (let i = 0; i < count; ++i) {
     context.fillStyle = css(colourAt(map, i / (count - 1)));
@@ -112,5 +120,26 @@ export function drawLegend(context: CanvasRenderingContext2D, width: number, fie
     context.fillRect(left + wide * part - 0.5, top + high, 1, 4);
     const last = steps && i === ticks - 1 ? "+" : "";
     context.fillText(number(Math.abs(value) < 1e-12 * field.high ? 0 : value, 3) + last, left + wide * part, top + high + 6);
+  }
+}
+
+// A box with its name beside it for each step, in two rows where one is too short.
+function drawNames(context: CanvasRenderingContext2D, width: number, top: number, names: string[], map: string[]): void {
+  const [box, gap, rowHeight] = [13, 5, 17];
+  const room = names.length > 3 ? width / Math.ceil(names.length / 2) : width / names.length;
+  const texts = names.map((name) => shortened(context, name, room - box - 4 * gap));
+  const widths = texts.map((text) => box + gap + context.measureText(text).width + 3 * gap);
+  const total = widths.reduce((sum, wide) => sum + wide, 0);
+  const firstRow = total <= width ? names.length : Math.ceil(names.length / 2);
+  context.textAlign = "left";
+  for (const [from, to, y] of [[0, firstRow, top], [firstRow, names.length, top + rowHeight]]) {
+    let x = (width - widths.slice(from, to).reduce((sum, wide) => sum + wide, 0)) / 2;
+    for (let i = from; i < to; ++i) {
+      context.fillStyle = map[i];
+      context.fillRect(x, y, box, box);
+      context.fillStyle = styleColour("ink");
+      context.fillText(texts[i], x + box + gap, y);
+      x += widths[i];
+    }
   }
 }

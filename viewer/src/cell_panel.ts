@@ -2,7 +2,7 @@
 import { Chart, type Curve } from "./charts";
 import { lineColours } from "./colour";
 import { element } from "./dom";
-import { type PageData, titleOf } from "./page_data";
+import { nameOfStep, type PageData, titleOf } from "./page_data";
 import type { Run } from "./run";
 import type { State } from "./state";
 import { number, time as timeText } from "./text";
@@ -23,7 +23,7 @@ export class CellPanel {
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       const run = state.now.picked?.run ?? this.runs.find((candidate) => candidate.hasFrames)?.number ?? 0;
-      this.pick(run, Number(this.input.value));
+      void this.pick(run, Number(this.input.value));
     });
     this.holder.append(element("h2", {}, "Picked cell"), form, this.content);
     state.on(["picked", "time", "field"], () => this.update());
@@ -39,7 +39,8 @@ export class CellPanel {
     this.chart?.rebuild();
   }
 
-  private pick(run: number, id: number): void {
+  private async pick(run: number, id: number): Promise<void> {
+    await this.runs[run].load();
     const known = this.runs[run].topologies.some((topology) => topology.cellWith(id) >= 0);
     this.input.setCustomValidity(known ? "" : "no cell has this number");
     this.input.reportValidity();
@@ -70,14 +71,16 @@ export class CellPanel {
       if (mother !== null) row("mother", String(mother));
       row("regions", topology.regionsOf(cell).join(", ") || "–");
       row("frame at", timeText(frameTime));
-      for (const field of this.page.fields)
+      for (const field of this.page.fields) {
+        const value = topology.valueOfCell(field, moment, cell);
         row(titleOf(field) + (field.on_nodes ? " (mean of its nodes)" : ""),
-          number(topology.valueOfCell(field, moment, cell)), { "data-value": field.name });
+          nameOfStep(field, Math.round(value), this.page) ?? number(value), { "data-value": field.name });
+      }
     } else row("cell", `${picked.id}, divided`);
     const daughters = run.daughtersOf(picked.id);
     const buttons = daughters.map((id) => {
       const button = element("button", { type: "button" }, `daughter ${id}`);
-      button.addEventListener("click", () => this.pick(picked.run, id));
+      button.addEventListener("click", () => void this.pick(picked.run, id));
       return button;
     });
     this.showHistory(run, picked.id);
@@ -90,7 +93,7 @@ export class CellPanel {
     if (this.chart && this.chartOf === wanted) return;
     const curve: Curve = {
       name: `cell ${id}`, column: `cell_${id}.${field.name}`, run, points: run.history(field, id),
-      colour: lineColours[3], dash: [],
+      look: () => ({ colour: lineColours[3], dash: [] }),
     };
     this.chart?.destroy();
     this.chart = new Chart({ title: field.label, unit: field.unit, curves: [curve] }, this.state);

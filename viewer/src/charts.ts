@@ -2,22 +2,30 @@
 import uPlot from "uplot";
 import { lineColours } from "./colour";
 import { element, styleColour } from "./dom";
+import { fewRuns } from "./page_data";
 import type { Run } from "./run";
+import { type LineLook, type RunLooks, sampleOf } from "./run_looks";
 import type { State } from "./state";
 import { number, words } from "./text";
 
 const plotHeight = 190;
 const readingTime = 250; // ms
+const pointingReach = 30; // pixels from the hand to the curve that it points at
+const faded = 0.15; // of the curves that are not pointed at
 export const plotFont = "12px system-ui, sans-serif";
 const dashes: number[][] = [[], [7, 4], [2, 3], [9, 3, 2, 3]];
+
+interface Point {
+  time: number;
+  value: number | null;
+}
 
 export interface Curve {
   name: string;
   column: string; // of series.csv, or what names it in a saved table
   run: Run;
-  points: { time: number; value: number | null }[];
-  colour: string;
-  dash: number[];
+  points: Point[];
+  look: () => LineLook;
 }
 
 export interface ChartContent {
@@ -27,9 +35,10 @@ export interface ChartContent {
   logarithmic?: boolean; // the values' axis
 }
 
-/** The plots of series.csv: quantities of one unit and kind together, then the scenario's monitors by unit. */
-export function seriesCharts(runs: Run[]): ChartContent[] {
-  const groups: { title: string; columns: string[]; logarithmic?: boolean }[] = [
+/** The plots of series.csv: quantities of one unit and kind together, then the scenario's monitors by unit. Of many runs a
+ * plot a quantity. */
+export function seriesCharts(runs: Run[], looks: RunLooks): ChartContent[] {
+  let groups: { title: string; columns: string[]; logarithmic?: boolean }[] = [
     { title: "Furrow depth and lips", columns: ["furrow_depth_um", "furrow_depth_below_lips_um", "lip_distance_um"] },
     { title: "Speeds of the middle and the end", columns: ["vml_speed_um_per_s", "vce_speed_um_per_s"], logarithmic: true },
     { title: "Speed ratio, end to middle", columns: ["speed_ratio"] },
@@ -43,15 +52,22 @@ export function seriesCharts(runs: Run[]): ChartContent[] {
       if (!monitors.get(unit)?.includes(column)) monitors.set(unit, [...(monitors.get(unit) ?? []), column]);
     }
   for (const [unit, columns] of monitors) groups.push({ title: unit === "" ? "Monitors" : `Monitors in ${unit}`, columns });
+  if (runs.length > fewRuns)
+    groups = groups.flatMap(({ columns, logarithmic }) =>
+      columns.map((column) => ({ title: capital(words(column)[0]), columns: [column], logarithmic })));
   return groups
     .map(({ title, columns, logarithmic }) => ({
-      title, logarithmic, unit: words(columns[0])[1], curves: curvesOf(runs, columns),
+      title, logarithmic, unit: words(columns[0])[1], curves: curvesOf(runs, columns, looks),
     }))
     .filter((chart) => chart.curves.length > 0);
 }
 
+function capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
 // One run: a colour a column. Several: a colour a run, a dash a column.
-function curvesOf(runs: Run[], columns: string[]): Curve[] {
+function curvesOf(runs: Run[], columns: string[], looks: RunLooks): Curve[] {
   return runs.flatMap((run) =>
     columns
       .filter((column) => run.series.column(column).some((value) => value !== null))
@@ -61,8 +77,11 @@ function curvesOf(runs: Run[], columns: string[]): Curve[] {
         return {
           name: words(column)[0], column, run,
           points: run.series.column(column).map((value, i) => ({ time: times[i]!, value })),
-          colour: runs.length > 1 ? colourOfRun(run) : lineColours[place % lineColours.length],
-          dash: runs.length > 1 ? dashes[place % dashes.length] : [],
+          look: () => {
+            if (runs.length === 1) return { colour: lineColours[place % lineColours.length], dash: [] };
+            const look = looks.lookOf(run);
+            return columns.length === 1 ? look : { ...look, dash: dashes[place % dashes.length] };
+          },
         };
       }),
   );
@@ -71,24 +90,34 @@ function curvesOf(runs: Run[], columns: string[]): Curve[] {
 export class Chart {
   readonly box = element("figure", { class: "chart" });
   private readonly holder = element("div");
-  private readonly values: HTMLElement[] = [];
+  private readonly pointedValue = element("output", { class: "pointed-value" });
+  private readonly legend = element("ul", { class: "curves" });
+  private values: HTMLElement[] = [];
+  private readonly many: boolean;
   private readonly sizes = new ResizeObserver(() => this.fit());
-  private readonly forget: () => void;
+  private readonly forget: (() => void)[];
   private shownAt = 0; // ms
   private plot: uPlot | null = null;
   private line: TimeLine | null = null;
 
   constructor(readonly content: ChartContent, private readonly state: State, private logarithmicTime = false) {
+    this.many = new Set(content.curves.map((curve) => curve.run)).size > fewRuns;
     const unit = content.unit === "" ? "" : `, ${content.unit}`;
-    this.box.append(element("figcaption", {}, content.title + unit), this.holder, this.legend());
+    this.box.append(element("figcaption", {}, content.title + unit, this.pointedValue), this.holder, this.legend);
+    this.legend.hidden = this.many; // the table of runs is one for all plots
     this.sizes.observe(this.holder);
-    this.forget = state.on(["time", "playing"], () => this.showTime());
+    this.forget = [
+      state.on(["time", "playing"], () => this.showTime()),
+      state.on(["shown"], () => this.rebuild()),
+      state.on(["colourBy"], () => this.rebuild()),
+      state.on(["pointed"], () => this.showPointed()),
+    ];
     this.rebuild();
   }
 
   /** Ends the plot: it no longer follows the page. */
   destroy(): void {
-    this.forget();
+    for (const forget of this.forget) forget();
     this.sizes.disconnect();
     this.plot?.destroy();
   }
@@ -98,13 +127,20 @@ export class Chart {
     this.rebuild();
   }
 
-  /** Makes the plot anew: colours of the page or scales have changed. */
+  /** Makes the plot anew: colours of the page, scales or what is shown have changed. */
   rebuild(): void {
     this.plot?.destroy();
     this.line = null;
+    this.fillLegend();
     this.plot = new uPlot(this.options(), this.data(), this.holder);
     this.line = new TimeLine(this.plot);
+    if (this.many) this.pointByHand(this.plot);
     this.showTime();
+    this.showPointed();
+  }
+
+  private isShown({ run }: Curve): boolean {
+    return this.state.now.shown.has(run.number);
   }
 
   private data(): uPlot.AlignedData {
@@ -125,39 +161,41 @@ export class Chart {
     return {
       width: Math.max(this.holder.clientWidth, 200),
       height: plotHeight,
+      padding: plotPadding,
       legend: { show: false },
       cursor: { points: { show: false }, y: false, sync: { key: "time" } },
-      scales: {
-        x: { time: false, distr: this.logarithmicTime ? 3 : 1 },
-        y: { distr: this.content.logarithmic ? 3 : 1 },
-      },
-      axes: [
-        timeAxis(),
-        { ...timeAxis(), label: undefined, labelSize: 0, size: 56 },
-      ],
+      scales: { x: timeScale(this.logarithmicTime), y: { distr: this.content.logarithmic ? 3 : 1 } },
+      axes: [timeAxis(this.logarithmicTime), valueAxis()],
       series: [
         {},
-        ...this.content.curves.map(({ name, colour, dash }) => ({
-          label: name, stroke: colour, dash, width: 2, spanGaps: false, points: { show: false },
-        })),
+        ...this.content.curves.map((curve) => {
+          const { colour, dash } = curve.look();
+          return {
+            label: curve.name, stroke: colour, dash, width: this.many ? 1.5 : 2, spanGaps: false, points: { show: false },
+            show: this.isShown(curve),
+          };
+        }),
       ],
       hooks: { draw: [() => this.line?.show(this.state.now.time)], ready: [(plot) => goToClicks(plot, this.state)] },
     };
   }
 
   // Each quantity with the values of its curves at the page's time: those of the nearest step.
-  private legend(): HTMLElement {
-    const list = element("ul", { class: "curves" });
+  private fillLegend(): void {
+    this.legend.replaceChildren();
+    this.values = [];
+    if (this.many) return;
     for (const name of new Set(this.content.curves.map((curve) => curve.name))) {
       const item = element("li", {}, `${name} `);
       for (const [i, curve] of this.content.curves.entries()) {
         if (curve.name !== name) continue;
         this.values[i] = element("output", { "data-column": curve.column, "data-run": curve.run.name });
-        item.append(element("span", {}, sampleOf(curve), this.values[i]), " ");
+        const part = element("span", {}, sampleOf(curve.look()), this.values[i]);
+        part.hidden = !this.isShown(curve);
+        item.append(part, " ");
       }
-      list.append(item);
+      this.legend.append(item);
     }
-    return list;
   }
 
   private showTime(): void {
@@ -166,12 +204,47 @@ export class Chart {
     const now = performance.now();
     if (this.state.now.playing && now - this.shownAt < readingTime) return;
     this.shownAt = now;
-    this.content.curves.forEach(({ points }, i) => {
-      const { time } = this.state.now;
-      let nearest = points[0];
-      for (const point of points) if (Math.abs(point.time - time) < Math.abs(nearest.time - time)) nearest = point;
-      this.values[i].textContent = number(nearest?.value);
+    this.values.forEach((output, i) => {
+      output.textContent = number(nearestPoint(this.content.curves[i].points, this.state.now.time)?.value);
     });
+    this.showPointedValue();
+  }
+
+  private showPointed(): void {
+    const { pointed } = this.state.now;
+    if (!this.plot || !this.many) return;
+    const known = this.content.curves.some((curve) => curve.run.number === pointed && this.isShown(curve));
+    this.content.curves.forEach(({ run }, i) => {
+      this.plot!.series[i + 1].alpha = !known || run.number === pointed ? 1 : faded;
+    });
+    this.plot.redraw(false, false);
+    this.showPointedValue();
+  }
+
+  private showPointedValue(): void {
+    const { pointed, time } = this.state.now;
+    const curve = this.many && this.content.curves.find(({ run }) => run.number === pointed);
+    this.pointedValue.textContent = curve ? `${curve.run.name}: ${number(nearestPoint(curve.points, time)?.value)}` : "";
+  }
+
+  private pointByHand(plot: uPlot): void {
+    const point = (event: PointerEvent) => this.state.set({ pointed: this.runNear(plot, event) });
+    plot.over.addEventListener("pointermove", point);
+    plot.over.addEventListener("pointerdown", point);
+    plot.over.addEventListener("pointerleave", () => this.state.set({ pointed: null }));
+  }
+
+  private runNear(plot: uPlot, { clientX, clientY }: PointerEvent): number | null {
+    const { left, top } = plot.over.getBoundingClientRect();
+    const time = plot.posToVal(clientX - left, "x");
+    let [nearest, least]: [number | null, number] = [null, pointingReach];
+    for (const curve of this.content.curves) {
+      const value = this.isShown(curve) ? nearestPoint(curve.points, time)?.value : null;
+      if (value === null || value === undefined) continue;
+      const distance = Math.abs(plot.valToPos(value, "y") - (clientY - top));
+      if (distance < least) [nearest, least] = [curve.run.number, distance];
+    }
+    return nearest;
   }
 
   private fit(): void {
@@ -180,21 +253,58 @@ export class Chart {
   }
 }
 
-function sampleOf({ colour, dash }: { colour: string; dash: number[] }): HTMLElement {
-  const sample = element("span", { class: "sample" });
-  sample.style.borderTop = `3px ${dash.length > 0 ? "dashed" : "solid"} ${colour}`;
-  return sample;
+// Times rise.
+function nearestPoint(points: Point[], time: number): Point | undefined {
+  let [low, high] = [0, points.length - 1];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (points[middle].time <= time) low = middle;
+    else high = middle;
+  }
+  if (high < 0) return undefined;
+  return Math.abs(points[high].time - time) < Math.abs(points[low].time - time) ? points[high] : points[low];
 }
 
-/** Which colour is which run, where there are several. */
-export function runKey(runs: Run[]): HTMLElement[] {
-  if (runs.length < 2) return [];
-  const items = runs.map((run) => element("li", {}, sampleOf({ colour: colourOfRun(run), dash: [] }), run.name));
-  return [element("ul", { class: "curves" }, ...items)];
+// Powers of ten, with 2 and 5 between them where there is room.
+function labelledPlaces(plot: uPlot, places: number[]): (number | null)[] {
+  const decade = Math.abs(plot.valToPos(10, "x") - plot.valToPos(1, "x"));
+  const digits = decade >= 130 ? /^[125]/ : /^1/;
+  const every = Math.ceil(40 / decade); // how many-th power
+  const power = (place: number) => Math.floor(Math.log10(place) + 1e-9);
+  return places.map((place) => (digits.test(place.toExponential()) && power(place) % every === 0 ? place : null));
 }
 
-function colourOfRun(run: Run): string {
-  return lineColours[run.number % lineColours.length];
+/** Room above and to the right of a plot: for the halves of labels that stand over its ends. */
+export const plotPadding: uPlot.Padding = [10, 20, 0, 0];
+
+/** Time along the plot, from the first moment to the last and no further. */
+export function timeScale(logarithmic: boolean): uPlot.Scale {
+  return {
+    time: false, distr: logarithmic ? 3 : 1,
+    range: (_, least, greatest) => (least === greatest ? [least / 2, 2 * greatest || 1] : [least, greatest]),
+  };
+}
+
+// uPlot's own begin at the least time, whatever number that is.
+function logarithmicPlaces(least: number, greatest: number): number[] {
+  const places: number[] = [];
+  for (let power = Math.floor(Math.log10(least)); 10 ** power <= greatest; ++power)
+    for (let digit = 1; digit < 10; ++digit) places.push(Number(`${digit}e${power}`));
+  return places.filter((place) => place >= least && place <= greatest);
+}
+
+const measuring = element("canvas").getContext("2d")!;
+
+/** The axis of values: as wide as its longest label needs. */
+export function valueAxis(): uPlot.Axis {
+  return {
+    ...timeAxis(), label: undefined, labelSize: 0,
+    size: (_, labels) => {
+      measuring.font = plotFont;
+      const widths = (labels ?? []).map((label) => (label === null ? 0 : measuring.measureText(label).width));
+      return Math.ceil(Math.max(20, ...widths)) + 18; // for the tick and its gap
+    },
+  };
 }
 
 /** A click, other than a drag, goes to its time. */
@@ -209,9 +319,13 @@ export function goToClicks(plot: uPlot, state: State): void {
 }
 
 /** The axis of time, as all plots have it. */
-export function timeAxis(): uPlot.Axis {
+export function timeAxis(logarithmic = false): uPlot.Axis {
   return {
+    ...(logarithmic && {
+      splits: (_, __, least, greatest) => logarithmicPlaces(least, greatest), filter: labelledPlaces,
+    }),
     stroke: styleColour("ink"), grid: { stroke: styleColour("grid"), width: 1 }, ticks: { stroke: styleColour("grid") },
+    values: (_, places) => places.map((place) => (place === null ? "" : number(place, 6))),
     label: "time, s", labelSize: 16, size: 34, labelGap: 0, font: plotFont, labelFont: plotFont,
   };
 }

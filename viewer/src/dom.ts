@@ -24,6 +24,16 @@ export function styleColour(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
+/** Calls `act` once, when the element first comes near what the window shows. */
+export function whenNear(target: Element, act: () => void): void {
+  const observer = new IntersectionObserver((entries) => {
+    if (!entries.some((entry) => entry.isIntersecting)) return;
+    observer.disconnect();
+    act();
+  }, { rootMargin: "200px" });
+  observer.observe(target);
+}
+
 /** Offers content as a file. */
 export function download(name: string, content: Blob): void {
   const link = element("a", { href: URL.createObjectURL(content), download: name });

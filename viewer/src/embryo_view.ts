@@ -1,189 +1,73 @@
-// The pictures of all runs: a canvas each, cameras locked together, and how they are turned and picked.
+// The pictures of all runs that are shown: cameras locked together, and how they are turned and picked.
 import * as three from "three";
-import { TrackballControls } from "three/examples/jsm/controls/TrackballControls.js";
-import { annotate, drawLegend, legendHeight } from "./annotations";
+import { drawLegend, legendHeight } from "./annotations";
 import { element, styleColour } from "./dom";
-import { EmbryoScene } from "./embryo_scene";
-import type { PageData } from "./page_data";
+import { fewRuns, type PageData } from "./page_data";
 import type { Run } from "./run";
+import type { RunLooks } from "./run_looks";
+import { Painter, RunView, screenRatio } from "./run_view";
 import type { State } from "./state";
-import { time as timeText } from "./text";
 
 const clickTolerance = 4; // pixels between press and release
 const turnStep = 0.12; // rad a key press
 const settleTime = 200; // ms without a change after which a picture is drawn finely
 
-// Without a graphics card the processor draws. Smoothing edges then costs it half of its time: it is left out while the
-// picture moves, and a picture that stands still is drawn with four times the pixels instead.
-function drawsInSoftware(): boolean {
-  const context = document.createElement("canvas").getContext("webgl2");
-  const names = context?.getExtension("WEBGL_debug_renderer_info");
-  const renderer = names ? String(context!.getParameter(names.UNMASKED_RENDERER_WEBGL)) : "";
-  context?.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|software|basic render/i.test(renderer);
-}
-
-const margins = { side: 30, top: 66 }; // pixels: for marks; for marks below time and title
-const overlayRatio = Math.min(devicePixelRatio, 2);
-
-class RunView {
-  readonly box = element("div", { class: "view" });
-  readonly canvas: HTMLCanvasElement;
-  readonly camera = new three.OrthographicCamera(-1, 1, 1, -1, 1, 10);
-  readonly controls: TrackballControls;
-  private readonly overlay = element("canvas", { class: "overlay", "aria-hidden": "true" });
-  private readonly renderer: three.WebGLRenderer;
-  private readonly scene: EmbryoScene;
-
-  constructor(readonly run: Run, page: PageData, private readonly state: State, private readonly inSoftware: boolean) {
-    this.canvas = element("canvas", {
-      class: "picture", tabindex: "0", role: "img", "aria-label": `The embryo of ${run.title.slice(0, 200)}`,
-    });
-    this.renderer = new three.WebGLRenderer({ canvas: this.canvas, antialias: !inSoftware, alpha: true });
-    this.renderer.setClearColor(0, 0);
-    this.renderer.localClippingEnabled = true;
-    this.setFine(false);
-    this.scene = new EmbryoScene(run, page);
-    this.box.append(this.canvas, this.overlay);
-    this.controls = new TrackballControls(this.camera, this.canvas);
-    this.controls.staticMoving = true;
-    this.controls.rotateSpeed = 3;
-    this.controls.keys = ["", "", ""];
-  }
-
-  get size(): { width: number; height: number } {
-    return { width: this.box.clientWidth, height: this.box.clientHeight };
-  }
-
-  /** Whether the picture is drawn as it is to stand, or as it has to move. */
-  setFine(fine: boolean): void {
-    this.renderer.setPixelRatio(!this.inSoftware ? overlayRatio : fine ? 2 : 1);
-  }
-
-  /** `half`: of the picture's height at zoom 1, um. */
-  resize(half: number): void {
-    const { width, height } = this.size;
-    if (width === 0 || height === 0) return;
-    this.renderer.setSize(width, height, false);
-    this.camera.top = half;
-    this.camera.bottom = -half;
-    this.camera.right = (half * width) / height;
-    this.camera.left = -this.camera.right;
-    this.camera.updateProjectionMatrix();
-    this.controls.handleResize();
-    this.overlay.width = width * overlayRatio;
-    this.overlay.height = height * overlayRatio;
-  }
-
-  update(): void {
-    const { time, field, cut, edges, shell, picked } = this.state.now;
-    const place = this.run.placeAt(time);
-    const cell = picked?.run === this.run.number ? this.run.ancestorAt(picked.id, place.topology) : -1;
-    this.scene.show(place, field, cut, { edges, shell }, cell);
-    this.canvas.dataset.cells = String(place.topology.cells);
-  }
-
-  render(showTitle: boolean): void {
-    this.drawEmbryo();
-    const context = this.overlay.getContext("2d")!;
-    context.setTransform(overlayRatio, 0, 0, overlayRatio, 0, 0);
-    context.clearRect(0, 0, this.overlay.width, this.overlay.height);
-    this.annotate(context, showTitle);
-  }
-
-  private drawEmbryo(): void {
-    this.scene.lightFrom(this.camera);
-    this.renderer.render(this.scene.scene, this.camera);
-  }
-
-  private annotate(context: CanvasRenderingContext2D, showTitle: boolean): void {
-    const shown = Math.min(this.state.now.time, this.run.endTime);
-    annotate(context, {
-      ...this.size, camera: this.camera, centre: this.run.centre,
-      reach: (right, up, along) => this.scene.reach(right, up, along),
-      title: showTitle ? this.run.title : "", time: timeText(shown), showMarks: this.state.now.marks,
-    });
-  }
-
-  /** Paints picture and annotations into another canvas, where a CSS pixel is `ratio` pixels. The own one is lost. */
-  paint(context: CanvasRenderingContext2D, ratio: number, showTitle: boolean): void {
-    const { width, height } = this.size;
-    const own = this.renderer.getPixelRatio();
-    this.renderer.setPixelRatio(ratio);
-    this.drawEmbryo();
-    context.drawImage(this.canvas, 0, 0, width, height);
-    this.renderer.setPixelRatio(own);
-    this.annotate(context, showTitle);
-  }
-
-  /** The zoom at which the embryo, as it is and seen as now, fills the picture but for a margin for marks and bar. */
-  fittingZoom(): number {
-    const right = new three.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
-    const up = new three.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
-    const reach = (x: number, y: number) => this.scene.reach(right, up, new three.Vector2(x, y));
-    const wide = Math.max(reach(1, 0), reach(-1, 0));
-    const high = Math.max(reach(0, 1), reach(0, -1));
-    const { width, height } = this.size;
-    const part = (margin: number, side: number) => Math.max(1 - (2 * margin) / side, 0.3);
-    return Math.min((part(margins.side, width) * this.camera.right) / wide, (part(margins.top, height) * this.camera.top) / high);
-  }
-
-  cellAt(clientX: number, clientY: number): number {
-    const box = this.canvas.getBoundingClientRect();
-    const ray = new three.Raycaster();
-    const x = (2 * (clientX - box.left)) / box.width - 1;
-    const y = 1 - (2 * (clientY - box.top)) / box.height;
-    ray.setFromCamera(new three.Vector2(x, y), this.camera);
-    return this.scene.cellOn(ray, this.state.now.cut);
-  }
-}
-
 /** Throws where the browser offers no WebGL. */
 export class EmbryoViews {
-  private readonly inSoftware: boolean;
+  private readonly painter: Painter;
   private readonly views: RunView[];
   private readonly radius: number; // um, of a ball around every run
-  private stale = true; // the scenes no longer show the state
-  private moved = true; // the cameras have moved
+  private large: RunView | null = null; // of many, the one that is shown large
   private isFine = false;
   private changedAt = 0; // ms
-  private width = 0; // of each picture
-  private height = 0;
+  private shape = ""; // of the page, for which the pictures have their sizes
   private leader: RunView | null = null; // whose camera the hand moves; the others report changes, too
 
   constructor(
-    runs: Run[], private readonly page: PageData, private readonly state: State,
-    holder: HTMLElement, private readonly legend: HTMLCanvasElement,
+    runs: Run[], private readonly page: PageData, private readonly state: State, private readonly looks: RunLooks,
+    private readonly holder: HTMLElement, private readonly legend: HTMLCanvasElement,
   ) {
-    this.inSoftware = drawsInSoftware();
-    this.views = runs.filter((run) => run.hasFrames).map((run) => new RunView(run, page, state, this.inSoftware));
+    this.painter = new Painter(() => this.refresh());
+    this.views = runs.filter((run) => run.hasFrames).map((run) => new RunView(run, page, state, this.painter));
     this.radius = Math.max(...this.views.map(({ run }) => Math.hypot(...run.halfSize)));
     holder.append(...this.views.map((view) => view.box));
-    holder.dataset.count = String(this.views.length);
     for (const view of this.views) this.listen(view);
     state.on(["view"], () => this.lookFrom());
-    state.on(["time", "field", "cut", "edges", "shell", "marks", "picked"], () => (this.stale = true));
+    state.on(["time", "field", "cut", "edges", "shell", "marks", "picked"], () => this.makeStale());
     state.on(["field"], () => this.showLegend());
+    state.on(["shown"], () => this.arrange());
+    state.on(["order"], () => this.sort());
+    state.on(["colourBy"], () => this.views.forEach((view) => view.showCaption(looks)));
+    state.on(["pointed"], () => this.views.forEach((view) =>
+      view.box.classList.toggle("pointed", view.run.number === state.now.pointed)));
+    this.sort();
+    this.arrange();
     new ResizeObserver(() => this.resize()).observe(holder);
-    this.resize();
+    this.watch();
   }
 
   /** Draws what has changed; called before each picture of the screen. */
   draw(): void {
-    for (const view of this.views) view.controls.update();
+    const drawable = this.views.filter((view) => view.isDrawable);
+    for (const view of drawable) view.controls.update();
     const now = performance.now();
-    if (this.stale || this.moved) this.changedAt = now;
-    const settled = this.inSoftware && !this.isFine && now - this.changedAt > settleTime && !this.state.now.playing;
-    if (!this.stale && !this.moved && !settled) return;
-    this.setFine(settled);
-    if (this.stale) for (const view of this.views) view.update();
-    for (const view of this.views) view.render(this.views.length > 1);
-    this.stale = this.moved = false;
+    const changed = drawable.filter((view) => view.stale || view.moved);
+    if (changed.length > 0) this.changedAt = now;
+    const settled =
+      this.painter.inSoftware && !this.isFine && now - this.changedAt > settleTime && !this.state.now.playing;
+    if (changed.length === 0 && !settled) return;
+    this.isFine = settled;
+    const ratio = !this.painter.inSoftware ? screenRatio : settled ? 2 : 1;
+    for (const view of settled ? drawable : changed) {
+      if (view.stale) view.update();
+      view.render(ratio, this.titleOf(view));
+    }
   }
 
   /** Style or size has changed. */
   refresh(): void {
-    this.stale = true;
+    this.makeStale();
+    this.views.forEach((view) => view.showCaption(this.looks));
     this.showLegend();
   }
 
@@ -192,11 +76,12 @@ export class EmbryoViews {
     return this.views[0].camera.getWorldDirection(new three.Vector3()).toArray();
   }
 
-  /** All pictures beside each other above the legend, twice as fine as the screen. */
+  /** All pictures as they lie on the page, above the legend, twice as fine as the screen. */
   async picture(): Promise<Blob> {
     const finer = 2;
-    const width = this.views.reduce((sum, view) => sum + view.size.width, 0);
-    const height = Math.max(...this.views.map((view) => view.size.height));
+    const shown = this.views.filter((view) => view.isShown);
+    await Promise.all(shown.map(({ run }) => run.load()));
+    const { clientWidth: width, clientHeight: height } = this.holder;
     const canvas = element("canvas");
     canvas.width = finer * width;
     canvas.height = finer * (height + legendHeight);
@@ -204,31 +89,82 @@ export class EmbryoViews {
     context.scale(finer, finer);
     context.fillStyle = styleColour("paper");
     context.fillRect(0, 0, width, height + legendHeight);
-    context.save();
-    for (const view of this.views) {
-      view.paint(context, finer, this.views.length > 1);
-      context.translate(view.size.width, 0);
+    for (const view of shown) {
+      view.update();
+      const { offsetLeft, offsetTop } = view.box;
+      context.save();
+      context.translate(offsetLeft, offsetTop + view.canvas.offsetTop);
+      view.paint(context, finer, this.titleOf(view));
+      context.restore();
+      if (!view.hasCaption) continue;
+      context.font = "13px system-ui, sans-serif";
+      context.textBaseline = "top";
+      context.textAlign = "left";
+      context.fillStyle = styleColour("ink");
+      context.fillText(view.run.name, offsetLeft + 4, offsetTop + 4, view.size.width - 8);
     }
-    context.restore();
-    this.moved = true;
     context.translate(0, height);
     drawLegend(context, width, this.state.now.field, this.page);
     return new Promise((resolve) => canvas.toBlob((blob) => resolve(blob!), "image/png"));
   }
 
-  private setFine(fine: boolean): void {
-    if (fine === this.isFine) return;
-    this.isFine = fine;
-    for (const view of this.views) view.setFine(fine);
+  private titleOf(view: RunView): string {
+    return this.views.length > 1 ? view.run.name : "";
+  }
+
+  private makeStale(): void {
+    for (const view of this.views) view.stale = true;
+  }
+
+  // Frames are unpacked, and drawn, where the window shows their picture.
+  private watch(): void {
+    const observer = new IntersectionObserver((entries) => {
+      for (const { target, isIntersecting } of entries) {
+        const view = this.views.find(({ box }) => box === target)!;
+        view.near = isIntersecting;
+        if (isIntersecting) void this.makeReady(view);
+      }
+    }, { rootMargin: "100px" });
+    for (const view of this.views) observer.observe(view.box);
+  }
+
+  /** Unpacks a run's frames for its picture. */
+  async makeReady(view = this.views[0]): Promise<void> {
+    view.near = true;
+    if (view.run.loaded) return;
+    const isFirst = !this.views.some(({ run }) => run.loaded);
+    await view.run.load();
+    view.stale = true;
+    if (!isFirst) return;
+    view.update();
+    this.lookFrom();
+  }
+
+  private sort(): void {
+    for (const view of this.views) view.order = this.state.now.order.indexOf(view.run.number);
+  }
+
+  // A few pictures are large, many are small.
+  private arrange(): void {
+    const { shown } = this.state.now;
+    for (const view of this.views) view.box.hidden = !shown.has(view.run.number);
+    const count = this.views.filter((view) => view.isShown).length;
+    this.holder.dataset.count = count > fewRuns ? "many" : String(count);
+    if (this.large && (!this.large.isShown || count <= fewRuns)) this.large = null;
+    for (const view of this.views) {
+      view.setSmall(count > fewRuns && view !== this.large, this.looks);
+      view.box.classList.toggle("large", view === this.large);
+    }
+    this.resize();
   }
 
   private resize(): void {
-    const { width, height } = this.views[0].size;
-    if (width * height === 0 || (width === this.width && height === this.height)) return;
-    [this.width, this.height] = [width, height];
+    const sizes = this.views.filter((view) => view.isShown).map(({ size }) => `${size.width} ${size.height}`);
+    const shape = `${this.holder.dataset.count} ${sizes.join(" ")}`;
+    if (shape === this.shape) return;
+    this.shape = shape;
     for (const view of this.views) view.resize(this.radius);
     this.lookFrom();
-    this.stale = true;
     this.showLegend();
     this.draw();
   }
@@ -247,7 +183,7 @@ export class EmbryoViews {
     const { sight, up } = this.state.now.view;
     for (const view of this.views) {
       const { camera, controls, run } = view;
-      view.update();
+      if (view.isDrawable) view.update();
       const centre = new three.Vector3(...run.centre);
       camera.near = 0.1 * this.radius;
       camera.far = 10 * this.radius;
@@ -256,14 +192,27 @@ export class EmbryoViews {
       controls.target.copy(centre);
       camera.lookAt(centre);
       camera.updateMatrixWorld();
+      view.moved = true;
     }
-    // One scale for all, at which the largest just fits.
-    const zoom = Math.min(...this.views.map((view) => view.fittingZoom()));
-    for (const { camera } of this.views) {
-      camera.zoom = zoom;
-      camera.updateProjectionMatrix();
+    this.fit();
+  }
+
+  // One scale for all, at which the largest just fits; what is not yet unpacked is taken to be shaped like the others.
+  // The one that is large among many has its own.
+  private fit(): void {
+    const shown = this.views.filter((view) => view.isShown && view !== this.large);
+    const known = shown.flatMap((view) => {
+      const zoom = view.fittingZoom();
+      return zoom === null ? [] : [{ view, zoom }];
+    });
+    if (known.length > 0) {
+      const size = (view: RunView) => Math.hypot(...view.run.halfSize);
+      const smallest = known.reduce((a, b) => (a.zoom * size(a.view) < b.zoom * size(b.view) ? a : b));
+      const zooms = shown.map((view) => view.fittingZoom() ?? (smallest.zoom * size(smallest.view)) / size(view));
+      for (const { camera } of this.views) camera.zoom = Math.min(...zooms);
     }
-    this.moved = true;
+    if (this.large) this.large.camera.zoom = this.large.fittingZoom() ?? 1;
+    for (const { camera } of this.views) camera.updateProjectionMatrix();
   }
 
   // What one camera does, the others do: relative to the middle of their own run.
@@ -274,11 +223,12 @@ export class EmbryoViews {
       view.controls.target.set(...view.run.centre).add(shift);
       view.camera.position.copy(leader.camera.position).sub(leader.controls.target).add(view.controls.target);
       view.camera.up.copy(leader.camera.up);
-      view.camera.zoom = leader.camera.zoom;
+      if (leader !== this.large && view !== this.large) view.camera.zoom = leader.camera.zoom;
       view.camera.lookAt(view.controls.target);
       view.camera.updateProjectionMatrix();
+      view.moved = true;
     }
-    this.moved = true;
+    leader.moved = true;
   }
 
   private listen(view: RunView): void {
@@ -286,9 +236,16 @@ export class EmbryoViews {
     view.canvas.addEventListener("pointerdown", lead, { capture: true });
     view.canvas.addEventListener("wheel", lead, { capture: true, passive: true });
     view.controls.addEventListener("change", () => {
+      view.moved = true;
       if (this.leader === view) this.follow(view);
-      this.moved = true;
     });
+    view.caption.addEventListener("click", () => {
+      this.large = this.large === view ? null : view;
+      this.arrange();
+      if (this.large) this.large.box.scrollIntoView({ block: "nearest" });
+    });
+    view.box.addEventListener("pointerenter", () => this.state.set({ pointed: view.run.number }));
+    view.box.addEventListener("pointerleave", () => this.state.set({ pointed: null }));
     let pressed = { x: 0, y: 0 };
     view.canvas.addEventListener("pointerdown", (event) => (pressed = { x: event.clientX, y: event.clientY }));
     view.canvas.addEventListener("pointerup", (event) => {

@@ -1,15 +1,16 @@
 // The midline over place and time: where invagination starts, and how it spreads.
 import uPlot from "uplot";
-import { goToClicks, plotFont, timeAxis, TimeLine } from "./charts";
+import { goToClicks, plotFont, plotPadding, timeAxis, TimeLine, timeScale, valueAxis } from "./charts";
 import { colourAt, css } from "./colour";
-import { element, styleColour } from "./dom";
-import type { PageData } from "./page_data";
+import { element, styleColour, whenNear } from "./dom";
+import { fewRuns, type PageData } from "./page_data";
 import type { Run } from "./run";
 import type { State } from "./state";
-import { number, words } from "./text";
+import { number } from "./text";
 
 export const midlineQuantities = ["depth_um", "normal_speed_um_per_s", "apical_area_ratio"];
 const plotHeight = 240;
+const smallHeight = 150; // of many
 
 /** A scale that all runs share: two-sided for ratios and where both signs matter, else from the least value up. */
 export interface MidlineScale {
@@ -52,20 +53,37 @@ export class Kymograph {
   readonly box = element("figure", { class: "chart" });
   private readonly holder = element("div");
   private readonly caption = element("figcaption");
-  private readonly scaleBar = element("canvas", { class: "bar" });
+  private readonly isSmall: boolean;
   private plot: uPlot | null = null;
   private line: TimeLine | null = null;
   private columns: Column[] = [];
   private scale: MidlineScale = { map: "still", low: 0, high: 1 };
+  private isNear = false;
 
   constructor(
     private readonly run: Run, private readonly allRuns: Run[], private readonly page: PageData,
     private readonly state: State, private quantity: string, private logarithmicTime = false,
   ) {
-    this.box.append(this.caption, this.holder, this.scaleBar);
+    this.isSmall = allRuns.length > fewRuns;
+    this.caption.textContent = allRuns.length > 1 ? run.name : "";
+    this.holder.style.minHeight = `${this.height}px`;
+    this.box.dataset.run = run.name;
+    this.box.append(this.caption, this.holder);
     new ResizeObserver(() => this.fit()).observe(this.holder);
     state.on(["time"], () => this.line?.show(state.now.time));
-    this.rebuild();
+    state.on(["pointed"], () => this.box.classList.toggle("pointed", state.now.pointed === run.number));
+    this.box.addEventListener("pointerenter", () => state.set({ pointed: run.number }));
+    this.box.addEventListener("pointerleave", () => state.set({ pointed: null }));
+    const sort = () => (this.box.style.order = String(state.now.order.indexOf(run.number)));
+    state.on(["order"], sort);
+    sort();
+    const hide = () => (this.box.hidden = !state.now.shown.has(run.number));
+    state.on(["shown"], hide);
+    hide();
+    whenNear(this.box, () => {
+      this.isNear = true;
+      this.rebuild();
+    });
   }
 
   setLogarithmicTime(on: boolean): void {
@@ -79,37 +97,42 @@ export class Kymograph {
   }
 
   rebuild(): void {
-    const [name, unit] = words(this.quantity);
-    this.caption.textContent =
-      `${name}${unit === "" ? "" : `, ${unit}`}, of the midline's cells` +
-      (this.allRuns.length > 1 ? `: ${this.run.name}` : "");
-    this.columns = columnsOf(this.run, this.quantity);
+    if (!this.isNear) return;
+    this.columns = columnsOf(this.run, this.quantity).filter(({ time }) => !this.logarithmicTime || time > 0);
     this.scale = midlineScale(this.allRuns, this.quantity);
     this.plot?.destroy();
     this.line = null;
     this.plot = new uPlot(this.options(), this.data(), this.holder);
     this.line = new TimeLine(this.plot);
     this.line.show(this.state.now.time);
-    this.drawScaleBar();
   }
 
+  private get height(): number {
+    return this.isSmall ? smallHeight : plotHeight;
+  }
+
+  // The same time for all runs, so that they can be compared.
   private data(): uPlot.AlignedData {
-    const times = this.columns.map((column) => column.time).filter((time) => !this.logarithmicTime || time > 0);
-    return [times, times.map(() => null)];
+    const times = new Set(this.allRuns.flatMap((run) => run.midline.column("time_s") as number[]));
+    const shown = [...times].filter((time) => !this.logarithmicTime || time > 0).sort((a, b) => a - b);
+    return [shown, shown.map(() => null)];
   }
 
   private options(): uPlot.Options {
-    const places = this.columns.flatMap((column) => column.cells.map((cell) => cell.place));
-    const reach = Math.max(...places.map(Math.abs), 1) * 1.05;
+    let reach = 1;
+    for (const run of this.allRuns)
+      for (const place of run.midline.column("ap_um")) reach = Math.max(reach, 1.05 * Math.abs(place ?? 0));
+    const time = timeAxis(this.logarithmicTime);
     return {
-      width: Math.max(this.holder.clientWidth, 200),
-      height: plotHeight,
+      width: Math.max(this.holder.clientWidth, 150),
+      height: this.height,
+      padding: plotPadding,
       legend: { show: false },
       cursor: { points: { show: false }, y: false, sync: { key: "time" } },
-      scales: { x: { time: false, distr: this.logarithmicTime ? 3 : 1 }, y: { range: () => [-reach, reach] } },
+      scales: { x: timeScale(this.logarithmicTime), y: { range: () => [-reach, reach] } },
       axes: [
-        { ...timeAxis(), grid: { show: false } },
-        { ...timeAxis(), grid: { show: false }, label: "A  ←  at rest, µm  →  P", size: 50 },
+        { ...time, grid: { show: false } },
+        { ...valueAxis(), grid: { show: false }, label: "A ← µm → P", labelSize: 16 },
       ],
       series: [{}, {}],
       hooks: {
@@ -119,20 +142,22 @@ export class Kymograph {
     };
   }
 
-  // A moment's colours last until the next one; a cell reaches half-way to its neighbours.
+  // A moment's colours reach half-way to the ones before and after it, so that the first and the last show, too; a
+  // cell's, half-way to its neighbours.
   private paint(plot: uPlot): void {
     const { ctx, bbox } = plot;
     ctx.save();
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
-    const x = (time: number) => plot.valToPos(Math.max(time, 1e-9), "x", true);
+    const places = this.columns.map(({ time }) => plot.valToPos(time, "x", true));
+    const between = (c: number) => (places[c] + places[c + 1]) / 2;
     const y = (place: number) => plot.valToPos(place, "y", true);
-    this.columns.forEach((column, c) => {
-      const next = this.columns[c + 1];
-      const [left, right] = [x(column.time), next ? x(next.time) : bbox.left + bbox.width];
-      if (right <= left) return;
-      const { cells } = column;
+    this.columns.forEach(({ cells }, c) => {
+      const [first, last] = [c === 0, c === places.length - 1];
+      const left = first ? places[c] : between(c - 1);
+      // A run that ends before the others: as far after its last moment as its colours reach before it.
+      const right = !last ? between(c) : places[c] + (first ? 1 : places[c] - left);
       cells.forEach((cell, i) => {
         const before = i > 0 ? (cells[i - 1].place + cell.place) / 2 : 1.5 * cell.place - 0.5 * cells[1].place;
         const after = i + 1 < cells.length ? (cells[i + 1].place + cell.place) / 2 : 1.5 * cell.place - 0.5 * cells[i - 1].place;
@@ -148,33 +173,31 @@ export class Kymograph {
     return (value - this.scale.low) / (this.scale.high - this.scale.low);
   }
 
-  private drawScaleBar(): void {
-    const ratio = Math.min(devicePixelRatio, 2);
-    const [width, height] = [Math.min(this.box.clientWidth || 320, 420), 30];
-    this.scaleBar.style.width = `${width}px`;
-    this.scaleBar.style.height = `${height}px`;
-    this.scaleBar.width = width * ratio;
-    this.scaleBar.height = height * ratio;
-    const context = this.scaleBar.getContext("2d")!;
-    context.scale(ratio, ratio);
-    const [left, wide] = [56, width - 112];
-    for (let i = 0; i < wide; ++i) {
-      context.fillStyle = css(colourAt(this.page.maps[this.scale.map], i / (wide - 1)));
-      context.fillRect(left + i, 2, 1.5, 10);
-    }
-    context.fillStyle = styleColour("ink");
-    context.font = plotFont;
-    context.textAlign = "center";
-    context.textBaseline = "top";
-    for (const part of [0, 0.5, 1])
-      context.fillText(number(this.scale.low + part * (this.scale.high - this.scale.low), 3), left + part * wide, 15);
-  }
-
   private fit(): void {
     const width = this.holder.clientWidth;
-    if (this.plot && width > 0 && width !== this.plot.width) {
-      this.plot.setSize({ width, height: plotHeight });
-      this.drawScaleBar();
-    }
+    if (this.plot && width > 0 && width !== this.plot.width) this.plot.setSize({ width, height: this.height });
   }
+}
+
+/** The colours of all kymographs, `width` CSS pixels wide. */
+export function drawMidlineScale(bar: HTMLCanvasElement, width: number, scale: MidlineScale, page: PageData): void {
+  const ratio = Math.min(devicePixelRatio, 2);
+  const height = 30;
+  bar.style.width = `${width}px`;
+  bar.style.height = `${height}px`;
+  bar.width = width * ratio;
+  bar.height = height * ratio;
+  const context = bar.getContext("2d")!;
+  context.scale(ratio, ratio);
+  const [left, wide] = [40, width - 80];
+  for (let i = 0; i < wide; ++i) {
+    context.fillStyle = css(colourAt(page.maps[scale.map], i / (wide - 1)));
+    context.fillRect(left + i, 2, 1.5, 10);
+  }
+  context.fillStyle = styleColour("ink");
+  context.font = plotFont;
+  context.textAlign = "center";
+  context.textBaseline = "top";
+  for (const part of [0, 0.5, 1])
+    context.fillText(number(scale.low + part * (scale.high - scale.low), 3), left + part * wide, 15);
 }

@@ -41,6 +41,7 @@ export interface RunData {
   box: { low: Vec3; high: Vec3 };
   fields: Record<string, Range>;
   regions: string[];
+  coloured_regions: string[]; // what the field "region" counts, from 1
   topologies: { times_s: number[]; nodes: number; elements: number; cells: number }[];
   arrays: ArrayEntry[];
 }
@@ -52,13 +53,35 @@ export interface PageData {
   maps: Record<string, string[]>;
   views: View[];
   view_cut_um: number;
+  varied: Varied[];
   runs: RunData[];
 }
+
+/** A key of the scenario that is not the same in all runs; values as in TOML, "" where a run has none. */
+export interface Varied {
+  key: string;
+  values: string[];
+}
+
+/** More runs than these are shown small beside each other. */
+export const fewRuns = 4;
 
 export function readPageData(): PageData {
   const data = JSON.parse(document.getElementById("data")!.textContent!) as PageData;
   if (data.format !== 1) throw new Error(`the data are of format ${data.format}; this page reads format 1`);
   return data;
+}
+
+/** The regions that colours stand for, over all runs; the legend and the values of the field "region" count them from 1. */
+export function colouredRegions(page: PageData): string[] {
+  return [...new Set(page.runs.flatMap((run) => run.coloured_regions))];
+}
+
+/** What a whole number of the field stands for; null where it stands for itself. */
+export function nameOfStep(field: Field, step: number, page: PageData): string | null {
+  if (field.name === "region") return step === 0 ? "other cells" : (colouredRegions(page)[step - 1] ?? null);
+  if (field.name === "self-intersections") return ["no", "yes"][step] ?? null;
+  return null;
 }
 
 /** The field's title with its unit: "pressure, Pa". */

@@ -3,29 +3,35 @@ import { PackedArrays, inflate } from "./packed";
 import type { Field, RunData, Vec3 } from "./page_data";
 import { Table } from "./table";
 
-/** The frames between two divisions: the same cells of the same elements, at several times. */
+/** The frames between two divisions: the same cells of the same elements, at several times. Times and counts are there at
+ * once, arrays after Run.load. */
 export class Topology {
   readonly nodes: number;
   readonly cells: number;
   readonly times: number[];
-  readonly elements: Uint32Array; // 8 nodes each
-  readonly cellOfElement: Uint32Array;
-  readonly elementsOfCell: number[][];
-  readonly facets: Uint32Array; // 4 nodes each
-  readonly elementOfFacet: Uint32Array;
-  readonly outlines: Uint32Array; // 2 nodes each
-  readonly cellIds: Uint32Array;
-  readonly generation: Uint32Array;
-  private readonly motherIds: Uint32Array;
-  private readonly regions: Uint32Array;
+  elements!: Uint32Array; // 8 nodes each
+  cellOfElement!: Uint32Array;
+  elementsOfCell!: number[][];
+  facets!: Uint32Array; // 4 nodes each
+  elementOfFacet!: Uint32Array;
+  outlines!: Uint32Array; // 2 nodes each
+  cellIds!: Uint32Array;
+  generation!: Uint32Array;
+  private packed!: PackedArrays;
+  private motherIds!: Uint32Array;
+  private regions!: Uint32Array;
   private readonly arrays = new Map<string, Uint16Array>();
 
-  constructor(private readonly data: RunData, private readonly packed: PackedArrays, readonly index: number) {
+  constructor(private readonly data: RunData, readonly index: number, private readonly colourOfRegion: number[]) {
     const entry = data.topologies[index];
     this.nodes = entry.nodes;
     this.cells = entry.cells;
     this.times = entry.times_s;
-    const ids = (name: string) => packed.get(`${index}/${name}`) as Uint32Array;
+  }
+
+  take(packed: PackedArrays): void {
+    this.packed = packed;
+    const ids = (name: string) => packed.get(`${this.index}/${name}`) as Uint32Array;
     this.elements = ids("elements");
     this.cellOfElement = ids("cell_of_element");
     this.facets = ids("facets");
@@ -78,6 +84,7 @@ export class Topology {
     const next = part > 0 ? at + count : at;
     for (let i = 0; i < count; ++i)
       out[i] = range.low + scale * (steps[at + i] + part * (steps[next + i] - steps[at + i]));
+    if (field.name === "region") for (let i = 0; i < count; ++i) out[i] = this.colourOfRegion[Math.round(out[i])] ?? 0;
   }
 
   /** The field's value of a cell; of one on nodes, the mean over the cell's. */
@@ -87,7 +94,8 @@ export class Topology {
     const places = field.on_nodes ? this.nodesOfCell(cell) : [cell];
     const first = moment * (field.on_nodes ? this.nodes : this.cells);
     const mean = places.reduce((sum, place) => sum + steps[first + place], 0) / places.length;
-    return low + ((high - low) * mean) / 65535;
+    const value = low + ((high - low) * mean) / 65535;
+    return field.name === "region" ? (this.colourOfRegion[Math.round(value)] ?? 0) : value;
   }
 
   private array(name: string): Uint16Array {
@@ -107,20 +115,37 @@ export interface Place {
 export class Run {
   readonly series: Table;
   readonly midline: Table;
+  readonly topologies: Topology[];
   readonly frames: { topology: Topology; moment: number; time: number }[] = [];
+  private loading: Promise<void> | null = null;
+  private isLoaded = false;
 
-  private constructor(readonly data: RunData, readonly number: number, readonly topologies: Topology[]) {
+  /** `regions`: the names of the page's legend, which a run need not have all. */
+  constructor(readonly data: RunData, readonly number: number, regions: string[]) {
     this.series = new Table(data.series);
     this.midline = new Table(data.midline);
-    for (const topology of topologies)
+    const colourOfRegion = [0, ...data.coloured_regions.map((name) => 1 + regions.indexOf(name))];
+    this.topologies = data.topologies.map((_, i) => new Topology(data, i, colourOfRegion));
+    for (const topology of this.topologies)
       topology.times.forEach((time, moment) => this.frames.push({ topology, moment, time }));
   }
 
-  static async read(data: RunData, number: number): Promise<Run> {
-    const element = document.getElementById(`frames-${number}`)!;
-    const packed = new PackedArrays(await inflate(element.textContent!), data.arrays);
+  /** Unpacks the frames, which takes a while: only where they are to be seen. */
+  load(): Promise<void> {
+    this.loading ??= this.unpack();
+    return this.loading;
+  }
+
+  get loaded(): boolean {
+    return this.isLoaded;
+  }
+
+  private async unpack(): Promise<void> {
+    const element = document.getElementById(`frames-${this.number}`)!;
+    const packed = new PackedArrays(await inflate(element.textContent!), this.data.arrays);
     element.textContent = "";
-    return new Run(data, number, data.topologies.map((_, i) => new Topology(data, packed, i)));
+    for (const topology of this.topologies) topology.take(packed);
+    this.isLoaded = true;
   }
 
   get name(): string {

@@ -23,6 +23,10 @@ export interface PageState {
   shell: boolean;
   marks: boolean;
   picked: Picked | null;
+  shown: ReadonlySet<number>; // numbers of the runs that are to be seen
+  order: readonly number[]; // of the runs' numbers
+  pointed: number | null; // the run that stands out
+  colourBy: string; // what gives runs their colours: a varied key, or ""
 }
 
 export type Key = keyof PageState;

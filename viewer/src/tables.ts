@@ -1,27 +1,28 @@
-// Numbers and texts of the runs: summary, provenance, scenario.
+// Numbers and texts of the runs: summary, provenance, scenario. Of many runs the table of runs has the summaries.
 import { byId, element } from "./dom";
+import { fewRuns } from "./page_data";
 import type { Run } from "./run";
 import { number, words } from "./text";
 
 const shownElsewhere = ["title", "provenance"];
 
 export function showTables(runs: Run[]): void {
-  byId("numbers").append(element("h2", {}, "Summary"), summaryTable(runs));
+  if (runs.length <= fewRuns) byId("numbers").append(element("h2", {}, "Summary"), summaryTable(runs));
   byId("texts").append(element("h2", {}, "Provenance"), provenanceTable(runs), element("h2", {}, "Scenario"), ...scenarios(runs));
 }
 
 type Row = [HTMLElement, string[]];
 
 // The rows in a few tables beside each other, as many as have room.
-function table(runs: Run[], rows: Row[]): HTMLElement {
+function table(runs: Run[], rows: Row[], heads = runs.map((run) => run.name)): HTMLElement {
   const parts = Math.max(1, Math.min(Math.ceil(rows.length / 8), Math.floor(4 / (1 + runs.length)) + 1));
   const length = Math.ceil(rows.length / parts);
   const pieces = Array.from({ length: parts }, (_, i) => rows.slice(i * length, (i + 1) * length));
-  return element("div", { class: "tables" }, ...pieces.map((piece) => element("div", { class: "scroll" }, onePiece(runs, piece))));
+  return element("div", { class: "tables" }, ...pieces.map((piece) => element("div", { class: "scroll" }, onePiece(heads, piece))));
 }
 
-function onePiece(runs: Run[], rows: Row[]): HTMLElement {
-  const head = element("tr", {}, element("th", {}, ""), ...runs.map((run) => element("th", { scope: "col" }, run.name)));
+function onePiece(heads: string[], rows: Row[]): HTMLElement {
+  const head = element("tr", {}, element("th", {}, ""), ...heads.map((head) => element("th", { scope: "col" }, head)));
   const body = rows.map(([name, values]) => element("tr", {}, name, ...values.map((value) => element("td", {}, value))));
   return element("table", {}, element("thead", {}, head), element("tbody", {}, ...body));
 }
@@ -42,17 +43,37 @@ function summaryTable(runs: Run[]): HTMLElement {
   }));
 }
 
+type Provenance = Record<string, string | number | null>;
+
+function provenanceOf(run: Run): Provenance {
+  return (run.data.summary?.provenance ?? {}) as Provenance;
+}
+
+// Of many runs, what they share; what is a run's own stands with its scenario.
 function provenanceTable(runs: Run[]): HTMLElement {
-  const of = (run: Run) => (run.data.summary?.provenance ?? {}) as Record<string, string | number | null>;
-  const keys = [...new Set(runs.flatMap((run) => Object.keys(of(run))))];
-  return table(runs, keys.map((key) => [
-    element("th", { scope: "row" }, key.replaceAll("_", " ")), runs.map((run) => String(of(run)[key] ?? "–")),
-  ]));
+  const keys = [...new Set(runs.flatMap((run) => Object.keys(provenanceOf(run))))];
+  const columns = runs.length > fewRuns ? runs.slice(0, 1) : runs;
+  const rows: Row[] = keys
+    .filter((key) => runs.length <= fewRuns || isShared(runs, key))
+    .map((key) => [
+      element("th", { scope: "row" }, key.replaceAll("_", " ")), columns.map((run) => String(provenanceOf(run)[key] ?? "–")),
+    ]);
+  return table(columns, rows, runs.length > fewRuns ? ["all runs"] : runs.map((run) => run.name));
+}
+
+function isShared(runs: Run[], key: string): boolean {
+  return new Set(runs.map((run) => provenanceOf(run)[key])).size === 1;
 }
 
 function scenarios(runs: Run[]): HTMLElement[] {
-  return runs.map((run) =>
-    element("details", {},
-      element("summary", {}, `${run.name}: as resolved, every default filled in`),
-      element("pre", { class: "scenario" }, run.data.scenario)));
+  const details = runs.map((run) => {
+    const own = Object.entries(provenanceOf(run)).filter(([key]) => runs.length > fewRuns && !isShared(runs, key));
+    const text = own.map(([key, value]) => `${key.replaceAll("_", " ")} ${value}`).join("; ");
+    return element("details", { "data-run": run.name },
+      element("summary", {}, runs.length > fewRuns ? run.name : `${run.name}: as resolved, every default filled in`),
+      ...(text === "" ? [] : [element("p", { class: "note" }, text)]),
+      element("pre", { class: "scenario" }, run.data.scenario));
+  });
+  if (runs.length <= fewRuns) return details;
+  return [element("p", { class: "note" }, "As resolved, every default filled in:"), element("div", { class: "scenarios" }, ...details)];
 }

@@ -22,6 +22,14 @@ export function time(seconds: number): string {
 }
 
 const units: [RegExp, string][] = [
+  [/_nN_s_per_um$/, "nN·s/µm"],
+  [/_nN_per_um$/, "nN/µm"],
+  [/_mN_per_m$/, "mN/m"],
+  [/_Pa_s_per_um$/, "Pa·s/µm"],
+  [/_Pa_s$/, "Pa·s"],
+  [/_kg_per_m3$/, "kg/m³"],
+  [/_percent$/, "%"],
+  [/_min$/, "min"],
   [/_um_per_min$/, "µm/min"],
   [/_um_per_s$/, "µm/s"],
   [/_um3$/, "µm³"],
@@ -42,6 +50,8 @@ export function words(key: string): [string, string] {
       unit = words;
       break;
     }
-  name = name.replaceAll("_", " ").replace(/\bvml\b/g, "VML").replace(/\bvce\b/g, "VCE").replace(/\bap\b/g, "place along the axis");
+  name = name.replaceAll("_", " ")
+    .replace(/\bvml\b/g, "VML").replace(/\bvce\b/g, "VCE").replace(/\bap\b/g, "place along the axis")
+    .replace(/\byoung modulus\b/, "Young's modulus").replace(/\bpoisson ratio\b/, "Poisson's ratio");
   return [name, unit];
 }
