@@ -90,7 +90,7 @@ function curvesOf(runs: Run[], columns: string[], looks: RunLooks): Curve[] {
 export class Chart {
   readonly box = element("figure", { class: "chart" });
   private readonly holder = element("div");
-  private readonly pointedValue = element("output", { class: "pointed-value" });
+  private readonly pointedValue = element("span", { class: "pointed-value" });
   private readonly legend = element("ul", { class: "curves" });
   private values: HTMLElement[] = [];
   private readonly many: boolean;
@@ -325,9 +325,16 @@ export function timeAxis(logarithmic = false): uPlot.Axis {
       splits: (_, __, least, greatest) => logarithmicPlaces(least, greatest), filter: labelledPlaces,
     }),
     stroke: styleColour("ink"), grid: { stroke: styleColour("grid"), width: 1 }, ticks: { stroke: styleColour("grid") },
-    values: (_, places) => places.map((place) => (place === null ? "" : number(place, 6))),
+    values: (_, places, __, ___, step) => labelsOf(places, step),
     label: "time, s", labelSize: 16, size: 34, labelGap: 0, font: plotFont, labelFont: plotFont,
   };
+}
+
+// With as many digits as tell the places apart.
+function labelsOf(places: (number | null)[], step: number): string[] {
+  const largest = Math.max(...places.map((place) => Math.abs(place ?? 0)));
+  const digits = Math.ceil(Math.log10(largest / step)) + 1;
+  return places.map((place) => (place === null ? "" : number(place, Math.min(Math.max(digits, 4) || 4, 14))));
 }
 
 /** A line over the plot at the page's time: an element of its own, so that it moves without the plot being drawn. */

@@ -1,29 +1,18 @@
-// The report in a real browser: Debian's Chromium, without a screen or a network, driven by Playwright.
-// PLICA names the program; its runs go to a temporary folder. Any console error, any request, fails the test.
+// The report of one run and of two, in a real browser driven by Playwright. PLICA names the program. Any console error, any
+// request, fails the test.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
-
-const plica = process.env.PLICA ?? "plica";
-const chromiumPath = process.env.CHROMIUM ?? "/usr/bin/chromium";
-const quiet = ["--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
-const software = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+import {
+  begin, changed, chosenFrame, difference, end, folder, isPaper, launch, near, numberOf, open, pixels, report, run, saved, shownSeries,
+  table,
+} from "./browser.mjs";
 
 const hostileTitle = `</script><script>window.hacked=1</script>"'<img src=x onerror="window.hacked=1">\u{1F9EC}${"fold ".repeat(2000)}`;
-let folder;
-let browser;
-
-function run(scenario, name, ...options) {
-  execFileSync(plica, ["run", scenario, "--out", join(folder, name), "--quiet", ...options]);
-}
 
 before(async () => {
-  folder = mkdtempSync(join(tmpdir(), "plica-report-"));
   run("drosophila", "drosophila");
   run("division-demo", "division", "--set", "output.frame_every_s=30");
   writeFileSync(join(folder, "hostile.toml"),
@@ -31,95 +20,14 @@ before(async () => {
   run(join(folder, "hostile.toml"), "hostile");
   // A strip that curls up until its ends pass through it.
   writeFileSync(join(folder, "curl.toml"), `[embryo]\nshape = "block"\nlength_um = 600\nwidth_um = 20\ncell_height_um = 10\ncells = [60, 2, 1]
-[dynamics]\nsurface_drag_Pa_s_per_um = 20\n[contraction.apical]\nregion = "all"\ntension_mN_per_m = 2\nacross_ratio = 0\n[time]\nend_min = 10\n`);
+[dynamics]\nsurface_drag_Pa_s_per_um = 20\n[contraction.apical]\nregion = "all"\ntension_mN_per_m = 2\nacross_ratio = 0\n[time]\nend_min = 10
+[monitor.whole]\nquantity = "volume"\nover = "sum"\n`);
   run(join(folder, "curl.toml"), "curl");
-  execFileSync(plica, ["report", join(folder, "drosophila"), join(folder, "division"), "--out", join(folder, "both.html")]);
-  browser = await chromium.launch({ executablePath: chromiumPath, args: [...quiet, ...software] });
+  report(["drosophila", "division"], "both.html");
+  await begin();
 });
 
-after(async () => {
-  await browser?.close();
-  rmSync(folder, { recursive: true, force: true });
-});
-
-// Opens a page and watches it; `done` fails where it said or asked for something that it should not.
-async function open(file, { width = 1280, height = 900, with: opened = browser, dark = false } = {}) {
-  const context = await opened.newContext({ viewport: { width, height }, colorScheme: dark ? "dark" : "light" });
-  const page = await context.newPage();
-  const wrong = [];
-  const url = pathToFileURL(join(folder, file)).href;
-  page.on("console", (message) => ["error", "warning"].includes(message.type()) && wrong.push(message.text()));
-  page.on("pageerror", (error) => wrong.push(String(error)));
-  page.on("request", (request) => request.url() !== url && !/^(data|blob):/.test(request.url()) && wrong.push(request.url()));
-  await page.goto(url);
-  await page.waitForSelector("body[data-ready]");
-  const done = async () => {
-    await context.close();
-    // Chromium's own remark on drawing without a graphics card is no fault of the page.
-    assert.deepEqual(wrong.filter((text) => !/GPU stall|swiftshader|GroupMarkerNotSet/i.test(text)), []);
-  };
-  return { page, done };
-}
-
-// The pixels of a part of the page: rgb(x, y) in CSS pixels.
-async function pixels(page, selector) {
-  await page.waitForTimeout(300); // a picture that stands still is drawn once more, finely
-  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
-  const png = (await page.locator(selector).first().screenshot()).toString("base64");
-  const { width, height, data } = await page.evaluate(async (base64) => {
-    const image = new Image();
-    image.src = `data:image/png;base64,${base64}`;
-    await image.decode();
-    const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [image.width, image.height];
-    const context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    const { data } = context.getImageData(0, 0, image.width, image.height);
-    let text = "";
-    for (let i = 0; i < data.length; i += 8192) text += String.fromCharCode(...data.subarray(i, i + 8192));
-    return { width: image.width, height: image.height, data: btoa(text) };
-  }, png);
-  const bytes = Buffer.from(data, "base64");
-  return { width, height, rgb: (x, y) => [0, 1, 2].map((i) => bytes[4 * (Math.round(y) * width + Math.round(x)) + i]) };
-}
-
-const isPaper = ([r, g, b]) => r > 250 && g > 250 && b > 250;
-const difference = (a, b) => Math.max(...a.map((value, i) => Math.abs(value - b[i])));
-
-// The part of the pixels that two pictures of one size do not share.
-function changed(a, b) {
-  assert.deepEqual([a.width, a.height], [b.width, b.height]);
-  let count = 0;
-  for (let y = 0; y < a.height; y += 2) for (let x = 0; x < a.width; x += 2) count += difference(a.rgb(x, y), b.rgb(x, y)) > 12;
-  return count / ((a.width * a.height) / 4);
-}
-
-function table(file) {
-  const [head, ...lines] = readFileSync(join(folder, file), "utf8").trim().split("\n");
-  const columns = head.split(",");
-  return lines.map((line) => Object.fromEntries(line.split(",").map((field, i) => [columns[i], field === "" ? null : Number(field)])));
-}
-
-// What the page writes as text, as a number: "1.2·10⁻¹¹" and "−3" too.
-function numberOf(text) {
-  const plain = text.replaceAll("−", "-").replace(/[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]/g, (c) => "-0123456789"["⁻⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c)]);
-  return Number(plain.replace("·10", "e"));
-}
-
-function near(actual, expected, relative, what) {
-  assert.ok(Math.abs(actual - expected) <= relative * Math.abs(expected) + 1e-12, `${what}: ${actual} for ${expected}`);
-}
-
-const chosenFrame = (page, index) =>
-  page.locator("#time").evaluate((slider, value) => {
-    slider.value = String(value);
-    slider.dispatchEvent(new Event("input"));
-  }, index);
-
-async function shownSeries(page) {
-  return Object.fromEntries(await page.locator("#plots output").evaluateAll((all) =>
-    all.map((output) => [output.dataset.column, output.textContent])));
-}
+after(end);
 
 test("values beside the plots are those of series.csv, at the end and in between", async () => {
   const { page, done } = await open("drosophila/report.html");
@@ -341,7 +249,7 @@ test("a hostile title is text", async () => {
 });
 
 test("without WebGL the page says so and shows plots and tables", async () => {
-  const blind = await chromium.launch({ executablePath: chromiumPath, args: [...quiet, "--disable-3d-apis"] });
+  const blind = await launch({ webgl: false });
   const context = await blind.newContext();
   const page = await context.newPage();
   await page.goto(pathToFileURL(join(folder, "drosophila/report.html")).href);
@@ -367,15 +275,14 @@ test("phone width and dark mode", async () => {
 
 test("the picture and the table are saved", async () => {
   const { page, done } = await open("drosophila/report.html");
-  const [picture] = await Promise.all([page.waitForEvent("download"), page.click("#save-picture")]);
-  assert.equal(picture.suggestedFilename(), "drosophila.png");
-  const png = readFileSync(await picture.path());
+  const { name, bytes: png } = await saved(page, "#save-picture");
+  assert.equal(name, "drosophila.png");
   assert.equal(png.subarray(1, 4).toString(), "PNG");
   assert.ok(png.length > 50_000, `${png.length} bytes`);
   const { width } = await page.locator(".view").boundingBox();
   assert.equal(png.readUInt32BE(16), 2 * Math.round(width), "twice as fine as the screen");
-  const [csv] = await Promise.all([page.waitForEvent("download"), page.click("#save-table")]);
-  const [head, ...rows] = readFileSync(await csv.path(), "utf8").trim().split("\n");
+  const { bytes: csv } = await saved(page, "#save-table");
+  const [head, ...rows] = csv.toString().trim().split("\n");
   const series = table("drosophila/series.csv");
   assert.equal(rows.length, series.length);
   const [place, last] = [head.split(",").indexOf("furrow_depth_um"), rows.at(-1).split(",")];
@@ -401,4 +308,85 @@ test("a tissue that passes through itself is announced, and none other", async (
   const sound = await open("drosophila/report.html");
   assert.ok(!(await sound.page.isVisible("#crossing")));
   await sound.done();
+});
+
+// The canvas of a plot: its size, where it plots (in its own pixels), and the colour at a place.
+const plotOf = (page, selector) => page.locator(selector).first().evaluate((root) => {
+  const canvas = root.querySelector("canvas");
+  const over = root.querySelector(".u-over");
+  const ratio = canvas.width / canvas.clientWidth;
+  const [x, y] = [over.offsetLeft * ratio, over.offsetTop * ratio];
+  const { width, height } = canvas;
+  const data = canvas.getContext("2d").getImageData(0, 0, width, height).data;
+  const column = (at) => Array.from({ length: height }, (_, row) => [...data.slice(4 * (row * width + at), 4 * (row * width + at) + 4)]);
+  return {
+    left: x, top: y, wide: over.clientWidth * ratio, high: over.clientHeight * ratio, edge: column(0).concat(column(width - 1)),
+    columns: Object.fromEntries([0.005, 0.25, 0.5, 0.75, 0.995].map((part) => [part, column(Math.floor(x + part * over.clientWidth * ratio))])),
+  };
+});
+
+test("no label of an axis is cut", async () => {
+  let plots = 0;
+  for (const file of ["drosophila/report.html", "curl/report.html"]) {
+    const { page, done } = await open(file, { width: 390, height: 844 });
+    for (const logarithmic of [false, true]) {
+      await page.locator("#logarithmic-time").setChecked(logarithmic);
+      for (let i = 1; i <= (await page.locator(".chart .uplot").count()); ++i) {
+        const { edge } = await plotOf(page, `:nth-match(.chart .uplot, ${i})`);
+        assert.ok(edge.every(([, , , alpha]) => alpha === 0), `${file}: plot ${i} is inked up to its edge`);
+        ++plots;
+      }
+    }
+    await done();
+  }
+  assert.ok(plots >= 12, `${plots} plots`);
+});
+
+test("the midline's last frame shows, on a logarithmic axis too, which ends with it", async () => {
+  const { page, done } = await open("drosophila/report.html");
+  await page.locator("#midline").scrollIntoViewIfNeeded();
+  await page.waitForSelector("#midline .uplot");
+  const map = await page.evaluate(() => JSON.parse(document.getElementById("data").textContent).maps.still);
+  const rows = table("drosophila/midline.csv");
+  const depths = rows.map((row) => row.depth_um).filter((depth) => depth !== null);
+  const [least, greatest] = [Math.min(0, ...depths), Math.max(...depths)];
+  const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+  const expected = (depth) => {
+    const place = ((depth - least) / (greatest - least)) * (map.length - 1);
+    const below = Math.min(Math.floor(place), map.length - 2);
+    return rgb(map[below]).map((part, i) => part + (place - below) * (rgb(map[below + 1])[i] - part));
+  };
+  const reach = 1.05 * Math.max(...rows.map((row) => Math.abs(row.ap_um)));
+  let compared = 0;
+  for (const logarithmic of [false, true]) {
+    await page.locator("#logarithmic-time").setChecked(logarithmic);
+    const plot = await plotOf(page, "#midline .uplot");
+    for (const [part, time] of [[0.995, 900], ...(logarithmic ? [[0.005, 15]] : [[0.005, 0], [0.5, 450]])])
+      for (const row of rows.filter((candidate) => candidate.time_s === time && Math.abs(candidate.ap_um) < 0.9 * reach)) {
+        const y = Math.round(plot.top + (plot.high * (reach - row.ap_um)) / (2 * reach));
+        const seen = plot.columns[part][y].slice(0, 3);
+        assert.ok(difference(seen, expected(row.depth_um)) < 10, `${seen} for ${expected(row.depth_um)} at ${time} s, ${row.ap_um} µm`);
+        ++compared;
+      }
+  }
+  assert.ok(compared > 40, `${compared} compared`);
+  await done();
+});
+
+test("the legend names regions, and a picked cell says in which it is", async () => {
+  const { page, done } = await open("drosophila/report.html");
+  await page.click("#view-ventral");
+  await page.selectOption("#field", "region");
+  const legend = await pixels(page, "#legend");
+  const has = (wanted) => {
+    for (let y = 18; y < 40; ++y)
+      for (let x = 0; x < legend.width; ++x) if (difference(legend.rgb(x, y), wanted) < 8) return true;
+    return false;
+  };
+  assert.ok(has([230, 158, 0]), "the furrow's colour is in the legend");
+  assert.ok(!has([87, 181, 232]), "no colour without a region is");
+  const box = await page.locator(".picture").boundingBox();
+  await page.mouse.click(box.x + box.width / 2 + 3, box.y + box.height / 2 + 3);
+  assert.equal(await page.locator('[data-value="region"]').textContent(), "furrow");
+  await done();
 });
