@@ -2,7 +2,7 @@
 // Debian's Firefox instead of its Chromium, on a screen (xvfb-run), without which it offers no WebGL.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -11,7 +11,6 @@ import { chromium, firefox } from "playwright-core";
 const plica = process.env.PLICA ?? "plica";
 export const isFirefox = process.env.BROWSER === "firefox";
 export const folder = mkdtempSync(join(tmpdir(), "plica-report-"));
-const downloads = join(folder, "downloads"); // Firefox's: its driver does not tell of them
 let browser;
 
 export function run(scenario, name, ...options) {
@@ -26,10 +25,7 @@ export function launch({ webgl = true } = {}) {
   if (isFirefox)
     return firefox.launch({
       channel: "moz-firefox", executablePath: process.env.FIREFOX ?? "/usr/bin/firefox-esr", headless: false,
-      firefoxUserPrefs: {
-        "webgl.force-enabled": webgl, "webgl.disabled": !webgl,
-        "browser.download.folderList": 2, "browser.download.dir": downloads,
-      },
+      firefoxUserPrefs: { "webgl.force-enabled": webgl, "webgl.disabled": !webgl },
     });
   const quiet = ["--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
   const drawing = webgl ? ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] : ["--disable-3d-apis"];
@@ -71,16 +67,21 @@ export async function saved(page, button) {
     const [download] = await Promise.all([page.waitForEvent("download"), page.click(button)]);
     return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
   }
-  rmSync(downloads, { recursive: true, force: true });
-  mkdirSync(downloads);
+  // Firefox's driver does not tell of downloads: what the page offers is taken instead.
+  await page.evaluate(() => {
+    const urlOf = URL.createObjectURL;
+    URL.createObjectURL = (blob) => urlOf((window.offered = blob));
+    HTMLAnchorElement.prototype.click = function () { window.offeredName = this.download; };
+  });
   await page.click(button);
-  for (let tries = 0; tries < 100; ++tries) {
-    await page.waitForTimeout(100);
-    const [name, ...others] = readdirSync(downloads);
-    if (name && others.length === 0 && !name.endsWith(".part") && statSync(join(downloads, name)).size > 0)
-      return { name, bytes: readFileSync(join(downloads, name)) };
-  }
-  throw new Error(`${button} saved no file`);
+  await page.waitForFunction(() => window.offeredName);
+  const [name, text] = await page.evaluate(async () => {
+    const bytes = new Uint8Array(await window.offered.arrayBuffer());
+    let text = "";
+    for (let i = 0; i < bytes.length; i += 8192) text += String.fromCharCode(...bytes.subarray(i, i + 8192));
+    return [window.offeredName, btoa(text)];
+  });
+  return { name, bytes: Buffer.from(text, "base64") };
 }
 
 // The pixels of a part of the page: rgb(x, y) in CSS pixels.

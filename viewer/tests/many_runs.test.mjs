@@ -94,6 +94,10 @@ test("text and ticks show and hide runs everywhere at once", async () => {
   for (const part of ["#canvases", "#midline"]) assert.deepEqual((await shownRuns(page, part)).sort(), ["E1000-k7", "E2000-k7"], part);
   const rows = (await saved(page, "#save-table")).bytes.toString().trim().split("\n").slice(1);
   assert.equal(rows.length, table("E1000-k7/series.csv").length + table("E2000-k7/series.csv").length);
+  for (const [text, count] of [["young=500", 6], ["stiffness_nN_per_um<3.5", 10], ["E1 k2", 2], ["k>=3", 0], ["time=20", 29]]) {
+    await page.fill("#filter", text);
+    assert.equal((await shownRuns(page, "#canvases")).length, count, text);
+  }
   await page.fill("#filter", "E500");
   await page.click("#tick-none");
   assert.equal((await shownRuns(page, "#canvases")).length, 0);
