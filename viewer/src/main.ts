@@ -106,7 +106,7 @@ async function start(): Promise<void> {
   plots = new Plots(runs, page, state, looks);
   if (views) panel = new CellPanel(byId("cell"), runs, page, state);
   else byId("cell").hidden = true;
-  showTables(runs);
+  showTables(runs, state);
   followTheme(() => {
     plots!.rebuild();
     panel?.rebuild();

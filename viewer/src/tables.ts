@@ -2,13 +2,14 @@
 import { byId, element } from "./dom";
 import { fewRuns } from "./page_data";
 import type { Run } from "./run";
+import type { State } from "./state";
 import { number, words } from "./text";
 
 const shownElsewhere = ["title", "provenance"];
 
-export function showTables(runs: Run[]): void {
+export function showTables(runs: Run[], state: State): void {
   if (runs.length <= fewRuns) byId("numbers").append(element("h2", {}, "Summary"), summaryTable(runs));
-  byId("texts").append(element("h2", {}, "Provenance"), provenanceTable(runs), element("h2", {}, "Scenario"), ...scenarios(runs));
+  byId("texts").append(element("h2", {}, "Provenance"), provenanceTable(runs), element("h2", {}, "Scenario"), ...scenarios(runs, state));
 }
 
 type Row = [HTMLElement, string[]];
@@ -65,7 +66,7 @@ function isShared(runs: Run[], key: string): boolean {
   return new Set(runs.map((run) => provenanceOf(run)[key])).size === 1;
 }
 
-function scenarios(runs: Run[]): HTMLElement[] {
+function scenarios(runs: Run[], state: State): HTMLElement[] {
   const details = runs.map((run) => {
     const own = Object.entries(provenanceOf(run)).filter(([key]) => runs.length > fewRuns && !isShared(runs, key));
     const text = own.map(([key, value]) => `${key.replaceAll("_", " ")} ${value}`).join("; ");
@@ -74,6 +75,7 @@ function scenarios(runs: Run[]): HTMLElement[] {
       ...(text === "" ? [] : [element("p", { class: "note" }, text)]),
       element("pre", { class: "scenario" }, run.data.scenario));
   });
+  state.on(["shown"], () => details.forEach((one, i) => (one.hidden = !state.now.shown.has(runs[i].number))));
   if (runs.length <= fewRuns) return details;
   return [element("p", { class: "note" }, "As resolved, every default filled in:"), element("div", { class: "scenarios" }, ...details)];
 }

@@ -88,7 +88,7 @@ test("text and ticks show and hide runs everywhere at once", async () => {
   const { page, done } = await open("thirty.html");
   await page.fill("#filter", "k7 young>=1000");
   const wanted = ["E1000-k7", "E1500-k7", "E2000-k7"];
-  for (const part of [".runs", "#canvases", "#midline"]) assert.deepEqual((await shownRuns(page, part)).sort(), wanted, part);
+  for (const part of [".runs", "#canvases", "#midline", "#texts"]) assert.deepEqual((await shownRuns(page, part)).sort(), wanted, part);
   assert.match(await page.textContent("#shown-count"), /3 of 30/);
   await page.uncheck('.runs tr[data-run="E1500-k7"] input');
   for (const part of ["#canvases", "#midline"]) assert.deepEqual((await shownRuns(page, part)).sort(), ["E1000-k7", "E2000-k7"], part);
