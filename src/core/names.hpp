@@ -1,4 +1,4 @@
-// Names of the rows of a table.
+// Names of the rows of a table, and of the entries of a map.
 #pragma once
 
 #include <functional>
@@ -16,6 +16,13 @@ std::vector<std::string> names_of(const Rows& rows, Which which = every_row) {
   for (const auto& row : rows)
     if (std::invoke(which, row)) names.emplace_back(row.name);
   return names;
+}
+
+template <class Map>
+std::vector<std::string> keys_of(const Map& map) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : map) keys.push_back(key);
+  return keys;
 }
 
 }  // namespace plica

@@ -32,14 +32,11 @@ void advise_on_shape_memory(const Scenario& scenario, const Model& model, const 
 }
 
 int longest_axis(const Vectors& positions) {
-  Vec3 low = positions.front(), high = low;
-  for (const Vec3& position : positions) {
-    low = low.cwiseMin(position);
-    high = high.cwiseMax(position);
-  }
+  Eigen::AlignedBox3d box;
+  for (const Vec3& position : positions) box.extend(position);
   int axis = 0;
   // Not for a ball's last digits.
-  if (const Vec3 size = high - low; size.maxCoeff(&axis) <= 1.05 * size.x()) axis = 0;
+  if (const Vec3 size = box.sizes(); size.maxCoeff(&axis) <= 1.05 * size.x()) axis = 0;
   return axis;
 }
 
@@ -80,15 +77,13 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
       model_of(scenario.elasticity) == ElasticModel::corotational)
     note(
         "every cell's volume is held exactly, so Poisson's ratio sets only the shear modulus and how far parts of a "
-        "cell "
-        "may swell at each other's cost");
+        "cell may swell at each other's cost");
   if (method_of(scenario.volume) == VolumeMethod::projection) {
     note("volumes are projected after the forces: where the embryo comes to rest depends on time.step_s");
     if (!scenario.time.step_s && scenario.volume.projection_weights == "equal")
       warn(
           "where a projection with equal weights comes to rest moves with the step's length, so adaptive steps chase "
-          "it "
-          "and stay short; give time.step_s a number");
+          "it and stay short; give time.step_s a number");
   }
   if (scenario.vitelline.enabled && scenario.vitelline.gap_um > 0)
     note(fmt::format("the embryo starts {} um away from its shell", scenario.vitelline.gap_um));

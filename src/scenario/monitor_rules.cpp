@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/names.hpp"
 #include "measure/monitor.hpp"
 #include "scenario/suggest.hpp"
 #include "scenario/words.hpp"
@@ -49,13 +50,6 @@ void check_monitor(const std::string& path, const MonitorInput& monitor, const S
     input.report(address, "cells that do not hold their volume have no pressure", "give volume.method = \"coupled\"");
 }
 
-std::vector<std::string> names_of(const std::map<std::string, MonitorInput>& monitors) {
-  std::vector<std::string> names;
-  names.reserve(monitors.size());
-  for (const auto& [name, monitor] : monitors) names.push_back(name);
-  return names;
-}
-
 void check_criterion(const std::string& name, const CriterionInput& criterion, const Scenario& scenario, Input& input) {
   const std::string path = "stop." + name;
   if (!input.sound(path)) return;
@@ -74,7 +68,7 @@ void check_criterion(const std::string& name, const CriterionInput& criterion, c
   if (monitor == scenario.monitors.end())
     return input.report(path + ".monitor", fmt::format("there is no monitor \"{}\"", criterion.monitor),
                         scenario.monitors.empty() ? "give it as [monitor." + criterion.monitor + "]"
-                                                  : did_you_mean(criterion.monitor, names_of(scenario.monitors)));
+                                                  : did_you_mean(criterion.monitor, keys_of(scenario.monitors)));
   const Info* info = quantity_named(monitor->second.quantity);
   if (info != nullptr && info->of == Info::Of::region && !criterion.over.empty())
     input.report(path + ".over", fmt::format("monitor \"{}\" has one value only", criterion.monitor), "remove it");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "core/names.hpp"
 #include "scenario/words.hpp"
 
 namespace plica {
@@ -57,8 +58,7 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
     if (!region.array.empty()) {
       const auto array = tissue.cell_arrays.find(region.array);
       if (array == tissue.cell_arrays.end()) {
-        std::vector<std::string> names;
-        for (const auto& [other, flags] : tissue.cell_arrays) names.push_back(other);
+        const std::vector<std::string> names = keys_of(tissue.cell_arrays);
         errors.push_back(diagnostic_at(
             scenario, "region." + name + ".array", fmt::format("the mesh has no cell array \"{}\"", region.array),
             names.empty() ? "it has none" : fmt::format("it has {}", fmt::join(names, ", "))));

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/clock.hpp"
+#include "core/names.hpp"
 #include "measure/columns.hpp"
 #include "measure/monitor.hpp"
 #include "scenario/words.hpp"
@@ -13,32 +14,43 @@
 namespace plica {
 namespace {
 
-using Field = std::function<Slot(Scenario&, const std::string&)>;
 template <class Table>
 using Named = std::map<std::string, Table> Scenario::*;
 
-template <class T>
-Field at(T Scenario::*field) {
-  return [=](Scenario& scenario, const std::string&) -> Slot { return &(scenario.*field); };
+/// Makes the rows of one table, whose keys fill the members of a Table.
+template <class Table>
+struct RowsIn {
+  std::string_view path;
+  std::function<Table&(Scenario&, const std::string& name)> table;
+
+  template <class T>
+  Row operator()(std::string_view key, T Table::*field, Allowed allowed, std::string_view meaning,
+                 RowOptions options = {}) const {
+    const auto slot = [=, table = table](Scenario& scenario, const std::string& name) -> Slot {
+      return &(table(scenario, name).*field);
+    };
+    return {path, key, slot, std::move(allowed), meaning, std::move(options)};
+  }
+
+  /// Of a table within the table.
+  template <class Inner, class T>
+  Row operator()(std::string_view key, Inner Table::*inner, T Inner::*field, Allowed allowed, std::string_view meaning,
+                 RowOptions options = {}) const {
+    const auto slot = [=, table = table](Scenario& scenario, const std::string& name) -> Slot {
+      return &(table(scenario, name).*inner.*field);
+    };
+    return {path, key, slot, std::move(allowed), meaning, std::move(options)};
+  }
+};
+
+template <class Table>
+RowsIn<Table> rows_in(std::string_view path, Table Scenario::*table) {
+  return {path, [=](Scenario& scenario, const std::string&) -> Table& { return scenario.*table; }};
 }
 
-template <class Table, class T>
-Field at(Table Scenario::*table, T Table::*field) {
-  return [=](Scenario& scenario, const std::string&) -> Slot { return &(scenario.*table.*field); };
-}
-
-template <class Table, class T>
-Field at(Named<Table> tables, T Table::*field) {
-  return [=](Scenario& scenario, const std::string& name) -> Slot { return &((scenario.*tables)[name].*field); };
-}
-
-template <class Table, class Inner, class T>
-Field at(Named<Table> tables, Inner Table::*inner, T Inner::*field) {
-  return [=](Scenario& scenario, const std::string& name) -> Slot { return &((scenario.*tables)[name].*inner.*field); };
-}
-
-Field no_field() {
-  return [](Scenario&, const std::string&) -> Slot { return std::monostate(); };
+template <class Table>
+RowsIn<Table> rows_in(std::string_view path, Named<Table> tables) {
+  return {path, [=](Scenario& scenario, const std::string& name) -> Table& { return (scenario.*tables)[name]; }};
 }
 
 const Allowed anything = {};
@@ -59,15 +71,11 @@ std::vector<std::string_view> quantity_names() {
 }
 
 constexpr double max_count = 100000;
-
-Row row(std::string_view table, std::string_view key, Field field, Allowed allowed, std::string_view meaning,
-        RowOptions options = {}) {
-  return {table, key, std::move(field), std::move(allowed), meaning, std::move(options)};
-}
+const std::vector<std::string_view> built = {"pill", "sphere", "block"};  // shapes that plica makes
 
 using S = Scenario;
 
-const std::vector<Row>& rows() {
+std::vector<Row> make_rows() {
   using E = EmbryoInput;
   using R = RegionInput;
   using D = DynamicsInput;
@@ -80,295 +88,258 @@ const std::vector<Row>& rows() {
   using V = DivisionInput;
   using M = MonitorInput;
   using K = CriterionInput;
-  static const std::vector<Row> table = {
-      row("", "format", at(&S::format), between(1, 1), "Version of this format."),
-      row("", "title", at(&S::title), anything, "One line for reports."),
-      row("", "base", no_field(), anything,
-          "Built-in name, or path relative to this file, of the scenario to inherit from key by key."),
+  const RowsIn<S> top{"", [](S& scenario, const std::string&) -> S& { return scenario; }};
+  const auto embryo = rows_in("embryo", &S::embryo);
+  const auto region = rows_in("region.*", &S::regions);
+  const auto elasticity = rows_in("elasticity", &S::elasticity);
+  const auto volume = rows_in("volume", &S::volume);
+  const auto vitelline = rows_in("vitelline", &S::vitelline);
+  const auto dynamics = rows_in("dynamics", &S::dynamics);
+  const auto contraction = rows_in("contraction.*", &S::contractions);
+  const auto hold = rows_in("hold.*", &S::holds);
+  const auto pressure = rows_in("pressure.*", &S::pressures);
+  const auto division = rows_in("division.*", &S::divisions);
+  const auto time = rows_in("time", &S::time);
+  const auto stop = rows_in("stop", &S::stop);
+  const auto criterion = rows_in("stop.*", &S::criteria);
+  const auto monitor = rows_in("monitor.*", &S::monitors);
+  const auto furrow = rows_in("furrow", &S::furrow);
+  const auto output = rows_in("output", &S::output);
+  const auto expect = rows_in("expect.*", &S::expect);
+  return {
+      top("format", &S::format, between(1, 1), "Version of this format."),
+      top("title", &S::title, anything, "One line for reports."),
+      {"", "base", [](S&, const std::string&) -> Slot { return std::monostate(); }, anything,
+       "Built-in name, or path relative to this file, of the scenario to inherit from key by key."},
 
-      row("embryo", "shape", at(&S::embryo, &E::shape), one_of(words::embryo_shapes),
-          "Closed sheets (pill, sphere), a block of cells, or a mesh file."),
-      row("embryo", "length_um", at(&S::embryo, &E::length_um), positive, "Length along x (µm).",
-          {.shapes = {"pill", "block"}}),
-      row("embryo", "diameter_um", at(&S::embryo, &E::diameter_um), positive, "Outer diameter (µm).",
-          {.shapes = {"pill", "sphere"}}),
-      row("embryo", "width_um", at(&S::embryo, &E::width_um), positive, "Width along y (µm).", {.shapes = {"block"}}),
-      row("embryo", "cell_height_um", at(&S::embryo, &E::cell_height_um), positive,
-          "Height of a cell from basal to apical (µm).", {.shapes = {"pill", "sphere", "block"}}),
-      row("embryo", "cells", at(&S::embryo, &E::cells), between(1, max_count),
-          "Number of cells along the axis (x), across the belly (y), belly to back (z).",
-          {.shapes = {"pill", "sphere", "block"}}),
-      row("embryo", "elements_per_cell", at(&S::embryo, &E::elements_per_cell), between(1, 16),
-          "Elements of a cell along, across, basal to apical: refines the elements, not the cells.",
-          {.shapes = {"pill", "sphere", "block"}}),
-      row("embryo", "file", at(&S::embryo, &E::file), anything,
-          "Hexahedral mesh, path relative to the scenario's file.", {.is_path = true, .shapes = {"file"}}),
-      row("embryo", "apical_array", at(&S::embryo, &E::apical_array), anything,
-          "Cell array of the file with the apical face (0 to 5, VTK's order) of each cell; without it the outer "
-          "surface is apical.",
-          {.shapes = {"file"}}),
+      embryo("shape", &E::shape, one_of(words::embryo_shapes),
+             "Closed sheets (pill, sphere), a block of cells, or a mesh file."),
+      embryo("length_um", &E::length_um, positive, "Length along x (µm).", {.shapes = {"pill", "block"}}),
+      embryo("diameter_um", &E::diameter_um, positive, "Outer diameter (µm).", {.shapes = {"pill", "sphere"}}),
+      embryo("width_um", &E::width_um, positive, "Width along y (µm).", {.shapes = {"block"}}),
+      embryo("cell_height_um", &E::cell_height_um, positive, "Height of a cell from basal to apical (µm).",
+             {.shapes = built}),
+      embryo("cells", &E::cells, between(1, max_count),
+             "Number of cells along the axis (x), across the belly (y), belly to back (z).", {.shapes = built}),
+      embryo("elements_per_cell", &E::elements_per_cell, between(1, 16),
+             "Elements of a cell along, across, basal to apical: refines the elements, not the cells.",
+             {.shapes = built}),
+      embryo("file", &E::file, anything, "Hexahedral mesh, path relative to the scenario's file.",
+             {.is_path = true, .shapes = {"file"}}),
+      embryo("apical_array", &E::apical_array, anything,
+             "Cell array of the file with the apical face (0 to 5, VTK's order) of each cell; without it the outer "
+             "surface is apical.",
+             {.shapes = {"file"}}),
 
-      row("region.*", "face", at(&S::regions, &R::face), one_of(words::sides), "Cells of this side of a built embryo."),
-      row("region.*", "cells_along", at(&S::regions, &R::cells_along), between(1, max_count),
-          "Only a centred strip of the face, this many cells along (x; y on the end faces)."),
-      row("region.*", "cells_across", at(&S::regions, &R::cells_across), between(1, max_count),
-          "Only a centred strip of the face, this many cells across (y; z on the side and end faces)."),
-      row("region.*", "ids", at(&S::regions, &R::ids), not_negative, "Cells by number, from 0."),
-      row("region.*", "array", at(&S::regions, &R::array), anything,
-          "Cell array of the mesh file: cells where it is not 0."),
-      row("region.*", "x_um", at(&S::regions, &R::x_um), anything,
-          "Cells whose centre at rest lies in this range of x (µm)."),
-      row("region.*", "y_um", at(&S::regions, &R::y_um), anything, "The same in y (µm)."),
-      row("region.*", "z_um", at(&S::regions, &R::z_um), anything, "The same in z (µm)."),
-      row("region.*", "union", at(&S::regions, &R::unite), anything, "Cells of any of these regions."),
-      row("region.*", "intersect", at(&S::regions, &R::intersect), anything, "Only cells of each of these regions."),
-      row("region.*", "except", at(&S::regions, &R::except), anything, "No cells of these regions."),
+      region("face", &R::face, one_of(words::sides), "Cells of this side of a built embryo."),
+      region("cells_along", &R::cells_along, between(1, max_count),
+             "Only a centred strip of the face, this many cells along (x; y on the end faces)."),
+      region("cells_across", &R::cells_across, between(1, max_count),
+             "Only a centred strip of the face, this many cells across (y; z on the side and end faces)."),
+      region("ids", &R::ids, not_negative, "Cells by number, from 0."),
+      region("array", &R::array, anything, "Cell array of the mesh file: cells where it is not 0."),
+      region("x_um", &R::x_um, anything, "Cells whose centre at rest lies in this range of x (µm)."),
+      region("y_um", &R::y_um, anything, "The same in y (µm)."),
+      region("z_um", &R::z_um, anything, "The same in z (µm)."),
+      region("union", &R::unite, anything, "Cells of any of these regions."),
+      region("intersect", &R::intersect, anything, "Only cells of each of these regions."),
+      region("except", &R::except, anything, "No cells of these regions."),
 
-      row("elasticity", "model", at(&S::elasticity, &ElasticityInput::model), one_of(words::elastic_models),
-          "Elastic law of a cell: isotropic in a frame that turns with it, or springs from its nodes to their places "
-          "in "
-          "the rest shape that follows it."),
-      row("elasticity", "young_modulus_Pa", at(&S::elasticity, &ElasticityInput::young_modulus_Pa), positive,
-          "Young's modulus (Pa)."),
-      row("elasticity", "poisson_ratio", at(&S::elasticity, &ElasticityInput::poisson_ratio),
+      elasticity("model", &ElasticityInput::model, one_of(words::elastic_models),
+                 "Elastic law of a cell: isotropic in a frame that turns with it, or springs from its nodes to their "
+                 "places in the rest shape that follows it."),
+      elasticity("young_modulus_Pa", &ElasticityInput::young_modulus_Pa, positive, "Young's modulus (Pa)."),
+      elasticity(
+          "poisson_ratio", &ElasticityInput::poisson_ratio,
           {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
           "Poisson's ratio; with coupled volumes it only sets the shear modulus and the dilatation inside a cell."),
-      row("elasticity", "attractor_stiffness_nN_per_um",
-          at(&S::elasticity, &ElasticityInput::attractor_stiffness_nN_per_um),
-          {.low = 0, .low_included = false, .word_for_none = "derived"},
-          "Model shape-memory: stiffness of the springs from the nodes of a cell to the attractor (nN/µm), or such "
-          "that "
-          "the mean shear modulus is that of young_modulus_Pa and poisson_ratio."),
-      row("elasticity", "attractor_preload_nN", at(&S::elasticity, &ElasticityInput::attractor_preload_nN),
-          not_negative, "Model shape-memory: tension of these springs that does not depend on their length (nN)."),
-      row("elasticity", "attractor_preload_length_um",
-          at(&S::elasticity, &ElasticityInput::attractor_preload_length_um), positive,
+      elasticity("attractor_stiffness_nN_per_um", &ElasticityInput::attractor_stiffness_nN_per_um,
+                 {.low = 0, .low_included = false, .word_for_none = "derived"},
+                 "Model shape-memory: stiffness of the springs from the nodes of a cell to the attractor (nN/µm), or "
+                 "such that the mean shear modulus is that of young_modulus_Pa and poisson_ratio."),
+      elasticity("attractor_preload_nN", &ElasticityInput::attractor_preload_nN, not_negative,
+                 "Model shape-memory: tension of these springs that does not depend on their length (nN)."),
+      elasticity(
+          "attractor_preload_length_um", &ElasticityInput::attractor_preload_length_um, positive,
           "Model shape-memory: how far from its place a node feels 0.7 of the preload (µm); it has no direction at 0."),
 
-      row("volume", "method", at(&S::volume, &VolumeInput::method), one_of(words::volume_methods),
-          "How cells keep their volume: as constraints of each step; by the paper's projection after it, so that the "
-          "state of rest depends on the step; or not."),
-      row("volume", "projection_surface", at(&S::volume, &VolumeInput::projection_surface),
-          one_of(words::projection_surfaces),
-          "Closed surfaces whose volume is projected: each cell's; the one around all cells; the apical one, with the "
-          "lumen inside."),
-      row("volume", "projection_weights", at(&S::volume, &VolumeInput::projection_weights),
-          one_of(words::projection_weights),
-          "How far the projection moves nodes along the volume's gradient: all alike (the paper), or each as far as "
-          "its "
-          "drag and mass let it, which is where the coupled solve goes as steps get short."),
+      volume("method", &VolumeInput::method, one_of(words::volume_methods),
+             "How cells keep their volume: as constraints of each step; by the paper's projection after it, so that "
+             "the state of rest depends on the step; or not."),
+      volume("projection_surface", &VolumeInput::projection_surface, one_of(words::projection_surfaces),
+             "Closed surfaces whose volume is projected: each cell's; the one around all cells; the apical one, with "
+             "the lumen inside."),
+      volume("projection_weights", &VolumeInput::projection_weights, one_of(words::projection_weights),
+             "How far the projection moves nodes along the volume's gradient: all alike (the paper), or each as far as "
+             "its drag and mass let it, which is where the coupled solve goes as steps get short."),
 
-      row("vitelline", "enabled", at(&S::vitelline, &VitellineInput::enabled), anything,
-          "A rigid shell around a closed embryo; false by default for a block."),
-      row("vitelline", "gap_um", at(&S::vitelline, &VitellineInput::gap_um), not_negative,
-          "Gap between the apical nodes at rest and the shell (µm)."),
+      vitelline("enabled", &VitellineInput::enabled, anything,
+                "A rigid shell around a closed embryo; false by default for a block."),
+      vitelline("gap_um", &VitellineInput::gap_um, not_negative,
+                "Gap between the apical nodes at rest and the shell (µm)."),
 
-      row("dynamics", "surface_drag_Pa_s_per_um", at(&S::dynamics, &D::surface_drag_Pa_s_per_um), not_negative,
-          "Drag on apical and basal faces (Pa s/µm); sets the clock."),
-      row("dynamics", "shear_viscosity_Pa_s", at(&S::dynamics, &D::shear_viscosity_Pa_s), not_negative,
-          "Kelvin-Voigt viscosity in the cells (Pa s)."),
-      row("dynamics", "density_kg_per_m3", at(&S::dynamics, &D::density_kg_per_m3), not_negative,
-          "Density (kg/m³): inertia, negligible in vivo."),
+      dynamics("surface_drag_Pa_s_per_um", &D::surface_drag_Pa_s_per_um, not_negative,
+               "Drag on apical and basal faces (Pa s/µm); sets the clock."),
+      dynamics("shear_viscosity_Pa_s", &D::shear_viscosity_Pa_s, not_negative,
+               "Kelvin-Voigt viscosity in the cells (Pa s)."),
+      dynamics("density_kg_per_m3", &D::density_kg_per_m3, not_negative,
+               "Density (kg/m³): inertia, negligible in vivo."),
 
-      row("contraction.*", "region", at(&S::contractions, &C::region), anything, "Region whose cells contract.",
-          {.required = true}),
-      row("contraction.*", "edges", at(&S::contractions, &C::edges), one_of(words::edges),
-          "Edges of the cells that contract."),
-      row("contraction.*", "stiffness_nN_per_um", at(&S::contractions, &C::stiffness_nN_per_um), not_negative,
-          "Stiffness of a spring (nN/µm)."),
-      row("contraction.*", "along_ratio", at(&S::contractions, &C::along_ratio), not_negative,
-          "Factor on edges along the axis."),
-      row("contraction.*", "across_ratio", at(&S::contractions, &C::across_ratio), not_negative,
-          "Factor on edges across the axis."),
-      row("contraction.*", "diagonals", at(&S::contractions, &C::diagonals), anything,
-          "Whether the diagonals of the face contract too."),
-      row("contraction.*", "rest_length_ratio", at(&S::contractions, &C::rest_length_ratio), not_negative,
-          "Length at which a spring is slack, over its initial length."),
-      row("contraction.*", "preload_nN", at(&S::contractions, &C::preload_nN), anything,
-          "Tension of a spring that does not depend on its length (nN)."),
-      row("contraction.*", "tension_mN_per_m", at(&S::contractions, &C::tension_mN_per_m), not_negative,
-          "Tension of the cells' faces, per length across it (mN/m, that is nN/µm), whatever the size of cells: what "
-          "stiffness and preload do, they do on every edge, so smaller cells pull harder."),
-      row("contraction.*", "damping_nN_s_per_um", at(&S::contractions, &C::damping_nN_s_per_um), not_negative,
-          "Damping of a spring (nN s/µm)."),
-      row("contraction.*", "program.time_s", at(&S::contractions, &C::program, &ProgramInput::time_s), anything,
-          "Times of the points of the activity (s), increasing; the same time twice is a jump, on which a step ends. "
-          "Without a program it is always 1."),
-      row("contraction.*", "program.time_min", at(&S::contractions, &C::program, &ProgramInput::time_s), anything,
-          "The same in minutes.", {.instead_of = "program.time_s", .scale = 60}),
-      row("contraction.*", "program.activity", at(&S::contractions, &C::program, &ProgramInput::activity), not_negative,
-          "Activity at these times: a factor on the tension, linear between them."),
-      row("contraction.*", "profile.shape", at(&S::contractions, &C::profile, &ProfileInput::shape),
-          one_of(words::profile_shapes),
-          "Factor on stiffness and preload by a cell's distance from the region's middle: 1, falling to `edge` at "
-          "`half_width_um`, or exp(−d²/2σ²)."),
-      row("contraction.*", "profile.axis", at(&S::contractions, &C::profile, &ProfileInput::axis),
-          one_of(words::profile_axes),
-          "Distance across the axis (the arc about it through the cell's centre; y in a block) or along it (x); "
-          "without "
-          "it across."),
-      row("contraction.*", "profile.half_width_um", at(&S::contractions, &C::profile, &ProfileInput::half_width_um),
-          positive, "Linear: distance at which the factor is `edge`, as it is beyond (µm)."),
-      row("contraction.*", "profile.edge", at(&S::contractions, &C::profile, &ProfileInput::edge), not_negative,
-          "Linear: factor there; without it 0."),
-      row("contraction.*", "profile.sigma_um", at(&S::contractions, &C::profile, &ProfileInput::sigma_um), positive,
-          "Gaussian: its standard deviation σ (µm)."),
-      row("contraction.*", "delay.speed_um_per_s", at(&S::contractions, &C::delay, &DelayInput::speed_um_per_s),
-          {.low = 0, .low_included = false, .word_for_none = "none"},
-          "Speed of a wave (µm/s): a cell's program starts when it arrives, and the cell is slack before."),
-      row("contraction.*", "delay.axis", at(&S::contractions, &C::delay, &DelayInput::axis), one_of(words::delay_axes),
-          "Direction of the wave, as in `profile.axis`; without it along."),
-      row("contraction.*", "delay.from", at(&S::contractions, &C::delay, &DelayInput::from),
-          one_of(words::delay_starts),
-          "Where the region's wave starts at time 0; without it in the middle. Low is the anterior end, or the left "
-          "side."),
-      row("contraction.*", "variation.spread", at(&S::contractions, &C::variation, &VariationInput::spread),
-          between(0, 100),
+      contraction("region", &C::region, anything, "Region whose cells contract.", {.required = true}),
+      contraction("edges", &C::edges, one_of(words::edges), "Edges of the cells that contract."),
+      contraction("stiffness_nN_per_um", &C::stiffness_nN_per_um, not_negative, "Stiffness of a spring (nN/µm)."),
+      contraction("along_ratio", &C::along_ratio, not_negative, "Factor on edges along the axis."),
+      contraction("across_ratio", &C::across_ratio, not_negative, "Factor on edges across the axis."),
+      contraction("diagonals", &C::diagonals, anything, "Whether the diagonals of the face contract too."),
+      contraction("rest_length_ratio", &C::rest_length_ratio, not_negative,
+                  "Length at which a spring is slack, over its initial length."),
+      contraction("preload_nN", &C::preload_nN, anything,
+                  "Tension of a spring that does not depend on its length (nN)."),
+      contraction("tension_mN_per_m", &C::tension_mN_per_m, not_negative,
+                  "Tension of the cells' faces, per length across it (mN/m, that is nN/µm), whatever the size of "
+                  "cells: what stiffness and preload do, they do on every edge, so smaller cells pull harder."),
+      contraction("damping_nN_s_per_um", &C::damping_nN_s_per_um, not_negative, "Damping of a spring (nN s/µm)."),
+      contraction("program.time_s", &C::program, &ProgramInput::time_s, anything,
+                  "Times of the points of the activity (s), increasing; the same time twice is a jump, on which a step "
+                  "ends. Without a program it is always 1."),
+      contraction("program.time_min", &C::program, &ProgramInput::time_s, anything, "The same in minutes.",
+                  {.instead_of = "program.time_s", .scale = 60}),
+      contraction("program.activity", &C::program, &ProgramInput::activity, not_negative,
+                  "Activity at these times: a factor on the tension, linear between them."),
+      contraction("profile.shape", &C::profile, &ProfileInput::shape, one_of(words::profile_shapes),
+                  "Factor on stiffness and preload by a cell's distance from the region's middle: 1, falling to `edge` "
+                  "at `half_width_um`, or exp(−d²/2σ²)."),
+      contraction("profile.axis", &C::profile, &ProfileInput::axis, one_of(words::profile_axes),
+                  "Distance across the axis (the arc about it through the cell's centre; y in a block) or along it "
+                  "(x); without it across."),
+      contraction("profile.half_width_um", &C::profile, &ProfileInput::half_width_um, positive,
+                  "Linear: distance at which the factor is `edge`, as it is beyond (µm)."),
+      contraction("profile.edge", &C::profile, &ProfileInput::edge, not_negative,
+                  "Linear: factor there; without it 0."),
+      contraction("profile.sigma_um", &C::profile, &ProfileInput::sigma_um, positive,
+                  "Gaussian: its standard deviation σ (µm)."),
+      contraction("delay.speed_um_per_s", &C::delay, &DelayInput::speed_um_per_s,
+                  {.low = 0, .low_included = false, .word_for_none = "none"},
+                  "Speed of a wave (µm/s): a cell's program starts when it arrives, and the cell is slack before."),
+      contraction("delay.axis", &C::delay, &DelayInput::axis, one_of(words::delay_axes),
+                  "Direction of the wave, as in `profile.axis`; without it along."),
+      contraction("delay.from", &C::delay, &DelayInput::from, one_of(words::delay_starts),
+                  "Where the region's wave starts at time 0; without it in the middle. Low is the anterior end, or the "
+                  "left side."),
+      contraction(
+          "variation.spread", &C::variation, &VariationInput::spread, between(0, 100),
           "Relative standard deviation of a log-normal factor with mean 1 on each cell's stiffness and preload."),
-      row("contraction.*", "variation.seed", at(&S::contractions, &C::variation, &VariationInput::seed), not_negative,
-          "Another seed gives other factors; a cell's factor depends on seed and cell number only."),
+      contraction("variation.seed", &C::variation, &VariationInput::seed, not_negative,
+                  "Another seed gives other factors; a cell's factor depends on seed and cell number only."),
 
-      row("hold.*", "region", at(&S::holds, &H::region), anything, "Region whose nodes are held.", {.required = true}),
-      row("hold.*", "directions", at(&S::holds, &H::directions), one_of(words::axes),
-          "Directions in which they are held."),
-      row("hold.*", "x_um", at(&S::holds, &H::x_um), anything, "Only nodes that lie at rest in this range of x (µm)."),
-      row("hold.*", "y_um", at(&S::holds, &H::y_um), anything, "The same in y (µm)."),
-      row("hold.*", "z_um", at(&S::holds, &H::z_um), anything, "The same in z (µm)."),
+      hold("region", &H::region, anything, "Region whose nodes are held.", {.required = true}),
+      hold("directions", &H::directions, one_of(words::axes), "Directions in which they are held."),
+      hold("x_um", &H::x_um, anything, "Only nodes that lie at rest in this range of x (µm)."),
+      hold("y_um", &H::y_um, anything, "The same in y (µm)."),
+      hold("z_um", &H::z_um, anything, "The same in z (µm)."),
 
-      row("pressure.*", "region", at(&S::pressures, &P::region), anything, "Region whose faces carry the pressure.",
-          {.required = true}),
-      row("pressure.*", "face", at(&S::pressures, &P::face), one_of(words::pressure_faces),
-          "Face of the cells that carries it."),
-      row("pressure.*", "pressure_Pa", at(&S::pressures, &P::pressure_Pa), anything,
-          "Pressure into the cell (Pa), a dead load on the face at rest.", {.required = true}),
-      row("pressure.*", "program.time_s", at(&S::pressures, &P::program, &ProgramInput::time_s), anything,
-          "Times of the points of the activity (s), increasing; the same time twice is a jump, on which a step ends. "
-          "Without a program it is always 1."),
-      row("pressure.*", "program.time_min", at(&S::pressures, &P::program, &ProgramInput::time_s), anything,
-          "The same in minutes.", {.instead_of = "program.time_s", .scale = 60}),
-      row("pressure.*", "program.activity", at(&S::pressures, &P::program, &ProgramInput::activity), not_negative,
-          "Activity at these times: a factor on the pressure, linear between them."),
+      pressure("region", &P::region, anything, "Region whose faces carry the pressure.", {.required = true}),
+      pressure("face", &P::face, one_of(words::pressure_faces), "Face of the cells that carries it."),
+      pressure("pressure_Pa", &P::pressure_Pa, anything,
+               "Pressure into the cell (Pa), a dead load on the face at rest.", {.required = true}),
+      pressure("program.time_s", &P::program, &ProgramInput::time_s, anything,
+               "Times of the points of the activity (s), increasing; the same time twice is a jump, on which a step "
+               "ends. Without a program it is always 1."),
+      pressure("program.time_min", &P::program, &ProgramInput::time_s, anything, "The same in minutes.",
+               {.instead_of = "program.time_s", .scale = 60}),
+      pressure("program.activity", &P::program, &ProgramInput::activity, not_negative,
+               "Activity at these times: a factor on the pressure, linear between them."),
 
-      row("division.*", "region", at(&S::divisions, &V::region), anything, "Region whose cells divide.",
-          {.required = true}),
-      row("division.*", "at_s", at(&S::divisions, &V::at_s), positive, "When all of them divide (s)."),
-      row("division.*", "at_min", at(&S::divisions, &V::at_s), positive, "The same in minutes.",
-          {.instead_of = "at_s", .scale = 60}),
-      row("division.*", "when", at(&S::divisions, &V::when), one_of(words::division_triggers),
-          "Instead of a time: a cell divides when its apical area, its volume, or the ratio of its longer to its "
-          "shorter side passes the threshold, unless it is still growing."),
-      row("division.*", "threshold", at(&S::divisions, &V::threshold), positive, "What has to be passed, with `when`."),
-      row("division.*", "plane", at(&S::divisions, &V::plane), one_of(words::division_planes),
-          "Apico-basal plane of the cut: across the embryo's axis, along the midline, or across the cell's longer "
-          "side; it runs between the middles of opposite sides of the cell."),
-      row("division.*", "growth_s", at(&S::divisions, &V::growth_s), not_negative,
-          "Time in which daughters grow to their final size (s)."),
-      row("division.*", "growth_min", at(&S::divisions, &V::growth_s), not_negative, "The same in minutes.",
-          {.instead_of = "growth_s", .scale = 60}),
-      row("division.*", "daughter_volume_ratio", at(&S::divisions, &V::daughter_volume_ratio), between(0.25, 2),
-          "Final volume of a daughter over her mother's: 1 as large, 0.5 a half."),
-      row("division.*", "max_generation", at(&S::divisions, &V::max_generation), between(1, 30),
-          "Daughters of a later generation are not born; without it 1 with `when`, and no limit at a time."),
+      division("region", &V::region, anything, "Region whose cells divide.", {.required = true}),
+      division("at_s", &V::at_s, positive, "When all of them divide (s)."),
+      division("at_min", &V::at_s, positive, "The same in minutes.", {.instead_of = "at_s", .scale = 60}),
+      division("when", &V::when, one_of(words::division_triggers),
+               "Instead of a time: a cell divides when its apical area, its volume, or the ratio of its longer to its "
+               "shorter side passes the threshold, unless it is still growing."),
+      division("threshold", &V::threshold, positive, "What has to be passed, with `when`."),
+      division("plane", &V::plane, one_of(words::division_planes),
+               "Apico-basal plane of the cut: across the embryo's axis, along the midline, or across the cell's longer "
+               "side; it runs between the middles of opposite sides of the cell."),
+      division("growth_s", &V::growth_s, not_negative, "Time in which daughters grow to their final size (s)."),
+      division("growth_min", &V::growth_s, not_negative, "The same in minutes.",
+               {.instead_of = "growth_s", .scale = 60}),
+      division("daughter_volume_ratio", &V::daughter_volume_ratio, between(0.25, 2),
+               "Final volume of a daughter over her mother's: 1 as large, 0.5 a half."),
+      division("max_generation", &V::max_generation, between(1, 30),
+               "Daughters of a later generation are not born; without it 1 with `when`, and no limit at a time."),
 
-      row("time", "step_s", at(&S::time, &T::step_s), {.low = instant_s, .word_for_none = "adaptive"},
-          "Time step (s), or chosen by its error."),
-      row("time", "first_step_s", at(&S::time, &T::first_step_s), positive, "First adaptive step (s)."),
-      row("time", "max_step_s", at(&S::time, &T::max_step_s), positive, "Longest adaptive step (s)."),
-      row("time", "tolerance_um", at(&S::time, &T::tolerance_um), positive,
-          "Error of an adaptive step, on positions (µm)."),
-      row("time", "end_s", at(&S::time, &T::end_s), positive, "When the run ends (s)."),
-      row("time", "end_min", at(&S::time, &T::end_s), positive, "The same in minutes.",
-          {.instead_of = "end_s", .scale = 60}),
-      row("time", "scheme", at(&S::time, &T::scheme), one_of(words::schemes),
-          "How a step is solved: Newton's method, or one linear system by conjugate gradients (the paper)."),
-      row("time", "integrator", at(&S::time, &T::integrator), one_of(words::integrators),
-          "How rates are taken at the end of a step: to first order in time, or to second, by differences over two "
-          "steps. The second goes with scheme newton, without inertia and with volumes that are not projected."),
-      row("time", "linear_solver", at(&S::time, &T::linear_solver), one_of(words::linear_solvers),
-          "How Newton's linear systems are solved: a factor of the whole system; or Krylov's method with a factor of "
-          "its "
-          "positive definite part, or with multigrid; automatic: by size. Results differ by less than the tolerances."),
-      row("time", "cg_tolerance", at(&S::time, &T::cg_tolerance), {.low = 1e-14, .high = 0.1},
-          "Residual of the conjugate gradients over the force (scheme linearly-implicit)."),
-      row("time", "cg_max_iterations", at(&S::time, &T::cg_max_iterations), between(1, 1000000),
-          "Conjugate gradients give up after as many iterations (scheme linearly-implicit)."),
+      time("step_s", &T::step_s, {.low = instant_s, .word_for_none = "adaptive"},
+           "Time step (s), or chosen by its error."),
+      time("first_step_s", &T::first_step_s, positive, "First adaptive step (s)."),
+      time("max_step_s", &T::max_step_s, positive, "Longest adaptive step (s)."),
+      time("tolerance_um", &T::tolerance_um, positive, "Error of an adaptive step, on positions (µm)."),
+      time("end_s", &T::end_s, positive, "When the run ends (s)."),
+      time("end_min", &T::end_s, positive, "The same in minutes.", {.instead_of = "end_s", .scale = 60}),
+      time("scheme", &T::scheme, one_of(words::schemes),
+           "How a step is solved: Newton's method, or one linear system by conjugate gradients (the paper)."),
+      time("integrator", &T::integrator, one_of(words::integrators),
+           "How rates are taken at the end of a step: to first order in time, or to second, by differences over two "
+           "steps. The second goes with scheme newton, without inertia and with volumes that are not projected."),
+      time("linear_solver", &T::linear_solver, one_of(words::linear_solvers),
+           "How Newton's linear systems are solved: a factor of the whole system; or Krylov's method with a factor of "
+           "its positive definite part, or with multigrid; automatic: by size. Results differ by less than the "
+           "tolerances."),
+      time("cg_tolerance", &T::cg_tolerance, {.low = 1e-14, .high = 0.1},
+           "Residual of the conjugate gradients over the force (scheme linearly-implicit)."),
+      time("cg_max_iterations", &T::cg_max_iterations, between(1, 1000000),
+           "Conjugate gradients give up after as many iterations (scheme linearly-implicit)."),
 
-      row("stop", "equilibrium_speed_um_per_min", at(&S::stop, &StopInput::equilibrium_speed_um_per_min), positive,
-          "Equilibrium is when all nodes are slower (µm/min)."),
-      row("stop", "at_equilibrium", at(&S::stop, &StopInput::at_equilibrium), anything,
-          "Whether to stop there; false notes the time and runs on."),
-      row("stop", "combine", at(&S::stop, &StopInput::combine), one_of(words::combinations),
-          "Whether any of the `[stop.NAME]` and equilibrium ends the run, or all of them together."),
-      row("stop.*", "monitor", at(&S::criteria, &K::monitor), anything, "The monitor that is bounded.",
-          {.required = true}),
-      row("stop.*", "above", at(&S::criteria, &K::above), anything,
-          "Met when the value is larger (unit of the monitor's column)."),
-      row("stop.*", "below", at(&S::criteria, &K::below), anything, "Met when the value is smaller (the same unit)."),
-      row("stop.*", "over", at(&S::criteria, &K::over), one_of(words::criterion_overs),
-          "Met when any one of the monitor's nodes or cells is beyond the bound, or all of them are; without it, when "
-          "the monitor's number is."),
+      stop("equilibrium_speed_um_per_min", &StopInput::equilibrium_speed_um_per_min, positive,
+           "Equilibrium is when all nodes are slower (µm/min)."),
+      stop("at_equilibrium", &StopInput::at_equilibrium, anything,
+           "Whether to stop there; false notes the time and runs on."),
+      stop("combine", &StopInput::combine, one_of(words::combinations),
+           "Whether any of the `[stop.NAME]` and equilibrium ends the run, or all of them together."),
+      criterion("monitor", &K::monitor, anything, "The monitor that is bounded.", {.required = true}),
+      criterion("above", &K::above, anything, "Met when the value is larger (unit of the monitor's column)."),
+      criterion("below", &K::below, anything, "Met when the value is smaller (the same unit)."),
+      criterion("over", &K::over, one_of(words::criterion_overs),
+                "Met when any one of the monitor's nodes or cells is beyond the bound, or all of them are; without it, "
+                "when the monitor's number is."),
 
-      row("monitor.*", "quantity", at(&S::monitors, &M::quantity), one_of(quantity_names()), "What is measured.",
-          {.required = true}),
-      row("monitor.*", "region", at(&S::monitors, &M::region), anything, "Where: the cells of this region."),
-      row("monitor.*", "face", at(&S::monitors, &M::face), one_of(words::monitor_faces),
-          "Only nodes of this side of the cells; without it, all. The side of an area; without it, apical."),
-      row("monitor.*", "axis", at(&S::monitors, &M::axis), one_of(words::axes),
-          "The component along this axis; without it, the norm."),
-      row("monitor.*", "from", at(&S::monitors, &M::from), anything,
-          "Of a force: only what the cells of this region exert on the nodes, the pressures that hold their volumes "
-          "included; without it, what drives the nodes."),
-      row("monitor.*", "over", at(&S::monitors, &M::over), one_of(words::overs),
-          "How the values of nodes or cells make one number; without it, their mean."),
-      row("monitor.*", "reference", at(&S::monitors, &M::reference), anything,
-          "What it is measured against, path relative to the scenario's file: the results of a run (deviation, "
-          "relative_energy_norm), or a mesh (surface_distance).",
-          {.is_path = true}),
-      row("monitor.*", "reference_at", at(&S::monitors, &M::reference_at), one_of(words::reference_times),
-          "Which of the run's frames; without it, the one of the same time."),
+      monitor("quantity", &M::quantity, one_of(quantity_names()), "What is measured.", {.required = true}),
+      monitor("region", &M::region, anything, "Where: the cells of this region."),
+      monitor("face", &M::face, one_of(words::monitor_faces),
+              "Only nodes of this side of the cells; without it, all. The side of an area; without it, apical."),
+      monitor("axis", &M::axis, one_of(words::axes), "The component along this axis; without it, the norm."),
+      monitor("from", &M::from, anything,
+              "Of a force: only what the cells of this region exert on the nodes, the pressures that hold their "
+              "volumes included; without it, what drives the nodes."),
+      monitor("over", &M::over, one_of(words::overs),
+              "How the values of nodes or cells make one number; without it, their mean."),
+      monitor("reference", &M::reference, anything,
+              "What it is measured against, path relative to the scenario's file: the results of a run (deviation, "
+              "relative_energy_norm), or a mesh (surface_distance).",
+              {.is_path = true}),
+      monitor("reference_at", &M::reference_at, one_of(words::reference_times),
+              "Which of the run's frames; without it, the one of the same time."),
 
-      row("furrow", "region", at(&S::furrow, &FurrowInput::region), anything,
-          "Contractile cells whose furrow is measured; without it the largest region that contracts."),
-      row("furrow", "vce_cell", at(&S::furrow, &FurrowInput::vce_cell), between(1, max_count),
-          "VCE is this cell of the region's midline, counted from its ends."),
+      furrow("region", &FurrowInput::region, anything,
+             "Contractile cells whose furrow is measured; without it the largest region that contracts."),
+      furrow("vce_cell", &FurrowInput::vce_cell, between(1, max_count),
+             "VCE is this cell of the region's midline, counted from its ends."),
 
-      row("output", "frame_every_s", at(&S::output, &O::frame_every_s), not_negative,
-          "Time between frames (s); 0: only the first and the last."),
-      row("output", "frame_every_min", at(&S::output, &O::frame_every_s), not_negative, "The same in minutes.",
-          {.instead_of = "frame_every_s", .scale = 60}),
-      row("output", "cells_csv", at(&S::output, &O::cells_csv), anything,
-          "Whether to write cells.csv; without it, up to 2000 cells."),
+      output("frame_every_s", &O::frame_every_s, not_negative,
+             "Time between frames (s); 0: only the first and the last."),
+      output("frame_every_min", &O::frame_every_s, not_negative, "The same in minutes.",
+             {.instead_of = "frame_every_s", .scale = 60}),
+      output("cells_csv", &O::cells_csv, anything, "Whether to write cells.csv; without it, up to 2000 cells."),
 
-      row("expect.*", "value", at(&S::expect, &X::value), anything, "What is expected.", {.required = true}),
-      row("expect.*", "within", at(&S::expect, &X::within), not_negative, "How far off it may be, in its own unit."),
-      row("expect.*", "within_percent", at(&S::expect, &X::within_percent), not_negative,
-          "The same in percent of the value.", {.instead_of = "within"}),
+      expect("value", &X::value, anything, "What is expected.", {.required = true}),
+      expect("within", &X::within, not_negative, "How far off it may be, in its own unit."),
+      expect("within_percent", &X::within_percent, not_negative, "The same in percent of the value.",
+             {.instead_of = "within"}),
   };
-  return table;
 }
 
 template <class Table>
 auto names_in(Named<Table> tables) {
-  return [=](const Scenario& scenario) {
-    std::vector<std::string> names;
-    for (const auto& [name, table] : scenario.*tables) names.push_back(name);
-    return names;
-  };
-}
-
-std::string type_of(const Row& row) {
-  Scenario scratch;
-  const Slot slot = row.field(scratch, "name");
-  const bool has_words = !row.allowed.words.empty();
-  if (std::holds_alternative<int*>(slot) || std::holds_alternative<std::optional<int>*>(slot)) return "integer";
-  if (std::holds_alternative<double*>(slot) || std::holds_alternative<std::optional<double>*>(slot)) return "number";
-  if (std::holds_alternative<bool*>(slot) || std::holds_alternative<std::optional<bool>*>(slot)) return "true or false";
-  if (std::holds_alternative<std::optional<Range>*>(slot)) return "[low, high]";
-  if (std::holds_alternative<std::array<int, 3>*>(slot)) return "3 integers";
-  if (std::holds_alternative<std::vector<int>*>(slot)) return "list of integers";
-  if (std::holds_alternative<std::vector<double>*>(slot)) return "list of numbers";
-  if (std::holds_alternative<std::vector<std::string>*>(slot)) return has_words ? "list of words" : "list of texts";
-  return has_words ? "word" : "text";
+  return [=](const Scenario& scenario) { return keys_of(scenario.*tables); };
 }
 
 }  // namespace
@@ -393,10 +364,23 @@ std::string Allowed::text() const {
   return word_for_none.empty() ? range : fmt::format("{} or \"{}\"", range, word_for_none);
 }
 
-std::string Row::type() const { return type_of(*this); }
+std::string Row::type() const {
+  Scenario scratch;
+  const Slot slot = field(scratch, "name");
+  const bool has_words = !allowed.words.empty();
+  if (std::holds_alternative<int*>(slot) || std::holds_alternative<std::optional<int>*>(slot)) return "integer";
+  if (std::holds_alternative<double*>(slot) || std::holds_alternative<std::optional<double>*>(slot)) return "number";
+  if (std::holds_alternative<bool*>(slot) || std::holds_alternative<std::optional<bool>*>(slot)) return "true or false";
+  if (std::holds_alternative<std::optional<Range>*>(slot)) return "[low, high]";
+  if (std::holds_alternative<std::array<int, 3>*>(slot)) return "3 integers";
+  if (std::holds_alternative<std::vector<int>*>(slot)) return "list of integers";
+  if (std::holds_alternative<std::vector<double>*>(slot)) return "list of numbers";
+  if (std::holds_alternative<std::vector<std::string>*>(slot)) return has_words ? "list of words" : "list of texts";
+  return has_words ? "word" : "text";
+}
 
 std::string Row::expected() const {
-  const std::string type = type_of(*this);
+  const std::string type = this->type();
   const std::string range = allowed.text();
   if (type == "word") return "one of: " + range;
   if (type == "list of words") return "a list of: " + range;
@@ -410,7 +394,10 @@ bool Row::used_by(std::string_view shape) const {
   return options.shapes.empty() || std::ranges::find(options.shapes, shape) != options.shapes.end();
 }
 
-std::span<const Row> schema() { return rows(); }
+std::span<const Row> schema() {
+  static const std::vector<Row> rows = make_rows();
+  return rows;
+}
 
 std::span<const TableInfo> schema_tables() {
   static const std::vector<TableInfo> tables = {
@@ -449,7 +436,7 @@ std::span<const TableInfo> schema_tables() {
 
 std::vector<const Row*> rows_of(std::string_view table) {
   std::vector<const Row*> found;
-  for (const Row& row : rows()) {
+  for (const Row& row : schema()) {
     if (row.table == table) found.push_back(&row);
   }
   return found;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/clock.hpp"
+#include "core/names.hpp"
 #include "scenario/monitor_rules.hpp"
 #include "scenario/suggest.hpp"
 #include "scenario/validate_laws.hpp"
@@ -218,9 +219,9 @@ void check_division(const std::string& table, const DivisionInput& division, Inp
 /// The rules about regions: selectors that make sense on this embryo, names that exist, no circles.
 class RegionCheck {
  public:
-  RegionCheck(const Scenario& scenario, Input& input) : scenario_(scenario), input_(input) {
-    names_.emplace_back("all");
-    for (const auto& [name, region] : scenario.regions) names_.push_back(name);
+  RegionCheck(const Scenario& scenario, Input& input)
+      : scenario_(scenario), input_(input), names_(keys_of(scenario.regions)) {
+    names_.insert(names_.begin(), "all");
   }
 
   void check_reference(const std::string& address, const std::string& region) {
