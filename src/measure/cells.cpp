@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace plica {
 
@@ -75,19 +76,30 @@ double max_volume_error(const Model& model, std::span<const Vec3> positions) {
   return largest;
 }
 
-double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions) {
-  double least = 1;
-  for (const auto& element : tissue.elements) least = std::min(least, hex_scaled_jacobian(gather(positions, element)));
-  return least;
-}
+namespace {
 
-Vectors active_forces(const Model& model, const State& state) {
+// Of a body that stands still.
+template <class Counts>
+Vectors forces_of_laws(const Model& model, const State& state, const Counts& counts) {
   Vectors forces(state.positions.size(), Vec3::Zero());
-  Step still{state.positions, state.positions, state.velocities, 1, state.time_s};
+  const Vectors no_velocity = forces;
+  Step still{state.positions, state.positions, no_velocity, 1, state.time_s};
   still.internals = state.internals;
   for_laws(model, still, [&](const Law& law, const Step& own) {
-    if (law.is_active()) law.add_forces(own, forces);
+    if (counts(law)) law.add_forces(own, forces);
   });
+  return forces;
+}
+
+}  // namespace
+
+Vectors active_forces(const Model& model, const State& state) {
+  return forces_of_laws(model, state, std::mem_fn(&Law::is_active));
+}
+
+Vectors driving_forces(const Model& model, const State& state) {
+  Vectors forces = forces_of_laws(model, state, [](const Law&) { return true; });
+  model.tissue.carry_hanging(forces);
   return forces;
 }
 

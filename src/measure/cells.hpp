@@ -35,11 +35,12 @@ double shell_penetration(const Model& model, std::span<const Vec3> positions);
 /// Largest |V/V_target - 1| of a cell.
 double max_volume_error(const Model& model, std::span<const Vec3> positions);
 
-/// Worst corner of an element: 1 is a brick, 0 is flat.
-double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions);
-
 /// What the active laws exert on each node, nN, without their dampers.
 Vectors active_forces(const Model& model, const State& state);
+
+/// What pulls at the nodes of a body that stands still, nN: elasticity, contractions without their dampers, applied
+/// pressures. No drag, no inertia; volumes and the shell, which balance these, are not in it.
+Vectors driving_forces(const Model& model, const State& state);
 
 /// Unit normals of the cells' apical surfaces at rest, outward.
 std::vector<Vec3> rest_apical_normals(const Tissue& tissue, std::span<const CellId> cells);

@@ -6,6 +6,7 @@
 #include "measure/cells.hpp"
 #include "measure/observation.hpp"
 #include "measure/self_intersections.hpp"
+#include "tissue/mesh_quality.hpp"
 
 namespace plica {
 namespace {

@@ -18,10 +18,8 @@ std::vector<bool> facets_of(const Tissue& tissue, const CellSet& cells) {
   return wanted;
 }
 
-// The area of a facet at rest, as a vector along its normal.
-Vec3 area_vector(const Tissue& tissue, const Facet& facet) {
-  const auto x = [&](int i) { return tissue.rest_positions[facet.nodes[i].index()]; };
-  return 0.5 * (x(2) - x(0)).cross(x(3) - x(1));
+Vec3 rest_area_vector(const Tissue& tissue, const Facet& facet) {
+  return facet_area_vector(gather(tissue.rest_positions, facet));
 }
 
 // The mean apical normal of cells at rest, in the plane y = 0; towards the belly where they face every way.
@@ -30,7 +28,7 @@ Vec3 mean_outward(const Tissue& tissue, const CellSet& cells) {
   double area = 0;
   for (const Facet& facet : tissue.apical_facets) {
     if (!cells[facet.cell.index()]) continue;
-    const Vec3 of_facet = area_vector(tissue, facet);
+    const Vec3 of_facet = rest_area_vector(tissue, facet);
     sum += of_facet;
     area += of_facet.norm();
   }
@@ -45,7 +43,7 @@ Vec3 mean_outward(const Tissue& tissue, const CellSet& cells) {
 // Facets that face outward at rest.
 std::vector<bool> outward_facets(const Tissue& tissue, const Vec3& outward) {
   std::vector<bool> wanted;
-  for (const Facet& facet : tissue.apical_facets) wanted.push_back(area_vector(tissue, facet).dot(outward) > 0);
+  for (const Facet& facet : tissue.apical_facets) wanted.push_back(rest_area_vector(tissue, facet).dot(outward) > 0);
   return wanted;
 }
 

@@ -60,18 +60,6 @@ std::vector<double> sized(const Vectors& vectors, std::optional<int> axis) {
   return values;
 }
 
-/// What pulls at the nodes of a body that stands still: elasticity, contractions without their dampers, applied
-/// pressures. No drag, no inertia; volumes and the shell, which balance these, are not in it.
-Vectors driving_forces(const Model& model, const State& state) {
-  const Vectors no_velocity(state.positions.size(), Vec3::Zero());
-  Step still{state.positions, state.positions, no_velocity, 1, state.time_s};
-  still.internals = state.internals;
-  Vectors forces(state.positions.size(), Vec3::Zero());
-  for_laws(model, still, [&](const Law& law, const Step& own) { law.add_forces(own, forces); });
-  model.tissue.carry_hanging(forces);
-  return forces;
-}
-
 }  // namespace
 
 Vectors forces_of_cells(const Model& model, const State& state, const CellSet& cells) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/units.hpp"
+#include "measure/cells.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
 
@@ -20,26 +21,27 @@ std::unique_ptr<Model> model_of(const std::string& name, const std::vector<std::
 
 // The springs' inward force on each apical node over the area around it, Pa, averaged over the nodes of each cell of
 // the ventral midline; by the place of the cell. All springs are on.
-Curve inward_force(const std::string& name, const Model& model, const FurrowSites& sites) {
-  const Tissue& tissue = model.tissue;
+Curve inward_force(const std::string& name, const std::string& scenario_name,
+                   const std::vector<std::string>& overrides) {
+  const Scenario scenario = load_scenario(find_scenario(scenario_name), overrides);
+  const auto model = make_model(scenario);
+  const Tissue& tissue = model->tissue;
   const Vectors& rest = tissue.rest_positions;
-  Vectors forces(rest.size(), Vec3::Zero()), normals(rest.size(), Vec3::Zero());
-  const Step still{rest, rest, forces, 1, 1e6};
-  Vectors sum(rest.size(), Vec3::Zero());
-  for_laws(model, still, [&](const Law& law, const Step& own) {
-    if (law.is_active()) law.add_forces(own, sum);
-  });
+  State switched_on = rest_state(*model);
+  switched_on.time_s = 1e6;
+  const Vectors forces = active_forces(*model, switched_on);
+  Vectors normals(rest.size(), Vec3::Zero());
   for (const Facet& facet : tissue.apical_facets) {
     const Vec3 area = facet_area_vector(gather(std::span<const Vec3>(rest), facet));
     for (const NodeId node : facet.nodes) normals[node.index()] += area / 4;
   }
   Curve curve{name, {}, {}, true};
-  for (const CellId id : sites.midline) {
+  for (const CellId id : make_furrow_sites(scenario, tissue).midline) {
     const Cell& cell = tissue.cells[id.index()];
     double pressure = 0;
     for (int i = 4; i < 8; ++i) {
       const Vec3& normal = normals[cell.corners[i].index()];
-      pressure -= sum[cell.corners[i].index()].dot(normal) / normal.squaredNorm() / 4;
+      pressure -= forces[cell.corners[i].index()].dot(normal) / normal.squaredNorm() / 4;
     }
     curve.x.push_back(cell_centre(cell, rest).x());
     curve.y.push_back(pressure / units::pascal);
@@ -69,12 +71,6 @@ NetworkTension network_tension(const Tissue& tissue, const FurrowSites& sites) {
   return tension;
 }
 
-Curve inward_force(const std::string& name, const std::string& scenario, const std::vector<std::string>& overrides) {
-  const Scenario loaded = load_scenario(find_scenario(scenario), overrides);
-  const auto model = make_model(loaded);
-  return inward_force(name, *model, make_furrow_sites(loaded, model->tissue));
-}
-
 // Mean over the places with low <= |x| <= high.
 double mean_between(const Curve& curve, double low, double high) {
   double sum = 0;
@@ -94,11 +90,6 @@ double cap_over_cylinder(const Curve& force) {
   for (std::size_t i = 0; i < force.y.size(); ++i) over_hoop.y[i] /= tension.hoop[i], over_mean.y[i] /= tension.mean[i];
   return mean_between(over_mean, cap_from_um, 1e3) / mean_between(over_hoop, 0, cylinder_to_um);
 }
-
-struct Extent {
-  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
-  void take(const Vec3& point) { low = low.cwiseMin(point), high = high.cwiseMax(point); }
-};
 
 }  // namespace
 
@@ -137,10 +128,10 @@ Figures mesh_figures() {
     const std::string prefix = std::string("mesh.") + name;
     figures[prefix + "_cells"] = static_cast<double>(tissue.cells.size());
     figures[prefix + "_nodes"] = static_cast<double>(tissue.node_count());
-    Extent extent;
-    for (const Vec3& point : tissue.rest_positions) extent.take(point);
-    figures[prefix + "_length_um"] = (extent.high - extent.low).x();
-    figures[prefix + "_width_um"] = (extent.high - extent.low).y();
+    Eigen::AlignedBox3d extent;
+    for (const Vec3& point : tissue.rest_positions) extent.extend(point);
+    figures[prefix + "_length_um"] = extent.sizes().x();
+    figures[prefix + "_width_um"] = extent.sizes().y();
     const std::vector<double> volumes = model->volumes().volumes(tissue.rest_positions);
     double volume = 0;
     for (const double one : volumes) volume += one;
@@ -153,11 +144,11 @@ Figures mesh_figures() {
     model->volumes().add_forces(tissue.rest_positions, ones, gradient);
     for (std::size_t n = 0; n < gradient.size(); ++n) product += gradient[n].dot(tissue.rest_positions[n]);
     figures["mesh.gradient_sum"] = product / volume;
-    Extent strip;
+    Eigen::AlignedBox3d strip;
     for (const Facet& facet : tissue.apical_facets)
       if (tissue.regions.at("furrow")[facet.cell.index()])
-        for (const NodeId node : facet.nodes) strip.take(tissue.rest_positions[node.index()]);
-    figures["mesh.strip_percent"] = 100 * (strip.high - strip.low).x() / figures["mesh.pill_length_um"];
+        for (const NodeId node : facet.nodes) strip.extend(tissue.rest_positions[node.index()]);
+    figures["mesh.strip_percent"] = 100 * strip.sizes().x() / figures["mesh.pill_length_um"];
   }
   const auto three_rows = model_of("drosophila", {"region.furrow.cells_across=3"});
   const std::vector<double> areas = rest_apical_areas(three_rows->tissue);

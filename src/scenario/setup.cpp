@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/units.hpp"
+#include "measure/cells.hpp"
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
@@ -178,11 +179,7 @@ void add_holds(const Scenario& scenario, Model& model, std::vector<Diagnostic>& 
 /// Forces at rest that are no finite numbers, of springs stronger than numbers are: there would be nothing to begin
 /// with.
 void check_forces_at_rest(const Scenario& scenario, const Model& model) {
-  const State rest = rest_state(model);
-  Vectors forces(rest.positions.size(), Vec3::Zero());
-  Step still{rest.positions, rest.positions, rest.velocities, 1, 0};
-  still.internals = rest.internals;
-  for_laws(model, still, [&](const Law& law, const Step& own) { law.add_forces(own, forces); });
+  const Vectors forces = driving_forces(model, rest_state(model));
   const auto bad = std::ranges::find_if(forces, [](const Vec3& force) { return !force.allFinite(); });
   if (bad == forces.end()) return;
   const NodeId node(static_cast<std::size_t>(bad - forces.begin()));

@@ -17,7 +17,7 @@ Spread spread(const std::vector<double>& values) {
 }  // namespace
 
 MeshQuality mesh_quality(const Tissue& tissue, const Vectors& positions) {
-  std::vector<double> volumes, areas(tissue.cells.size(), 0.0), along, across, heights;
+  std::vector<double> volumes, along, across, heights;
   for (const Cell& cell : tissue.cells) {
     volumes.push_back(cell_volume(tissue, cell, positions));
     for (const CellEdge& edge : cell.edges) {
@@ -30,22 +30,16 @@ MeshQuality mesh_quality(const Tissue& tissue, const Vectors& positions) {
       lengths.push_back(length);
     }
   }
-  std::vector<bool> has_area(tissue.cells.size(), false);
-  for (const Facet& facet : tissue.apical_facets) {
-    std::array<Vec3, 4> points;
-    for (int i = 0; i < 4; ++i) points[i] = positions[facet.nodes[i].index()];
-    areas[facet.cell.index()] += facet_area(points);
-    has_area[facet.cell.index()] = true;
-  }
-  std::vector<double> apical;
-  for (std::size_t c = 0; c < areas.size(); ++c)
-    if (has_area[c]) apical.push_back(areas[c]);
+  std::vector<double> areas = apical_areas(tissue, positions);
+  std::erase(areas, 0.0);  // of cells without an apical face
+  return {spread(volumes), spread(areas),   spread(along),
+          spread(across),  spread(heights), min_scaled_jacobian(tissue, positions)};
+}
 
-  MeshQuality quality{spread(volumes), spread(apical), spread(along), spread(across), spread(heights), 1};
-  for (const auto& element : tissue.elements)
-    quality.min_scaled_jacobian =
-        std::min(quality.min_scaled_jacobian, hex_scaled_jacobian(gather(positions, element)));
-  return quality;
+double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions) {
+  double least = 1;
+  for (const auto& element : tissue.elements) least = std::min(least, hex_scaled_jacobian(gather(positions, element)));
+  return least;
 }
 
 }  // namespace plica

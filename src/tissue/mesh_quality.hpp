@@ -20,4 +20,7 @@ struct MeshQuality {
 
 MeshQuality mesh_quality(const Tissue& tissue, const Vectors& positions);
 
+/// Worst corner of an element: 1 is a brick, 0 is flat.
+double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions);
+
 }  // namespace plica
