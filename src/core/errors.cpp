@@ -1,17 +1,15 @@
 #include "core/errors.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace plica {
 namespace {
 
 std::string joined(const std::vector<Diagnostic>& diagnostics) {
-  std::string text;
-  for (const Diagnostic& diagnostic : diagnostics) {
-    if (!text.empty()) text += '\n';
-    text += diagnostic.text();
-  }
-  return text;
+  std::vector<std::string> lines;
+  for (const Diagnostic& diagnostic : diagnostics) lines.push_back(diagnostic.text());
+  return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include <limits>
 
+#include "core/names.hpp"
 #include "core/units.hpp"
 #include "measure/cells.hpp"
-#include "measure/columns.hpp"
 #include "measure/self_intersections.hpp"
 
 namespace plica {
@@ -15,7 +15,6 @@ using C = MeasuredCells;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr bool csv = true, no_csv = false;
-using enum InFrames;
 
 // The values of all cells by a function of one.
 template <class OfCell>
@@ -43,7 +42,38 @@ Values crossing(const C& c) {
   return {cells.begin(), cells.end()};
 }
 
-const std::vector<CellColumn>& cells_table() {
+Values depths_um(const C& c, const FurrowSites& sites) {
+  Values values;
+  for (const auto& depth : cell_depths_um(c.model.tissue, sites, sites.midline, c.state.positions))
+    values.push_back(depth.value_or(none));
+  return values;
+}
+
+Values inward_speeds(const C& c, const FurrowSites& sites) {
+  const std::vector<Vec3> normals = rest_apical_normals(c.model.tissue, sites.midline);
+  Values values;
+  for (std::size_t i = 0; i < sites.midline.size(); ++i)
+    values.push_back(-normals[i].dot(mean_apical(c.model.tissue.cells[sites.midline[i].index()], c.state.velocities)));
+  return values;
+}
+
+}  // namespace
+
+MeasuredCells::MeasuredCells(const Model& of_model, const State& at_state)
+    : model(of_model),
+      state(at_state),
+      apical_areas(plica::apical_areas(model.tissue, state.positions)),
+      rest_apical_areas(plica::rest_apical_areas(model.tissue)) {}
+
+std::vector<double> MeasuredCells::apical_area_ratios() const {
+  std::vector<double> ratios(apical_areas.size(), none);
+  for (std::size_t c = 0; c < ratios.size(); ++c)
+    if (rest_apical_areas[c] > 0) ratios[c] = apical_areas[c] / rest_apical_areas[c];
+  return ratios;
+}
+
+std::span<const CellColumn> cell_columns() {
+  using enum InFrames;
   static const std::vector<CellColumn> table = {
       {"time_s", csv, nothing, "Of the frame.", of_each([](const Cell&, const State& state) { return state.time_s; })},
       {"cell_id", csv, integers,
@@ -81,22 +111,21 @@ const std::vector<CellColumn>& cells_table() {
   return table;
 }
 
-Values depths_um(const C& c, const FurrowSites& sites) {
-  Values values;
-  for (const auto& depth : cell_depths_um(c.model.tissue, sites, sites.midline, c.state.positions))
-    values.push_back(depth.value_or(none));
-  return values;
+std::span<const NodeColumn> node_columns() {
+  static const std::vector<NodeColumn> table = {
+      {"displacement_um", "From the node's place at rest.",
+       [](const Model& model, const State& state) {
+         Vectors displacements = state.positions;
+         for (std::size_t n = 0; n < displacements.size(); ++n) displacements[n] -= model.tissue.rest_positions[n];
+         return displacements;
+       }},
+      {"velocity_um_per_s", "At the step's end; with backward Euler the mean over the step.",
+       [](const Model&, const State& state) { return state.velocities; }},
+      {"force_nN", "The contractions' force on the node, without their dampers.", active_forces}};
+  return table;
 }
 
-Values inward_speeds(const C& c, const FurrowSites& sites) {
-  const std::vector<Vec3> normals = rest_apical_normals(c.model.tissue, sites.midline);
-  Values values;
-  for (std::size_t i = 0; i < sites.midline.size(); ++i)
-    values.push_back(-normals[i].dot(mean_apical(c.model.tissue.cells[sites.midline[i].index()], c.state.velocities)));
-  return values;
-}
-
-const std::vector<MidlineColumn>& midline_table() {
+std::span<const MidlineColumn> midline_columns() {
   static const std::vector<MidlineColumn> table = {
       {"time_s", "Of the frame.",
        [](const C& c, const FurrowSites& sites) { return Values(sites.midline.size(), c.state.time_s); }},
@@ -118,21 +147,7 @@ const std::vector<MidlineColumn>& midline_table() {
   return table;
 }
 
-const std::vector<NodeColumn>& nodes_table() {
-  static const std::vector<NodeColumn> table = {
-      {"displacement_um", "From the node's place at rest.",
-       [](const Model& model, const State& state) {
-         Vectors displacements = state.positions;
-         for (std::size_t n = 0; n < displacements.size(); ++n) displacements[n] -= model.tissue.rest_positions[n];
-         return displacements;
-       }},
-      {"velocity_um_per_s", "At the step's end; with backward Euler the mean over the step.",
-       [](const Model&, const State& state) { return state.velocities; }},
-      {"force_nN", "The contractions' force on the node, without their dampers.", active_forces}};
-  return table;
-}
-
-const std::vector<LineageColumn>& lineage_table() {
+std::span<const LineageColumn> lineage_columns() {
   static const std::vector<LineageColumn> table = {
       {"cell_id", "Number of the daughter.", [](const Lineage& lineage) { return lineage.id; }},
       {"mother_id", "Number of her mother.", [](const Lineage& lineage) { return lineage.mother; }},
@@ -141,26 +156,6 @@ const std::vector<LineageColumn>& lineage_table() {
   return table;
 }
 
-}  // namespace
-
-MeasuredCells::MeasuredCells(const Model& of_model, const State& at_state)
-    : model(of_model),
-      state(at_state),
-      apical_areas(plica::apical_areas(model.tissue, state.positions)),
-      rest_apical_areas(plica::rest_apical_areas(model.tissue)) {}
-
-std::vector<double> MeasuredCells::apical_area_ratios() const {
-  std::vector<double> ratios(apical_areas.size(), none);
-  for (std::size_t c = 0; c < ratios.size(); ++c)
-    if (rest_apical_areas[c] > 0) ratios[c] = apical_areas[c] / rest_apical_areas[c];
-  return ratios;
-}
-
-std::span<const CellColumn> cell_columns() { return cells_table(); }
-std::span<const NodeColumn> node_columns() { return nodes_table(); }
-std::span<const MidlineColumn> midline_columns() { return midline_table(); }
-std::span<const LineageColumn> lineage_columns() { return lineage_table(); }
-
-std::vector<std::string> cells_csv_names() { return names_of(cells_table(), &CellColumn::in_csv); }
+std::vector<std::string> cells_csv_names() { return names_of(cell_columns(), &CellColumn::in_csv); }
 
 }  // namespace plica

@@ -44,32 +44,24 @@ struct CellColumn {
 std::span<const CellColumn> cell_columns();
 std::vector<std::string> cells_csv_names();
 
-/// A vector of each node, in frames.
-struct NodeColumn {
+/// A column that goes to one place only.
+template <class Values>
+struct PlainColumn {
   std::string_view name;
   std::string_view meaning;
-  std::function<Vectors(const Model&, const State&)> values;
+  std::function<Values> values;
 };
 
+/// A vector of each node, in frames.
+using NodeColumn = PlainColumn<Vectors(const Model&, const State&)>;
 std::span<const NodeColumn> node_columns();
 
-/// A value of each cell of the midline (FurrowSites::midline). NaN: it has none.
-struct MidlineColumn {
-  std::string_view name;
-  std::string_view meaning;
-  std::function<std::vector<double>(const MeasuredCells&, const FurrowSites&)> values;
-};
-
-/// In the order of midline.csv.
+/// A value of each cell of the midline (FurrowSites::midline), in the order of midline.csv. NaN: it has none.
+using MidlineColumn = PlainColumn<std::vector<double>(const MeasuredCells&, const FurrowSites&)>;
 std::span<const MidlineColumn> midline_columns();
 
 /// A value of a daughter when she is born, in lineage.csv.
-struct LineageColumn {
-  std::string_view name;
-  std::string_view meaning;
-  std::function<double(const Lineage&)> value;
-};
-
+using LineageColumn = PlainColumn<double(const Lineage&)>;
 std::span<const LineageColumn> lineage_columns();
 
 }  // namespace plica

@@ -57,9 +57,48 @@ Column of_run(std::string_view name, std::string_view meaning, std::optional<dou
   return {name, no_series, whole_run, meaning, {}, [=](const SpeedHistory& run) { return run.*number; }};
 }
 
-std::vector<Column> table() {
+SpeedHistory history_of(std::span<const Observation> rows) {
+  std::vector<SpeedRow> speeds;
+  speeds.reserve(rows.size());
+  for (const Observation& row : rows)
+    speeds.push_back({row.time_s(), row["vml_speed_um_per_s"], row["vce_speed_um_per_s"], row["vml_displacement_um"],
+                      row["vce_displacement_um"]});
+  return speed_history(speeds);
+}
+
+std::optional<double> reduced(InSummary how, std::span<const Observation> rows, std::size_t column) {
+  if (how == last) return rows.back().values[column];
+  std::optional<double> result;
+  for (const Observation& row : rows) {
+    const std::optional<double> value = row.values[column];
+    if (!value) continue;
+    if (!result)
+      result = value;
+    else if (how == largest)
+      result = std::max(*result, *value);
+    else if (how == least)
+      result = std::min(*result, *value);
+    else
+      *result += *value;
+  }
+  return result;
+}
+
+}  // namespace
+
+MeasuredStep::MeasuredStep(const Model& of_model, const FurrowSites& at_sites, std::optional<double> rest_lumen_volume,
+                           const State& at_its_end, const AcceptedStep* accepted)
+    : model(of_model),
+      sites(at_sites),
+      rest_lumen_volume_um3(rest_lumen_volume),
+      state(at_its_end),
+      step(accepted),
+      furrow(furrow_shape(model.tissue, sites, state.positions)),
+      speeds(speeds_of(model.tissue, sites, state, step == nullptr)) {}
+
+std::span<const Column> columns() {
   using M = MeasuredStep;
-  return {
+  static const std::vector<Column> all = {
       {"time_s", series, nothing, "End of the step; 0 at rest.", [](const M& m) { return m.state.time_s; }},
       {"furrow_depth_um", series, last,
        "The apical surface of the furrow's cells cut by the plane y = 0; of all points on the cut, the largest "
@@ -145,49 +184,6 @@ std::vector<Column> table() {
       of_projection({"cubic_three_real_roots", no_series, sum, "How many of those had three different real roots.",
                      reported(&StepReport::cubics_with_three_roots)}),
   };
-}
-
-SpeedHistory history_of(std::span<const Observation> rows) {
-  std::vector<SpeedRow> speeds;
-  speeds.reserve(rows.size());
-  for (const Observation& row : rows)
-    speeds.push_back({row.time_s(), row["vml_speed_um_per_s"], row["vce_speed_um_per_s"], row["vml_displacement_um"],
-                      row["vce_displacement_um"]});
-  return speed_history(speeds);
-}
-
-std::optional<double> reduced(InSummary how, std::span<const Observation> rows, std::size_t column) {
-  if (how == last) return rows.back().values[column];
-  std::optional<double> result;
-  for (const Observation& row : rows) {
-    const std::optional<double> value = row.values[column];
-    if (!value) continue;
-    if (!result)
-      result = value;
-    else if (how == largest)
-      result = std::max(*result, *value);
-    else if (how == least)
-      result = std::min(*result, *value);
-    else
-      *result += *value;
-  }
-  return result;
-}
-
-}  // namespace
-
-MeasuredStep::MeasuredStep(const Model& of_model, const FurrowSites& at_sites, std::optional<double> rest_lumen_volume,
-                           const State& at_its_end, const AcceptedStep* accepted)
-    : model(of_model),
-      sites(at_sites),
-      rest_lumen_volume_um3(rest_lumen_volume),
-      state(at_its_end),
-      step(accepted),
-      furrow(furrow_shape(model.tissue, sites, state.positions)),
-      speeds(speeds_of(model.tissue, sites, state, step == nullptr)) {}
-
-std::span<const Column> columns() {
-  static const std::vector<Column> all = table();
   return all;
 }
 

@@ -1,6 +1,8 @@
 // The tables of docs/measures.md.
 #include <fmt/format.h>
 
+#include <array>
+
 #include "measure/cell_columns.hpp"
 #include "measure/columns.hpp"
 #include "measure/monitor.hpp"
@@ -9,21 +11,8 @@ namespace plica {
 namespace {
 
 const char* in_summary(const Column& column) {
-  switch (column.in_summary) {
-    case InSummary::nothing:
-      return "";
-    case InSummary::last:
-      return "last";
-    case InSummary::largest:
-      return "largest";
-    case InSummary::least:
-      return "smallest";
-    case InSummary::sum:
-      return "sum";
-    case InSummary::whole_run:
-      return "of the run";
-  }
-  return "";
+  constexpr std::array words = {"", "last", "largest", "smallest", "sum", "of the run"};  // in the order of InSummary
+  return words.at(static_cast<std::size_t>(column.in_summary));
 }
 
 const char* mark(bool is_there) { return is_there ? "x" : ""; }

@@ -53,13 +53,6 @@ constexpr std::array<Info, 14> table = {{
      "bit but for `wall_*`, here the columns whose name goes on with `wall_` after the dot."},
 }};
 
-/// One value of each vector: its component or its norm.
-std::vector<double> sized(const Vectors& vectors, std::optional<int> axis) {
-  std::vector<double> values;
-  for (const Vec3& v : vectors) values.push_back(axis ? v[*axis] : v.norm());
-  return values;
-}
-
 }  // namespace
 
 Vectors forces_of_cells(const Model& model, const State& state, const CellSet& cells) {
@@ -133,10 +126,13 @@ std::vector<double> node_values(const Monitor& monitor, const Moment& moment) {
   const Tissue& tissue = moment.model.tissue;
   const State& state = moment.state;
   const std::vector<NodeId> nodes = monitored_nodes(monitor, tissue);
-  Vectors vectors;
-  const auto collect = [&](const auto& vector_at) {
-    for (const NodeId node : nodes) vectors.push_back(vector_at(node.index()));
-    return sized(vectors, monitor.axis);
+  const auto collect = [&](const auto& vector_at) {  // of each its component or its norm
+    std::vector<double> values;
+    for (const NodeId node : nodes) {
+      const Vec3 vector = vector_at(node.index());
+      values.push_back(monitor.axis ? vector[*monitor.axis] : vector.norm());
+    }
+    return values;
   };
   switch (monitor.quantity) {
     case Quantity::position:
@@ -258,20 +254,10 @@ std::optional<double> combined(Over over, std::span<const double> values) {
 }
 
 Reading read_monitor(const Monitor& monitor, const Moment& moment) {
-  Reading reading;
-  switch (info_of(monitor.quantity).of) {
-    case QuantityInfo::Of::node:
-      reading.values = node_values(monitor, moment);
-      break;
-    case QuantityInfo::Of::cell:
-      reading.values = cell_values(monitor, moment);
-      break;
-    case QuantityInfo::Of::region:
-      reading.values = region_values(monitor, moment);
-      break;
-  }
-  reading.number = combined(monitor.over, reading.values);
-  return reading;
+  const Info::Of of = info_of(monitor.quantity).of;
+  const auto values_of = of == Info::Of::node ? node_values : of == Info::Of::cell ? cell_values : region_values;
+  const std::vector<double> values = values_of(monitor, moment);
+  return {values, combined(monitor.over, values)};
 }
 
 }  // namespace plica

@@ -12,8 +12,6 @@ namespace plica {
 class SurfaceDistance {
  public:
   explicit SurfaceDistance(const TriangleSurface& surface);  // at least one triangle
-  SurfaceDistance(SurfaceDistance&&) noexcept;
-  SurfaceDistance& operator=(SurfaceDistance&&) noexcept;
   ~SurfaceDistance();
 
   /// From the point to the nearest triangle, um; never negative.

@@ -12,8 +12,6 @@ SurfaceDistance::SurfaceDistance(const TriangleSurface&) {
   throw FileError("distances to a surface cannot be measured: plica was built without VTK");
 }
 
-SurfaceDistance::SurfaceDistance(SurfaceDistance&&) noexcept = default;
-SurfaceDistance& SurfaceDistance::operator=(SurfaceDistance&&) noexcept = default;
 SurfaceDistance::~SurfaceDistance() = default;
 
 double SurfaceDistance::from(const Vec3&) const { return 0; }

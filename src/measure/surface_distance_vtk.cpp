@@ -5,8 +5,6 @@
 #include <vtkPolyData.h>
 #include <vtkStaticCellLocator.h>
 
-#include <cmath>
-
 #include "core/one_thread_vtk.hpp"
 #include "measure/surface_distance.hpp"
 
@@ -33,8 +31,6 @@ SurfaceDistance::SurfaceDistance(const TriangleSurface& surface) : search_(std::
   search_->locator->BuildLocator();
 }
 
-SurfaceDistance::SurfaceDistance(SurfaceDistance&&) noexcept = default;
-SurfaceDistance& SurfaceDistance::operator=(SurfaceDistance&&) noexcept = default;
 SurfaceDistance::~SurfaceDistance() = default;
 
 double SurfaceDistance::from(const Vec3& point) const {

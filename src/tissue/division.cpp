@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "tissue/faces.hpp"
 #include "tissue/lattice.hpp"
 
 namespace plica {
@@ -237,11 +238,7 @@ void set_element_rest_shapes(Tissue& tissue, CellId id) {
 std::optional<std::string> why_indivisible(const Tissue& tissue) {
   for (const Cell& cell : tissue.cells)
     if (cell.walls[0].empty()) return "its cells have several elements each";
-  std::vector<char> apical(tissue.cells.size(), 0), basal(tissue.cells.size(), 0);
-  for (const Facet& facet : tissue.apical_facets) apical[facet.cell.index()] = 1;
-  for (const Facet& facet : tissue.basal_facets) basal[facet.cell.index()] = 1;
-  for (std::size_t c = 0; c < tissue.cells.size(); ++c)
-    if (!apical[c] || !basal[c]) return "it has more than one layer of cells";
+  if (cell_between_layers(tissue)) return "it has more than one layer of cells";
   return std::nullopt;
 }
 

@@ -32,8 +32,7 @@ std::vector<Face> lateral_faces(const Tissue& tissue) {
       const auto other = pairs.neighbour({e, f});
       const CellId cell = tissue.element_cell[e];
       if (other && (other->cell < e || tissue.element_cell[other->cell] == cell)) continue;
-      Face face{{}, cell, {}};
-      for (int i = 0; i < 4; ++i) face.nodes[i] = tissue.elements[e][hex_faces[f][i]];
+      Face face{face_nodes(tissue.elements[e], f), cell, {}};
       if (other) face.beyond = tissue.element_cell[other->cell];
       faces.push_back(face);
     }
@@ -69,6 +68,15 @@ std::vector<Face> faces_of(const Tissue& tissue, CellSide side) {
   for (const Facet& facet : side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets)
     faces.push_back({facet.nodes, facet.cell, {}});
   return faces;
+}
+
+std::optional<CellId> cell_between_layers(const Tissue& tissue) {
+  CellSet apical(tissue.cells.size(), false), basal = apical;
+  for (const Facet& facet : tissue.apical_facets) apical[facet.cell.index()] = true;
+  for (const Facet& facet : tissue.basal_facets) basal[facet.cell.index()] = true;
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c)
+    if (!apical[c] || !basal[c]) return CellId(c);
+  return std::nullopt;
 }
 
 }  // namespace plica

@@ -21,4 +21,7 @@ struct Face {
 /// that each face has one cell on either side.
 std::vector<Face> faces_of(const Tissue& tissue, CellSide side);
 
+/// The first cell that lacks an apical or a basal face: there is more than one layer of cells.
+std::optional<CellId> cell_between_layers(const Tissue& tissue);
+
 }  // namespace plica

@@ -3,19 +3,19 @@
 
 #include <array>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "core/errors.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
 
-/// A mesh that cannot be used. The text says which cell and what is wrong with it, without the file's name unless
-/// it comes from read_mesh_file.
-class MeshError : public std::runtime_error {
+/// A mesh that cannot be used, as good as a file that cannot be read. The text says which cell and what is wrong with
+/// it, without the file's name unless it comes from read_mesh_file or read_frame.
+class MeshError : public FileError {
  public:
-  using std::runtime_error::runtime_error;
+  using FileError::FileError;
 };
 
 struct HexahedralMesh {

@@ -86,14 +86,11 @@ void for_elements(const CellLattice& lattice, const Take& take) {
   for (int w = 0; w < nw; ++w)
     for (int v = 0; v < nv; ++v)
       for (int u = 0; u < nu; ++u) {
-        const std::array<NodeId, 8> element = {lattice.node(u, v, w),
-                                               lattice.node(u + 1, v, w),
-                                               lattice.node(u + 1, v + 1, w),
-                                               lattice.node(u, v + 1, w),
-                                               lattice.node(u, v, w + 1),
-                                               lattice.node(u + 1, v, w + 1),
-                                               lattice.node(u + 1, v + 1, w + 1),
-                                               lattice.node(u, v + 1, w + 1)};
+        std::array<NodeId, 8> element;
+        for (int i = 0; i < 8; ++i) {
+          const Vec3& r = hex_reference_nodes[i];
+          element[i] = lattice.node(u + (r.x() > 0), v + (r.y() > 0), w + (r.z() > 0));
+        }
         take(element, w);
       }
 }

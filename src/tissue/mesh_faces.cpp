@@ -18,12 +18,6 @@ struct FaceUse {
   auto operator<=>(const FaceUse&) const = default;
 };
 
-FaceNodes face_nodes(const std::array<NodeId, 8>& cell, int face) {
-  FaceNodes nodes;
-  for (int i = 0; i < 4; ++i) nodes[i] = cell[hex_faces[face][i]];
-  return nodes;
-}
-
 /// Two cells on either side of a face run round it in opposite directions.
 bool opposite(FaceNodes a, const FaceNodes& b) {
   std::reverse(a.begin(), a.end());
@@ -35,6 +29,12 @@ bool opposite(FaceNodes a, const FaceNodes& b) {
 }
 
 }  // namespace
+
+std::array<NodeId, 4> face_nodes(const std::array<NodeId, 8>& cell, int face) {
+  std::array<NodeId, 4> nodes;
+  for (int i = 0; i < 4; ++i) nodes[i] = cell[hex_faces[face][i]];
+  return nodes;
+}
 
 MeshFaces::MeshFaces(const std::vector<std::array<NodeId, 8>>& cells) : other_side_(cells.size() * 6, -1) {
   std::vector<FaceUse> uses(cells.size() * 6);

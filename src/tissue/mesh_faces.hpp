@@ -15,6 +15,9 @@ struct CellFace {
   int face;
 };
 
+/// The nodes of a face of a cell, counter-clockwise seen from outside.
+std::array<NodeId, 4> face_nodes(const std::array<NodeId, 8>& cell, int face);
+
 class MeshFaces {
  public:
   /// Pairs the faces of cells in VTK's order. MeshError when more than two cells share a face, or when two share its

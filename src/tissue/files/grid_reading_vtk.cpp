@@ -22,6 +22,7 @@
 
 #include <cerrno>
 #include <fstream>
+#include <sstream>
 #include <system_error>
 
 #include "core/child_process.hpp"
@@ -55,11 +56,8 @@ class ErrorWindow : public vtkOutputWindow {
     const std::size_t address = text.find(" (0x"), end = text.find("): ");
     if (address != std::string::npos && end != std::string::npos && address < end) text.erase(0, end + 3);
     std::string line;
-    for (const char c : text) {
-      const bool space = std::isspace(static_cast<unsigned char>(c)) != 0;
-      if (!space) line += c;
-      if (space && !line.empty() && line.back() != ' ') line += ' ';
-    }
+    std::istringstream words(text);
+    for (std::string word; words >> word;) line += line.empty() ? word : " " + word;
     while (line.ends_with(' ') || line.ends_with('.')) line.pop_back();
     return line;
   }
@@ -142,10 +140,10 @@ std::string read_in_child(const std::filesystem::path& file, const std::function
   const std::optional<std::string> answer = output_of_child("reading " + file.string(), [&] {
     try {
       return 'r' + read();
-    } catch (const FileError& error) {
-      return std::string("f") + error.what();
     } catch (const MeshError& error) {
       return std::string("m") + error.what();
+    } catch (const FileError& error) {
+      return std::string("f") + error.what();
     }
   });
   if (!answer || answer->empty()) throw_unread(file, "it is damaged: VTK breaks off at it");

@@ -1,10 +1,11 @@
-// What stands in for frame_file_vtk.cpp when plica is built without VTK.
+// What stands in for frame_file_vtk.cpp and mesh_file_vtk.cpp when plica is built without VTK.
 #ifndef PLICA_WITH_VTK
 
 #include <fmt/format.h>
 
 #include "core/errors.hpp"
 #include "tissue/files/frame_file.hpp"
+#include "tissue/files/mesh_file.hpp"
 
 namespace plica {
 namespace {
@@ -16,6 +17,9 @@ namespace {
 }  // namespace
 
 Frame read_frame(const std::filesystem::path& file) { refuse(file); }
+Tissue read_mesh_file(const std::filesystem::path& file, const std::string&, const std::array<int, 3>&) {
+  refuse(file);
+}
 TriangleSurface read_surface(const std::filesystem::path& file) { refuse(file); }
 std::vector<std::pair<double, std::string>> read_collection(const std::filesystem::path& pvd) { refuse(pvd); }
 
