@@ -2,15 +2,16 @@
 
 #include <fmt/format.h>
 #include <libdeflate.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <new>
 #include <sstream>
 
+#include "core/child_process.hpp"
 #include "core/errors.hpp"
-#include "record/archive.hpp"
-#include "record/reading_trial.hpp"
 
 namespace plica {
 namespace {
@@ -125,8 +126,12 @@ void visit_iterate(Take& take, const std::string& at, Iterate& iterate) {
   take(at + "in_contact", iterate.in_contact);
 }
 
-template <class Take, class Run>
-void visit_run(Take& take, Run& run) {
+template <class Take, class AnyCheckpoint>
+void visit(Take& take, AnyCheckpoint& checkpoint) {
+  take("program", checkpoint.program);
+  take("scenario", checkpoint.scenario);
+  take("at_rest", checkpoint.at_rest);
+  auto& run = checkpoint.run;
   auto& state = run.state;
   visit_iterate(take, "state/", state);
   take("state/time_s", state.time_s);
@@ -159,10 +164,7 @@ void visit_run(Take& take, Run& run) {
   take("factor/normals", factor.normals);
   take("factor/iterations_when_new", factor.iterations_when_new);
   take("factor/wasted_iterations", factor.wasted_iterations);
-}
-
-template <class Take, class Record>
-void visit_record(Take& take, Record& record) {
+  auto& record = checkpoint.record;
   take("record/series_bytes", record.series_bytes);
   take("record/lineage_bytes", record.lineage_bytes);
   take("record/midline_bytes", record.midline_bytes);
@@ -272,7 +274,34 @@ std::vector<std::shared_ptr<const PastDivision>> load_divisions(const ArchiveRea
   return past;
 }
 
+/// Of the processor: seconds, and a second for each 10 MB, a hundred times what it takes.
+void limit_time(std::size_t bytes) {
+  const rlim_t seconds = 3 + bytes / 10'000'000;
+  const rlimit limit{seconds, seconds + 1};
+  ::setrlimit(RLIMIT_CPU, &limit);
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+}
+
 }  // namespace
+
+void read_on_trial(const std::function<void()>& read, std::size_t bytes) {
+  // A letter for the kind of answer, then the error.
+  const std::optional<std::string> answer = output_of_child("reading it on trial", [&]() -> std::string {
+    limit_time(bytes);
+    try {
+      read();
+      return "r";
+    } catch (const FileError& error) {
+      return std::string("f") + error.what();
+    } catch (const std::bad_alloc&) {
+      return "m";
+    }
+  });
+  if (!answer || answer->empty()) throw FileError("it is damaged: HDF5 breaks off at it");
+  if (answer->front() == 'f') throw FileError(answer->substr(1));
+  if (answer->front() == 'm') throw std::bad_alloc();
+}
 
 std::string fingerprint(const Tissue& tissue) {
   std::uint32_t sum = 0;
@@ -284,19 +313,12 @@ std::string fingerprint(const Tissue& tissue) {
                      tissue.cells.size(), sum);
 }
 
-CheckpointBytes::CheckpointBytes() = default;
-CheckpointBytes::~CheckpointBytes() = default;
-
 std::string CheckpointBytes::operator()(const Checkpoint& checkpoint) {
   constexpr std::size_t most_kept_bytes = std::size_t{32} << 20;
   auto archive = archive_ ? std::move(archive_) : std::make_unique<ArchiveWriter>();  // none is kept after errors
   Saving save(*archive);
   save("format", format);
-  save("program", checkpoint.program);
-  save("scenario", checkpoint.scenario);
-  save("at_rest", checkpoint.at_rest);
-  visit_run(save, checkpoint.run);
-  visit_record(save, checkpoint.record);
+  visit(save, checkpoint);
   save_divisions(*archive, checkpoint.run.past_divisions);
   save_rows(*archive, checkpoint.record.rows);
   std::string bytes = archive->image();
@@ -318,11 +340,7 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
     const ArchiveReader archive(image);
     Loading load(archive);
     Checkpoint checkpoint;
-    load("program", checkpoint.program);
-    load("scenario", checkpoint.scenario);
-    load("at_rest", checkpoint.at_rest);
-    visit_run(load, checkpoint.run);
-    visit_record(load, checkpoint.record);
+    visit(load, checkpoint);
     checkpoint.run.past_divisions = load_divisions(archive);
     checkpoint.record.rows = load_rows(archive);
     return checkpoint;

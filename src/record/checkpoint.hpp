@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "measure/observation.hpp"
+#include "record/archive.hpp"
 #include "simulation/run_memory.hpp"
 
 namespace plica {
@@ -38,19 +40,19 @@ std::string fingerprint(const Tissue& tissue);
 std::string checkpoint_bytes(const Checkpoint& checkpoint);
 Checkpoint read_checkpoint_bytes(std::string_view bytes);
 
+/// Calls `read` in a copy of this process. Its FileError and bad_alloc come out here; a FileError, too, when it crashes
+/// or takes far longer than reading `bytes` can: HDF5 trusts what is in a file, and a few damaged bytes, under a
+/// checksum that was made for them, send it round in circles.
+void read_on_trial(const std::function<void()>& read, std::size_t bytes);
+
 /// The same for the checkpoints of a run, one after the other: of each only what is new is made anew, which takes a
 /// fifth of the time. The first one's bytes are those of checkpoint_bytes.
 class CheckpointBytes {
  public:
-  CheckpointBytes();
-  ~CheckpointBytes();
-  CheckpointBytes(const CheckpointBytes&) = delete;
-  CheckpointBytes& operator=(const CheckpointBytes&) = delete;
-
   std::string operator()(const Checkpoint& checkpoint);
 
  private:
-  std::unique_ptr<class ArchiveWriter> archive_;  // of the last one, as long as it is small
+  std::unique_ptr<ArchiveWriter> archive_;  // of the last one, as long as it is small
 };
 
 /// Whether two resolved scenarios differ in more than [time], [stop] and [output], which may change at a resume: the

@@ -18,21 +18,14 @@ char* put_number(char* at, char* end, double value) {
 
 }  // namespace
 
-void append_csv_row(std::string& text, std::span<const double> values) {
-  std::array<char, 32> number;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) text += ',';
-    if (std::isfinite(values[i]))
-      text.append(number.data(), put_number(number.data(), number.data() + number.size(), values[i]));
-  }
-}
-
 std::string csv_rows(std::span<const double> values, std::size_t columns) {
   std::string text;
   text.reserve(values.size() * (digits + 2));
-  for (std::size_t i = 0; i < values.size(); i += columns) {
-    if (i > 0) text += '\n';
-    append_csv_row(text, values.subspan(i, columns));
+  std::array<char, 32> number;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) text += i % columns == 0 ? '\n' : ',';
+    if (std::isfinite(values[i]))
+      text.append(number.data(), put_number(number.data(), number.data() + number.size(), values[i]));
   }
   return text;
 }

@@ -6,11 +6,9 @@
 
 namespace plica {
 
-/// Adds the values to `text`, comma between them: at most ten significant digits, as printf's %.10g gives them. A value
-/// that is not finite stands for none and leaves its place empty. No "-0".
-void append_csv_row(std::string& text, std::span<const double> values);
-
-/// The rows of a table whose values lie row after row, `columns` in each, joined by '\n'.
+/// The rows of a table whose values lie row after row, `columns` in each, joined by '\n'; commas between values. At
+/// most ten significant digits, as printf's %.10g gives them. A value that is not finite stands for none and leaves its
+/// place empty. No "-0".
 std::string csv_rows(std::span<const double> values, std::size_t columns);
 
 }  // namespace plica

@@ -88,32 +88,29 @@ std::vector<Number> of_elements(const MeshElements& mesh, const std::vector<Valu
   return values;
 }
 
-bool all_finite(std::span<const Vec3> values) {
-  return std::ranges::all_of(values, [](const Vec3& value) { return value.allFinite(); });
-}
+bool is_finite(double value) { return std::isfinite(value); }
+bool is_finite(const Vec3& value) { return value.allFinite(); }
+bool is_finite(int) { return true; }
 
-bool all_finite(const std::vector<double>& values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+template <class Values>
+void check_values(const std::string& name, const Values& values, std::size_t count, const char* of_each) {
+  require(values.size() == count, name, of_each);
+  require(std::ranges::all_of(values, [](const auto& value) { return is_finite(value); }), name, "is not finite");
 }
 
 void check(const MeshElements& mesh, std::span<const Vec3> positions, const MeshArrays& arrays,
            std::optional<double> time_s) {
-  require(positions.size() == mesh.nodes, "positions", "has not one value a node");
-  require(all_finite(positions), "positions", "is not finite");
-  for (const auto& [name, values] : arrays.node_vectors) {
-    require(values.size() == positions.size(), name, "has not one value a node");
-    require(all_finite(values), name, "is not finite");
-  }
-  for (const auto& [name, values] : arrays.node_scalars) {
-    require(values.size() == positions.size(), name, "has not one value a node");
-    require(all_finite(values), name, "is not finite");
-  }
-  for (const auto& [name, values] : arrays.cell_scalars) {
-    require(values.size() == mesh.cells, name, "has not one value a cell");
-    require(all_finite(values), name, "is not finite");
-  }
-  for (const auto& [name, values] : arrays.cell_integers)
-    require(values.size() == mesh.cells, name, "has not one value a cell");
+  const auto of_nodes = [&](const auto& name, const auto& values) {
+    check_values(name, values, mesh.nodes, "has not one value a node");
+  };
+  const auto of_cells = [&](const auto& name, const auto& values) {
+    check_values(name, values, mesh.cells, "has not one value a cell");
+  };
+  of_nodes("positions", positions);
+  for (const auto& [name, values] : arrays.node_vectors) of_nodes(name, values);
+  for (const auto& [name, values] : arrays.node_scalars) of_nodes(name, values);
+  for (const auto& [name, values] : arrays.cell_scalars) of_cells(name, values);
+  for (const auto& [name, values] : arrays.cell_integers) of_cells(name, values);
   require(!time_s || std::isfinite(*time_s), "the time", "is not finite");
 }
 
@@ -179,6 +176,19 @@ Frame frame_of(const MeshElements& mesh, std::span<const Vec3> positions, const 
   for (const auto& [name, values] : arrays.cell_integers)
     frame.element_scalars[name] = of_elements<double>(mesh, values);
   return frame;
+}
+
+void write_collection(const std::filesystem::path& pvd,
+                      const std::vector<std::pair<double, std::string>>& time_and_file) {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  "
+      "<Collection>\n";
+  for (const auto& [time_s, file] : time_and_file) {
+    if (!std::isfinite(time_s)) throw std::logic_error("write_collection: a time is not finite");
+    text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", time_s, xml_escaped(file));
+  }
+  text += "  </Collection>\n</VTKFile>\n";
+  write_file(pvd, text);
 }
 
 }  // namespace plica

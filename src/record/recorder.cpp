@@ -207,7 +207,7 @@ void Recorder::append_lineage(const Division& division) {
     for (const CellId daughter : daughters) {
       const Lineage& lineage = simulation_.model().tissue.cells[daughter.index()].lineage;
       std::vector<std::optional<double>> values;
-      for (const LineageColumn& column : lineage_columns()) values.emplace_back(column.value(lineage));
+      for (const LineageColumn& column : lineage_columns()) values.emplace_back(column.values(lineage));
       lineage_->append(row_of(values));
     }
 }

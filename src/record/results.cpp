@@ -3,34 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/numbers.hpp"
 
 namespace plica {
 namespace {
 
-std::vector<std::string> fields(const std::string& line) {
-  std::vector<std::string> result(1);
-  for (const char c : line) {
-    if (c == ',') {
-      result.emplace_back();
-    } else if (c != '\r') {
-      result.back() += c;
-    }
-  }
+std::vector<std::string> fields(std::string line) {
+  std::erase(line, '\r');
+  std::istringstream stream(line + ',');
+  std::vector<std::string> result;
+  for (std::string field; std::getline(stream, field, ',');) result.push_back(field);
   return result;
-}
-
-/// The number, or nothing where the text is none.
-std::optional<double> number_in(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
 }
 
 }  // namespace
@@ -97,6 +85,11 @@ nlohmann::ordered_json read_summary(const std::filesystem::path& directory) {
   } catch (const nlohmann::json::exception& problem) {
     throw FileError(fmt::format("{}: is damaged: {}", file.string(), problem.what()));
   }
+}
+
+std::optional<double> number_of(const nlohmann::ordered_json& summary, const std::string& key) {
+  if (!summary.is_object() || !summary.contains(key) || !summary.at(key).is_number()) return std::nullopt;
+  return summary.at(key).get<double>();
 }
 
 }  // namespace plica

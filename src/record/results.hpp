@@ -30,4 +30,7 @@ Series read_table(const std::filesystem::path& file, bool times_increase = false
 /// summary.json; null where the run has not left one (yet). FileError when it cannot be understood.
 nlohmann::ordered_json read_summary(const std::filesystem::path& directory);
 
+/// A number of it; none where there is no such number.
+std::optional<double> number_of(const nlohmann::ordered_json& summary, const std::string& key);
+
 }  // namespace plica

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 #include <omp.h>
 
-#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <optional>

@@ -19,11 +19,7 @@ std::string as_printf(double value) {
   return text.data();
 }
 
-std::string number(double value) {
-  std::string text;
-  append_csv_row(text, std::span<const double>(&value, 1));
-  return text;
-}
+std::string number(double value) { return csv_rows(std::span<const double>(&value, 1), 1); }
 
 TEST(Csv, NumbersAreAsPrintfGivesThem) {
   std::mt19937_64 random(7);

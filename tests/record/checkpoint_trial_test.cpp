@@ -1,4 +1,4 @@
-#include "record/reading_trial.hpp"
+#include "record/checkpoint.hpp"
 
 #include <gtest/gtest.h>
 
