@@ -39,11 +39,8 @@ std::vector<KeyDifference> scenario_differences(std::string_view a, std::string_
   for (const auto& [key, value] : values_of(a)) all[key].a = value;
   for (const auto& [key, value] : values_of(b)) all[key].b = value;
   std::vector<KeyDifference> differences;
-  for (auto& [key, difference] : all)
-    if (difference.a != difference.b) {
-      difference.key = key;
-      differences.push_back(std::move(difference));
-    }
+  for (const auto& [key, values] : all)
+    if (values.a != values.b) differences.push_back({key, values.a, values.b});
   return differences;
 }
 

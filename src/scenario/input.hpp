@@ -34,6 +34,13 @@ struct Input {
 
   [[nodiscard]] bool sound(const std::string& address) const { return !doubtful.contains(address); }
 
+  /// Whether `address` was given along with `chooser` or after it, so that it cannot have been meant for another choice
+  /// that was inherited.
+  [[nodiscard]] bool given_with(const std::string& address, const std::string& chooser) const {
+    const Place *given = place(address), *choice = place(chooser);
+    return given != nullptr && (choice == nullptr || given->layer >= choice->layer);
+  }
+
   /// Reports at the place of `address`, or of the table around it where it was not given.
   void report(const std::string& address, std::string problem, std::string remedy) {
     const Place* here = place(address);

@@ -1,5 +1,4 @@
-#include "scenario/monitor_rules.hpp"
-
+// The rules between the keys of [monitor.NAME] and [stop.NAME].
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +6,7 @@
 #include "core/names.hpp"
 #include "measure/monitor.hpp"
 #include "scenario/suggest.hpp"
+#include "scenario/validate.hpp"
 #include "scenario/words.hpp"
 
 namespace plica {

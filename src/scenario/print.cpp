@@ -3,16 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
+#include <ranges>
 
 #include "scenario/schema.hpp"
 
 namespace plica {
-namespace {
-
-std::string in_toml(int value) { return fmt::format("{}", value); }
-std::string in_toml(double value) { return fmt::format("{}", value); }  // the shortest that reads back exactly
-std::string in_toml(bool value) { return value ? "true" : "false"; }
 
 std::string in_toml(const std::string& text) {
   std::string quoted = "\"";
@@ -30,47 +25,34 @@ std::string in_toml(const std::string& text) {
   return quoted + '"';
 }
 
-template <class Items>
-std::string list_in_toml(const Items& items) {
+namespace {
+
+std::string in_toml(int value) { return fmt::format("{}", value); }
+std::string in_toml(double value) { return fmt::format("{}", value); }  // the shortest that reads back exactly
+std::string in_toml(bool value) { return value ? "true" : "false"; }
+
+template <std::ranges::range Items>
+std::string in_toml(const Items& items) {
   std::vector<std::string> texts;
-  texts.reserve(items.size());
   for (const auto& item : items) texts.push_back(in_toml(item));
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
-template <class Item, std::size_t n>
-std::string in_toml(const std::array<Item, n>& items) {
-  return list_in_toml(items);
-}
-
 /// The value of a row as TOML; nothing where it has none.
-class ValueText {
- public:
-  explicit ValueText(const Row& row) : row_(row) {}
-
-  std::string operator()(std::monostate) const { return ""; }
-  std::string operator()(const std::string* text) const { return text->empty() ? "" : in_toml(*text); }
-  template <class Item>
-  std::string operator()(const std::vector<Item>* items) const {
-    return items->empty() ? "" : list_in_toml(*items);
-  }
-  template <class Value>
-  std::string operator()(const std::optional<Value>* value) const {
-    if (*value) return in_toml(**value);
-    const std::string none(row_.allowed.word_for_none);
-    return none.empty() ? "" : in_toml(none);
-  }
-  template <class Value>
-  std::string operator()(const Value* value) const {
-    return in_toml(*value);
-  }
-
- private:
-  const Row& row_;
-};
-
 std::string value_text(const Row& row, Scenario& scenario, const std::string& name) {
-  return std::visit(ValueText(row), row.field(scenario, name));
+  const auto text = [&]<class Field>(const Field& field) -> std::string {
+    if constexpr (std::is_same_v<Field, std::monostate>) {
+      return "";
+    } else if constexpr (requires { field->has_value(); }) {
+      const std::string none(row.allowed.word_for_none);
+      return *field ? in_toml(**field) : none.empty() ? "" : in_toml(none);
+    } else if constexpr (requires { field->empty(); }) {  // a text or a list
+      return field->empty() ? "" : in_toml(*field);
+    } else {
+      return in_toml(*field);
+    }
+  };
+  return std::visit(text, row.field(scenario, name));
 }
 
 std::string table_text(const TableInfo& info, const std::string& name, Scenario& scenario) {
@@ -119,9 +101,8 @@ std::string resolved_toml(const Scenario& scenario) {
   Scenario copy = scenario;  // the table hands out pointers to fields that may be written
   std::string text = fmt::format("# {}, every default filled in.\n", scenario.name);
   for (const TableInfo& info : schema_tables()) {
-    if (!info.named()) text += table_text(info, "", copy);
-    if (!info.named()) continue;
-    for (const std::string& name : info.names(scenario)) text += table_text(info, name, copy);
+    const std::vector<std::string> names = info.named() ? info.names(scenario) : std::vector<std::string>{""};
+    for (const std::string& name : names) text += table_text(info, name, copy);
   }
   return text;
 }
@@ -141,9 +122,7 @@ std::string reference_markdown() {
                           allowed_text(*row), row->meaning);
     }
   }
-  std::vector<std::string> names;
-  for (const std::string_view name : expectation_names()) names.push_back(fmt::format("`{}`", name));
-  return text + fmt::format("\n`[expect]` knows: {}.\n", fmt::join(names, ", "));
+  return text + fmt::format("\n`[expect]` knows: `{}`.\n", fmt::join(expectation_names(), "`, `"));
 }
 
 }  // namespace plica

@@ -10,6 +10,9 @@ namespace plica {
 /// Every key with its default filled in; optional keys without a value are left out. Loads back to the same Scenario.
 std::string resolved_toml(const Scenario& scenario);
 
+/// A text in TOML's quotes.
+std::string in_toml(const std::string& text);
+
 /// The page docs/scenario.md: for each table its keys, types, defaults, what is allowed, and meaning.
 std::string reference_markdown();
 

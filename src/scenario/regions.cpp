@@ -70,12 +70,13 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
     const bool only_others = region.face.empty() && region.ids.empty() && region.array.empty() && !region.x_um &&
                              !region.y_um && !region.z_um;
     if (only_others && !region.unite.empty()) set.assign(cells, false);
-    for (const std::string& other : region.unite)
-      for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] || resolve(other)[c];
-    for (const std::string& other : region.intersect)
-      for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] && resolve(other)[c];
+    const auto combine = [&](const CellSet& other, auto operation) {
+      std::transform(set.begin(), set.end(), other.begin(), set.begin(), operation);
+    };
+    for (const std::string& other : region.unite) combine(resolve(other), std::logical_or());
+    for (const std::string& other : region.intersect) combine(resolve(other), std::logical_and());
     for (const std::string& other : region.except)
-      for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] && !resolve(other)[c];
+      combine(resolve(other), [](bool in, bool out) { return in && !out; });
     return tissue.regions[name] = std::move(set);
   };
   for (const auto& [name, region] : scenario.regions) {

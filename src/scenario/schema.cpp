@@ -464,17 +464,4 @@ void reset_to_default(const Row& row, Scenario& scenario, const std::string& nam
       to);
 }
 
-bool is_default(const Row& row, const Scenario& scenario, const std::string& name) {
-  Scenario defaults, copy = scenario;  // the table hands out pointers to fields that may be written
-  const Slot from = row.field(defaults, name), to = row.field(copy, name);
-  return std::visit(
-      [&](auto field) {
-        if constexpr (std::is_same_v<decltype(field), std::monostate>)
-          return true;
-        else
-          return *field == *std::get<decltype(field)>(from);
-      },
-      to);
-}
-
 }  // namespace plica

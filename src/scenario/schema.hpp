@@ -69,9 +69,6 @@ std::span<const TableInfo> schema_tables();               // in the order in whi
 std::vector<const Row*> rows_of(std::string_view table);  // of one table, in order
 std::span<const std::string_view> expectation_names();    // what [expect] may name
 
-/// Whether the row's field of `scenario` has its default.
-bool is_default(const Row& row, const Scenario& scenario, const std::string& name);
-
 /// Gives the row's field of `scenario` its default.
 void reset_to_default(const Row& row, Scenario& scenario, const std::string& name);
 

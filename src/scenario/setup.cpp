@@ -16,6 +16,7 @@
 #include "scenario/regions.hpp"
 #include "scenario/words.hpp"
 #include "solver/projection/closed_surface.hpp"
+#include "tissue/faces.hpp"
 #include "tissue/files/mesh_file.hpp"
 #include "tissue/shapes/embryo.hpp"
 
@@ -73,21 +74,13 @@ void check_encloses(const Scenario& scenario, const Tissue& tissue, std::vector<
 
 // Cells without an apical or a basal face have nodes inside that no drag slows, and a projection throws them about.
 void check_is_one_layer(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
-  std::vector<int> faces(tissue.cells.size(), 0);
-  for (const auto* facets : {&tissue.apical_facets, &tissue.basal_facets}) {
-    std::set<CellId> cells;
-    for (const Facet& facet : *facets) cells.insert(facet.cell);
-    for (const CellId cell : cells) ++faces[cell.index()];
-  }
-  const auto inner = std::ranges::find_if(faces, [](int count) { return count < 2; });
-  if (inner == faces.end()) return;
-  errors.push_back(diagnostic_at(
-      scenario, "volume.method",
-      fmt::format(
-          "a projection needs one layer of cells, and cell {} has no apical or no basal face: nothing slows the "
-          "nodes between cells above each other",
-          inner - faces.begin()),
-      "give \"coupled\" or \"none\", or one layer of cells"));
+  const std::optional<CellId> inner = cell_between_layers(tissue);
+  if (!inner) return;
+  errors.push_back(diagnostic_at(scenario, "volume.method",
+                                 fmt::format("a projection needs one layer of cells, and cell {} has no apical or no "
+                                             "basal face: nothing slows the nodes between cells above each other",
+                                             inner->number()),
+                                 "give \"coupled\" or \"none\", or one layer of cells"));
 }
 
 void add_elasticity(const Scenario& scenario, Model& model) {

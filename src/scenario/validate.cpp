@@ -9,9 +9,7 @@
 
 #include "core/clock.hpp"
 #include "core/names.hpp"
-#include "scenario/monitor_rules.hpp"
 #include "scenario/suggest.hpp"
-#include "scenario/validate_laws.hpp"
 #include "scenario/words.hpp"
 
 namespace plica {
@@ -29,12 +27,10 @@ std::int64_t cell_count(const EmbryoInput& embryo) {
 /// where it was inherited from a scenario of another shape.
 void check_unused_keys(Scenario& scenario, Input& input) {
   const std::string shape = scenario.embryo.shape;
-  const Place* shape_place = input.place("embryo.shape");
   for (const Row* row : rows_of("embryo")) {
     if (row->used_by(shape)) continue;
     const std::string address = fmt::format("embryo.{}", row->key);
-    const Place* place = input.place(address);
-    if (place != nullptr && (shape_place == nullptr || place->layer >= shape_place->layer)) {
+    if (input.given_with(address, "embryo.shape")) {
       input.report(address, fmt::format("has no meaning with shape \"{}\"", shape),
                    fmt::format("remove it, or choose shape {}", fmt::join(row->options.shapes, " or ")));
     }
@@ -101,31 +97,6 @@ void check_time(const TimeInput& time, Input& input) {
   if (time.first_step_s > time.max_step_s) {
     input.report("time.first_step_s", fmt::format("{} is above max_step_s, {}", time.first_step_s, time.max_step_s),
                  "give a first step no longer than the longest");
-  }
-}
-
-/// Keys that only one choice of another key uses: given in vain is an error, inherited in vain is dropped.
-void check_keys_of_choices(Scenario& scenario, Input& input) {
-  struct Choice {
-    std::string_view table, key, chosen_by, value;
-    bool made;
-  };
-  const bool projection = method_of(scenario.volume) == VolumeMethod::projection,
-             cg = scenario.time.scheme == "linearly-implicit";
-  for (const Choice& choice : {Choice{"volume", "projection_surface", "volume.method", "projection", projection},
-                               {"volume", "projection_weights", "volume.method", "projection", projection},
-                               {"time", "cg_tolerance", "time.scheme", "linearly-implicit", cg},
-                               {"time", "cg_max_iterations", "time.scheme", "linearly-implicit", cg}}) {
-    const std::string address = fmt::format("{}.{}", choice.table, choice.key);
-    if (choice.made || !input.sound(std::string(choice.chosen_by)) || !input.sound(address)) continue;
-    for (const Row* row : rows_of(choice.table)) {
-      if (row->key != choice.key) continue;
-      const Place *given = input.place(address), *chooser = input.place(std::string(choice.chosen_by));
-      if (given != nullptr && !is_default(*row, scenario, "") && (chooser == nullptr || given->layer >= chooser->layer))
-        input.report(address, fmt::format("is used with {} = \"{}\" only", choice.chosen_by, choice.value),
-                     fmt::format("remove it, or give {} = \"{}\"", choice.chosen_by, choice.value));
-      reset_to_default(*row, scenario, "");
-    }
   }
 }
 
@@ -345,7 +316,7 @@ void validate(Scenario& scenario, Input& input) {
   check_elasticity(scenario.elasticity, input);
   check_dynamics(scenario.dynamics, input);
   check_time(scenario.time, input);
-  check_keys_of_choices(scenario, input);
+  check_volume_and_time(scenario.volume, scenario.time, input);
   check_scheme(scenario, input);
   check_integrator(scenario, input);
   check_required_keys(scenario, input);

@@ -10,4 +10,21 @@ namespace plica {
 /// embryo's shape does not use, a sphere's length (its diameter), a block's shell (none).
 void validate(Scenario& scenario, Input& input);
 
+// Parts of it.
+
+/// Reports monitors whose keys do not fit their quantity, criteria that bound nothing or what is not there, and
+/// expectations of monitors that are not there.
+void check_monitors(const Scenario& scenario, Input& input);
+
+/// Keys of the attractor belong to the model "shape-memory": with another they are an error where they were given along
+/// with the model or after it, and dropped where they were inherited from a scenario of the other model.
+void check_elasticity(ElasticityInput& elasticity, Input& input);
+
+/// The same of the projection's keys, and of those of the conjugate gradients.
+void check_volume_and_time(VolumeInput& volume, TimeInput& time, Input& input);
+
+/// Profile and delay of the contraction at `table` ("contraction.NAME"): what their shape needs and what has no meaning
+/// with it, as above; settles their axis and where a wave starts.
+void check_pattern(const std::string& table, ContractionInput& contraction, Input& input);
+
 }  // namespace plica

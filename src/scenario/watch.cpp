@@ -7,7 +7,6 @@
 #include "core/errors.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/words.hpp"
-#include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
 namespace {
@@ -67,9 +66,6 @@ Watch make_watch(const Scenario& scenario, const Tissue& tissue) {
   std::vector<Diagnostic> errors;
   for (const auto& [name, input] : scenario.monitors) {
     const std::string path = "monitor." + name;
-    const auto refuse_reference = [&](const std::exception& error) {
-      errors.push_back(diagnostic_at(scenario, path + ".reference", error.what(), "name another"));
-    };
     try {
       watch.monitors.push_back(make_monitor(name, input, scenario));
       if (!reads_something(watch.monitors.back(), tissue))
@@ -77,9 +73,7 @@ Watch make_watch(const Scenario& scenario, const Tissue& tissue) {
                                        fmt::format("no cell of region \"{}\" has that side", input.region),
                                        "choose another region or face"));
     } catch (const FileError& error) {
-      refuse_reference(error);
-    } catch (const MeshError& error) {
-      refuse_reference(error);
+      errors.push_back(diagnostic_at(scenario, path + ".reference", error.what(), "name another"));
     }
   }
   if (!errors.empty()) throw ScenarioError(std::move(errors));

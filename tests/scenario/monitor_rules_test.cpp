@@ -1,11 +1,10 @@
-#include "scenario/monitor_rules.hpp"
-
 #include <gtest/gtest.h>
 
 #include <iostream>
 
 #include "scenario/load.hpp"
 #include "scenario/print.hpp"
+#include "scenario/validate.hpp"
 #include "scenario/watch.hpp"
 #include "tissue/shapes/embryo.hpp"
 
