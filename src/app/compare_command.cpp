@@ -7,7 +7,6 @@
 #include "app/output_file.hpp"
 #include "core/errors.hpp"
 #include "study/compare_report.hpp"
-#include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
 namespace {
@@ -48,13 +47,7 @@ void add_compare_command(CLI::App& app, int&) {
   command->footer(
       "Distances of different meshes are from surface to surface; of the same mesh, from node to node as well.\n"
       "Example: plica compare results/isotropic results/drosophila --out distances.vtu");
-  command->callback([options] {
-    try {
-      compare(*options);
-    } catch (const MeshError& error) {
-      throw FileError(error.what());
-    }
-  });
+  command->callback([options] { compare(*options); });
 }
 
 }  // namespace plica

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <filesystem>
 #include <memory>
 
@@ -11,9 +10,9 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/names.hpp"
+#include "core/numbers.hpp"
 #include "scenario/suggest.hpp"
 #include "show/run_pictures.hpp"
-#include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
 namespace {
@@ -35,14 +34,6 @@ const Thing& named(const char* option, const std::string& name, const std::vecto
   const auto nearest = nearest_name(name, names);
   throw UsageError(fmt::format("{} {}: there is none of that name; {}there are: {}", option, name,
                                nearest ? fmt::format("did you mean {}? ", *nearest) : "", fmt::join(names, ", ")));
-}
-
-/// The number that `text` is and nothing else.
-std::optional<double> number_in(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
 }
 
 /// "5min", "300s" or "300" in seconds; nothing for "last".
@@ -124,9 +115,6 @@ int draw_picture(const RenderCommand& command, const RunPictures& run) {
   return exit_done;
 }
 
-/// "NAME" of NAME.png.
-std::string stem_of(const std::string& out) { return out.substr(0, out.size() - 4); }
-
 std::string quoted(const std::string& name) {
   std::string text = "'";
   for (const char letter : name) text += letter == '\'' ? "'\\''" : std::string(1, letter);
@@ -144,7 +132,7 @@ std::string movie_command(const std::string& stem, std::size_t count, bool even)
 /// All frames, numbered; on a terminal with a line that changes.
 int draw_movie(const RenderCommand& command, const RunPictures& run, bool even) {
   const std::vector<double>& times_s = run.times_s();
-  const std::string stem = stem_of(command.out);
+  const std::string stem = command.out.substr(0, command.out.size() - 4);  // without .png
   const auto file_of = [&](std::size_t i) { return fs::path(fmt::format("{}_{:05d}.png", stem, i)); };
   for (std::size_t i = 0; i < times_s.size(); ++i) require_free(file_of(i), command.overwrite);
   const bool on_terminal = ::isatty(STDERR_FILENO) != 0;
@@ -214,13 +202,7 @@ void add_render_command(CLI::App& app, int& status) {
       "          plica render results/drosophila --out strip.png --strip\n"
       "          plica render results/drosophila --out rows.png --view ventral,side --time 30s,2min,last \\\n"
       "            --colour pressure --range=-200:200");
-  command->callback([options, &status] {
-    try {
-      status = render(*options);
-    } catch (const MeshError& error) {
-      throw FileError(error.what());
-    }
-  });
+  command->callback([options, &status] { status = render(*options); });
 }
 
 }  // namespace plica

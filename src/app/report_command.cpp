@@ -10,7 +10,6 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "show/report.hpp"
-#include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
 namespace {
@@ -47,13 +46,7 @@ void add_report_command(CLI::App& app, int&) {
   command->footer(
       "The page needs no network: mail it, open it by double click.\n"
       "Example: plica report results/drosophila results/xenopus --out embryos.html");
-  command->callback([options] {
-    try {
-      report(*options);
-    } catch (const MeshError& error) {
-      throw FileError(error.what());
-    }
-  });
+  command->callback([options] { report(*options); });
 }
 
 }  // namespace plica

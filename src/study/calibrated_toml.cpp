@@ -1,11 +1,9 @@
 // The scenario that a calibration leaves: short, readable, and loaded once to see that it is what was run.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <sstream>
 
 #include "core/errors.hpp"
 #include "scenario/builtin.hpp"
@@ -25,13 +23,6 @@ std::string base_of(const ScenarioSource& source, const std::string& file) {
   return fs::proximate(fs::absolute(source.file), fs::absolute(file).parent_path()).generic_string();
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of("\"\\") == std::string::npos) return fmt::format("\"{}\"", text);
-  std::ostringstream stream;
-  stream << toml::value<std::string>(text);
-  return stream.str();
-}
-
 // "key=word" of the command line, as a line of TOML.
 std::string line_of(const std::string& override) {
   const std::size_t equals = override.find('=');
@@ -40,7 +31,7 @@ std::string line_of(const std::string& override) {
     (void)toml::parse("v = " + value);
     return fmt::format("{} = {}\n", key, value);
   } catch (const toml::parse_error&) {  // a bare word
-    return fmt::format("{} = {}\n", key, quoted(value));
+    return fmt::format("{} = {}\n", key, in_toml(value));
   }
 }
 
@@ -81,7 +72,7 @@ std::string calibrated_toml(const CalibrationProblem& problem, const Calibration
                             const std::string& file) {
   const std::vector<double>& values = calibration.best->values;
   const Scenario calibrated = load_trial(problem, values);
-  std::string text = fmt::format("format = 1\nbase = {}\n", quoted(base_of(problem.source, file)));
+  std::string text = fmt::format("format = 1\nbase = {}\n", in_toml(base_of(problem.source, file)));
   for (const std::string& override : trial_overrides(problem, values)) text += line_of(override);
   const std::string head = comment(problem, calibration);
   if (!loads_as({calibrated.name, file, text}, calibrated)) return head + resolved_toml(calibrated);

@@ -4,13 +4,13 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
 #include <string_view>
 
 #include "core/errors.hpp"
+#include "core/numbers.hpp"
 #include "scenario/print.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/suggest.hpp"
@@ -20,13 +20,6 @@ namespace plica {
 namespace {
 
 constexpr double usual_percent = 0.5;
-
-std::optional<double> parse_number(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
-}
 
 // Whole numbers too are written as floating-point, so that a key that wants an integer says so at once.
 std::string in_toml(double value) {
@@ -39,7 +32,7 @@ double value_at(const VariedKey& key, double place) {
   const int decimals = 6 - static_cast<int>(std::floor(std::log10(key.high - key.low)));
   const double value = key.low + place * (key.high - key.low);
   if (place <= 0 || place >= 1 || decimals < 0 || decimals > 300) return std::clamp(value, key.low, key.high);
-  return std::clamp(*parse_number(fmt::format("{:.{}f}", value, decimals)), key.low, key.high);
+  return std::clamp(*number_in(fmt::format("{:.{}f}", value, decimals)), key.low, key.high);
 }
 
 void refuse_repetitions(const CalibrationProblem& problem) {
@@ -84,8 +77,8 @@ VariedKey parse_varied_key(const std::string& text) {
   const std::size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
   if (equals == std::string::npos || equals == 0 || colon == std::string::npos)
     throw UsageError(fmt::format("--vary {}: is not understood; give KEY=LOW:HIGH", text));
-  const auto low = parse_number(std::string_view(text).substr(equals + 1, colon - equals - 1));
-  const auto high = parse_number(std::string_view(text).substr(colon + 1));
+  const auto low = number_in(std::string_view(text).substr(equals + 1, colon - equals - 1));
+  const auto high = number_in(std::string_view(text).substr(colon + 1));
   if (!low || !high) throw UsageError(fmt::format("--vary {}: a bound is not a number; give KEY=LOW:HIGH", text));
   const std::string key = text.substr(0, equals);
   if (*low == *high)
@@ -98,10 +91,9 @@ VariedKey parse_varied_key(const std::string& text) {
 Target parse_target(const std::string& text) {
   const std::size_t equals = text.find('='), tilde = text.find('~', equals == std::string::npos ? 0 : equals);
   const std::string_view view(text);
-  const auto value =
-      equals == std::string::npos || equals == 0
-          ? std::nullopt
-          : parse_number(view.substr(equals + 1, tilde == std::string::npos ? tilde : tilde - equals - 1));
+  const auto value = equals == std::string::npos || equals == 0
+                         ? std::nullopt
+                         : number_in(view.substr(equals + 1, tilde == std::string::npos ? tilde : tilde - equals - 1));
   if (!value)
     throw UsageError(
         fmt::format("--target {}: is not understood; give NAME=VALUE, NAME=VALUE~WITHIN or NAME=VALUE~PERCENT%", text));
@@ -112,7 +104,7 @@ Target parse_target(const std::string& text) {
     return target;
   }
   const bool percent = text.ends_with('%');
-  const auto within = parse_number(view.substr(tilde + 1, view.size() - tilde - 1 - (percent ? 1 : 0)));
+  const auto within = number_in(view.substr(tilde + 1, view.size() - tilde - 1 - (percent ? 1 : 0)));
   target.within = within ? (percent ? std::abs(*value) * *within / 100 : *within) : 0;
   if (!(target.within > 0))
     throw UsageError(fmt::format("--target {}: the tolerance must be over 0; give NAME=VALUE~0.1 or ~2%", text));

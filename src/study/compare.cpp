@@ -10,7 +10,7 @@
 #include "measure/energy_norm.hpp"
 #include "record/mesh_writer.hpp"
 #include "record/results.hpp"
-#include "scenario/load.hpp"
+#include "record/run_scenario.hpp"
 #include "tissue/hexahedron.hpp"
 
 namespace plica {
@@ -20,11 +20,6 @@ namespace {
 bool says_nothing_of_shape(const std::string& name) {
   return name == "time_s" || name == "step_s" || name == "steps" || name == "newton_iterations" ||
          name == "linear_iterations" || name.starts_with("wall_") || name.find(".wall_") != std::string::npos;
-}
-
-std::optional<double> number_of(const nlohmann::ordered_json& summary, const std::string& key) {
-  if (!summary.is_object() || !summary.contains(key) || !summary.at(key).is_number()) return std::nullopt;
-  return summary.at(key).get<double>();
 }
 
 std::string text_of(const nlohmann::ordered_json& summary, const std::string& key) {
@@ -40,13 +35,8 @@ RunMoment moment_of(const ReferenceRun& run, const Frame& frame, const nlohmann:
 
 /// Poisson's ratio of the run; none where its scenario is missing or not understood.
 std::optional<double> poisson_ratio_of(const ReferenceRun& run) {
-  try {
-    return load_scenario(find_scenario((run.directory() / "scenario.toml").string())).elasticity.poisson_ratio;
-  } catch (const UsageError&) {
-  } catch (const FileError&) {
-  } catch (const ScenarioError&) {
-  }
-  return std::nullopt;
+  const std::optional<Scenario> scenario = scenario_of_run(run.directory());
+  return scenario ? std::optional(scenario->elasticity.poisson_ratio) : std::nullopt;
 }
 
 /// With the stiffness of b's mesh at rest, which its displacements lead back to.

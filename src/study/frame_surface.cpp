@@ -36,12 +36,8 @@ double stretch_at(const Corners& x, double u, double v) {
 Quads facets_on(const Frame& frame, int face) {
   const MeshFaces faces(frame.elements);
   Quads facets;
-  for (std::size_t e = 0; e < frame.elements.size(); ++e) {
-    if (!faces.on_surface({e, face})) continue;
-    std::array<NodeId, 4> facet;
-    for (int i = 0; i < 4; ++i) facet[i] = frame.elements[e][hex_faces[face][i]];
-    facets.push_back(facet);
-  }
+  for (std::size_t e = 0; e < frame.elements.size(); ++e)
+    if (faces.on_surface({e, face})) facets.push_back(face_nodes(frame.elements[e], face));
   return facets;
 }
 
