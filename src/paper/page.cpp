@@ -12,11 +12,6 @@
 namespace plica {
 namespace {
 
-std::optional<double> find(const Figures& figures, const std::string& name) {
-  const auto found = figures.find(name);
-  return found == figures.end() ? std::nullopt : std::optional(found->second);
-}
-
 // Four digits, or as many as tell it from a whole number nearby.
 std::string number(std::optional<double> value, const std::string& none = "never") {
   if (!value) return none;
@@ -43,11 +38,12 @@ bool group_was_measured(const Figures& figures, const std::string& group) {
 }
 
 std::vector<std::string> claim_row(const Claim& claim, const Measured& measured, ReproduceOutcome& outcome) {
-  const std::optional<double> ours = find(measured.figures, claim.figure);
+  const std::optional<double> ours = figure_named(measured.figures, claim.figure);
   std::vector<std::optional<double>> scanned;
   for (const PaperReading& reading : readings()) {
     const auto found = measured.readings.find(reading.id);
-    if (reading.scanned && found != measured.readings.end()) scanned.push_back(find(found->second, claim.figure));
+    if (reading.options.scanned && found != measured.readings.end())
+      scanned.push_back(figure_named(found->second, claim.figure));
   }
   const Verdict found = verdict(claim, ours, scanned);
   ++outcome.claims;
@@ -114,7 +110,7 @@ void add_readings(Document& page, const Measured& measured, const Plan& plan) {
          {reading.group, reading.text, scored ? fmt::format("{:.2f}", scored->rms) : "–",
           scored ? fmt::format("{} of {}", scored->met, printed_numbers().size()) : "–",
           shown("pill.depth_um") + ", " + shown("sphere.depth_um"),
-          number(find(figures, "pill.depth_below_lips_um"), "–"), shown("pill.vml_area_loss_percent"),
+          number(figure_named(figures, "pill.depth_below_lips_um"), "–"), shown("pill.vml_area_loss_percent"),
           shown("pill.peak_ratio") + ", " + shown("sphere.peak_ratio"),
           shown("pill.vml_at_equal_um") + ", " + shown("pill.vce_at_equal_um"), shown("pill.rest_min"),
           shown("pill.equal_speeds_s"), shown("pill.peak_ratio_time_s") + ", " + shown("sphere.peak_ratio_time_s")}});
@@ -166,7 +162,9 @@ void add_error_bars(Document& page, const Measured& measured) {
     std::vector<std::string> row = {
         headline.unit[0] ? fmt::format("{}, {}", headline.text, headline.unit) : headline.text, headline.printed};
     for (const std::string embryo : {"pill", "sphere"}) {
-      const auto value = [&](const std::string& which) { return find(figures, which + embryo + "." + headline.name); };
+      const auto value = [&](const std::string& which) {
+        return figure_named(figures, which + embryo + "." + headline.name);
+      };
       const auto difference = [&](const std::string& fine, const std::string& coarse) {
         const auto a = value(fine), b = value(coarse);
         return a && b ? fmt::format("{:+.2g}", *a - *b) : std::string("–");

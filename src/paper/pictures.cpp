@@ -113,11 +113,10 @@ Figure ReproductionPictures::division_demo() {
   picture.field = named(colour_fields(), "generation");
   picture.range = colour_range(picture.field, 0, 1);
   picture.anatomy = false;
-  return drawn(
-      "fig4-division", picture,
-      "**Fig. 4.** The middle one of three cells divides: (a) three cells at rest; (b) the places that the cut "
-      "goes through; (c) the mother is taken out and (d) two daughters that share a facet are put in her place "
-      "(at 1 min); (e) they grow, (f) until each is what their mother was.");
+  return drawn("fig4-division", picture,
+               "**Fig. 4.** The middle one of three cells divides: (a) three cells at rest; (b) the places that the "
+               "cut goes through; (c) the mother is taken out and (d) two daughters that share a facet are put in her "
+               "place (at 1 min); (e) they grow, (f) until each is what their mother was.");
 }
 
 // Fig. 5: cross-sections with and without division.
@@ -140,36 +139,6 @@ Figure ReproductionPictures::division_sections() {
   return drawn("fig5-sections", picture.value(),
                "**Fig. 5.** Cross-sections in the middle, belly down: where the cells of the floor have divided and "
                "grown, and where they have not.");
-}
-
-// Fig. 7.
-Figure ReproductionPictures::pill_from_two_sides() {
-  return moments("main-pill", {"antero-ventral", "ventral"}, {0, 60, 300, 900}, "fig7-pill",
-                 "**Fig. 7.** The pill at four moments, seen from below and in front (upper row) and from below (lower "
-                 "row; anterior is on the left), coloured by how far nodes have moved.");
-}
-
-// Fig. 9.
-Figure ReproductionPictures::pill_sections() {
-  return moments(
-      "main-pill", {"cross-section", "sagittal-section"}, {900}, "fig9-sections",
-      "**Fig. 9.** The pill at 15 min, cut across its middle and along its axis (belly down), coloured by how "
-      "far nodes have moved. The floor has moved in as a whole; in the chosen reading the middle has by then "
-      "overtaken the ends.");
-}
-
-// Fig. 10.
-Figure ReproductionPictures::pill_from_below() {
-  return moments("main-pill", {"ventral"}, {60, 300, 600, 900, 1200}, "fig10-ventral",
-                 "**Fig. 10.** The pill from below at the paper's times, and at 1 min before them, coloured by how far "
-                 "nodes have moved. At 1 min the ends of the strip have moved most; from 5 min on little changes but "
-                 "the depth of the middle.");
-}
-
-// Fig. 11.
-Figure ReproductionPictures::sphere_from_two_sides() {
-  return moments("main-sphere", {"antero-ventral", "ventral"}, {0, 60, 300, 900}, "fig11-sphere",
-                 "**Fig. 11.** The sphere at the same moments, from the same sides, in the same colours.");
 }
 
 }  // namespace plica

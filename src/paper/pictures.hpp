@@ -18,15 +18,13 @@ class ReproductionPictures {
 
   Figure division_demo();
   Figure division_sections();
-  Figure pill_from_two_sides();
-  Figure pill_sections();
-  Figure pill_from_below();
-  Figure sphere_from_two_sides();
+
+  /// A run at some moments, a row a view, coloured by displacement.
+  Figure moments(const std::string& run, const std::vector<std::string>& views, const std::vector<double>& times_s,
+                 const std::string& name, const std::string& caption);
 
  private:
   [[nodiscard]] RunPictures run_pictures(const std::string& run, const std::vector<std::string>& views);
-  Figure moments(const std::string& run, const std::vector<std::string>& views, const std::vector<double>& times_s,
-                 const std::string& name, const std::string& caption);
   Painter& painter();
   Figure drawn(const std::string& name, const Picture& picture, const std::string& caption);
 

@@ -24,6 +24,10 @@ std::vector<std::string> with_springs(double k, std::vector<std::string> keys) {
   return keys;
 }
 
+std::vector<std::string> ramp(int end_s) {
+  return {fmt::format("contraction.apical.program.time_s=[0,{}]", end_s), "contraction.apical.program.activity=[0,1]"};
+}
+
 std::vector<std::string> the_papers_algorithm(double step_s) {
   return {"volume.method=projection", "time.scheme=linearly-implicit", "time.integrator=backward-euler",
           fmt::format("time.step_s={}", step_s)};
@@ -38,52 +42,43 @@ const std::vector<PaperReading> table = {
      "chosen",
      "5 rows, across/along 0.35, k = 4.82, preload 60, drag 131, step on",
      {},
-     "drosophila",
-     true,
-     false,
-     2,
-     "",
-     true},
-    {"across-0.2", "across/along", "0.2 (k = 6.86)", with_springs(6.86, {across + "0.2"}), "drosophila", true},
-    {"across-0.3", "across/along", "0.3 (k = 5.34)", with_springs(5.34, {across + "0.3"}), "drosophila", true},
-    {"across-0.4", "across/along", "0.4 (k = 4.395)", with_springs(4.395, {across + "0.4"}), "drosophila", true},
-    {"across-0.6", "across/along", "0.6 (k = 3.295)", with_springs(3.295, {across + "0.6"}), "drosophila", true},
-    {"across-1", "across/along", "1, equal springs (k = 2.17)", with_springs(2.17, {across + "1"}), "drosophila", true,
-     false, 2, "", true},
+     {.scanned = true, .quick = true}},
+    {"across-0.2", "across/along", "0.2 (k = 6.86)", with_springs(6.86, {across + "0.2"}), {.scanned = true}},
+    {"across-0.3", "across/along", "0.3 (k = 5.34)", with_springs(5.34, {across + "0.3"}), {.scanned = true}},
+    {"across-0.4", "across/along", "0.4 (k = 4.395)", with_springs(4.395, {across + "0.4"}), {.scanned = true}},
+    {"across-0.6", "across/along", "0.6 (k = 3.295)", with_springs(3.295, {across + "0.6"}), {.scanned = true}},
+    {"across-1",
+     "across/along",
+     "1, equal springs (k = 2.17)",
+     with_springs(2.17, {across + "1"}),
+     {.scanned = true, .quick = true}},
     {"axial-2", "across/along", "0, axial springs only (k = 9.64)", with_springs(9.64, {across + "0"})},
     {"axial-3", "across/along", "0, axial springs only (k = 14.46)", with_springs(14.46, {across + "0"})},
     {"preload-none", "preload", "none (k = 7.99)", {stiffness + "7.99", preload + "0"}},
     {"preload-only", "preload", "nothing else: constant forces of 152.5 nN", {stiffness + "0", preload + "152.5"}},
-    {"rows-3", "rows", "3 rows (k = 7.635)", with_springs(7.635, {rows + "3"}), "drosophila", true},
-    {"rows-7", "rows", "7 rows (k = 4.31)", with_springs(4.31, {rows + "7"}), "drosophila", true},
+    {"rows-3", "rows", "3 rows (k = 7.635)", with_springs(7.635, {rows + "3"}), {.scanned = true}},
+    {"rows-7", "rows", "7 rows (k = 4.31)", with_springs(4.31, {rows + "7"}), {.scanned = true}},
     {"rows-3-equal", "rows", "3 rows, equal springs, k as chosen", {rows + "3", across + "1"}},
-    {"ramp-10",
-     "activation",
-     "ramp of 10 s",
-     {"contraction.apical.program.time_s=[0,10]", "contraction.apical.program.activity=[0,1]"}},
-    {"ramp-30",
-     "activation",
-     "ramp of 30 s",
-     {"contraction.apical.program.time_s=[0,30]", "contraction.apical.program.activity=[0,1]"}},
-    {"ramp-60",
-     "activation",
-     "ramp of 60 s",
-     {"contraction.apical.program.time_s=[0,60]", "contraction.apical.program.activity=[0,1]"}},
+    {"ramp-10", "activation", "ramp of 10 s", ramp(10)},
+    {"ramp-30", "activation", "ramp of 30 s", ramp(30)},
+    {"ramp-60", "activation", "ramp of 60 s", ramp(60)},
     {"clock-equal", "clock", "drag 2870: equal speeds at 15 min", {drag + "2870", "time.end_min=900"}},
     {"clock-equal-rest",
      "clock",
      "the same, to rest by a stop slower in proportion, 0.0091 um/min",
      {drag + "2870", "time.end_min=900", "stop.equilibrium_speed_um_per_min=0.0091"}},
-    {"vce-1", "VCE", "the last cell of the rows", {}, "drosophila", false, false, 1, "chosen"},
-    {"vce-3", "VCE", "the third-last cell", {}, "drosophila", false, false, 3, "chosen"},
-    {"depth-lips", "depth", "from the lips down, springs as chosen", {}, "drosophila", false, true, 2, "chosen"},
+    {"vce-1", "VCE", "the last cell of the rows", {}, {.vce = 1, .same_runs_as = "chosen"}},
+    {"vce-3", "VCE", "the third-last cell", {}, {.vce = 3, .same_runs_as = "chosen"}},
+    {"depth-lips",
+     "depth",
+     "from the lips down, springs as chosen",
+     {},
+     {.depth_below_lips = true, .same_runs_as = "chosen"}},
     {"depth-lips-deep",
      "depth",
      "from the lips down, graded contraction over 7 rows and shortening cells (`drosophila-deep`)",
      {},
-     "drosophila-deep",
-     false,
-     true},
+     {.base = "drosophila-deep", .depth_below_lips = true}},
     {"no-shell", "shell", "none, springs as chosen", {"vitelline.enabled=false"}},
     {"no-shell-28.89", "shell", "none (k = 3.33)", with_springs(3.33, {"vitelline.enabled=false"})},
     {"diagonals", "diagonals", "also the two diagonals of each facet (k = 2.07)",
@@ -118,20 +113,25 @@ std::span<const PaperReading> readings() { return table; }
 
 std::vector<std::string> sphere_overrides(const PaperReading& reading) {
   std::vector<std::string> keys = {"embryo.shape=sphere", "embryo.cells=[9,9,8]", "region.furrow.cells_along=7"};
-  if (reading.base == "drosophila-deep") keys.emplace_back("region.floor.cells_along=7");
+  if (reading.options.base == "drosophila-deep") keys.emplace_back("region.floor.cells_along=7");
   return keys;
 }
 
 std::span<const PrintedNumber> printed_numbers() { return numbers; }
 
+std::optional<double> figure_named(const Figures& figures, const std::string& name) {
+  const auto found = figures.find(name);
+  return found == figures.end() ? std::nullopt : std::optional(found->second);
+}
+
 std::optional<double> figure_in(const PaperReading& reading, const std::string& name, const Figures& figures) {
   std::string key = name;
-  if (reading.depth_below_lips && name.ends_with(".depth_um"))
+  if (reading.options.depth_below_lips && name.ends_with(".depth_um"))
     key = name.substr(0, name.size() - 8) + "depth_below_lips_um";
-  if (reading.vce != 2 && (name.find("peak_ratio") != std::string::npos || name.find("equal") != std::string::npos))
-    key += fmt::format("_{}", reading.vce);
-  const auto found = figures.find(key);
-  return found == figures.end() ? std::nullopt : std::optional(found->second);
+  if (reading.options.vce != 2 &&
+      (name.find("peak_ratio") != std::string::npos || name.find("equal") != std::string::npos))
+    key += fmt::format("_{}", reading.options.vce);
+  return figure_named(figures, key);
 }
 
 std::optional<Score> score(const PaperReading& reading, const Figures& figures) {

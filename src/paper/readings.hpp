@@ -10,18 +10,22 @@
 
 namespace plica {
 
-/// One way to read the paper: the scenario `drosophila` with some keys changed, on the pill and on the sphere.
-struct PaperReading {
-  std::string id;                      // names its runs
-  std::string group;                   // what is varied
-  std::string text;                    // the choice
-  std::vector<std::string> overrides;  // KEY=VALUE, of both embryos
+struct ReadingOptions {
   std::string base = "drosophila";
   bool scanned = false;           // a claim that holds in all of these needs no choice
   bool depth_below_lips = false;  // "total depth" means from the lips down
   int vce = 2;                    // which cell from the end VCE is
   std::string same_runs_as = {};  // measured otherwise, in the runs of that reading
   bool quick = false;             // a part of --quick
+};
+
+/// One way to read the paper: the scenario `drosophila` with some keys changed, on the pill and on the sphere.
+struct PaperReading {
+  std::string id;                      // names its runs
+  std::string group;                   // what is varied
+  std::string text;                    // the choice
+  std::vector<std::string> overrides;  // KEY=VALUE, of both embryos
+  ReadingOptions options = {};
 };
 
 std::span<const PaperReading> readings();
@@ -47,6 +51,9 @@ inline constexpr double largest_miss = 5;
 
 /// `figures`: of the reading's two runs, prefixed. Nothing where there is no figure of one of the embryos.
 std::optional<Score> score(const PaperReading& reading, const Figures& figures);
+
+/// The figure of that name, where there is one.
+std::optional<double> figure_named(const Figures& figures, const std::string& name);
 
 /// The figure that a printed number has in a reading: depth and VCE as the reading takes them.
 std::optional<double> figure_in(const PaperReading& reading, const std::string& name, const Figures& figures);

@@ -24,64 +24,54 @@ std::vector<std::string> operator+(std::vector<std::string> a, const std::vector
 std::string tolerance(double um) { return fmt::format("time.tolerance_um={}", um); }
 
 // Adds a run, or the reason why there is none. What the built-in expects of itself is not for its variants.
-class Planner {
- public:
-  explicit Planner(Plan& plan) : plan_(plan) {}
-
-  void add(const std::string& id, const std::string& base, const std::vector<std::string>& overrides,
-           int watch_along = 0, bool without_divisions = false) {
-    try {
-      Scenario scenario = load_scenario(find_scenario(base), overrides);
-      scenario.expect.clear();
-      if (without_divisions) scenario.divisions.clear();
-      if (watch_along > 0) watch_ends(scenario, watch_along);
-      plan_.runs.push_back({id, std::move(scenario)});
-    } catch (const ScenarioError& error) {
-      plan_.skipped[id] = error.diagnostics().front().key + ": " + error.diagnostics().front().problem;
-    } catch (const UsageError& error) {
-      plan_.skipped[id] = error.what();
-    }
+void add(Plan& plan, const std::string& id, const std::string& base, const std::vector<std::string>& overrides,
+         int watch_along = 0, bool without_divisions = false) {
+  try {
+    Scenario scenario = load_scenario(find_scenario(base), overrides);
+    scenario.expect.clear();
+    if (without_divisions) scenario.divisions.clear();
+    if (watch_along > 0) watch_ends(scenario, watch_along);
+    plan.runs.push_back({id, std::move(scenario)});
+  } catch (const ScenarioError& error) {
+    plan.skipped[id] = error.diagnostics().front().key + ": " + error.diagnostics().front().problem;
+  } catch (const UsageError& error) {
+    plan.skipped[id] = error.what();
   }
-
- private:
-  Plan& plan_;
-};
-
-void plan_refined(Planner& planner, const std::vector<std::string>& coarse) {
-  const std::vector<std::string> space =
-      no_frames + coarse + std::vector<std::string>{"embryo.elements_per_cell=[2,2,2]"};
-  planner.add("fine-space-pill", "drosophila", space);
-  planner.add("fine-space-sphere", "xenopus", space);
 }
 
-void plan_divisions(Planner& planner) {
+void plan_refined(Plan& plan, const std::vector<std::string>& coarse) {
+  const std::vector<std::string> space =
+      no_frames + coarse + std::vector<std::string>{"embryo.elements_per_cell=[2,2,2]"};
+  add(plan, "fine-space-pill", "drosophila", space);
+  add(plan, "fine-space-sphere", "xenopus", space);
+}
+
+void plan_divisions(Plan& plan) {
   const std::vector<std::string> frames = {"output.frame_every_s=300"};
-  planner.add("division-twice", "drosophila-division-twice", frames);
-  planner.add("division", "drosophila-division", frames);
-  planner.add("division-without", "drosophila-division", frames, 0, true);
+  add(plan, "division-twice", "drosophila-division-twice", frames);
+  add(plan, "division", "drosophila-division", frames);
+  add(plan, "division-without", "drosophila-division", frames, 0, true);
 }
 
 // The chosen reading to 20 min, as Fig. 10 has it, and its first moments with close frames.
-void plan_chosen(Planner& planner, bool quick) {
+void plan_chosen(Plan& plan, bool quick) {
   const std::vector<std::string> to_the_end = {"time.end_min=20", "stop.at_equilibrium=false",
                                                "output.frame_every_s=60", "output.cells_csv=false",
                                                tolerance(quick ? 0.2 : 0.02)};
-  planner.add("main-pill", "drosophila", to_the_end, pill_along);
-  planner.add("main-sphere", "xenopus", to_the_end, sphere_along);
+  add(plan, "main-pill", "drosophila", to_the_end, pill_along);
+  add(plan, "main-sphere", "xenopus", to_the_end, sphere_along);
   const std::vector<std::string> early = {"output.cells_csv=false", "stop.at_equilibrium=false",
                                           tolerance(quick ? 0.2 : 0.02)};
-  planner.add(
-      "onset-pill", "drosophila",
+  add(plan, "onset-pill", "drosophila",
       early + std::vector<std::string>{"time.end_s=60", quick ? "output.frame_every_s=4" : "output.frame_every_s=1"});
-  planner.add("onset-sphere", "xenopus",
-              early + std::vector<std::string>{"time.end_s=20",
-                                               quick ? "output.frame_every_s=2" : "output.frame_every_s=0.25"});
-  planner.add("switched-off", "drosophila",
-              no_frames + std::vector<std::string>{"contraction.apical.program.time_s=[0,60,61]",
-                                                   "contraction.apical.program.activity=[1,1,0]",
-                                                   "dynamics.surface_drag_Pa_s_per_um=0.1", "time.end_s=120",
-                                                   "stop.at_equilibrium=false"});
-  planner.add("division-demo", "division-demo", {});
+  add(plan, "onset-sphere", "xenopus",
+      early +
+          std::vector<std::string>{"time.end_s=20", quick ? "output.frame_every_s=2" : "output.frame_every_s=0.25"});
+  add(plan, "switched-off", "drosophila",
+      no_frames + std::vector<std::string>{
+                      "contraction.apical.program.time_s=[0,60,61]", "contraction.apical.program.activity=[1,1,0]",
+                      "dynamics.surface_drag_Pa_s_per_um=0.1", "time.end_s=120", "stop.at_equilibrium=false"});
+  add(plan, "division-demo", "division-demo", {});
 }
 
 // Figures of a finished run, or none.
@@ -91,10 +81,7 @@ std::optional<Figures> finished(const Results& results, const std::string& id) {
 }
 
 std::optional<double> summary_number(const Results& results, const std::string& id, const char* key) {
-  if (!results.has(id)) return std::nullopt;
-  const nlohmann::ordered_json summary = read_summary(results.folder(id));
-  if (!summary.contains(key) || !summary[key].is_number()) return std::nullopt;
-  return summary[key].get<double>();
+  return results.has(id) ? number_of(read_summary(results.folder(id)), key) : std::nullopt;
 }
 
 void add_ratio(Figures& figures, const std::string& name, std::optional<double> a, std::optional<double> b) {
@@ -204,9 +191,7 @@ void measure_onsets(Measured& measured, const Results& results) {
   };
   measured.pill_onsets = take("pill", pill_along);
   measured.sphere_onsets = take("sphere", sphere_along);
-  const auto figure = [&](const char* name) -> std::optional<double> {
-    return figures.contains(name) ? std::optional(figures[name]) : std::nullopt;
-  };
+  const auto figure = [&](const char* name) { return figure_named(figures, name); };
   add_ratio(figures, "onset_pill.middle_over_ends", figure("onset_pill.middle_s"), figure("onset_pill.ends_s"));
   add_ratio(figures, "onset_sphere.spread_over_equal", figure("onset_sphere.spread_s"),
             figure("sphere.equal_speeds_s"));
@@ -233,20 +218,20 @@ Results::Results(fs::path directory, const Plan& plan) : directory_(std::move(di
 
 Plan make_plan(bool quick) {
   Plan plan;
-  Planner planner(plan);
   const std::vector<std::string> coarse = {tolerance(quick ? 0.3 : matrix_tolerance_um)};
   if (!quick) {
-    plan_refined(planner, coarse);
-    plan_divisions(planner);
+    plan_refined(plan, coarse);
+    plan_divisions(plan);
     for (const auto& [id, base] : {std::pair{"fine-time-pill", "drosophila"}, {"fine-time-sphere", "xenopus"}})
-      planner.add(id, base, no_frames + std::vector<std::string>{tolerance(fine_tolerance_um)});
+      add(plan, id, base, no_frames + std::vector<std::string>{tolerance(fine_tolerance_um)});
   }
-  plan_chosen(planner, quick);
+  plan_chosen(plan, quick);
   for (const PaperReading& reading : readings()) {
-    if (!reading.same_runs_as.empty() || (quick && !reading.quick)) continue;
+    const ReadingOptions& options = reading.options;
+    if (!options.same_runs_as.empty() || (quick && !options.quick)) continue;
     const std::vector<std::string> overrides = no_frames + coarse + reading.overrides;
-    planner.add(reading.id + "-pill", reading.base, overrides, pill_along);
-    planner.add(reading.id + "-sphere", reading.base, overrides + sphere_overrides(reading), sphere_along);
+    add(plan, reading.id + "-pill", options.base, overrides, pill_along);
+    add(plan, reading.id + "-sphere", options.base, overrides + sphere_overrides(reading), sphere_along);
   }
   return plan;
 }
@@ -262,7 +247,8 @@ Measured measure(const Results& results) {
         add_prefixed(figures, std::string(which) == "main-" ? fmt::format("{}.", id) : fmt::format("{}{}.", which, id),
                      *found);
   for (const PaperReading& reading : readings()) {
-    const std::string runs = reading.same_runs_as.empty() ? reading.id : reading.same_runs_as;
+    const std::string& same = reading.options.same_runs_as;
+    const std::string runs = same.empty() ? reading.id : same;
     for (const char* id : {"pill", "sphere"})
       if (const auto found = finished(results, runs + "-" + id))
         add_prefixed(measured.readings[reading.id], fmt::format("{}.", id), *found);

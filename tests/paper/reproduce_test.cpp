@@ -57,7 +57,7 @@ TEST(Readings, HaveRunsOfTheirOwnOrOfAnother) {
   std::set<std::string> ids;
   for (const PaperReading& reading : readings()) EXPECT_TRUE(ids.insert(reading.id).second) << reading.id;
   for (const PaperReading& reading : readings())
-    EXPECT_TRUE(reading.same_runs_as.empty() || ids.contains(reading.same_runs_as)) << reading.id;
+    EXPECT_TRUE(reading.options.same_runs_as.empty() || ids.contains(reading.options.same_runs_as)) << reading.id;
   EXPECT_GE(ids.size(), 25u);
 }
 
