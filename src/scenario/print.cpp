@@ -27,6 +27,7 @@ std::string in_toml(const std::string& text) {
 
 namespace {
 
+using plica::in_toml;  // of a text, among the others
 std::string in_toml(int value) { return fmt::format("{}", value); }
 std::string in_toml(double value) { return fmt::format("{}", value); }  // the shortest that reads back exactly
 std::string in_toml(bool value) { return value ? "true" : "false"; }
