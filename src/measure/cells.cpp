@@ -42,9 +42,9 @@ double mean_apical_area_ratio(const Tissue& tissue, const MonitoredCells& cells,
 
 std::vector<double> activities(const Model& model, double time_s) {
   std::vector<double> result(model.tissue.cells.size(), 0.0);
-  for (auto law = model.laws.rbegin(); law != model.laws.rend(); ++law)
-    for (std::size_t c = 0; (*law)->is_active() && c < result.size(); ++c)
-      if (const auto activity = (*law)->activity_of(CellId(c), time_s)) result[c] = *activity;
+  for (std::size_t l = model.laws.size(); l-- > 0;)
+    for (std::size_t c = 0; model.laws[l]->is_active() && c < result.size(); ++c)
+      if (const auto activity = model.laws[l]->activity_of(CellId(c), time_s)) result[c] = *activity;
   return result;
 }
 

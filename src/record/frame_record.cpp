@@ -23,8 +23,9 @@ void add_to_frame(const CellColumn& column, std::vector<double> values, FrameRec
     std::ranges::replace_if(
         values, [](double value) { return std::isnan(value); }, *column.none_in_frames);
   const std::string name(column.name);
-  if (column.in_frames == InFrames::numbers) frame.scalars.emplace_back(name, std::move(values));
-  if (column.in_frames == InFrames::integers)
+  if (column.in_frames == InFrames::numbers)
+    frame.scalars.emplace_back(name, std::move(values));
+  else if (column.in_frames == InFrames::integers)
     frame.integers.emplace_back(name, std::vector<int>(values.begin(), values.end()));
 }
 

@@ -48,7 +48,7 @@ struct Row {
   std::function<Slot(Scenario&, const std::string& name)> field;  // makes the named table if need be
   Allowed allowed;
   std::string_view meaning;
-  RowOptions options;
+  RowOptions options = {};
 
   [[nodiscard]] std::string type() const;      // "number", "3 integers", ...
   [[nodiscard]] std::string expected() const;  // type and what is allowed, as in "a number > 0"

@@ -27,6 +27,7 @@ struct Word {
 template <class Words>
 std::vector<std::string_view> words_of(const Words& table) {
   std::vector<std::string_view> words;
+  words.reserve(std::size(table));
   for (const auto& entry : table) words.push_back(entry.word);
   return words;
 }

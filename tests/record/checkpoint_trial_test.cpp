@@ -1,11 +1,10 @@
-#include "record/checkpoint.hpp"
-
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <new>
 
 #include "core/errors.hpp"
+#include "record/checkpoint.hpp"
 
 namespace plica {
 namespace {
