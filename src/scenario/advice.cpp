@@ -50,8 +50,10 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   const bool pulls = std::ranges::any_of(scenario.contractions, [](const auto& entry) {
     return entry.second.stiffness_nN_per_um > 0 || entry.second.preload_nN > 0 || entry.second.tension_mN_per_m > 0;
   });
-  if (!pulls && scenario.pressures.empty() && scenario.divisions.empty())
-    warn("nothing pushes or pulls: without [contraction], [pressure] or [division] the embryo stays at rest");
+  const bool is_tense =
+      std::ranges::any_of(scenario.cortices, [](const auto& entry) { return entry.second.tension_mN_per_m > 0; });
+  if (!pulls && !is_tense && scenario.pressures.empty() && scenario.divisions.empty())
+    warn("nothing pushes or pulls: without [contraction], [cortex], [pressure] or [division] the embryo stays at rest");
   for (const auto& [name, division] : scenario.divisions)
     if (division.at_s && *division.at_s >= scenario.time.end_s)
       warn(fmt::format("division.{}: it comes after the run's end at {} s", name, scenario.time.end_s));

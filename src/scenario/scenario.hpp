@@ -53,6 +53,7 @@ struct ElasticityInput {
   std::optional<double> attractor_stiffness_nN_per_um;  // shape-memory; empty: derived from the two above
   double attractor_preload_nN = 0;                      // shape-memory
   double attractor_preload_length_um = 0.5;             // shape-memory: the preload acts in full farther off than this
+  double corner_barrier_Pa = 0;
 };
 
 enum class VolumeMethod { coupled, projection, none };
@@ -75,10 +76,11 @@ struct DynamicsInput {
 };
 
 struct ProfileInput {
-  std::string shape;                          // constant | linear | gaussian; empty: constant
-  std::string axis;                           // across | along; empty: across
-  std::optional<double> half_width_um, edge;  // linear
-  std::optional<double> sigma_um;             // gaussian
+  std::string shape;                              // constant | linear | gaussian; empty: constant
+  std::string axis;                               // across | along; empty: across
+  std::optional<double> half_width_um, edge;      // linear
+  std::optional<double> sigma_um, sigma_cells;    // gaussian: one of them
+  std::optional<double> full_length_um, fade_um;  // both or none
 };
 
 struct DelayInput {
@@ -107,6 +109,39 @@ struct ContractionInput {
   ProfileInput profile;
   DelayInput delay;
   VariationInput variation;
+};
+
+struct CortexInput {
+  std::string region;
+  std::string faces = "apical";  // apical | basal | lateral
+  double tension_mN_per_m = 0;
+  double saturation_ratio = 0;
+  double stiffness_mN_per_m = 0;
+  double compression_ratio = 1;
+  double crowding_mN_per_m = 0;
+  std::optional<double> relaxation_s;  // TOML: relaxation_s or relaxation_min; empty: "none"
+  ProgramInput program, stiffness_program;
+  ProfileInput profile;
+  DelayInput delay;
+  VariationInput variation;
+};
+
+enum class EnclosedState { held, compliant, free };
+
+struct EnclosedInput {
+  std::string surface = "basal";
+  std::string volume = "held";            // held | compliant | free
+  std::optional<double> bulk_modulus_Pa;  // compliant
+};
+
+/// Surfaces that do not pass through themselves.
+enum class ContactSurface { none, apical, basal, both };
+
+struct SelfContactInput {
+  std::string surface = "none";  // none | apical | basal | both
+  double distance_um = 0.4;
+  double stiffness_kPa_per_um = 1;
+  double search_um = 6;
 };
 
 /// What makes cells divide: a time, or what has to pass a threshold.
@@ -211,6 +246,9 @@ struct Scenario {
   VitellineInput vitelline;
   DynamicsInput dynamics;
   std::map<std::string, ContractionInput> contractions;
+  std::map<std::string, CortexInput> cortices;
+  std::map<std::string, EnclosedInput> enclosed;
+  SelfContactInput self_contact;
   TimeInput time;
   StopInput stop;
   std::map<std::string, CriterionInput> criteria;  // TOML: [stop.NAME]

@@ -4,65 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/clock.hpp"
 #include "core/names.hpp"
 #include "measure/columns.hpp"
 #include "measure/monitor.hpp"
-#include "scenario/words.hpp"
+#include "scenario/rows_in.hpp"
 
 namespace plica {
 namespace {
-
-template <class Table>
-using Named = std::map<std::string, Table> Scenario::*;
-
-/// Makes the rows of one table, whose keys fill the members of a Table.
-template <class Table>
-struct RowsIn {
-  std::string_view path;
-  std::function<Table&(Scenario&, const std::string& name)> table;
-
-  template <class T>
-  Row operator()(std::string_view key, T Table::*field, Allowed allowed, std::string_view meaning,
-                 RowOptions options = {}) const {
-    const auto slot = [=, table = table](Scenario& scenario, const std::string& name) -> Slot {
-      return &(table(scenario, name).*field);
-    };
-    return {path, key, slot, std::move(allowed), meaning, std::move(options)};
-  }
-
-  /// Of a table within the table.
-  template <class Inner, class T>
-  Row operator()(std::string_view key, Inner Table::*inner, T Inner::*field, Allowed allowed, std::string_view meaning,
-                 RowOptions options = {}) const {
-    const auto slot = [=, table = table](Scenario& scenario, const std::string& name) -> Slot {
-      return &(table(scenario, name).*inner.*field);
-    };
-    return {path, key, slot, std::move(allowed), meaning, std::move(options)};
-  }
-};
-
-template <class Table>
-RowsIn<Table> rows_in(std::string_view path, Table Scenario::*table) {
-  return {path, [=](Scenario& scenario, const std::string&) -> Table& { return scenario.*table; }};
-}
-
-template <class Table>
-RowsIn<Table> rows_in(std::string_view path, Named<Table> tables) {
-  return {path, [=](Scenario& scenario, const std::string& name) -> Table& { return (scenario.*tables)[name]; }};
-}
-
-const Allowed anything = {};
-const Allowed positive = {.low = 0, .low_included = false};
-const Allowed not_negative = {.low = 0};
-
-Allowed between(double low, double high) { return {.low = low, .high = high}; }
-Allowed one_of(std::vector<std::string_view> words) { return {.words = std::move(words)}; }
-template <class Meaning, std::size_t n>
-Allowed one_of(const std::array<Word<Meaning>, n>& table) {
-  return one_of(words_of(table));
-}
 
 std::vector<std::string_view> quantity_names() {
   std::vector<std::string_view> names;
@@ -79,9 +30,7 @@ std::vector<Row> make_rows() {
   using E = EmbryoInput;
   using R = RegionInput;
   using D = DynamicsInput;
-  using C = ContractionInput;
   using T = TimeInput;
-  using P = PressureInput;
   using H = HoldInput;
   using X = ExpectInput;
   using O = OutputInput;
@@ -91,13 +40,10 @@ std::vector<Row> make_rows() {
   const RowsIn<S> top{"", [](S& scenario, const std::string&) -> S& { return scenario; }};
   const auto embryo = rows_in("embryo", &S::embryo);
   const auto region = rows_in("region.*", &S::regions);
-  const auto elasticity = rows_in("elasticity", &S::elasticity);
   const auto volume = rows_in("volume", &S::volume);
   const auto vitelline = rows_in("vitelline", &S::vitelline);
   const auto dynamics = rows_in("dynamics", &S::dynamics);
-  const auto contraction = rows_in("contraction.*", &S::contractions);
   const auto hold = rows_in("hold.*", &S::holds);
-  const auto pressure = rows_in("pressure.*", &S::pressures);
   const auto division = rows_in("division.*", &S::divisions);
   const auto time = rows_in("time", &S::time);
   const auto stop = rows_in("stop", &S::stop);
@@ -106,7 +52,7 @@ std::vector<Row> make_rows() {
   const auto furrow = rows_in("furrow", &S::furrow);
   const auto output = rows_in("output", &S::output);
   const auto expect = rows_in("expect.*", &S::expect);
-  return {
+  std::vector<Row> rows = {
       top("format", &S::format, between(1, 1), "Version of this format."),
       top("title", &S::title, anything, "One line for reports."),
       {"", "base", [](S&, const std::string&) -> Slot { return std::monostate(); }, anything,
@@ -145,24 +91,6 @@ std::vector<Row> make_rows() {
       region("intersect", &R::intersect, anything, "Only cells of each of these regions."),
       region("except", &R::except, anything, "No cells of these regions."),
 
-      elasticity("model", &ElasticityInput::model, one_of(words::elastic_models),
-                 "Elastic law of a cell: isotropic in a frame that turns with it, or springs from its nodes to their "
-                 "places in the rest shape that follows it."),
-      elasticity("young_modulus_Pa", &ElasticityInput::young_modulus_Pa, positive, "Young's modulus (Pa)."),
-      elasticity(
-          "poisson_ratio", &ElasticityInput::poisson_ratio,
-          {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
-          "Poisson's ratio; with coupled volumes it only sets the shear modulus and the dilatation inside a cell."),
-      elasticity("attractor_stiffness_nN_per_um", &ElasticityInput::attractor_stiffness_nN_per_um,
-                 {.low = 0, .low_included = false, .word_for_none = "derived"},
-                 "Model shape-memory: stiffness of the springs from the nodes of a cell to the attractor (nN/µm), or "
-                 "such that the mean shear modulus is that of young_modulus_Pa and poisson_ratio."),
-      elasticity("attractor_preload_nN", &ElasticityInput::attractor_preload_nN, not_negative,
-                 "Model shape-memory: tension of these springs that does not depend on their length (nN)."),
-      elasticity(
-          "attractor_preload_length_um", &ElasticityInput::attractor_preload_length_um, positive,
-          "Model shape-memory: how far from its place a node feels 0.7 of the preload (µm); it has no direction at 0."),
-
       volume("method", &VolumeInput::method, one_of(words::volume_methods),
              "How cells keep their volume: as constraints of each step; by the paper's projection after it, so that "
              "the state of rest depends on the step; or not."),
@@ -185,70 +113,11 @@ std::vector<Row> make_rows() {
       dynamics("density_kg_per_m3", &D::density_kg_per_m3, not_negative,
                "Density (kg/m³): inertia, negligible in vivo."),
 
-      contraction("region", &C::region, anything, "Region whose cells contract.", {.required = true}),
-      contraction("edges", &C::edges, one_of(words::edges), "Edges of the cells that contract."),
-      contraction("stiffness_nN_per_um", &C::stiffness_nN_per_um, not_negative, "Stiffness of a spring (nN/µm)."),
-      contraction("along_ratio", &C::along_ratio, not_negative, "Factor on edges along the axis."),
-      contraction("across_ratio", &C::across_ratio, not_negative, "Factor on edges across the axis."),
-      contraction("diagonals", &C::diagonals, anything, "Whether the diagonals of the face contract too."),
-      contraction("rest_length_ratio", &C::rest_length_ratio, not_negative,
-                  "Length at which a spring is slack, over its initial length."),
-      contraction("preload_nN", &C::preload_nN, anything,
-                  "Tension of a spring that does not depend on its length (nN)."),
-      contraction("tension_mN_per_m", &C::tension_mN_per_m, not_negative,
-                  "Tension of the cells' faces, per length across it (mN/m, that is nN/µm), whatever the size of "
-                  "cells: what stiffness and preload do, they do on every edge, so smaller cells pull harder."),
-      contraction("damping_nN_s_per_um", &C::damping_nN_s_per_um, not_negative, "Damping of a spring (nN s/µm)."),
-      contraction("program.time_s", &C::program, &ProgramInput::time_s, anything,
-                  "Times of the points of the activity (s), increasing; the same time twice is a jump, on which a step "
-                  "ends. Without a program it is always 1."),
-      contraction("program.time_min", &C::program, &ProgramInput::time_s, anything, "The same in minutes.",
-                  {.instead_of = "program.time_s", .scale = 60}),
-      contraction("program.activity", &C::program, &ProgramInput::activity, not_negative,
-                  "Activity at these times: a factor on the tension, linear between them."),
-      contraction("profile.shape", &C::profile, &ProfileInput::shape, one_of(words::profile_shapes),
-                  "Factor on stiffness and preload by a cell's distance from the region's middle: 1, falling to `edge` "
-                  "at `half_width_um`, or exp(−d²/2σ²)."),
-      contraction("profile.axis", &C::profile, &ProfileInput::axis, one_of(words::profile_axes),
-                  "Distance across the axis (the arc about it through the cell's centre; y in a block) or along it "
-                  "(x); without it across."),
-      contraction("profile.half_width_um", &C::profile, &ProfileInput::half_width_um, positive,
-                  "Linear: distance at which the factor is `edge`, as it is beyond (µm)."),
-      contraction("profile.edge", &C::profile, &ProfileInput::edge, not_negative,
-                  "Linear: factor there; without it 0."),
-      contraction("profile.sigma_um", &C::profile, &ProfileInput::sigma_um, positive,
-                  "Gaussian: its standard deviation σ (µm)."),
-      contraction("delay.speed_um_per_s", &C::delay, &DelayInput::speed_um_per_s,
-                  {.low = 0, .low_included = false, .word_for_none = "none"},
-                  "Speed of a wave (µm/s): a cell's program starts when it arrives, and the cell is slack before."),
-      contraction("delay.axis", &C::delay, &DelayInput::axis, one_of(words::delay_axes),
-                  "Direction of the wave, as in `profile.axis`; without it along."),
-      contraction("delay.from", &C::delay, &DelayInput::from, one_of(words::delay_starts),
-                  "Where the region's wave starts at time 0; without it in the middle. Low is the anterior end, or the "
-                  "left side."),
-      contraction(
-          "variation.spread", &C::variation, &VariationInput::spread, between(0, 100),
-          "Relative standard deviation of a log-normal factor with mean 1 on each cell's stiffness and preload."),
-      contraction("variation.seed", &C::variation, &VariationInput::seed, not_negative,
-                  "Another seed gives other factors; a cell's factor depends on seed and cell number only."),
-
       hold("region", &H::region, anything, "Region whose nodes are held.", {.required = true}),
       hold("directions", &H::directions, one_of(words::axes), "Directions in which they are held."),
       hold("x_um", &H::x_um, anything, "Only nodes that lie at rest in this range of x (µm)."),
       hold("y_um", &H::y_um, anything, "The same in y (µm)."),
       hold("z_um", &H::z_um, anything, "The same in z (µm)."),
-
-      pressure("region", &P::region, anything, "Region whose faces carry the pressure.", {.required = true}),
-      pressure("face", &P::face, one_of(words::pressure_faces), "Face of the cells that carries it."),
-      pressure("pressure_Pa", &P::pressure_Pa, anything,
-               "Pressure into the cell (Pa), a dead load on the face at rest.", {.required = true}),
-      pressure("program.time_s", &P::program, &ProgramInput::time_s, anything,
-               "Times of the points of the activity (s), increasing; the same time twice is a jump, on which a step "
-               "ends. Without a program it is always 1."),
-      pressure("program.time_min", &P::program, &ProgramInput::time_s, anything, "The same in minutes.",
-               {.instead_of = "program.time_s", .scale = 60}),
-      pressure("program.activity", &P::program, &ProgramInput::activity, not_negative,
-               "Activity at these times: a factor on the pressure, linear between them."),
 
       division("region", &V::region, anything, "Region whose cells divide.", {.required = true}),
       division("at_s", &V::at_s, positive, "When all of them divide (s)."),
@@ -335,6 +204,8 @@ std::vector<Row> make_rows() {
       expect("within_percent", &X::within_percent, not_negative, "The same in percent of the value.",
              {.instead_of = "within"}),
   };
+  std::ranges::move(law_rows(), std::back_inserter(rows));
+  return rows;
 }
 
 template <class Table>
@@ -411,6 +282,11 @@ std::span<const TableInfo> schema_tables() {
       {"vitelline", "The shell around the embryo.", {}},
       {"dynamics", "What resists motion; drag and density cannot both be 0.", {}},
       {"contraction.*", "Springs on edges of the cells of a region.", names_in(&S::contractions)},
+      {"cortex.*",
+       "A thin, active, elastic layer on faces of the cells of a region: its tension is the same in all directions.",
+       names_in(&S::cortices)},
+      {"enclosed.*", "A volume inside the sheet of cells, such as the yolk's.", names_in(&S::enclosed)},
+      {"self_contact", "What keeps the sheet from passing through itself.", {}},
       {"hold.*", "Nodes of a region fixed in given directions.", names_in(&S::holds)},
       {"pressure.*", "A pressure on faces of a region.", names_in(&S::pressures)},
       {"division.*",

@@ -9,6 +9,10 @@
 #include "core/units.hpp"
 #include "measure/cells.hpp"
 #include "mechanics/active/contraction.hpp"
+#include "mechanics/active/cortex.hpp"
+#include "mechanics/constraints/enclosed_volume.hpp"
+#include "mechanics/contact/self_contact.hpp"
+#include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
@@ -103,20 +107,24 @@ void add_elasticity(const Scenario& scenario, Model& model) {
   model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus(), model.volumes().is_held()));
 }
 
-PatternRule make_pattern(const ContractionInput& input) {
+/// Of a contraction or a cortex.
+template <class Acting>
+CellPattern make_pattern(const Acting& input, const Tissue& tissue) {
   PatternRule pattern;
   const ProfileInput& profile = input.profile;
   pattern.profile.shape = meaning_of(words::profile_shapes, profile.shape, pattern.profile.shape);
   pattern.profile.axis = meaning_of(words::profile_axes, profile.axis, pattern.profile.axis);
   pattern.profile.half_width = profile.half_width_um.value_or(1);
   pattern.profile.edge = profile.edge.value_or(0);
-  pattern.profile.sigma = profile.sigma_um.value_or(1);
+  pattern.profile.sigma_in_cells = profile.sigma_cells.has_value();
+  pattern.profile.sigma = profile.sigma_cells.value_or(profile.sigma_um.value_or(1));
+  pattern.taper = {profile.full_length_um.value_or(0), profile.fade_um.value_or(0)};
   pattern.delay.speed = input.delay.speed_um_per_s.value_or(0);
   pattern.delay.axis = meaning_of(words::delay_axes, input.delay.axis, pattern.delay.axis);
   pattern.delay.from = meaning_of(words::delay_starts, input.delay.from, pattern.delay.from);
   pattern.spread = input.variation.spread;
   pattern.seed = static_cast<std::uint64_t>(input.variation.seed);
-  return pattern;
+  return cell_pattern(tissue, tissue.regions.at(input.region), pattern);
 }
 
 void add_contractions(const Scenario& scenario, Model& model) {
@@ -131,11 +139,46 @@ void add_contractions(const Scenario& scenario, Model& model) {
     rule.preload = input.preload_nN;
     rule.damping = input.damping_nN_s_per_um;
     rule.tension = input.tension_mN_per_m;  // nN/um is the same
-    CellPattern pattern = cell_pattern(model.tissue, model.tissue.regions.at(input.region), make_pattern(input));
+    CellPattern pattern = make_pattern(input, model.tissue);
     std::vector<Spring> springs = contraction_springs(model.tissue, pattern, rule);
     model.laws.push_back(
         std::make_unique<Contraction>(std::move(springs), make_program(input.program), std::move(pattern)));
   }
+}
+
+void add_cortices(const Scenario& scenario, Model& model) {
+  for (const auto& [name, input] : scenario.cortices) {
+    CortexRule rule;  // nN/um is mN/m
+    rule.side = meaning_of(words::edges, input.faces);
+    rule.tension = input.tension_mN_per_m;
+    rule.saturation = input.saturation_ratio;
+    rule.stiffness = input.stiffness_mN_per_m;
+    rule.compression_ratio = input.compression_ratio;
+    rule.crowding = input.crowding_mN_per_m;
+    rule.relaxation_s = input.relaxation_s.value_or(0);
+    rule.program = make_program(input.program);
+    rule.stiffness_program = make_program(input.stiffness_program);
+    model.laws.push_back(std::make_unique<Cortex>(model.tissue, make_pattern(input, model.tissue), std::move(rule)));
+  }
+}
+
+void add_enclosed(const Scenario& scenario, Model& model) {
+  for (const auto& [name, input] : scenario.enclosed) {
+    const EnclosedState state = meaning_of(words::enclosed_states, input.volume);
+    if (state == EnclosedState::held) model.constraints.push_back(std::make_unique<EnclosedVolume>(model.tissue));
+    if (state == EnclosedState::compliant)
+      model.laws.push_back(std::make_unique<ElasticVolume>(model.tissue, *input.bulk_modulus_Pa * units::pascal));
+  }
+}
+
+void add_contact(const Scenario& scenario, Model& model) {
+  const SelfContactInput& input = scenario.self_contact;
+  const ContactSurface surface = meaning_of(words::contact_surfaces, input.surface);
+  for (const auto& [side, alone] :
+       {std::pair(CellSide::apical, ContactSurface::apical), {CellSide::basal, ContactSurface::basal}})
+    if (surface == alone || surface == ContactSurface::both)
+      model.laws.push_back(std::make_unique<SelfContact>(
+          model.tissue, SelfContactRule{side, input.distance_um, input.stiffness_kPa_per_um, input.search_um}));
 }
 
 void add_pressures(const Scenario& scenario, Model& model) {
@@ -201,7 +244,13 @@ std::unique_ptr<Model> make_model(const Scenario& scenario) {
   const Tissue& tissue = model->tissue;
   model->volumes().hold(method_of(scenario.volume) == VolumeMethod::coupled);
   add_elasticity(scenario, *model);
+  if (scenario.elasticity.corner_barrier_Pa > 0)
+    model->laws.push_back(
+        std::make_unique<CornerBarrier>(tissue, scenario.elasticity.corner_barrier_Pa * units::pascal));
   add_contractions(scenario, *model);
+  add_cortices(scenario, *model);
+  add_enclosed(scenario, *model);
+  add_contact(scenario, *model);
   add_pressures(scenario, *model);
   if (scenario.dynamics.surface_drag_Pa_s_per_um > 0)
     model->laws.push_back(std::make_unique<SurfaceDrag>(
@@ -231,6 +280,8 @@ std::unique_ptr<Model> make_model(const Scenario& scenario) {
 std::vector<std::string> contracting_regions(const Scenario& scenario, const Tissue& tissue) {
   std::set<std::string> names;
   for (const auto& [name, contraction] : scenario.contractions) names.insert(contraction.region);
+  for (const auto& [name, cortex] : scenario.cortices)
+    if (cortex.faces == "apical" && cortex.tension_mN_per_m > 0) names.insert(cortex.region);
   std::vector<std::string> regions(names.begin(), names.end());
   std::ranges::stable_sort(regions, std::greater(), [&](const std::string& region) {
     return std::ranges::count(tissue.regions.at(region), true);
@@ -240,7 +291,8 @@ std::vector<std::string> contracting_regions(const Scenario& scenario, const Tis
 
 FurrowSites make_furrow_sites(const Scenario& scenario, const Tissue& tissue) {
   std::string region = scenario.furrow.region;
-  if (region.empty() && !scenario.contractions.empty()) region = contracting_regions(scenario, tissue).front();
+  const std::vector<std::string> contracting = contracting_regions(scenario, tissue);
+  if (region.empty() && !contracting.empty()) region = contracting.front();
   if (region.empty()) return choose_furrow_sites(tissue, CellSet(tissue.cells.size(), false), 1);
   FurrowSites sites = choose_furrow_sites(tissue, tissue.regions.at(region), scenario.furrow.vce_cell);
   if (scenario.furrow.vce_cell > sites.midline_pairs && sites.midline_pairs > 0)

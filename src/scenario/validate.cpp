@@ -151,8 +151,10 @@ void check_expectations(const Scenario& scenario, Input& input) {
   }
 }
 
-void check_program(const std::string& table, const ProgramInput& program, Input& input) {
-  const std::string time = table + ".program.time_s", activity = table + ".program.activity";
+void check_program(const std::string& table, const ProgramInput& program, Input& input,
+                   const std::string& name = "program") {
+  const std::string time = fmt::format("{}.{}.time_s", table, name);
+  const std::string activity = fmt::format("{}.{}.activity", table, name);
   if (!input.sound(table) || !input.sound(time) || !input.sound(activity)) return;
   if (program.time_s.empty() && program.activity.empty()) return;
   if (program.time_s.empty()) return input.report(time, "is missing", "give time_s or time_min beside activity");
@@ -204,6 +206,7 @@ class RegionCheck {
 
   void check_references() {
     for (const auto& [name, it] : scenario_.contractions) check_reference("contraction." + name + ".region", it.region);
+    for (const auto& [name, it] : scenario_.cortices) check_reference("cortex." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.holds) check_reference("hold." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.pressures) check_reference("pressure." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.divisions) check_reference("division." + name + ".region", it.region);
@@ -324,7 +327,16 @@ void validate(Scenario& scenario, Input& input) {
   check_monitors(scenario, input);
   for (auto& [name, it] : scenario.contractions) {
     check_program("contraction." + name, it.program, input);
-    check_pattern("contraction." + name, it, input);
+    check_pattern("contraction." + name, it.profile, it.delay, input);
+  }
+  check_enclosed(scenario, input);
+  check_contact(scenario, input);
+  for (auto& [name, it] : scenario.cortices) {
+    const std::string table = "cortex." + name;
+    check_program(table, it.program, input);
+    check_program(table, it.stiffness_program, input, "stiffness_program");
+    check_pattern(table, it.profile, it.delay, input);
+    check_cortex(table, it, input);
   }
   for (const auto& [name, it] : scenario.pressures) check_program("pressure." + name, it.program, input);
   for (const auto& [name, it] : scenario.divisions) check_division("division." + name, it, input);

@@ -23,8 +23,17 @@ void check_elasticity(ElasticityInput& elasticity, Input& input);
 /// The same of the projection's keys, and of those of the conjugate gradients.
 void check_volume_and_time(VolumeInput& volume, TimeInput& time, Input& input);
 
-/// Profile and delay of the contraction at `table` ("contraction.NAME"): what their shape needs and what has no meaning
-/// with it, as above; settles their axis and where a wave starts.
-void check_pattern(const std::string& table, ContractionInput& contraction, Input& input);
+/// Profile and delay of what acts at `table` ("contraction.NAME"): what their shape needs and what has no meaning with
+/// it, as above; settles their axis and where a wave starts.
+void check_pattern(const std::string& table, ProfileInput& profile, DelayInput& delay, Input& input);
+
+/// Self-contact: with what it goes.
+void check_contact(const Scenario& scenario, Input& input);
+
+/// Enclosed volumes: of a sheet that is closed, with room to move.
+void check_enclosed(const Scenario& scenario, Input& input);
+
+/// What of a cortex has nothing that it could act on.
+void check_cortex(const std::string& table, const CortexInput& cortex, Input& input);
 
 }  // namespace plica

@@ -19,7 +19,7 @@ void check_profile(const std::string& path, ProfileInput& profile, Input& input)
   const std::string chooser = path + ".shape";
   if (!input.sound(path) || !input.sound(chooser)) return;
   if (profile.shape.empty()) {
-    if (!profile.axis.empty() || profile.sigma_um || profile.half_width_um || profile.edge)
+    if (!profile.axis.empty() || profile.sigma_um || profile.sigma_cells || profile.half_width_um || profile.edge)
       input.report(chooser, "is missing", "give one of: constant | linear | gaussian");
     return;
   }
@@ -32,9 +32,13 @@ void check_profile(const std::string& path, ProfileInput& profile, Input& input)
          fmt::format("remove it, or choose shape {}", shape), input);
   };
   if (profile.shape == "gaussian") {
-    need(".sigma_um", profile.sigma_um, "give the width of the gaussian, a number > 0");
+    if (!profile.sigma_cells)
+      need(".sigma_um", profile.sigma_um, "give the width of the gaussian, a number > 0, or sigma_cells");
+    else if (profile.sigma_um)
+      input.report(path + ".sigma_cells", "stands beside sigma_um", "give one of the two");
   } else {
     no_use(".sigma_um", profile.sigma_um, "gaussian");
+    no_use(".sigma_cells", profile.sigma_cells, "gaussian");
   }
   if (profile.shape == "linear") {
     need(".half_width_um", profile.half_width_um, "give the distance at which the factor is edge, a number > 0");
@@ -43,6 +47,12 @@ void check_profile(const std::string& path, ProfileInput& profile, Input& input)
     no_use(".half_width_um", profile.half_width_um, "linear");
     no_use(".edge", profile.edge, "linear");
   }
+}
+
+void check_taper(const std::string& path, const ProfileInput& profile, Input& input) {
+  if (!input.sound(path) || profile.full_length_um.has_value() == profile.fade_um.has_value()) return;
+  const std::string key = profile.full_length_um ? ".fade_um" : ".full_length_um";
+  if (input.sound(path + key)) input.report(path + key, "is missing", "a taper along the axis has both lengths");
 }
 
 void check_delay(const std::string& path, DelayInput& delay, Input& input) {
@@ -95,10 +105,64 @@ void check_volume_and_time(VolumeInput& volume, TimeInput& time, Input& input) {
   }
 }
 
-void check_pattern(const std::string& table, ContractionInput& contraction, Input& input) {
+void check_pattern(const std::string& table, ProfileInput& profile, DelayInput& delay, Input& input) {
   if (!input.sound(table)) return;
-  check_profile(table + ".profile", contraction.profile, input);
-  check_delay(table + ".delay", contraction.delay, input);
+  check_taper(table + ".profile", profile, input);
+  check_profile(table + ".profile", profile, input);
+  check_delay(table + ".delay", delay, input);
+}
+
+void check_cortex(const std::string& table, const CortexInput& cortex, Input& input) {
+  for (const char* key : {"", ".tension_mN_per_m", ".stiffness_mN_per_m", ".crowding_mN_per_m"})
+    if (!input.sound(table + key)) return;
+  if (cortex.tension_mN_per_m == 0 && cortex.stiffness_mN_per_m == 0 && cortex.crowding_mN_per_m == 0)
+    input.report(table, "does nothing", "give tension_mN_per_m, stiffness_mN_per_m or crowding_mN_per_m");
+  // A key that scales something that is not there.
+  const auto needs = [&](const std::string& key, bool is_given, double what, const std::string& name) {
+    if (is_given && what == 0)
+      input.report(table + key, "has no meaning without " + name, "remove it, or give " + name);
+  };
+  needs(".saturation_ratio", cortex.saturation_ratio > 0, cortex.tension_mN_per_m, "tension_mN_per_m");
+  needs(".program", !cortex.program.activity.empty(), cortex.tension_mN_per_m, "tension_mN_per_m");
+  needs(".compression_ratio", cortex.compression_ratio < 1, cortex.stiffness_mN_per_m, "stiffness_mN_per_m");
+  needs(".relaxation_s", cortex.relaxation_s.has_value(), cortex.stiffness_mN_per_m, "stiffness_mN_per_m");
+  needs(".stiffness_program", !cortex.stiffness_program.activity.empty(), cortex.stiffness_mN_per_m,
+        "stiffness_mN_per_m");
+}
+
+void check_contact(const Scenario& scenario, Input& input) {
+  if (!input.sound("self_contact") || !input.sound("self_contact.surface")) return;
+  const SelfContactInput& contact = scenario.self_contact;
+  if (contact.surface == "none") return;
+  if (!scenario.divisions.empty())
+    input.report("self_contact.surface", "contact does not go with division yet", "remove one of the two");
+  if (method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton")
+    input.report("self_contact.surface", "contact goes with time.scheme \"newton\" and volumes that are not projected",
+                 "give \"none\", or another scheme or volume.method");
+  if (contact.search_um < 2 * contact.distance_um && input.sound("self_contact.search_um"))
+    input.report("self_contact.search_um", fmt::format("{} is under twice distance_um", contact.search_um),
+                 "give several times distance_um");
+}
+
+void check_enclosed(const Scenario& scenario, Input& input) {
+  for (const auto& [name, it] : scenario.enclosed) {
+    const std::string table = "enclosed." + name, key = table + ".bulk_modulus_Pa";
+    if (!input.sound(table) || !input.sound(table + ".volume") || !input.sound("embryo.shape")) continue;
+    const EnclosedState state = meaning_of(words::enclosed_states, it.volume);
+    if (scenario.embryo.shape == "block")
+      input.report(table, "a block encloses nothing", "remove it, or choose shape \"pill\" or \"sphere\"");
+    if (state == EnclosedState::compliant && !it.bulk_modulus_Pa && input.sound(key))
+      input.report(key, "is missing", "give how compliant the volume is, a number > 0");
+    if (state != EnclosedState::compliant && it.bulk_modulus_Pa)
+      input.report(key, fmt::format("has no meaning with volume \"{}\"", it.volume),
+                   "remove it, or choose volume \"compliant\"");
+    // Cells, what they enclose, and the room up to the shell: with all three given nothing can move.
+    if (state == EnclosedState::held && scenario.vitelline.enabled && scenario.vitelline.gap_um == 0 &&
+        method_of(scenario.volume) == VolumeMethod::coupled && input.sound("vitelline.gap_um"))
+      input.report(table + ".volume",
+                   "nothing can move: cells and what they enclose keep their volumes, and the shell leaves no room",
+                   "give vitelline.gap_um, such as 0.5, or volume \"compliant\"");
+  }
 }
 
 }  // namespace plica

@@ -95,6 +95,16 @@ inline constexpr auto delay_starts = std::to_array<Word<StartDelay::From>>({{"mi
 // [pressure.NAME]: whether it is the apical face.
 inline constexpr auto pressure_faces = std::to_array<Word<bool>>({{"apical", true}, {"basal", false}});
 
+// [enclosed.NAME]
+inline constexpr auto enclosed_states = std::to_array<Word<EnclosedState>>(
+    {{"held", EnclosedState::held}, {"compliant", EnclosedState::compliant}, {"free", EnclosedState::free}});
+
+// [self_contact]
+inline constexpr auto contact_surfaces = std::to_array<Word<ContactSurface>>({{"none", ContactSurface::none},
+                                                                              {"apical", ContactSurface::apical},
+                                                                              {"basal", ContactSurface::basal},
+                                                                              {"both", ContactSurface::both}});
+
 // [division.NAME]
 inline constexpr auto division_triggers =
     std::to_array<Word<DivisionTrigger>>({{"area_above_um2", DivisionTrigger::apical_area},

@@ -44,8 +44,8 @@ def _key(cells):
             shapes = tuple(part.removeprefix("with shape ").split(", "))
         elif part.startswith("not with "):
             instead = part.removeprefix("not with ").strip("`")
-        elif " | " in part:
-            words = tuple(part.split(" | "))
+        elif kind in ("word", "list of words") and part != "any":
+            words = tuple(part.replace("\\|", "|").split(" | "))
         elif part != "any":
             if match := re.search(r' or "(\w+)"$', part):
                 none, part = match[1], part[: match.start()]

@@ -241,7 +241,8 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {program + "profile = { sigma_um = 30 }",
        "test.toml:3: contraction.a.profile.shape: is missing; give one of: constant | linear | gaussian"},
       {program + "profile = { shape = \"gaussian\" }",
-       "test.toml:3: contraction.a.profile.sigma_um: is missing; give the width of the gaussian, a number > 0"},
+       "test.toml:3: contraction.a.profile.sigma_um: is missing; give the width of the gaussian, a number > 0, or "
+       "sigma_cells"},
       {program + "profile = { shape = \"linear\", edge = 0.5 }",
        "test.toml:3: contraction.a.profile.half_width_um: is missing; give the distance at which the factor is edge, a "
        "number > 0"},

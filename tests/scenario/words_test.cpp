@@ -43,10 +43,15 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("volume", "projection_surface", words::projection_surfaces);
   expect_words("volume", "projection_weights", words::projection_weights);
   expect_words("contraction.*", "edges", words::edges);
-  expect_words("contraction.*", "profile.shape", words::profile_shapes);
-  expect_words("contraction.*", "profile.axis", words::profile_axes);
-  expect_words("contraction.*", "delay.axis", words::delay_axes);
-  expect_words("contraction.*", "delay.from", words::delay_starts);
+  expect_words("cortex.*", "faces", words::edges);
+  for (const char* table : {"contraction.*", "cortex.*"}) {
+    expect_words(table, "profile.shape", words::profile_shapes);
+    expect_words(table, "profile.axis", words::profile_axes);
+    expect_words(table, "delay.axis", words::delay_axes);
+    expect_words(table, "delay.from", words::delay_starts);
+  }
+  expect_words("enclosed.*", "volume", words::enclosed_states);
+  expect_words("self_contact", "surface", words::contact_surfaces);
   expect_words("hold.*", "directions", words::axes);
   expect_words("pressure.*", "face", words::pressure_faces);
   expect_words("division.*", "when", words::division_triggers);
@@ -61,10 +66,12 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("monitor.*", "over", words::overs);
   expect_words("monitor.*", "reference_at", words::reference_times);
 
-  // The rest of the keys that take words: names of quantities have a table of their own, and these three are no enums.
+  // The rest of the keys that take words: names of quantities have a table of their own, these three are no
+  // enums, and of enclosed surfaces there is one.
   int with_words = 0;
   for (const Row& row : schema()) with_words += row.allowed.words.empty() ? 0 : 1;
-  EXPECT_EQ(tables + 4, with_words) << "embryo.shape, elasticity.model, volume.method, monitor.*.quantity";
+  EXPECT_EQ(tables + 5, with_words)
+      << "embryo.shape, elasticity.model, volume.method, monitor.*.quantity, enclosed.*.surface";
 }
 
 TEST(Words, MeanWhatTheySay) {

@@ -62,6 +62,21 @@ double distance_from(StartDelay::From from, double value, const Extent& extent) 
   return 0;
 }
 
+// Mean width of the chosen cells along an axis, um: by the apical edges that lie along it.
+double mean_width(const Tissue& tissue, const CellSet& cells, PatternAxis axis) {
+  const EdgeDirection direction = axis == PatternAxis::along ? EdgeDirection::along : EdgeDirection::across;
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (const CellEdge& edge : tissue.cells[c].edges) {
+      if (!cells[c] || edge.side != CellSide::apical || edge.direction != direction) continue;
+      sum +=
+          (tissue.rest_positions[edge.nodes.back().index()] - tissue.rest_positions[edge.nodes.front().index()]).norm();
+      ++count;
+    }
+  return count == 0 ? 1 : sum / static_cast<double>(count);
+}
+
 // SplitMix64 (Steele, Lea and Flood 2014): a well mixed number for each place in a sequence.
 std::uint64_t mixed(std::uint64_t value) {
   value += 0x9e3779b97f4a7c15;
@@ -85,6 +100,12 @@ double StrengthProfile::factor(double distance) const {
       return std::exp(-0.5 * (distance / sigma) * (distance / sigma));
   }
   return 1;
+}
+
+double Taper::factor(double distance) const {
+  if (fade <= 0) return 1;
+  const double part = std::clamp((distance - 0.5 * full_length) / fade, 0.0, 1.0);
+  return part < 1 ? 0.5 * (1 + std::cos(std::numbers::pi * part)) : 0;
 }
 
 double chance_factor(double spread, std::uint64_t seed, std::size_t cell) {
@@ -114,10 +135,15 @@ CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const Patte
   const std::vector<double> way = coordinates(tissue, cells, pattern.delay.axis);
   const Extent places = extent_of(place, cells), ways = extent_of(way, cells);
   const double middle = 0.5 * (places.low + places.high);
+  StrengthProfile profile = pattern.profile;
+  if (profile.sigma_in_cells) profile.sigma *= mean_width(tissue, cells, profile.axis);
+  const std::vector<double> along = coordinates(tissue, cells, PatternAxis::along);
+  const Extent length = extent_of(along, cells);
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (!cells[c]) continue;
-    result.strengths[c] =
-        pattern.profile.factor(std::abs(place[c] - middle)) * chance_factor(pattern.spread, pattern.seed, c);
+    result.strengths[c] = profile.factor(std::abs(place[c] - middle)) *
+                          pattern.taper.factor(std::abs(along[c] - 0.5 * (length.low + length.high))) *
+                          chance_factor(pattern.spread, pattern.seed, c);
     if (pattern.delay.speed > 0)
       result.delays_s[c] = std::max(0.0, distance_from(pattern.delay.from, way[c], ways)) / pattern.delay.speed;
   }

@@ -21,7 +21,17 @@ struct StrengthProfile {
   PatternAxis axis = PatternAxis::across;
   double half_width = 1;  // um; linear: from 1 at the middle to `edge` here, and `edge` beyond
   double edge = 0;
-  double sigma = 1;  // um; gaussian: exp(-d^2 / (2 sigma^2))
+  double sigma = 1;             // um; gaussian: exp(-d^2 / (2 sigma^2))
+  bool sigma_in_cells = false;  // sigma is in mean widths of the cells, along that axis
+
+  [[nodiscard]] double factor(double distance) const;
+};
+
+/// A factor by the distance from the region's middle along the embryo: 1 up to half of `full_length`, then a cosine
+/// that is 0 after another `fade`.
+struct Taper {
+  double full_length = 0;  // um
+  double fade = 0;         // um; 0: no taper
 
   [[nodiscard]] double factor(double distance) const;
 };
@@ -36,6 +46,7 @@ struct StartDelay {
 
 struct PatternRule {
   StrengthProfile profile;
+  Taper taper;
   StartDelay delay;
   double spread = 0;       // standard deviation of the cells' chance factors, whose mean is 1
   std::uint64_t seed = 1;  // of these factors

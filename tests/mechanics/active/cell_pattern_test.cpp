@@ -40,6 +40,24 @@ TEST(PatternRule, ProfileFallsFromTheMiddleOfTheRegion) {
   RecordProperty("cells", checked);
 }
 
+TEST(PatternRule, SigmaMayBeInCells) {
+  PatternRule in_cells, in_um;
+  in_cells.profile = {.shape = Shape::gaussian, .axis = PatternAxis::along, .sigma = 1.5, .sigma_in_cells = true};
+  in_um.profile = {.shape = Shape::gaussian, .axis = PatternAxis::along, .sigma = 30};
+  const CellSet cells(21, true);
+  const CellPattern a = cell_pattern(sheet(), cells, in_cells), b = cell_pattern(sheet(), cells, in_um);
+  for (int c = 0; c < 21; ++c) EXPECT_NEAR(a.strengths[c], b.strengths[c], 1e-14);
+}
+
+// All of the strength up to x = 20, half of it midway, none from x = 60 on.
+TEST(PatternRule, TaperFadesAlongTheAxis) {
+  PatternRule pattern;
+  pattern.taper = {40, 40};
+  const CellPattern found = cell_pattern(sheet(), CellSet(21, true), pattern);
+  const double expected[] = {0, 0.5, 1, 1, 1, 0.5, 0};
+  for (int c = 0; c < 21; ++c) EXPECT_NEAR(found.strengths[c], expected[c % 7], 1e-14) << "cell " << c;
+}
+
 TEST(PatternRule, AcrossABlockIsY) {
   PatternRule pattern;
   pattern.profile = {Shape::linear, PatternAxis::across, 40, 0, 1};

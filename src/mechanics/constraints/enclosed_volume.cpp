@@ -1,0 +1,168 @@
+#include "mechanics/constraints/enclosed_volume.hpp"
+
+#include <cmath>
+
+#include "tissue/division.hpp"
+#include "tissue/tissue.hpp"
+
+namespace plica {
+namespace {
+
+using Corners = std::array<Vec3, 4>;
+
+// Twelve times the cone from the origin to a bilinear facet is a.(b x c) + a.(c x d) + a.(b x d) + b.(c x d). Basal
+// facets look into the lumen, so their cones count with the other sign.
+constexpr double cone_share = -1.0 / 12;
+
+Corners corners_of(std::span<const Vec3> x, const std::array<NodeId, 4>& nodes) {
+  return {x[nodes[0].index()], x[nodes[1].index()], x[nodes[2].index()], x[nodes[3].index()]};
+}
+
+double cone(const Corners& x) {
+  const auto& [a, b, c, d] = x;
+  return cone_share * (a.dot(b.cross(c) + c.cross(d) + b.cross(d)) + b.dot(c.cross(d)));
+}
+
+Corners cone_gradient(const Corners& x) {
+  const auto& [a, b, c, d] = x;
+  return {cone_share * (b.cross(c) + c.cross(d) + b.cross(d)), cone_share * (c.cross(a) + d.cross(a) + c.cross(d)),
+          cone_share * (a.cross(b) + d.cross(a) + d.cross(b)), cone_share * (a.cross(c) + a.cross(b) + b.cross(c))};
+}
+
+// d2/dx_i dx_j, i < j, as the vector whose cross product it is.
+Vec3 cone_hessian(const Corners& x, int i, int j) {
+  const auto& [a, b, c, d] = x;
+  if (i == 0) return -cone_share * (j == 1 ? Vec3(c + d) : j == 2 ? Vec3(d - b) : Vec3(-b - c));
+  if (i == 1) return -cone_share * (j == 2 ? Vec3(a + d) : Vec3(a - c));
+  return -cone_share * (a + b);
+}
+
+}  // namespace
+
+EnclosedVolume::EnclosedVolume(const Tissue& tissue) : EnclosedVolume(tissue, 0) {
+  target_ = volume(tissue.rest_positions);
+}
+
+EnclosedVolume::EnclosedVolume(const Tissue& tissue, double target) : target_(target) {
+  for (const Facet& facet : tissue.basal_facets) facets_.push_back(facet.nodes);
+  Vectors gradient(tissue.node_count(), Vec3::Zero());
+  add_forces(tissue.rest_positions, std::array{1.0}, gradient);
+  for (const Vec3& g : gradient) gradient_scale_ += g.squaredNorm();
+}
+
+double EnclosedVolume::volume(std::span<const Vec3> positions) const {
+  double volume = 0;
+  values(positions, {&volume, 1});
+  return volume;
+}
+
+void EnclosedVolume::values(std::span<const Vec3> x, std::span<double> values) const {
+  values[0] = 0;
+  for (const auto& nodes : facets_) values[0] += cone(corners_of(x, nodes));
+}
+
+ConstraintParts EnclosedVolume::parts() const {
+  ConstraintParts parts;
+  for (const auto& nodes : facets_) {
+    parts.nodes.add(nodes);
+    parts.function.push_back(0);
+  }
+  return parts;
+}
+
+void EnclosedVolume::gradients(std::span<const Vec3> x, std::span<Vec3> of_parts) const {
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const Corners gradient = cone_gradient(corners_of(x, facets_[f]));
+    std::copy(gradient.begin(), gradient.end(), of_parts.begin() + static_cast<std::ptrdiff_t>(4 * f));
+  }
+}
+
+void EnclosedVolume::for_parts(const std::function<void(std::size_t)>& body, bool /*shared*/) const {
+  for (std::size_t f = 0; f < facets_.size(); ++f) body(f);
+}
+
+void EnclosedVolume::add_forces(std::span<const Vec3> x, std::span<const double> multipliers,
+                                std::span<Vec3> forces) const {
+  for (const auto& nodes : facets_) {
+    const Corners gradient = cone_gradient(corners_of(x, nodes));
+    for (int i = 0; i < 4; ++i) forces[nodes[i].index()] += multipliers[0] * gradient[i];
+  }
+}
+
+template <class Take>
+void EnclosedVolume::for_blocks(std::span<const Vec3> x, double pressure, const Take& take) const {
+  for (const auto& nodes : facets_) {
+    const Corners corners = corners_of(x, nodes);
+    for (int i = 0; i < 4; ++i)
+      for (int j = i + 1; j < 4; ++j) take(nodes[i], nodes[j], Vec3(-pressure * cone_hessian(corners, i, j)));
+  }
+}
+
+void EnclosedVolume::add_tangent_product(std::span<const Vec3> x, std::span<const double> multipliers,
+                                         std::span<const Vec3> direction, std::span<Vec3> product) const {
+  for_blocks(x, multipliers[0], [&](NodeId a, NodeId b, const Vec3& turn) {
+    product[a.index()] += turn.cross(direction[b.index()]);
+    product[b.index()] -= turn.cross(direction[a.index()]);
+  });
+}
+
+void EnclosedVolume::add_tangent(std::span<const Vec3> x, std::span<const double> multipliers,
+                                 TangentSink& tangent) const {
+  for_blocks(x, multipliers[0],
+             [&](NodeId a, NodeId b, const Vec3& turn) { tangent.add_block(a, b, cross_matrix(turn)); });
+}
+
+double EnclosedVolume::gradient_scale(std::size_t /*function*/) const { return gradient_scale_; }
+
+double EnclosedVolume::rounding(const Tissue& /*tissue*/, double position_rounding) const {
+  return std::sqrt(gradient_scale_) * position_rounding / target_;
+}
+
+std::unique_ptr<Constraint> EnclosedVolume::after_division(const Tissue& tissue, const Division& /*division*/,
+                                                           std::span<const Vec3> /*positions*/) const {
+  return std::make_unique<EnclosedVolume>(tissue, target_);
+}
+
+ElasticVolume::ElasticVolume(const Tissue& tissue, double bulk_modulus)
+    : volume_(tissue), bulk_modulus_(bulk_modulus) {}
+
+ElasticVolume::ElasticVolume(const Tissue& tissue, double bulk_modulus, double rest_volume)
+    : volume_(tissue, rest_volume), bulk_modulus_(bulk_modulus) {}
+
+double ElasticVolume::pressure(std::span<const Vec3> positions) const {
+  return bulk_modulus_ * (1 - volume_.volume(positions) / volume_.targets()[0]);
+}
+
+double ElasticVolume::energy(const Step& step) const {
+  const double strain = volume_.volume(step.positions) / volume_.targets()[0] - 1;
+  return 0.5 * bulk_modulus_ * volume_.targets()[0] * strain * strain;
+}
+
+void ElasticVolume::add_forces(const Step& step, std::span<Vec3> forces) const {
+  volume_.add_forces(step.positions, std::array{pressure(step.positions)}, forces);
+}
+
+void ElasticVolume::add_tangent_product(const Step& step, std::span<const Vec3> direction,
+                                        std::span<Vec3> product) const {
+  Vectors gradient(step.positions.size(), Vec3::Zero());
+  volume_.add_forces(step.positions, std::array{1.0}, gradient);
+  double change = 0;
+  for (std::size_t n = 0; n < gradient.size(); ++n) change += gradient[n].dot(direction[n]);
+  const double stiffness = bulk_modulus_ / volume_.targets()[0] * change;
+  for (std::size_t n = 0; n < gradient.size(); ++n) product[n] += stiffness * gradient[n];
+  if (!step.semidefinite_tangent)
+    volume_.add_tangent_product(step.positions, std::array{pressure(step.positions)}, direction, product);
+}
+
+void ElasticVolume::add_tangent(const Step& step, TangentSink& tangent) const {
+  if (!step.semidefinite_tangent) volume_.add_tangent(step.positions, std::array{pressure(step.positions)}, tangent);
+}
+
+NodeGroups ElasticVolume::node_groups(std::span<const double> /*internal*/) const { return volume_.parts().nodes; }
+
+std::unique_ptr<Law> ElasticVolume::after_division(const Tissue& tissue, const Division& /*division*/,
+                                                   std::span<const Vec3> /*positions*/) const {
+  return std::make_unique<ElasticVolume>(tissue, bulk_modulus_, volume_.targets()[0]);
+}
+
+}  // namespace plica

@@ -1,0 +1,79 @@
+// The volume inside the basal surface of a closed sheet, the yolk's: held, or elastic (docs/theory/enclosed_volume.md).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "mechanics/constraint.hpp"
+
+namespace plica {
+
+struct Tissue;
+
+/// Held at its volume at rest; the multiplier is the pressure inside, kPa. The sheet must be closed.
+class EnclosedVolume final : public Constraint {
+ public:
+  explicit EnclosedVolume(const Tissue& tissue);
+  /// The same, held at another volume, um^3.
+  EnclosedVolume(const Tissue& tissue, double target);
+
+  [[nodiscard]] std::string_view name() const override { return "enclosed volume"; }
+  [[nodiscard]] std::unique_ptr<Constraint> clone() const override { return std::make_unique<EnclosedVolume>(*this); }
+  [[nodiscard]] std::size_t count() const override { return 1; }
+  [[nodiscard]] std::span<const double> targets() const override { return {&target_, 1}; }
+  [[nodiscard]] bool is_dense() const override { return true; }
+  void values(std::span<const Vec3> positions, std::span<double> values) const override;
+  [[nodiscard]] ConstraintParts parts() const override;
+  void gradients(std::span<const Vec3> positions, std::span<Vec3> of_parts) const override;
+  void for_parts(const std::function<void(std::size_t)>& body, bool shared) const override;
+  void add_forces(std::span<const Vec3> positions, std::span<const double> multipliers,
+                  std::span<Vec3> forces) const override;
+  void add_tangent_product(std::span<const Vec3> positions, std::span<const double> multipliers,
+                           std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(std::span<const Vec3> positions, std::span<const double> multipliers,
+                   TangentSink& tangent) const override;
+  [[nodiscard]] double gradient_scale(std::size_t function) const override;
+  [[nodiscard]] double rounding(const Tissue& tissue, double position_rounding) const override;
+  [[nodiscard]] std::unique_ptr<Constraint> after_division(const Tissue& tissue, const Division& division,
+                                                           std::span<const Vec3> positions) const override;
+
+  /// The volume, um^3.
+  [[nodiscard]] double volume(std::span<const Vec3> positions) const;
+
+ private:
+  template <class Take>
+  void for_blocks(std::span<const Vec3> positions, double pressure, const Take& take) const;
+
+  std::vector<std::array<NodeId, 4>> facets_;
+  double target_ = 0;
+  double gradient_scale_ = 0;  // |dV/dx|^2 at rest, um^4
+};
+
+/// The same volume, elastic: energy K V_0/2 (V/V_0 - 1)^2, so that the pressure inside is K (1 - V/V_0). Its assembled
+/// tangent leaves out the pressure's share, which joins every node with every other; the semidefinite one has nothing
+/// else.
+class ElasticVolume final : public Law {
+ public:
+  /// `bulk_modulus` K in kPa; `rest_volume` V_0, um^3.
+  ElasticVolume(const Tissue& tissue, double bulk_modulus);
+  ElasticVolume(const Tissue& tissue, double bulk_modulus, double rest_volume);
+
+  [[nodiscard]] std::string_view name() const override { return "enclosed volume"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<ElasticVolume>(*this); }
+  [[nodiscard]] double energy(const Step& step) const override;
+  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                    std::span<const Vec3> positions) const override;
+
+  /// kPa.
+  [[nodiscard]] double pressure(std::span<const Vec3> positions) const;
+
+ private:
+  EnclosedVolume volume_;
+  double bulk_modulus_;
+};
+
+}  // namespace plica

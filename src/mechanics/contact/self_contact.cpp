@@ -1,0 +1,253 @@
+#include "mechanics/contact/self_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <unordered_map>
+
+namespace plica {
+namespace {
+
+using Pair = SelfContact::Pair;
+
+/// Numbers that a pair is kept as: point, nodes, weights, normal.
+constexpr std::size_t pair_size = 10;
+
+struct Closest {
+  std::array<double, 3> weights;
+  double distance2;
+};
+
+// The place on a triangle nearest to p, by the region of the plane that p lies over (Ericson, Real-Time Collision
+// Detection, 5.1.5).
+Closest closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp), d6 = ac.dot(cp);
+  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  std::array<double, 3> w;
+  if (d1 <= 0 && d2 <= 0) {
+    w = {1, 0, 0};
+  } else if (d3 >= 0 && d4 <= d3) {
+    w = {0, 1, 0};
+  } else if (d6 >= 0 && d5 <= d6) {
+    w = {0, 0, 1};
+  } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    const double v = d1 / (d1 - d3);
+    w = {1 - v, v, 0};
+  } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    const double v = d2 / (d2 - d6);
+    w = {1 - v, 0, v};
+  } else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double v = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    w = {0, 1 - v, v};
+  } else {
+    const double sum = va + vb + vc;
+    w = {va / sum, vb / sum, vc / sum};
+  }
+  return {w, (p - w[0] * a - w[1] * b - w[2] * c).squaredNorm()};
+}
+
+/// Which triangles are near a place: a grid of cubes, each of which lists those whose box, widened, touches it.
+class Grid {
+ public:
+  Grid(double size, double widening) : size_(size), widening_(widening) {}
+
+  void add(std::size_t triangle, const std::array<Vec3, 3>& corners) {
+    const Vec3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]).array() - widening_;
+    const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]).array() + widening_;
+    const auto from = cube(low), to = cube(high);
+    for (long i = from[0]; i <= to[0]; ++i)
+      for (long j = from[1]; j <= to[1]; ++j)
+        for (long k = from[2]; k <= to[2]; ++k) triangles_[key({i, j, k})].push_back(triangle);
+  }
+  [[nodiscard]] std::span<const std::size_t> near(const Vec3& place) const {
+    const auto found = triangles_.find(key(cube(place)));
+    return found == triangles_.end() ? std::span<const std::size_t>{} : std::span<const std::size_t>(found->second);
+  }
+
+ private:
+  using Cube = std::array<long, 3>;
+  [[nodiscard]] Cube cube(const Vec3& place) const {
+    return {std::lround(std::floor(place.x() / size_)), std::lround(std::floor(place.y() / size_)),
+            std::lround(std::floor(place.z() / size_))};
+  }
+  // 21 bits a direction: two cubes of one key are a million cubes apart, and then too far to be a pair anyway.
+  [[nodiscard]] static std::uint64_t key(const Cube& cube) {
+    constexpr std::uint64_t mask = (std::uint64_t{1} << 21) - 1;
+    std::uint64_t result = 0;
+    for (const long i : cube) result = (result << 21) | (static_cast<std::uint64_t>(i) & mask);
+    return result;
+  }
+
+  double size_, widening_;
+  std::unordered_map<std::uint64_t, std::vector<std::size_t>> triangles_;
+};
+
+std::array<NodeId, 3> triangle_nodes(const std::array<NodeId, 4>& facet, bool second) {
+  return second ? std::array{facet[0], facet[2], facet[3]} : std::array{facet[0], facet[1], facet[2]};
+}
+
+}  // namespace
+
+Vec3 SelfContact::Point::at(std::span<const Vec3> vectors) const {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < count; ++i) sum += vectors[nodes[i].index()];
+  return sum / count;
+}
+
+double SelfContact::Pair::gap(const Point& p, std::span<const Vec3> vectors) const {
+  Vec3 apart = p.at(vectors);
+  for (int k = 0; k < 3; ++k) apart -= weights[k] * vectors[nodes[k].index()];
+  return normal.dot(apart);
+}
+
+SelfContact::SelfContact(const Tissue& tissue, const SelfContactRule& rule) : rule_(rule) {
+  std::map<NodeId, std::vector<std::size_t>> of_node;
+  std::map<NodeId, double> area_of_node;
+  std::vector<double> areas;
+  for (const Facet& facet : rule.side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets) {
+    areas.push_back(facet_area(rest_corners(tissue, facet)));
+    for (const NodeId node : facet.nodes) {
+      of_node[node].push_back(facets_.size());
+      area_of_node[node] += areas.back() / 8;  // half of the area is the nodes', half the facets' means
+    }
+    facets_.push_back(facet.nodes);
+  }
+  for (const auto& [node, facets] : of_node) {
+    points_.push_back({{node}, 1, area_of_node[node]});
+    neighbours_.push_back(facets);
+  }
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    points_.push_back({facets_[f], 4, areas[f] / 2});
+    std::vector<std::size_t> around;
+    for (const NodeId node : facets_[f]) around.insert(around.end(), of_node[node].begin(), of_node[node].end());
+    std::ranges::sort(around);
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    neighbours_.push_back(std::move(around));
+  }
+}
+
+std::vector<Pair> SelfContact::pairs(std::span<const Vec3> x) const {
+  // Normals of nodes and of points, by the area vectors of their facets.
+  Vectors normals(x.size(), Vec3::Zero());
+  double longest = 0;
+  for (const auto& facet : facets_) {
+    const std::array<Vec3, 4> corners = {x[facet[0].index()], x[facet[1].index()], x[facet[2].index()],
+                                         x[facet[3].index()]};
+    const Vec3 area = facet_area_vector(corners);
+    for (const NodeId node : facet) normals[node.index()] += area;
+    longest = std::max({longest, (corners[2] - corners[0]).norm(), (corners[3] - corners[1]).norm()});
+  }
+  Grid grid(std::max(rule_.search, 0.5 * longest), rule_.search);
+  for (std::size_t t = 0; t < 2 * facets_.size(); ++t) {
+    const auto nodes = triangle_nodes(facets_[t / 2], t % 2 == 1);
+    grid.add(t, {x[nodes[0].index()], x[nodes[1].index()], x[nodes[2].index()]});
+  }
+  std::vector<Pair> pairs;
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const Vec3 place = points_[p].at(x), facing = points_[p].at(normals);
+    double nearest2 = rule_.search * rule_.search;
+    std::optional<Pair> best;
+    for (const std::size_t t : grid.near(place)) {
+      const auto nodes = triangle_nodes(facets_[t / 2], t % 2 == 1);
+      const Vec3 &a = x[nodes[0].index()], &b = x[nodes[1].index()], &c = x[nodes[2].index()];
+      if (facing.dot((b - a).cross(c - a)) >= 0) continue;  // they look the same way
+      if (std::ranges::binary_search(neighbours_[p], t / 2)) continue;
+      const auto [weights, distance2] = closest_on_triangle(place, a, b, c);
+      if (distance2 >= nearest2) continue;
+      Vec3 normal = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) normal += weights[k] * normals[nodes[k].index()].normalized();
+      if (normal.norm() < 0.1 || normal.dot(facing) >= 0) continue;  // a sharp edge has no side
+      nearest2 = distance2;
+      best = Pair{p, nodes, weights, normal.normalized()};
+    }
+    if (best) pairs.push_back(*best);
+  }
+  return pairs;
+}
+
+std::vector<double> SelfContact::packed(std::span<const Vec3> positions) const {
+  std::vector<double> numbers;
+  for (const Pair& pair : pairs(positions)) {
+    numbers.push_back(static_cast<double>(pair.point));
+    for (const NodeId node : pair.nodes) numbers.push_back(static_cast<double>(node.index()));
+    numbers.insert(numbers.end(), pair.weights.begin(), pair.weights.end());
+    numbers.insert(numbers.end(), pair.normal.begin(), pair.normal.end());
+  }
+  return numbers;
+}
+
+std::vector<double> SelfContact::first_internal(const Tissue& tissue) const { return packed(tissue.rest_positions); }
+std::vector<double> SelfContact::next_internal(const Step& step) const { return packed(step.positions); }
+
+// Calls take(point, pair, how far it is inside the distance) for every pair that is pressed.
+template <class Take>
+void SelfContact::for_pressed(const Step& step, const Take& take) const {
+  for (std::size_t at = 0; at + pair_size <= step.internal.size(); at += pair_size) {
+    const std::span<const double> numbers = step.internal.subspan(at, pair_size);
+    Pair pair{static_cast<std::size_t>(numbers[0]),
+              {},
+              {numbers[4], numbers[5], numbers[6]},
+              Vec3(numbers[7], numbers[8], numbers[9])};
+    for (int k = 0; k < 3; ++k) pair.nodes[k] = NodeId(static_cast<std::size_t>(numbers[1 + k]));
+    const Point& point = points_[pair.point];
+    const double inside = rule_.distance - pair.gap(point, step.positions);
+    if (inside > 0) take(point, pair, inside);
+  }
+}
+
+double SelfContact::energy(const Step& step) const {
+  double sum = 0;
+  for_pressed(step, [&](const Point& point, const Pair&, double inside) {
+    sum += 0.5 * rule_.stiffness * point.area * inside * inside;
+  });
+  return sum;
+}
+
+namespace {
+
+// Adds a push along the pair's normal to the point's nodes, and against it to the triangle's.
+void add_push(const SelfContact::Point& point, const Pair& pair, double push, std::span<Vec3> forces) {
+  for (int i = 0; i < point.count; ++i) forces[point.nodes[i].index()] += push / point.count * pair.normal;
+  for (int k = 0; k < 3; ++k) forces[pair.nodes[k].index()] -= push * pair.weights[k] * pair.normal;
+}
+
+}  // namespace
+
+void SelfContact::add_forces(const Step& step, std::span<Vec3> forces) const {
+  for_pressed(step, [&](const Point& point, const Pair& pair, double inside) {
+    add_push(point, pair, rule_.stiffness * point.area * inside, forces);
+  });
+}
+
+void SelfContact::add_tangent_product(const Step& step, std::span<const Vec3> direction,
+                                      std::span<Vec3> product) const {
+  for_pressed(step, [&](const Point& point, const Pair& pair, double) {
+    add_push(point, pair, rule_.stiffness * point.area * pair.gap(point, direction), product);
+  });
+}
+
+void SelfContact::add_tangent(const Step& step, TangentSink& tangent) const {
+  for_pressed(step, [&](const Point& point, const Pair& pair, double) {
+    const Mat3 along = rule_.stiffness * point.area * pair.normal * pair.normal.transpose();
+    for (int i = 0; i < point.count; ++i)
+      for (int j = 0; j <= i; ++j)
+        tangent.add_block(point.nodes[i], point.nodes[j], along / (point.count * point.count));
+    for (int k = 0; k < 3; ++k)
+      for (int l = 0; l <= k; ++l)
+        tangent.add_block(pair.nodes[k], pair.nodes[l], pair.weights[k] * pair.weights[l] * along);
+  });
+}
+
+NodeGroups SelfContact::node_groups(std::span<const double> /*internal*/) const {
+  NodeGroups groups;
+  for (const auto& facet : facets_) groups.add(facet);
+  return groups;
+}
+
+std::unique_ptr<Law> SelfContact::after_division(const Tissue&, const Division&, std::span<const Vec3>) const {
+  throw std::logic_error("self-contact does not go with division yet");
+}
+
+}  // namespace plica

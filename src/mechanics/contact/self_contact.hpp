@@ -1,0 +1,76 @@
+// Contact of a surface with itself: points against facets, without friction (docs/theory/self_contact.md).
+//
+// At the beginning of a step each point of the surface takes the nearest facing triangle of it, outside its own
+// neighbourhood. The place q on that triangle, as weights of its nodes, and the normal N there stay fixed for the step;
+// where the point p comes closer than `distance` along N it is pushed back:
+//   E = k w/2 (distance - N.(p - q))^2,   w the area that the point stands for.
+// So within a step the law is linear in its forces, and gaps have a sign: a point beyond the surface is pushed out
+// again.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "mechanics/law.hpp"
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+struct SelfContactRule {
+  CellSide side = CellSide::apical;
+  double distance = 0.4;  // um
+  double stiffness = 1;   // k, nN/um^3 (kPa/um)
+  double search = 6;      // um: how near a triangle must be at the step's beginning
+};
+
+/// The pairs of a step are its internal state, found again when a step is accepted. Its matrix leaves out what couples
+/// a point with its triangle's nodes, which change from step to step; products have it.
+class SelfContact final : public Law {
+ public:
+  SelfContact(const Tissue& tissue, const SelfContactRule& rule);
+
+  [[nodiscard]] std::string_view name() const override { return "self-contact"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<SelfContact>(*this); }
+  [[nodiscard]] double energy(const Step& step) const override;
+  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
+  [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
+  [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
+  /// Throws std::logic_error: a scenario with divisions has none of this.
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                    std::span<const Vec3> positions) const override;
+
+  /// A point of the surface: the mean of `count` nodes (a node itself, or the corners of a facet).
+  struct Point {
+    std::array<NodeId, 4> nodes;
+    int count = 1;
+    double area = 0;  // um^2, at rest
+    [[nodiscard]] Vec3 at(std::span<const Vec3> vectors) const;
+  };
+  /// What a point is kept from.
+  struct Pair {
+    std::size_t point;
+    std::array<NodeId, 3> nodes;    // of the triangle
+    std::array<double, 3> weights;  // of the place on it
+    Vec3 normal;
+    /// N.(p - q); of any vectors of nodes.
+    [[nodiscard]] double gap(const Point& point, std::span<const Vec3> vectors) const;
+  };
+  /// In the order of points.
+  [[nodiscard]] std::vector<Pair> pairs(std::span<const Vec3> positions) const;
+  [[nodiscard]] const std::vector<Point>& points() const { return points_; }
+
+ private:
+  template <class Take>
+  void for_pressed(const Step& step, const Take& take) const;
+  [[nodiscard]] std::vector<double> packed(std::span<const Vec3> positions) const;
+
+  SelfContactRule rule_;
+  std::vector<std::array<NodeId, 4>> facets_;
+  std::vector<Point> points_;                         // nodes of the surface, then means of its facets
+  std::vector<std::vector<std::size_t>> neighbours_;  // points: facets that share a node with theirs, sorted
+};
+
+}  // namespace plica

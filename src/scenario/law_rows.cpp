@@ -1,0 +1,182 @@
+// Rows of the tables by which cells act and resist.
+#include "scenario/rows_in.hpp"
+
+namespace plica {
+namespace {
+
+using S = Scenario;
+using C = ContractionInput;
+using P = PressureInput;
+using X = CortexInput;
+using N = EnclosedInput;
+using F = SelfContactInput;
+
+/// The keys of a program within a table; `factor_on` what it multiplies.
+template <class Table>
+void add_program(std::vector<Row>& rows, const RowsIn<Table>& table, ProgramInput Table::*program,
+                 const std::array<std::string_view, 3>& keys, std::string_view meaning) {
+  rows.push_back(table(keys[0], program, &ProgramInput::time_s, anything,
+                       "Times of the points of the activity (s), increasing; the same time twice is a jump, on which a "
+                       "step ends. Without a program it is always 1."));
+  rows.push_back(table(keys[1], program, &ProgramInput::time_s, anything, "The same in minutes.",
+                       {.instead_of = keys[0], .scale = 60}));
+  rows.push_back(table(keys[2], program, &ProgramInput::activity, not_negative, meaning));
+}
+
+constexpr std::array<std::string_view, 3> program_keys = {"program.time_s", "program.time_min", "program.activity"};
+
+/// How strongly and when each cell of the region acts.
+template <class Table>
+void add_pattern(std::vector<Row>& rows, const RowsIn<Table>& table) {
+  const auto profile = [&](std::string_view key, auto field, const Allowed& allowed, std::string_view meaning) {
+    rows.push_back(table(key, &Table::profile, field, allowed, meaning));
+  };
+  profile("profile.shape", &ProfileInput::shape, one_of(words::profile_shapes),
+          "Factor on its strength by a cell's distance from the region's middle: 1, falling to `edge` at "
+          "`half_width_um`, or exp(−d²/2σ²).");
+  profile(
+      "profile.axis", &ProfileInput::axis, one_of(words::profile_axes),
+      "Distance across the axis (the arc about it through the cell's centre; y in a block) or along it (x); without "
+      "it across.");
+  profile("profile.half_width_um", &ProfileInput::half_width_um, positive,
+          "Linear: distance at which the factor is `edge`, as it is beyond (µm).");
+  profile("profile.edge", &ProfileInput::edge, not_negative, "Linear: factor there; without it 0.");
+  profile("profile.sigma_um", &ProfileInput::sigma_um, positive, "Gaussian: its standard deviation σ (µm).");
+  profile("profile.sigma_cells", &ProfileInput::sigma_cells, positive,
+          "Gaussian, instead of `sigma_um`: σ in cells, by the mean width of the region's cells across the axis (along "
+          "it with axis along).");
+  profile("profile.full_length_um", &ProfileInput::full_length_um, positive,
+          "Taper along the axis: all of the strength on this length about the region's middle (µm).");
+  profile("profile.fade_um", &ProfileInput::fade_um, positive,
+          "Taper: from there it falls to 0 on this length, as a cosine (µm).");
+  rows.push_back(
+      table("delay.speed_um_per_s", &Table::delay, &DelayInput::speed_um_per_s,
+            {.low = 0, .low_included = false, .word_for_none = "none"},
+            "Speed of a wave (µm/s): a cell's program starts when it arrives, and the cell is slack before."));
+  rows.push_back(table("delay.axis", &Table::delay, &DelayInput::axis, one_of(words::delay_axes),
+                       "Direction of the wave, as in `profile.axis`; without it along."));
+  rows.push_back(
+      table("delay.from", &Table::delay, &DelayInput::from, one_of(words::delay_starts),
+            "Where the region's wave starts at time 0; without it in the middle. Low is the anterior end, or "
+            "the left side."));
+  rows.push_back(table("variation.spread", &Table::variation, &VariationInput::spread, between(0, 100),
+                       "Relative standard deviation of a log-normal factor with mean 1 on each cell's strength."));
+  rows.push_back(table("variation.seed", &Table::variation, &VariationInput::seed, not_negative,
+                       "Another seed gives other factors; a cell's factor depends on seed and cell number only."));
+}
+
+}  // namespace
+
+std::vector<Row> law_rows() {
+  const auto elasticity = rows_in("elasticity", &S::elasticity);
+  const auto contraction = rows_in("contraction.*", &S::contractions);
+  const auto cortex = rows_in("cortex.*", &S::cortices);
+  const auto enclosed = rows_in("enclosed.*", &S::enclosed);
+  const auto contact = rows_in("self_contact", &S::self_contact);
+  const auto pressure = rows_in("pressure.*", &S::pressures);
+  std::vector<Row> rows = {
+      elasticity("model", &ElasticityInput::model, one_of(words::elastic_models),
+                 "Elastic law of a cell: isotropic in a frame that turns with it, or springs from its nodes to their "
+                 "places in the rest shape that follows it."),
+      elasticity("young_modulus_Pa", &ElasticityInput::young_modulus_Pa, positive, "Young's modulus (Pa)."),
+      elasticity(
+          "poisson_ratio", &ElasticityInput::poisson_ratio,
+          {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
+          "Poisson's ratio; with coupled volumes it only sets the shear modulus and the dilatation inside a cell."),
+      elasticity("attractor_stiffness_nN_per_um", &ElasticityInput::attractor_stiffness_nN_per_um,
+                 {.low = 0, .low_included = false, .word_for_none = "derived"},
+                 "Model shape-memory: stiffness of the springs from the nodes of a cell to the attractor (nN/µm), or "
+                 "such that the mean shear modulus is that of young_modulus_Pa and poisson_ratio."),
+      elasticity("attractor_preload_nN", &ElasticityInput::attractor_preload_nN, not_negative,
+                 "Model shape-memory: tension of these springs that does not depend on their length (nN)."),
+      elasticity(
+          "attractor_preload_length_um", &ElasticityInput::attractor_preload_length_um, positive,
+          "Model shape-memory: how far from its place a node feels 0.7 of the preload (µm); it has no direction at 0."),
+      elasticity("corner_barrier_Pa", &ElasticityInput::corner_barrier_Pa, not_negative,
+                 "Pushes corners of elements back that have under 0.15 of their Jacobian at rest, before they turn "
+                 "inside out (Pa); 0: nothing does. For tight folds of soft cells, about the elastic modulus."),
+
+      contraction("region", &C::region, anything, "Region whose cells contract.", {.required = true}),
+      contraction("edges", &C::edges, one_of(words::edges), "Edges of the cells that contract."),
+      contraction("stiffness_nN_per_um", &C::stiffness_nN_per_um, not_negative, "Stiffness of a spring (nN/µm)."),
+      contraction("along_ratio", &C::along_ratio, not_negative, "Factor on edges along the axis."),
+      contraction("across_ratio", &C::across_ratio, not_negative, "Factor on edges across the axis."),
+      contraction("diagonals", &C::diagonals, anything, "Whether the diagonals of the face contract too."),
+      contraction("rest_length_ratio", &C::rest_length_ratio, not_negative,
+                  "Length at which a spring is slack, over its initial length."),
+      contraction("preload_nN", &C::preload_nN, anything,
+                  "Tension of a spring that does not depend on its length (nN)."),
+      contraction("tension_mN_per_m", &C::tension_mN_per_m, not_negative,
+                  "Tension of the cells' faces, per length across it (mN/m, that is nN/µm), whatever the size of "
+                  "cells: what stiffness and preload do, they do on every edge, so smaller cells pull harder."),
+      contraction("damping_nN_s_per_um", &C::damping_nN_s_per_um, not_negative, "Damping of a spring (nN s/µm)."),
+  };
+  add_program(rows, contraction, &C::program, program_keys,
+              "Activity at these times: a factor on the tension, linear between them.");
+  add_pattern(rows, contraction);
+
+  const std::vector<Row> of_cortex = {
+      cortex("region", &X::region, anything, "Region whose cells have it.", {.required = true}),
+      cortex("faces", &X::faces, one_of(words::edges),
+             "Faces that have it. A wall between two cells is one face, with half of what each of them is told."),
+      cortex("tension_mN_per_m", &X::tension_mN_per_m, not_negative,
+             "Active tension of a face that is large (mN/m, that is nN/µm)."),
+      cortex(
+          "saturation_ratio", &X::saturation_ratio, not_negative,
+          "The active tension of a face of area A is a part A/(A + saturation_ratio A₀) of that, A₀ its area at rest: "
+          "half of it where the area is this part of A₀, none at area 0. 0: the same at any area."),
+      cortex("stiffness_mN_per_m", &X::stiffness_mN_per_m, not_negative,
+             "Area elasticity: tension for a doubled area (mN/m)."),
+      cortex("compression_ratio", &X::compression_ratio, between(0, 1),
+             "Part of the stiffness that acts where a face is smaller than its rest area; 0: it is slack there."),
+      cortex("crowding_mN_per_m", &X::crowding_mN_per_m, not_negative,
+             "Pressure within a face against vanishing, times (A₀/A)² (mN/m)."),
+      cortex("relaxation_s", &X::relaxation_s, {.low = 0, .low_included = false, .word_for_none = "none"},
+             "Time in which the rest area follows the area (s): what is held stretched forgets it."),
+      cortex("relaxation_min", &X::relaxation_s, {.low = 0, .low_included = false, .word_for_none = "none"},
+             "The same in minutes.", {.instead_of = "relaxation_s", .scale = 60}),
+  };
+  rows.insert(rows.end(), of_cortex.begin(), of_cortex.end());
+  add_program(rows, cortex, &X::program, program_keys,
+              "Activity at these times: a factor on the active tension, linear between them.");
+  add_program(rows, cortex, &X::stiffness_program,
+              {"stiffness_program.time_s", "stiffness_program.time_min", "stiffness_program.activity"},
+              "The same for the stiffness.");
+  add_pattern(rows, cortex);
+
+  const std::vector<Row> of_enclosed = {
+      enclosed("surface", &N::surface, one_of({"basal"}), "The closed surface: the cells' basal one, around the yolk."),
+      enclosed("volume", &N::volume, one_of(words::enclosed_states),
+               "How the volume inside is kept: exactly, with a pressure of its own; by bulk_modulus_Pa; or not."),
+      enclosed("bulk_modulus_Pa", &N::bulk_modulus_Pa, positive,
+               "Volume compliant: pressure for the loss of all of the volume (Pa); 50 000 keeps a furrow's yolk to "
+               "about a thousandth."),
+  };
+  rows.insert(rows.end(), of_enclosed.begin(), of_enclosed.end());
+
+  const std::vector<Row> of_contact = {
+      contact("surface", &F::surface, one_of(words::contact_surfaces),
+              "Surfaces of the sheet that do not pass through themselves."),
+      contact("distance_um", &F::distance_um, positive, "Where they begin to push each other away (µm)."),
+      contact("stiffness_kPa_per_um", &F::stiffness_kPa_per_um, positive,
+              "Pressure for each µm by which they are nearer than that (kPa/µm); the pressure between lips, tens of "
+              "pascals, leaves them a tenth of a µm inside."),
+      contact("search_um", &F::search_um, positive,
+              "How near two places must be at the beginning of a step to push each other in it (µm): more than they "
+              "move in a step."),
+  };
+  rows.insert(rows.end(), of_contact.begin(), of_contact.end());
+
+  const std::vector<Row> of_pressure = {
+      pressure("region", &P::region, anything, "Region whose faces carry the pressure.", {.required = true}),
+      pressure("face", &P::face, one_of(words::pressure_faces), "Face of the cells that carries it."),
+      pressure("pressure_Pa", &P::pressure_Pa, anything,
+               "Pressure into the cell (Pa), a dead load on the face at rest.", {.required = true}),
+  };
+  rows.insert(rows.end(), of_pressure.begin(), of_pressure.end());
+  add_program(rows, pressure, &P::program, program_keys,
+              "Activity at these times: a factor on the pressure, linear between them.");
+  return rows;
+}
+
+}  // namespace plica

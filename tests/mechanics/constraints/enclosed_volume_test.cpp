@@ -1,0 +1,56 @@
+#include "mechanics/constraints/enclosed_volume.hpp"
+
+#include <gtest/gtest.h>
+
+#include "measure/cells.hpp"
+#include "support/constraint_law.hpp"
+#include "support/law_checks.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+TEST(HeldVolume, IsTheLumen) {
+  const Tissue tissue = build_shell({200, 100, 20, {6, 4, 4}, {1, 1, 1}});
+  const EnclosedVolume volume(tissue);
+  EXPECT_NEAR(volume.targets()[0] / lumen_volume(tissue, tissue.rest_positions).value(), 1, 1e-14);
+}
+
+TEST(HeldVolume, DerivativesAgreeWithFiniteDifferences) {
+  const Tissue tissue = build_block({.length_um = 40, .width_um = 20, .cells = {2, 1, 1}});
+  check_derivatives(ConstraintLaw(EnclosedVolume(tissue), {0.7}), tissue, 4);
+}
+
+// A ball whose surface is moved outward by a small way: the pressure is K times the relative loss of volume.
+TEST(ElasticVolume, PressureIsTheModulusTimesTheLoss) {
+  const Tissue tissue = build_shell({100, 100, 20, {8, 8, 8}, {1, 1, 1}});
+  const ElasticVolume law(tissue, 50);
+  Vectors smaller = tissue.rest_positions;
+  for (Vec3& x : smaller) x *= 0.99;
+  EXPECT_NEAR(law.pressure(smaller), 50 * (1 - 0.99 * 0.99 * 0.99), 1e-9);
+}
+
+// Its matrix leaves out what joins every node with every other, so only the product has all of the tangent.
+TEST(ElasticVolume, DerivativesAgreeWithFiniteDifferences) {
+  const Tissue tissue = build_shell({60, 60, 15, {2, 2, 2}, {1, 1, 1}});
+  const ElasticVolume law(tissue, 0.4);
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    Motion motion = random_motion(tissue, 3, seed);
+    expect_forces_are_minus_energy_gradient(law, motion, 1e-6);
+    const Vectors direction = Random(seed).vectors(tissue.node_count());
+    const Eigen::VectorXd product = product_of(law, motion.step(), direction);
+    const auto forces_at = [&](double way) {
+      Motion there = motion;
+      for (std::size_t n = 0; n < direction.size(); ++n) there.positions[n] += way * direction[n];
+      return flat(forces_of(law, there.step()));
+    };
+    const Eigen::VectorXd difference = -(forces_at(difference_um) - forces_at(-difference_um)) / (2 * difference_um);
+    EXPECT_LE((product - difference).norm(), 1e-6 * difference.norm());
+    motion.semidefinite_tangent = true;
+    EXPECT_GE(flat(direction).dot(product_of(law, motion.step(), direction)), 0);
+  }
+}
+
+}  // namespace
+}  // namespace plica

@@ -1,0 +1,105 @@
+#include "mechanics/contact/self_contact.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/law_checks.hpp"
+#include "support/models.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+// A strip of cells, bent into a U whose inner, apical sides face each other across `gap_um`.
+Tissue folded(double gap_um, int cells = 12) {
+  const double inner = gap_um / 2, height = 10, arm = 60;
+  const int arms = (cells - 4) / 2;
+  return mapped_lattice(cells, 3, 1, [&](int i, int j, int k) {
+    const double radius = inner + (k == 0 ? height : 0), y = 10.0 * j;
+    if (i <= arms) return Vec3(-radius, y, arm - arm * i / arms);
+    if (i >= cells - arms) return Vec3(radius, y, arm * (i - (cells - arms)) / arms);
+    const double angle = M_PI * (i - arms) / 4;
+    return Vec3(-radius * std::cos(angle), y, -radius * std::sin(angle));
+  });
+}
+
+Motion with_pairs(const SelfContact& law, const Tissue& tissue) {
+  Motion motion = at_rest(tissue);
+  motion.internal = law.first_internal(tissue);
+  return motion;
+}
+
+TEST(SelfContact, PairsFaceEachOtherAndAreNoNeighbours) {
+  const Tissue tissue = folded(3);
+  const SelfContact law(tissue, {.search = 4});
+  const auto pairs = law.pairs(tissue.rest_positions);
+  ASSERT_FALSE(pairs.empty());
+  for (const auto& pair : pairs) {
+    const double gap = pair.gap(law.points()[pair.point], tissue.rest_positions);
+    EXPECT_GT(gap, 0);
+    EXPECT_LE(gap, 4);
+    EXPECT_NEAR(pair.normal.norm(), 1, 1e-12);
+    EXPECT_NEAR(pair.weights[0] + pair.weights[1] + pair.weights[2], 1, 1e-12);
+  }
+  // A flat sheet has none, nor has one whose sides are farther apart than the search.
+  EXPECT_TRUE(SelfContact(folded(30), {.search = 4}).pairs(folded(30).rest_positions).empty());
+  const Tissue flat = build_block({.length_um = 60, .width_um = 60, .cell_height_um = 10, .cells = {6, 6, 1}});
+  EXPECT_TRUE(SelfContact(flat, {.search = 40}).pairs(flat.rest_positions).empty());
+}
+
+TEST(SelfContact, DerivativesAgreeWithFiniteDifferences) {
+  const Tissue tissue = folded(3);
+  const SelfContact law(tissue, {.distance = 5, .stiffness = 0.2, .search = 6});
+  Motion motion = with_pairs(law, tissue);
+  Random random(4);
+  for (Vec3& x : motion.positions) x += random.vector(0.5);
+  expect_forces_are_minus_energy_gradient(law, motion, 1e-6);
+  // Its matrix leaves out what couples the two sides; the product has it.
+  const Vectors direction = random.vectors(tissue.node_count());
+  const Eigen::VectorXd product = product_of(law, motion.step(), direction);
+  const auto forces_at = [&](double way) {
+    Motion there = motion;
+    for (std::size_t n = 0; n < direction.size(); ++n) there.positions[n] += way * direction[n];
+    return flat(forces_of(law, there.step()));
+  };
+  const Eigen::VectorXd difference = -(forces_at(difference_um) - forces_at(-difference_um)) / (2 * difference_um);
+  EXPECT_GT(difference.norm(), 1);
+  EXPECT_LE((product - difference).norm(), 1e-6 * difference.norm());
+  EXPECT_GE(flat(direction).dot(product), 0);
+}
+
+// Two parallel sides that overlap by less than `distance` push with stiffness times that, over the area that faces.
+TEST(SelfContact, FlatOnFlatIsAPressure) {
+  const Tissue tissue = folded(0.3, 20);
+  const SelfContact law(tissue, {.distance = 0.4, .stiffness = 2, .search = 4});
+  const Vectors forces = forces_of(law, with_pairs(law, tissue).step());
+  EXPECT_LE(resultant(forces).norm(), 1e-9);
+  double push = 0;
+  for (const Vec3& f : forces) push += std::abs(f.x()) / 2;
+  // Points of both sides push, so the pressure is twice that of one.
+  const double area = 60 * 30;
+  EXPECT_NEAR(push / (2 * 2 * 0.1 * area), 1, 0.03);
+}
+
+// A point that has gone through is pushed back out.
+TEST(SelfContact, GapsHaveASign) {
+  const Tissue tissue = folded(3);
+  const SelfContact law(tissue, {.distance = 0.4, .search = 6});
+  Motion motion = with_pairs(law, tissue);
+  EXPECT_EQ(law.energy(motion.step()), 0);
+  for (Vec3& x : motion.positions) x.x() -= 2.5 * (x.x() > 0 ? 1 : -1);
+  EXPECT_GT(law.energy(motion.step()), 0);
+  const Vectors forces = forces_of(law, motion.step());
+  int pushed = 0;
+  for (std::size_t n = 0; n < forces.size(); ++n) {
+    if (std::abs(forces[n].x()) <= 1e-9 || tissue.rest_positions[n].z() <= 10) continue;
+    EXPECT_GT(forces[n].x() * tissue.rest_positions[n].x(), 0) << "node " << n;
+    ++pushed;
+  }
+  EXPECT_GT(pushed, 0);
+}
+
+}  // namespace
+}  // namespace plica

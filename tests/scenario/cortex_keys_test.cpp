@@ -1,0 +1,123 @@
+// Keys of what a closing furrow needs: cortices, enclosed volumes, corner barrier, profiles in cells and tapers.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mechanics/active/cortex.hpp"
+#include "scenario/load.hpp"
+#include "scenario/setup.hpp"
+#include "simulation/simulation.hpp"
+
+namespace plica {
+namespace {
+
+const std::string cortex = "[cortex.a]\nregion = \"all\"\n";
+
+std::vector<std::string> complaints(const std::string& text) {
+  try {
+    (void)load_scenario({"test", "test.toml", text});
+  } catch (const ScenarioError& error) {
+    std::vector<std::string> lines;
+    for (const Diagnostic& diagnostic : error.diagnostics()) lines.push_back(diagnostic.text());
+    return lines;
+  }
+  return {};
+}
+
+TEST(CortexKeys, SayWhatWouldBeRight) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {cortex, "test.toml:1: cortex.a: does nothing; give tension_mN_per_m, stiffness_mN_per_m or crowding_mN_per_m"},
+      {cortex + "tension_mN_per_m = -1",
+       "test.toml:3: cortex.a.tension_mN_per_m: -1 is out of range; give a number >= 0"},
+      {cortex + "tension_mN_per_m = 1\nfaces = \"top\"",
+       "test.toml:4: cortex.a.faces: \"top\" is not known; give one of: apical | basal | lateral"},
+      {cortex + "stiffness_mN_per_m = 1\nsaturation_ratio = 0.2",
+       "test.toml:4: cortex.a.saturation_ratio: has no meaning without tension_mN_per_m; remove it, or give "
+       "tension_mN_per_m"},
+      {cortex + "tension_mN_per_m = 1\ncompression_ratio = 0.1",
+       "test.toml:4: cortex.a.compression_ratio: has no meaning without stiffness_mN_per_m; remove it, or give "
+       "stiffness_mN_per_m"},
+      {cortex + "tension_mN_per_m = 1\nrelaxation_min = 0",
+       "test.toml:4: cortex.a.relaxation_min: 0 is out of range; give a number > 0 or \"none\""},
+      {cortex + "stiffness_mN_per_m = 1\nstiffness_program = { time_min = [0, 1], activity = [1] }",
+       "test.toml:4: cortex.a.stiffness_program.activity: 1 activities for 2 times; give as many activities as times"},
+      {"[cortex.a]\nregion = \"mesoderm\"\ntension_mN_per_m = 1",
+       "test.toml:2: cortex.a.region: there is no region \"mesoderm\"; known are: all"},
+      {cortex + "tension_mN_per_m = 1\nprofile = { shape = \"gaussian\", sigma_um = 3, sigma_cells = 2 }",
+       "test.toml:4: cortex.a.profile.sigma_cells: stands beside sigma_um; give one of the two"},
+      {cortex + "tension_mN_per_m = 1\nprofile = { full_length_um = 300 }",
+       "test.toml:4: cortex.a.profile.fade_um: is missing; a taper along the axis has both lengths"},
+      {"[enclosed.yolk]\nvolume = \"compliant\"\n[vitelline]\ngap_um = 1",
+       "test.toml:1: enclosed.yolk.bulk_modulus_Pa: is missing; give how compliant the volume is, a number > 0"},
+      {"[enclosed.yolk]\nbulk_modulus_Pa = 10\n[vitelline]\ngap_um = 1",
+       "test.toml:2: enclosed.yolk.bulk_modulus_Pa: has no meaning with volume \"held\"; remove it, or choose volume "
+       "\"compliant\""},
+      {"[enclosed.yolk]\nvolume = \"held\"",
+       "test.toml:2: enclosed.yolk.volume: nothing can move: cells and what they enclose keep their volumes, and the "
+       "shell leaves no room; give vitelline.gap_um, such as 0.5, or volume \"compliant\""},
+      {"[embryo]\nshape = \"block\"\n[enclosed.yolk]\nvolume = \"held\"",
+       "test.toml:3: enclosed.yolk: a block encloses nothing; remove it, or choose shape \"pill\" or \"sphere\""},
+      {"[elasticity]\ncorner_barrier_Pa = -1",
+       "test.toml:2: elasticity.corner_barrier_Pa: -1 is out of range; give a number >= 0"},
+  };
+  for (const auto& [text, expected] : cases) {
+    const std::vector<std::string> found = complaints(text);
+    ASSERT_EQ(found.size(), 1u) << text << (found.empty() ? "" : "\n" + found[0] + "\n" + found.back());
+    EXPECT_EQ(found[0], expected) << text;
+  }
+}
+
+// The region of the active apical cortex is where the furrow is measured.
+TEST(CortexKeys, ASmallFurrowOfCorticesFolds) {
+  const Scenario scenario = load_scenario({"furrow", "furrow.toml", R"(format = 1
+[embryo]
+length_um = 300
+diameter_um = 160
+cell_height_um = 30
+cells = [12, 8, 8]
+[region.belly]
+face = "ventral"
+cells_across = 4
+[elasticity]
+young_modulus_Pa = 5
+poisson_ratio = 0
+corner_barrier_Pa = 10
+[vitelline]
+gap_um = 0.5
+[dynamics]
+surface_drag_Pa_s_per_um = 4
+[cortex.apical]
+region = "belly"
+tension_mN_per_m = 1
+saturation_ratio = 0.16
+program = { time_min = [0, 1], activity = [0, 1] }
+profile = { shape = "gaussian", sigma_cells = 2, full_length_um = 200, fade_um = 40 }
+[cortex.basal]
+region = "all"
+faces = "basal"
+stiffness_mN_per_m = 0.3
+relaxation_min = 15
+[cortex.walls]
+region = "all"
+faces = "lateral"
+stiffness_mN_per_m = 0.02
+compression_ratio = 0.1
+[enclosed.yolk]
+volume = "compliant"
+bulk_modulus_Pa = 50000
+[time]
+end_min = 2
+[stop]
+at_equilibrium = false
+)"});
+  Simulation simulation(scenario);
+  ASSERT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
+  const Observation measures = simulation.measures();
+  EXPECT_GT(*measures["furrow_depth_um"], 2);
+  EXPECT_NEAR(*measures["lumen_volume_ratio"], 1, 1e-3);
+  EXPECT_LE(*measures["max_volume_error"], 1e-9);
+  EXPECT_EQ(contracting_regions(scenario, simulation.model().tissue), std::vector<std::string>{"belly"});
+}
+
+}  // namespace
+}  // namespace plica
