@@ -3,7 +3,8 @@
 
 #include <algorithm>
 
-#include "mechanics/active/cortex.hpp"
+#include "record/archive.hpp"
+#include "record/checkpoint.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
 #include "simulation/simulation.hpp"
@@ -67,9 +68,9 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
   }
 }
 
-// The region of the active apical cortex is where the furrow is measured.
-TEST(CortexKeys, ASmallFurrowOfCorticesFolds) {
-  const Scenario scenario = load_scenario({"furrow", "furrow.toml", R"(format = 1
+// A belly that is drawn in, with all that a closing furrow has.
+Scenario small_furrow() {
+  return load_scenario({"furrow", "furrow.toml", R"(format = 1
 [embryo]
 length_um = 300
 diameter_um = 160
@@ -102,6 +103,9 @@ region = "all"
 faces = "lateral"
 stiffness_mN_per_m = 0.02
 compression_ratio = 0.1
+[self_contact]
+surface = "both"
+search_um = 20
 [enclosed.yolk]
 volume = "compliant"
 bulk_modulus_Pa = 50000
@@ -110,6 +114,11 @@ end_min = 2
 [stop]
 at_equilibrium = false
 )"});
+}
+
+// The region of the active apical cortex is where the furrow is measured.
+TEST(CortexKeys, ASmallFurrowOfCorticesFolds) {
+  const Scenario scenario = small_furrow();
   Simulation simulation(scenario);
   ASSERT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
   const Observation measures = simulation.measures();
@@ -117,6 +126,29 @@ at_equilibrium = false
   EXPECT_NEAR(*measures["lumen_volume_ratio"], 1, 1e-3);
   EXPECT_LE(*measures["max_volume_error"], 1e-9);
   EXPECT_EQ(contracting_regions(scenario, simulation.model().tissue), std::vector<std::string>{"belly"});
+}
+
+// Rest areas that flow and pairs in contact are part of what a run remembers.
+TEST(CortexKeys, ARunGoesOnToTheSameBits) {
+  const Scenario scenario = small_furrow();
+  Simulation whole(scenario);
+  std::optional<RunMemory> kept;
+  Observation measures;
+  while (whole.step())
+    if (whole.steps() == 12) kept = whole.memory(), measures = whole.measures();
+  ASSERT_TRUE(kept);
+  Checkpoint checkpoint{"", "", "", *kept, {}};
+  checkpoint.record.rows.push_back(measures);
+  if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
+  Simulation rest(scenario);
+  rest.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  EXPECT_EQ(rest.run(), whole.status());
+  EXPECT_EQ(rest.steps(), whole.steps());
+  EXPECT_EQ(rest.state().positions, whole.state().positions);
+  EXPECT_EQ(rest.state().internals, whole.state().internals);
+  std::size_t remembered = 0;
+  for (const auto& internal : whole.state().internals) remembered += internal.size();
+  EXPECT_GT(remembered, 0u);
 }
 
 }  // namespace
