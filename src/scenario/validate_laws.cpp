@@ -1,6 +1,8 @@
 // Keys that only one choice of another key uses: given in vain is an error, inherited in vain is dropped.
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "scenario/validate.hpp"
 #include "scenario/words.hpp"
 
@@ -145,6 +147,7 @@ void check_contact(const Scenario& scenario, Input& input) {
 }
 
 void check_enclosed(const Scenario& scenario, Input& input) {
+  bool is_kept = false;
   for (const auto& [name, it] : scenario.enclosed) {
     const std::string table = "enclosed." + name, key = table + ".bulk_modulus_Pa";
     if (!input.sound(table) || !input.sound(table + ".volume") || !input.sound("embryo.shape")) continue;
@@ -156,6 +159,13 @@ void check_enclosed(const Scenario& scenario, Input& input) {
     if (state != EnclosedState::compliant && it.bulk_modulus_Pa)
       input.report(key, fmt::format("has no meaning with volume \"{}\"", it.volume),
                    "remove it, or choose volume \"compliant\"");
+    if (state == EnclosedState::held &&
+        (method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton"))
+      input.report(table + ".volume",
+                   "a held volume goes with time.scheme \"newton\" and volumes that are not projected",
+                   "give \"compliant\", or another scheme or volume.method");
+    else if (state != EnclosedState::free && std::exchange(is_kept, true))
+      input.report(table + ".surface", "its volume is kept by another table already", "remove one of the two");
     // Cells, what they enclose, and the room up to the shell: with all three given nothing can move.
     if (state == EnclosedState::held && scenario.vitelline.enabled && scenario.vitelline.gap_um == 0 &&
         method_of(scenario.volume) == VolumeMethod::coupled && input.sound("vitelline.gap_um"))

@@ -58,6 +58,11 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
        "shell leaves no room; give vitelline.gap_um, such as 0.5, or volume \"compliant\""},
       {"[embryo]\nshape = \"block\"\n[enclosed.yolk]\nvolume = \"held\"",
        "test.toml:3: enclosed.yolk: a block encloses nothing; remove it, or choose shape \"pill\" or \"sphere\""},
+      {"[enclosed.yolk]\nvolume = \"held\"\n[volume]\nmethod = \"projection\"",
+       "test.toml:2: enclosed.yolk.volume: a held volume goes with time.scheme \"newton\" and volumes that are not "
+       "projected; give \"compliant\", or another scheme or volume.method"},
+      {"[enclosed.a]\nvolume = \"held\"\n[enclosed.b]\nsurface = \"basal\"\n[vitelline]\ngap_um = 1",
+       "test.toml:4: enclosed.b.surface: its volume is kept by another table already; remove one of the two"},
       {"[elasticity]\ncorner_barrier_Pa = -1",
        "test.toml:2: elasticity.corner_barrier_Pa: -1 is out of range; give a number >= 0"},
   };
