@@ -11,7 +11,7 @@ using X = CortexInput;
 using N = EnclosedInput;
 using F = SelfContactInput;
 
-/// The keys of a program within a table; `factor_on` what it multiplies.
+/// The keys of a program within a table; `meaning`: of its activity.
 template <class Table>
 void add_program(std::vector<Row>& rows, const RowsIn<Table>& table, ProgramInput Table::*program,
                  const std::array<std::string_view, 3>& keys, std::string_view meaning) {

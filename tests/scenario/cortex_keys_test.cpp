@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "measure/monitor.hpp"
 #include "record/archive.hpp"
 #include "record/checkpoint.hpp"
 #include "scenario/load.hpp"
@@ -131,6 +132,24 @@ TEST(CortexKeys, ASmallFurrowOfCorticesFolds) {
   EXPECT_NEAR(*measures["lumen_volume_ratio"], 1, 1e-3);
   EXPECT_LE(*measures["max_volume_error"], 1e-9);
   EXPECT_EQ(contracting_regions(scenario, simulation.model().tissue), std::vector<std::string>{"belly"});
+}
+
+// What cells exert is asked of a part of the tissue: yolk and contact are no part's own.
+TEST(CortexKeys, ForcesOfAPartLeaveOutWhatIsNotOfCells) {
+  Scenario scenario = small_furrow();
+  scenario.cortices.clear();
+  scenario.elasticity.corner_barrier_Pa = 0;
+  const Simulation simulation(scenario);
+  State state = simulation.state();
+  for (Vec3& x : state.positions) x *= 0.99;  // at rest but for the yolk's pressure
+  const Tissue& tissue = simulation.model().tissue;
+  const Vectors belly = forces_of_cells(simulation.model(), state, tissue.regions.at("belly"));
+  Model alone(tissue);
+  for (const auto& law : simulation.model().laws)
+    if (law->name() != "enclosed volume" && law->name() != "self-contact") alone.laws.push_back(law->clone());
+  State of_alone = rest_state(alone);
+  of_alone.positions = state.positions;
+  EXPECT_EQ(belly, forces_of_cells(alone, of_alone, tissue.regions.at("belly")));
 }
 
 // Rest areas that flow and pairs in contact are part of what a run remembers.

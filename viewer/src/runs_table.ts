@@ -61,7 +61,7 @@ export class RunsTable {
   }
 
   private bar(): HTMLElement[] {
-    this.text.placeholder = this.placeholder();
+    this.text.placeholder = this.example(); // what stands in the empty field
     this.text.addEventListener("input", () => this.apply());
     const tickAll = (on: boolean) => {
       // Of those that the text lets through.
@@ -80,7 +80,7 @@ export class RunsTable {
     return parts;
   }
 
-  private placeholder(): string {
+  private example(): string {
     const key = this.page.varied.find(isNumeric);
     return key ? `Filter: a name, or ${lastOf(key.key)}=${key.values.find((value) => value !== "")}` : "Filter runs";
   }

@@ -162,7 +162,9 @@ NodeGroups ElasticVolume::node_groups(std::span<const double> /*internal*/) cons
 
 std::unique_ptr<Law> ElasticVolume::after_division(const Tissue& tissue, const Division& /*division*/,
                                                    std::span<const Vec3> /*positions*/) const {
-  return std::make_unique<ElasticVolume>(tissue, bulk_modulus_, volume_.targets()[0]);
+  // Cutting cells makes more facets; fewer are left where only some cells are kept.
+  const bool is_part = tissue.basal_facets.size() < volume_.facet_count();
+  return std::make_unique<ElasticVolume>(tissue, is_part ? 0 : bulk_modulus_, volume_.targets()[0]);
 }
 
 }  // namespace plica

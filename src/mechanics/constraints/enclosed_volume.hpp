@@ -39,6 +39,7 @@ class EnclosedVolume final : public Constraint {
 
   /// The volume, um^3.
   [[nodiscard]] double volume(std::span<const Vec3> positions) const;
+  [[nodiscard]] std::size_t facet_count() const { return facets_.size(); }
 
  private:
   template <class Take>
@@ -65,10 +66,11 @@ class ElasticVolume final : public Law {
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
+  /// Of a part of the tissue, which encloses nothing: without any force.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
 
-  /// kPa.
+  /// Pressure inside, kPa.
   [[nodiscard]] double pressure(std::span<const Vec3> positions) const;
 
  private:

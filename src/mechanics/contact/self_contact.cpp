@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <stdexcept>
 #include <unordered_map>
 
 namespace plica {
@@ -246,8 +245,8 @@ NodeGroups SelfContact::node_groups(std::span<const double> /*internal*/) const 
   return groups;
 }
 
-std::unique_ptr<Law> SelfContact::after_division(const Tissue&, const Division&, std::span<const Vec3>) const {
-  throw std::logic_error("self-contact does not go with division yet");
+std::unique_ptr<Law> SelfContact::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
+  return std::make_unique<SelfContact>(tissue, rule_);
 }
 
 }  // namespace plica

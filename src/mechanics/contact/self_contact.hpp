@@ -38,9 +38,13 @@ class SelfContact final : public Law {
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
-  /// Throws std::logic_error: a scenario with divisions has none of this.
+  /// Without pairs until the next step is accepted: of a part of the tissue, too, since contact is not a part's own.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double>, const Tissue&,
+                                                            const Division&) const override {
+    return {};
+  }
 
   /// A point of the surface: the mean of `count` nodes (a node itself, or the corners of a facet).
   struct Point {
