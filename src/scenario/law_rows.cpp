@@ -32,23 +32,32 @@ void add_pattern(std::vector<Row>& rows, const RowsIn<Table>& table) {
     rows.push_back(table(key, &Table::profile, field, allowed, meaning));
   };
   profile("profile.shape", &ProfileInput::shape, one_of(words::profile_shapes),
-          "Factor on its strength by a cell's distance from the region's middle: 1, falling to `edge` at "
-          "`half_width_um`, or exp(−d²/2σ²).");
+          "Factor on its strength by a cell's distance d from the region's middle, from `middle` there to `edge` far "
+          "away. Linear: `edge` from `half_width_um` on; gaussian: by exp(−d²/2σ²); plateau: `middle` on `full_cells`, "
+          "then a cosine over `fade_cells` on either side.");
   profile(
       "profile.axis", &ProfileInput::axis, one_of(words::profile_axes),
       "Distance across the axis (the arc about it through the cell's centre; y in a block) or along it (x); without "
       "it across.");
+  profile("profile.about", &ProfileInput::about, anything,
+          "Region whose middle that is, and whose cells lengths in cells are measured in; without it the one that "
+          "acts.");
+  profile("profile.middle", &ProfileInput::middle, not_negative, "Factor in the middle; without it 1.");
+  profile("profile.edge", &ProfileInput::edge, not_negative, "Factor far from it; without it 0.");
   profile("profile.half_width_um", &ProfileInput::half_width_um, positive,
           "Linear: distance at which the factor is `edge`, as it is beyond (µm).");
-  profile("profile.edge", &ProfileInput::edge, not_negative, "Linear: factor there; without it 0.");
   profile("profile.sigma_um", &ProfileInput::sigma_um, positive, "Gaussian: its standard deviation σ (µm).");
   profile("profile.sigma_cells", &ProfileInput::sigma_cells, positive,
           "Gaussian, instead of `sigma_um`: σ in cells, by the mean width of the region's cells across the axis (along "
           "it with axis along).");
+  profile("profile.full_cells", &ProfileInput::full_cells, positive,
+          "Plateau: how many cells across (along, with that axis) have the factor of the middle, both sides together.");
+  profile("profile.fade_cells", &ProfileInput::fade_cells, not_negative,
+          "Plateau: over how many cells it fades from there, on either side; 0: none between.");
   profile("profile.full_length_um", &ProfileInput::full_length_um, positive,
           "Taper along the axis: all of the strength on this length about the region's middle (µm).");
   profile("profile.fade_um", &ProfileInput::fade_um, positive,
-          "Taper: from there it falls to 0 on this length, as a cosine (µm).");
+          "Taper: from there it falls to `edge` on this length, as a cosine (µm).");
   rows.push_back(
       table("delay.speed_um_per_s", &Table::delay, &DelayInput::speed_um_per_s,
             {.low = 0, .low_included = false, .word_for_none = "none"},

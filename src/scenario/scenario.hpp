@@ -76,11 +76,14 @@ struct DynamicsInput {
 };
 
 struct ProfileInput {
-  std::string shape;                              // constant | linear | gaussian; empty: constant
+  std::string shape;                              // constant | linear | gaussian | plateau; empty: constant
   std::string axis;                               // across | along; empty: across
-  std::optional<double> half_width_um, edge;      // linear
+  std::string about;                              // a region; empty: the one that acts
+  std::optional<double> half_width_um;            // linear
   std::optional<double> sigma_um, sigma_cells;    // gaussian: one of them
+  std::optional<double> full_cells, fade_cells;   // plateau
   std::optional<double> full_length_um, fade_um;  // both or none
+  std::optional<double> middle, edge;             // empty: 1, 0
 };
 
 struct DelayInput {

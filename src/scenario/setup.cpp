@@ -114,10 +114,13 @@ CellPattern make_pattern(const Acting& input, const Tissue& tissue) {
   const ProfileInput& profile = input.profile;
   pattern.profile.shape = meaning_of(words::profile_shapes, profile.shape, pattern.profile.shape);
   pattern.profile.axis = meaning_of(words::profile_axes, profile.axis, pattern.profile.axis);
-  pattern.profile.half_width = profile.half_width_um.value_or(1);
-  pattern.profile.edge = profile.edge.value_or(0);
-  pattern.profile.sigma_in_cells = profile.sigma_cells.has_value();
+  pattern.profile.in_cells = profile.sigma_cells || profile.full_cells;
+  pattern.profile.half_width = profile.full_cells ? 0.5 * *profile.full_cells : profile.half_width_um.value_or(1);
   pattern.profile.sigma = profile.sigma_cells.value_or(profile.sigma_um.value_or(1));
+  pattern.profile.fade = profile.fade_cells.value_or(0);
+  pattern.middle = profile.middle.value_or(1);
+  pattern.edge = profile.edge.value_or(0);
+  if (!profile.about.empty()) pattern.about = tissue.regions.at(profile.about);
   pattern.taper = {profile.full_length_um.value_or(0), profile.fade_um.value_or(0)};
   pattern.delay.speed = input.delay.speed_um_per_s.value_or(0);
   pattern.delay.axis = meaning_of(words::delay_axes, input.delay.axis, pattern.delay.axis);

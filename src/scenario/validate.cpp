@@ -205,8 +205,12 @@ class RegionCheck {
   }
 
   void check_references() {
-    for (const auto& [name, it] : scenario_.contractions) check_reference("contraction." + name + ".region", it.region);
-    for (const auto& [name, it] : scenario_.cortices) check_reference("cortex." + name + ".region", it.region);
+    const auto check_acting = [&](const std::string& table, const auto& it) {
+      check_reference(table + ".region", it.region);
+      check_reference(table + ".profile.about", it.profile.about);
+    };
+    for (const auto& [name, it] : scenario_.contractions) check_acting("contraction." + name, it);
+    for (const auto& [name, it] : scenario_.cortices) check_acting("cortex." + name, it);
     for (const auto& [name, it] : scenario_.holds) check_reference("hold." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.pressures) check_reference("pressure." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.divisions) check_reference("division." + name + ".region", it.region);

@@ -1,5 +1,6 @@
 // Keys that only one choice of another key uses: given in vain is an error, inherited in vain is dropped.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <utility>
 
@@ -20,34 +21,40 @@ void drop(const std::string& address, T& field, const T& default_value, const st
 void check_profile(const std::string& path, ProfileInput& profile, Input& input) {
   const std::string chooser = path + ".shape";
   if (!input.sound(path) || !input.sound(chooser)) return;
+  if ((profile.shape.empty() || profile.shape == "constant") && !profile.full_length_um)
+    for (const auto& [key, value] : {std::pair(".middle", &profile.middle), {".edge", &profile.edge}})
+      drop(path + key, *value, {}, input.place(chooser) == nullptr ? path + key : chooser,
+           "has no meaning where nothing fades", "remove it, or choose another shape, or a taper", input);
   if (profile.shape.empty()) {
-    if (!profile.axis.empty() || profile.sigma_um || profile.sigma_cells || profile.half_width_um || profile.edge)
-      input.report(chooser, "is missing", "give one of: constant | linear | gaussian");
+    if (!profile.axis.empty() || profile.sigma_um || profile.sigma_cells || profile.half_width_um ||
+        profile.full_cells || profile.fade_cells)
+      input.report(chooser, "is missing",
+                   fmt::format("give one of: {}", fmt::join(words_of(words::profile_shapes), " | ")));
     return;
   }
   if (profile.axis.empty()) profile.axis = "across";
   const auto need = [&](const std::string& key, const std::optional<double>& value, const std::string& remedy) {
     if (!value && input.sound(path + key)) input.report(path + key, "is missing", remedy);
   };
-  const auto no_use = [&](const std::string& key, std::optional<double>& value, const std::string& shape) {
-    drop(path + key, value, {}, chooser, fmt::format("has no meaning with shape \"{}\"", profile.shape),
-         fmt::format("remove it, or choose shape {}", shape), input);
+  const auto only = [&](const std::string& shape, const std::string& key, std::optional<double>& value) {
+    if (profile.shape != shape)
+      drop(path + key, value, {}, chooser, fmt::format("has no meaning with shape \"{}\"", profile.shape),
+           fmt::format("remove it, or choose shape {}", shape), input);
   };
-  if (profile.shape == "gaussian") {
-    if (!profile.sigma_cells)
-      need(".sigma_um", profile.sigma_um, "give the width of the gaussian, a number > 0, or sigma_cells");
-    else if (profile.sigma_um)
-      input.report(path + ".sigma_cells", "stands beside sigma_um", "give one of the two");
-  } else {
-    no_use(".sigma_um", profile.sigma_um, "gaussian");
-    no_use(".sigma_cells", profile.sigma_cells, "gaussian");
-  }
-  if (profile.shape == "linear") {
+  only("linear", ".half_width_um", profile.half_width_um);
+  only("gaussian", ".sigma_um", profile.sigma_um);
+  only("gaussian", ".sigma_cells", profile.sigma_cells);
+  only("plateau", ".full_cells", profile.full_cells);
+  only("plateau", ".fade_cells", profile.fade_cells);
+  if (profile.shape == "linear")
     need(".half_width_um", profile.half_width_um, "give the distance at which the factor is edge, a number > 0");
-    if (!profile.edge) profile.edge = 0;
-  } else {
-    no_use(".half_width_um", profile.half_width_um, "linear");
-    no_use(".edge", profile.edge, "linear");
+  if (profile.shape == "gaussian" && !profile.sigma_cells)
+    need(".sigma_um", profile.sigma_um, "give the width of the gaussian, a number > 0, or sigma_cells");
+  if (profile.shape == "gaussian" && profile.sigma_cells && profile.sigma_um)
+    input.report(path + ".sigma_cells", "stands beside sigma_um", "give one of the two");
+  if (profile.shape == "plateau") {
+    need(".full_cells", profile.full_cells, "give how many cells have the factor of the middle, a number > 0");
+    need(".fade_cells", profile.fade_cells, "give over how many cells it fades, 0 for none");
   }
 }
 

@@ -82,7 +82,8 @@ inline constexpr auto edges = std::to_array<Word<CellSide>>(
 inline constexpr auto profile_shapes =
     std::to_array<Word<StrengthProfile::Shape>>({{"constant", StrengthProfile::Shape::constant},
                                                  {"linear", StrengthProfile::Shape::linear},
-                                                 {"gaussian", StrengthProfile::Shape::gaussian}});
+                                                 {"gaussian", StrengthProfile::Shape::gaussian},
+                                                 {"plateau", StrengthProfile::Shape::plateau}});
 inline constexpr auto profile_axes =
     std::to_array<Word<PatternAxis>>({{"across", PatternAxis::across}, {"along", PatternAxis::along}});
 inline constexpr auto delay_axes =

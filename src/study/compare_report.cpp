@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace plica {
 namespace {
@@ -87,10 +89,23 @@ std::string distance_text(const Comparison& comparison) {
 
 std::string keys_text(const std::vector<KeyDifference>& keys) {
   if (keys.empty()) return "";
-  std::string text = heading("keys of the scenario that differ", {"A", "B"});
-  const auto value = [](const std::string& of_key) { return of_key.empty() ? "none" : of_key; };
-  for (const auto& [key, a, b] : keys)
-    text += fmt::format("  {:<{}}{:>15}{:>15}\n", key, name_width - 2, value(a), value(b));
+  // As wide as its texts; numbers as those of the other tables.
+  const auto value = [](const std::string& of_key) {
+    char* end = nullptr;
+    const double number = std::strtod(of_key.c_str(), &end);
+    if (of_key.empty()) return std::string("none");
+    return *end == '\0' ? fmt::format("{:.7g}", number) : of_key;
+  };
+  std::size_t widest = name_width - 2, width = 13;
+  for (const auto& [key, a, b] : keys) {
+    widest = std::max(widest, key.size());
+    width = std::max({width, value(a).size(), value(b).size()});
+  }
+  const auto line = [&](const std::string& name, const std::string& a, const std::string& b) {
+    return fmt::format("{:<{}}  {:>{}}  {:>{}}\n", name, widest + 2, a, width, b, width);
+  };
+  std::string text = "\n" + line("keys of the scenario that differ", "A", "B");
+  for (const auto& [key, a, b] : keys) text += line("  " + key, value(a), value(b));
   return text;
 }
 

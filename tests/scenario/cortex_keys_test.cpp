@@ -47,6 +47,14 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
        "test.toml:2: cortex.a.region: there is no region \"mesoderm\"; known are: all"},
       {cortex + "tension_mN_per_m = 1\nprofile = { shape = \"gaussian\", sigma_um = 3, sigma_cells = 2 }",
        "test.toml:4: cortex.a.profile.sigma_cells: stands beside sigma_um; give one of the two"},
+      {cortex + "tension_mN_per_m = 1\nprofile = { edge = 0.5 }",
+       "test.toml:4: cortex.a.profile.edge: has no meaning where nothing fades; remove it, or choose another shape, or "
+       "a taper"},
+      {cortex + "tension_mN_per_m = 1\nprofile = { shape = \"plateau\", full_cells = 3 }",
+       "test.toml:4: cortex.a.profile.fade_cells: is missing; give over how many cells it fades, 0 for none"},
+      {cortex +
+           "tension_mN_per_m = 1\nprofile = { shape = \"plateau\", full_cells = 3, fade_cells = 1, about = \"belly\" }",
+       "test.toml:4: cortex.a.profile.about: there is no region \"belly\"; known are: all"},
       {cortex + "tension_mN_per_m = 1\nprofile = { full_length_um = 300 }",
        "test.toml:4: cortex.a.profile.fade_um: is missing; a taper along the axis has both lengths"},
       {"[enclosed.yolk]\nvolume = \"compliant\"\n[vitelline]\ngap_um = 1",

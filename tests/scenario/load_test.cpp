@@ -239,7 +239,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:3: contraction.a.program.activity: -1 is out of range; give a list of numbers >= 0"},
       // Patterns of a contraction.
       {program + "profile = { sigma_um = 30 }",
-       "test.toml:3: contraction.a.profile.shape: is missing; give one of: constant | linear | gaussian"},
+       "test.toml:3: contraction.a.profile.shape: is missing; give one of: constant | linear | gaussian | plateau"},
       {program + "profile = { shape = \"gaussian\" }",
        "test.toml:3: contraction.a.profile.sigma_um: is missing; give the width of the gaussian, a number > 0, or "
        "sigma_cells"},
@@ -250,11 +250,13 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:3: contraction.a.profile.sigma_um: has no meaning with shape \"linear\"; remove it, or choose shape "
        "gaussian"},
       {program + "profile = { shape = \"constant\", edge = 0.5 }",
-       "test.toml:3: contraction.a.profile.edge: has no meaning with shape \"constant\"; remove it, or choose shape "
-       "linear"},
+       "test.toml:3: contraction.a.profile.edge: has no meaning where nothing fades; remove it, or choose another "
+       "shape, "
+       "or a taper"},
       {program + "profile = { shape = \"gausian\", sigma_um = 30 }",
        "test.toml:3: contraction.a.profile.shape: \"gausian\" is not known; give one of: constant | linear | gaussian "
-       "(did you mean \"gaussian\"?)"},
+       "| "
+       "plateau (did you mean \"gaussian\"?)"},
       {program + "profile = { shape = \"gaussian\", sigma_um = 0 }",
        "test.toml:3: contraction.a.profile.sigma_um: 0 is out of range; give a number > 0"},
       {program + "profile = \"gaussian\"",
@@ -390,7 +392,7 @@ TEST(LoadScenario, SettlesTheDefaultsOfPatterns) {
       start + "profile = { shape = \"linear\", half_width_um = 50 }\ndelay = { speed_um_per_s = 2 }";
   const ContractionInput some = load(given).contractions.at("a");
   EXPECT_EQ(some.profile.axis, "across");
-  EXPECT_EQ(some.profile.edge, 0);
+  EXPECT_EQ(some.profile.edge, std::nullopt);
   EXPECT_EQ(some.delay.axis, "along");
   EXPECT_EQ(some.delay.from, "middle");
   // What belonged to the shape and the wave goes with them.

@@ -9,6 +9,9 @@ namespace {
 TEST(Suggest, TheNearestOfSeveralThatAreNear) {
   EXPECT_EQ(nearest_name("stifness", {"stiffness", "stillness"}), "stiffness");
   EXPECT_EQ(nearest_name("stifness", {"stillness", "stiffness"}), "stiffness");
+  // Two letters that changed places are one slip, a letter less and another one more are two.
+  EXPECT_EQ(nearest_name("gpa", {"gab", "gap"}), "gap");
+  EXPECT_EQ(nearest_name("yolk_gpa", {"yolk_gal", "yolk_gap"}), "yolk_gap");
   EXPECT_EQ(nearest_name("lengt_um", {"length_um", "height_um"}), "length_um");
   EXPECT_EQ(nearest_name("lengt_um", {"height_um", "length_um"}), "length_um");
 }

@@ -8,28 +8,27 @@
 namespace plica {
 namespace {
 
-// Coordinates of the chosen cells' centres along an axis, um; 0 for others.
+// Coordinates of all cells' centres along an axis, um, across from the mean direction of the chosen ones.
 std::vector<double> coordinates(const Tissue& tissue, const CellSet& cells, PatternAxis axis) {
-  std::vector<double> result(cells.size(), 0.0);
-  std::vector<Vec3> centres(cells.size(), Vec3::Zero());
+  std::vector<double> result;
   Vec3 mean = Vec3::Zero();
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    if (!cells[c]) continue;
-    centres[c] = cell_centre(tissue.cells[c], tissue.rest_positions);
-    mean += Vec3(0, centres[c].y(), centres[c].z()).normalized();
-  }
+  const auto from_axis = [&](std::size_t c) {
+    const Vec3 centre = cell_centre(tissue.cells[c], tissue.rest_positions);
+    return Vec3(0, centre.y(), centre.z());
+  };
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    if (cells[c]) mean += from_axis(c).normalized();
   // Angles about x from the belly (-z) towards the right (+y). A region all around has no mean direction: the belly.
   const auto angle = [](const Vec3& v) { return std::atan2(v.y(), -v.z()); };
   const double middle = mean.norm() > 1e-6 ? angle(mean) : 0;
   for (std::size_t c = 0; c < cells.size(); ++c) {
-    if (!cells[c]) continue;
     if (axis == PatternAxis::along) {
-      result[c] = centres[c].x();
+      result.push_back(cell_centre(tissue.cells[c], tissue.rest_positions).x());
     } else if (!tissue.outer_shape) {
-      result[c] = centres[c].y();
+      result.push_back(from_axis(c).y());
     } else {
-      const double turn = std::remainder(angle(centres[c]) - middle, 2 * std::numbers::pi);
-      result[c] = std::hypot(centres[c].y(), centres[c].z()) * turn;
+      const double turn = std::remainder(angle(from_axis(c)) - middle, 2 * std::numbers::pi);
+      result.push_back(from_axis(c).norm() * turn);
     }
   }
   return result;
@@ -88,25 +87,29 @@ std::uint64_t mixed(std::uint64_t value) {
 // In (0, 1], from the upper 53 bits.
 double uniform(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 1) * 0x1p-53; }
 
+// From 1 to 0 over a length, as a cosine.
+double fading(double way, double length) {
+  if (way <= 0) return 1;
+  return way < length ? 0.5 * (1 + std::cos(std::numbers::pi * (way / length))) : 0;
+}
+
 }  // namespace
 
-double StrengthProfile::factor(double distance) const {
+double StrengthProfile::nearness(double distance) const {
   switch (shape) {
     case Shape::constant:
       return 1;
     case Shape::linear:
-      return 1 + (edge - 1) * std::min(1.0, distance / half_width);
+      return 1 - std::min(1.0, distance / half_width);
     case Shape::gaussian:
       return std::exp(-0.5 * (distance / sigma) * (distance / sigma));
+    case Shape::plateau:
+      return fading(distance - half_width, fade);
   }
   return 1;
 }
 
-double Taper::factor(double distance) const {
-  if (fade <= 0) return 1;
-  const double part = std::clamp((distance - 0.5 * full_length) / fade, 0.0, 1.0);
-  return part < 1 ? 0.5 * (1 + std::cos(std::numbers::pi * part)) : 0;
-}
+double Taper::nearness(double distance) const { return fade > 0 ? fading(distance - 0.5 * full_length, fade) : 1; }
 
 double chance_factor(double spread, std::uint64_t seed, std::size_t cell) {
   if (spread <= 0) return 1;
@@ -131,19 +134,26 @@ CellPattern CellPattern::after_division(const Division& division) const {
 
 CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const PatternRule& pattern) {
   CellPattern result(cells);
-  const std::vector<double> place = coordinates(tissue, cells, pattern.profile.axis);
-  const std::vector<double> way = coordinates(tissue, cells, pattern.delay.axis);
-  const Extent places = extent_of(place, cells), ways = extent_of(way, cells);
-  const double middle = 0.5 * (places.low + places.high);
+  const CellSet& about = pattern.about ? *pattern.about : cells;
   StrengthProfile profile = pattern.profile;
-  if (profile.sigma_in_cells) profile.sigma *= mean_width(tissue, cells, profile.axis);
-  const std::vector<double> along = coordinates(tissue, cells, PatternAxis::along);
-  const Extent length = extent_of(along, cells);
+  if (profile.in_cells) {
+    const double width = mean_width(tissue, about, profile.axis);
+    for (double* length : {&profile.half_width, &profile.sigma, &profile.fade}) *length *= width;
+  }
+  const auto from_middle = [&](PatternAxis axis) {
+    std::vector<double> places = coordinates(tissue, about, axis);
+    const Extent extent = extent_of(places, about);
+    for (double& place : places) place = std::abs(place - 0.5 * (extent.low + extent.high));
+    return places;
+  };
+  const std::vector<double> place = from_middle(profile.axis), along = from_middle(PatternAxis::along);
+  const std::vector<double> way = coordinates(tissue, cells, pattern.delay.axis);
+  const Extent ways = extent_of(way, cells);
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (!cells[c]) continue;
-    result.strengths[c] = profile.factor(std::abs(place[c] - middle)) *
-                          pattern.taper.factor(std::abs(along[c] - 0.5 * (length.low + length.high))) *
-                          chance_factor(pattern.spread, pattern.seed, c);
+    const double nearness = profile.nearness(place[c]) * pattern.taper.nearness(along[c]);
+    result.strengths[c] =
+        (pattern.edge + (pattern.middle - pattern.edge) * nearness) * chance_factor(pattern.spread, pattern.seed, c);
     if (pattern.delay.speed > 0)
       result.delays_s[c] = std::max(0.0, distance_from(pattern.delay.from, way[c], ways)) / pattern.delay.speed;
   }

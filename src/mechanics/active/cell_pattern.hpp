@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "tissue/division.hpp"
@@ -14,26 +15,25 @@ namespace plica {
 /// direction, to the right (+y) on the belly; y in a tissue that has no outer shape.
 enum class PatternAxis { along, across };
 
-/// A factor by the distance d from the region's middle along an axis.
+/// How near the middle a cell is, by the distance d from there along an axis: 1 at the middle.
 struct StrengthProfile {
-  enum class Shape { constant, linear, gaussian };
+  enum class Shape { constant, linear, gaussian, plateau };
   Shape shape = Shape::constant;
   PatternAxis axis = PatternAxis::across;
-  double half_width = 1;  // um; linear: from 1 at the middle to `edge` here, and `edge` beyond
-  double edge = 0;
-  double sigma = 1;             // um; gaussian: exp(-d^2 / (2 sigma^2))
-  bool sigma_in_cells = false;  // sigma is in mean widths of the cells, along that axis
+  double half_width = 1;  // um; linear: 0 there and beyond. Plateau: 1 up to there
+  double sigma = 1;       // um; gaussian: exp(-d^2 / (2 sigma^2))
+  double fade = 0;        // um; plateau: then a cosine that is 0 after this length
+  bool in_cells = false;  // these lengths are in mean widths of the cells, along that axis
 
-  [[nodiscard]] double factor(double distance) const;
+  [[nodiscard]] double nearness(double distance) const;
 };
 
-/// A factor by the distance from the region's middle along the embryo: 1 up to half of `full_length`, then a cosine
-/// that is 0 after another `fade`.
+/// The same along the embryo besides: 1 up to half of `full_length`, then a cosine that is 0 after another `fade`.
 struct Taper {
   double full_length = 0;  // um
   double fade = 0;         // um; 0: no taper
 
-  [[nodiscard]] double factor(double distance) const;
+  [[nodiscard]] double nearness(double distance) const;
 };
 
 /// A wave that starts at a place of the region at time 0 and reaches a cell after distance / speed.
@@ -47,6 +47,8 @@ struct StartDelay {
 struct PatternRule {
   StrengthProfile profile;
   Taper taper;
+  double middle = 1, edge = 0;   // the factor where both are 1, and where one is 0; linear between
+  std::optional<CellSet> about;  // whose middle, and widths of cells, these are; without it those of the cells that act
   StartDelay delay;
   double spread = 0;       // standard deviation of the cells' chance factors, whose mean is 1
   std::uint64_t seed = 1;  // of these factors
@@ -66,7 +68,7 @@ struct CellPattern {
   [[nodiscard]] CellPattern after_division(const Division& division) const;
 };
 
-/// The pattern of `cells` on `tissue` at rest; 0 in both for other cells. The region's middle lies halfway between its
+/// The pattern of `cells` on `tissue` at rest; 0 in both for other cells. A region's middle lies halfway between its
 /// outermost cell centres.
 CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const PatternRule& pattern);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <unordered_map>
 
@@ -10,8 +11,16 @@ namespace {
 
 using Pair = SelfContact::Pair;
 
-/// Numbers that a pair is kept as: point, nodes, weights, normal.
-constexpr std::size_t pair_size = 10;
+/// An internal state is the revision of the pattern, then these numbers a pair: point, nodes, weights, normal,
+/// distance, first gap.
+constexpr std::size_t pair_size = 12;
+
+Pair unpacked(std::span<const double> numbers) {
+  Pair pair{static_cast<std::size_t>(numbers[0]),     {},          {numbers[4], numbers[5], numbers[6]},
+            Vec3(numbers[7], numbers[8], numbers[9]), numbers[10], numbers[11]};
+  for (int k = 0; k < 3; ++k) pair.nodes[k] = NodeId(static_cast<std::size_t>(numbers[1 + k]));
+  return pair;
+}
 
 struct Closest {
   std::array<double, 3> weights;
@@ -127,7 +136,7 @@ SelfContact::SelfContact(const Tissue& tissue, const SelfContactRule& rule) : ru
   }
 }
 
-std::vector<Pair> SelfContact::pairs(std::span<const Vec3> x) const {
+std::vector<Pair> SelfContact::pairs(std::span<const Vec3> x, std::span<const double> known) const {
   // Normals of nodes and of points, by the area vectors of their facets.
   Vectors normals(x.size(), Vec3::Zero());
   double longest = 0;
@@ -143,8 +152,13 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> x) const {
     const auto nodes = triangle_nodes(facets_[t / 2], t % 2 == 1);
     grid.add(t, {x[nodes[0].index()], x[nodes[1].index()], x[nodes[2].index()]});
   }
+  const std::vector<Pair> before = pairs_of(known);
+  auto last = before.begin();  // that of the point or of one after it
   std::vector<Pair> pairs;
   for (std::size_t p = 0; p < points_.size(); ++p) {
+    while (last != before.end() && last->point < p) ++last;
+    const bool was_seen = last != before.end() && last->point == p;
+    const bool may_be_inside = was_seen && last->gap(points_[p], x) < 0;
     const Vec3 place = points_[p].at(x), facing = points_[p].at(normals);
     double nearest2 = rule_.search * rule_.search;
     std::optional<Pair> best;
@@ -158,40 +172,65 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> x) const {
       Vec3 normal = Vec3::Zero();
       for (int k = 0; k < 3; ++k) normal += weights[k] * normals[nodes[k].index()].normalized();
       if (normal.norm() < 0.1 || normal.dot(facing) >= 0) continue;  // a sharp edge has no side
+      const Pair found{p, nodes, weights, normal.normalized()};
+      if (!may_be_inside && found.gap(points_[p], x) < 0) continue;
       nearest2 = distance2;
-      best = Pair{p, nodes, weights, normal.normalized()};
+      best = found;
     }
-    if (best) pairs.push_back(*best);
+    if (!best) continue;
+    // One that comes into view nearer than the distance does not jump away.
+    const double seen_at = was_seen ? last->distance : -std::numeric_limits<double>::infinity();
+    best->first_gap = best->gap(points_[p], x);
+    best->distance = std::min(rule_.distance, std::max(seen_at, best->first_gap));
+    pairs.push_back(*best);
   }
   return pairs;
 }
 
-std::vector<double> SelfContact::packed(std::span<const Vec3> positions) const {
-  std::vector<double> numbers;
-  for (const Pair& pair : pairs(positions)) {
+std::vector<Pair> SelfContact::pairs_of(std::span<const double> internal) {
+  std::vector<Pair> pairs;
+  for (std::size_t at = 1; at < internal.size(); at += pair_size)
+    pairs.push_back(unpacked(internal.subspan(at, pair_size)));
+  return pairs;
+}
+
+std::vector<NodeId> SelfContact::nodes_of(const Pair& pair) const {
+  const Point& point = points_[pair.point];
+  std::vector<NodeId> nodes(point.nodes.begin(), point.nodes.begin() + point.count);
+  nodes.insert(nodes.end(), pair.nodes.begin(), pair.nodes.end());
+  return nodes;
+}
+
+std::vector<double> SelfContact::packed(const std::vector<Pair>& pairs, std::span<const double> before) const {
+  std::vector<double> numbers = {static_cast<double>(pattern_revision(before))};
+  numbers.reserve(1 + pair_size * pairs.size());
+  for (const Pair& pair : pairs) {
     numbers.push_back(static_cast<double>(pair.point));
     for (const NodeId node : pair.nodes) numbers.push_back(static_cast<double>(node.index()));
     numbers.insert(numbers.end(), pair.weights.begin(), pair.weights.end());
     numbers.insert(numbers.end(), pair.normal.begin(), pair.normal.end());
+    numbers.push_back(pair.distance);
+    numbers.push_back(pair.first_gap);
   }
+  if (node_groups(numbers) != node_groups(before)) ++numbers.front();
   return numbers;
 }
 
-std::vector<double> SelfContact::first_internal(const Tissue& tissue) const { return packed(tissue.rest_positions); }
-std::vector<double> SelfContact::next_internal(const Step& step) const { return packed(step.positions); }
+std::vector<double> SelfContact::first_internal(const Tissue& tissue) const {
+  return packed(pairs(tissue.rest_positions), {});
+}
+
+std::vector<double> SelfContact::next_internal(const Step& step) const {
+  return packed(pairs(step.positions, step.internal), step.internal);
+}
 
 // Calls take(point, pair, how far it is inside the distance) for every pair that is pressed.
 template <class Take>
 void SelfContact::for_pressed(const Step& step, const Take& take) const {
-  for (std::size_t at = 0; at + pair_size <= step.internal.size(); at += pair_size) {
-    const std::span<const double> numbers = step.internal.subspan(at, pair_size);
-    Pair pair{static_cast<std::size_t>(numbers[0]),
-              {},
-              {numbers[4], numbers[5], numbers[6]},
-              Vec3(numbers[7], numbers[8], numbers[9])};
-    for (int k = 0; k < 3; ++k) pair.nodes[k] = NodeId(static_cast<std::size_t>(numbers[1 + k]));
+  for (std::size_t at = 1; at < step.internal.size(); at += pair_size) {
+    const Pair pair = unpacked(step.internal.subspan(at, pair_size));
     const Point& point = points_[pair.point];
-    const double inside = rule_.distance - pair.gap(point, step.positions);
+    const double inside = pair.distance - pair.gap(point, step.positions);
     if (inside > 0) take(point, pair, inside);
   }
 }
@@ -230,18 +269,22 @@ void SelfContact::add_tangent_product(const Step& step, std::span<const Vec3> di
 void SelfContact::add_tangent(const Step& step, TangentSink& tangent) const {
   for_pressed(step, [&](const Point& point, const Pair& pair, double) {
     const Mat3 along = rule_.stiffness * point.area * pair.normal * pair.normal.transpose();
-    for (int i = 0; i < point.count; ++i)
+    const std::vector<NodeId> nodes = nodes_of(pair);
+    const auto weight = [&](int i) { return i < point.count ? 1.0 / point.count : -pair.weights[i - point.count]; };
+    // One that has come from so far that its pattern leaves it out has what couples nodes of one side.
+    const bool whole = may_touch(pair);
+    for (int i = 0; i < static_cast<int>(nodes.size()); ++i)
       for (int j = 0; j <= i; ++j)
-        tangent.add_block(point.nodes[i], point.nodes[j], along / (point.count * point.count));
-    for (int k = 0; k < 3; ++k)
-      for (int l = 0; l <= k; ++l)
-        tangent.add_block(pair.nodes[k], pair.nodes[l], pair.weights[k] * pair.weights[l] * along);
+        if (whole || (i < point.count) == (j < point.count))
+          tangent.add_block(nodes[i], nodes[j], weight(i) * weight(j) * along);
   });
 }
 
-NodeGroups SelfContact::node_groups(std::span<const double> /*internal*/) const {
+NodeGroups SelfContact::node_groups(std::span<const double> internal) const {
   NodeGroups groups;
   for (const auto& facet : facets_) groups.add(facet);
+  for (const Pair& pair : pairs_of(internal))
+    if (may_touch(pair)) groups.add(nodes_of(pair));
   return groups;
 }
 

@@ -5,7 +5,8 @@
 // where the point p comes closer than `distance` along N it is pushed back:
 //   E = k w/2 (distance - N.(p - q))^2,   w the area that the point stands for.
 // So within a step the law is linear in its forces, and gaps have a sign: a point beyond the surface is pushed out
-// again.
+// again. A point that faces the other side of a thin ridge lies beyond that, too: only one that has gone through under
+// the eyes of the law counts as inside.
 #pragma once
 
 #include <array>
@@ -23,8 +24,8 @@ struct SelfContactRule {
   double search = 6;      // um: how near a triangle must be at the step's beginning
 };
 
-/// The pairs of a step are its internal state, found again when a step is accepted. Its matrix leaves out what couples
-/// a point with its triangle's nodes, which change from step to step; products have it.
+/// The pairs of a step are its internal state, found again when a step is accepted. Those that may touch in it join
+/// their nodes, so that the pattern changes from step to step.
 class SelfContact final : public Law {
  public:
   SelfContact(const Tissue& tissue, const SelfContactRule& rule);
@@ -36,6 +37,9 @@ class SelfContact final : public Law {
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
+  [[nodiscard]] int pattern_revision(std::span<const double> internal) const override {
+    return internal.empty() ? 0 : static_cast<int>(internal.front());
+  }
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
   /// Without pairs until the next step is accepted: of a part of the tissue, too, since contact is not a part's own.
@@ -43,7 +47,7 @@ class SelfContact final : public Law {
                                                     std::span<const Vec3> positions) const override;
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double>, const Tissue&,
                                                             const Division&) const override {
-    return {};
+    return {};  // no pairs
   }
 
   /// A point of the surface: the mean of `count` nodes (a node itself, or the corners of a facet).
@@ -59,17 +63,24 @@ class SelfContact final : public Law {
     std::array<NodeId, 3> nodes;    // of the triangle
     std::array<double, 3> weights;  // of the place on it
     Vec3 normal;
+    double distance = 0;   // um: where it begins to push. That of the rule; less where it was nearer when first seen
+    double first_gap = 0;  // um: at the step's beginning
     /// N.(p - q); of any vectors of nodes.
     [[nodiscard]] double gap(const Point& point, std::span<const Vec3> vectors) const;
   };
-  /// In the order of points.
-  [[nodiscard]] std::vector<Pair> pairs(std::span<const Vec3> positions) const;
+  /// In the order of points. `known`: the internal state of the step that ends at these positions.
+  [[nodiscard]] std::vector<Pair> pairs(std::span<const Vec3> positions, std::span<const double> known = {}) const;
+  /// The pairs of an internal state.
+  [[nodiscard]] static std::vector<Pair> pairs_of(std::span<const double> internal);
   [[nodiscard]] const std::vector<Point>& points() const { return points_; }
 
  private:
+  [[nodiscard]] bool may_touch(const Pair& pair) const { return pair.first_gap < 2 * rule_.distance; }
+  /// All nodes of a pair: of the point, of the triangle.
+  [[nodiscard]] std::vector<NodeId> nodes_of(const Pair& pair) const;
+  [[nodiscard]] std::vector<double> packed(const std::vector<Pair>& pairs, std::span<const double> before) const;
   template <class Take>
   void for_pressed(const Step& step, const Take& take) const;
-  [[nodiscard]] std::vector<double> packed(std::span<const Vec3> positions) const;
 
   SelfContactRule rule_;
   std::vector<std::array<NodeId, 4>> facets_;

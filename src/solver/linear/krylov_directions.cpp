@@ -38,11 +38,8 @@ KrylovDirections::KrylovDirections(const Model& model, Inverse inverse, std::fun
       system_(model),
       price_of_new_(inverse == Inverse::multigrid ? 5 : 30) {}
 
-// Laws may join other nodes than in the step before.
-void KrylovDirections::prepare(const Step& step) {
-  if (kept_ && kept_->serves(step)) return;
-  kept_ = std::make_unique<KeptPreconditioner>(model_, system_, inverse_, step);
-  is_made_ = false;
+void KrylovDirections::fit_pattern(const Step& step) {
+  if (!kept_ || !kept_->serves(step)) kept_ = std::make_unique<KeptPreconditioner>(model_, system_, inverse_, step);
 }
 
 FactorMemory KrylovDirections::memory() const {
@@ -55,7 +52,7 @@ FactorMemory KrylovDirections::memory() const {
 
 void KrylovDirections::recall(const FactorMemory& memory) {
   if (memory.empty()) return;
-  prepare(step_of(memory));
+  fit_pattern(step_of(memory));
   system_.take(memory.at);
   is_made_ = kept_->recall(memory);
   iterations_when_new_ = memory.iterations_when_new;
@@ -69,13 +66,13 @@ int KrylovDirections::wasted(const KrylovReport& report) const {
 
 NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate& at, const Residual& residual,
                                                  const Wish& wish, Direction& direction, Cost& cost) {
-  prepare(step);
   system_.take(at);
   constexpr KrylovReport at_beginning{.residual = 1};
   KrylovReport before_new = at_beginning;  // where the solve was when the preconditioner was made
   bool is_new = false;
   const auto renew = [&](const KrylovReport& so_far) {
     ++cost.factorisations;
+    fit_pattern(step);
     is_made_ = kept_->make(step, at);
     is_new = true;
     before_new = so_far;

@@ -20,7 +20,8 @@ class KrylovDirections final : public NewtonDirections {
   void recall(const FactorMemory& memory) override;
 
  private:
-  void prepare(const Step& step);
+  /// Laws may join other nodes than when the preconditioner was made; it serves on while it is good.
+  void fit_pattern(const Step& step);
   /// How many of a solve's iterations a new preconditioner would have saved.
   [[nodiscard]] int wasted(const KrylovReport& solve) const;
 
@@ -28,7 +29,7 @@ class KrylovDirections final : public NewtonDirections {
   std::function<bool()> stop_requested_;
   Inverse inverse_;
   LinearisedStep system_;
-  std::unique_ptr<KeptPreconditioner> kept_;  // of the laws' last patterns
+  std::unique_ptr<KeptPreconditioner> kept_;  // of the laws' patterns when it was made
   bool is_made_ = false;
   int price_of_new_;             // in iterations that take as long, with the assembly
   int iterations_when_new_ = 0;  // to 1e-4

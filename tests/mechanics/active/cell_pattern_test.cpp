@@ -25,7 +25,8 @@ TEST(PatternRule, ProfileFallsFromTheMiddleOfTheRegion) {
   PatternRule pattern;
   int checked = 0;
   for (const Shape shape : {Shape::constant, Shape::linear, Shape::gaussian}) {
-    pattern.profile = {shape, PatternAxis::along, 40, 0.2, 30};
+    pattern.profile = {.shape = shape, .axis = PatternAxis::along, .half_width = 40, .sigma = 30};
+    pattern.edge = shape == Shape::linear ? 0.2 : 0;
     const CellPattern found = cell_pattern(tissue, cells, pattern);
     for (int c = 0; c < 21; ++c) {
       const double d = std::abs(-60 + 20 * (c % 7) - 10);
@@ -42,7 +43,7 @@ TEST(PatternRule, ProfileFallsFromTheMiddleOfTheRegion) {
 
 TEST(PatternRule, SigmaMayBeInCells) {
   PatternRule in_cells, in_um;
-  in_cells.profile = {.shape = Shape::gaussian, .axis = PatternAxis::along, .sigma = 1.5, .sigma_in_cells = true};
+  in_cells.profile = {.shape = Shape::gaussian, .axis = PatternAxis::along, .sigma = 1.5, .in_cells = true};
   in_um.profile = {.shape = Shape::gaussian, .axis = PatternAxis::along, .sigma = 30};
   const CellSet cells(21, true);
   const CellPattern a = cell_pattern(sheet(), cells, in_cells), b = cell_pattern(sheet(), cells, in_um);
@@ -58,9 +59,30 @@ TEST(PatternRule, TaperFadesAlongTheAxis) {
   for (int c = 0; c < 21; ++c) EXPECT_NEAR(found.strengths[c], expected[c % 7], 1e-14) << "cell " << c;
 }
 
+// Full on three cells, none from two cells farther on; about the third column, which lies at x = -20.
+TEST(PatternRule, PlateauAboutAnotherRegion) {
+  PatternRule pattern;
+  pattern.profile = {
+      .shape = Shape::plateau, .axis = PatternAxis::along, .half_width = 1.5, .fade = 2, .in_cells = true};
+  pattern.about = CellSet(21, false);
+  for (const int third : {2, 9, 16}) (*pattern.about)[third] = true;
+  const double quarter = 0.5 * (1 + std::cos(M_PI / 4)), rest = 0.5 * (1 + std::cos(3 * M_PI / 4));
+  const double expected[] = {quarter, 1, 1, 1, quarter, rest, 0};
+  const CellPattern found = cell_pattern(sheet(), CellSet(21, true), pattern);
+  for (int c = 0; c < 21; ++c) EXPECT_NEAR(found.strengths[c], expected[c % 7], 1e-14) << "cell " << c;
+  // What it leaves: 0 in the middle, 1 at the edge; where the taper ends, too.
+  pattern.middle = 0, pattern.edge = 1;
+  pattern.taper = {1, 60};
+  const CellPattern other = cell_pattern(sheet(), CellSet(21, true), pattern);
+  EXPECT_NEAR(other.strengths[2], 0, 1e-14);
+  EXPECT_NEAR(other.strengths[6], 1, 1e-14);
+  EXPECT_NEAR(other.strengths[5], 1, 1e-4);
+  EXPECT_GT(other.strengths[3], 0);
+}
+
 TEST(PatternRule, AcrossABlockIsY) {
   PatternRule pattern;
-  pattern.profile = {Shape::linear, PatternAxis::across, 40, 0, 1};
+  pattern.profile = {.shape = Shape::linear, .axis = PatternAxis::across, .half_width = 40};
   const CellPattern found = cell_pattern(sheet(), CellSet(21, true), pattern);
   for (int c = 0; c < 21; ++c) EXPECT_NEAR(found.strengths[c], c / 7 == 1 ? 1 : 0.5, 1e-14);
 }
@@ -70,7 +92,7 @@ TEST(PatternRule, AcrossABlockIsY) {
 TEST(PatternRule, AcrossAClosedEmbryoIsTheArc) {
   const Tissue tissue = build_shell({.length_um = 460, .cells = {18, 9, 8}});
   PatternRule pattern;
-  pattern.profile = {Shape::linear, PatternAxis::across, 1000, 0, 1};
+  pattern.profile = {.shape = Shape::linear, .axis = PatternAxis::across, .half_width = 1000};
   int checked = 0;
   for (const auto face : {GridPlace::Face::ventral, GridPlace::Face::left}) {
     CellSet cells(tissue.cells.size(), false);

@@ -56,7 +56,6 @@ TEST(SelfContact, DerivativesAgreeWithFiniteDifferences) {
   Random random(4);
   for (Vec3& x : motion.positions) x += random.vector(0.5);
   expect_forces_are_minus_energy_gradient(law, motion, 1e-6);
-  // Its matrix leaves out what couples the two sides; the product has it.
   const Vectors direction = random.vectors(tissue.node_count());
   const Eigen::VectorXd product = product_of(law, motion.step(), direction);
   const auto forces_at = [&](double way) {
@@ -72,15 +71,71 @@ TEST(SelfContact, DerivativesAgreeWithFiniteDifferences) {
 
 // Two parallel sides that overlap by less than `distance` push with stiffness times that, over the area that faces.
 TEST(SelfContact, FlatOnFlatIsAPressure) {
-  const Tissue tissue = folded(0.3, 20);
+  const Tissue tissue = folded(0.6, 20);
   const SelfContact law(tissue, {.distance = 0.4, .stiffness = 2, .search = 4});
-  const Vectors forces = forces_of(law, with_pairs(law, tissue).step());
+  Motion motion = with_pairs(law, tissue);
+  for (Vec3& x : motion.positions) x.x() -= x.x() > 0 ? 0.15 : -0.15;
+  const Vectors forces = forces_of(law, motion.step());
   EXPECT_LE(resultant(forces).norm(), 1e-9);
   double push = 0;
   for (const Vec3& f : forces) push += std::abs(f.x()) / 2;
   // Points of both sides push, so the pressure is twice that of one.
   const double area = 60 * 30;
   EXPECT_NEAR(push / (2 * 2 * 0.1 * area), 1, 0.03);
+}
+
+// Whoever comes into view nearer than the distance (at rest, or round a corner) is not thrown back, but comes no
+// nearer.
+TEST(SelfContact, APairBeginsWithoutAForce) {
+  const Tissue tissue = folded(0.3, 20);
+  const SelfContact law(tissue, {.distance = 0.4, .stiffness = 2, .search = 4});
+  Motion motion = with_pairs(law, tissue);
+  EXPECT_FALSE(law.pairs(tissue.rest_positions).empty());
+  EXPECT_LE(flat(forces_of(law, motion.step())).norm(), 1e-12);
+  const auto squeeze = [&](double by) {
+    for (Vec3& x : motion.positions) x.x() -= x.x() > 0 ? by : -by;
+  };
+  squeeze(0.02);
+  EXPECT_GT(law.energy(motion.step()), 0);
+  // As they part, the distance grows to that of the rule.
+  squeeze(-0.05);
+  motion.internal = law.next_internal(motion.step());
+  squeeze(0.02);
+  EXPECT_GT(law.energy(motion.step()), 0);
+}
+
+// Two sides of a thin ridge look away from each other, with tissue between them: each lies beyond the other, and is
+// none of its business. Of the two sides of a groove that have been pushed through each other, each has gone through.
+TEST(SelfContact, ARidgeIsNotAGroove) {
+  const Tissue groove = folded(3);
+  Tissue ridge = groove;  // inside out
+  for (Facet& facet : ridge.apical_facets) std::ranges::reverse(facet.nodes);
+  EXPECT_FALSE(SelfContact(groove, {.search = 4}).pairs(groove.rest_positions).empty());
+  EXPECT_TRUE(SelfContact(ridge, {.search = 4}).pairs(ridge.rest_positions).empty());
+
+  const SelfContact law(groove, {.search = 4});
+  Motion motion = with_pairs(law, groove);
+  for (Vec3& x : motion.positions) x.x() -= x.x() > 0 ? 1.6 : -1.6;
+  const auto pairs = law.pairs(motion.positions, motion.internal);
+  ASSERT_FALSE(pairs.empty());
+  EXPECT_LT(pairs.front().first_gap, 0);
+}
+
+// The matrix is that of the product: what couples the two sides, too, of pairs that may touch in the step.
+TEST(SelfContact, MatrixCouplesWhatMayTouch) {
+  const Tissue tissue = folded(0.7);
+  const SelfContact law(tissue, {.distance = 0.4, .search = 4});
+  const Motion rest = with_pairs(law, tissue);
+  const auto parted = [&](double by) {
+    Motion there = rest;
+    for (Vec3& x : there.positions) x.x() += x.x() > 0 ? by : -by;
+    return there;
+  };
+  expect_assembled_is_matrix_free(law, parted(-0.2), 3);
+  // Another pattern has another revision, the same pattern the same.
+  const auto revision_after = [&](double by) { return law.pattern_revision(law.next_internal(parted(by).step())); };
+  EXPECT_EQ(revision_after(0), law.pattern_revision(rest.internal));
+  EXPECT_NE(revision_after(1), law.pattern_revision(rest.internal));
 }
 
 // A point that has gone through is pushed back out.
