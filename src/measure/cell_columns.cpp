@@ -105,7 +105,7 @@ std::span<const CellColumn> cell_columns() {
       {"activity", csv, numbers,
        "Of the cell's program, delay included, in the first contraction by name that it belongs to; 0 outside. Profile "
        "and variation are no part of it.",
-       [](const C& c) { return activities(c.model, c.state.time_s); }},
+       [](const C& c) { return activities(c.model, c.state); }},
       {"self_intersecting", csv, integers,
        "1 where an apical or a basal facet of the cell passes through another of the same surface.", crossing}};
   return table;

@@ -40,27 +40,51 @@ double mean_apical_area_ratio(const Tissue& tissue, const MonitoredCells& cells,
   return sum / static_cast<double>(cells.size());
 }
 
-std::vector<double> activities(const Model& model, double time_s) {
+std::optional<double> min_apical_area_ratio(const Tissue& tissue, std::span<const Vec3> positions) {
+  const std::vector<double> now = apical_areas(tissue, positions), rest = rest_apical_areas(tissue);
+  std::optional<double> least;
+  for (std::size_t c = 0; c < now.size(); ++c)
+    if (rest[c] > 0) least = std::min(least.value_or(now[c] / rest[c]), now[c] / rest[c]);
+  return least;
+}
+
+std::vector<double> activities(const Model& model, const State& state) {
   std::vector<double> result(model.tissue.cells.size(), 0.0);
   for (std::size_t l = model.laws.size(); l-- > 0;)
     for (std::size_t c = 0; model.laws[l]->is_active() && c < result.size(); ++c)
-      if (const auto activity = model.laws[l]->activity_of(CellId(c), time_s)) result[c] = *activity;
+      if (const auto activity = model.laws[l]->activity_of(CellId(c), state.time_s, state.internals[l]))
+        result[c] = *activity;
   return result;
 }
 
-std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> positions) {
+namespace {
+
+// Volume inside facets that look outward; empty when they do not close.
+std::optional<double> volume_inside(std::span<const Facet> facets, std::span<const Vec3> positions) {
   Vec3 area_vector = Vec3::Zero();
   double volume = 0, area = 0;
-  for (const Facet& facet : tissue.basal_facets) {
+  for (const Facet& facet : facets) {
     const auto [a, b, c, d] = gather(positions, facet);
-    // The cone from the origin, as in hex_volume; basal facets look into the lumen.
-    volume -= (a.dot(b.cross(c)) + a.dot(c.cross(d)) + a.dot(b.cross(d)) + b.dot(c.cross(d))) / 12;
+    // The cone from the origin, as in hex_volume.
+    volume += (a.dot(b.cross(c)) + a.dot(c.cross(d)) + a.dot(b.cross(d)) + b.dot(c.cross(d))) / 12;
     const Vec3 of_facet = facet_area_vector({a, b, c, d});
     area_vector += of_facet;
     area += of_facet.norm();
   }
-  if (tissue.basal_facets.empty() || area_vector.norm() > 1e-9 * area) return std::nullopt;
+  if (facets.empty() || area_vector.norm() > 1e-9 * area) return std::nullopt;
   return volume;
+}
+
+}  // namespace
+
+std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> positions) {
+  // Basal facets look into the lumen.
+  const std::optional<double> volume = volume_inside(tissue.basal_facets, positions);
+  return volume ? std::optional(-*volume) : std::nullopt;
+}
+
+std::optional<double> volume_inside_apices(const Tissue& tissue, std::span<const Vec3> positions) {
+  return volume_inside(tissue.apical_facets, positions);
 }
 
 double shell_penetration(const Model& model, std::span<const Vec3> positions) {

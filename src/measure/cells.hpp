@@ -22,12 +22,18 @@ double mean_node_displacement(const Tissue& tissue, const MonitoredCells& cells,
 /// Mean over the cells of apical area over apical area at rest.
 double mean_apical_area_ratio(const Tissue& tissue, const MonitoredCells& cells, std::span<const Vec3> positions);
 
+/// The smallest of all cells' apical areas over those at rest; empty where no cell has any.
+std::optional<double> min_apical_area_ratio(const Tissue& tissue, std::span<const Vec3> positions);
+
 /// Activity of each cell: that of its program, delay included, in the first law by which it acts; 0 outside.
 /// Profile and variation are no part of it.
-std::vector<double> activities(const Model& model, double time_s);
+std::vector<double> activities(const Model& model, const State& state);
 
 /// Volume enclosed by the basal surface, um^3; empty when that surface is not closed.
 std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> positions);
+
+/// Volume inside the apical surface, cells and lumen, um^3; empty when that surface is not closed.
+std::optional<double> volume_inside_apices(const Tissue& tissue, std::span<const Vec3> positions);
 
 /// Deepest place of a node beyond an obstacle (outside the shell), um; 0 where none is.
 double shell_penetration(const Model& model, std::span<const Vec3> positions);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/units.hpp"
 #include "measure/cells.hpp"
 #include "measure/observation.hpp"
 #include "measure/self_intersections.hpp"
@@ -53,10 +54,6 @@ Column of_projection(Column column) {
   return count(std::move(column));
 }
 
-Column of_run(std::string_view name, std::string_view meaning, std::optional<double> SpeedHistory::*number) {
-  return {name, no_series, whole_run, meaning, {}, [=](const SpeedHistory& run) { return run.*number; }};
-}
-
 SpeedHistory history_of(std::span<const Observation> rows) {
   std::vector<SpeedRow> speeds;
   speeds.reserve(rows.size());
@@ -64,6 +61,46 @@ SpeedHistory history_of(std::span<const Observation> rows) {
     speeds.push_back({row.time_s(), row["vml_speed_um_per_s"], row["vce_speed_um_per_s"], row["vml_displacement_um"],
                       row["vce_displacement_um"]});
   return speed_history(speeds);
+}
+
+Column of_run(std::string_view name, std::string_view meaning, std::optional<double> SpeedHistory::*number) {
+  return {name,    no_series, whole_run,
+          meaning, {},        [=](std::span<const Observation> rows) {
+            return history_of(rows).*number; }};
+}
+
+// A column's values over time, where it has any.
+struct Course {
+  std::vector<double> times_s, values;
+};
+
+Course course_of(std::span<const Observation> rows, std::string_view column) {
+  Course course;
+  for (const Observation& row : rows)
+    if (const std::optional<double> value = row[column]) {
+      course.times_s.push_back(row.time_s());
+      course.values.push_back(*value);
+    }
+  return course;
+}
+
+std::optional<Knee> knee_of(std::span<const Observation> rows) {
+  const Course depth = course_of(rows, "furrow_depth_um");
+  return knee(depth.times_s, depth.values);
+}
+
+// When a column reaches a level for the first time.
+Column::OfRun reaching(std::string_view column, double level) {
+  return [=](std::span<const Observation> rows) {
+    const Course course = course_of(rows, column);
+    return time_of_reaching(course.times_s, course.values, level);
+  };
+}
+
+template <class Of, class Value>
+std::optional<double> part(const std::optional<Of>& of, Value Of::*value) {
+  if (!of) return std::nullopt;
+  return static_cast<double>((*of).*value);
 }
 
 std::optional<double> reduced(InSummary how, std::span<const Observation> rows, std::size_t column) {
@@ -94,7 +131,9 @@ MeasuredStep::MeasuredStep(const Model& of_model, const FurrowSites& at_sites, s
       state(at_its_end),
       step(accepted),
       furrow(furrow_shape(model.tissue, sites, state.positions)),
-      speeds(speeds_of(model.tissue, sites, state, step == nullptr)) {}
+      speeds(speeds_of(model.tissue, sites, state, step == nullptr)),
+      touching(plica::touching(model, state)),
+      enclosed(plica::enclosed(model, state)) {}
 
 std::span<const Column> columns() {
   using M = MeasuredStep;
@@ -183,6 +222,67 @@ std::span<const Column> columns() {
       of_projection({"cubic_solves", no_series, sum, "Cubics solved in them.", reported(&StepReport::cubics)}),
       of_projection({"cubic_three_real_roots", no_series, sum, "How many of those had three different real roots.",
                      reported(&StepReport::cubics_with_three_roots)}),
+      count({"refused_steps", series, sum, "Steps that were tried before this one was accepted, and were too long.",
+             reported(&StepReport::refused)}),
+      {"vml_height_um", series, largest, "Mean height of the VML's cells.",
+       [](const M& m) -> std::optional<double> {
+         if (m.sites.vml.empty()) return std::nullopt;
+         double sum = 0;
+         for (const CellId cell : m.sites.vml)
+           sum += cell_height(m.model.tissue.cells[cell.index()], m.state.positions);
+         return sum / static_cast<double>(m.sites.vml.size());
+       }},
+      {"min_apical_area_ratio", series, least, "The smallest of all cells' apical areas over those at rest.",
+       [](const M& m) { return min_apical_area_ratio(m.model.tissue, m.state.positions); }},
+      {"min_corner_jacobian_ratio", series, least,
+       "Smallest Jacobian of an element's corner over that at rest: 0 is a corner that is flat.",
+       [](const M& m) { return min_corner_jacobian_ratio(m.model.tissue, m.state.positions); }},
+      {"enclosed_volume_ratio", series, last,
+       "Of a volume that `[enclosed.NAME]` keeps, the yolk's: over what it is kept at.",
+       [](const M& m) { return part(m.enclosed, &Enclosed::volume_ratio); }},
+      {"yolk_pressure_Pa", series, last, "The pressure in it, over that outside the shell's fluid.",
+       [](const M& m) -> std::optional<double> {
+         if (!m.enclosed) return std::nullopt;
+         return m.enclosed->pressure_kPa / units::pascal;
+       }},
+      {"shell_fluid_um3", series, last, "Volume between the apical surface and the shell; the fluid has no pressure.",
+       [](const M& m) { return fluid_under_shell_um3(m.model, m.state.positions); }},
+      {"flank_volume_ratio", series, last,
+       "Volume of the cells at 60° to 120° from the belly, on the middle half of the length, over that at rest; a cell "
+       "counts by the part of its angle that lies there. What the furrow takes from the lateral ectoderm.",
+       [](const M& m) { return flank_volume_ratio(m.model.tissue, m.state.positions); }},
+      count({"contact_pairs", series, largest,
+             "With `[self_contact]`: places of a surface that press on another place of it.",
+             [](const M& m) { return part(m.touching, &Touching::pairs); }}),
+      {"min_contact_distance_um", series, least,
+       "The nearest that two places of a surface come that look at each other; below 0 one is beyond the other.",
+       [](const M& m) -> std::optional<double> { return m.touching ? m.touching->least_gap_um : std::nullopt; }},
+      {"closed_length_ratio", series, last,
+       "Part of the embryo's length along which the apical surfaces of both sides of the midline press on each other.",
+       [](const M& m) { return part(m.touching, &Touching::closed_length_ratio); }},
+      count({"lips_closed", series, last, "1 where they do so in the mid cross-section (x = 0), whichever cells meet.",
+             [](const M& m) { return part(m.touching, &Touching::middle_is_closed); }}),
+      {"lips_closed_time_s", no_series, whole_run, "When they did first.", {}, reaching("lips_closed", 1)},
+      {"depth_20um_time_s",
+       no_series,
+       whole_run,
+       "When `furrow_depth_um` passed 20 µm.",
+       {},
+       reaching("furrow_depth_um", 20)},
+      {"knee_depth_um",
+       no_series,
+       whole_run,
+       "Depth at which slow turns into fast: at the break of the line of two straight pieces that is nearest to "
+       "`furrow_depth_um` over time (least squares, each row by the time it stands for), up to 20 µm; none for a "
+       "furrow that does not get so deep.",
+       {},
+       [](std::span<const Observation> rows) { return part(knee_of(rows), &Knee::depth_um); }},
+      {"knee_time_s",
+       no_series,
+       whole_run,
+       "When that is.",
+       {},
+       [](std::span<const Observation> rows) { return part(knee_of(rows), &Knee::time_s); }},
   };
   return all;
 }
@@ -206,11 +306,10 @@ std::vector<const Column*> summary_columns() {
 }
 
 std::vector<std::pair<const Column*, std::optional<double>>> summary_values(std::span<const Observation> rows) {
-  const SpeedHistory history = history_of(rows);
   std::vector<std::pair<const Column*, std::optional<double>>> values;
   for (const Column* column : summary_columns())
-    values.emplace_back(column, column->of_run ? column->of_run(history)
-                                               : reduced(column->in_summary, rows, column_index(column->name)));
+    values.emplace_back(
+        column, column->of_run ? column->of_run(rows) : reduced(column->in_summary, rows, column_index(column->name)));
   return values;
 }
 

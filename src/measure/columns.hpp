@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/names.hpp"
+#include "measure/closing.hpp"
 #include "measure/furrow.hpp"
 #include "measure/speed_history.hpp"
 
@@ -32,6 +33,8 @@ struct MeasuredStep {
   const AcceptedStep* step;  // null for the body at rest, before the first
   FurrowShape furrow;
   SpeedRow speeds;
+  std::optional<Touching> touching;
+  std::optional<Enclosed> enclosed;
 };
 
 /// What summary.json has of a column.
@@ -39,7 +42,7 @@ enum class InSummary { nothing, last, largest, least, sum, whole_run };
 
 struct Column {
   using OfStep = std::function<std::optional<double>(const MeasuredStep&)>;
-  using OfRun = std::function<std::optional<double>(const SpeedHistory&)>;
+  using OfRun = std::function<std::optional<double>(std::span<const Observation> rows)>;
 
   std::string_view name;  // with its unit
   bool in_series;

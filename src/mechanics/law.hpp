@@ -145,9 +145,12 @@ class Law {
   [[nodiscard]] virtual std::vector<double> program_jumps_s() const { return {}; }
 
   /// Whether cells act by this law: its forces are then shown as the active ones. activity_of: of the cell's program at
-  /// a time; empty for a cell that the law leaves alone.
+  /// a time, or by its internal state; empty for a cell that the law leaves alone.
   [[nodiscard]] virtual bool is_active() const { return false; }
-  [[nodiscard]] virtual std::optional<double> activity_of(CellId /*cell*/, double /*time_s*/) const { return {}; }
+  [[nodiscard]] virtual std::optional<double> activity_of(CellId /*cell*/, double /*time_s*/,
+                                                          std::span<const double> /*internal*/) const {
+    return {};
+  }
 
   /// Mass that the law gives to nodes, g; empty for none. At most one law of a model has any.
   [[nodiscard]] virtual std::span<const double> masses() const { return {}; }

@@ -23,7 +23,9 @@ std::optional<Capsule> shell_of_run(const Scenario& scenario, const Vectors& res
   const EmbryoInput& embryo = scenario.embryo;
   if (!scenario.vitelline.enabled || shape_of(embryo) == EmbryoShape::block) return {};
   const double radius = embryo.diameter_um / 2,
-               half_axis = shape_of(embryo) == EmbryoShape::pill ? embryo.length_um / 2 - radius : 0;
+               half_axis = shape_of(embryo) == EmbryoShape::pill    ? embryo.length_um / 2 - radius
+                           : shape_of(embryo) == EmbryoShape::slice ? embryo.length_um / 2
+                                                                    : 0;
   Capsule shell =
       shape_of(embryo) == EmbryoShape::file ? enclosing_capsule(rest_positions) : Capsule{half_axis, radius};
   shell.radius_um += scenario.vitelline.gap_um;

@@ -151,6 +151,21 @@ std::vector<Row> law_rows() {
   add_program(rows, cortex, &X::stiffness_program,
               {"stiffness_program.time_s", "stiffness_program.time_min", "stiffness_program.activity"},
               "The same for the stiffness.");
+  const std::vector<Row> of_own_state = {
+      cortex(
+          "trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::own_measures),
+          "Both programs begin, cell by cell, when this measure of the cell passes a threshold, and not at time 0: an "
+          "area or the height over that at rest, as it is at the beginning of a step. Before, the tension is 0 and the "
+          "stiffness that of the program's time 0."),
+      cortex("trigger.below", &X::trigger, &TriggerInput::below, positive, "They begin when it is smaller than this."),
+      cortex("trigger.above", &X::trigger, &TriggerInput::above, positive, "They begin when it is larger."),
+      cortex("follow.measure", &X::follow, &FollowInput::measure, one_of(words::own_measures),
+             "The active tension follows this measure of the cell, as it is at the beginning of a step: another factor "
+             "on it, beside the program."),
+      cortex("follow.from", &X::follow, &FollowInput::from, not_negative, "Where that factor is 0, and before."),
+      cortex("follow.to", &X::follow, &FollowInput::to, not_negative, "Where it is 1, and beyond."),
+  };
+  rows.insert(rows.end(), of_own_state.begin(), of_own_state.end());
   add_pattern(rows, cortex);
 
   const std::vector<Row> of_enclosed = {

@@ -29,10 +29,10 @@ struct RegionInput {
   std::vector<std::string> unite, intersect, except;  // TOML keys: union, intersect, except
 };
 
-enum class EmbryoShape { pill, sphere, block, file };
+enum class EmbryoShape { pill, sphere, slice, block, file };
 
 struct EmbryoInput {
-  std::string shape = "pill";  // pill | sphere | block | file
+  std::string shape = "pill";  // pill | sphere | slice | block | file
   double length_um = 460;      // pill, block: along x
   double diameter_um = 280;    // pill, sphere
   double width_um = 20;        // block: along y
@@ -114,6 +114,17 @@ struct ContractionInput {
   VariationInput variation;
 };
 
+/// A cell's own state starts its programs, or scales its tension.
+struct TriggerInput {
+  std::string measure;                 // apical_area_ratio | basal_area_ratio | height_ratio; empty: none
+  std::optional<double> below, above;  // one of them
+};
+
+struct FollowInput {
+  std::string measure;  // the same
+  std::optional<double> from, to;
+};
+
 struct CortexInput {
   std::string region;
   std::string faces = "apical";  // apical | basal | lateral
@@ -124,6 +135,8 @@ struct CortexInput {
   double crowding_mN_per_m = 0;
   std::optional<double> relaxation_s;  // TOML: relaxation_s or relaxation_min; empty: "none"
   ProgramInput program, stiffness_program;
+  TriggerInput trigger;
+  FollowInput follow;
   ProfileInput profile;
   DelayInput delay;
   VariationInput variation;

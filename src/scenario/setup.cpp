@@ -47,6 +47,8 @@ Tissue build_tissue(const Scenario& scenario) {
       return build_shell({e.length_um, e.diameter_um, e.cell_height_um, e.cells, e.elements_per_cell});
     case EmbryoShape::sphere:
       return build_shell({e.diameter_um, e.diameter_um, e.cell_height_um, e.cells, e.elements_per_cell});
+    case EmbryoShape::slice:
+      return build_slice({e.length_um, e.diameter_um, e.cell_height_um, e.cells, e.elements_per_cell});
     case EmbryoShape::block:
       return build_block({e.length_um, e.width_um, e.cell_height_um, e.cells, e.elements_per_cell});
     case EmbryoShape::file:
@@ -74,6 +76,13 @@ void check_encloses(const Scenario& scenario, const Tissue& tissue, std::vector<
   if (!ClosedSurface(facets).is_closed())
     errors.push_back(diagnostic_at(scenario, "volume.projection_surface",
                                    "the apical surface of this mesh encloses nothing", "give \"cells\" or \"tissue\""));
+}
+
+// The same of a basal surface and the yolk; the planes at a slice's ends close it, too.
+void check_encloses_yolk(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
+  if (!scenario.enclosed.empty() && !EnclosedVolume::is_closed(tissue))
+    errors.push_back(diagnostic_at(scenario, "enclosed." + scenario.enclosed.begin()->first,
+                                   "the basal surface of this mesh encloses nothing", "remove the table"));
 }
 
 // Cells without an apical or a basal face have nodes inside that no drag slows, and a projection throws them about.
@@ -149,8 +158,25 @@ void add_contractions(const Scenario& scenario, Model& model) {
   }
 }
 
+OwnStateRule make_own_state(const CortexInput& input) {
+  OwnStateRule rule;
+  const auto& [measure, below, above] = input.trigger;
+  if (!measure.empty()) {
+    rule.kind = below ? OwnStateRule::Kind::starts_below : OwnStateRule::Kind::starts_above;
+    rule.measure = meaning_of(words::own_measures, measure);
+    rule.threshold = below ? *below : *above;
+  } else if (!input.follow.measure.empty()) {
+    rule.kind = OwnStateRule::Kind::follows;
+    rule.measure = meaning_of(words::own_measures, input.follow.measure);
+    rule.from = *input.follow.from;
+    rule.to = *input.follow.to;
+  }
+  return rule;
+}
+
 void add_cortices(const Scenario& scenario, Model& model) {
   for (const auto& [name, input] : scenario.cortices) {
+    if (input.tension_mN_per_m == 0 && input.stiffness_mN_per_m == 0 && input.crowding_mN_per_m == 0) continue;
     CortexRule rule;  // nN/um is mN/m
     rule.side = meaning_of(words::edges, input.faces);
     rule.tension = input.tension_mN_per_m;
@@ -161,6 +187,7 @@ void add_cortices(const Scenario& scenario, Model& model) {
     rule.relaxation_s = input.relaxation_s.value_or(0);
     rule.program = make_program(input.program);
     rule.stiffness_program = make_program(input.stiffness_program);
+    rule.own = make_own_state(input);
     model.laws.push_back(std::make_unique<Cortex>(model.tissue, make_pattern(input, model.tissue), std::move(rule)));
   }
 }
@@ -262,6 +289,8 @@ std::unique_ptr<Model> make_model(const Scenario& scenario) {
     model->laws.push_back(
         std::make_unique<Inertia>(tissue, scenario.dynamics.density_kg_per_m3 * units::kilogram_per_cubic_metre));
 
+  if (shape_of(scenario.embryo) == EmbryoShape::slice)
+    for (std::array<bool, 3>& held : model->held) held[0] = true;
   std::vector<Diagnostic> errors;
   add_holds(scenario, *model, errors);
   if (scenario.vitelline.enabled) {
@@ -274,6 +303,7 @@ std::unique_ptr<Model> make_model(const Scenario& scenario) {
                                    "the cells of this embryo cannot divide: " + *why,
                                    "take one element a cell and one layer of cells"));
   if (scenario.volume.projection_surface == "embryo") check_encloses(scenario, tissue, errors);
+  check_encloses_yolk(scenario, tissue, errors);
   if (method_of(scenario.volume) == VolumeMethod::projection) check_is_one_layer(scenario, tissue, errors);
   if (!errors.empty()) throw ScenarioError(std::move(errors));
   check_forces_at_rest(scenario, *model);

@@ -17,10 +17,11 @@ namespace {
 
 constexpr std::int64_t max_elements = 20'000'000;
 
-/// Cells of a built shape. A closed sheet has one layer of cells on each of its six sides.
+/// Cells of a built shape. A closed sheet has one layer of cells on each of its six sides, a slice on four.
 std::int64_t cell_count(const EmbryoInput& embryo) {
   const std::int64_t a = embryo.cells[0], b = embryo.cells[1], c = embryo.cells[2];
-  return shape_of(embryo) == EmbryoShape::block ? a * b * c : 2 * (a * b + b * c + c * a);
+  const bool has_ends = shape_of(embryo) != EmbryoShape::slice;
+  return shape_of(embryo) == EmbryoShape::block ? a * b * c : 2 * (a * b + (has_ends ? b * c : 0) + c * a);
 }
 
 /// A key that the shape does not use is an error where it was given along with the shape or after it, and is dropped
@@ -341,6 +342,7 @@ void validate(Scenario& scenario, Input& input) {
     check_program(table, it.stiffness_program, input, "stiffness_program");
     check_pattern(table, it.profile, it.delay, input);
     check_cortex(table, it, input);
+    check_own_state(table, it, input);
   }
   for (const auto& [name, it] : scenario.pressures) check_program("pressure." + name, it.program, input);
   for (const auto& [name, it] : scenario.divisions) check_division("division." + name, it, input);

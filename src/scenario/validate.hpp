@@ -34,6 +34,7 @@ void check_contact(const Scenario& scenario, Input& input);
 void check_enclosed(const Scenario& scenario, Input& input);
 
 /// What of a cortex has nothing that it could act on.
+void check_own_state(const std::string& table, const CortexInput& cortex, Input& input);
 void check_cortex(const std::string& table, const CortexInput& cortex, Input& input);
 
 }  // namespace plica

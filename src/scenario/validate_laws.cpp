@@ -124,11 +124,17 @@ void check_pattern(const std::string& table, ProfileInput& profile, DelayInput& 
 void check_cortex(const std::string& table, const CortexInput& cortex, Input& input) {
   for (const char* key : {"", ".tension_mN_per_m", ".stiffness_mN_per_m", ".crowding_mN_per_m"})
     if (!input.sound(table + key)) return;
-  if (cortex.tension_mN_per_m == 0 && cortex.stiffness_mN_per_m == 0 && cortex.crowding_mN_per_m == 0)
+  // Given as 0 it is switched off, with all that belongs to it.
+  const auto is_missing = [&](double value, const std::string& name) {
+    return value == 0 && input.place(table + "." + name) == nullptr;
+  };
+  if (is_missing(cortex.tension_mN_per_m, "tension_mN_per_m") &&
+      is_missing(cortex.stiffness_mN_per_m, "stiffness_mN_per_m") &&
+      is_missing(cortex.crowding_mN_per_m, "crowding_mN_per_m"))
     input.report(table, "does nothing", "give tension_mN_per_m, stiffness_mN_per_m or crowding_mN_per_m");
   // A key that scales something that is not there.
   const auto needs = [&](const std::string& key, bool is_given, double what, const std::string& name) {
-    if (is_given && what == 0)
+    if (is_given && is_missing(what, name))
       input.report(table + key, "has no meaning without " + name, "remove it, or give " + name);
   };
   needs(".saturation_ratio", cortex.saturation_ratio > 0, cortex.tension_mN_per_m, "tension_mN_per_m");
@@ -137,6 +143,32 @@ void check_cortex(const std::string& table, const CortexInput& cortex, Input& in
   needs(".relaxation_s", cortex.relaxation_s.has_value(), cortex.stiffness_mN_per_m, "stiffness_mN_per_m");
   needs(".stiffness_program", !cortex.stiffness_program.activity.empty(), cortex.stiffness_mN_per_m,
         "stiffness_mN_per_m");
+}
+
+void check_own_state(const std::string& table, const CortexInput& cortex, Input& input) {
+  const auto& [measure, below, above] = cortex.trigger;
+  const FollowInput& follow = cortex.follow;
+  for (const std::string& part : {table, table + ".trigger", table + ".follow"})
+    if (!input.sound(part)) return;
+  const auto report = [&](const std::string& key, const std::string& problem, const std::string& remedy) {
+    if (input.sound(table + key)) input.report(table + key, problem, remedy);
+  };
+  const std::string measures = fmt::format("give one of: {}", fmt::join(words_of(words::own_measures), " | "));
+  if (measure.empty() && (below || above)) report(".trigger.measure", "is missing", measures);
+  if (!measure.empty() && below.has_value() == above.has_value())
+    report(below ? ".trigger.above" : ".trigger.below", below ? "stands beside below" : "is missing",
+           "give below or above, one of them");
+  if (!measure.empty() && cortex.delay.speed_um_per_s)
+    report(".trigger", "stands beside a delay, which starts cells by the clock", "give one of the two");
+  if (follow.measure.empty() && (follow.from || follow.to)) report(".follow.measure", "is missing", measures);
+  if (follow.measure.empty()) return;
+  if (!follow.from) report(".follow.from", "is missing", "give where the factor is 0");
+  if (!follow.to) report(".follow.to", "is missing", "give where the factor is 1");
+  if (follow.from && follow.from == follow.to)
+    report(".follow.to", "is where the factor is 0, too", "give another value than from");
+  if (!measure.empty()) report(".follow", "stands beside a trigger", "give one of the two");
+  if (cortex.tension_mN_per_m == 0 && input.place(table + ".tension_mN_per_m") == nullptr)
+    report(".follow", "has no meaning without tension_mN_per_m", "remove it, or give tension_mN_per_m");
 }
 
 void check_contact(const Scenario& scenario, Input& input) {

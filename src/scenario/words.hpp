@@ -11,6 +11,7 @@
 #include "measure/monitor.hpp"
 #include "measure/stop_rule.hpp"
 #include "mechanics/active/cell_pattern.hpp"
+#include "mechanics/active/own_state.hpp"
 #include "scenario/scenario.hpp"
 #include "solver/make_stepper.hpp"
 #include "tissue/tissue.hpp"
@@ -60,6 +61,7 @@ inline constexpr auto sides = std::to_array<Word<GridPlace::Face>>({{"ventral", 
 
 inline constexpr auto embryo_shapes = std::to_array<Word<EmbryoShape>>({{"pill", EmbryoShape::pill},
                                                                         {"sphere", EmbryoShape::sphere},
+                                                                        {"slice", EmbryoShape::slice},
                                                                         {"block", EmbryoShape::block},
                                                                         {"file", EmbryoShape::file}});
 
@@ -86,6 +88,10 @@ inline constexpr auto profile_shapes =
                                                  {"plateau", StrengthProfile::Shape::plateau}});
 inline constexpr auto profile_axes =
     std::to_array<Word<PatternAxis>>({{"across", PatternAxis::across}, {"along", PatternAxis::along}});
+inline constexpr auto own_measures =
+    std::to_array<Word<OwnMeasure>>({{"apical_area_ratio", OwnMeasure::apical_area_ratio},
+                                     {"basal_area_ratio", OwnMeasure::basal_area_ratio},
+                                     {"height_ratio", OwnMeasure::height_ratio}});
 inline constexpr auto delay_axes =
     std::to_array<Word<PatternAxis>>({{"along", PatternAxis::along}, {"across", PatternAxis::across}});
 inline constexpr auto delay_starts = std::to_array<Word<StartDelay::From>>({{"middle", StartDelay::From::middle},

@@ -225,7 +225,7 @@ bool Simulation::step_towards(double time_s) {
 // that fails or is stopped.
 std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
   State& next = before;
-  int wasted_iterations = 0, wasted_solves = 0;
+  int refused = 0, wasted_iterations = 0, wasted_solves = 0;
   while (true) {
     const double end_s = step_length_.propose_end_s(controls_, now_.state.time_s, until_s);
     const double duration_s = end_s - now_.state.time_s;
@@ -235,6 +235,7 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
     const bool solved = report.converged();
     if (solved) {
       next.time_s = end_s;  // and not a sum, which rounding moves
+      report.refused = refused;
       report.newton_iterations += std::exchange(wasted_iterations, 0);
       report.linear_solves += std::exchange(wasted_solves, 0);
     }
@@ -243,6 +244,7 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
       ++now_.steps;
       return report;
     }
+    ++refused;
     wasted_iterations += report.newton_iterations;
     wasted_solves += report.linear_solves;
     if (solved) continue;

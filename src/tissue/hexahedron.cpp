@@ -102,14 +102,32 @@ std::array<std::array<Vec3, 8>, 8> hex_volume_hessian(const HexPoints& points) {
   return hessian;
 }
 
-double hex_scaled_jacobian(const HexPoints& points) {
-  // At a corner the Jacobian's columns are half the edges that meet there, each along its reference direction.
+namespace {
+
+// The edges that meet at each corner, one along each reference direction.
+const std::array<std::array<int, 3>, 8>& edges_at_corners() {
   static const auto edges_at = [] {
     std::array<std::array<int, 3>, 8> numbers{};
     for (int e = 0; e < 12; ++e)
       for (const int corner : hex_edges[e]) numbers[corner][e / 4] = e;
     return numbers;
   }();
+  return edges_at;
+}
+
+}  // namespace
+
+std::array<double, 8> hex_corner_jacobians(const HexPoints& points) {
+  std::array<double, 8> jacobians;
+  const auto edge = [&](int e) -> Vec3 { return points[hex_edges[e][1]] - points[hex_edges[e][0]]; };
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto& [a, b, c] = edges_at_corners()[corner];
+    jacobians[corner] = edge(a).cross(edge(b)).dot(edge(c)) / 8;
+  }
+  return jacobians;
+}
+
+double hex_scaled_jacobian(const HexPoints& points) {
   std::array<Vec3, 12> edges;
   std::array<double, 12> squared_lengths;
   for (int e = 0; e < 12; ++e) {
@@ -117,7 +135,7 @@ double hex_scaled_jacobian(const HexPoints& points) {
     squared_lengths[e] = edges[e].squaredNorm();
   }
   double worst = 1;
-  for (const auto& [a, b, c] : edges_at) {
+  for (const auto& [a, b, c] : edges_at_corners()) {
     const double lengths = std::sqrt(squared_lengths[a] * squared_lengths[b] * squared_lengths[c]);
     worst = std::min(worst, lengths > 0 ? edges[a].cross(edges[b]).dot(edges[c]) / lengths : -1.0);
   }

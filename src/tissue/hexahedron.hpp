@@ -43,6 +43,9 @@ std::array<Vec3, 8> hex_volume_gradient(const HexPoints& points);
 /// d2V/dx_i dx_j as vectors a_ij with the 3 x 3 block [a_ij]x; antisymmetric: a_ji = -a_ij.
 std::array<std::array<Vec3, 8>, 8> hex_volume_hessian(const HexPoints& points);
 
+/// det J at the eight corners, um^3.
+std::array<double, 8> hex_corner_jacobians(const HexPoints& points);
+
 /// Smallest det J over the eight corners, each divided by the product of its three edge lengths: 1 for a brick, at most
 /// 0 when a corner is flat or inverted. (The usual "scaled Jacobian".)
 double hex_scaled_jacobian(const HexPoints& points);

@@ -1,6 +1,7 @@
 #include "tissue/mesh_quality.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace plica {
 namespace {
@@ -39,6 +40,16 @@ MeshQuality mesh_quality(const Tissue& tissue, const Vectors& positions) {
 double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions) {
   double least = 1;
   for (const auto& element : tissue.elements) least = std::min(least, hex_scaled_jacobian(gather(positions, element)));
+  return least;
+}
+
+double min_corner_jacobian_ratio(const Tissue& tissue, const Vectors& positions) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
+    const auto now = hex_corner_jacobians(gather(positions, tissue.elements[e]));
+    const auto rest = hex_corner_jacobians(tissue.element_rest_shape[e]);
+    for (int corner = 0; corner < 8; ++corner) least = std::min(least, now[corner] / rest[corner]);
+  }
   return least;
 }
 

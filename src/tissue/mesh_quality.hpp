@@ -23,4 +23,7 @@ MeshQuality mesh_quality(const Tissue& tissue, const Vectors& positions);
 /// Worst corner of an element: 1 is a brick, 0 is flat.
 double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions);
 
+/// Smallest Jacobian of an element's corner over that at rest: 0 is flat, below it the corner is inside out.
+double min_corner_jacobian_ratio(const Tissue& tissue, const Vectors& positions);
+
 }  // namespace plica

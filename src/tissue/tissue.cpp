@@ -22,7 +22,7 @@ Vec3 cell_centre(const Cell& cell, const Vectors& positions) {
   return sum / 8;
 }
 
-double cell_volume(const Tissue& tissue, const Cell& cell, const Vectors& positions) {
+double cell_volume(const Tissue& tissue, const Cell& cell, std::span<const Vec3> positions) {
   double volume = 0;
   for (int e = 0; e < cell.element_count; ++e)
     volume += hex_volume(gather(positions, tissue.elements[cell.first_element.index() + e]));

@@ -132,7 +132,7 @@ struct Tissue {
 };
 
 /// The element's points among `positions`.
-inline HexPoints gather(const std::vector<Vec3>& positions, const std::array<NodeId, 8>& nodes) {
+inline HexPoints gather(std::span<const Vec3> positions, const std::array<NodeId, 8>& nodes) {
   HexPoints points;
   for (int i = 0; i < 8; ++i) points[i] = positions[nodes[i].index()];
   return points;
@@ -158,6 +158,6 @@ std::vector<double> basal_areas(const Tissue& tissue, std::span<const Vec3> posi
 std::vector<double> rest_apical_areas(const Tissue& tissue);
 
 /// Volume of a cell: the sum over its elements, um^3.
-double cell_volume(const Tissue& tissue, const Cell& cell, const Vectors& positions);
+double cell_volume(const Tissue& tissue, const Cell& cell, std::span<const Vec3> positions);
 
 }  // namespace plica

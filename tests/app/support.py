@@ -69,7 +69,9 @@ SERIES = (
     "time_s furrow_depth_um furrow_depth_below_lips_um lip_distance_um vml_speed_um_per_s vce_speed_um_per_s "
     "speed_ratio vml_displacement_um vce_displacement_um vml_apical_area_ratio vce_apical_area_ratio "
     "max_node_speed_um_per_s max_volume_error lumen_volume_ratio cells step_s newton_iterations linear_iterations "
-    "self_intersections"
+    "self_intersections refused_steps vml_height_um min_apical_area_ratio min_corner_jacobian_ratio "
+    "enclosed_volume_ratio yolk_pressure_Pa shell_fluid_um3 flank_volume_ratio contact_pairs min_contact_distance_um "
+    "closed_length_ratio lips_closed"
 ).split()
 CELLS = (
     "time_s cell_id mother_id generation x_um y_um z_um volume_um3 apical_area_um2 basal_area_um2 height_um "
@@ -81,7 +83,8 @@ SUMMARY = (
     "furrow_depth_below_lips_um lip_distance_um vml_apical_area_ratio vce_apical_area_ratio vml_displacement_um "
     "vce_displacement_um peak_speed_ratio peak_speed_ratio_time_s ends_lead_until_s "
     "vml_displacement_at_equal_speed_um vce_displacement_at_equal_speed_um max_volume_error "
-    "max_shell_penetration_um min_scaled_jacobian self_intersections provenance"
+    "max_shell_penetration_um min_scaled_jacobian self_intersections "
+    "min_apical_area_ratio min_corner_jacobian_ratio closed_length_ratio lips_closed_time_s knee_depth_um provenance"
 ).split()
 POINT_DATA = {"displacement_um", "velocity_um_per_s", "force_nN"}
 CELL_DATA = {

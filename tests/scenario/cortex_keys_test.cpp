@@ -55,6 +55,19 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
       {cortex +
            "tension_mN_per_m = 1\nprofile = { shape = \"plateau\", full_cells = 3, fade_cells = 1, about = \"belly\" }",
        "test.toml:4: cortex.a.profile.about: there is no region \"belly\"; known are: all"},
+      {cortex + "tension_mN_per_m = 1\ntrigger = { below = 0.3 }",
+       "test.toml:4: cortex.a.trigger.measure: is missing; give one of: apical_area_ratio | basal_area_ratio | "
+       "height_ratio"},
+      {cortex + "tension_mN_per_m = 1\ntrigger = { measure = \"height_ratio\" }",
+       "test.toml:4: cortex.a.trigger.below: is missing; give below or above, one of them"},
+      {cortex + "tension_mN_per_m = 1\nfollow = { measure = \"height_ratio\", from = 1, to = 1 }",
+       "test.toml:4: cortex.a.follow.to: is where the factor is 0, too; give another value than from"},
+      {cortex + "tension_mN_per_m = 1\nfollow = { measure = \"height_ratio\", from = 1, to = 2 }\ntrigger = { measure "
+                "= \"height_ratio\", below = 1 }",
+       "test.toml:4: cortex.a.follow: stands beside a trigger; give one of the two"},
+      {cortex +
+           "tension_mN_per_m = 1\ndelay = { speed_um_per_s = 1 }\ntrigger = { measure = \"height_ratio\", below = 1 }",
+       "test.toml:5: cortex.a.trigger: stands beside a delay, which starts cells by the clock; give one of the two"},
       {cortex + "tension_mN_per_m = 1\nprofile = { full_length_um = 300 }",
        "test.toml:4: cortex.a.profile.fade_um: is missing; a taper along the axis has both lengths"},
       {"[enclosed.yolk]\nvolume = \"compliant\"\n[vitelline]\ngap_um = 1",
@@ -140,6 +153,13 @@ TEST(CortexKeys, ASmallFurrowOfCorticesFolds) {
   EXPECT_NEAR(*measures["lumen_volume_ratio"], 1, 1e-3);
   EXPECT_LE(*measures["max_volume_error"], 1e-9);
   EXPECT_EQ(contracting_regions(scenario, simulation.model().tissue), std::vector<std::string>{"belly"});
+}
+
+// An experiment that takes a pull away gives it as 0: its program and profile are no mistake then.
+TEST(CortexKeys, OneThatIsGivenAsNothingIsOff) {
+  const Simulation without(load_scenario(find_scenario("furrow-slice"), {"cortex.shortening.tension_mN_per_m=0"}));
+  EXPECT_EQ(Simulation(load_scenario(find_scenario("furrow-slice"))).model().laws.size(),
+            without.model().laws.size() + 1);
 }
 
 // What cells exert is asked of a part of the tissue: yolk and contact are no part's own.

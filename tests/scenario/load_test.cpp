@@ -164,7 +164,8 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {"[elasticity]\npoisson_ratio = 0.5",
        "test.toml:2: elasticity.poisson_ratio: 0.5 is out of range; give a number > -1 and < 0.5"},
       {"[embryo]\nshape = \"pil\"",
-       "test.toml:2: embryo.shape: \"pil\" is not known; give one of: pill | sphere | block | file (did you mean "
+       "test.toml:2: embryo.shape: \"pil\" is not known; give one of: pill | sphere | slice | block | file (did you "
+       "mean "
        "\"pill\"?)"},
       {"[elasticity]\nattractor_stiffness_nN_per_um = 0",
        "test.toml:2: elasticity.attractor_stiffness_nN_per_um: 0 is out of range; give a number > 0 or \"derived\""},
@@ -195,7 +196,8 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:2: embryo.cell_height_um: 140 leaves no room inside the embryo; give less than half of diameter_um, "
        "140"},
       {"[embryo]\nshape = \"sphere\"\nlength_um = 460",
-       "test.toml:3: embryo.length_um: has no meaning with shape \"sphere\"; remove it, or choose shape pill or block"},
+       "test.toml:3: embryo.length_um: has no meaning with shape \"sphere\"; remove it, or choose shape pill or slice "
+       "or block"},
       {"[embryo]\nwidth_um = 1",
        "test.toml:2: embryo.width_um: has no meaning with shape \"pill\"; remove it, or choose shape block"},
       {"[embryo]\nshape = \"file\"", "test.toml:1: embryo.file: is missing; name the mesh file for shape \"file\""},

@@ -102,7 +102,7 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
 
 double Contraction::activity(double delay_s, double time_s) const { return program_.delayed_at(delay_s, time_s); }
 
-std::optional<double> Contraction::activity_of(CellId cell, double time_s) const {
+std::optional<double> Contraction::activity_of(CellId cell, double time_s, std::span<const double> /*internal*/) const {
   if (pattern_.cells.empty() || !pattern_.cells[cell.index()]) return std::nullopt;
   return activity(pattern_.delays_s[cell.index()], time_s);
 }

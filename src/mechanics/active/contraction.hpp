@@ -63,7 +63,8 @@ class Contraction final : public Law {
   /// Activity at a time for springs with a delay: that of the program `delay_s` earlier, 0 before the program's time 0.
   [[nodiscard]] double activity(double delay_s, double time_s) const;
   [[nodiscard]] bool is_active() const override { return true; }
-  [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s) const override;
+  [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
+                                                  std::span<const double> internal) const override;
   [[nodiscard]] std::vector<double> program_points_s() const override { return program_.delayed_points_s(delays_s()); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.delayed_jumps_s(delays_s()); }
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }

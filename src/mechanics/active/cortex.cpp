@@ -42,8 +42,12 @@ std::pair<int, int> cells_of(CellId cell, std::optional<CellId> beyond) {
   return std::minmax(cell.number(), beyond ? beyond->number() : -1);
 }
 
-std::vector<double> merged(std::vector<double> a, const std::vector<double>& b) {
+std::vector<double> joined(std::vector<double> a, const std::vector<double>& b) {
   a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+std::vector<double> sorted(std::vector<double> a) {
   std::ranges::sort(a);
   return a;
 }
@@ -62,6 +66,7 @@ Cortex::Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kerne
       pattern_(std::move(pattern)),
       kernels_(kernels),
       faces_(acting_faces(tissue, rule_.side, pattern_)),
+      own_(tissue, rule_.own),
       chunks_(chunks_of(faces_)),
       batches_(chunks_.batch_count()) {
   for (const Face& face : faces_) {
@@ -78,9 +83,9 @@ const FaceKernels& Cortex::kernels() const {
   return kernels_for(kernels_, generic::face_kernels, avx2::face_kernels, avx512::face_kernels);
 }
 
-std::optional<double> Cortex::activity_of(CellId cell, double time_s) const {
+std::optional<double> Cortex::activity_of(CellId cell, double time_s, std::span<const double> internal) const {
   if (!is_active() || !pattern_.cells[cell.index()]) return std::nullopt;
-  return rule_.program.delayed_at(pattern_.delays_s[cell.index()], time_s);
+  return activity(cell, time_s, internal);
 }
 
 double Cortex::rest_area_before(std::size_t face, const Step& step) const {
@@ -88,17 +93,38 @@ double Cortex::rest_area_before(std::size_t face, const Step& step) const {
   return (1 + step.ahead) * step.internal[face] - step.ahead * step.internal[faces_.size() + face];
 }
 
+// How active a cell is, strength apart.
+double Cortex::activity(CellId cell, double time_s, std::span<const double> internal) const {
+  const double delay_s = pattern_.delays_s[cell.index()];
+  if (!own_.is_used()) return rule_.program.delayed_at(delay_s, time_s);
+  const double own = internal[area_numbers() + cell.index()];
+  if (!own_.starts()) return own * rule_.program.delayed_at(delay_s, time_s);
+  return own == OwnState::not_yet ? 0 : rule_.program.delayed_at(own, time_s);
+}
+
+// The factor on its stiffness.
+double Cortex::stiffening(CellId cell, const Step& step) const {
+  if (!own_.starts()) return rule_.stiffness_program.at(step.end_time_s);
+  const double own = step.internal[area_numbers() + cell.index()];
+  return rule_.stiffness_program.at(own == OwnState::not_yet ? 0 : step.end_time_s - own);
+}
+
+// A number of a cell times its strength; of a wall the mean of those of its two cells.
+template <class OfCell>
+double Cortex::of_face(std::size_t f, const OfCell& of_cell) const {
+  const auto strong = [&](CellId cell) {
+    const double strength = pattern_.strengths[cell.index()];
+    return strength == 0 ? 0 : strength * of_cell(cell);
+  };
+  const Face& face = faces_[f];
+  return face.beyond ? 0.5 * (strong(face.cell) + strong(*face.beyond)) : strong(face.cell);
+}
+
 Cortex::Response Cortex::respond(std::size_t f, double area, const Step& step, bool with_energy) const {
   const double strength = strengths_[f], rest = rest_areas_[f];
   Response response;
   if (rule_.tension != 0) {
-    // Of a wall, each cell's own activity.
-    const auto of_cell = [&](CellId cell) {
-      const double own = pattern_.strengths[cell.index()];
-      return own == 0 ? 0 : own * rule_.program.delayed_at(pattern_.delays_s[cell.index()], step.end_time_s);
-    };
-    const Face& face = faces_[f];
-    const double acting = face.beyond ? 0.5 * (of_cell(face.cell) + of_cell(*face.beyond)) : of_cell(face.cell);
+    const double acting = of_face(f, [&](CellId cell) { return activity(cell, step.end_time_s, step.internal); });
     const double gamma = acting * rule_.tension, saturation = rule_.saturation * rest;
     if (saturation > 0) {
       response.tension += gamma * area / (area + saturation);
@@ -113,7 +139,7 @@ Cortex::Response Cortex::respond(std::size_t f, double area, const Step& step, b
     // With the rest area at the step's end, (A_b + r A)/(1 + r), where A_b is that before (docs/theory/cortex.md).
     const double before = rest_area_before(f, step), r = flows() ? step.rate_s / rule_.relaxation_s : 0;
     const double yielding = before + r * area;
-    double k = strength * rule_.stiffness * rule_.stiffness_program.at(step.end_time_s);
+    double k = rule_.stiffness * of_face(f, [&](CellId cell) { return stiffening(cell, step); });
     if (area < before) k *= rule_.compression_ratio;
     response.tension += k * (area - before) / yielding;
     response.slope += k * (1 + r) * before / (yielding * yielding);
@@ -205,21 +231,28 @@ NodeGroups Cortex::node_groups(std::span<const double> /*internal*/) const {
   return groups;
 }
 
-std::vector<double> Cortex::first_internal(const Tissue&) const {
-  if (!flows()) return {};
-  std::vector<double> internal = rest_areas_;
-  internal.insert(internal.end(), rest_areas_.begin(), rest_areas_.end());
-  return internal;
+std::vector<double> Cortex::first_internal(const Tissue& tissue) const {
+  std::vector<double> internal;
+  if (flows()) {
+    internal = rest_areas_;
+    internal.insert(internal.end(), rest_areas_.begin(), rest_areas_.end());
+  }
+  return joined(std::move(internal), own_.numbers(tissue.rest_positions, 0, {}));
 }
 
 std::vector<double> Cortex::next_internal(const Step& step) const {
-  if (!flows()) return {};
-  std::vector<double> internal = areas(step.positions);
-  const double r = step.rate_s / rule_.relaxation_s;
-  for (std::size_t f = 0; f < faces_.size(); ++f) internal[f] = (rest_area_before(f, step) + r * internal[f]) / (1 + r);
-  internal.insert(internal.end(), step.internal.begin(),
-                  step.internal.begin() + static_cast<std::ptrdiff_t>(faces_.size()));
-  return internal;
+  std::vector<double> internal;
+  if (flows()) {
+    internal = areas(step.positions);
+    const double r = step.rate_s / rule_.relaxation_s;
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+      internal[f] = (rest_area_before(f, step) + r * internal[f]) / (1 + r);
+    internal.insert(internal.end(), step.internal.begin(),
+                    step.internal.begin() + static_cast<std::ptrdiff_t>(faces_.size()));
+  }
+  if (!own_.is_used()) return internal;
+  return joined(std::move(internal),
+                own_.numbers(step.positions, step.end_time_s, step.internal.subspan(area_numbers())));
 }
 
 std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const Division& division,
@@ -229,10 +262,10 @@ std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const Division
 
 std::vector<double> Cortex::internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                     const Division& division) const {
-  if (!flows()) return {};
   const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_division(division));
   std::vector<double> after;
   for (const std::size_t first : {std::size_t{0}, faces_.size()}) {
+    if (!flows()) break;
     struct Areas {
       double now = 0, at_rest = 0;
     };
@@ -250,15 +283,19 @@ std::vector<double> Cortex::internal_after_division(std::span<const double> inte
       after.push_back(strain * area_at_rest(tissue, face));
     }
   }
-  return after;
+  if (!own_.is_used()) return after;
+  const std::span<const double> own = internal.subspan(area_numbers());
+  return joined(std::move(after), inherited(division, std::vector(own.begin(), own.end())));
 }
 
 std::vector<double> Cortex::program_points_s() const {
-  return merged(rule_.stiffness_program.times_s(), rule_.program.delayed_points_s(pattern_.delays_s));
+  if (own_.starts()) return {};  // nobody knows yet
+  return sorted(joined(rule_.stiffness_program.times_s(), rule_.program.delayed_points_s(pattern_.delays_s)));
 }
 
 std::vector<double> Cortex::program_jumps_s() const {
-  return merged(rule_.stiffness_program.jumps_s(), rule_.program.delayed_jumps_s(pattern_.delays_s));
+  if (own_.starts()) return {};
+  return sorted(joined(rule_.stiffness_program.jumps_s(), rule_.program.delayed_jumps_s(pattern_.delays_s)));
 }
 
 }  // namespace plica

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mechanics/active/cell_pattern.hpp"
+#include "mechanics/active/own_state.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/kernels/element_chunks.hpp"
 #include "mechanics/kernels/face_kernels.hpp"
@@ -29,6 +30,7 @@ struct CortexRule {
   double relaxation_s = 0;         // tau; 0: the rest area does not flow
   Program program = {};            // of gamma; a cell's begins after its delay
   Program stiffness_program = {};  // of k
+  OwnStateRule own = {};           // what starts both programs, or scales the tension, in each cell
 };
 
 /// Cells' strengths scale all of it. A wall is the cortex of the two cells that share it: it has the mean of what they
@@ -46,7 +48,8 @@ class Cortex final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
 
-  /// Where rest areas flow: those at the beginning of the step, then those at the beginning of the step before.
+  /// Where rest areas flow: those at the beginning of the step, then those at the beginning of the step before. Then
+  /// the cells' own states, where these matter.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
 
@@ -60,7 +63,8 @@ class Cortex final : public Law {
   [[nodiscard]] std::vector<double> program_points_s() const override;
   [[nodiscard]] std::vector<double> program_jumps_s() const override;
   [[nodiscard]] bool is_active() const override { return rule_.tension != 0; }
-  [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s) const override;
+  [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
+                                                  std::span<const double> internal) const override;
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   /// Areas and tensions at a step's end; faces.
@@ -76,6 +80,11 @@ class Cortex final : public Law {
   [[nodiscard]] Pull pull(const Step& step) const;
   [[nodiscard]] bool flows() const { return rule_.relaxation_s > 0; }
   [[nodiscard]] double rest_area_before(std::size_t face, const Step& step) const;
+  [[nodiscard]] std::size_t area_numbers() const { return flows() ? 2 * faces_.size() : 0; }
+  [[nodiscard]] double activity(CellId cell, double time_s, std::span<const double> internal) const;
+  [[nodiscard]] double stiffening(CellId cell, const Step& step) const;
+  template <class OfCell>
+  [[nodiscard]] double of_face(std::size_t face, const OfCell& of_cell) const;
   [[nodiscard]] const FaceKernels& kernels() const;
 
   CortexRule rule_;
@@ -84,6 +93,7 @@ class Cortex final : public Law {
   std::vector<Face> faces_;         // that have any strength
   std::vector<double> rest_areas_;  // faces; um^2: A_r
   std::vector<double> strengths_;   // faces
+  OwnState own_;
   ElementChunks chunks_;
   std::vector<FaceBatch> batches_;
 };

@@ -8,12 +8,6 @@
 namespace plica {
 namespace {
 
-HexPoints gather(std::span<const Vec3> positions, const std::array<NodeId, 8>& nodes) {
-  HexPoints points;
-  for (int i = 0; i < 8; ++i) points[i] = positions[nodes[i].index()];
-  return points;
-}
-
 // Adds scale * d2V/dx2 of one element.
 void add_volume_hessian(const std::array<NodeId, 8>& nodes, const HexPoints& points, double scale,
                         TangentSink& tangent) {

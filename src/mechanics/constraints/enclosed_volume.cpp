@@ -1,6 +1,8 @@
 #include "mechanics/constraints/enclosed_volume.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "tissue/division.hpp"
 #include "tissue/tissue.hpp"
@@ -13,6 +15,8 @@ using Corners = std::array<Vec3, 4>;
 // Twelve times the cone from the origin to a bilinear facet is a.(b x c) + a.(c x d) + a.(b x d) + b.(c x d). Basal
 // facets look into the lumen, so their cones count with the other sign.
 constexpr double cone_share = -1.0 / 12;
+// Six times that to a triangle is its triple product.
+constexpr double rim_share = -1.0 / 6;
 
 Corners corners_of(std::span<const Vec3> x, const std::array<NodeId, 4>& nodes) {
   return {x[nodes[0].index()], x[nodes[1].index()], x[nodes[2].index()], x[nodes[3].index()]};
@@ -43,7 +47,30 @@ EnclosedVolume::EnclosedVolume(const Tissue& tissue) : EnclosedVolume(tissue, 0)
   target_ = volume(tissue.rest_positions);
 }
 
-EnclosedVolume::EnclosedVolume(const Tissue& tissue, double target) : target_(target) {
+std::vector<EnclosedVolume::RimEdge> EnclosedVolume::rim_of(const Tissue& tissue) {
+  std::map<std::pair<NodeId, NodeId>, int> uses;
+  const auto for_edges = [&](const auto& take) {
+    for (const Facet& facet : tissue.basal_facets)
+      for (int i = 0; i < 4; ++i) take(facet.nodes[i], facet.nodes[(i + 1) % 4]);
+  };
+  for_edges([&](NodeId from, NodeId to) { ++uses[std::minmax(from, to)]; });
+  std::vector<RimEdge> rim;
+  for_edges([&](NodeId from, NodeId to) {
+    if (uses[std::minmax(from, to)] == 1)
+      rim.push_back({from, to, Vec3(tissue.rest_positions[from.index()].x(), 0, 0)});
+  });
+  return rim;
+}
+
+bool EnclosedVolume::is_closed(const Tissue& tissue) {
+  const std::vector<RimEdge> rim = rim_of(tissue);
+  const auto is_across = [&](const RimEdge& edge) {
+    return std::abs(tissue.rest_positions[edge.to.index()].x() - edge.place.x()) < 1e-9;
+  };
+  return !tissue.basal_facets.empty() && std::ranges::all_of(rim, is_across);
+}
+
+EnclosedVolume::EnclosedVolume(const Tissue& tissue, double target) : rim_(rim_of(tissue)), target_(target) {
   for (const Facet& facet : tissue.basal_facets) facets_.push_back(facet.nodes);
   Vectors gradient(tissue.node_count(), Vec3::Zero());
   add_forces(tissue.rest_positions, std::array{1.0}, gradient);
@@ -59,12 +86,17 @@ double EnclosedVolume::volume(std::span<const Vec3> positions) const {
 void EnclosedVolume::values(std::span<const Vec3> x, std::span<double> values) const {
   values[0] = 0;
   for (const auto& nodes : facets_) values[0] += cone(corners_of(x, nodes));
+  for (const auto& [from, to, place] : rim_) values[0] += rim_share * place.dot(x[to.index()].cross(x[from.index()]));
 }
 
 ConstraintParts EnclosedVolume::parts() const {
   ConstraintParts parts;
   for (const auto& nodes : facets_) {
     parts.nodes.add(nodes);
+    parts.function.push_back(0);
+  }
+  for (const RimEdge& edge : rim_) {
+    parts.nodes.add(std::array{edge.from, edge.to});
     parts.function.push_back(0);
   }
   return parts;
@@ -75,10 +107,15 @@ void EnclosedVolume::gradients(std::span<const Vec3> x, std::span<Vec3> of_parts
     const Corners gradient = cone_gradient(corners_of(x, facets_[f]));
     std::copy(gradient.begin(), gradient.end(), of_parts.begin() + static_cast<std::ptrdiff_t>(4 * f));
   }
+  for (std::size_t e = 0; e < rim_.size(); ++e) {
+    const auto& [from, to, place] = rim_[e];
+    of_parts[4 * facets_.size() + 2 * e] = rim_share * place.cross(x[to.index()]);
+    of_parts[4 * facets_.size() + 2 * e + 1] = rim_share * x[from.index()].cross(place);
+  }
 }
 
 void EnclosedVolume::for_parts(const std::function<void(std::size_t)>& body, bool /*shared*/) const {
-  for (std::size_t f = 0; f < facets_.size(); ++f) body(f);
+  for (std::size_t part = 0; part < facets_.size() + rim_.size(); ++part) body(part);
 }
 
 void EnclosedVolume::add_forces(std::span<const Vec3> x, std::span<const double> multipliers,
@@ -86,6 +123,10 @@ void EnclosedVolume::add_forces(std::span<const Vec3> x, std::span<const double>
   for (const auto& nodes : facets_) {
     const Corners gradient = cone_gradient(corners_of(x, nodes));
     for (int i = 0; i < 4; ++i) forces[nodes[i].index()] += multipliers[0] * gradient[i];
+  }
+  for (const auto& [from, to, place] : rim_) {
+    forces[from.index()] += multipliers[0] * rim_share * place.cross(x[to.index()]);
+    forces[to.index()] += multipliers[0] * rim_share * x[from.index()].cross(place);
   }
 }
 
@@ -96,6 +137,7 @@ void EnclosedVolume::for_blocks(std::span<const Vec3> x, double pressure, const 
     for (int i = 0; i < 4; ++i)
       for (int j = i + 1; j < 4; ++j) take(nodes[i], nodes[j], Vec3(-pressure * cone_hessian(corners, i, j)));
   }
+  for (const auto& [from, to, place] : rim_) take(from, to, Vec3(-pressure * rim_share * place));
 }
 
 void EnclosedVolume::add_tangent_product(std::span<const Vec3> x, std::span<const double> multipliers,
@@ -129,12 +171,16 @@ ElasticVolume::ElasticVolume(const Tissue& tissue, double bulk_modulus)
 ElasticVolume::ElasticVolume(const Tissue& tissue, double bulk_modulus, double rest_volume)
     : volume_(tissue, rest_volume), bulk_modulus_(bulk_modulus) {}
 
+double ElasticVolume::volume_ratio(std::span<const Vec3> positions) const {
+  return volume_.volume(positions) / volume_.targets()[0];
+}
+
 double ElasticVolume::pressure(std::span<const Vec3> positions) const {
-  return bulk_modulus_ * (1 - volume_.volume(positions) / volume_.targets()[0]);
+  return bulk_modulus_ * (1 - volume_ratio(positions));
 }
 
 double ElasticVolume::energy(const Step& step) const {
-  const double strain = volume_.volume(step.positions) / volume_.targets()[0] - 1;
+  const double strain = volume_ratio(step.positions) - 1;
   return 0.5 * bulk_modulus_ * volume_.targets()[0] * strain * strain;
 }
 

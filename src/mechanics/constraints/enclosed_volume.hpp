@@ -10,7 +10,8 @@ namespace plica {
 
 struct Tissue;
 
-/// Held at its volume at rest; the multiplier is the pressure inside, kPa. The sheet must be closed.
+/// Held at its volume at rest; the multiplier is the pressure inside, kPa. The sheet is closed, or a slice that is
+/// closed by planes across x at its ends, in which its nodes must stay.
 class EnclosedVolume final : public Constraint {
  public:
   explicit EnclosedVolume(const Tissue& tissue);
@@ -41,11 +42,22 @@ class EnclosedVolume final : public Constraint {
   [[nodiscard]] double volume(std::span<const Vec3> positions) const;
   [[nodiscard]] std::size_t facet_count() const { return facets_.size(); }
 
+  /// Whether the basal surface of a tissue is closed, or a slice's.
+  [[nodiscard]] static bool is_closed(const Tissue& tissue);
+
  private:
   template <class Take>
   void for_blocks(std::span<const Vec3> positions, double pressure, const Take& take) const;
 
+  /// An edge of the rim of a slice, as its facet has it: with a place in its plane, a triangle of the end.
+  struct RimEdge {
+    NodeId from, to;
+    Vec3 place;
+  };
+  [[nodiscard]] static std::vector<RimEdge> rim_of(const Tissue& tissue);
+
   std::vector<std::array<NodeId, 4>> facets_;
+  std::vector<RimEdge> rim_;
   double target_ = 0;
   double gradient_scale_ = 0;  // |dV/dx|^2 at rest, um^4
 };
@@ -70,6 +82,8 @@ class ElasticVolume final : public Law {
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
 
+  /// V/V_0.
+  [[nodiscard]] double volume_ratio(std::span<const Vec3> positions) const;
   /// Pressure inside, kPa.
   [[nodiscard]] double pressure(std::span<const Vec3> positions) const;
 

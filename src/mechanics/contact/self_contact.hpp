@@ -73,6 +73,7 @@ class SelfContact final : public Law {
   /// The pairs of an internal state.
   [[nodiscard]] static std::vector<Pair> pairs_of(std::span<const double> internal);
   [[nodiscard]] const std::vector<Point>& points() const { return points_; }
+  [[nodiscard]] CellSide side() const { return rule_.side; }
 
  private:
   [[nodiscard]] bool may_touch(const Pair& pair) const { return pair.first_gap < 2 * rule_.distance; }

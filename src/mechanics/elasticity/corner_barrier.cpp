@@ -147,14 +147,4 @@ std::unique_ptr<Law> CornerBarrier::after_division(const Tissue& tissue, const D
   return std::make_unique<CornerBarrier>(tissue, modulus_, threshold_);
 }
 
-double CornerBarrier::smallest_ratio(std::span<const Vec3> positions) const {
-  double smallest = 1e300;
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    for (int corner = 0; corner < 8; ++corner) {
-      const auto at = [&](int i) -> const Vec3& { return positions[elements_[e][i].index()]; };
-      smallest = std::min(smallest, handedness[corner] * edges_of(corner, at).product() / rest_jacobians_[e][corner]);
-    }
-  return smallest;
-}
-
 }  // namespace plica

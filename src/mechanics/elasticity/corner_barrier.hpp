@@ -29,9 +29,6 @@ class CornerBarrier final : public Law {
                                                     std::span<const Vec3> positions) const override;
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
 
-  /// The smallest J / J_0 over all corners.
-  [[nodiscard]] double smallest_ratio(std::span<const Vec3> positions) const;
-
  private:
   struct Corner;  // one that is pushed back, at given positions
   template <class Take>

@@ -48,7 +48,8 @@ std::unique_ptr<NewtonDirections> make_directions(const Model& model, LinearMeth
   // Where the factor of a sheet takes as long as multigrid, and where that of the indefinite system takes more room
   // than a usual machine has (docs/performance-notebook.md). Multigrid finds the long thin elements of divided cells
   // hard.
-  constexpr std::size_t most_nodes_of_cholesky = 5'000, most_nodes_when_divided = 50'000, most_nodes_of_direct = 60'000;
+  constexpr std::size_t most_nodes_of_cholesky = 20'000, most_nodes_when_divided = 50'000,
+                        most_nodes_of_direct = 60'000;
   const std::size_t nodes = model.tissue.free_node_count();
   const bool is_divided = !model.tissue.hanging.empty();
   const bool is_large = nodes > (is_divided ? most_nodes_when_divided : most_nodes_of_cholesky);

@@ -25,6 +25,7 @@ struct StepReport {
     interrupted
   };
   Outcome outcome = Outcome::no_convergence;
+  int refused = 0;  // attempts before this one, which were too long
   int newton_iterations = 0;
   int factorisations = 0;
   int linear_solves = 0;        // back substitutions of a factor, or iterations of conjugate gradients

@@ -1,5 +1,8 @@
 #include "tissue/shapes/embryo.hpp"
 
+#include <cmath>
+#include <numbers>
+
 #include "tissue/lattice.hpp"
 #include "tissue/shapes/shell_grid.hpp"
 
@@ -52,6 +55,47 @@ Tissue build_shell(const ShellShape& shape) {
   if (along * across * layers > 1) number_as_elements_come(lattices, positions);
   Tissue tissue = tissue_from_lattices(lattices, std::move(positions));
   tissue.outer_shape = Capsule{half_axis, shape.diameter_um / 2};
+  return tissue;
+}
+
+Tissue build_slice(const ShellShape& shape) {
+  const auto [along, belly, side] = shape.cells;
+  const auto [nu, nv, nw] = shape.elements_per_cell;
+  const int around = 2 * (belly + side), x_nodes = along * nu + 1, y_nodes = around * nv;
+  Vectors positions;
+  positions.reserve(static_cast<std::size_t>(x_nodes) * y_nodes * (nw + 1));
+  for (int k = 0; k <= nw; ++k) {
+    const double radius = shape.diameter_um / 2 - shape.cell_height_um * (nw - k) / nw;
+    for (int j = 0; j < y_nodes; ++j) {
+      // From the middle of the belly, in both ways alike.
+      const int half_steps = 2 * j - belly * nv, whole = 2 * y_nodes;
+      const double angle = 2 * std::numbers::pi * (half_steps > whole / 2 ? half_steps - whole : half_steps) / whole;
+      const double sine = 2 * half_steps == whole ? 0 : std::sin(angle);
+      for (int i = 0; i < x_nodes; ++i)
+        positions.emplace_back(shape.length_um * (2.0 * i - (x_nodes - 1)) / (2.0 * (x_nodes - 1)), -radius * sine,
+                               -radius * std::cos(angle));
+    }
+  }
+  using enum GridPlace::Face;
+  std::vector<CellLattice> lattices;
+  for (int j = 0; j < around; ++j)
+    for (int i = 0; i < along; ++i) {
+      CellLattice lattice;
+      lattice.elements = shape.elements_per_cell;
+      const int begins[] = {0, belly, belly + side,
+                            2 * belly + side};  // of the faces, from right to left round the belly
+      const GridPlace::Face faces[] = {ventral, left, dorsal, right};
+      int face = 3;
+      while (j < begins[face]) --face;
+      lattice.grid_place = GridPlace{faces[face], {i, j - begins[face]}, {along, face % 2 == 0 ? belly : side}};
+      for (int w = 0; w <= nw; ++w)
+        for (int v = 0; v <= nv; ++v)
+          for (int u = 0; u <= nu; ++u)
+            lattice.nodes.emplace_back((i * nu + u) + x_nodes * ((j * nv + v) % y_nodes + y_nodes * w));
+      lattices.push_back(std::move(lattice));
+    }
+  Tissue tissue = tissue_from_lattices(lattices, std::move(positions));
+  tissue.outer_shape = Capsule{shape.length_um / 2, shape.diameter_um / 2};
   return tissue;
 }
 

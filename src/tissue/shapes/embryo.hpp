@@ -1,4 +1,4 @@
-// Builders of embryos: the pill (Drosophila), the sphere (Xenopus) and the flat block.
+// Builders of embryos: the pill (Drosophila), the sphere (Xenopus), a slice of a pill and the flat block.
 //
 // Pill and sphere are the surface grid of a box of a x b x c cells (2(ab + bc + ca) cells, that many + 2 nodes a
 // layer), laid on a capsule: first by equal angles (and equal arcs along the axis), then smoothed until the cells are
@@ -22,6 +22,10 @@ struct ShellShape {
 /// A closed sheet one cell thick: a pill, or a sphere when length and diameter agree. Apical faces outside. Positions
 /// are symmetric about the three planes to the bit.
 Tissue build_shell(const ShellShape& shape);
+
+/// The same cells around a cylinder: `length_um` of its middle, with cells[0] along x, cells[1] on belly and back each,
+/// cells[2] on either side. Symmetric about y = 0 to the bit.
+Tissue build_slice(const ShellShape& shape);
 
 struct BlockShape {
   double length_um = 60;  // x

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "measure/cells.hpp"
 #include "support/constraint_law.hpp"
 #include "support/law_checks.hpp"
@@ -20,6 +22,25 @@ TEST(HeldVolume, IsTheLumen) {
 TEST(HeldVolume, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = build_block({.length_um = 40, .width_um = 20, .cells = {2, 1, 1}});
   check_derivatives(ConstraintLaw(EnclosedVolume(tissue), {0.7}), tissue, 4);
+}
+
+// A slice is closed by the planes at its ends: the prism over its basal polygon, wherever nodes go in these planes. A
+// sheet with another rim encloses nothing.
+TEST(HeldVolume, OfASliceIsClosedByItsPlanes) {
+  const ShellShape shape{7, 180, 35, {2, 6, 4}, {1, 1, 1}};
+  const Tissue tissue = build_slice(shape);
+  const EnclosedVolume volume(tissue);
+  EXPECT_TRUE(EnclosedVolume::is_closed(tissue));
+  const double sectors = 20, radius = 55;
+  EXPECT_NEAR(volume.targets()[0], 7 * sectors / 2 * radius * radius * std::sin(2 * M_PI / sectors), 1e-9 * 6e4);
+  Vectors moved = tissue.rest_positions;
+  for (Vec3& x : moved) x += Vec3(0, 30, 5);
+  EXPECT_NEAR(volume.volume(moved) / volume.targets()[0], 1, 1e-12);
+  for (Vec3& x : moved) x = Vec3(x.x(), 2 * x.y() + 0.3 * x.z(), 1.5 * x.z());
+  EXPECT_NEAR(volume.volume(moved) / volume.targets()[0], 3, 1e-12);
+  check_derivatives(ConstraintLaw(EnclosedVolume(tissue), {0.7}), tissue, 4);
+  EXPECT_FALSE(EnclosedVolume::is_closed(build_block({.length_um = 40, .width_um = 20, .cells = {2, 1, 1}})));
+  EXPECT_TRUE(EnclosedVolume::is_closed(build_shell({60, 60, 15, {2, 2, 2}, {1, 1, 1}})));
 }
 
 // A ball whose surface is moved outward by a small way: the pressure is K times the relative loss of volume.

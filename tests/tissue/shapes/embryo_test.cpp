@@ -331,5 +331,41 @@ TEST(Embryo, BlockIsARegularBoxWithItsApexOnTop) {
     for (const NodeId node : facet.nodes) EXPECT_EQ(block.rest_positions[node.index()].z(), -30);
 }
 
+TEST(Slice, IsARingOfEqualCellsWithABelly) {
+  const Tissue tissue = build_slice({14, 180, 35, {2, 6, 4}, {1, 2, 2}});
+  EXPECT_EQ(tissue.cells.size(), 2u * 20);
+  EXPECT_EQ(tissue.elements.size(), 4u * 40);
+  EXPECT_EQ(tissue.apical_facets.size(), 2u * 40);
+  const auto volume_of = [&](const Cell& cell) { return cell_volume(tissue, cell, tissue.rest_positions); };
+  std::map<GridPlace::Face, int> counts;
+  for (const Cell& cell : tissue.cells) {
+    EXPECT_NEAR(volume_of(cell) / volume_of(tissue.cells[0]), 1, 1e-12);
+    const Vec3 centre = cell_centre(cell, tissue.rest_positions);
+    const double angle = std::atan2(centre.y(), -centre.z());  // from the belly towards the right
+    using enum GridPlace::Face;
+    const auto face = cell.grid_place->face;
+    ++counts[face];
+    if (face == ventral) {
+      EXPECT_LT(std::abs(angle), M_PI * 6 / 20);
+    }
+    if (face == dorsal) {
+      EXPECT_GT(std::abs(angle), M_PI * 14 / 20);
+    }
+    if (face == right) {
+      EXPECT_GT(angle, 0);
+    }
+    if (face == left) {
+      EXPECT_LT(angle, 0);
+    }
+  }
+  EXPECT_EQ(counts[GridPlace::Face::ventral], 12);
+  EXPECT_EQ(counts[GridPlace::Face::left], 8);
+  // Symmetric to the bit.
+  std::set<std::array<double, 3>> places;
+  for (const Vec3& x : tissue.rest_positions) places.insert({x.x(), x.y() + 0.0, x.z()});
+  for (const Vec3& x : tissue.rest_positions)
+    EXPECT_TRUE(places.contains({x.x(), 0.0 - x.y(), x.z()})) << x.transpose();
+}
+
 }  // namespace
 }  // namespace plica

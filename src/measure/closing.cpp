@@ -1,0 +1,165 @@
+#include "measure/closing.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "measure/cells.hpp"
+#include "mechanics/constraints/enclosed_volume.hpp"
+#include "mechanics/contact/self_contact.hpp"
+#include "mechanics/obstacles/vitelline.hpp"
+
+namespace plica {
+namespace {
+
+constexpr double knee_up_to_um = 20;
+
+struct Interval {
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  void take(double value) { low = std::min(low, value), high = std::max(high, value); }
+};
+
+Interval length_of(const Tissue& tissue) {
+  Interval length;
+  for (const Vec3& x : tissue.rest_positions) length.take(x.x());
+  return length;
+}
+
+// How long intervals are together, where they overlap once; in any order.
+double covered(std::vector<Interval> intervals) {
+  std::ranges::sort(intervals, {}, &Interval::low);
+  double sum = 0, end = -std::numeric_limits<double>::infinity();
+  for (const auto& [low, high] : intervals) {
+    sum += std::max(0.0, high - std::max(low, end));
+    end = std::max(end, high);
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::optional<Touching> touching(const Model& model, const State& state) {
+  std::optional<Touching> result;
+  std::vector<Interval> closed;
+  for (std::size_t l = 0; l < model.laws.size(); ++l) {
+    const auto* law = dynamic_cast<const SelfContact*>(model.laws[l].get());
+    if (law == nullptr) continue;
+    if (!result) result.emplace();
+    if (l >= state.internals.size()) continue;
+    for (const SelfContact::Pair& pair : SelfContact::pairs_of(state.internals[l])) {
+      result->least_gap_um = std::min(result->least_gap_um.value_or(pair.first_gap), pair.first_gap);
+      if (pair.first_gap >= pair.distance) continue;
+      ++result->pairs;
+      if (law->side() != CellSide::apical) continue;
+      const SelfContact::Point& point = law->points()[pair.point];
+      double beyond = 0;
+      for (int k = 0; k < 3; ++k) beyond += pair.weights[k] * model.tissue.rest_positions[pair.nodes[k].index()].y();
+      if (point.at(model.tissue.rest_positions).y() * beyond >= 0) continue;  // both of one side
+      Interval reach;
+      for (int i = 0; i < point.count; ++i) reach.take(state.positions[point.nodes[i].index()].x());
+      for (const NodeId node : pair.nodes) reach.take(state.positions[node.index()].x());
+      closed.push_back(reach);
+      if (reach.low <= 0 && reach.high >= 0) result->middle_is_closed = true;
+    }
+  }
+  if (!closed.empty()) {
+    const Interval length = length_of(model.tissue);
+    result->closed_length_ratio = covered(std::move(closed)) / (length.high - length.low);
+  }
+  return result;
+}
+
+std::optional<Enclosed> enclosed(const Model& model, const State& state) {
+  std::optional<Enclosed> found;
+  for_held_constraints(model, [&](const Constraint& constraint, std::size_t first, std::size_t) {
+    if (const auto* held = dynamic_cast<const EnclosedVolume*>(&constraint))
+      found = Enclosed{held->volume(state.positions) / held->targets().front(), state.multipliers[first]};
+  });
+  for (const auto& law : model.laws)
+    if (const auto* elastic = dynamic_cast<const ElasticVolume*>(law.get()))
+      found = Enclosed{elastic->volume_ratio(state.positions), elastic->pressure(state.positions)};
+  return found;
+}
+
+std::optional<double> fluid_under_shell_um3(const Model& model, std::span<const Vec3> positions) {
+  const std::optional<double> inside = volume_inside_apices(model.tissue, positions);
+  if (!inside) return std::nullopt;
+  for (const auto& obstacle : model.obstacles)
+    if (const auto* vitelline = dynamic_cast<const Vitelline*>(obstacle.get())) {
+      const auto [half_axis, radius] = vitelline->shell();
+      return std::numbers::pi * radius * radius * (2 * half_axis + 4 * radius / 3) - *inside;
+    }
+  return std::nullopt;
+}
+
+std::optional<double> flank_volume_ratio(const Tissue& tissue, std::span<const Vec3> positions) {
+  if (!tissue.outer_shape) return std::nullopt;
+  constexpr double degree = std::numbers::pi / 180, from = 60 * degree, to = 120 * degree;
+  const Interval length = length_of(tissue);
+  const double quarter = (length.high - length.low) / 4, middle = (length.high + length.low) / 2;
+  const auto volume_at = [&](std::span<const Vec3> x) {
+    double sum = 0;
+    for (const Cell& cell : tissue.cells) {
+      if (std::abs(cell_centre(cell, tissue.rest_positions).x() - middle) > quarter) continue;
+      // From the belly: of the middles of the four edges from base to apex, the two least and the two largest.
+      std::array<double, 4> angles;
+      for (int i = 0; i < 4; ++i) {
+        const Vec3 edge = x[cell.corners[i].index()] + x[cell.corners[i + 4].index()];
+        angles[i] = std::atan2(std::abs(edge.y()), -edge.z());
+      }
+      std::ranges::sort(angles);
+      const double low = 0.5 * (angles[0] + angles[1]), high = 0.5 * (angles[2] + angles[3]);
+      const double part = (std::min(high, to) - std::max(low, from)) / (high - low);
+      if (part > 0) sum += part * cell_volume(tissue, cell, x);
+    }
+    return sum;
+  };
+  const double at_rest = volume_at(tissue.rest_positions);
+  if (!(at_rest > 0)) return std::nullopt;
+  return volume_at(positions) / at_rest;
+}
+
+std::optional<Knee> knee(std::span<const double> times_s, std::span<const double> depths_um) {
+  std::size_t count = 0;
+  while (count < depths_um.size() && depths_um[count] < knee_up_to_um) ++count;
+  if (count == depths_um.size() || ++count < 8) return std::nullopt;
+  // Half of the time to either neighbour.
+  const auto weight = [&](std::size_t i) {
+    return 0.5 * (times_s[std::min(i + 1, count - 1)] - times_s[i == 0 ? 0 : i - 1]);
+  };
+  // depth = a + b t + c max(0, t - break), of the break that leaves the least.
+  std::optional<Knee> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t at = 2; at + 2 < count; ++at) {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Vec3 right = Vec3::Zero();
+    const auto shape = [&](std::size_t i) { return Vec3(1, times_s[i], std::max(0.0, times_s[i] - times_s[at])); };
+    for (std::size_t i = 0; i < count; ++i) {
+      normal += weight(i) * shape(i) * shape(i).transpose();
+      right += weight(i) * depths_um[i] * shape(i);
+    }
+    const Vec3 line = normal.ldlt().solve(right);
+    double left = 0;
+    for (std::size_t i = 0; i < count; ++i) left += weight(i) * std::pow(line.dot(shape(i)) - depths_um[i], 2);
+    if (!(left < least)) continue;
+    least = left;
+    best = Knee{times_s[at], line[0] + line[1] * times_s[at]};
+  }
+  return best;
+}
+
+std::optional<double> time_of_reaching(std::span<const double> times_s, std::span<const double> values, double level) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] < level) continue;
+    if (i == 0) return times_s[0];
+    const double part = (level - values[i - 1]) / (values[i] - values[i - 1]);
+    return times_s[i - 1] + part * (times_s[i] - times_s[i - 1]);
+  }
+  return std::nullopt;
+}
+
+}  // namespace plica

@@ -1,0 +1,53 @@
+// What a cell does by its own state, not by the clock: a program that starts when the cell has become so small, tall or
+// flat, or an activity that follows it (docs/theory/cortex.md, "By the clock, or by the cell's own state").
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// Of a cell, over the same at rest.
+enum class OwnMeasure { apical_area_ratio, basal_area_ratio, height_ratio };
+
+/// How cells begin, or go along. Numbers of cells are those at the beginning of a step.
+struct OwnStateRule {
+  enum class Kind { none, starts_below, starts_above, follows };
+  Kind kind = Kind::none;
+  OwnMeasure measure = OwnMeasure::apical_area_ratio;
+  double threshold = 1;     // of the two that start
+  double from = 1, to = 0;  // follows: the activity is 0 there and before, 1 there and beyond, linear between
+};
+
+/// One number a cell: of those that start, when it did (s), or `not_yet`; of one that follows, how far it has gone,
+/// 0 to 1.
+class OwnState {
+ public:
+  static constexpr double not_yet = -1;
+
+  OwnState() = default;  // of nobody: nothing depends on it
+  OwnState(const Tissue& tissue, const OwnStateRule& rule);
+
+  [[nodiscard]] bool is_used() const { return rule_.kind != OwnStateRule::Kind::none; }
+  [[nodiscard]] bool starts() const { return is_used() && rule_.kind != OwnStateRule::Kind::follows; }
+  [[nodiscard]] const OwnStateRule& rule() const { return rule_; }
+
+  /// The numbers of cells at positions and a time, from those before; none before the first step.
+  [[nodiscard]] std::vector<double> numbers(std::span<const Vec3> positions, double time_s,
+                                            std::span<const double> before) const;
+
+  /// The measure itself; cells.
+  [[nodiscard]] std::vector<double> ratios(std::span<const Vec3> positions) const;
+
+ private:
+  [[nodiscard]] std::vector<double> sizes(std::span<const Vec3> positions) const;
+
+  OwnStateRule rule_;
+  std::vector<Facet> facets_;                                // areas: those of the measure's side
+  std::vector<std::array<std::array<NodeId, 2>, 4>> edges_;  // heights: of each cell, from base to apex
+  std::vector<double> at_rest_;                              // cells
+};
+
+}  // namespace plica
