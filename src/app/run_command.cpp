@@ -43,8 +43,14 @@ void print_result(const nlohmann::ordered_json& summary, const std::string& out)
   fmt::print("{}: {}{} at {:.2f} min after {} steps in {:.1f} s\n", summary.at("scenario").get<std::string>(),
              summary.at("status").get<std::string>(), criterion, summary.at("time_s").get<double>() / units::minute,
              summary.at("steps").get<int>(), summary.at("wall_s").get<double>());
-  fmt::print("  furrow depth {}, apical area ratio {} (VML), peak speed ratio {}\n", value("furrow_depth_um", " um"),
-             value("vml_apical_area_ratio", ""), value("peak_speed_ratio", ""));
+  const nlohmann::ordered_json &closed_s = summary.at("lips_closed_time_s"), &closed = summary.at("lips_closed");
+  const std::string lips = closed.is_null() ? ""
+                           : closed_s.is_number()
+                               ? fmt::format(", lips {} at {:.2f} min", closed == 1 ? "closed" : "open again, closed",
+                                             closed_s.get<double>() / units::minute)
+                               : ", lips open";
+  fmt::print("  furrow depth {}, apical area ratio {} (VML), peak speed ratio {}{}\n", value("furrow_depth_um", " um"),
+             value("vml_apical_area_ratio", ""), value("peak_speed_ratio", ""), lips);
   fmt::print("  results in {0}{1}\n", out, can_report() ? fmt::format("; to look at: {}/report.html", out) : "");
 }
 
@@ -89,9 +95,9 @@ std::string crossing_warning(const Simulation& simulation) {
     const auto id = [&](const Facet& facet) { return tissue.cells[facet.cell.index()].lineage.id; };
     return fmt::format(
         "warning: the tissue passes through itself: at t = {:.4g} min the {} faces of cells {} and {} cross, at x = "
-        "{:.1f}, y = {:.1f}, z = {:.1f} um ({} pairs in all); nothing stops that, and what comes after is no tissue "
-        "any more\n",
-        simulation.time_s() / units::minute, side, id(one), id(other), place.x(), place.y(), place.z(), pairs.size());
+        "{:.1f}, y = {:.1f}, z = {:.1f} um ({} pairs in all); what comes after is no tissue any more{}\n",
+        simulation.time_s() / units::minute, side, id(one), id(other), place.x(), place.y(), place.z(), pairs.size(),
+        simulation.measures()["contact_pairs"] ? "" : "; [self_contact] would hold it off");
   }
   return "";
 }

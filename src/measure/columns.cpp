@@ -142,7 +142,8 @@ std::span<const Column> columns() {
       {"furrow_depth_um", series, last,
        "The apical surface of the furrow's cells cut by the plane y = 0; of all points on the cut, the largest "
        "distance inside the shell, less the same of the same material point at rest (flat facets lie a little inside "
-       "a round shell). Inward is against the mean apical normal of these cells at rest: up for a belly, down for a "
+       "a round shell; negative where it has gone out). Inward is against the mean apical normal of these cells at "
+       "rest: up for a belly, down for a "
        "sheet whose apices are on top. Without a shell's shape (a block): how far the point has gone in.",
        [](const M& m) { return m.furrow.depth_um; }},
       {"furrow_depth_below_lips_um", series, last,
@@ -152,7 +153,7 @@ std::span<const Column> columns() {
        [](const M& m) { return m.furrow.depth_below_lips_um; }},
       {"lip_distance_um", series, last,
        "Between the lips: the two points where the mid cross-section left the contractile cells at rest. Material "
-       "points, fixed for the run.",
+       "points, fixed for the run: borders of a region, not where a furrow closes (`lips_closed`).",
        [](const M& m) { return m.furrow.lip_distance_um; }},
       {"highest_points_distance_um", no_series, last,
        "The paper's pair beside it: between the outermost points of the mid cross-section left and right of the "
@@ -260,7 +261,9 @@ std::span<const Column> columns() {
       {"closed_length_ratio", series, last,
        "Part of the embryo's length along which the apical surfaces of both sides of the midline press on each other.",
        [](const M& m) { return part(m.touching, &Touching::closed_length_ratio); }},
-      count({"lips_closed", series, last, "1 where they do so in the mid cross-section (x = 0), whichever cells meet.",
+      count({"lips_closed", series, last,
+             "1 where they do so in the mid cross-section (x = 0), whichever cells meet; the points of "
+             "`lip_distance_um` may be far apart then.",
              [](const M& m) { return part(m.touching, &Touching::middle_is_closed); }}),
       {"lips_closed_time_s", no_series, whole_run, "When they did first.", {}, reaching("lips_closed", 1)},
       {"depth_20um_time_s",

@@ -1,14 +1,26 @@
 #include "measure/observation.hpp"
 
 #include "measure/cells.hpp"
+#include "solver/projection/closed_surface.hpp"
 
 namespace plica {
+namespace {
+
+// None of a sheet that is open, though its rims may lie so evenly that nothing seems to be missing (a slice's).
+std::optional<double> rest_lumen_volume(const Tissue& tissue) {
+  std::vector<ClosedSurface::Quad> facets;
+  for (const Facet& facet : tissue.basal_facets) facets.push_back(facet.nodes);
+  if (!ClosedSurface(facets).is_closed()) return std::nullopt;
+  return lumen_volume(tissue, tissue.rest_positions);
+}
+
+}  // namespace
 
 Observer::Observer(const Model& model, FurrowSites sites, Watch watch)
     : model_(model),
       sites_(std::move(sites)),
       watch_(std::move(watch)),
-      rest_lumen_volume_(lumen_volume(model.tissue, model.tissue.rest_positions)) {
+      rest_lumen_volume_(rest_lumen_volume(model.tissue)) {
   sites_.contractile.resize(model.tissue.cells.size(), false);  // where there are no sites
 }
 

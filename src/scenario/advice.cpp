@@ -102,12 +102,16 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
           axis == 1 ? "y" : "z"));
   }
 
-  if (const auto regions = contracting_regions(scenario, model.tissue);
-      scenario.furrow.region.empty() && regions.size() > 1)
+  const std::vector<std::string> regions = contracting_regions(scenario, model.tissue);
+  const std::string& measured = scenario.furrow.region;
+  if (measured.empty() && regions.size() > 1)
     warn(
         fmt::format("contractions act on the regions {}: the furrow is measured where the largest is, {}; "
                     "furrow.region names another",
                     fmt::join(regions, ", "), regions.front()));
+  if (!measured.empty() && !regions.empty() && std::ranges::find(regions, measured) == regions.end())
+    warn(fmt::format("the furrow is measured on region {} (furrow.region), and what contracts its apices is {}",
+                     measured, fmt::join(regions, ", ")));
 
   const MeshQuality quality = mesh_quality(model.tissue, model.tissue.rest_positions);
   note(fmt::format(

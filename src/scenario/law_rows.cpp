@@ -17,7 +17,8 @@ void add_program(std::vector<Row>& rows, const RowsIn<Table>& table, ProgramInpu
                  const std::array<std::string_view, 3>& keys, std::string_view meaning) {
   rows.push_back(table(keys[0], program, &ProgramInput::time_s, anything,
                        "Times of the points of the activity (s), increasing; the same time twice is a jump, on which a "
-                       "step ends. Without a program it is always 1."));
+                       "step ends. Before the first point and after the last it is as there. Without a program it is "
+                       "always 1."));
   rows.push_back(table(keys[1], program, &ProgramInput::time_s, anything, "The same in minutes.",
                        {.instead_of = keys[0], .scale = 60}));
   rows.push_back(table(keys[2], program, &ProgramInput::activity, not_negative, meaning));

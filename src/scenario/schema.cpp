@@ -89,7 +89,9 @@ std::vector<Row> make_rows() {
              "Only a centred strip of the face, this many cells across (y; z on the side and end faces)."),
       region("ids", &R::ids, not_negative, "Cells by number, from 0."),
       region("array", &R::array, anything, "Cell array of the mesh file: cells where it is not 0."),
-      region("x_um", &R::x_um, anything, "Cells whose centre at rest lies in this range of x (µm)."),
+      region("x_um", &R::x_um, anything,
+             "Cells whose centre at rest lies in this range of x (µm); 0 is the middle of a built embryo, in y and z "
+             "too."),
       region("y_um", &R::y_um, anything, "The same in y (µm)."),
       region("z_um", &R::z_um, anything, "The same in z (µm)."),
       region("union", &R::unite, anything, "Cells of any of these regions."),

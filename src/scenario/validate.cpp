@@ -136,7 +136,12 @@ void check_required_keys(const Scenario& scenario, Input& input) {
       for (const Row* row : rows_of(info.path)) {
         const std::string address = fmt::format("{}.{}", path, row->key);
         if (row->options.required && input.sound(path) && input.place(address) == nullptr) {
-          input.report(address, "is missing", "give " + row->expected());
+          // As often as not the table's name is misspelt, and another is meant.
+          std::vector<std::string> others = info.names(scenario);
+          std::erase(others, name);
+          const std::optional<std::string> meant = nearest_name(name, others);
+          const std::string table = meant ? fmt::format(", or did you mean {}.{}?", info.stem(), *meant) : "";
+          input.report(address, "is missing", "give " + row->expected() + table);
         }
       }
     }
@@ -289,7 +294,7 @@ class RegionCheck {
     } else if ((available - wanted) % 2 != 0) {
       const std::string fewer = wanted > 1 ? fmt::format("{} or ", wanted - 1) : "";
       input_.report(address, fmt::format("{} cells cannot be centred on {}", wanted, available),
-                    fmt::format("{}{} can", fewer, wanted + 1));
+                    fmt::format("{}{} can: both numbers odd, or both even", fewer, wanted + 1));
     }
   }
 

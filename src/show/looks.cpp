@@ -156,7 +156,9 @@ ColourRange colour_range(const ColourField& field, double smallest, double large
     case ScaleKind::from_zero:
       return {0, rounded_up(largest)};
     case ScaleKind::about: {
-      const double reach = rounded_up(std::max(field.centre - smallest, largest - field.centre));
+      double reach = rounded_up(std::max(field.centre - smallest, largest - field.centre));
+      // A ratio has no values below 0; those that are more than twice the middle look like the largest.
+      if (field.centre > 0) reach = std::min(reach, field.centre);
       return {field.centre - reach, field.centre + reach};
     }
     case ScaleKind::steps:

@@ -91,10 +91,21 @@ std::string keys_text(const std::vector<KeyDifference>& keys) {
   if (keys.empty()) return "";
   // As wide as its texts; numbers as those of the other tables.
   const auto value = [](const std::string& of_key) {
-    char* end = nullptr;
-    const double number = std::strtod(of_key.c_str(), &end);
     if (of_key.empty()) return std::string("none");
-    return *end == '\0' ? fmt::format("{:.7g}", number) : of_key;
+    // Numbers, those of lists too.
+    std::string text;
+    for (const char* at = of_key.c_str(); *at != '\0';) {
+      const bool begins = text.empty() || text.back() == '[' || text.back() == ' ';
+      char* end = nullptr;
+      const double number = begins && *at != ' ' ? std::strtod(at, &end) : 0;
+      if (end != nullptr && end != at && (*end == '\0' || *end == ',' || *end == ']')) {
+        text += fmt::format("{:.7g}", number);
+        at = end;
+      } else {
+        text += *at++;
+      }
+    }
+    return text;
   };
   std::size_t widest = name_width - 2, width = 13;
   for (const auto& [key, a, b] : keys) {
@@ -105,7 +116,7 @@ std::string keys_text(const std::vector<KeyDifference>& keys) {
     return fmt::format("{:<{}}  {:>{}}  {:>{}}\n", name, widest + 2, a, width, b, width);
   };
   std::string text = "\n" + line("keys of the scenario that differ", "A", "B");
-  for (const auto& [key, a, b] : keys) text += line("  " + key, value(a), value(b));
+  for (const auto& [key, a, b] : keys) text += line(fmt::format("  {}", key), value(a), value(b));
   return text;
 }
 
@@ -125,7 +136,7 @@ std::string pairs_text(const std::string& title, const std::vector<NumberPair>& 
 
 std::string series_text(const std::vector<ColumnPair>& columns) {
   if (columns.empty()) return "";
-  std::string text = heading("series.csv, at equal times", {"A then", "B then", "largest |A-B|", "at s"});
+  std::string text = heading("series.csv, at equal times", {"A's frame", "B's frame", "largest |A-B|", "at s"});
   std::size_t same = 0;
   for (const ColumnPair& column : columns) {
     if (column.at_time.same() && column.largest_difference.value_or(0) == 0) {

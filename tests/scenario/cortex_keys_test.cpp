@@ -43,6 +43,8 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
        "test.toml:4: cortex.a.relaxation_min: 0 is out of range; give a number > 0 or \"none\""},
       {cortex + "stiffness_mN_per_m = 1\nstiffness_program = { time_min = [0, 1], activity = [1] }",
        "test.toml:4: cortex.a.stiffness_program.activity: 1 activities for 2 times; give as many activities as times"},
+      {"[cortex.apical]\nregion = \"all\"\ntension_mN_per_m = 1\n[cortex.apicl]\ntension_mN_per_m = 2",
+       "test.toml:4: cortex.apicl.region: is missing; give text, or did you mean cortex.apical?"},
       {"[cortex.a]\nregion = \"mesoderm\"\ntension_mN_per_m = 1",
        "test.toml:2: cortex.a.region: there is no region \"mesoderm\"; known are: all"},
       {cortex + "tension_mN_per_m = 1\nprofile = { shape = \"gaussian\", sigma_um = 3, sigma_cells = 2 }",

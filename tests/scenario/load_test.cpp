@@ -294,7 +294,8 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {"[region.a]\nids = [1]\ncells_across = 3",
        "test.toml:3: region.a.cells_across: needs a face to lie on; give face, too"},
       {"[region.a]\nface = \"ventral\"\ncells_along = 13",
-       "test.toml:3: region.a.cells_along: 13 cells cannot be centred on 18; 12 or 14 can"},
+       "test.toml:3: region.a.cells_along: 13 cells cannot be centred on 18; 12 or 14 can: both "
+       "numbers odd, or both even"},
       {"[region.a]\nface = \"left\"\ncells_across = 9",
        "test.toml:3: region.a.cells_across: 9 cells on a face that has 8 that way; give at most 8"},
       {"[region.a]\nface = \"posterior\"\ncells_along = 18",

@@ -90,6 +90,8 @@ TEST(ColourRange, HoldsAllValuesAndIsRound) {
   EXPECT_DOUBLE_EQ(range("displacement", 0, 0).high, 1);
   EXPECT_DOUBLE_EQ(range("area-ratio", 0.55, 1.1).low, 0.5);
   EXPECT_DOUBLE_EQ(range("area-ratio", 0.55, 1.1).high, 1.5);
+  EXPECT_DOUBLE_EQ(range("area-ratio", 0.2, 4.6).low, 0);
+  EXPECT_DOUBLE_EQ(range("area-ratio", 0.2, 4.6).high, 2);
   EXPECT_DOUBLE_EQ(range("pressure", -310, 120).low, -350);
 }
 
