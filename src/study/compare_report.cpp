@@ -115,7 +115,7 @@ std::string keys_text(const std::vector<KeyDifference>& keys) {
   const auto line = [&](const std::string& name, const std::string& a, const std::string& b) {
     return fmt::format("{:<{}}  {:>{}}  {:>{}}\n", name, widest + 2, a, width, b, width);
   };
-  std::string text = "\n" + line("keys of the scenario that differ", "A", "B");
+  std::string text = fmt::format("\n{}", line("keys of the scenario that differ", "A", "B"));
   for (const auto& [key, a, b] : keys) text += line(fmt::format("  {}", key), value(a), value(b));
   return text;
 }
