@@ -11,6 +11,7 @@
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
+#include "mechanics/constraints/ties.hpp"
 #include "mechanics/contact/self_contact.hpp"
 #include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/corotational.hpp"
@@ -218,6 +219,13 @@ void add_pressures(const Scenario& scenario, Model& model) {
         input.pressure_Pa * units::pascal, make_program(input.program)));
 }
 
+/// Plane strain: no motion along the axis, and every plane across it moves like the first.
+void make_endless(const Scenario& scenario, Model& model) {
+  for (std::array<bool, 3>& held : model.held) held[0] = true;
+  const double stiffness = 1000 * model.stiffness_scale * scenario.embryo.length_um;
+  model.laws.push_back(std::make_unique<Ties>(ties_along_x(model.tissue), stiffness));
+}
+
 void add_holds(const Scenario& scenario, Model& model, std::vector<Diagnostic>& errors) {
   const auto inside = [](const std::optional<Range>& range, double value) {
     // A face given by its place, [a, a], holds the nodes on it despite rounding.
@@ -289,8 +297,7 @@ std::unique_ptr<Model> make_model(const Scenario& scenario) {
     model->laws.push_back(
         std::make_unique<Inertia>(tissue, scenario.dynamics.density_kg_per_m3 * units::kilogram_per_cubic_metre));
 
-  if (shape_of(scenario.embryo) == EmbryoShape::slice)
-    for (std::array<bool, 3>& held : model->held) held[0] = true;
+  if (shape_of(scenario.embryo) == EmbryoShape::slice) make_endless(scenario, *model);
   std::vector<Diagnostic> errors;
   add_holds(scenario, *model, errors);
   if (scenario.vitelline.enabled) {

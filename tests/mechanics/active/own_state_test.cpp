@@ -113,7 +113,7 @@ TEST(OwnState, DecidesWhatTheClockDoesNot) {
     return *simulation.measures()["furrow_depth_um"];
   };
   EXPECT_LT(depth_um(3), 5);
-  EXPECT_GT(depth_um(8), 50);
+  EXPECT_GT(depth_um(8), 40);
 }
 
 }  // namespace

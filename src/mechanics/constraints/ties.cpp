@@ -1,0 +1,74 @@
+#include "mechanics/constraints/ties.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace plica {
+
+double Ties::energy(const Step& step) const {
+  double sum = 0;
+  for (const auto& [nodes, apart] : ties_)
+    sum += (step.positions[nodes[1].index()] - step.positions[nodes[0].index()] - apart).squaredNorm();
+  return 0.5 * stiffness_ * sum;
+}
+
+void Ties::add_forces(const Step& step, std::span<Vec3> forces) const {
+  for (const auto& [nodes, apart] : ties_) {
+    const Vec3 pull = stiffness_ * (step.positions[nodes[1].index()] - step.positions[nodes[0].index()] - apart);
+    forces[nodes[0].index()] += pull;
+    forces[nodes[1].index()] -= pull;
+  }
+}
+
+void Ties::add_tangent_product(const Step& /*step*/, std::span<const Vec3> direction, std::span<Vec3> product) const {
+  for (const auto& [nodes, apart] : ties_) {
+    const Vec3 change = stiffness_ * (direction[nodes[1].index()] - direction[nodes[0].index()]);
+    product[nodes[0].index()] -= change;
+    product[nodes[1].index()] += change;
+  }
+}
+
+void Ties::add_tangent(const Step& /*step*/, TangentSink& tangent) const {
+  const Mat3 block = stiffness_ * Mat3::Identity();
+  for (const auto& [nodes, apart] : ties_) {
+    tangent.add_block(nodes[0], nodes[0], block);
+    tangent.add_block(nodes[1], nodes[1], block);
+    tangent.add_block(nodes[1], nodes[0], -block);
+  }
+}
+
+NodeGroups Ties::node_groups(std::span<const double> /*internal*/) const {
+  NodeGroups groups;
+  for (const Tie& tie : ties_) groups.add(tie.nodes);
+  return groups;
+}
+
+double Ties::rounding(const Step& /*step*/, double position_rounding) const {
+  return 2 * stiffness_ * position_rounding * std::sqrt(static_cast<double>(ties_.size()));
+}
+
+std::unique_ptr<Law> Ties::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
+  std::vector<Tie> kept;
+  for (const Tie& tie : ties_)
+    if (std::ranges::all_of(tie.nodes, [&](NodeId node) { return node.index() < tissue.node_count(); }))
+      kept.push_back(tie);
+  return std::make_unique<Ties>(std::move(kept), stiffness_);
+}
+
+std::vector<Ties::Tie> ties_along_x(const Tissue& tissue) {
+  // By the place in the plane, to a nanometre.
+  std::map<std::array<long, 2>, std::vector<NodeId>> lines;
+  for (std::size_t n = 0; n < tissue.node_count(); ++n) {
+    const Vec3& x = tissue.rest_positions[n];
+    lines[{std::lround(1e3 * x.y()), std::lround(1e3 * x.z())}].emplace_back(n);
+  }
+  std::vector<Ties::Tie> ties;
+  for (const auto& [place, nodes] : lines)
+    for (std::size_t i = 1; i < nodes.size(); ++i)
+      ties.push_back(
+          {{nodes[0], nodes[i]}, tissue.rest_positions[nodes[i].index()] - tissue.rest_positions[nodes[0].index()]});
+  return ties;
+}
+
+}  // namespace plica
