@@ -96,31 +96,26 @@ std::optional<double> fluid_under_shell_um3(const Model& model, std::span<const 
   return std::nullopt;
 }
 
-std::optional<double> flank_volume_ratio(const Tissue& tissue, std::span<const Vec3> positions) {
+std::optional<double> flank_volume(const Tissue& tissue, std::span<const Vec3> positions) {
   if (!tissue.outer_shape) return std::nullopt;
   constexpr double degree = std::numbers::pi / 180, from = 60 * degree, to = 120 * degree;
   const Interval length = length_of(tissue);
   const double quarter = (length.high - length.low) / 4, middle = (length.high + length.low) / 2;
-  const auto volume_at = [&](std::span<const Vec3> x) {
-    double sum = 0;
-    for (const Cell& cell : tissue.cells) {
-      if (std::abs(cell_centre(cell, tissue.rest_positions).x() - middle) > quarter) continue;
-      // From the belly: of the middles of the four edges from base to apex, the two least and the two largest.
-      std::array<double, 4> angles;
-      for (int i = 0; i < 4; ++i) {
-        const Vec3 edge = x[cell.corners[i].index()] + x[cell.corners[i + 4].index()];
-        angles[i] = std::atan2(std::abs(edge.y()), -edge.z());
-      }
-      std::ranges::sort(angles);
-      const double low = 0.5 * (angles[0] + angles[1]), high = 0.5 * (angles[2] + angles[3]);
-      const double part = (std::min(high, to) - std::max(low, from)) / (high - low);
-      if (part > 0) sum += part * cell_volume(tissue, cell, x);
+  double sum = 0;
+  for (const Cell& cell : tissue.cells) {
+    if (std::abs(cell_centre(cell, tissue.rest_positions).x() - middle) > quarter) continue;
+    // From the belly: of the middles of the four edges from base to apex, the two least and the two largest.
+    std::array<double, 4> angles;
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 edge = positions[cell.corners[i].index()] + positions[cell.corners[i + 4].index()];
+      angles[i] = std::atan2(std::abs(edge.y()), -edge.z());
     }
-    return sum;
-  };
-  const double at_rest = volume_at(tissue.rest_positions);
-  if (!(at_rest > 0)) return std::nullopt;
-  return volume_at(positions) / at_rest;
+    std::ranges::sort(angles);
+    const double low = 0.5 * (angles[0] + angles[1]), high = 0.5 * (angles[2] + angles[3]);
+    const double part = (std::min(high, to) - std::max(low, from)) / (high - low);
+    if (part > 0) sum += part * cell_volume(tissue, cell, positions);
+  }
+  return sum;
 }
 
 std::optional<Knee> knee(std::span<const double> times_s, std::span<const double> depths_um) {

@@ -31,9 +31,9 @@ std::optional<Enclosed> enclosed(const Model& model, const State& state);
 /// What is left between a closed sheet and its shell, um^3; empty where there is no such shell.
 std::optional<double> fluid_under_shell_um3(const Model& model, std::span<const Vec3> positions);
 
-/// The volume of cells at 60 to 120 degrees from the belly, on the middle half of the length, over that at rest: a cell
-/// counts by the part of its angle that lies there. Empty for a tissue without an outer shape.
-std::optional<double> flank_volume_ratio(const Tissue& tissue, std::span<const Vec3> positions);
+/// The volume of cells at 60 to 120 degrees from the belly, on the middle half of the length, um^3: a cell counts by
+/// the part of its angle that lies there. Empty for a tissue without an outer shape.
+std::optional<double> flank_volume(const Tissue& tissue, std::span<const Vec3> positions);
 
 /// Where slow turns into fast: the break of the line of two straight pieces that is nearest to `depths_um` over
 /// `times_s` (least squares, each point by the time that it stands for), up to the first depth of 20 um.

@@ -34,9 +34,9 @@ std::optional<double> area_ratio(const MeasuredStep& m, const MonitoredCells& ce
 }
 
 std::optional<double> lumen_ratio(const MeasuredStep& m) {
-  if (!m.rest_lumen_volume_um3) return std::nullopt;
+  if (!m.rest.lumen_volume_um3) return std::nullopt;
   const auto volume = lumen_volume(m.model.tissue, m.state.positions);
-  return volume ? std::optional(*volume / *m.rest_lumen_volume_um3) : std::nullopt;
+  return volume ? std::optional(*volume / *m.rest.lumen_volume_um3) : std::nullopt;
 }
 
 // A number of the solver's report; 0 at rest.
@@ -123,11 +123,11 @@ std::optional<double> reduced(InSummary how, std::span<const Observation> rows, 
 
 }  // namespace
 
-MeasuredStep::MeasuredStep(const Model& of_model, const FurrowSites& at_sites, std::optional<double> rest_lumen_volume,
+MeasuredStep::MeasuredStep(const Model& of_model, const FurrowSites& at_sites, const RestMeasures& at_rest,
                            const State& at_its_end, const AcceptedStep* accepted)
     : model(of_model),
       sites(at_sites),
-      rest_lumen_volume_um3(rest_lumen_volume),
+      rest(at_rest),
       state(at_its_end),
       step(accepted),
       furrow(furrow_shape(model.tissue, sites, state.positions)),
@@ -251,7 +251,10 @@ std::span<const Column> columns() {
       {"flank_volume_ratio", series, last,
        "Volume of the cells at 60° to 120° from the belly, on the middle half of the length, over that at rest; a cell "
        "counts by the part of its angle that lies there. What the furrow takes from the lateral ectoderm.",
-       [](const M& m) { return flank_volume_ratio(m.model.tissue, m.state.positions); }},
+       [](const M& m) -> std::optional<double> {
+         if (m.rest.flank_volume_um3.value_or(0) <= 0) return std::nullopt;
+         return *flank_volume(m.model.tissue, m.state.positions) / *m.rest.flank_volume_um3;
+       }},
       count({"contact_pairs", series, largest,
              "With `[self_contact]`: places of a surface that press on another place of it.",
              [](const M& m) { return part(m.touching, &Touching::pairs); }}),

@@ -21,14 +21,19 @@ namespace plica {
 struct AcceptedStep;
 struct Observation;
 
+/// What is measured of the body at rest, once.
+struct RestMeasures {
+  std::optional<double> lumen_volume_um3, flank_volume_um3;
+};
+
 /// What the measures of a step are made from. What several of them need is made once.
 struct MeasuredStep {
-  MeasuredStep(const Model& of_model, const FurrowSites& at_sites, std::optional<double> rest_lumen_volume,
-               const State& at_its_end, const AcceptedStep* accepted);
+  MeasuredStep(const Model& of_model, const FurrowSites& at_sites, const RestMeasures& at_rest, const State& at_its_end,
+               const AcceptedStep* accepted);
 
   const Model& model;
   const FurrowSites& sites;
-  std::optional<double> rest_lumen_volume_um3;
+  const RestMeasures& rest;
   const State& state;        // at its end
   const AcceptedStep* step;  // null for the body at rest, before the first
   FurrowShape furrow;

@@ -20,16 +20,16 @@ Observer::Observer(const Model& model, FurrowSites sites, Watch watch)
     : model_(model),
       sites_(std::move(sites)),
       watch_(std::move(watch)),
-      rest_lumen_volume_(rest_lumen_volume(model.tissue)) {
+      rest_{rest_lumen_volume(model.tissue), flank_volume(model.tissue, model.tissue.rest_positions)} {
   sites_.contractile.resize(model.tissue.cells.size(), false);  // where there are no sites
 }
 
 Observer::Observer(const Model& model, const Observer& other)
-    : model_(model), sites_(other.sites_), watch_(other.watch_), rest_lumen_volume_(other.rest_lumen_volume_) {}
+    : model_(model), sites_(other.sites_), watch_(other.watch_), rest_(other.rest_) {}
 
 Observation Observer::row_of(const State& state, const AcceptedStep* step, double wall_s) const {
   Observation row;
-  const MeasuredStep measured(model_, sites_, rest_lumen_volume_, state, step);
+  const MeasuredStep measured(model_, sites_, rest_, state, step);
   for (std::size_t c = 0; c < columns().size(); ++c)
     if (columns()[c].of_step) row.values[c] = columns()[c].of_step(measured);
 

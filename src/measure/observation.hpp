@@ -64,7 +64,7 @@ class Observer {
   const Model& model_;
   FurrowSites sites_;
   Watch watch_;
-  std::optional<double> rest_lumen_volume_;
+  RestMeasures rest_;
 };
 
 }  // namespace plica

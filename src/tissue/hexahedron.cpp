@@ -118,11 +118,12 @@ const std::array<std::array<int, 3>, 8>& edges_at_corners() {
 }  // namespace
 
 std::array<double, 8> hex_corner_jacobians(const HexPoints& points) {
+  std::array<Vec3, 12> edges;
+  for (int e = 0; e < 12; ++e) edges[e] = points[hex_edges[e][1]] - points[hex_edges[e][0]];
   std::array<double, 8> jacobians;
-  const auto edge = [&](int e) -> Vec3 { return points[hex_edges[e][1]] - points[hex_edges[e][0]]; };
   for (int corner = 0; corner < 8; ++corner) {
     const auto& [a, b, c] = edges_at_corners()[corner];
-    jacobians[corner] = edge(a).cross(edge(b)).dot(edge(c)) / 8;
+    jacobians[corner] = edges[a].cross(edges[b]).dot(edges[c]) / 8;
   }
   return jacobians;
 }
