@@ -116,5 +116,28 @@ TEST(OwnState, DecidesWhatTheClockDoesNot) {
   EXPECT_GT(depth_um(8), 40);
 }
 
+// When each cell began, who touches whom and rest areas that flow are part of what a run remembers.
+TEST(OwnState, ARunGoesOnToTheSameBits) {
+  const Scenario scenario =
+      load_scenario(find_scenario("furrow-slice"),
+                    {"cortex.shortening.program.time_min=[0, 11]", "time.end_min=17.8",
+                     "cortex.shortening.trigger.measure=apical_area_ratio", "cortex.shortening.trigger.below=0.3",
+                     "cortex.surface.tension_mN_per_m=0.01", "cortex.surface.follow.measure=height_ratio",
+                     "cortex.surface.follow.from=1", "cortex.surface.follow.to=1.5"});
+  Simulation whole(scenario);
+  std::optional<RunMemory> kept;
+  Observation measures;
+  while (whole.step())
+    if (*whole.measures()["contact_pairs"] > 2 && !kept) kept = whole.memory(), measures = whole.measures();
+  ASSERT_EQ(whole.status(), RunStatus::end_time) << whole.failure();
+  ASSERT_TRUE(kept);
+  Simulation rest(scenario);
+  rest.go_on_from(*kept, measures);
+  rest.run();
+  EXPECT_GT(whole.steps(), kept->steps);
+  EXPECT_EQ(rest.state().positions, whole.state().positions);
+  EXPECT_EQ(rest.state().internals, whole.state().internals);
+}
+
 }  // namespace
 }  // namespace plica
