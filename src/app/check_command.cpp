@@ -6,6 +6,7 @@
 #include "app/scenario_options.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/print.hpp"
+#include "scenario/setup.hpp"
 #include "scenario/watch.hpp"
 
 namespace plica {
@@ -19,6 +20,7 @@ void add_check_command(CLI::App& app, int&) {
     const Scenario scenario = options->load();
     const auto model = make_model(scenario);
     (void)make_watch(scenario, model->tissue);
+    (void)make_furrow_sites(scenario, model->tissue);
     fmt::print("{}", resolved_toml(scenario));
     for (const std::string& line : advice(scenario, *model)) fmt::print(stderr, "{}\n", line);
   });

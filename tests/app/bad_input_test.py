@@ -159,6 +159,11 @@ end_s = nan
             self.assertEqual(result.stdout, "")
         self.assertFalse((self.folder / "rest.vtu").exists())
 
+    def test_check_refuses_what_only_the_tissue_shows(self):
+        result = plica("check", "furrow-slice", "--set", "furrow.vce_cell=4")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("furrow.vce_cell: the midline of region", self.assert_messages(result)[0])
+
 
 class BadMesh(CommandLine):
     """Mesh files that are none: status 2 or 4, a line that names the file, and no output folder."""
