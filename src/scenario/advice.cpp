@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
+#include <string>
 
 #include "mechanics/elasticity/shape_memory.hpp"
 #include "scenario/setup.hpp"
@@ -31,6 +33,26 @@ void advise_on_shape_memory(const Scenario& scenario, const Model& model, const 
     }
 }
 
+std::set<std::string> used_regions(const Scenario& scenario) {
+  std::set<std::string> used = {scenario.furrow.region};
+  const auto take_all = [&](const auto& tables) {
+    for (const auto& [name, table] : tables) used.insert(table.region);
+  };
+  take_all(scenario.contractions);
+  take_all(scenario.cortices);
+  take_all(scenario.holds);
+  take_all(scenario.pressures);
+  take_all(scenario.divisions);
+  take_all(scenario.monitors);
+  for (const auto& [name, cortex] : scenario.cortices) used.insert(cortex.profile.about);
+  for (const auto& [name, contraction] : scenario.contractions) used.insert(contraction.profile.about);
+  for (const auto& [name, monitor] : scenario.monitors) used.insert(monitor.from);
+  for (const auto& [name, region] : scenario.regions)
+    for (const auto* others : {&region.unite, &region.intersect, &region.except})
+      used.insert(others->begin(), others->end());
+  return used;
+}
+
 int longest_axis(const Vectors& positions) {
   Eigen::AlignedBox3d box;
   for (const Vec3& position : positions) box.extend(position);
@@ -54,6 +76,12 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
       std::ranges::any_of(scenario.cortices, [](const auto& entry) { return entry.second.tension_mN_per_m > 0; });
   if (!pulls && !is_tense && scenario.pressures.empty() && scenario.divisions.empty())
     warn("nothing pushes or pulls: without [contraction], [cortex], [pressure] or [division] the embryo stays at rest");
+  for (const auto& [name, contraction] : scenario.contractions)
+    if (contraction.stiffness_nN_per_um == 0 && contraction.preload_nN == 0 && contraction.tension_mN_per_m == 0)
+      warn(fmt::format("contraction.{}: has no stiffness, preload or tension, so it does nothing", name));
+  const std::set<std::string> used = used_regions(scenario);
+  for (const auto& [name, region] : scenario.regions)
+    if (!used.contains(name)) note(fmt::format("region.{}: nothing acts on it or measures it", name));
   for (const auto& [name, division] : scenario.divisions)
     if (division.at_s && *division.at_s >= scenario.time.end_s)
       warn(fmt::format("division.{}: it comes after the run's end at {} s", name, scenario.time.end_s));

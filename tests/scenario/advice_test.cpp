@@ -7,6 +7,7 @@
 
 #include "mechanics/obstacles/vitelline.hpp"
 #include "scenario/load.hpp"
+#include "scenario/setup.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {
@@ -51,6 +52,17 @@ TEST(Advice, AMeshThatLiesAlongTheShellIsNot) {
   }
   EXPECT_TRUE(lines_with("longest along", advice_on_mesh({50, 120, 60}, false)).empty());
   EXPECT_EQ(cases, 3);
+}
+
+// A misspelt name in an inherited table makes a new one, which does nothing.
+TEST(Advice, WhatDoesNothingIsTold) {
+  const Scenario scenario = load_scenario({"typo", "typo.toml",
+                                           "base = \"drosophila\"\n[region.furow]\nx_um = [0, 50]\n"
+                                           "[contraction.apicl]\nregion = \"all\"\n"});
+  const auto lines = advice(scenario, *make_model(scenario));
+  EXPECT_EQ(lines_with("region.furow: nothing acts on it or measures it", lines).size(), 1U);
+  EXPECT_EQ(lines_with("contraction.apicl: has no stiffness, preload or tension", lines).size(), 1U);
+  EXPECT_TRUE(lines_with("region.furrow: nothing", lines).empty());
 }
 
 }  // namespace
