@@ -33,8 +33,10 @@ void check_contact(const Scenario& scenario, Input& input);
 /// Enclosed volumes: of a sheet that is closed, with room to move.
 void check_enclosed(const Scenario& scenario, Input& input);
 
-/// What of a cortex has nothing that it could act on.
+/// What starts a cortex's programs, or what its tension follows.
 void check_own_state(const std::string& table, const CortexInput& cortex, Input& input);
+
+/// What of a cortex has nothing that it could act on.
 void check_cortex(const std::string& table, const CortexInput& cortex, Input& input);
 
 }  // namespace plica
