@@ -351,6 +351,9 @@ void validate(Scenario& scenario, Input& input) {
   }
   for (const auto& [name, it] : scenario.pressures) check_program("pressure." + name, it.program, input);
   for (const auto& [name, it] : scenario.divisions) check_division("division." + name, it, input);
+  if (!scenario.divisions.empty() && input.sound("embryo.shape") && shape_of(scenario.embryo) == EmbryoShape::slice)
+    input.report("embryo.shape", "the cells of a slice do not divide: its planes would no longer be alike",
+                 "take a pill, or no [division]");
   RegionCheck regions(scenario, input);
   for (const auto& [name, region] : scenario.regions) regions.check_selectors(name, region);
   regions.check_references();

@@ -80,6 +80,10 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
       {"[enclosed.yolk]\nvolume = \"held\"",
        "test.toml:2: enclosed.yolk.volume: nothing can move: cells and what they enclose keep their volumes, and the "
        "shell leaves no room; give vitelline.gap_um, such as 0.5, or volume \"compliant\""},
+      {"[embryo]\nshape = \"slice\"\n[division.a]\nregion = \"all\"\nat_s = 5",
+       "test.toml:2: embryo.shape: the cells of a slice do not divide: its planes would no longer be alike; take a "
+       "pill, or "
+       "no [division]"},
       {"[embryo]\nshape = \"block\"\n[enclosed.yolk]\nvolume = \"held\"",
        "test.toml:3: enclosed.yolk: a block encloses nothing; remove it, or choose shape \"pill\" or \"sphere\""},
       {"[enclosed.yolk]\nvolume = \"held\"\n[volume]\nmethod = \"projection\"",

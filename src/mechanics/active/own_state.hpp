@@ -2,6 +2,7 @@
 // flat, or an activity that follows it (docs/theory/cortex.md, "By the clock, or by the cell's own state").
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -27,12 +28,10 @@ class OwnState {
  public:
   static constexpr double not_yet = -1;
 
-  OwnState() = default;  // of nobody: nothing depends on it
   OwnState(const Tissue& tissue, const OwnStateRule& rule);
 
   [[nodiscard]] bool is_used() const { return rule_.kind != OwnStateRule::Kind::none; }
   [[nodiscard]] bool starts() const { return is_used() && rule_.kind != OwnStateRule::Kind::follows; }
-  [[nodiscard]] const OwnStateRule& rule() const { return rule_; }
 
   /// The numbers of cells at positions and a time, from those before; none before the first step.
   [[nodiscard]] std::vector<double> numbers(std::span<const Vec3> positions, double time_s,

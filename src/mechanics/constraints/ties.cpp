@@ -1,6 +1,5 @@
 #include "mechanics/constraints/ties.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -48,12 +47,8 @@ double Ties::rounding(const Step& /*step*/, double position_rounding) const {
   return 2 * stiffness_ * position_rounding * std::sqrt(static_cast<double>(ties_.size()));
 }
 
-std::unique_ptr<Law> Ties::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
-  std::vector<Tie> kept;
-  for (const Tie& tie : ties_)
-    if (std::ranges::all_of(tie.nodes, [&](NodeId node) { return node.index() < tissue.node_count(); }))
-      kept.push_back(tie);
-  return std::make_unique<Ties>(std::move(kept), stiffness_);
+std::unique_ptr<Law> Ties::after_division(const Tissue&, const Division&, std::span<const Vec3>) const {
+  return std::make_unique<Ties>(std::vector<Tie>{}, stiffness_);
 }
 
 std::vector<Ties::Tie> ties_along_x(const Tissue& tissue) {

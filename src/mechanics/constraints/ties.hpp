@@ -28,11 +28,9 @@ class Ties final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
   [[nodiscard]] double rounding(const Step& step, double position_rounding) const override;
-  /// Of nodes that are still there; those of new nodes are not known.
+  /// Of a part of the tissue: none, since ties are no cell's own. (A slice's cells do not divide.)
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
-
-  [[nodiscard]] const std::vector<Tie>& ties() const { return ties_; }
 
  private:
   std::vector<Tie> ties_;
