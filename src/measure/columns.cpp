@@ -143,8 +143,8 @@ std::span<const Column> columns() {
        "The apical surface of the furrow's cells cut by the plane y = 0; of all points on the cut, the largest "
        "distance inside the shell, less the same of the same material point at rest (flat facets lie a little inside "
        "a round shell; negative where it has gone out). Inward is against the mean apical normal of these cells at "
-       "rest: up for a belly, down for a "
-       "sheet whose apices are on top. Without a shell's shape (a block): how far the point has gone in.",
+       "rest: up for a belly, down for a sheet whose apices are on top. Without a shell's shape (a block): how far the "
+       "point has gone in.",
        [](const M& m) { return m.furrow.depth_um; }},
       {"furrow_depth_below_lips_um", series, last,
        "In the mid cross-section (x = 0): height of the floor (the cut at y = 0) over the mean height of the two lips, "
@@ -241,7 +241,7 @@ std::span<const Column> columns() {
       {"enclosed_volume_ratio", series, last,
        "Of a volume that `[enclosed.NAME]` keeps, the yolk's: over what it is kept at.",
        [](const M& m) { return part(m.enclosed, &Enclosed::volume_ratio); }},
-      {"yolk_pressure_Pa", series, last, "The pressure in it, over that outside the shell's fluid.",
+      {"yolk_pressure_Pa", series, last, "The pressure in it, over that of the fluid under the shell.",
        [](const M& m) -> std::optional<double> {
          if (!m.enclosed) return std::nullopt;
          return m.enclosed->pressure_kPa / units::pascal;

@@ -33,8 +33,8 @@ enum class EmbryoShape { pill, sphere, slice, block, file };
 
 struct EmbryoInput {
   std::string shape = "pill";  // pill | sphere | slice | block | file
-  double length_um = 460;      // pill, block: along x
-  double diameter_um = 280;    // pill, sphere
+  double length_um = 460;      // pill, slice, block: along x
+  double diameter_um = 280;    // pill, sphere, slice
   double width_um = 20;        // block: along y
   double cell_height_um = 40;
   std::array<int, 3> cells = {18, 9, 8};

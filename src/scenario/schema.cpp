@@ -59,19 +59,18 @@ std::vector<Row> make_rows() {
        "Built-in name, or path relative to this file, of the scenario to inherit from key by key."},
 
       embryo("shape", &E::shape, one_of(words::embryo_shapes),
-             "Closed sheets (pill, sphere), a slice of a pill's middle whose nodes do not move along the axis (plane "
-             "strain), "
-             "a block of cells, or a mesh file."),
+             "Closed sheets (pill, sphere); a ring of cells from the middle of an endless embryo (slice: plane strain, "
+             "nodes move across the axis only); a block of cells; or a mesh file."),
       embryo("length_um", &E::length_um, positive, "Length along x (µm).", {.shapes = {"pill", "slice", "block"}}),
       embryo("diameter_um", &E::diameter_um, positive, "Outer diameter (µm).", {.shapes = {"pill", "sphere", "slice"}}),
       embryo("width_um", &E::width_um, positive, "Width along y (µm).", {.shapes = {"block"}}),
       embryo("cell_height_um", &E::cell_height_um, positive, "Height of a cell from basal to apical (µm).",
              {.shapes = built}),
-      embryo("cells", &E::cells, between(1, max_count),
-             "Number of cells along the axis (x), across the belly (y), belly to back (z); a slice has twice the last "
-             "two around "
-             "it.",
-             {.shapes = built}),
+      embryo(
+          "cells", &E::cells, between(1, max_count),
+          "Number of cells along the axis (x), across the belly (y), belly to back (z). A ring of a slice has those of "
+          "belly, back and both sides: `[1, 20, 20]` is 80 cells.",
+          {.shapes = built}),
       embryo("elements_per_cell", &E::elements_per_cell, between(1, 16),
              "Elements of a cell along, across, basal to apical: refines the elements, not the cells.",
              {.shapes = built}),

@@ -88,16 +88,18 @@ inline constexpr auto profile_shapes =
                                                  {"plateau", StrengthProfile::Shape::plateau}});
 inline constexpr auto profile_axes =
     std::to_array<Word<PatternAxis>>({{"across", PatternAxis::across}, {"along", PatternAxis::along}});
-inline constexpr auto own_measures =
-    std::to_array<Word<OwnMeasure>>({{"apical_area_ratio", OwnMeasure::apical_area_ratio},
-                                     {"basal_area_ratio", OwnMeasure::basal_area_ratio},
-                                     {"height_ratio", OwnMeasure::height_ratio}});
 inline constexpr auto delay_axes =
     std::to_array<Word<PatternAxis>>({{"along", PatternAxis::along}, {"across", PatternAxis::across}});
 inline constexpr auto delay_starts = std::to_array<Word<StartDelay::From>>({{"middle", StartDelay::From::middle},
                                                                             {"ends", StartDelay::From::ends},
                                                                             {"low", StartDelay::From::low},
                                                                             {"high", StartDelay::From::high}});
+
+// [cortex.NAME], beside those above.
+inline constexpr auto own_measures =
+    std::to_array<Word<OwnMeasure>>({{"apical_area_ratio", OwnMeasure::apical_area_ratio},
+                                     {"basal_area_ratio", OwnMeasure::basal_area_ratio},
+                                     {"height_ratio", OwnMeasure::height_ratio}});
 
 // [pressure.NAME]: whether it is the apical face.
 inline constexpr auto pressure_faces = std::to_array<Word<bool>>({{"apical", true}, {"basal", false}});

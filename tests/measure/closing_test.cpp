@@ -50,7 +50,7 @@ TEST(FlankVolume, IsWhatLiesOnTheSides) {
   Vectors positions = tissue.rest_positions;
   for (Vec3& x : positions) x.x() *= 0.9;
   EXPECT_NEAR(*flank_volume(tissue, positions) / at_rest, 0.9, 1e-9);
-  // Turned by a fifth of 60 degrees, left loses at the top what right loses at the bottom, and both gain as much.
+  // Turned by 0.2 rad, left loses at the top what right loses at the bottom, and both gain as much.
   for (std::size_t n = 0; n < positions.size(); ++n)
     positions[n] = Eigen::AngleAxisd(0.2, Vec3::UnitX()) * tissue.rest_positions[n];
   EXPECT_NEAR(*flank_volume(tissue, positions) / at_rest, 1, 0.02);
@@ -88,7 +88,7 @@ TEST(EnclosedVolume, HasItsRatioAndPressure) {
   EXPECT_EQ(enclosed(held, of_held)->pressure_kPa, 0.25);
 }
 
-// A gutter along x, 60 um long, whose two sides come nearer than the contact's distance on a third of it.
+// A gutter along x, 60 um long, whose two sides come nearer than the contact's distance at one end, or everywhere.
 TEST(Touching, TellsHowFarTheLipsHaveClosed) {
   const auto gutter = [](double gap_um) {
     return mapped_lattice(6, 8, 1, [&](int i, int j, int k) {
@@ -108,21 +108,30 @@ TEST(Touching, TellsHowFarTheLipsHaveClosed) {
   EXPECT_GT(*touching(model, state)->least_gap_um, 0.4);
   EXPECT_LT(*touching(model, state)->least_gap_um, 2.1);
   EXPECT_EQ(touching(model, state)->closed_length_ratio, 0);
-  for (Vec3& x : state.positions)
-    if (x.z() >= 0 && x.x() > 5) x.y() += x.y() > 0 ? -0.9 : 0.9;
-  const Step step{.positions = state.positions,
-                  .previous_positions = state.positions,
-                  .previous_velocities = state.velocities,
-                  .rate_s = 1,
-                  .internals = state.internals};
-  state.internals = next_internals(model, step);
-  const Touching found = *touching(model, state);
-  EXPECT_GT(found.pairs, 0);
-  EXPECT_GT(*found.least_gap_um, 0);
-  EXPECT_LT(*found.least_gap_um, 0.4);
-  EXPECT_GE(found.closed_length_ratio, 1.0 / 3);
-  EXPECT_LE(found.closed_length_ratio, 0.5 + 1e-9);
-  EXPECT_FALSE(found.middle_is_closed && found.closed_length_ratio < 0.4);
+  // The sides beyond `from_x` come nearer by 1.8 um.
+  const auto closed_from = [&](double from_x) {
+    State there = state;
+    for (Vec3& x : there.positions)
+      if (x.z() >= 0 && x.x() > from_x) x.y() += x.y() > 0 ? -0.9 : 0.9;
+    const Step step{.positions = there.positions,
+                    .previous_positions = there.positions,
+                    .previous_velocities = there.velocities,
+                    .rate_s = 1,
+                    .internals = state.internals};
+    there.internals = next_internals(model, step);
+    return *touching(model, there);
+  };
+  const Touching end = closed_from(15), whole = closed_from(-100);
+  for (const Touching& found : {end, whole}) {
+    EXPECT_GT(found.pairs, 0);
+    EXPECT_GT(*found.least_gap_um, 0);
+    EXPECT_LT(*found.least_gap_um, 0.4);
+  }
+  EXPECT_GE(end.closed_length_ratio, 1.0 / 6 - 1e-9);  // the last column of six; the one before it is half closed
+  EXPECT_LE(end.closed_length_ratio, 2.0 / 6 + 1e-9);
+  EXPECT_FALSE(end.middle_is_closed);
+  EXPECT_NEAR(whole.closed_length_ratio, 1, 1e-9);
+  EXPECT_TRUE(whole.middle_is_closed);
 }
 
 }  // namespace

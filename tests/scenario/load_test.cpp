@@ -165,8 +165,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:2: elasticity.poisson_ratio: 0.5 is out of range; give a number > -1 and < 0.5"},
       {"[embryo]\nshape = \"pil\"",
        "test.toml:2: embryo.shape: \"pil\" is not known; give one of: pill | sphere | slice | block | file (did you "
-       "mean "
-       "\"pill\"?)"},
+       "mean \"pill\"?)"},
       {"[elasticity]\nattractor_stiffness_nN_per_um = 0",
        "test.toml:2: elasticity.attractor_stiffness_nN_per_um: 0 is out of range; give a number > 0 or \"derived\""},
       {"[elasticity]\nattractor_preload_nN = 1",
@@ -253,12 +252,10 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "gaussian"},
       {program + "profile = { shape = \"constant\", edge = 0.5 }",
        "test.toml:3: contraction.a.profile.edge: has no meaning where nothing fades; remove it, or choose another "
-       "shape, "
-       "or a taper"},
+       "shape, or a taper"},
       {program + "profile = { shape = \"gausian\", sigma_um = 30 }",
        "test.toml:3: contraction.a.profile.shape: \"gausian\" is not known; give one of: constant | linear | gaussian "
-       "| "
-       "plateau (did you mean \"gaussian\"?)"},
+       "| plateau (did you mean \"gaussian\"?)"},
       {program + "profile = { shape = \"gaussian\", sigma_um = 0 }",
        "test.toml:3: contraction.a.profile.sigma_um: 0 is out of range; give a number > 0"},
       {program + "profile = \"gaussian\"",

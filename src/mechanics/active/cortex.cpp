@@ -262,10 +262,18 @@ std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const Division
 
 std::vector<double> Cortex::internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                     const Division& division) const {
+  std::vector<double> after;
+  if (flows()) after = rest_areas_after_division(internal, tissue, division);
+  if (!own_.is_used()) return after;
+  const std::span<const double> own = internal.subspan(area_numbers());
+  return joined(std::move(after), inherited(division, std::vector(own.begin(), own.end())));
+}
+
+std::vector<double> Cortex::rest_areas_after_division(std::span<const double> internal, const Tissue& tissue,
+                                                      const Division& division) const {
   const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_division(division));
   std::vector<double> after;
   for (const std::size_t first : {std::size_t{0}, faces_.size()}) {
-    if (!flows()) break;
     struct Areas {
       double now = 0, at_rest = 0;
     };
@@ -283,9 +291,7 @@ std::vector<double> Cortex::internal_after_division(std::span<const double> inte
       after.push_back(strain * area_at_rest(tissue, face));
     }
   }
-  if (!own_.is_used()) return after;
-  const std::span<const double> own = internal.subspan(area_numbers());
-  return joined(std::move(after), inherited(division, std::vector(own.begin(), own.end())));
+  return after;
 }
 
 std::vector<double> Cortex::program_points_s() const {

@@ -80,6 +80,8 @@ class Cortex final : public Law {
   [[nodiscard]] Pull pull(const Step& step) const;
   [[nodiscard]] bool flows() const { return rule_.relaxation_s > 0; }
   [[nodiscard]] double rest_area_before(std::size_t face, const Step& step) const;
+  [[nodiscard]] std::vector<double> rest_areas_after_division(std::span<const double> internal, const Tissue& tissue,
+                                                              const Division& division) const;
   [[nodiscard]] std::size_t area_numbers() const { return flows() ? 2 * faces_.size() : 0; }
   [[nodiscard]] double activity(CellId cell, double time_s, std::span<const double> internal) const;
   [[nodiscard]] double stiffening(CellId cell, const Step& step) const;

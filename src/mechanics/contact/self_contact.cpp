@@ -212,7 +212,10 @@ std::vector<double> SelfContact::packed(const std::vector<Pair>& pairs, std::spa
     numbers.push_back(pair.distance);
     numbers.push_back(pair.first_gap);
   }
-  if (node_groups(numbers) != node_groups(before)) ++numbers.front();
+  NodeGroups joined, joined_before;
+  add_touching(numbers, joined);
+  add_touching(before, joined_before);
+  if (joined != joined_before) ++numbers.front();
   return numbers;
 }
 
@@ -283,9 +286,13 @@ void SelfContact::add_tangent(const Step& step, TangentSink& tangent) const {
 NodeGroups SelfContact::node_groups(std::span<const double> internal) const {
   NodeGroups groups;
   for (const auto& facet : facets_) groups.add(facet);
+  add_touching(internal, groups);
+  return groups;
+}
+
+void SelfContact::add_touching(std::span<const double> internal, NodeGroups& groups) const {
   for (const Pair& pair : pairs_of(internal))
     if (may_touch(pair)) groups.add(nodes_of(pair));
-  return groups;
 }
 
 std::unique_ptr<Law> SelfContact::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {

@@ -77,6 +77,8 @@ class SelfContact final : public Law {
 
  private:
   [[nodiscard]] bool may_touch(const Pair& pair) const { return pair.first_gap < 2 * rule_.distance; }
+  /// Adds the nodes of each pair that may touch.
+  void add_touching(std::span<const double> internal, NodeGroups& groups) const;
   /// All nodes of a pair: of the point, of the triangle.
   [[nodiscard]] std::vector<NodeId> nodes_of(const Pair& pair) const;
   [[nodiscard]] std::vector<double> packed(const std::vector<Pair>& pairs, std::span<const double> before) const;
