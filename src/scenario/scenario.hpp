@@ -39,21 +39,30 @@ struct EmbryoInput {
   double cell_height_um = 40;
   std::array<int, 3> cells = {18, 9, 8};
   std::array<int, 3> elements_per_cell = {1, 1, 1};
+  std::vector<std::string> mirror;  // x, y: planes through the middle, of which one side is solved
   std::string file;          // shape = "file": a hexahedral mesh that VTK reads
   std::string apical_array;  // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;
                              // empty: the outer surface
 };
 
-enum class ElasticModel { corotational, shape_memory };
+enum class ElasticModel { corotational, shape_memory, neo_hookean };
 
 struct ElasticityInput {
-  std::string model = "corotational";  // corotational | shape-memory
+  std::string model = "corotational";  // corotational | shape-memory | neo-hookean
   double young_modulus_Pa = 1000;
   double poisson_ratio = 0.45;
   std::optional<double> attractor_stiffness_nN_per_um;  // shape-memory; empty: derived from the two above
   double attractor_preload_nN = 0;                      // shape-memory
   double attractor_preload_length_um = 0.5;             // shape-memory: the preload acts in full farther off than this
   double corner_barrier_Pa = 0;
+  std::optional<double> relaxation_s;  // neo-hookean; TOML: relaxation_s or relaxation_min; empty: "none"
+};
+
+/// What cells of a region have instead.
+struct RegionElasticityInput {
+  std::string region;
+  std::optional<double> young_modulus_Pa;
+  std::optional<double> relaxation_s;
 };
 
 enum class VolumeMethod { coupled, projection, none };
@@ -67,6 +76,8 @@ struct VolumeInput {
 struct VitellineInput {
   bool enabled = true;
   double gap_um = 0;
+  double friction = 0;  // of its contact: the coefficient
+  double drag_Pa_s_per_um = 0;
 };
 
 struct DynamicsInput {
@@ -158,6 +169,7 @@ struct SelfContactInput {
   double distance_um = 0.4;
   double stiffness_kPa_per_um = 1;
   double search_um = 6;
+  double friction = 0;  // the coefficient
 };
 
 /// What makes cells divide: a time, or what has to pass a threshold.
@@ -258,6 +270,7 @@ struct Scenario {
   EmbryoInput embryo;
   std::map<std::string, RegionInput> regions;
   ElasticityInput elasticity;
+  std::map<std::string, RegionElasticityInput> region_elasticities;  // TOML: [elasticity.NAME]
   VolumeInput volume;
   VitellineInput vitelline;
   DynamicsInput dynamics;
