@@ -100,6 +100,10 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
     if ((*law++)->program_points_s().back() > scenario.time.end_s)
       warn(fmt::format("contraction.{}: its program goes on after the run's end at {} s", name, scenario.time.end_s));
   }
+  for (const auto& [name, cortex] : scenario.cortices)
+    for (const ProgramInput* program : {&cortex.program, &cortex.stiffness_program})
+      if (!program->time_s.empty() && program->time_s.back() > scenario.time.end_s)
+        warn(fmt::format("cortex.{}: its program goes on after the run's end at {} s", name, scenario.time.end_s));
   if (scenario.time.step_s && *scenario.time.step_s > scenario.time.end_s)
     warn("time.step_s is longer than the whole run");
   advise_on_shape_memory(scenario, model, note, warn);

@@ -40,7 +40,7 @@ struct EmbryoInput {
   std::array<int, 3> cells = {18, 9, 8};
   std::array<int, 3> elements_per_cell = {1, 1, 1};
   std::vector<std::string> mirror;  // x, y: planes through the middle, of which one side is solved
-  std::string file;          // shape = "file": a hexahedral mesh that VTK reads
+  std::string file;                 // shape = "file": a hexahedral mesh that VTK reads
   std::string apical_array;  // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;
                              // empty: the outer surface
 };

@@ -8,6 +8,7 @@
 
 #include "core/units.hpp"
 #include "measure/cells.hpp"
+#include "measure/self_intersections.hpp"
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
@@ -95,6 +96,38 @@ void check_is_one_layer(const Scenario& scenario, const Tissue& tissue, std::vec
                                              "basal face: nothing slows the nodes between cells above each other",
                                              inner->number()),
                                  "give \"coupled\" or \"none\", or one layer of cells"));
+}
+
+// What acts on faces needs cells that have them: those between two layers have none.
+void check_faces(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
+  const auto check = [&](const std::string& table, const char* key, const std::string& side, const CellSet& region) {
+    const auto side_meant = meaning_of(words::edges, side);
+    if (side_meant == CellSide::lateral) return;
+    const auto& facets = side_meant == CellSide::apical ? tissue.apical_facets : tissue.basal_facets;
+    if (std::ranges::none_of(facets, [&](const Facet& facet) { return region[facet.cell.index()]; }))
+      errors.push_back(diagnostic_at(
+          scenario, table + ".region",
+          fmt::format("no cell of this region has {} {} face", side_meant == CellSide::apical ? "an" : "a", side),
+          fmt::format("name a region on that side, or give other {}", key)));
+  };
+  for (const auto& [name, it] : scenario.contractions)
+    check("contraction." + name, "edges", it.edges, tissue.regions.at(it.region));
+  for (const auto& [name, it] : scenario.cortices)
+    check("cortex." + name, "faces", it.faces, tissue.regions.at(it.region));
+  for (const auto& [name, it] : scenario.pressures)
+    check("pressure." + name, "face", it.face, tissue.regions.at(it.region));
+}
+
+// Contact keeps sides apart that lie apart: which side is which cannot be told where they are mixed from the start.
+void check_contact_at_rest(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
+  if (scenario.self_contact.surface == "none") return;
+  const CellSet crossing = self_intersecting_cells(tissue, tissue.rest_positions);
+  const auto first = std::ranges::find(crossing, true);
+  if (first != crossing.end())
+    errors.push_back(diagnostic_at(scenario, "self_contact.surface",
+                                   fmt::format("the mesh passes through itself at rest, at cell {}",
+                                               CellId(static_cast<std::size_t>(first - crossing.begin())).number()),
+                                   "mend the mesh, or give \"none\""));
 }
 
 void add_elasticity(const Scenario& scenario, Model& model) {
@@ -280,6 +313,9 @@ Tissue make_tissue(const Scenario& scenario) {
 std::unique_ptr<Model> make_model(const Scenario& scenario) {
   auto model = std::make_unique<Model>(make_tissue(scenario));
   const Tissue& tissue = model->tissue;
+  std::vector<Diagnostic> errors;
+  check_faces(scenario, tissue, errors);
+  check_contact_at_rest(scenario, tissue, errors);
   model->volumes().hold(method_of(scenario.volume) == VolumeMethod::coupled);
   add_elasticity(scenario, *model);
   if (scenario.elasticity.corner_barrier_Pa > 0)
@@ -298,7 +334,6 @@ std::unique_ptr<Model> make_model(const Scenario& scenario) {
         std::make_unique<Inertia>(tissue, scenario.dynamics.density_kg_per_m3 * units::kilogram_per_cubic_metre));
 
   if (shape_of(scenario.embryo) == EmbryoShape::slice) make_endless(scenario, *model);
-  std::vector<Diagnostic> errors;
   add_holds(scenario, *model, errors);
   if (scenario.vitelline.enabled) {
     Capsule shell = *tissue.outer_shape;

@@ -31,7 +31,7 @@ void check_pattern(const std::string& table, ProfileInput& profile, DelayInput& 
 void check_contact(const Scenario& scenario, Input& input);
 
 /// Enclosed volumes: of a sheet that is closed, with room to move.
-void check_enclosed(const Scenario& scenario, Input& input);
+void check_enclosed(Scenario& scenario, Input& input);
 
 /// What starts a cortex's programs, or what its tension follows.
 void check_own_state(const std::string& table, const CortexInput& cortex, Input& input);

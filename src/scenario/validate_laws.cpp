@@ -185,9 +185,9 @@ void check_contact(const Scenario& scenario, Input& input) {
                  "give several times distance_um");
 }
 
-void check_enclosed(const Scenario& scenario, Input& input) {
+void check_enclosed(Scenario& scenario, Input& input) {
   bool is_kept = false;
-  for (const auto& [name, it] : scenario.enclosed) {
+  for (auto& [name, it] : scenario.enclosed) {
     const std::string table = "enclosed." + name, key = table + ".bulk_modulus_Pa";
     if (!input.sound(table) || !input.sound(table + ".volume") || !input.sound("embryo.shape")) continue;
     const EnclosedState state = meaning_of(words::enclosed_states, it.volume);
@@ -195,9 +195,9 @@ void check_enclosed(const Scenario& scenario, Input& input) {
       input.report(table, "a block encloses nothing", "remove it, or choose shape \"pill\" or \"sphere\"");
     if (state == EnclosedState::compliant && !it.bulk_modulus_Pa && input.sound(key))
       input.report(key, "is missing", "give how compliant the volume is, a number > 0");
-    if (state != EnclosedState::compliant && it.bulk_modulus_Pa)
-      input.report(key, fmt::format("has no meaning with volume \"{}\"", it.volume),
-                   "remove it, or choose volume \"compliant\"");
+    if (state != EnclosedState::compliant)
+      drop(key, it.bulk_modulus_Pa, {}, table + ".volume", fmt::format("has no meaning with volume \"{}\"", it.volume),
+           "remove it, or choose volume \"compliant\"", input);
     if (state == EnclosedState::held &&
         (method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton"))
       input.report(table + ".volume",
@@ -205,12 +205,13 @@ void check_enclosed(const Scenario& scenario, Input& input) {
                    "give \"compliant\", or another scheme or volume.method");
     else if (state != EnclosedState::free && std::exchange(is_kept, true))
       input.report(table + ".surface", "its volume is kept by another table already", "remove one of the two");
-    // Cells, what they enclose, and the room up to the shell: with all three given nothing can move.
+    // Cells, what they enclose, and the room up to the shell: with all three given cells slide along the shell at most.
     if (state == EnclosedState::held && scenario.vitelline.enabled && scenario.vitelline.gap_um == 0 &&
         method_of(scenario.volume) == VolumeMethod::coupled && input.sound("vitelline.gap_um"))
-      input.report(table + ".volume",
-                   "nothing can move: cells and what they enclose keep their volumes, and the shell leaves no room",
-                   "give vitelline.gap_um, such as 0.5, or volume \"compliant\"");
+      input.report(
+          table + ".volume",
+          "no cell can leave the shell: cells and what they enclose keep their volumes, and the shell leaves no room",
+          "give vitelline.gap_um, such as 0.5, or volume \"compliant\"");
   }
 }
 

@@ -199,6 +199,20 @@ class BadMesh(CommandLine):
             self.assertEqual(result.returncode, 4, result.stderr)
             self.assertIn("missing.vtu", self.assert_messages(result)[0])
 
+    def test_a_mesh_that_passes_through_itself_has_no_contact(self):
+        # Two cubes, one tilted, whose upper faces cross.
+        first = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        second = [(x + 0.3, 0.8 * y - 0.6 * z + 0.5, 0.6 * y + 0.8 * z) for x, y, z in first]
+        points = " ".join(f"{10 * value:g}" for point in first + second for value in point)
+        self.write(f"# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 16 double\n{points}\n"
+                   "CELLS 2 18\n8 0 1 2 3 4 5 6 7\n8 8 9 10 11 12 13 14 15\nCELL_TYPES 2\n12 12\n"
+                   "CELL_DATA 2\nSCALARS apical int 1\nLOOKUP_TABLE default\n5 5\n", "cubes.vtk")
+        scenario = ('format = 1\n[embryo]\nshape = "file"\nfile = "cubes.vtk"\napical_array = "apical"\n'
+                    "[vitelline]\nenabled = false\n")
+        self.assertEqual(plica("check", self.write(scenario)).returncode, 0)
+        self.assert_refused(scenario + '[self_contact]\nsurface = "both"\n', "the mesh passes through itself at rest",
+                            "cell 0", line=9, key="self_contact.surface")
+
 
 if __name__ == "__main__":
     support.main()

@@ -65,5 +65,12 @@ TEST(Advice, WhatDoesNothingIsTold) {
   EXPECT_TRUE(lines_with("region.furrow: nothing", lines).empty());
 }
 
+TEST(Advice, AProgramThatTheRunCutsOffIsTold) {
+  const Scenario scenario = load_scenario(find_scenario("furrow-slice"), {"time.end_min=15"});
+  const auto warnings = lines_with("its program goes on", advice(scenario, *make_model(scenario)));
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_EQ(warnings[0], "warning: cortex.floor: its program goes on after the run's end at 900 s");
+}
+
 }  // namespace
 }  // namespace plica

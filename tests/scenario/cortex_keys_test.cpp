@@ -78,8 +78,8 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
        "test.toml:2: enclosed.yolk.bulk_modulus_Pa: has no meaning with volume \"held\"; remove it, or choose volume "
        "\"compliant\""},
       {"[enclosed.yolk]\nvolume = \"held\"",
-       "test.toml:2: enclosed.yolk.volume: nothing can move: cells and what they enclose keep their volumes, and the "
-       "shell leaves no room; give vitelline.gap_um, such as 0.5, or volume \"compliant\""},
+       "test.toml:2: enclosed.yolk.volume: no cell can leave the shell: cells and what they enclose keep their "
+       "volumes, and the shell leaves no room; give vitelline.gap_um, such as 0.5, or volume \"compliant\""},
       {"[embryo]\nshape = \"slice\"\n[division.a]\nregion = \"all\"\nat_s = 5",
        "test.toml:2: embryo.shape: the cells of a slice do not divide: its planes would no longer be alike; take a "
        "pill, or "
@@ -91,6 +91,17 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
        "projected; give \"compliant\", or another scheme or volume.method"},
       {"[enclosed.a]\nvolume = \"held\"\n[enclosed.b]\nsurface = \"basal\"\n[vitelline]\ngap_um = 1",
        "test.toml:4: enclosed.b.surface: its volume is kept by another table already; remove one of the two"},
+      {cortex + "tension_mN_per_m = 1\nprogram = { time_min = [0, inf], activity = [0, 1] }",
+       "test.toml:4: cortex.a.program.time_min: inf is not a finite number; give a list of numbers"},
+      {cortex + "tension_mN_per_m = 1\nprogram = { time_min = [5, 1], activity = [0, 1] }",
+       "test.toml:4: cortex.a.program.time_min: the times do not increase; give each time later than the one before, "
+       "or the same twice for a jump"},
+      {cortex + "tension_mN_per_m = 1\nprogram = { time_min = [0, 1], activity = [0, -1] }",
+       "test.toml:4: cortex.a.program.activity: -1 is out of range; give a list of numbers >= 0"},
+      {"[self_contact]\nsurface = \"apical\"\nstiffness_kPa_per_um = 0",
+       "test.toml:3: self_contact.stiffness_kPa_per_um: 0 is out of range; give a number > 0"},
+      {"[self_contact]\nsurface = \"apical\"\ndistance_um = 10",
+       "test.toml:1: self_contact.search_um: 6 is under twice distance_um; give several times distance_um"},
       {"[elasticity]\ncorner_barrier_Pa = -1",
        "test.toml:2: elasticity.corner_barrier_Pa: -1 is out of range; give a number >= 0"},
   };
@@ -99,6 +110,36 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
     ASSERT_EQ(found.size(), 1u) << text << (found.empty() ? "" : "\n" + found[0] + "\n" + found.back());
     EXPECT_EQ(found[0], expected) << text;
   }
+}
+
+// Of three layers of cells, that in the middle has neither apical nor basal faces.
+TEST(CortexKeys, FacesThatARegionDoesNotHave) {
+  const std::string block =
+      "[embryo]\nshape = \"block\"\ncells = [2, 2, 3]\n[region.inner]\nz_um = [-10, 10]\n[region.lower]\nz_um = [-100, "
+      "-10]\n";
+  for (const auto& [table, problem] : {std::pair("[cortex.a]\ntension_mN_per_m = 1\nregion = \"inner\"",
+                                                 "test.toml:10: cortex.a.region: no cell of this region has an apical "
+                                                 "face; name a region on that side, or give other faces"),
+                                       {"[contraction.a]\nstiffness_nN_per_um = 1\nregion = \"lower\"",
+                                        "test.toml:10: contraction.a.region: no cell of this region has an apical "
+                                        "face; name a region on that side, or give other edges"},
+                                       {"[pressure.a]\nface = \"basal\"\nregion = \"inner\"\npressure_Pa = 1",
+                                        "test.toml:10: pressure.a.region: no cell of this region has a basal face; "
+                                        "name a region on that side, or give other face"}}) {
+    const Scenario scenario = load_scenario({"test", "test.toml", block + table});
+    try {
+      (void)make_model(scenario);
+      ADD_FAILURE() << table;
+    } catch (const ScenarioError& error) {
+      ASSERT_EQ(error.diagnostics().size(), 1u);
+      EXPECT_EQ(error.diagnostics()[0].text(), problem);
+    }
+  }
+}
+
+// Its base gives how compliant the yolk is; one who holds it need not take that back.
+TEST(CortexKeys, AHeldYolkLeavesWhatItsBaseSaysOfACompliantOne) {
+  EXPECT_NO_THROW(load_scenario({"test", "test.toml", "base = \"furrow-slice\"\n[enclosed.yolk]\nvolume = \"held\""}));
 }
 
 // A belly that is drawn in, with all that a closing furrow has.
