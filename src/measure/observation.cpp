@@ -8,9 +8,7 @@ namespace {
 
 // None of a sheet that is open, though its rims may lie so evenly that nothing seems to be missing (a slice's).
 std::optional<double> rest_lumen_volume(const Tissue& tissue) {
-  std::vector<ClosedSurface::Quad> facets;
-  for (const Facet& facet : tissue.basal_facets) facets.push_back(facet.nodes);
-  if (!ClosedSurface(facets).is_closed()) return std::nullopt;
+  if (!ClosedSurface(tissue.basal_facets).is_closed()) return std::nullopt;
   return lumen_volume(tissue, tissue.rest_positions);
 }
 

@@ -73,9 +73,7 @@ void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vecto
 
 // A mesh file's apical surface may be open; that of a built embryo is not.
 void check_encloses(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
-  std::vector<ClosedSurface::Quad> facets;
-  for (const Facet& facet : tissue.apical_facets) facets.push_back(facet.nodes);
-  if (!ClosedSurface(facets).is_closed())
+  if (!ClosedSurface(tissue.apical_facets).is_closed())
     errors.push_back(diagnostic_at(scenario, "volume.projection_surface",
                                    "the apical surface of this mesh encloses nothing", "give \"cells\" or \"tissue\""));
 }

@@ -40,9 +40,7 @@ CornerBarrier::CornerBarrier(const Tissue& tissue, double modulus, double thresh
 void CornerBarrier::fit(const Tissue& tissue, std::size_t e) {
   const HexPoints& rest = tissue.element_rest_shape[e];
   rest_volumes_[e] = hex_volume(rest);
-  for (int corner = 0; corner < 8; ++corner)
-    rest_jacobians_[e][corner] =
-        handedness[corner] * edges_of(corner, [&](int i) -> const Vec3& { return rest[i]; }).product();
+  rest_jacobians_[e] = hex_corner_jacobians(rest);
 }
 
 void CornerBarrier::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
@@ -70,7 +68,7 @@ void CornerBarrier::for_pushed(std::span<const Vec3> positions, std::size_t e, c
   for (int corner = 0; corner < 8; ++corner) {
     const auto at = [&](int i) -> const Vec3& { return positions[elements_[e][i].index()]; };
     const Edges edges = edges_of(corner, at);
-    const double scale = handedness[corner] / (threshold_ * rest_jacobians_[e][corner]);
+    const double scale = handedness[corner] / (8 * threshold_ * rest_jacobians_[e][corner]);
     const double r = scale * edges.product();
     if (r >= 1) continue;
     const double k = modulus_ * rest_volumes_[e] / 8, log = std::log(r), less = r - 1;

@@ -38,7 +38,7 @@ class CornerBarrier final : public Law {
   double modulus_, threshold_;
   ElementChunks chunks_;
   std::vector<std::array<NodeId, 8>> elements_;
-  std::vector<std::array<double, 8>> rest_jacobians_;  // elements, corners; um^3
+  std::vector<std::array<double, 8>> rest_jacobians_;  // elements, corners; um^3: an eighth of the edges' product
   std::vector<double> rest_volumes_;                   // elements; um^3
 };
 

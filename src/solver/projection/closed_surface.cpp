@@ -6,6 +6,17 @@
 #include <utility>
 
 namespace plica {
+namespace {
+
+std::vector<ClosedSurface::Quad> quads_of(std::span<const Facet> facets) {
+  std::vector<ClosedSurface::Quad> quads;
+  for (const Facet& facet : facets) quads.push_back(facet.nodes);
+  return quads;
+}
+
+}  // namespace
+
+ClosedSurface::ClosedSurface(std::span<const Facet> facets) : ClosedSurface(quads_of(facets)) {}
 
 ClosedSurface::ClosedSurface(const std::vector<Quad>& facets) {
   // A shared facet comes with the same nodes from both sides.

@@ -12,6 +12,7 @@
 #include "core/ids.hpp"
 #include "core/vector.hpp"
 #include "solver/projection/cubic.hpp"
+#include "tissue/tissue.hpp"
 
 namespace plica {
 
@@ -22,6 +23,7 @@ class ClosedSurface {
   /// Facets that two neighbours share with opposite orientation cancel: those of all elements of a body make the
   /// surface around it.
   explicit ClosedSurface(const std::vector<Quad>& facets);
+  explicit ClosedSurface(std::span<const Facet> facets);
 
   [[nodiscard]] const std::vector<NodeId>& nodes() const { return nodes_; }
 

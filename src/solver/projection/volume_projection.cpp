@@ -40,8 +40,7 @@ VolumeProjection::VolumeProjection(const Model& model, const std::optional<Proje
     for (const double of_cell : targets) target += of_cell;
     kept_.push_back({ClosedSurface(facets), target, std::nullopt});
   } else {
-    for (const Facet& facet : tissue.apical_facets) facets.push_back(facet.nodes);
-    ClosedSurface surface(facets);
+    ClosedSurface surface(tissue.apical_facets);
     const double target = volume_inside(surface, tissue.rest_positions);
     kept_.push_back({std::move(surface), target, std::nullopt});
   }
