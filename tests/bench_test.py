@@ -31,8 +31,9 @@ with tempfile.TemporaryDirectory() as folder:
     print(done.stdout, done.stderr)
     assert done.returncode == 0, done.returncode
     figures = json.loads(file.read_text())
-    steps, runs = figures["steps"], figures["runs"]
+    steps, runs, furrows = figures["steps"], figures["runs"], figures["furrows"]
     assert {step["elements"] for step in steps} == {756, 3024} and len(runs) == 1
+    assert [furrow["embryo"] for furrow in furrows] == ["`furrow-slice`"] and furrows[0]["lips_closed_time_s"] > 600
     for step in steps:
         assert step["converged"] and step["step_s"] > 0 and step["peak_MiB"] > 1 and step["linear_iterations"] > 0
         same = [other for other in steps if other["embryo"] == step["embryo"]]
@@ -41,7 +42,7 @@ with tempfile.TemporaryDirectory() as folder:
     for kernels in figures["kernels"]:
         assert kernels["multiply_add_rate"] > 0 and kernels["reading_rate"] > 0 and kernels["kernels"]
         assert all(kernel["ns_per_element"] > 0 and kernel["share"] > 0 for kernel in kernels["kernels"])
-    for words in ("### One step", "### The whole Drosophila run", "3 024", "linear iterations"):
+    for words in ("### One step", "### The whole Drosophila run", "### Furrows that close", "3 024", "linear iterations"):
         assert words in done.stdout, words
     assert "Positions after the step are identical" in done.stdout and "Positions differ" not in done.stdout
 
@@ -61,7 +62,7 @@ with tempfile.TemporaryDirectory() as folder:
     results, notebook = ((Path(folder) / document).read_text() for document in tables.DOCUMENTS)
     assert "### One step" in results and "### The whole Drosophila run" in results and "### Kernels" not in results
     assert "### One step" not in notebook and ("### Kernels" in notebook or not figures["kernels"])
-    tables.update(folder, figures | {"steps": [], "runs": [], "kernels": []}, " --only nothing")
+    tables.update(folder, figures | {"steps": [], "runs": [], "kernels": [], "furrows": []}, " --only nothing")
     assert results == (Path(folder) / "docs/performance.md").read_text()
     # How the cost grows, what more threads gain, and whether they change anything.
     grown = [steps[0] | {"elements": 756 * k * k, "step_s": 0.001 * k**3, "embryo": f"{k}", "refined_by": "more cells"} for k in (4, 16)]

@@ -114,19 +114,33 @@ class Suite:
     def measure_run(self, embryo, threads, repeats):
         """The whole Drosophila run with all its files."""
         self.require_memory(embryo)
+        return self.measure_runs(lambda folder: self.run_plica(embryo, threads, folder), repeats) | {
+            "embryo": str(embryo), "elements": embryo.elements, "threads": threads}
+
+    def measure_furrow(self, furrow, threads, repeats):
+        """A furrow that closes, with all its files."""
+        options = [word for setting in furrow.settings for word in ("--set", setting)]
+        return self.measure_runs(lambda folder: self.run(
+            self.plica, "run", furrow.scenario, "--out", Path(folder) / "out", "--overwrite", "--quiet", *options,
+            threads=threads), repeats) | {"embryo": str(furrow), "threads": threads}
+
+    def measure_runs(self, run, repeats):
+        """What runs leave: counts of the first, medians of times."""
         results = []
         with tempfile.TemporaryDirectory() as folder:
             for _ in range(repeats):
-                _, _, process = self.run_plica(embryo, threads, folder)
+                _, _, process = run(folder)
                 summary = json.loads((Path(folder) / "out/summary.json").read_text())
                 with open(Path(folder) / "out/series.csv", encoding="utf-8") as file:
                     rows = list(csv.DictReader(file))
                 results.append(process | {
                     "wall_s": summary["wall_s"], "solver_s": summary["wall_solver_s"], "status": summary["status"],
-                    "steps": summary["steps"], "newton_iterations": sum(int(row["newton_iterations"] or 0) for row in rows),
+                    "steps": summary["steps"], "refused_steps": summary["refused_steps"],
+                    "cells": summary["cells"], "elements": summary["elements"],
+                    "lips_closed_time_s": summary["lips_closed_time_s"], "newton_iterations": sum(int(row["newton_iterations"] or 0) for row in rows),
                     "linear_iterations": sum(int(row["linear_iterations"] or 0) for row in rows)})
         times = {key: median([result[key] for result in results]) for key in ("process_s", "wall_s", "solver_s")}
-        return results[0] | times | {"embryo": str(embryo), "elements": embryo.elements, "threads": threads, "repeats": repeats}
+        return results[0] | times | {"repeats": repeats}
 
     def run_plica(self, embryo, threads, folder, under=()):
         k, n, m = embryo.scale, embryo.across, embryo.layers

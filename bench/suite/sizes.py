@@ -33,6 +33,19 @@ class Embryo:
         return f"{self.across} × {self.across} × {self.layers} per cell"
 
 
+@dataclass(frozen=True)
+class Furrow:
+    """A furrow that closes: a built-in scenario, and what is set in it."""
+    scenario: str
+    settings: tuple = ()
+
+    def __str__(self):
+        return " ".join([f"`{self.scenario}`", *(f"`{setting}`" for setting in self.settings)])
+
+
+FURROWS = [Furrow("furrow-slice"), Furrow("drosophila-living")]
+
+
 def by_elements(size):
     """Cells stay; each is cut along, across and, half as often, in its height."""
     candidates = [Embryo(1, n, math.ceil(n / 2)) for n in range(1, 41)]

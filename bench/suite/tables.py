@@ -4,7 +4,7 @@ from pathlib import Path
 
 BEGIN, END = "<!-- Below: the output of bench/run. -->\n", "<!-- Above: the output of bench/run. -->\n"
 # Which tables a document has between these marks.
-DOCUMENTS = {"docs/performance.md": ("runs", "steps"), "docs/performance-notebook.md": ("kernels",)}
+DOCUMENTS = {"docs/performance.md": ("runs", "furrows", "steps"), "docs/performance-notebook.md": ("kernels",)}
 
 
 def number(value, digits=3):
@@ -110,6 +110,15 @@ def runs_text(results):
     return drop_empty(table, header, rows) + failures(results)
 
 
+def furrows_text(results):
+    rows = [[r["embryo"], number(r["cells"]), r["threads"], seconds(r["process_s"]), seconds(r["solver_s"]), r["steps"],
+             r["refused_steps"], number(r["newton_iterations"]), number(r["linear_iterations"]),
+             number(round(r["process_peak_MiB"]))] for r in results if "failed" not in r]
+    header = ["scenario", "cells", "threads", "start to end", "solver", "steps", "refused", "Newton iterations",
+              "linear iterations", "peak memory, MiB"]
+    return table(header, rows) + failures(results)
+
+
 def drop_empty(make, header, rows):
     """The table without columns in which nothing was measured."""
     kept = [i for i in range(len(header)) if any(row[i] != "–" for row in rows)]
@@ -122,7 +131,8 @@ def failures(results):
     return "".join(lines) + ("\n" if lines else "")
 
 
-TEXTS = {"runs": ("The whole Drosophila run", runs_text), "steps": ("One step", steps_text), "kernels": ("Kernels", kernels_text)}
+TEXTS = {"runs": ("The whole Drosophila run", runs_text), "furrows": ("Furrows that close", furrows_text),
+         "steps": ("One step", steps_text), "kernels": ("Kernels", kernels_text)}
 
 
 def page(measured, arguments, parts=tuple(TEXTS)):

@@ -246,8 +246,12 @@ std::span<const Column> columns() {
          if (!m.enclosed) return std::nullopt;
          return m.enclosed->pressure_kPa / units::pascal;
        }},
-      {"shell_fluid_um3", series, last, "Volume between the apical surface and the shell; the fluid has no pressure.",
-       [](const M& m) { return fluid_under_shell_um3(m.model, m.state.positions); }},
+      {"shell_fluid_um3", series, last,
+       "Volume between the apical surface and the shell; the fluid has no pressure. None of a slice.",
+       [](const M& m) -> std::optional<double> {
+         if (!m.rest.lumen_volume_um3) return std::nullopt;  // the shell's caps are not the sheet's
+         return fluid_under_shell_um3(m.model, m.state.positions);
+       }},
       {"flank_volume_ratio", series, last,
        "Volume of the cells at 60° to 120° from the belly, on the middle half of the length, over that at rest; a cell "
        "counts by the part of its angle that lies there. What the furrow takes from the lateral ectoderm.",

@@ -8,6 +8,8 @@
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "mechanics/contact/self_contact.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
+#include "scenario/load.hpp"
+#include "simulation/simulation.hpp"
 #include "support/models.hpp"
 
 namespace plica {
@@ -70,6 +72,11 @@ TEST(ShellFluid, IsTheShellLessWhatIsInside) {
   const double inside = whole - fluid;
   EXPECT_GT(fluid, 0);
   EXPECT_NEAR(whole - *fluid_under_shell_um3(model, shrunk), inside / 8, 1e-6 * whole);
+}
+
+// The shell around a slice has caps that the slice has not.
+TEST(ShellFluid, IsNotToldOfASlice) {
+  EXPECT_FALSE(Simulation(load_scenario(find_scenario("furrow-slice"))).measures()["shell_fluid_um3"]);
 }
 
 TEST(EnclosedVolume, HasItsRatioAndPressure) {
