@@ -127,7 +127,7 @@ struct ContractionInput {
 
 /// A cell's own state starts its programs, or scales its tension.
 struct TriggerInput {
-  std::string measure;                 // apical_area_ratio | basal_area_ratio | height_ratio; empty: none
+  std::string measure;                 // of the cell (OwnMeasure); empty: none
   std::optional<double> below, above;  // one of them
 };
 

@@ -99,7 +99,8 @@ inline constexpr auto delay_starts = std::to_array<Word<StartDelay::From>>({{"mi
 inline constexpr auto own_measures =
     std::to_array<Word<OwnMeasure>>({{"apical_area_ratio", OwnMeasure::apical_area_ratio},
                                      {"basal_area_ratio", OwnMeasure::basal_area_ratio},
-                                     {"height_ratio", OwnMeasure::height_ratio}});
+                                     {"height_ratio", OwnMeasure::height_ratio},
+                                     {"apical_stretch", OwnMeasure::apical_stretch}});
 
 // [pressure.NAME]: whether it is the apical face.
 inline constexpr auto pressure_faces = std::to_array<Word<bool>>({{"apical", true}, {"basal", false}});

@@ -59,7 +59,7 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
        "test.toml:4: cortex.a.profile.about: there is no region \"belly\"; known are: all"},
       {cortex + "tension_mN_per_m = 1\ntrigger = { below = 0.3 }",
        "test.toml:4: cortex.a.trigger.measure: is missing; give one of: apical_area_ratio | basal_area_ratio | "
-       "height_ratio"},
+       "height_ratio | apical_stretch"},
       {cortex + "tension_mN_per_m = 1\ntrigger = { measure = \"height_ratio\" }",
        "test.toml:4: cortex.a.trigger.below: is missing; give below or above, one of them"},
       {cortex + "tension_mN_per_m = 1\nfollow = { measure = \"height_ratio\", from = 1, to = 1 }",

@@ -1,8 +1,21 @@
 #include "mechanics/active/own_state.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 namespace plica {
+namespace {
+
+/// Scalar products of the mean edges of a face, along and across.
+Eigen::Matrix2d metric(const std::array<Vec3, 4>& corners) {
+  Eigen::Matrix<double, 3, 2> edges;
+  edges.col(0) = 0.5 * (corners[1] - corners[0] + corners[2] - corners[3]);
+  edges.col(1) = 0.5 * (corners[3] - corners[0] + corners[2] - corners[1]);
+  return edges.transpose() * edges;
+}
+
+}  // namespace
 
 OwnState::OwnState(const Tissue& tissue, const OwnStateRule& rule) : rule_(rule), at_rest_(tissue.cells.size(), 0.0) {
   if (!is_used()) return;
@@ -17,6 +30,14 @@ OwnState::OwnState(const Tissue& tissue, const OwnStateRule& rule) : rule_(rule)
     }
     return;
   }
+  if (rule.measure == OwnMeasure::apical_stretch) {
+    for (const Cell& cell : tissue.cells) {
+      apices_.push_back({cell.corners[4], cell.corners[5], cell.corners[6], cell.corners[7]});
+      rest_metrics_.push_back(metric({cell.rest_shape[4], cell.rest_shape[5], cell.rest_shape[6], cell.rest_shape[7]}));
+    }
+    std::ranges::fill(at_rest_, 1.0);
+    return;
+  }
   facets_ = rule.measure == OwnMeasure::apical_area_ratio ? tissue.apical_facets : tissue.basal_facets;
   for (const Facet& facet : facets_) at_rest_[facet.cell.index()] += facet_area(rest_corners(tissue, facet));
 }
@@ -26,6 +47,14 @@ std::vector<double> OwnState::sizes(std::span<const Vec3> x) const {
   for (const Facet& facet : facets_) sizes[facet.cell.index()] += facet_area(gather(x, facet));
   for (std::size_t c = 0; c < edges_.size(); ++c)
     for (const auto& [base, apex] : edges_[c]) sizes[c] += 0.25 * (x[apex.index()] - x[base.index()]).norm();
+  // The largest root of det(now - stretch^2 rest) = 0.
+  for (std::size_t c = 0; c < apices_.size(); ++c) {
+    const auto& [a, b, d, e] = apices_[c];
+    const Eigen::Matrix2d now = metric({x[a.index()], x[b.index()], x[d.index()], x[e.index()]});
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> squares(now, rest_metrics_[c],
+                                                                            Eigen::EigenvaluesOnly);
+    sizes[c] = std::sqrt(squares.eigenvalues()[1]);
+  }
   return sizes;
 }
 

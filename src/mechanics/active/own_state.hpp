@@ -10,8 +10,8 @@
 
 namespace plica {
 
-/// Of a cell, over the same at rest.
-enum class OwnMeasure { apical_area_ratio, basal_area_ratio, height_ratio };
+/// Of a cell, over the same at rest. The stretch is that of its apex, along the direction in which it is largest.
+enum class OwnMeasure { apical_area_ratio, basal_area_ratio, height_ratio, apical_stretch };
 
 /// How cells begin, or go along. Numbers of cells are those at the beginning of a step.
 struct OwnStateRule {
@@ -46,7 +46,9 @@ class OwnState {
   OwnStateRule rule_;
   std::vector<Facet> facets_;                                // areas: those of the measure's side
   std::vector<std::array<std::array<NodeId, 2>, 4>> edges_;  // heights: of each cell, from base to apex
-  std::vector<double> at_rest_;                              // cells
+  std::vector<std::array<NodeId, 4>> apices_;                // stretches: corners of each cell's apex
+  std::vector<double> at_rest_;                              // cells; of stretches, 1
+  std::vector<Eigen::Matrix2d> rest_metrics_;                // stretches: of each apex; um^2
 };
 
 }  // namespace plica

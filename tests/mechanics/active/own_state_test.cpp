@@ -26,13 +26,24 @@ TEST(OwnState, MeasuresAreOverThoseAtRest) {
   const auto middle = [&](OwnMeasure measure, std::span<const Vec3> at) {
     return OwnState(tissue, {Kind::follows, measure}).ratios(at)[1];
   };
-  for (const OwnMeasure measure :
-       {OwnMeasure::apical_area_ratio, OwnMeasure::basal_area_ratio, OwnMeasure::height_ratio})
+  for (const OwnMeasure measure : {OwnMeasure::apical_area_ratio, OwnMeasure::basal_area_ratio,
+                                   OwnMeasure::height_ratio, OwnMeasure::apical_stretch})
     EXPECT_DOUBLE_EQ(middle(measure, tissue.rest_positions), 1);
   EXPECT_DOUBLE_EQ(middle(OwnMeasure::apical_area_ratio, positions), 0.5);
   EXPECT_DOUBLE_EQ(middle(OwnMeasure::basal_area_ratio, positions), 2);
   const double slanted = std::hypot(50, 15) / 40;  // of its edges: 10 um out at the base became 20, at the apex 5
   EXPECT_NEAR(middle(OwnMeasure::height_ratio, positions), slanted, 1e-12);
+}
+
+// However it is turned, and along no axis: a simple shear by s stretches by (s + sqrt(s^2 + 4))/2.
+TEST(OwnState, StretchIsAlongTheDirectionOfTheLargest) {
+  const Tissue tissue = row();
+  const OwnState state(tissue, {Kind::follows, OwnMeasure::apical_stretch});
+  const double s = 0.6;
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  Vectors positions = tissue.rest_positions;
+  for (Vec3& x : positions) x = turn * Vec3(x.x() + s * x.y(), x.y(), x.z());
+  for (const double stretch : state.ratios(positions)) EXPECT_NEAR(stretch, (s + std::sqrt(s * s + 4)) / 2, 1e-12);
 }
 
 TEST(OwnState, StartsOnceAndRemembersWhen) {
