@@ -61,14 +61,15 @@ double distance_from(StartDelay::From from, double value, const Extent& extent) 
   return 0;
 }
 
-// Mean width of the chosen cells along an axis, um: by the apical edges that lie along it.
+// Mean width of the chosen cells along an axis, um: half-way up, as distances are measured between centres. (Cells of a
+// round embryo are wider at the apex.)
 double mean_width(const Tissue& tissue, const CellSet& cells, PatternAxis axis) {
   const EdgeDirection direction = axis == PatternAxis::along ? EdgeDirection::along : EdgeDirection::across;
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (const CellEdge& edge : tissue.cells[c].edges) {
-      if (!cells[c] || edge.side != CellSide::apical || edge.direction != direction) continue;
+      if (!cells[c] || edge.side == CellSide::lateral || edge.direction != direction) continue;
       sum +=
           (tissue.rest_positions[edge.nodes.back().index()] - tissue.rest_positions[edge.nodes.front().index()]).norm();
       ++count;

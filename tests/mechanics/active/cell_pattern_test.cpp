@@ -50,6 +50,17 @@ TEST(PatternRule, SigmaMayBeInCells) {
   for (int c = 0; c < 21; ++c) EXPECT_NEAR(a.strengths[c], b.strengths[c], 1e-14);
 }
 
+// Of a ring of 80 cells, wider at the apex than at the base: the i-th from the midline is i - 1/2 cells away from it.
+TEST(PatternRule, CellsAreCountedRoundAnEmbryo) {
+  const Tissue ring = build_slice({.length_um = 7, .diameter_um = 180, .cell_height_um = 35, .cells = {1, 20, 20}});
+  CellSet belly(80, false);
+  for (int c = 1; c < 19; ++c) belly[c] = true;
+  PatternRule pattern;
+  pattern.profile = {.shape = Shape::gaussian, .axis = PatternAxis::across, .sigma = 4.5, .in_cells = true};
+  const CellPattern found = cell_pattern(ring, belly, pattern);
+  for (int c = 1; c < 19; ++c) EXPECT_NEAR(found.strengths[c], std::exp(-0.5 * std::pow((c - 9.5) / 4.5, 2)), 1e-3);
+}
+
 // All of the strength up to x = 20, half of it midway, none from x = 60 on.
 TEST(PatternRule, TaperFadesAlongTheAxis) {
   PatternRule pattern;
