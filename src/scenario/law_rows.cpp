@@ -190,6 +190,9 @@ std::vector<Row> law_rows() {
       contact("search_um", &F::search_um, positive,
               "How near two places must be at the beginning of a step to push each other in it (µm): more than they "
               "move in a step."),
+      contact("friction", &F::friction, not_negative,
+              "Coefficient of friction: what is pressed together does not slide before the force along it is this part "
+              "of the pressing one. 0: it slides freely."),
   };
   rows.insert(rows.end(), of_contact.begin(), of_contact.end());
 

@@ -111,6 +111,9 @@ std::vector<Row> make_rows() {
                 "A rigid shell around a closed embryo; false by default for a block."),
       vitelline("gap_um", &VitellineInput::gap_um, not_negative,
                 "Gap between the apical nodes at rest and the shell (µm)."),
+      vitelline("drag_Pa_s_per_um", &VitellineInput::drag_Pa_s_per_um, not_negative,
+                "Drag of the shell on apical nodes that slide along it, where they are on it (Pa s/µm); falls to none "
+                "at 0.1 µm from it."),
 
       dynamics("surface_drag_Pa_s_per_um", &D::surface_drag_Pa_s_per_um, not_negative,
                "Drag on apical and basal faces (Pa s/µm); sets the clock."),

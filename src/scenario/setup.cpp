@@ -17,6 +17,7 @@
 #include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
+#include "mechanics/obstacles/shell_drag.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "mechanics/surroundings.hpp"
 #include "scenario/regions.hpp"
@@ -240,7 +241,8 @@ void add_contact(const Scenario& scenario, Model& model) {
        {std::pair(CellSide::apical, ContactSurface::apical), {CellSide::basal, ContactSurface::basal}})
     if (surface == alone || surface == ContactSurface::both)
       model.laws.push_back(std::make_unique<SelfContact>(
-          model.tissue, SelfContactRule{side, input.distance_um, input.stiffness_kPa_per_um, input.search_um}));
+          model.tissue,
+          SelfContactRule{side, input.distance_um, input.stiffness_kPa_per_um, input.search_um, input.friction}));
 }
 
 void add_pressures(const Scenario& scenario, Model& model) {
@@ -337,6 +339,9 @@ std::unique_ptr<Model> make_model(const Scenario& scenario) {
     Capsule shell = *tissue.outer_shape;
     shell.radius_um += scenario.vitelline.gap_um;
     model->obstacles.push_back(std::make_unique<Vitelline>(tissue, shell));
+    if (scenario.vitelline.drag_Pa_s_per_um > 0)
+      model->laws.push_back(std::make_unique<ShellDrag>(
+          tissue, shell, scenario.vitelline.drag_Pa_s_per_um * units::pascal_second_per_um));
   }
   if (const auto why = why_indivisible(tissue); why && !scenario.divisions.empty())
     errors.push_back(diagnostic_at(scenario, "division." + scenario.divisions.begin()->first,

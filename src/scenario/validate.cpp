@@ -74,6 +74,16 @@ void check_embryo(Scenario& scenario, Input& input) {
   if (sound("cells") && sound("elements_per_cell")) check_element_count(embryo, input);
 }
 
+void check_shell_drag(const Scenario& scenario, Input& input) {
+  const std::string key = "vitelline.drag_Pa_s_per_um";
+  if (scenario.vitelline.drag_Pa_s_per_um == 0 || !input.sound(key) || !input.sound("vitelline.enabled")) return;
+  if (!scenario.vitelline.enabled)
+    input.report(key, "has no meaning without a shell", "remove it, or enable the shell");
+  else if (method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton")
+    input.report(key, "drag of the shell goes with time.scheme \"newton\" and volumes that are not projected",
+                 "remove it, or choose another scheme or volume.method");
+}
+
 void check_vitelline(Scenario& scenario, Input& input) {
   if (shape_of(scenario.embryo) != EmbryoShape::block || !input.sound("vitelline.enabled")) return;
   if (input.place("vitelline.enabled") == nullptr) scenario.vitelline.enabled = false;
@@ -326,6 +336,7 @@ class RegionCheck {
 void validate(Scenario& scenario, Input& input) {
   check_embryo(scenario, input);
   check_vitelline(scenario, input);
+  check_shell_drag(scenario, input);
   check_elasticity(scenario.elasticity, input);
   check_dynamics(scenario.dynamics, input);
   check_time(scenario.time, input);

@@ -174,6 +174,9 @@ void check_own_state(const std::string& table, const CortexInput& cortex, Input&
 void check_contact(const Scenario& scenario, Input& input) {
   if (!input.sound("self_contact") || !input.sound("self_contact.surface")) return;
   const SelfContactInput& contact = scenario.self_contact;
+  if (contact.surface == "none" && contact.friction > 0 && input.sound("self_contact.friction"))
+    input.report("self_contact.friction", "has no meaning with surface \"none\"",
+                 "remove it, or choose a surface, such as \"apical\"");
   if (contact.surface == "none") return;
   if (!scenario.divisions.empty())
     input.report("self_contact.surface", "contact does not go with division yet", "remove one of the two");

@@ -6,6 +6,9 @@
 #include <map>
 #include <unordered_map>
 
+#include "mechanics/contact/closest_point.hpp"
+#include "mechanics/coulomb.hpp"
+
 namespace plica {
 namespace {
 
@@ -20,40 +23,6 @@ Pair unpacked(std::span<const double> numbers) {
             Vec3(numbers[7], numbers[8], numbers[9]), numbers[10], numbers[11]};
   for (int k = 0; k < 3; ++k) pair.nodes[k] = NodeId(static_cast<std::size_t>(numbers[1 + k]));
   return pair;
-}
-
-struct Closest {
-  std::array<double, 3> weights;
-  double distance2;
-};
-
-// The place on a triangle nearest to p, by the region of the plane that p lies over (Ericson, Real-Time Collision
-// Detection, 5.1.5).
-Closest closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp), d6 = ac.dot(cp);
-  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-  std::array<double, 3> w;
-  if (d1 <= 0 && d2 <= 0) {
-    w = {1, 0, 0};
-  } else if (d3 >= 0 && d4 <= d3) {
-    w = {0, 1, 0};
-  } else if (d6 >= 0 && d5 <= d6) {
-    w = {0, 0, 1};
-  } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-    const double v = d1 / (d1 - d3);
-    w = {1 - v, v, 0};
-  } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-    const double v = d2 / (d2 - d6);
-    w = {1 - v, 0, v};
-  } else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double v = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    w = {0, 1 - v, v};
-  } else {
-    const double sum = va + vb + vc;
-    w = {va / sum, vb / sum, vc / sum};
-  }
-  return {w, (p - w[0] * a - w[1] * b - w[2] * c).squaredNorm()};
 }
 
 /// Which triangles are near a place: a grid of cubes, each of which lists those whose box, widened, touches it.
@@ -92,6 +61,10 @@ class Grid {
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> triangles_;
 };
 
+Vec3 area_vector(const std::array<NodeId, 4>& facet, std::span<const Vec3> x) {
+  return facet_area_vector({x[facet[0].index()], x[facet[1].index()], x[facet[2].index()], x[facet[3].index()]});
+}
+
 std::array<NodeId, 3> triangle_nodes(const std::array<NodeId, 4>& facet, bool second) {
   return second ? std::array{facet[0], facet[2], facet[3]} : std::array{facet[0], facet[1], facet[2]};
 }
@@ -104,11 +77,13 @@ Vec3 SelfContact::Point::at(std::span<const Vec3> vectors) const {
   return sum / count;
 }
 
-double SelfContact::Pair::gap(const Point& p, std::span<const Vec3> vectors) const {
+Vec3 SelfContact::Pair::apart(const Point& p, std::span<const Vec3> vectors) const {
   Vec3 apart = p.at(vectors);
   for (int k = 0; k < 3; ++k) apart -= weights[k] * vectors[nodes[k].index()];
-  return normal.dot(apart);
+  return apart;
 }
+
+Vec3 SelfContact::Pair::along(const Vec3& vector) const { return vector - normal.dot(vector) * normal; }
 
 SelfContact::SelfContact(const Tissue& tissue, const SelfContactRule& rule) : rule_(rule) {
   std::map<NodeId, std::vector<std::size_t>> of_node;
@@ -122,6 +97,11 @@ SelfContact::SelfContact(const Tissue& tissue, const SelfContactRule& rule) : ru
     }
     facets_.push_back(facet.nodes);
   }
+  std::map<std::pair<NodeId, NodeId>, std::size_t> edges;
+  for (std::size_t f = 0; f < facets_.size(); ++f)
+    for (int i = 0; i < 4; ++i) edges[{facets_[f][i], facets_[f][(i + 1) % 4]}] = f;
+  for (const auto& [edge, facet] : edges)
+    if (!edges.contains({edge.second, edge.first})) rim_.push_back({edge.first, edge.second, facet});
   for (const auto& [node, facets] : of_node) {
     points_.push_back({{node}, 1, area_of_node[node]});
     neighbours_.push_back(facets);
@@ -138,14 +118,18 @@ SelfContact::SelfContact(const Tissue& tissue, const SelfContactRule& rule) : ru
 
 std::vector<Pair> SelfContact::pairs(std::span<const Vec3> x, std::span<const double> known) const {
   // Normals of nodes and of points, by the area vectors of their facets.
-  Vectors normals(x.size(), Vec3::Zero());
+  Vectors normals(x.size(), Vec3::Zero()), outward(x.size(), Vec3::Zero());
   double longest = 0;
   for (const auto& facet : facets_) {
-    const std::array<Vec3, 4> corners = {x[facet[0].index()], x[facet[1].index()], x[facet[2].index()],
-                                         x[facet[3].index()]};
-    const Vec3 area = facet_area_vector(corners);
+    const Vec3 area = area_vector(facet, x);
     for (const NodeId node : facet) normals[node.index()] += area;
-    longest = std::max({longest, (corners[2] - corners[0]).norm(), (corners[3] - corners[1]).norm()});
+    for (const int i : {0, 1}) longest = std::max(longest, (x[facet[i + 2].index()] - x[facet[i].index()]).norm());
+  }
+  // Of nodes on the rim of an open surface: the way out of it.
+  for (const auto& [from, to, facet] : rim_) {
+    const Vec3 out = (x[to.index()] - x[from.index()]).cross(area_vector(facets_[facet], x)).normalized();
+    outward[from.index()] += out;
+    outward[to.index()] += out;
   }
   Grid grid(std::max(rule_.search, 0.5 * longest), rule_.search);
   for (std::size_t t = 0; t < 2 * facets_.size(); ++t) {
@@ -178,6 +162,10 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> x, std::span<const do
       best = found;
     }
     if (!best) continue;
+    // What lies beside an open surface, beyond its rim, is not over it.
+    Vec3 out = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) out += best->weights[k] * outward[best->nodes[k].index()];
+    if (out.dot(best->apart(points_[p], x)) > rule_.distance * out.norm()) continue;
     // One that comes into view nearer than the distance does not jump away.
     const double seen_at = was_seen ? last->distance : -std::numeric_limits<double>::infinity();
     best->first_gap = best->gap(points_[p], x);
@@ -238,40 +226,65 @@ void SelfContact::for_pressed(const Step& step, const Take& take) const {
   }
 }
 
+// Calls take(point, pair, friction, velocity) for every pair that was pressed when the step began; the velocity is that
+// of the point along the triangle.
+template <class Take>
+void SelfContact::for_rubbing(const Step& step, const Take& take) const {
+  if (rule_.friction == 0) return;
+  for (std::size_t at = 1; at < step.internal.size(); at += pair_size) {
+    const Pair pair = unpacked(step.internal.subspan(at, pair_size));
+    const Point& point = points_[pair.point];
+    const double inside = pair.distance - pair.first_gap;
+    if (inside <= 0) continue;
+    const auto apart = [&](std::span<const Vec3> x) { return pair.apart(point, x); };
+    take(point, pair, Coulomb{rule_.friction * rule_.stiffness * point.area * inside},
+         pair.along(apart(step.positions) - step.before(apart)) / step.rate_s);
+  }
+}
+
 double SelfContact::energy(const Step& step) const {
   double sum = 0;
   for_pressed(step, [&](const Point& point, const Pair&, double inside) {
     sum += 0.5 * rule_.stiffness * point.area * inside * inside;
+  });
+  for_rubbing(step, [&](const Point&, const Pair&, const Coulomb& friction, const Vec3& velocity) {
+    sum += step.rate_s * friction.potential(velocity);
   });
   return sum;
 }
 
 namespace {
 
-// Adds a push along the pair's normal to the point's nodes, and against it to the triangle's.
-void add_push(const SelfContact::Point& point, const Pair& pair, double push, std::span<Vec3> forces) {
-  for (int i = 0; i < point.count; ++i) forces[point.nodes[i].index()] += push / point.count * pair.normal;
-  for (int k = 0; k < 3; ++k) forces[pair.nodes[k].index()] -= push * pair.weights[k] * pair.normal;
+// Adds a push to the point's nodes, and its opposite to the triangle's.
+void add_push(const SelfContact::Point& point, const Pair& pair, const Vec3& push, std::span<Vec3> forces) {
+  for (int i = 0; i < point.count; ++i) forces[point.nodes[i].index()] += push / point.count;
+  for (int k = 0; k < 3; ++k) forces[pair.nodes[k].index()] -= pair.weights[k] * push;
 }
 
 }  // namespace
 
 void SelfContact::add_forces(const Step& step, std::span<Vec3> forces) const {
   for_pressed(step, [&](const Point& point, const Pair& pair, double inside) {
-    add_push(point, pair, rule_.stiffness * point.area * inside, forces);
+    add_push(point, pair, rule_.stiffness * point.area * inside * pair.normal, forces);
+  });
+  for_rubbing(step, [&](const Point& point, const Pair& pair, const Coulomb& friction, const Vec3& velocity) {
+    add_push(point, pair, friction.force(velocity), forces);
   });
 }
 
 void SelfContact::add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                       std::span<Vec3> product) const {
   for_pressed(step, [&](const Point& point, const Pair& pair, double) {
-    add_push(point, pair, rule_.stiffness * point.area * pair.gap(point, direction), product);
+    add_push(point, pair, rule_.stiffness * point.area * pair.gap(point, direction) * pair.normal, product);
+  });
+  for_rubbing(step, [&](const Point& point, const Pair& pair, const Coulomb& friction, const Vec3& velocity) {
+    const Vec3 slip = pair.along(pair.apart(point, direction));
+    add_push(point, pair, pair.along(friction.resistance(velocity) * slip) / step.rate_s, product);
   });
 }
 
 void SelfContact::add_tangent(const Step& step, TangentSink& tangent) const {
-  for_pressed(step, [&](const Point& point, const Pair& pair, double) {
-    const Mat3 along = rule_.stiffness * point.area * pair.normal * pair.normal.transpose();
+  const auto add = [&](const Point& point, const Pair& pair, const Mat3& stiffness) {
     const std::vector<NodeId> nodes = nodes_of(pair);
     const auto weight = [&](int i) { return i < point.count ? 1.0 / point.count : -pair.weights[i - point.count]; };
     // One that has come from so far that its pattern leaves it out has what couples nodes of one side.
@@ -279,8 +292,23 @@ void SelfContact::add_tangent(const Step& step, TangentSink& tangent) const {
     for (int i = 0; i < static_cast<int>(nodes.size()); ++i)
       for (int j = 0; j <= i; ++j)
         if (whole || (i < point.count) == (j < point.count))
-          tangent.add_block(nodes[i], nodes[j], weight(i) * weight(j) * along);
+          tangent.add_block(nodes[i], nodes[j], weight(i) * weight(j) * stiffness);
+  };
+  for_pressed(step, [&](const Point& point, const Pair& pair, double) {
+    add(point, pair, rule_.stiffness * point.area * pair.normal * pair.normal.transpose());
   });
+  for_rubbing(step, [&](const Point& point, const Pair& pair, const Coulomb& friction, const Vec3& velocity) {
+    const Mat3 along = Mat3::Identity() - pair.normal * pair.normal.transpose();
+    add(point, pair, along * friction.resistance(velocity) * along / step.rate_s);
+  });
+}
+
+double SelfContact::rounding(const Step& step, double position_rounding) const {
+  double sum = 0;
+  for_rubbing(step, [&](const Point&, const Pair&, const Coulomb& friction, const Vec3&) {
+    sum += (friction.resistance(Vec3::Zero()) / step.rate_s).squaredNorm();
+  });
+  return std::sqrt(sum) * position_rounding;
 }
 
 NodeGroups SelfContact::node_groups(std::span<const double> internal) const {

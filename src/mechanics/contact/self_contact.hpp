@@ -1,4 +1,4 @@
-// Contact of a surface with itself: points against facets, without friction (docs/theory/self_contact.md).
+// Contact of a surface with itself: points against facets (docs/theory/self_contact.md).
 //
 // At the beginning of a step each point of the surface takes the nearest facing triangle of it, outside its own
 // neighbourhood. The place q on that triangle, as weights of its nodes, and the normal N there stay fixed for the step;
@@ -6,7 +6,7 @@
 //   E = k w/2 (distance - N.(p - q))^2,   w the area that the point stands for.
 // So within a step the law is linear in its forces, and gaps have a sign: a point beyond the surface is pushed out
 // again. A point that faces the other side of a thin ridge lies beyond that, too: only one that has gone through under
-// the eyes of the law counts as inside.
+// the eyes of the law counts as inside. Friction is Coulomb's, by the pressure at the step's beginning.
 #pragma once
 
 #include <array>
@@ -22,6 +22,7 @@ struct SelfContactRule {
   double distance = 0.4;  // um
   double stiffness = 1;   // k, nN/um^3 (kPa/um)
   double search = 6;      // um: how near a triangle must be at the step's beginning
+  double friction = 0;    // the coefficient
 };
 
 /// The pairs of a step are its internal state, found again when a step is accepted. Those that may touch in it join
@@ -36,6 +37,7 @@ class SelfContact final : public Law {
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] double rounding(const Step& step, double position_rounding) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
   [[nodiscard]] int pattern_revision(std::span<const double> internal) const override {
     return internal.empty() ? 0 : static_cast<int>(internal.front());
@@ -65,8 +67,14 @@ class SelfContact final : public Law {
     Vec3 normal;
     double distance = 0;   // um: where it begins to push. That of the rule; less where it was nearer when first seen
     double first_gap = 0;  // um: at the step's beginning
-    /// N.(p - q); of any vectors of nodes.
-    [[nodiscard]] double gap(const Point& point, std::span<const Vec3> vectors) const;
+    /// p - q; of any vectors of nodes.
+    [[nodiscard]] Vec3 apart(const Point& p, std::span<const Vec3> vectors) const;
+    /// N.(p - q)
+    [[nodiscard]] double gap(const Point& p, std::span<const Vec3> vectors) const {
+      return normal.dot(apart(p, vectors));
+    }
+    /// What of it lies in the triangle's plane.
+    [[nodiscard]] Vec3 along(const Vec3& vector) const;
   };
   /// In the order of points. `known`: the internal state of the step that ends at these positions.
   [[nodiscard]] std::vector<Pair> pairs(std::span<const Vec3> positions, std::span<const double> known = {}) const;
@@ -84,9 +92,16 @@ class SelfContact final : public Law {
   [[nodiscard]] std::vector<double> packed(const std::vector<Pair>& pairs, std::span<const double> before) const;
   template <class Take>
   void for_pressed(const Step& step, const Take& take) const;
+  template <class Take>
+  void for_rubbing(const Step& step, const Take& take) const;
 
   SelfContactRule rule_;
   std::vector<std::array<NodeId, 4>> facets_;
+  struct RimEdge {
+    NodeId from, to;
+    std::size_t facet;
+  };
+  std::vector<RimEdge> rim_;                          // edges of one facet only, counter-clockwise about it
   std::vector<Point> points_;                         // nodes of the surface, then means of its facets
   std::vector<std::vector<std::size_t>> neighbours_;  // points: facets that share a node with theirs, sorted
 };

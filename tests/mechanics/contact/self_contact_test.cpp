@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "support/bodies.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
 
@@ -136,6 +137,20 @@ TEST(SelfContact, MatrixCouplesWhatMayTouch) {
   const auto revision_after = [&](double by) { return law.pattern_revision(law.next_internal(parted(by).step())); };
   EXPECT_EQ(revision_after(0), law.pattern_revision(rest.internal));
   EXPECT_NE(revision_after(1), law.pattern_revision(rest.internal));
+}
+
+// What lies beside an open sheet is not over it, however near its rim may be.
+TEST(SelfContact, BesideARimIsNotOverIt) {
+  const auto pairs_at = [](double aside) {
+    Bodies bodies;
+    bodies.add({4, 4, 1}, [](int i, int j, int k) { return Vec3(10 * i, 10 * j, 10 * k); });
+    bodies.add({4, 4, 1}, [&](int i, int j, int k) { return Vec3(10 * j, 10 * i + aside, 21 - 10 * k); });
+    const Tissue tissue = bodies.tissue();
+    return SelfContact(tissue, {.distance = 0.4, .search = 4}).pairs(tissue.rest_positions).size();
+  };
+  EXPECT_EQ(pairs_at(0), 82u);  // 25 nodes and 16 facets of either
+  EXPECT_EQ(pairs_at(41), 0u);
+  EXPECT_EQ(pairs_at(-41), 0u);
 }
 
 // A point that has gone through is pushed back out.

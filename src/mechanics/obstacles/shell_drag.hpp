@@ -1,0 +1,40 @@
+// Viscous drag of the shell on the apical surface where it touches: what slides along the shell shears a film
+// (docs/theory/vitelline.md). Force on a node -c (1 - g/film) T v, g its gap and T the shell's tangent plane there,
+// both at the step's beginning, none where g is above the film.
+#pragma once
+
+#include <vector>
+
+#include "mechanics/law.hpp"
+#include "mechanics/obstacles/vitelline.hpp"
+
+namespace plica {
+
+class ShellDrag final : public Law {
+ public:
+  static constexpr double film_um = 0.1;
+
+  /// `drag` in nN s/um^3 (1 Pa s/um is 1e-3), of the area at rest.
+  ShellDrag(const Tissue& tissue, const Capsule& shell, double drag);
+
+  [[nodiscard]] std::string_view name() const override { return "shell-drag"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<ShellDrag>(*this); }
+  [[nodiscard]] double energy(const Step& step) const override;
+  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+                                                    std::span<const Vec3> positions) const override;
+  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
+
+ private:
+  template <class Take>
+  void for_touching(const Step& step, const Take& take) const;
+  void take_areas(const Tissue& tissue);
+
+  Vitelline shell_;
+  double drag_;
+  std::vector<double> coefficients_;  // nodes; nN s/um
+};
+
+}  // namespace plica
