@@ -71,7 +71,7 @@ struct Measured {
   Kernels kernels;
   int threads;
 
-  Corotational elasticity{scene.tissue, ElasticModuli::from_young(1, 0.45), 0, kernels};
+  Corotational elasticity{scene.tissue, ElasticModuli::from_young(1, 0.45), 0, {}, kernels};
   CellVolumes volumes{scene.tissue, kernels};
   Step step{scene.positions, scene.tissue.rest_positions, {}, 0.05, 0.05};
   Step warped{scene.positions, scene.tissue.rest_positions, {}, 0.05, 0.05, true};
@@ -98,7 +98,7 @@ struct Measured {
          [=](std::size_t n) { counted::corotational().add_product(w, 0, n, d, out); }, corotational, 4 * vec},
         {"tangent blocks", [this] { elasticity.add_tangent(step, sink); },
          [=](std::size_t n) {
-           const auto blocks = std::make_unique<CorotationalBlocks>();
+           const auto blocks = std::make_unique<HexahedronBlocks>();
            for (std::size_t b = 0; b < n; ++b) counted::corotational().write_blocks(e, b, *blocks);
          },
          corotational, vec},

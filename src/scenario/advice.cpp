@@ -38,6 +38,7 @@ std::set<std::string> used_regions(const Scenario& scenario) {
   const auto take_all = [&](const auto& tables) {
     for (const auto& [name, table] : tables) used.insert(table.region);
   };
+  take_all(scenario.region_elasticities);
   take_all(scenario.contractions);
   take_all(scenario.cortices);
   take_all(scenario.holds);
@@ -108,7 +109,7 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
     warn("time.step_s is longer than the whole run");
   advise_on_shape_memory(scenario, model, note, warn);
   if (method_of(scenario.volume) == VolumeMethod::coupled &&
-      model_of(scenario.elasticity) == ElasticModel::corotational)
+      model_of(scenario.elasticity) != ElasticModel::shape_memory)
     note(
         "every cell's volume is held exactly, so Poisson's ratio sets only the shear modulus and how far parts of a "
         "cell may swell at each other's cost");

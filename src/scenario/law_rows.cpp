@@ -5,6 +5,8 @@ namespace plica {
 namespace {
 
 using S = Scenario;
+using E = ElasticityInput;
+using R = RegionElasticityInput;
 using C = ContractionInput;
 using P = PressureInput;
 using X = CortexInput;
@@ -79,32 +81,47 @@ void add_pattern(std::vector<Row>& rows, const RowsIn<Table>& table) {
 
 std::vector<Row> law_rows() {
   const auto elasticity = rows_in("elasticity", &S::elasticity);
+  const auto of_region = rows_in("elasticity.*", &S::region_elasticities);
   const auto contraction = rows_in("contraction.*", &S::contractions);
   const auto cortex = rows_in("cortex.*", &S::cortices);
   const auto enclosed = rows_in("enclosed.*", &S::enclosed);
   const auto contact = rows_in("self_contact", &S::self_contact);
   const auto pressure = rows_in("pressure.*", &S::pressures);
   std::vector<Row> rows = {
-      elasticity("model", &ElasticityInput::model, one_of(words::elastic_models),
-                 "Elastic law of a cell: isotropic in a frame that turns with it, or springs from its nodes to their "
-                 "places in the rest shape that follows it."),
-      elasticity("young_modulus_Pa", &ElasticityInput::young_modulus_Pa, positive, "Young's modulus (Pa)."),
       elasticity(
-          "poisson_ratio", &ElasticityInput::poisson_ratio,
-          {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
+          "model", &E::model, one_of(words::elastic_models),
+          "Elastic law of a cell: linear and isotropic in a frame that turns with it; neo-Hookean, for soft cells "
+          "at large strains, with a rest shape that may flow; or springs from its nodes to their places in the "
+          "rest shape that follows it."),
+      elasticity("young_modulus_Pa", &E::young_modulus_Pa, positive, "Young's modulus (Pa)."),
+      elasticity(
+          "poisson_ratio", &E::poisson_ratio, {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
           "Poisson's ratio; with coupled volumes it only sets the shear modulus and the dilatation inside a cell."),
-      elasticity("attractor_stiffness_nN_per_um", &ElasticityInput::attractor_stiffness_nN_per_um,
+      elasticity(
+          "relaxation_s", &E::relaxation_s, {.low = 0, .low_included = false, .word_for_none = "none"},
+          "Model neo-hookean: time in which the rest shape of a cell follows its shape (s): what is held in another "
+          "shape forgets the old one."),
+      elasticity("relaxation_min", &E::relaxation_s, {.low = 0, .low_included = false, .word_for_none = "none"},
+                 "The same in minutes.", {.instead_of = "relaxation_s", .scale = 60}),
+      elasticity("attractor_stiffness_nN_per_um", &E::attractor_stiffness_nN_per_um,
                  {.low = 0, .low_included = false, .word_for_none = "derived"},
                  "Model shape-memory: stiffness of the springs from the nodes of a cell to the attractor (nN/µm), or "
                  "such that the mean shear modulus is that of young_modulus_Pa and poisson_ratio."),
-      elasticity("attractor_preload_nN", &ElasticityInput::attractor_preload_nN, not_negative,
+      elasticity("attractor_preload_nN", &E::attractor_preload_nN, not_negative,
                  "Model shape-memory: tension of these springs that does not depend on their length (nN)."),
       elasticity(
-          "attractor_preload_length_um", &ElasticityInput::attractor_preload_length_um, positive,
+          "attractor_preload_length_um", &E::attractor_preload_length_um, positive,
           "Model shape-memory: how far from its place a node feels 0.7 of the preload (µm); it has no direction at 0."),
-      elasticity("corner_barrier_Pa", &ElasticityInput::corner_barrier_Pa, not_negative,
+      elasticity("corner_barrier_Pa", &E::corner_barrier_Pa, not_negative,
                  "Pushes corners of elements back that have under 0.15 of their Jacobian at rest, before they turn "
                  "inside out (Pa); 0: nothing does. For tight folds of soft cells, about the elastic modulus."),
+      of_region("region", &R::region, anything, "Region whose cells have other values.", {.required = true}),
+      of_region("young_modulus_Pa", &R::young_modulus_Pa, positive,
+                "Young's modulus of its cells (Pa); Poisson's ratio is that of all."),
+      of_region("relaxation_s", &R::relaxation_s, positive,
+                "Model neo-hookean: time in which their rest shapes follow their shapes (s); without it that of all."),
+      of_region("relaxation_min", &R::relaxation_s, positive, "The same in minutes.",
+                {.instead_of = "relaxation_s", .scale = 60}),
 
       contraction("region", &C::region, anything, "Region whose cells contract.", {.required = true}),
       contraction("edges", &C::edges, one_of(words::edges), "Edges of the cells that contract."),

@@ -287,6 +287,8 @@ std::span<const TableInfo> schema_tables() {
        "A named set of cells. Selectors that are given are intersected; `all` always exists and is every cell.",
        names_in(&S::regions)},
       {"elasticity", "The elastic law of the cells.", {}},
+      {"elasticity.*", "What cells of a region have instead; no cell is in the regions of two such tables.",
+       names_in(&S::region_elasticities)},
       {"volume", "How cells keep their volume.", {}},
       {"vitelline", "The shell around the embryo.", {}},
       {"dynamics", "What resists motion; drag and density cannot both be 0.", {}},

@@ -16,6 +16,7 @@
 #include "mechanics/contact/self_contact.hpp"
 #include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/corotational.hpp"
+#include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
 #include "mechanics/obstacles/shell_drag.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
@@ -129,6 +130,36 @@ void check_contact_at_rest(const Scenario& scenario, const Tissue& tissue, std::
                                    "mend the mesh, or give \"none\""));
 }
 
+// Where two tables speak of one cell, nobody knows which is meant.
+void check_elasticities_apart(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
+  std::vector<const std::string*> spoken_of(tissue.cells.size(), nullptr);
+  for (const auto& [name, input] : scenario.region_elasticities) {
+    const CellSet& cells = tissue.regions.at(input.region);
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      if (!cells[c]) continue;
+      if (spoken_of[c]) {
+        errors.push_back(diagnostic_at(scenario, "elasticity." + name,
+                                       fmt::format("elasticity.{} speaks of cell {}, too", *spoken_of[c], c),
+                                       "give them regions without common cells, by `except` for instance"));
+        break;
+      }
+      spoken_of[c] = &name;
+    }
+  }
+}
+
+/// A number a cell: what a table says of its region, or else `common`.
+std::vector<double> by_region(const Scenario& scenario, const Tissue& tissue,
+                              std::optional<double> RegionElasticityInput::*key, double common) {
+  std::vector<double> values(tissue.cells.size(), common);
+  for (const auto& [name, input] : scenario.region_elasticities) {
+    const CellSet& cells = tissue.regions.at(input.region);
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      if (cells[c]) values[c] = (input.*key).value_or(common);
+  }
+  return values;
+}
+
 void add_elasticity(const Scenario& scenario, Model& model) {
   const ElasticityInput& input = scenario.elasticity;
   const double young_modulus = input.young_modulus_Pa * units::pascal;
@@ -145,8 +176,24 @@ void add_elasticity(const Scenario& scenario, Model& model) {
     model.laws.push_back(std::move(law));
     return;
   }
-  model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, viscosity));
-  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus(), model.volumes().is_held()));
+  std::vector<double> factors =
+      by_region(scenario, model.tissue, &RegionElasticityInput::young_modulus_Pa, input.young_modulus_Pa);
+  for (double& factor : factors) factor /= input.young_modulus_Pa;
+  model.stiffness_scale *= std::ranges::max(factors);
+  double bulk_modulus = moduli.bulk_modulus();
+  if (model_of(input) == ElasticModel::neo_hookean) {
+    bulk_modulus = moduli.lame_lambda;
+    std::vector<double> shear_moduli = factors;
+    for (double& modulus : shear_moduli) modulus *= moduli.shear_modulus;
+    std::vector<double> relaxation_s =
+        by_region(scenario, model.tissue, &RegionElasticityInput::relaxation_s, input.relaxation_s.value_or(0));
+    if (std::ranges::max(relaxation_s) == 0) relaxation_s.clear();
+    model.laws.push_back(std::make_unique<NeoHookean>(model.tissue, std::move(shear_moduli), std::move(relaxation_s)));
+  } else {
+    model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, viscosity, factors));
+  }
+  if (bulk_modulus > 0)
+    model.laws.push_back(std::make_unique<Dilatation>(model.tissue, bulk_modulus, model.volumes().is_held(), factors));
 }
 
 /// Of a contraction or a cortex.
@@ -306,6 +353,7 @@ Tissue make_tissue(const Scenario& scenario) {
   std::vector<Diagnostic> errors;
   check_rest_shape(scenario, tissue, errors);
   add_regions(scenario, tissue, errors);
+  if (errors.empty()) check_elasticities_apart(scenario, tissue, errors);
   if (!errors.empty()) throw ScenarioError(std::move(errors));
   return tissue;
 }

@@ -227,6 +227,8 @@ class RegionCheck {
     };
     for (const auto& [name, it] : scenario_.contractions) check_acting("contraction." + name, it);
     for (const auto& [name, it] : scenario_.cortices) check_acting("cortex." + name, it);
+    for (const auto& [name, it] : scenario_.region_elasticities)
+      check_reference("elasticity." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.holds) check_reference("hold." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.pressures) check_reference("pressure." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.divisions) check_reference("division." + name + ".region", it.region);
@@ -337,7 +339,8 @@ void validate(Scenario& scenario, Input& input) {
   check_embryo(scenario, input);
   check_vitelline(scenario, input);
   check_shell_drag(scenario, input);
-  check_elasticity(scenario.elasticity, input);
+  check_elasticity(scenario, input);
+  check_region_elasticities(scenario, input);
   check_dynamics(scenario.dynamics, input);
   check_time(scenario.time, input);
   check_volume_and_time(scenario.volume, scenario.time, input);

@@ -16,9 +16,13 @@ void validate(Scenario& scenario, Input& input);
 /// expectations of monitors that are not there.
 void check_monitors(const Scenario& scenario, Input& input);
 
-/// Keys of the attractor belong to the model "shape-memory": with another they are an error where they were given along
-/// with the model or after it, and dropped where they were inherited from a scenario of the other model.
-void check_elasticity(ElasticityInput& elasticity, Input& input);
+/// Keys of the attractor belong to the model "shape-memory", relaxation to "neo-hookean": with another they are an
+/// error where they were given along with the model or after it, and dropped where they were inherited from a scenario
+/// of the other model. And what a neo-Hookean law cannot be.
+void check_elasticity(Scenario& scenario, Input& input);
+
+/// Other values in a region: which, and of which model.
+void check_region_elasticities(const Scenario& scenario, Input& input);
 
 /// The same of the projection's keys, and of those of the conjugate gradients.
 void check_volume_and_time(VolumeInput& volume, TimeInput& time, Input& input);

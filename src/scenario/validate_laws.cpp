@@ -81,17 +81,45 @@ void check_delay(const std::string& path, DelayInput& delay, Input& input) {
 
 }  // namespace
 
-void check_elasticity(ElasticityInput& elasticity, Input& input) {
-  if (!input.sound("elasticity.model") || model_of(elasticity) == ElasticModel::shape_memory) return;
+void check_elasticity(Scenario& scenario, Input& input) {
+  if (!input.sound("elasticity.model")) return;
+  ElasticityInput& elasticity = scenario.elasticity;
   const ElasticityInput defaults;
-  const auto check = [&](const std::string& key, auto ElasticityInput::*field) {
-    drop("elasticity." + key, elasticity.*field, defaults.*field, "elasticity.model",
-         fmt::format("has no meaning with model \"{}\"", elasticity.model),
-         "remove it, or choose model \"shape-memory\"", input);
+  const auto only = [&](const std::string& model, const std::string& key, auto ElasticityInput::*field) {
+    if (elasticity.model != model)
+      drop("elasticity." + key, elasticity.*field, defaults.*field, "elasticity.model",
+           fmt::format("has no meaning with model \"{}\"", elasticity.model),
+           fmt::format("remove it, or choose model \"{}\"", model), input);
   };
-  check("attractor_stiffness_nN_per_um", &ElasticityInput::attractor_stiffness_nN_per_um);
-  check("attractor_preload_nN", &ElasticityInput::attractor_preload_nN);
-  check("attractor_preload_length_um", &ElasticityInput::attractor_preload_length_um);
+  only("shape-memory", "attractor_stiffness_nN_per_um", &ElasticityInput::attractor_stiffness_nN_per_um);
+  only("shape-memory", "attractor_preload_nN", &ElasticityInput::attractor_preload_nN);
+  only("shape-memory", "attractor_preload_length_um", &ElasticityInput::attractor_preload_length_um);
+  only("neo-hookean", "relaxation_s", &ElasticityInput::relaxation_s);
+  if (model_of(elasticity) != ElasticModel::neo_hookean) return;
+  if (elasticity.poisson_ratio < 0 && input.sound("elasticity.poisson_ratio"))
+    input.report("elasticity.poisson_ratio",
+                 fmt::format("{} is below 0, which model \"neo-hookean\" cannot have", elasticity.poisson_ratio),
+                 "give a number >= 0, or choose model \"corotational\"");
+  if (scenario.dynamics.shear_viscosity_Pa_s > 0 && input.sound("dynamics.shear_viscosity_Pa_s"))
+    input.report("dynamics.shear_viscosity_Pa_s", "model \"neo-hookean\" has no such viscosity",
+                 "give 0, and elasticity.relaxation_min for cells that flow, or choose model \"corotational\"");
+}
+
+void check_region_elasticities(const Scenario& scenario, Input& input) {
+  const ElasticModel model = model_of(scenario.elasticity);
+  for (const auto& [name, it] : scenario.region_elasticities) {
+    const std::string table = "elasticity." + name;
+    if (!input.sound(table) || !input.sound("elasticity.model")) continue;
+    const auto sound = [&](const std::string& key) { return input.sound(table + key); };
+    if (model == ElasticModel::shape_memory)
+      input.report(table, "model \"shape-memory\" is the same in all cells",
+                   "remove it, or choose model \"corotational\" or \"neo-hookean\"");
+    else if (!it.young_modulus_Pa && !it.relaxation_s && sound(".young_modulus_Pa") && sound(".relaxation_s"))
+      input.report(table, "does nothing", "give young_modulus_Pa or relaxation_min");
+    else if (it.relaxation_s && model != ElasticModel::neo_hookean)
+      input.report(table + ".relaxation_s", fmt::format("has no meaning with model \"{}\"", scenario.elasticity.model),
+                   "remove it, or choose model \"neo-hookean\"");
+  }
 }
 
 void check_volume_and_time(VolumeInput& volume, TimeInput& time, Input& input) {

@@ -65,8 +65,10 @@ inline constexpr auto embryo_shapes = std::to_array<Word<EmbryoShape>>({{"pill",
                                                                         {"block", EmbryoShape::block},
                                                                         {"file", EmbryoShape::file}});
 
-inline constexpr auto elastic_models = std::to_array<Word<ElasticModel>>(
-    {{"corotational", ElasticModel::corotational}, {"shape-memory", ElasticModel::shape_memory}});
+inline constexpr auto elastic_models =
+    std::to_array<Word<ElasticModel>>({{"corotational", ElasticModel::corotational},
+                                       {"neo-hookean", ElasticModel::neo_hookean},
+                                       {"shape-memory", ElasticModel::shape_memory}});
 
 // [volume]
 inline constexpr auto volume_methods = std::to_array<Word<VolumeMethod>>(

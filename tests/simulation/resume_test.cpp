@@ -67,6 +67,7 @@ void expect_same(const State& a, const State& b) {
   EXPECT_EQ(a.trend.mean_velocities, b.trend.mean_velocities);
   EXPECT_EQ(a.trend.accelerations, b.trend.accelerations);
   EXPECT_EQ(a.trend.multiplier_rates, b.trend.multiplier_rates);
+  EXPECT_EQ(a.internals, b.internals);
 }
 
 // Goes on from every `every`th step of the run.
@@ -128,6 +129,21 @@ TEST(Resume, WithMultigrid) { expect_resumable("drosophila", {"time.end_s=2", "t
 TEST(Resume, WithThePapersAlgorithm) { expect_resumable("drosophila-paper", {"time.end_s=40"}, 3); }
 
 TEST(Resume, WithShapeMemory) { expect_resumable("drosophila-shape-memory", {"time.end_s=5"}, 9); }
+
+// Rest shapes that flow.
+const std::string flowing = "elasticity.relaxation_min=1", neo_hookean = "elasticity.model=\"neo-hookean\"";
+
+TEST(Resume, WithCellsThatFlow) {
+  expect_resumable("furrow-slice", {"time.end_min=3", neo_hookean, flowing}, 7);
+  expect_resumable("drosophila", {"time.end_s=10", neo_hookean, flowing, first_order}, 5);
+}
+
+TEST(Resume, WithCellsThatFlowAcrossDivisions) {
+  expect_resumable("drosophila-division-twice",
+                   {"division.floor.at_min=0.2", "division.floor.growth_min=0.3", "division.borders.at_min=0.5",
+                    "time.end_min=0.7", second_order, neo_hookean, flowing},
+                   11);
+}
 
 // Divisions lie behind some memories and before others; growth is under way in many.
 TEST(Resume, AcrossDivisions) {

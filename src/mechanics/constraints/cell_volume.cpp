@@ -61,7 +61,7 @@ VolumeStep CellVolumes::kernel_step(std::span<const Vec3> positions, std::span<c
           .elements = elements_.size(),
           .positions = numbers(positions),
           .pressures = pressures.data(),
-          .bulk_modulus = 0,
+          .bulk_moduli = nullptr,
           .semidefinite_tangent = false};
 }
 
@@ -148,8 +148,13 @@ void CellVolumes::add_tangent(std::span<const Vec3> positions, std::span<const d
       tangent.takes_apart());
 }
 
-Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact, Kernels kernels)
-    : bulk_modulus_(bulk_modulus), cells_are_exact_(cells_are_exact), kernels_(kernels), volumes_(tissue, kernels) {
+Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact, std::span<const double> factors,
+                       Kernels kernels)
+    : bulk_moduli_(tissue.cells.size(), bulk_modulus),
+      cells_are_exact_(cells_are_exact),
+      kernels_(kernels),
+      volumes_(tissue, kernels) {
+  for (std::size_t c = 0; c < factors.size(); ++c) bulk_moduli_[c] *= factors[c];
   if (!cells_are_exact || tissue.elements.size() > tissue.cells.size()) elements_ = tissue.elements;
 }
 
@@ -158,7 +163,7 @@ VolumeStep Dilatation::kernel_step(const Step& step) const {
           .elements = elements_.size(),
           .positions = numbers(step.positions),
           .pressures = nullptr,
-          .bulk_modulus = bulk_modulus_,
+          .bulk_moduli = bulk_moduli_.data(),
           .semidefinite_tangent = step.semidefinite_tangent};
 }
 
@@ -167,7 +172,7 @@ double Dilatation::energy(const Step& step) const {
   return volumes_.chunks().sum_over_elements([&](std::size_t e) {
     const double rest_volume = volumes_.rest_volume(e);
     const double strain = hex_volume(gather(step.positions, elements_[e])) / rest_volume - 1;
-    return bulk_modulus_ * rest_volume * strain * strain / 2;
+    return volumes_.of_cell(e, bulk_moduli_) * rest_volume * strain * strain / 2;
   });
 }
 
@@ -193,12 +198,13 @@ void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
         const auto& nodes = elements_[e];
         const HexPoints points = gather(step.positions, nodes);
         const double rest_volume = volumes_.rest_volume(e);
-        const double pressure = bulk_modulus_ * (1 - hex_volume(points) / rest_volume);
+        const double bulk_modulus = volumes_.of_cell(e, bulk_moduli_);
+        const double pressure = bulk_modulus * (1 - hex_volume(points) / rest_volume);
         if (!step.semidefinite_tangent) add_volume_hessian(nodes, points, -pressure, tangent);
         const auto gradient = hex_volume_gradient(points);
         for (int i = 0; i < 8; ++i)
           for (int j = 0; j <= i; ++j)
-            tangent.add_block(nodes[i], nodes[j], bulk_modulus_ / rest_volume * gradient[i] * gradient[j].transpose());
+            tangent.add_block(nodes[i], nodes[j], bulk_modulus / rest_volume * gradient[i] * gradient[j].transpose());
       },
       tangent.takes_apart());
 }
@@ -209,8 +215,11 @@ NodeGroups Dilatation::node_groups(std::span<const double> /*internal*/) const {
   return groups;
 }
 
-std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
-  return std::make_unique<Dilatation>(tissue, bulk_modulus_, cells_are_exact_, kernels_);
+std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Division& division,
+                                                std::span<const Vec3>) const {
+  auto after = std::make_unique<Dilatation>(tissue, 0, cells_are_exact_, std::span<const double>(), kernels_);
+  after->bulk_moduli_ = inherited(division, bulk_moduli_);
+  return after;
 }
 
 void Dilatation::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {

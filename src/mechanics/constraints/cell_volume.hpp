@@ -28,6 +28,10 @@ class VolumeElements {
   [[nodiscard]] double rest_volume(std::size_t element) const {
     return batches_[element / 8].rest_volumes[element % 8];
   }
+  /// That of the element's cell, among values of cells.
+  [[nodiscard]] double of_cell(std::size_t element, std::span<const double> values) const {
+    return values[static_cast<std::size_t>(batches_[element / 8].cells[element % 8])];
+  }
 
  private:
   void fit(const Tissue& tissue, std::size_t element);
@@ -93,16 +97,16 @@ class CellVolumes final : public Constraint {
 };
 
 /// The bulk modulus at work: energy kappa V0 (V/V0 - 1)^2 / 2 an element, with exact volumes; V0 is the element's part
-/// of the volume that its cell is held at, else its rest volume. It replaces the mean volumetric part that Corotational
-/// leaves out. Where a cell is one element of exact volume it is zero; within a cell of several it resists one element
-/// growing at another's cost; without the constraint it is the whole volume elasticity. Its semidefinite tangent leaves
-/// out the pressure times d2V/dx2.
+/// of the volume that its cell is held at, else its rest volume. It replaces the mean volumetric part that the elastic
+/// laws leave out. Where a cell is one element of exact volume it is zero; within a cell of several it resists one
+/// element growing at another's cost; without the constraint it is the whole volume elasticity. Its semidefinite
+/// tangent leaves out the pressure times d2V/dx2.
 class Dilatation final : public Law {
  public:
-  /// `bulk_modulus` in kPa. With `cells_are_exact` (cells' volumes are held) it is left out while every cell is one
-  /// element.
+  /// `bulk_modulus` in kPa, times the cell's `factors`, where given. With `cells_are_exact` (cells' volumes are held)
+  /// it is left out while every cell is one element.
   Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact = false,
-             Kernels kernels = chosen_kernels());
+             std::span<const double> factors = {}, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "dilatation"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Dilatation>(*this); }
@@ -120,7 +124,7 @@ class Dilatation final : public Law {
   [[nodiscard]] VolumeStep kernel_step(const Step& step) const;
 
   std::vector<std::array<NodeId, 8>> elements_;  // none while it is left out
-  double bulk_modulus_;
+  std::vector<double> bulk_moduli_;              // cells; kPa
   bool cells_are_exact_;
   Kernels kernels_;
   VolumeElements volumes_;

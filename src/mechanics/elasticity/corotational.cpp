@@ -4,6 +4,7 @@
 
 #include "core/parallel.hpp"
 #include "mechanics/elasticity/turning_elements.hpp"
+#include "tissue/division.hpp"
 
 namespace plica {
 namespace {
@@ -59,8 +60,10 @@ void nearest_rotation(const double (&F)[9], double (&R)[9]) {
   Eigen::Map<Mat3>{R} = rotation;
 }
 
-Corotational::Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity, Kernels kernels)
+Corotational::Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity,
+                           std::vector<double> factors, Kernels kernels)
     : moduli_(moduli),
+      factors_(factors.empty() ? std::vector<double>(tissue.cells.size(), 1.0) : std::move(factors)),
       shear_viscosity_(shear_viscosity),
       kernels_(kernels),
       chunks_(tissue.elements),
@@ -91,8 +94,9 @@ void Corotational::fit(const Tissue& tissue, std::size_t place) {
     put_vector(X, lane, batch.hourglass[a]);
   }
   const double volume = hex_volume(rest);
-  batch.shear[lane] = 2 * moduli_.shear_modulus * volume;
-  put_stiffness(hourglass_stiffness(rest, moduli_), lane, batch.stiffness);
+  const ElasticModuli moduli = factors_[tissue.element_cell[e].index()] * moduli_;
+  batch.shear[lane] = 2 * moduli.shear_modulus * volume;
+  put_stiffness(hourglass_stiffness(rest, moduli), lane, batch.stiffness);
   if (viscous_batches_.empty()) return;
   ViscousBatch& viscous = viscous_batches_[place / batch_size];
   viscous.shear[lane] = 2 * shear_viscosity_ * volume;
@@ -149,7 +153,7 @@ void Corotational::add_tangent_product(const Step& step, std::span<const Vec3> d
 void Corotational::add_tangent(const Step& step, TangentSink& tangent) const {
   const CorotationalStep at = kernel_step(step);
   const auto add_batch = [&](std::size_t batch) {
-    CorotationalBlocks of_batch;
+    HexahedronBlocks of_batch;
     kernels().write_blocks(at, batch, of_batch);
     const std::size_t first = batch * batch_size;
     for (std::size_t e = first; e < std::min(first + batch_size, chunks_.element_count()); ++e)
@@ -181,8 +185,9 @@ NodeGroups Corotational::node_groups(std::span<const double> /*internal*/) const
   return groups;
 }
 
-std::unique_ptr<Law> Corotational::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
-  return std::make_unique<Corotational>(tissue, moduli_, shear_viscosity_, kernels_);
+std::unique_ptr<Law> Corotational::after_division(const Tissue& tissue, const Division& division,
+                                                  std::span<const Vec3>) const {
+  return std::make_unique<Corotational>(tissue, moduli_, shear_viscosity_, inherited(division, factors_), kernels_);
 }
 
 }  // namespace plica

@@ -21,10 +21,10 @@ namespace plica {
 
 class Corotational final : public Law {
  public:
-  /// `shear_viscosity` in nN s/um^2 (0: none). Rest shapes are those of the tissue's elements. Throws std::domain_error
-  /// when a rest shape is inverted.
+  /// Moduli are times the cell's `factors`, where given. `shear_viscosity` in nN s/um^2 (0: none). Rest shapes are
+  /// those of the tissue's elements. Throws std::domain_error when a rest shape is inverted.
   Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity,
-               Kernels kernels = chosen_kernels());
+               std::vector<double> factors = {}, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Corotational>(*this); }
@@ -46,6 +46,7 @@ class Corotational final : public Law {
   [[nodiscard]] const CorotationalKernels& kernels() const;
 
   ElasticModuli moduli_;
+  std::vector<double> factors_;  // cells; on the moduli
   double shear_viscosity_;
   Kernels kernels_;
   ElementChunks chunks_;

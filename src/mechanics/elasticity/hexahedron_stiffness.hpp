@@ -20,6 +20,9 @@ struct ElasticModuli {
   /// From Young's modulus (same unit as the result) and Poisson's ratio in (-1, 1/2).
   static ElasticModuli from_young(double young_modulus, double poisson_ratio);
 };
+inline ElasticModuli operator*(double factor, const ElasticModuli& moduli) {
+  return {factor * moduli.lame_lambda, factor * moduli.shear_modulus};
+}
 
 /// The moduli (nN s/um^2) of a viscosity that resists shear only: deviatoric. Their stiffness is a damping.
 ElasticModuli viscous_moduli(double shear_viscosity);

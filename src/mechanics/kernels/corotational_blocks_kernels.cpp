@@ -73,7 +73,7 @@ inline void store(const Mat& block, int lane, double (&numbers)[9][batch_size]) 
   for (int k = 0; k < 9; ++k) *reinterpret_cast<Lanes*>(numbers[k] + lane) = values[k];
 }
 
-[[gnu::flatten]] void write_lanes(const Elements& e, const CorotationalStep& step, CorotationalBlocks& blocks) {
+[[gnu::flatten]] void write_lanes(const Elements& e, const CorotationalStep& step, HexahedronBlocks& blocks) {
   const bool exact = !step.semidefinite_tangent;
   const Deformation now = deformation(e, step.positions);
   Mat H[4][4];
@@ -126,7 +126,7 @@ inline void store(const Mat& block, int lane, double (&numbers)[9][batch_size]) 
 
 }  // namespace
 
-void write_blocks(const CorotationalStep& step, std::size_t batch, CorotationalBlocks& blocks) {
+void write_blocks(const CorotationalStep& step, std::size_t batch, HexahedronBlocks& blocks) {
   const ViscousBatch* viscous = step.viscous_batches ? step.viscous_batches + batch : nullptr;
   for (int lane = 0; lane < batch_size; lane += width)
     write_lanes({step.batches[batch], viscous, step.rate, lane}, step, blocks);

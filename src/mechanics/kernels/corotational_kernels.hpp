@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "mechanics/kernels/hexahedron_blocks.hpp"
+
 namespace plica {
 
 /// Eight elements side by side: the last index is the element's. A batch that is not full repeats its last element.
@@ -19,12 +21,6 @@ struct alignas(64) CorotationalBatch {
 struct alignas(64) ViscousBatch {
   double shear[8];
   double stiffness[78][8];
-};
-
-/// The tangents of eight elements, nN/um: 3 x 3 blocks, by columns, of the 36 pairs of corners (0,0), (1,0), (1,1),
-/// (2,0), ...
-struct alignas(64) CorotationalBlocks {
-  double blocks[36][9][8];
 };
 
 /// The elements of a law and where they are. Vectors are x y z a node.
@@ -49,7 +45,7 @@ struct CorotationalKernels {
   void (*add_product)(const CorotationalStep&, std::size_t first, std::size_t last, const double* direction,
                       double* product);
   /// Writes the tangent of one batch.
-  void (*write_blocks)(const CorotationalStep&, std::size_t batch, CorotationalBlocks& blocks);
+  void (*write_blocks)(const CorotationalStep&, std::size_t batch, HexahedronBlocks& blocks);
 };
 
 /// The rotation nearest to F, matrices by columns: polar(), for elements that are inverted or very flat.

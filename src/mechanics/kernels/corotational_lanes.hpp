@@ -22,7 +22,7 @@ struct Elements {
 };
 
 /// See CorotationalKernels.
-void write_blocks(const CorotationalStep& step, std::size_t batch, CorotationalBlocks& blocks);
+void write_blocks(const CorotationalStep& step, std::size_t batch, HexahedronBlocks& blocks);
 
 /// Four vectors, one a hourglass.
 struct Hourglass {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "mechanics/constraints/cell_volume.hpp"
+#include "mechanics/division.hpp"
 #include "support/law_checks.hpp"
 
 namespace plica {
@@ -46,6 +47,39 @@ TEST(Corotational, SemidefiniteTangentLeavesOutTheTurningOfTheFrame) {
   const Tissue tissue = distorted_block(two_cells, 2, 5);
   check_semidefinite_tangent(Corotational(tissue, ElasticModuli::from_young(young, poisson), 0), tissue, 6, true);
   check_semidefinite_tangent(Corotational(tissue, ElasticModuli::from_young(young, 0.45), 2), tissue, 6, true);
+}
+
+TEST(Corotational, EveryCellHasItsOwnModulus) {
+  const Tissue tissue = distorted_block(two_cells, 2, 5);
+  const ElasticModuli moduli = ElasticModuli::from_young(young, poisson);
+  const Motion motion = random_motion(tissue, 4, 3);
+  const auto forces = [&](const std::vector<double>& factors) {
+    Vectors sum = forces_of(Corotational(tissue, moduli, 0, factors), motion.step());
+    const Vectors dilatation = forces_of(Dilatation(tissue, moduli.bulk_modulus(), false, factors), motion.step());
+    for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += dilatation[n];
+    return sum;
+  };
+  const Vectors both = forces({2, 0.3}), first = forces({1, 0}), second = forces({0, 1});
+  for (std::size_t n = 0; n < both.size(); ++n)
+    EXPECT_LE((both[n] - 2 * first[n] - 0.3 * second[n]).norm(), 1e-13 * largest(both));
+}
+
+// Daughters have their mother's, in both laws.
+TEST(Corotational, ModuliOfCellsAreInherited) {
+  Model model(build_block({.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}}));
+  const ElasticModuli moduli = ElasticModuli::from_young(young, poisson);
+  const std::vector<double> factors = {1, 0.2, 3};
+  model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, 0, factors));
+  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus(), false, factors));
+  State state = rest_state(model);
+  const Division division = divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 1}}});
+  const std::vector<double> after = inherited(division, factors);
+  ASSERT_EQ(after, (std::vector<double>{1, 0.2, 3, 0.2}));
+  const Motion motion = random_motion(model.tissue, 3, 3);
+  EXPECT_EQ(forces_of(*model.laws[0], motion.step()),
+            forces_of(Corotational(model.tissue, moduli, 0, after), motion.step()));
+  EXPECT_EQ(forces_of(*model.laws[1], motion.step()),
+            forces_of(Dilatation(model.tissue, moduli.bulk_modulus(), false, after), motion.step()));
 }
 
 TEST(Corotational, RestShapeHasNoForceAndNoEnergy) {

@@ -69,6 +69,35 @@ class Cells:
         return [A, -cof, np.zeros_like(p)]
 
 
+class NeoHookeanCells:
+    """The same of mu/2 (tr C - 3 - 2 ln J) + lambda/2 (J - 1)^2."""
+
+    def __init__(self, mu, lame):
+        self.mu, self.lame = mu, lame
+        self.x = [np.zeros((3, 3)), np.zeros(0)]
+
+    def energy(self, F):
+        J = cofactor(F)[1]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return self.mu / 2 * (np.einsum("ij...,ij...->...", F, F) - 3 - 2 * np.log(J)) + self.lame / 2 * (J - 1) ** 2
+
+    def gradient(self, x):
+        F, p, state = x[0], x[1], x[-1]
+        cof, J = cofactor(F)
+        slope = np.where(J > 0, self.lame * (J - 1) - p[0] - self.mu / J, np.nan)  # by J
+        return [self.mu * F + slope * cof, -(J - 1)[None], state]
+
+    def hessian(self, x):
+        F, p = x[0], x[1]
+        cof, J = cofactor(F)
+        I, E = np.eye(3), epsilon()
+        A = np.zeros((3, 3, 3, 3) + J.shape)
+        A += self.mu * np.einsum("ik,jl->ijkl", I, I)[..., None, None]
+        A += (self.lame + self.mu / J**2) * np.einsum("ij...,kl...->ijkl...", cof, cof)
+        A += (self.lame * (J - 1) - p[0] - self.mu / J) * np.einsum("ikm,jln,mn...->ijkl...", E, E, F, optimize=True)
+        return [A, -cof, np.zeros_like(p)]
+
+
 class Film:
     """Lines along the unit vectors t on a face: weight (l - r)^2 per area where l = |F t| > r; `scale` is the part of
     the load."""
@@ -102,11 +131,9 @@ def check_energies():
     F = np.eye(3)[..., None, None] + 0.35 * rng.standard_normal((3, 3, 1, 20))
     F = F[..., np.linalg.det(np.moveaxis(F, (0, 1), (-2, -1)))[0] > 0.2]
     p, h = 0.3 * np.ones((1,) + F.shape[2:]), 1e-6
-    law = Cells(0.37, 1.9)
     film = Film(rng.standard_normal((3,) + F.shape[2:]), 0.7, 0.4)
     film.t /= np.linalg.norm(film.t, axis=0)
     film.scale = 1
-    stress, A = law.gradient([F, p, None])[0], law.hessian([F, p])[0]
     pull, B = film.gradient([F, None])[0], film.hessian([F])[0]
     worst = 0
     for i in range(3):
@@ -114,11 +141,15 @@ def check_energies():
             dF = np.zeros_like(F)
             dF[i, j] = h
             up, down = F + dF, F - dF
-            W = [law.energy(f) - p[0] * (cofactor(f)[1] - 1) for f in (up, down)]
             lengths = [np.linalg.norm(np.einsum("ij...,j...->i...", f, film.t), axis=0) for f in (up, down)]
             L = [film.weight * np.maximum(0, length - film.rest) ** 2 for length in lengths]
-            differences = [stress[i, j] - (W[0] - W[1]) / (2 * h), pull[i, j] - (L[0] - L[1]) / (2 * h),
-                           A[:, :, i, j] - (law.gradient([up, p, 0])[0] - law.gradient([down, p, 0])[0]) / (2 * h),
+            differences = [pull[i, j] - (L[0] - L[1]) / (2 * h),
                            B[:, :, i, j] - (film.gradient([up, 0])[0] - film.gradient([down, 0])[0]) / (2 * h)]
+            for law in (Cells(0.37, 1.9), NeoHookeanCells(0.37, 1.9)):
+                W = [law.energy(f) - p[0] * (cofactor(f)[1] - 1) for f in (up, down)]
+                stress, A = law.gradient([F, p, None])[0], law.hessian([F, p])[0]
+                differences += [
+                    stress[i, j] - (W[0] - W[1]) / (2 * h),
+                    A[:, :, i, j] - (law.gradient([up, p, 0])[0] - law.gradient([down, p, 0])[0]) / (2 * h)]
             worst = max(worst, *(np.abs(d).max() for d in differences))
     assert worst < 1e-7, worst

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Rest states of three blocks of cells and a pill at large strains, by finite elements that are not plica's.
+"""Rest states of blocks of cells and a pill at large strains, by finite elements that are not plica's.
 
     python3 -m venv venv
     venv/bin/pip install felupe==11.3.0 numpy==2.4.6 scipy==1.17.1 pypardiso==0.4.7
@@ -13,7 +13,7 @@ are the energies, as plica's theory pages document them for the limit of small e
 deformation gradient F = R U:
 
 - cells: mu |dev(U - I)|^2 + kappa/2 (J - 1)^2 per volume, J = det F, mu and kappa from Young's modulus and Poisson's
-  ratio;
+  ratio; model "neo-hookean": mu/2 (tr C - 3 - 2 ln J) + lambda/2 (J - 1)^2, C = F^T F, lambda Lame's;
 - the volume of each cell (of all of its elements together) is that at rest, with a multiplier, the cell's pressure;
 - contraction: an active film on the face of a contractile cell. Along either direction of the face lie lines with the
   stretch l and the length L at rest; a cell's two edges of stiffness k are spread over them. With a rest length of r L
@@ -37,7 +37,7 @@ import felupe as fem
 import numpy as np
 import scipy.sparse as sparse
 
-from energies import Cells, Film, check_energies
+from energies import Cells, Film, NeoHookeanCells, check_energies
 
 try:
     from pypardiso import spsolve
@@ -150,7 +150,9 @@ class Model:
         self.make_mesh()
         elasticity = scenario["elasticity"]
         E, nu = elasticity["young_modulus_Pa"] * 1e-3, elasticity["poisson_ratio"]  # nN/um^2
-        law = Cells(E / (2 * (1 + nu)), E / (3 * (1 - 2 * nu)))
+        mu = E / (2 * (1 + nu))
+        law = (NeoHookeanCells(mu, 2 * mu * nu / (1 - 2 * nu)) if elasticity.get("model") == "neo-hookean"
+               else Cells(mu, E / (3 * (1 - 2 * nu))))
         region = fem.RegionTriQuadraticHexahedron(self.mesh)
         volumes = fem.Mesh(np.zeros((self.cells.count, 3)), self.element_cell[:, None], "vertex")
         of_cells = fem.RegionConstantHexahedron(volumes, quadrature=region.quadrature, grad=False)
@@ -335,10 +337,21 @@ class Model:
 # --- The cases ---
 
 
+def read_scenario(name):
+    """Of a scenario with a base, what it says on top of that, table by table."""
+    scenario = tomllib.loads((here / f"{name}.toml").read_text())
+    if "base" not in scenario:
+        return scenario
+    base = read_scenario(scenario.pop("base").removesuffix(".toml"))
+    for key, value in scenario.items():
+        base[key] = base[key] | value if isinstance(value, dict) and key in base else value
+    return base
+
+
 def cases():
-    scenarios = {name: tomllib.loads((here / f"{name}.toml").read_text())
-                 for name in ("bending", "stretching", "folding", "pill")}
-    return {
+    scenarios = {name: read_scenario(name)
+                 for name in ("bending", "stretching", "folding", "pill", "neo_bending", "neo_stretching")}
+    found = {
         "bending": {
             "scenario": scenarios["bending"], "mirrored": "y", "divisions": [3, 4, 6],
             "points": {"end, apical": [120, 0, 20], "end, basal": [120, 0, -20], "end, basal corner": [120, 20, -20],
@@ -364,6 +377,9 @@ def cases():
                        "furrow along, apical": [35.47174846, 0, -70],
                        "end of furrow, apical": [56.58869376, 0, -68.00599414], "end, apical": [110, 0, 0]}},
     }
+    for name in ("bending", "stretching"):
+        found[f"neo_{name}"] = found[name] | {"scenario": scenarios[f"neo_{name}"]}
+    return found
 
 
 def order_of(coarse, middle, fine, divisions):

@@ -1,0 +1,238 @@
+// What an element is made of, its energy, and how its rest shape flows. Forces and tangents are in
+// neo_hookean_kernels.cpp.
+#include "mechanics/elasticity/neo_hookean.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.hpp"
+#include "mechanics/elasticity/turning_elements.hpp"
+#include "tissue/division.hpp"
+
+namespace plica {
+namespace {
+
+constexpr std::size_t batch_size = ElementChunks::batch_size;
+constexpr std::size_t numbers_a_batch = 8 * 6 * batch_size;  // of a symmetric matrix at every Gauss point
+
+Vec3 gauss_point(int g) { return hex_reference_nodes[static_cast<std::size_t>(g)] / std::sqrt(3.0); }
+
+// Where the numbers of a Gauss point begin among those of all batches; the next is batch_size on.
+std::size_t place_of(std::size_t element, int g) {
+  return (element / batch_size * 8 + static_cast<std::size_t>(g)) * 6 * batch_size + element % batch_size;
+}
+
+void put(const Mat3& symmetric, double* first) {
+  const double values[6] = {symmetric(0, 0), symmetric(1, 1), symmetric(2, 2),
+                            symmetric(0, 1), symmetric(1, 2), symmetric(2, 0)};
+  for (std::size_t k = 0; k < 6; ++k) first[k * batch_size] = values[k];
+}
+
+Mat3 symmetric_at(const double* first) {
+  const auto at = [&](std::size_t k) { return first[k * batch_size]; };
+  Mat3 result;
+  result << at(0), at(3), at(5), at(3), at(1), at(4), at(5), at(4), at(2);
+  return result;
+}
+
+Mat3 cauchy_green(const HexPoints& points, const HexPoints& rest, int g) {
+  const Mat3 F = hex_jacobian(points, gauss_point(g)) * hex_jacobian(rest, gauss_point(g)).inverse();
+  return F.transpose() * F;
+}
+
+}  // namespace
+
+NeoHookean::NeoHookean(const Tissue& tissue, std::vector<double> shear_moduli, std::vector<double> relaxation_s,
+                       Kernels kernels)
+    : shear_moduli_(std::move(shear_moduli)),
+      relaxation_s_(std::move(relaxation_s)),
+      kernels_(kernels),
+      elements_(tissue.elements),
+      element_cell_(tissue.element_cell),
+      rest_(tissue.element_rest_shape),
+      chunks_(tissue.elements),
+      batches_(chunks_.batch_count()),
+      flow_batches_(flows() ? chunks_.batch_count() : 0) {
+  require_upright_rest_shapes(tissue);
+  parallel_for(batches_.size() * batch_size, [&](std::size_t place) { fit(tissue, place); });
+}
+
+void NeoHookean::fit(const Tissue& tissue, std::size_t place) {
+  // Places after the last element repeat it: kernels calculate there too.
+  const std::size_t e = std::min(place, elements_.size() - 1), lane = place % batch_size;
+  if (place == e) rest_[e] = tissue.element_rest_shape[e];
+  NeoHookeanBatch& batch = batches_[place / batch_size];
+  for (int i = 0; i < 8; ++i) batch.nodes[i][lane] = 3 * elements_[e][i].number();
+  const std::size_t cell = element_cell_[e].index();
+  for (int g = 0; g < 8; ++g) {
+    const Mat3 D0 = hex_jacobian(tissue.element_rest_shape[e], gauss_point(g));
+    batch.weights[g][lane] = shear_moduli_[cell] * D0.determinant();
+    put((D0.transpose() * D0).inverse(), &batch.metrics[g][0][lane]);
+    if (!flows()) continue;
+    for (int k = 0; k < 9; ++k) flow_batches_[place / batch_size].frames[g][k][lane] = D0.data()[k];
+  }
+  if (flows()) flow_batches_[place / batch_size].rates[lane] = relaxation_s_[cell] > 0 ? 1 / relaxation_s_[cell] : 0;
+}
+
+void NeoHookean::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
+  for (const ElementId e : elements) fit(tissue, e.index());
+}
+
+const NeoHookeanKernels& NeoHookean::kernels() const {
+  return kernels_for(kernels_, generic::neo_hookean_kernels, avx2::neo_hookean_kernels, avx512::neo_hookean_kernels);
+}
+
+NeoHookeanStep NeoHookean::kernel_step(const Step& step) const {
+  return {.batches = batches_.data(),
+          .flows = flows() ? flow_batches_.data() : nullptr,
+          .elements = elements_.size(),
+          .positions = numbers(step.positions),
+          .semidefinite_tangent = step.semidefinite_tangent,
+          .flowed = step.internal.data(),
+          .flowed_earlier = flows() ? step.internal.data() + batches_.size() * numbers_a_batch : nullptr,
+          .ahead = step.ahead,
+          .rate_s = step.rate_s};
+}
+
+Mat3 NeoHookean::flowed(std::span<const double> internal, ElementId element, int g) const {
+  return symmetric_at(&internal[place_of(element.index(), g)]);
+}
+
+Mat3 NeoHookean::flowed_before(std::size_t e, int g, const Step& step) const {
+  const double* now = &step.internal[place_of(e, g)];
+  const double* earlier = now + batches_.size() * numbers_a_batch;
+  return (1 + step.ahead) * symmetric_at(now) - step.ahead * symmetric_at(earlier);
+}
+
+double NeoHookean::energy(const Step& step) const {
+  return chunks_.sum_over_elements([&](std::size_t e) {
+    const HexPoints points = gather(step.positions, elements_[e]);
+    double sum = 0;
+    for (int g = 0; g < 8; ++g) {
+      const double weight = batches_[e / batch_size].weights[g][e % batch_size];
+      const double J =
+          hex_jacobian(points, gauss_point(g)).determinant() / hex_jacobian(rest_[e], gauss_point(g)).determinant();
+      if (!(J > 0)) return std::numeric_limits<double>::infinity();
+      const Mat3 C = cauchy_green(points, rest_[e], g);
+      const double r = flows() ? step.rate_s * flow_batches_[e / batch_size].rates[e % batch_size] : 0;
+      double stored = 0.5 * C.trace();
+      if (r > 0) {
+        // 3 det(C_b + r C)^(1/3)/2 r, less what does not depend on C.
+        const Mat3 before = flowed_before(e, g, step), A = before.inverse() * C;
+        const double I1 = A.trace(), I2 = 0.5 * (I1 * I1 - (A * A).trace()), I3 = A.determinant();
+        stored = 1.5 * std::cbrt(before.determinant()) * std::expm1(std::log1p(r * (I1 + r * (I2 + r * I3))) / 3) / r;
+      }
+      sum += weight * (stored - 1.5 - std::log(J));
+    }
+    return sum;
+  });
+}
+
+void NeoHookean::add_forces(const Step& step, std::span<Vec3> forces) const {
+  const NeoHookeanStep at = kernel_step(step);
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) { kernels().add_forces(at, first, last, numbers(forces)); });
+}
+
+void NeoHookean::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
+  const NeoHookeanStep at = kernel_step(step);
+  chunks_.for_batches([&](std::size_t first, std::size_t last) {
+    kernels().add_product(at, first, last, numbers(direction), numbers(product));
+  });
+}
+
+void NeoHookean::add_tangent(const Step& step, TangentSink& tangent) const {
+  const NeoHookeanStep at = kernel_step(step);
+  const auto add_batch = [&](std::size_t batch) {
+    HexahedronBlocks of_batch;
+    kernels().write_blocks(at, batch, of_batch);
+    const std::size_t first = batch * batch_size;
+    for (std::size_t e = first; e < std::min(first + batch_size, elements_.size()); ++e)
+      for (int i = 0, pair = 0; i < 8; ++i)
+        for (int j = 0; j <= i; ++j, ++pair) {
+          Mat3 block;
+          for (int k = 0; k < 9; ++k) block.data()[k] = of_batch.blocks[pair][k][e - first];
+          tangent.add_block(elements_[e][i], elements_[e][j], block);
+        }
+  };
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) {
+        for (std::size_t batch = first; batch < last; ++batch) add_batch(batch);
+      },
+      tangent.takes_apart());
+}
+
+NodeGroups NeoHookean::node_groups(std::span<const double> /*internal*/) const {
+  NodeGroups groups;
+  for (const auto& nodes : elements_) groups.add(nodes);
+  return groups;
+}
+
+std::vector<double> NeoHookean::first_internal(const Tissue& /*tissue*/) const {
+  if (!flows()) return {};
+  std::vector<double> internal(2 * batches_.size() * numbers_a_batch);
+  for (std::size_t first = 0; first < internal.size(); first += 6 * batch_size)
+    for (std::size_t lane = 0; lane < batch_size; ++lane) put(Mat3::Identity(), &internal[first + lane]);
+  return internal;
+}
+
+std::vector<double> NeoHookean::next_internal(const Step& step) const {
+  if (!flows()) return {};
+  const std::size_t size = batches_.size() * numbers_a_batch;
+  std::vector<double> internal(2 * size);
+  std::copy_n(step.internal.begin(), size, internal.begin() + static_cast<std::ptrdiff_t>(size));
+  parallel_for(
+      batches_.size() * batch_size,
+      [&](std::size_t place) {
+        const std::size_t e = std::min(place, elements_.size() - 1);
+        const HexPoints points = gather(step.positions, elements_[e]);
+        const double r = step.rate_s * flow_batches_[place / batch_size].rates[place % batch_size];
+        for (int g = 0; g < 8; ++g) {
+          const Mat3 flowed = flowed_before(e, g, step) + r * cauchy_green(points, rest_[e], g);
+          put(flowed / std::cbrt(flowed.determinant()), &internal[place_of(place, g)]);
+        }
+      },
+      long_bodies);
+  return internal;
+}
+
+std::unique_ptr<Law> NeoHookean::after_division(const Tissue& tissue, const Division& division,
+                                                std::span<const Vec3>) const {
+  return std::make_unique<NeoHookean>(tissue, inherited(division, shear_moduli_),
+                                      flows() ? inherited(division, relaxation_s_) : relaxation_s_, kernels_);
+}
+
+std::vector<double> NeoHookean::internal_after_division(std::span<const double> internal, const Tissue& tissue,
+                                                        const Division& division) const {
+  if (!flows()) return {};
+  std::vector<std::vector<std::size_t>> of_cell(shear_moduli_.size());  // elements before
+  for (std::size_t e = 0; e < elements_.size(); ++e) of_cell[element_cell_[e].index()].push_back(e);
+  const auto where = [](const HexPoints& rest, int g) {
+    const std::array<double, 8> shape = hex_shape(gauss_point(g));
+    Vec3 x = Vec3::Zero();
+    for (int i = 0; i < 8; ++i) x += shape[i] * rest[i];
+    return x;
+  };
+  const std::size_t size_before = batches_.size() * numbers_a_batch;
+  const std::size_t count = tissue.elements.size(), batches = (count + batch_size - 1) / batch_size;
+  std::vector<double> after(2 * batches * numbers_a_batch);
+  for (std::size_t place = 0; place < batches * batch_size; ++place)
+    for (int g = 0; g < 8; ++g) {
+      const std::size_t e = std::min(place, count - 1);
+      const Vec3 x = where(tissue.element_rest_shape[e], g);
+      double least = std::numeric_limits<double>::infinity();
+      std::size_t nearest = 0;
+      for (const std::size_t old : of_cell[division.origin[tissue.element_cell[e].index()].index()])
+        for (int h = 0; h < 8; ++h)
+          if (const double distance = (where(rest_[old], h) - x).squaredNorm(); distance < least) {
+            least = distance;
+            nearest = place_of(old, h);
+          }
+      put(symmetric_at(&internal[nearest]), &after[place_of(place, g)]);
+      put(symmetric_at(&internal[size_before + nearest]), &after[batches * numbers_a_batch + place_of(place, g)]);
+    }
+  return after;
+}
+
+}  // namespace plica

@@ -1,0 +1,241 @@
+// Letters as in docs/theory/neo_hookean.md. At a Gauss point D = dx/d(reference), K = cof D and J = det D; B is the
+// inverse of the metric of the rest shape, flowed or not, in reference coordinates: tr(C C_p^-1) = tr(D B D^T). The
+// energy's gradient by D is w (D B - K/J). A letter with a d: its change along a direction.
+#include "mechanics/kernels/neo_hookean_kernels.hpp"
+
+#include "mechanics/kernels/hexahedron_lanes.hpp"
+
+namespace plica::PLICA_KERNELS {
+namespace {
+
+// A register's worth of a batch's elements, from `lane` on.
+struct Elements {
+  const NeoHookeanBatch& batch;
+  const FlowBatch* flow;  // null: it does not flow
+  std::size_t number;     // of the batch
+  int lane;
+};
+
+template <class Body>
+inline void for_elements(const NeoHookeanStep& step, std::size_t first, std::size_t last, const Body& body) {
+  for (std::size_t b = first; b < last; ++b) {
+    const int count = count_in_batch(step.elements, b);
+    for (int lane = 0; lane < count; lane += width)
+      body(Elements{step.batches[b], step.flows ? step.flows + b : nullptr, b, lane},
+           count - lane < width ? count - lane : width);
+  }
+}
+
+// A Gauss point's reference coordinates, in the order of the corners.
+struct Place {
+  double xi, eta, zeta;
+};
+inline Place gauss_place(int g) {
+  constexpr double third = 0.57735026918962576451;  // its root
+  return {((g + 1) & 2) ? third : -third, (g & 2) ? third : -third, (g & 4) ? third : -third};
+}
+
+// dx/d(reference) there, by the modes of x; and the gradient by modes of what has the gradient H by that.
+inline Mat slope(const Place& at, const Vec (&m)[7]) {
+  const auto [xi, eta, zeta] = at;
+  const Lanes eighth = broadcast(0.125), x = broadcast(xi), y = broadcast(eta), z = broadcast(zeta);
+  return {eighth * (m[0] + y * m[3] + z * (m[5] + y * m[6])), eighth * (m[1] + z * m[4] + x * (m[3] + z * m[6])),
+          eighth * (m[2] + x * m[5] + y * (m[4] + x * m[6]))};
+}
+inline void add_to_modes(const Place& at, const Mat& H, Vec (&g)[7]) {
+  const Lanes x = broadcast(at.xi), y = broadcast(at.eta), z = broadcast(at.zeta);
+  g[0] = g[0] + H.x;
+  g[1] = g[1] + H.y;
+  g[2] = g[2] + H.z;
+  g[3] = g[3] + y * H.x + x * H.y;
+  g[4] = g[4] + z * H.y + y * H.z;
+  g[5] = g[5] + z * H.x + x * H.z;
+  g[6] = g[6] + z * (y * H.x + x * H.y) + (x * y) * H.z;
+}
+inline void scatter_modes(const Elements& e, int count, Lanes scale, Vec (&g)[7], double* vectors) {
+  for (Vec& v : g) v = scale * v;
+  Vec f[8];
+  from_modes(g, f);
+  scatter(e.batch.nodes, e.lane, count, f, vectors);
+}
+
+inline Mat operator*(const Mat& a, const Sym& b) {
+  return {b.xx * a.x + b.xy * a.y + b.zx * a.z, b.xy * a.x + b.yy * a.y + b.yz * a.z,
+          b.zx * a.x + b.yz * a.y + b.zz * a.z};
+}
+/// a^T b, which is known to be symmetric.
+inline Sym symmetric_product(const Mat& a, const Mat& b) {
+  return {dot(a.x, b.x), dot(a.y, b.y), dot(a.z, b.z), dot(a.x, b.y), dot(a.y, b.z), dot(a.z, b.x)};
+}
+inline Lanes determinant(const Sym& a) {
+  return a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.zx) + a.zx * (a.xy * a.yz - a.yy * a.zx);
+}
+inline Sym load_symmetric(const double* values, int lane) {
+  const auto at = [&](int k) { return load_loose(values + k * batch_size + lane); };
+  return {at(0), at(1), at(2), at(3), at(4), at(5)};
+}
+
+// Cube roots of numbers of at least about 1, by Halley's iteration: from above it comes down.
+inline Lanes cube_root(Lanes q) {
+  Lanes y = (1.0 / 3) * (q + 2.0);
+  for (int iteration = 0; iteration < 40; ++iteration) {
+    const Lanes cube = y * y * y, change = y * (cube - q) / (2.0 * cube + q);
+    y -= change;
+    if (!any((change > 1e-6 * y) | (change < -1e-6 * y))) break;
+  }
+  return y;
+}
+
+// What a Gauss point is like: w, and B with what its change is made of, d = det(C_p + r C)^(1/3).
+struct Rest {
+  Lanes w;
+  Sym B;
+  Lanes r_over_d;
+};
+
+template <bool flows>
+inline Rest rest_at(const NeoHookeanStep& step, const Elements& e, int g, const Mat& D) {
+  const Lanes w = load(e.batch.weights[g] + e.lane);
+  if constexpr (!flows) return {w, load_symmetric(e.batch.metrics[g][0], e.lane), Lanes{}};
+  const std::size_t place = (e.number * 8 + static_cast<std::size_t>(g)) * 6 * batch_size;
+  Sym Cp = load_symmetric(step.flowed + place, e.lane);
+  if (step.ahead > 0)
+    Cp = broadcast(1 + step.ahead) * Cp - broadcast(step.ahead) * load_symmetric(step.flowed_earlier + place, e.lane);
+  const auto frame = [&](int k) { return load(e.flow->frames[g][k] + e.lane); };
+  const Mat D0 = {{frame(0), frame(1), frame(2)}, {frame(3), frame(4), frame(5)}, {frame(6), frame(7), frame(8)}};
+  const Lanes J0 = dot(D0.x, cross(D0.y, D0.z)), r = step.rate_s * load(e.flow->rates + e.lane);
+  const Sym flowed = symmetric_product(D0, {Cp * D0.x, Cp * D0.y, Cp * D0.z}) + r * symmetric_product(D, D);
+  const Lanes d = cube_root(determinant(flowed) / (J0 * J0));
+  return {w, d * inverse(flowed), r / d};
+}
+
+// K/J = D^-T; not a number where the point is inside out, so that no step ends there.
+struct Inverse {
+  Mat transposed;
+  Lanes J;
+};
+inline Inverse inverse_of(const Mat& D) {
+  const Mat K = {cross(D.y, D.z), cross(D.z, D.x), cross(D.x, D.y)};
+  const Lanes J = dot(D.x, K.x), upright = J > 0.0 ? 1.0 / J : broadcast(__builtin_nan(""));
+  return {upright * K, J};
+}
+
+// What has to be added along rotations so that no direction has negative stiffness: with the two smallest eigenvalues
+// s and t of b = D B D^T, (1 - s t)/(2 + s + t) if that is positive. Here with a bound on the largest in place of it.
+inline Lanes missing_stiffness(const Mat& DB, const Mat& D) {
+  const Mat b = DB * transpose(D);
+  const Sym S = upper_part(b);
+  const Sym deviation = deviator(S);
+  const Lanes mean = (1.0 / 3) * trace(S), most = mean + 2.0 * root((1.0 / 6) * contract(deviation, deviation));
+  const Lanes missing = (1.0 - determinant(S) / most) / (2.0 + 3.0 * mean - most);
+  return missing > 0.0 ? missing : Lanes{};
+}
+
+template <bool flows>
+[[gnu::flatten]] void add_forces(const NeoHookeanStep& step, std::size_t first, std::size_t last, double* forces) {
+  for_elements(step, first, last, [&](const Elements& e, int count) {
+    Vec m[7], sum[7] = {};
+    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    for (int g = 0; g < 8; ++g) {
+      const Place at = gauss_place(g);
+      const Mat D = slope(at, m);
+      const Rest rest = rest_at<flows>(step, e, g, D);
+      add_to_modes(at, rest.w * (D * rest.B - inverse_of(D).transposed), sum);
+    }
+    scatter_modes(e, count, broadcast(-0.125), sum, forces);
+  });
+}
+
+template <bool flows>
+[[gnu::flatten]] void add_product(const NeoHookeanStep& step, std::size_t first, std::size_t last,
+                                  const double* direction, double* product) {
+  for_elements(step, first, last, [&](const Elements& e, int count) {
+    Vec m[7], d[7], sum[7] = {};
+    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    gather_modes(e.batch.nodes, e.lane, direction, d);
+    for (int g = 0; g < 8; ++g) {
+      const Place at = gauss_place(g);
+      const Mat D = slope(at, m), dD = slope(at, d);
+      const Rest rest = rest_at<flows>(step, e, g, D);
+      const Mat back = inverse_of(D).transposed;
+      Mat dH = dD * rest.B + back * transpose(turn_back(back, dD));
+      if (step.semidefinite_tangent) {
+        const Vec turn =
+            missing_stiffness(D * rest.B, D) * (cross(dD.x, back.x) + cross(dD.y, back.y) + cross(dD.z, back.z));
+        dH = dH + Mat{cross(back.x, turn), cross(back.y, turn), cross(back.z, turn)};
+      } else if (flows) {
+        const Mat W = turn_back(D, dD);
+        const Sym& B = rest.B;
+        const Sym dC = {W.x.x + W.x.x, W.y.y + W.y.y, W.z.z + W.z.z, W.x.y + W.y.x, W.y.z + W.z.y, W.z.x + W.x.z};
+        const Sym change = upper_part(full(B) * (full(dC) * full(B)));
+        dH = dH + D * (rest.r_over_d * ((1.0 / 3) * contract(B, dC) * B - change));
+      }
+      add_to_modes(at, rest.w * dH, sum);
+    }
+    scatter_modes(e, count, broadcast(0.125), sum, product);
+  });
+}
+
+// With c_i the reference gradient of a corner's shape function, k_i = D^-T c_i, n_i = B c_i and p_i = D n_i,
+//   K_ij = w ((c_i . n_j) I + k_j k_i^T), and where the rest shape flows
+//   + w r/d (2/3 p_i p_j^T - p_j p_i^T - (c_i . n_j) D B D^T).
+template <bool flows>
+[[gnu::flatten]] void write_lanes(const NeoHookeanStep& step, const Elements& e, HexahedronBlocks& blocks) {
+  Vec m[7];
+  gather_modes(e.batch.nodes, e.lane, step.positions, m);
+  Mat K[36] = {};
+  for (int g = 0; g < 8; ++g) {
+    const Place at = gauss_place(g);
+    const Mat D = slope(at, m);
+    const Rest rest = rest_at<flows>(step, e, g, D);
+    const Mat back = inverse_of(D).transposed;
+    const bool yields = flows && !step.semidefinite_tangent;
+    const Lanes own = rest.w, missing = step.semidefinite_tangent ? missing_stiffness(D * rest.B, D) : Lanes{};
+    const Mat b = yields ? (own * rest.r_over_d) * (D * rest.B * transpose(D)) : Mat{};
+    Vec c[8], k[8], n[8], p[8];
+    for (int i = 0; i < 8; ++i) {
+      const double xi = ((i + 1) & 2) ? 1 : -1, eta = (i & 2) ? 1 : -1, zeta = (i & 4) ? 1 : -1;
+      const double x = 1 + xi * at.xi, y = 1 + eta * at.eta, z = 1 + zeta * at.zeta;
+      c[i] = {broadcast(0.125 * xi * y * z), broadcast(0.125 * eta * z * x), broadcast(0.125 * zeta * x * y)};
+      k[i] = back * c[i];
+      n[i] = rest.B * c[i];
+      if (yields) p[i] = D * n[i];
+    }
+    for (int i = 0, pair = 0; i < 8; ++i)
+      for (int j = 0; j <= i; ++j, ++pair) {
+        const Lanes cn = dot(c[i], n[j]), diagonal = own * (cn + missing * dot(k[i], k[j]));
+        Mat block = (own * (1.0 - missing)) * outer(k[j], k[i]);
+        block.x.x += diagonal, block.y.y += diagonal, block.z.z += diagonal;
+        if (yields)
+          block = block + (own * rest.r_over_d) * (broadcast(2.0 / 3) * outer(p[i], p[j]) - outer(p[j], p[i])) - cn * b;
+        K[pair] = K[pair] + block;
+      }
+  }
+  for (int pair = 0; pair < 36; ++pair) {
+    const Mat& block = K[pair];
+    const Lanes values[9] = {block.x.x, block.x.y, block.x.z, block.y.x, block.y.y,
+                             block.y.z, block.z.x, block.z.y, block.z.z};
+    for (int i = 0; i < 9; ++i) *reinterpret_cast<Lanes*>(blocks.blocks[pair][i] + e.lane) = values[i];
+  }
+}
+
+void add_forces(const NeoHookeanStep& step, std::size_t first, std::size_t last, double* forces) {
+  (step.flows ? add_forces<true> : add_forces<false>)(step, first, last, forces);
+}
+
+void add_product(const NeoHookeanStep& step, std::size_t first, std::size_t last, const double* direction,
+                 double* product) {
+  (step.flows ? add_product<true> : add_product<false>)(step, first, last, direction, product);
+}
+
+void write_blocks(const NeoHookeanStep& step, std::size_t batch, HexahedronBlocks& blocks) {
+  const Elements e{step.batches[batch], step.flows ? step.flows + batch : nullptr, batch, 0};
+  for (int lane = 0; lane < batch_size; lane += width)
+    (step.flows ? write_lanes<true> : write_lanes<false>)(step, {e.batch, e.flow, e.number, lane}, blocks);
+}
+
+}  // namespace
+
+const NeoHookeanKernels neo_hookean_kernels = {add_forces, add_product, write_blocks};
+
+}  // namespace plica::PLICA_KERNELS

@@ -1,0 +1,183 @@
+// Keys of the cells' interior: moduli by region, the neo-Hookean law, rest shapes that flow.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scenario/load.hpp"
+#include "scenario/setup.hpp"
+#include "simulation/simulation.hpp"
+#include "support/block_scenario.hpp"
+
+namespace plica {
+namespace {
+
+std::vector<std::string> lines_of(const ScenarioError& error) {
+  std::vector<std::string> lines;
+  for (const Diagnostic& diagnostic : error.diagnostics()) lines.push_back(diagnostic.text());
+  return lines;
+}
+
+std::vector<std::string> complaints(const std::string& text) {
+  try {
+    (void)make_model(load_scenario({"test", "test.toml", text}));
+  } catch (const ScenarioError& error) {
+    return lines_of(error);
+  }
+  return {};
+}
+
+void expect_complaints(const std::vector<std::pair<std::string, std::string>>& cases) {
+  for (const auto& [text, expected] : cases) {
+    const std::vector<std::string> found = complaints(text);
+    ASSERT_EQ(found.size(), 1u) << text << (found.empty() ? "" : "\n" + found[0] + "\n" + found.back());
+    EXPECT_EQ(found[0], expected) << text;
+  }
+}
+
+TEST(InteriorKeys, ModuliByRegionSayWhatWouldBeRight) {
+  const std::string soft = "[elasticity.soft]\nregion = \"all\"\n";
+  const std::string two =
+      "[region.left]\nface = \"ventral\"\n[region.belly]\nface = \"ventral\"\ncells_across = 1\n"
+      "[elasticity.soft]\nregion = \"left\"\nyoung_modulus_Pa = 5\n[elasticity.stiff]\nregion = \"belly\"\n"
+      "young_modulus_Pa = 50\n";
+  expect_complaints({
+      {soft, "test.toml:1: elasticity.soft: does nothing; give young_modulus_Pa or relaxation_min"},
+      {"[elasticity.soft]\nyoung_modulus_Pa = 5", "test.toml:1: elasticity.soft.region: is missing; give text"},
+      {soft + "young_modulus_Pa = 0",
+       "test.toml:3: elasticity.soft.young_modulus_Pa: 0 is out of range; give a number > 0"},
+      {soft + "young_modulus_Pa = 5\npoisson_ratio = 0.3",
+       "test.toml:4: elasticity.soft.poisson_ratio: unknown key; it belongs in [elasticity]"},
+      {"[elasticity.soft]\nregion = \"belly\"\nyoung_modulus_Pa = 5",
+       "test.toml:2: elasticity.soft.region: there is no region \"belly\"; known are: all"},
+      {"[elasticity]\nmodel = \"shape-memory\"\n" + soft + "young_modulus_Pa = 5",
+       "test.toml:3: elasticity.soft: model \"shape-memory\" is the same in all cells; remove it, or choose model "
+       "\"corotational\" or \"neo-hookean\""},
+      {two,
+       "test.toml:9: elasticity.stiff: elasticity.soft speaks of cell 72, too; give them regions without common cells, "
+       "by `except` for instance"},
+  });
+}
+
+TEST(InteriorKeys, NeoHookeanAndFlowSayWhatWouldBeRight) {
+  const std::string neo = "[elasticity]\nmodel = \"neo-hookean\"\n";
+  const std::string soft = "[elasticity.soft]\nregion = \"all\"\n";
+  expect_complaints({
+      {"[elasticity]\nmodel = \"neohookean\"",
+       "test.toml:2: elasticity.model: \"neohookean\" is not known; give one of: corotational | neo-hookean | "
+       "shape-memory (did you mean \"neo-hookean\"?)"},
+      {"[elasticity]\nrelaxation_min = 6",
+       "test.toml:2: elasticity.relaxation_min: has no meaning with model \"corotational\"; remove it, or choose model "
+       "\"neo-hookean\""},
+      {"[elasticity]\nmodel = \"shape-memory\"\nrelaxation_s = 6",
+       "test.toml:3: elasticity.relaxation_s: has no meaning with model \"shape-memory\"; remove it, or choose model "
+       "\"neo-hookean\""},
+      {neo + "relaxation_min = 0",
+       "test.toml:3: elasticity.relaxation_min: 0 is out of range; give a number > 0 or \"none\""},
+      {neo + "attractor_preload_nN = 1",
+       "test.toml:3: elasticity.attractor_preload_nN: has no meaning with model \"neo-hookean\"; remove it, or choose "
+       "model \"shape-memory\""},
+      {neo + "poisson_ratio = -0.2",
+       "test.toml:3: elasticity.poisson_ratio: -0.2 is below 0, which model \"neo-hookean\" cannot have; give a number "
+       ">= 0, or choose model \"corotational\""},
+      {neo + "[dynamics]\nshear_viscosity_Pa_s = 10",
+       "test.toml:4: dynamics.shear_viscosity_Pa_s: model \"neo-hookean\" has no such viscosity; give 0, and "
+       "elasticity.relaxation_min for cells that flow, or choose model \"corotational\""},
+      {soft + "relaxation_min = 6",
+       "test.toml:3: elasticity.soft.relaxation_min: has no meaning with model \"corotational\"; remove it, or choose "
+       "model \"neo-hookean\""},
+      {neo + soft + "relaxation_min = \"none\"",
+       "test.toml:5: elasticity.soft.relaxation_min: \"none\" is of the wrong type; give a number > 0"},
+      {neo + soft + "relaxation_min = 6\nrelaxation_s = 6",
+       "test.toml:6: elasticity.soft.relaxation_s: elasticity.soft.relaxation_min is given as well; give one of the "
+       "two"},
+  });
+}
+
+// Flow of one region only, and the modulus of volume that goes with the law.
+TEST(InteriorKeys, WhatTheyMakeOfTheModel) {
+  const auto laws = [](const std::string& more) {
+    const auto model = make_model(load_scenario(support::pulled_block(more)));
+    std::string names;
+    std::size_t remembered = 0;
+    for (const auto& law : model->laws) {
+      names += std::string(law->name()) + ", ";
+      remembered += law->first_internal(model->tissue).size();
+    }
+    return names + std::to_string(remembered);
+  };
+  const std::string neo = "[elasticity]\nmodel = \"neo-hookean\"\n";
+  EXPECT_EQ(laws(neo), "elasticity, dilatation, contraction, drag, 0");
+  EXPECT_EQ(laws(neo + "poisson_ratio = 0\n"), "elasticity, contraction, drag, 0");
+  EXPECT_EQ(laws(neo + "relaxation_min = 6\n"), "elasticity, dilatation, contraction, drag, 768");
+  EXPECT_EQ(laws(neo + "[region.one]\nids = [1]\n[elasticity.soft]\nregion = \"one\"\nrelaxation_min = 6\n"),
+            "elasticity, dilatation, contraction, drag, 768");
+}
+
+// A column of two cells under pressure: each is shortened by pressure over its own modulus.
+TEST(InteriorKeys, ASoftCellIsShortenedMore) {
+  const Scenario scenario = load_scenario({"column", "column.toml", R"(format = 1
+[embryo]
+shape = "block"
+length_um = 20
+width_um = 20
+cell_height_um = 20
+cells = [1, 1, 2]
+[region.low]
+ids = [0]
+[region.high]
+ids = [1]
+[elasticity]
+young_modulus_Pa = 1000
+poisson_ratio = 0
+[elasticity.soft]
+region = "high"
+young_modulus_Pa = 250
+[volume]
+method = "none"
+[hold.foot]
+region = "low"
+z_um = [-20, -20]
+[pressure.lid]
+region = "high"
+pressure_Pa = 1
+[time]
+end_min = 5
+[stop]
+equilibrium_speed_um_per_min = 1e-6
+)"});
+  Simulation simulation(scenario);
+  ASSERT_EQ(simulation.run(), RunStatus::equilibrium) << simulation.failure();
+  const Tissue& tissue = simulation.model().tissue;
+  double middle = 0, top = 0;
+  for (std::size_t n = 0; n < tissue.node_count(); ++n) {
+    const double z = tissue.rest_positions[n].z(), moved = simulation.state().positions[n].z() - z;
+    if (std::abs(z) < 1e-9) middle += moved / 4;
+    if (z > 10) top += moved / 4;
+  }
+  EXPECT_NEAR(middle, -20 * 1e-3, 2e-5);
+  EXPECT_NEAR(top - middle, -20 * 4e-3, 2e-4);
+}
+
+// All cells in the region: as if the modulus were everyone's.
+TEST(InteriorKeys, ARegionOfAllCellsIsLikeNone) {
+  const auto end = [](const std::string& more) {
+    Simulation simulation(load_scenario(support::pulled_block(more)));
+    EXPECT_EQ(simulation.run(), RunStatus::end_time);
+    return simulation.state().positions;
+  };
+  for (const std::string volume : {"[volume]\nmethod = \"none\"\n", ""}) {
+    const Vectors a = end("[elasticity]\nyoung_modulus_Pa = 300\n" + volume);
+    const Vectors b = end("[elasticity.all]\nregion = \"all\"\nyoung_modulus_Pa = 300\n" + volume);
+    const Vectors other = end(volume);
+    double apart = 0, without = 0;
+    for (std::size_t n = 0; n < a.size(); ++n) {
+      apart = std::max(apart, (a[n] - b[n]).norm());
+      without = std::max(without, (a[n] - other[n]).norm());
+    }
+    EXPECT_LE(apart, 1e-6);
+    EXPECT_GT(without, 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace plica
