@@ -20,7 +20,7 @@ MOST_LINES = 500
 NOT_A_LAW = {"law", "constraint", "obstacle", "model", "program", "turning_elements", "cell_pattern", "own_state",
              "hexahedron_stiffness"}
 MEASURES_MARK = "<!-- Below: what plica reference --measures prints. -->\n"
-UNIT_AT_END = re.compile(r"_(um|um2|um3|s|um_per_s|nN|nN_um|Pa)$")
+UNIT_AT_END = re.compile(r"_(um|um2|um3|s|um_per_s|nN|nN_um|deg|Pa)$")
 MARKDOWN_LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 

@@ -1,5 +1,7 @@
 #include "core/memory.hpp"
 
+#include <sys/resource.h>
+
 #include <cstdlib>
 #include <new>
 #ifdef __GLIBC__
@@ -19,6 +21,12 @@ void keep_freed_memory() {
   mallopt(M_MMAP_MAX, 0);         // no pages of their own for large arrays
   mallopt(M_TRIM_THRESHOLD, -1);  // never given back
 #endif
+}
+
+double peak_memory_MB() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024e-6;  // kB of 1024 bytes, on Linux
 }
 
 }  // namespace plica

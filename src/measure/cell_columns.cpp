@@ -129,14 +129,16 @@ std::span<const MidlineColumn> midline_columns() {
   static const std::vector<MidlineColumn> table = {
       {"time_s", "Of the frame.",
        [](const C& c, const FurrowSites& sites) { return Values(sites.midline.size(), c.state.time_s); }},
-      {"ap_um", "The cell's x at rest, from anterior to posterior.",
+      {"ap_um",
+       "The cell's x at rest, from anterior to posterior. Where two cells meet on the midline, the right one is there.",
        [](const C& c, const FurrowSites& sites) {
          Values values;
          for (const CellId id : sites.midline)
            values.push_back(cell_centre(c.model.tissue.cells[id.index()], c.model.tissue.rest_positions).x());
          return values;
        }},
-      {"depth_um", "Mean depth of the cell's points on the cut; as `furrow_depth_um`.", depths_um},
+      {"depth_um", "Mean depth of the cell's points on the cut; as `furrow_depth_um`. Inward is the same direction everywhere, so near "
+       "the poles, where the shell runs along it, a little shift counts for much.", depths_um},
       {"normal_speed_um_per_s", "Inward speed of its apical corners along the normal at rest.", inward_speeds},
       {"apical_area_ratio", "Apical area over that at rest.", [](const C& c, const FurrowSites& sites) {
          const Values ratios = c.apical_area_ratios();
@@ -144,6 +146,49 @@ std::span<const MidlineColumn> midline_columns() {
          for (const CellId id : sites.midline) values.push_back(ratios[id.index()]);
          return values;
        }}};
+  return table;
+}
+
+std::span<const SectionColumn> section_columns() {
+  using S = MeasuredSections;
+  // Of each cell, by its place among them.
+  const auto of_place = [](auto value) {
+    return [value](const S& s) {
+      Values values;
+      for (std::size_t i = 0; i < s.cells.size(); ++i) values.push_back(value(s, i));
+      return values;
+    };
+  };
+  const auto of_cell = [&](auto value) {
+    return of_place([value](const S& s, std::size_t i) {
+      return value(s.measured.model.tissue.cells[s.cells[i].cell.index()], s.measured);
+    });
+  };
+  static const std::vector<SectionColumn> table = {
+      {"time_s", "Of the frame.", of_cell([](const Cell&, const C& c) { return c.state.time_s; })},
+      {"place_percent", "Where the section is at rest: 25, 50 or 75 % of the embryo's length from its anterior end.",
+       of_place([](const S& s, std::size_t i) { return s.cells[i].place_percent; })},
+      {"from_midline",
+       "Number of the cell from the midline at rest: 1, 2, ... to the right, −1, −2, ... to the left; 0 is a cell that "
+       "lies on the midline, where a row of cells does. Daughters count, too.",
+       of_place([](const S& s, std::size_t i) { return s.cells[i].from_midline; })},
+      {"cell_id", "As in `cells.csv`.", of_cell([](const Cell& cell, const C&) { return cell.lineage.id; })},
+      {"height_um", "Mean length of the four edges from basal to apical.",
+       of_cell([](const Cell& cell, const C& c) { return cell_height(cell, c.state.positions); })},
+      {"apical_width_um", "Width of the apex across the embryo's axis, as its long axis is taken.",
+       of_place([](const S& s, std::size_t i) { return s.apices[i].width_across_um; })},
+      {"volume_um3", "Volume.",
+       of_cell([](const Cell& cell, const C& c) { return cell_volume(c.model.tissue, cell, c.state.positions); })},
+      {"apical_area_ratio", "Apical area over that at rest.", of_place([](const S& s, std::size_t i) {
+         const std::size_t cell = s.cells[i].cell.index();
+         return s.measured.apical_areas[cell] / s.measured.rest_apical_areas[cell];
+       })},
+      {"apical_long_axis_um", "Long side of the rectangle whose area has the second moments of the apex.",
+       of_place([](const S& s, std::size_t i) { return s.apices[i].long_axis_um; })},
+      {"apical_direction_deg", "Angle of that side to the embryo's axis in the plane of the apex: 0 along, 90 across.",
+       of_place([](const S& s, std::size_t i) { return s.apices[i].direction_deg; })},
+      {"apical_anisotropy_ratio", "Its long side over its short one.",
+       of_place([](const S& s, std::size_t i) { return s.apices[i].long_axis_um / s.apices[i].short_axis_um; })}};
   return table;
 }
 

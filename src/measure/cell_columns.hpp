@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "measure/cross_section.hpp"
 #include "measure/furrow.hpp"
 #include "mechanics/model.hpp"
 
@@ -59,6 +60,17 @@ std::span<const NodeColumn> node_columns();
 /// A value of each cell of the midline (FurrowSites::midline), in the order of midline.csv. NaN: it has none.
 using MidlineColumn = PlainColumn<std::vector<double>(const MeasuredCells&, const FurrowSites&)>;
 std::span<const MidlineColumn> midline_columns();
+
+/// What the values of cells in cross-sections are made from.
+struct MeasuredSections {
+  const MeasuredCells& measured;
+  std::span<const SectionCell> cells;
+  std::span<const FaceShape> apices;  // theirs
+};
+
+/// A value of each of these cells, in the order of cross_section.csv. NaN: it has none.
+using SectionColumn = PlainColumn<std::vector<double>(const MeasuredSections&)>;
+std::span<const SectionColumn> section_columns();
 
 /// A value of a daughter when she is born, in lineage.csv.
 using LineageColumn = PlainColumn<double(const Lineage&)>;

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <functional>
 
+#include "mechanics/active/cortex.hpp"
+#include "mechanics/energy.hpp"
+
 namespace plica {
 
 double cell_height(const Cell& cell, std::span<const Vec3> positions) {
@@ -46,6 +49,22 @@ std::optional<double> min_apical_area_ratio(const Tissue& tissue, std::span<cons
   for (std::size_t c = 0; c < now.size(); ++c)
     if (rest[c] > 0) least = std::min(least.value_or(now[c] / rest[c]), now[c] / rest[c]);
   return least;
+}
+
+std::size_t short_edges(const Tissue& tissue, std::span<const Vec3> positions) {
+  constexpr double short_ratio = 0.1;
+  std::vector<std::pair<NodeId, NodeId>> found;  // an edge of two cells comes twice
+  for (const Cell& cell : tissue.cells)
+    for (const CellEdge& edge : cell.edges) {
+      if (edge.side != CellSide::apical) continue;
+      const NodeId a = edge.nodes.front(), b = edge.nodes.back();
+      const double now = (positions[b.index()] - positions[a.index()]).norm(),
+                   at_rest = (tissue.rest_positions[b.index()] - tissue.rest_positions[a.index()]).norm();
+      if (now < short_ratio * at_rest) found.emplace_back(std::min(a, b), std::max(a, b));
+    }
+  std::ranges::sort(found);
+  const auto repeated = std::ranges::unique(found);
+  return found.size() - repeated.size();
 }
 
 std::vector<double> activities(const Model& model, const State& state) {
@@ -125,6 +144,21 @@ Vectors driving_forces(const Model& model, const State& state) {
   Vectors forces = forces_of_laws(model, state, [](const Law&) { return true; });
   model.tissue.carry_hanging(forces);
   return forces;
+}
+
+std::vector<std::pair<std::string, double>> mean_tensions(const Model& model, const State& state) {
+  std::vector<std::pair<std::string, double>> result;
+  Step still{state.positions, state.positions, state.velocities, no_time_s, state.time_s};
+  still.internals = state.internals;
+  for_laws(model, still, [&](const Law& law, const Step& own) {
+    const auto* cortex = dynamic_cast<const Cortex*>(&law);
+    if (cortex == nullptr || cortex->faces().empty()) return;
+    const std::vector<double> areas = cortex->areas(state.positions), tensions = cortex->tensions(own);
+    double sum = 0, area = 0;
+    for (std::size_t f = 0; f < areas.size(); ++f) sum += areas[f] * tensions[f], area += areas[f];
+    result.emplace_back(law.label(), sum / area);
+  });
+  return result;
 }
 
 std::vector<Vec3> rest_apical_normals(const Tissue& tissue, std::span<const CellId> cells) {

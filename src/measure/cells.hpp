@@ -3,6 +3,8 @@
 
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "measure/furrow.hpp"
@@ -24,6 +26,9 @@ double mean_apical_area_ratio(const Tissue& tissue, const MonitoredCells& cells,
 
 /// The smallest of all cells' apical areas over those at rest; empty where no cell has any.
 std::optional<double> min_apical_area_ratio(const Tissue& tissue, std::span<const Vec3> positions);
+
+/// How many apical edges of cells are shorter than a tenth of their length at rest, from corner to corner.
+std::size_t short_edges(const Tissue& tissue, std::span<const Vec3> positions);
 
 /// Activity of each cell: that of its program, delay included, in the first law by which it acts; 0 outside.
 /// Profile and variation are no part of it.
@@ -47,6 +52,9 @@ Vectors active_forces(const Model& model, const State& state);
 /// What pulls at the nodes of a body that stands still, nN: elasticity, contractions without their dampers, applied
 /// pressures. No drag, no inertia; volumes and the shell, which balance these, are not in it.
 Vectors driving_forces(const Model& model, const State& state);
+
+/// Mean tension of the faces that each cortex acts on, by area, nN/um; with the cortex's label.
+std::vector<std::pair<std::string, double>> mean_tensions(const Model& model, const State& state);
 
 /// Unit normals of the cells' apical surfaces at rest, outward.
 std::vector<Vec3> rest_apical_normals(const Tissue& tissue, std::span<const CellId> cells);

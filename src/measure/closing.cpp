@@ -96,9 +96,60 @@ std::optional<double> fluid_under_shell_um3(const Model& model, std::span<const 
   return std::nullopt;
 }
 
+namespace {
+
+constexpr double degree = std::numbers::pi / 180, flank_from = 60 * degree, flank_to = 120 * degree;
+
+// What a surface cut at x = 0 encloses with the axis on the flanks: the triangles between each piece of the cut and the
+// axis, counted by the way the surface looks, as far as they lie there.
+double area_to_axis(std::span<const Facet> facets, std::span<const Vec3> positions) {
+  using Place = Eigen::Vector2d;  // outward from the middle of the flank (y, on either side), upward (z)
+  // The part of a piece on one side of the line through the axis, at this angle from the flank's middle.
+  const auto clip = [](Place& a, Place& b, const Place& inward) {
+    const double of_a = inward.dot(a), of_b = inward.dot(b);
+    if (of_a < 0 && of_b < 0) return false;
+    if (of_a < 0) a += of_a / (of_a - of_b) * (b - a);
+    if (of_b < 0) b += of_b / (of_b - of_a) * (a - b);
+    return true;
+  };
+  const double half = 0.5 * (flank_to - flank_from);
+  double sum = 0;
+  const auto take = [&](const std::array<Vec3, 3>& corners) {
+    std::array<Place, 2> ends;  // where the triangle's border goes to x >= 0, and where it leaves it
+    int crossings = 0;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 &a = corners[i], &b = corners[(i + 1) % 3];
+      if ((a.x() < 0) == (b.x() < 0)) continue;
+      const Vec3 at = a + a.x() / (a.x() - b.x()) * (b - a);
+      ends[a.x() < 0 ? 0 : 1] = {at.y(), at.z()};
+      ++crossings;
+    }
+    if (crossings == 0) return;
+    for (const double side : {-1.0, 1.0}) {
+      Place a(side * ends[0].x(), ends[0].y()), b(side * ends[1].x(), ends[1].y());
+      if (!clip(a, b, {std::sin(half), std::cos(half)}) || !clip(a, b, {std::sin(half), -std::cos(half)})) continue;
+      sum += 0.5 * side * (a.x() * b.y() - a.y() * b.x());
+    }
+  };
+  for (const Facet& facet : facets) {
+    const std::array<Vec3, 4> x = gather(positions, facet);
+    const Vec3 middle = 0.25 * (x[0] + x[1] + x[2] + x[3]);
+    for (int i = 0; i < 4; ++i) take({x[i], x[(i + 1) % 4], middle});
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::optional<double> flank_section_area(const Tissue& tissue, std::span<const Vec3> positions) {
+  if (!tissue.outer_shape) return std::nullopt;
+  // Basal facets look into the embryo, and take away.
+  return std::abs(area_to_axis(tissue.apical_facets, positions) + area_to_axis(tissue.basal_facets, positions));
+}
+
 std::optional<double> flank_volume(const Tissue& tissue, std::span<const Vec3> positions) {
   if (!tissue.outer_shape) return std::nullopt;
-  constexpr double degree = std::numbers::pi / 180, from = 60 * degree, to = 120 * degree;
+  constexpr double from = flank_from, to = flank_to;
   const Interval length = length_of(tissue);
   const double quarter = (length.high - length.low) / 4, middle = (length.high + length.low) / 2;
   double sum = 0;

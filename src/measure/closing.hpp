@@ -35,6 +35,10 @@ std::optional<double> fluid_under_shell_um3(const Model& model, std::span<const 
 /// the part of its angle that lies there. Empty for a tissue without an outer shape.
 std::optional<double> flank_volume(const Tissue& tissue, std::span<const Vec3> positions);
 
+/// The area of the tissue at x = 0, between its basal and its apical surface, at 60 to 120 degrees from the belly,
+/// um^2. Empty for a tissue without an outer shape.
+std::optional<double> flank_section_area(const Tissue& tissue, std::span<const Vec3> positions);
+
 /// Where slow turns into fast: the break of the line of two straight pieces that is nearest to `depths_um` over
 /// `times_s` (least squares, each point by the time that it stands for), up to the first depth of 20 um.
 struct Knee {

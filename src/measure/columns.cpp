@@ -44,6 +44,11 @@ Column::OfStep reported(int StepReport::*number) {
   return [=](const MeasuredStep& m) { return m.step != nullptr ? m.step->report.*number : 0; };
 }
 
+// Of all steps so far; 0 at rest.
+Column::OfStep energy(double EnergyFlow::*number) {
+  return [=](const MeasuredStep& m) { return m.step != nullptr ? m.step->energy.*number : 0; };
+}
+
 Column count(Column column) {
   column.is_count = true;
   return column;
@@ -293,6 +298,42 @@ std::span<const Column> columns() {
        "When that is.",
        {},
        [](std::span<const Observation> rows) { return part(knee_of(rows), &Knee::time_s); }},
+      {"active_work_nN_um", series, last,
+       "What cells have put in so far: work of their tensions and contractions, of programs that stiffen something, of "
+       "applied pressures ([theory/energy.md](theory/energy.md)). 1 nN µm is 1 fJ.",
+       energy(&EnergyFlow::active)},
+      {"stored_energy_nN_um", series, last,
+       "What the tissue has stored of it so far: elastic energies less those at the beginning.",
+       energy(&EnergyFlow::stored)},
+      {"dissipated_energy_nN_um", series, last,
+       "What has been lost so far: to drag and viscosity, to rest areas that flow, to programs that let go of "
+       "something, to contacts that change.",
+       energy(&EnergyFlow::dissipated)},
+      {"energy_imbalance_ratio", series, last,
+       "What is missing of the active work so far: the work, less what is stored and dissipated, over the work. The "
+       "error of finite steps, of first or second order as `time.integrator` is; large in the first steps, when hardly "
+       "any work has been done. None without active work.",
+       [](const M& m) -> std::optional<double> {
+         if (m.step == nullptr || m.step->energy.active <= 0) return std::nullopt;
+         const auto& [active, stored, dissipated] = m.step->energy;
+         return (active - stored - dissipated) / active;
+       }},
+      {"flank_section_area_ratio", series, last,
+       "Area of the tissue cut at x = 0, between its basal and its apical surface, at 60° to 120° from the belly on "
+       "both "
+       "sides, over that at rest: what a cross-section under the microscope, or a model in two dimensions, shows of "
+       "the "
+       "lateral ectoderm. `flank_volume_ratio` is the same of a volume.",
+       [](const M& m) -> std::optional<double> {
+         const auto at_rest = flank_section_area(m.model.tissue, m.model.tissue.rest_positions);
+         if (at_rest.value_or(0) <= 0) return std::nullopt;
+         return *flank_section_area(m.model.tissue, m.state.positions) / *at_rest;
+       }},
+      count({"short_edges", series, largest,
+             "Apical edges of cells that are shorter than a tenth of their length at rest: cells of a tissue would "
+             "change neighbours there, which plica's do not. Of an edge of 7 µm that is 0.7 µm, where a microscope no "
+             "longer tells two vertices from one.",
+             [](const M& m) { return static_cast<double>(short_edges(m.model.tissue, m.state.positions)); }}),
   };
   return all;
 }

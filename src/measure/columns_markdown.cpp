@@ -65,6 +65,7 @@ std::string quantity_table() {
 std::string measures_markdown() {
   return step_table() + cell_table() + plain_table("Each node: frames", node_columns()) +
          plain_table("Cells of the ventral midline: midline.csv", midline_columns()) +
+         plain_table("Cells of three cross-sections: cross_section.csv", section_columns()) +
          plain_table("Daughters, when they are born: lineage.csv", lineage_columns()) + quantity_table();
 }
 

@@ -86,9 +86,13 @@ bool find_lips(const Tissue& tissue, FurrowSites& sites) {
   return left < 0 && right > 0;
 }
 
-// Cells on the midline of the furrow's side at rest, anterior to posterior.
+// Cells on the midline of the furrow's side at rest, anterior to posterior. Where two meet there, the one on the right
+// (y > 0) stands for both.
 std::vector<CellId> midline_of(const Tissue& tissue, const Vec3& outward) {
   std::vector<CellId> midline = cells_on_midline(tissue, outward_facets(tissue, outward));
+  std::erase_if(midline, [&](CellId cell) {
+    return cell_centre(tissue.cells[cell.index()], tissue.rest_positions).y() < -same_place_um;
+  });
   std::ranges::stable_sort(
       midline, {}, [&](CellId cell) { return cell_centre(tissue.cells[cell.index()], tissue.rest_positions).x(); });
   return midline;
@@ -173,8 +177,13 @@ std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, const Fu
     double depth = 0;
     int points = 0;
   };
+  // A cell that begins at the plane is cut there, though its nodes have come to lie a little beside it.
+  constexpr double at_plane_um = 0.05;
+  Vectors snapped(positions.begin(), positions.end());
+  for (Vec3& x : snapped)
+    if (std::abs(x[axis_y]) < at_plane_um) x[axis_y] = 0;
   std::map<CellId, Sum> sums;
-  for (const SurfacePoint& point : cut_apical_surface(tissue, positions, axis_y, facets_of(tissue, wanted))) {
+  for (const SurfacePoint& point : cut_apical_surface(tissue, snapped, axis_y, facets_of(tissue, wanted))) {
     Sum& sum = sums[tissue.apical_facets[point.facet].cell];
     sum.depth += depth_of(tissue, point, sites.outward, positions);
     ++sum.points;

@@ -22,6 +22,7 @@ struct AcceptedStep {
   double max_node_speed_um_per_s;
   bool frame_is_due;
   bool at_equilibrium = false;
+  EnergyFlow energy = {};  // of all steps so far, this one included
 };
 
 /// The measures of one accepted step. Empty: has no value.

@@ -44,7 +44,9 @@ void divide_laws(Model& model, State& state, const Division& division) {
   state.internals.resize(model.laws.size());
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
     state.internals[l] = model.laws[l]->internal_after_division(state.internals[l], model.tissue, division);
-    model.laws[l] = model.laws[l]->after_division(model.tissue, division, state.positions);
+    std::unique_ptr<Law> law = model.laws[l]->after_division(model.tissue, division, state.positions);
+    law->set_label(model.laws[l]->label());
+    model.laws[l] = std::move(law);
   }
 }
 

@@ -6,7 +6,9 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/ids.hpp"
@@ -40,6 +42,24 @@ struct Step {
   [[nodiscard]] auto before(const Quantity& q) const -> decltype(q(previous_positions)) {
     if (ahead == 0) return q(previous_positions);
     return (1 + ahead) * q(previous_positions) - ahead * q(earlier_positions);
+  }
+};
+
+/// A step that has been made, for its energies (docs/theory/energy.md).
+struct MadeStep {
+  Step begin, end;  // nothing moves on them: positions before it and after it, with the internal states of then
+  Step whole;  // from the one to the other at mean rates, with the internal states before; programs are read midway
+};
+
+/// What a law has done over a step, nN um.
+struct EnergyFlow {
+  double active = 0;      // put in by what cells or the outside do
+  double stored = 0;      // more in the tissue than before
+  double dissipated = 0;  // lost for good
+
+  EnergyFlow& operator+=(const EnergyFlow& more) {
+    active += more.active, stored += more.stored, dissipated += more.dissipated;
+    return *this;
   }
 };
 
@@ -84,8 +104,18 @@ class Law {
   [[nodiscard]] virtual std::string_view name() const = 0;
   [[nodiscard]] virtual std::unique_ptr<Law> clone() const = 0;
 
+  /// What tables of results call it: as the scenario does, cortex.apical; else by its name.
+  [[nodiscard]] std::string label() const { return label_.empty() ? std::string(name()) : label_; }
+  void set_label(std::string label) { label_ = std::move(label); }
+
   /// The law's part of the incremental potential.
   [[nodiscard]] virtual double energy(const Step& step) const = 0;
+
+  /// Where energy has gone over a step. As it stands here, of a law that stores all of it: one that acts, resists
+  /// motion or forgets says its own (docs/theory/energy.md).
+  [[nodiscard]] virtual EnergyFlow energy_flow(const MadeStep& made) const {
+    return {.stored = energy(made.end) - energy(made.begin)};
+  }
 
   /// Adds -d(energy)/dx.
   virtual void add_forces(const Step& step, std::span<Vec3> forces) const = 0;
@@ -154,6 +184,9 @@ class Law {
 
   /// Mass that the law gives to nodes, g; empty for none. At most one law of a model has any.
   [[nodiscard]] virtual std::span<const double> masses() const { return {}; }
+
+ private:
+  std::string label_;
 };
 
 }  // namespace plica

@@ -1,5 +1,6 @@
 #include "mechanics/surroundings.hpp"
 
+#include "mechanics/energy.hpp"
 #include "tissue/division.hpp"
 
 namespace plica {
@@ -53,6 +54,8 @@ double SurfaceDrag::energy(const Step& step) const {
     sum += 0.5 * coefficients_[n] / step.rate_s * change(step, n).squaredNorm();
   return sum;
 }
+
+EnergyFlow SurfaceDrag::energy_flow(const MadeStep& made) const { return viscous_energy_flow(*this, made); }
 
 void SurfaceDrag::add_forces(const Step& step, std::span<Vec3> forces) const {
   for (std::size_t n = 0; n < coefficients_.size(); ++n) forces[n] -= coefficients_[n] / step.rate_s * change(step, n);
@@ -141,6 +144,13 @@ double FacePressure::energy(const Step& step) const {
   double work = 0;
   for (std::size_t n = 0; n < loads_.size(); ++n) work += loads_[n].dot(step.positions[n]);
   return -program_.at(step.end_time_s) * work;
+}
+
+EnergyFlow FacePressure::energy_flow(const MadeStep& made) const {
+  double work = 0;
+  for (std::size_t n = 0; n < loads_.size(); ++n)
+    work += loads_[n].dot(made.whole.positions[n] - made.whole.previous_positions[n]);
+  return {.active = program_.at(made.whole.end_time_s) * work};
 }
 
 void FacePressure::add_forces(const Step& step, std::span<Vec3> forces) const {

@@ -17,6 +17,7 @@ class SurfaceDrag final : public Law {
   [[nodiscard]] std::string_view name() const override { return "drag"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<SurfaceDrag>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
+  [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const override;
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
@@ -62,6 +63,7 @@ class FacePressure final : public Law {
   [[nodiscard]] std::string_view name() const override { return "pressure"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<FacePressure>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
+  [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const override;
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step&, std::span<const Vec3>, std::span<Vec3>) const override {}  // constant force
   void add_tangent(const Step&, TangentSink&) const override {}

@@ -55,6 +55,11 @@ class Saving {
     (*this)(name + "_lengths", lengths);
     (*this)(name, all);
   }
+  void operator()(const std::string& name, const std::vector<EnergyFlow>& values) {
+    std::vector<double> numbers;
+    for (const auto& [active, stored, dissipated] : values) numbers.insert(numbers.end(), {active, stored, dissipated});
+    archive_.put(name, numbers, 3);
+  }
   void operator()(const std::string& name, const Vectors& values) {
     archive_.put(name, std::span(reinterpret_cast<const double*>(values.data()), 3 * values.size()), 3);
   }
@@ -97,6 +102,12 @@ class Loading {
       from += length;
     }
     if (from != all.end()) refuse(name);
+  }
+  void operator()(const std::string& name, std::vector<EnergyFlow>& values) {
+    const std::vector<double> numbers = archive_.doubles(name);
+    if (numbers.size() % 3 != 0) refuse(name);
+    values.clear();
+    for (std::size_t i = 0; i < numbers.size(); i += 3) values.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
   }
   void operator()(const std::string& name, Vectors& values) {
     const std::vector<double> numbers = archive_.doubles(name);
@@ -150,6 +161,7 @@ void visit(Take& take, AnyCheckpoint& checkpoint) {
   take("run/criterion_met", run.criterion_met);
   take("run/wanted_step_s", run.wanted_step_s);
   take("run/computing_s", run.computing_s);
+  take("run/energies", run.energies);
   auto& factor = run.factor;
   visit_iterate(take, "factor/", factor.at);
   take("factor/previous_positions", factor.previous_positions);
@@ -168,6 +180,7 @@ void visit(Take& take, AnyCheckpoint& checkpoint) {
   take("record/series_bytes", record.series_bytes);
   take("record/lineage_bytes", record.lineage_bytes);
   take("record/midline_bytes", record.midline_bytes);
+  take("record/section_bytes", record.section_bytes);
   take("record/cells_bytes", record.cells_bytes);
   take("record/frame_times_s", record.frame_times_s);
   take("record/wall_s", record.wall_s);
@@ -340,9 +353,9 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
     const ArchiveReader archive(image);
     Loading load(archive);
     Checkpoint checkpoint;
+    checkpoint.record.rows = load_rows(archive);  // first: they tell whether another version wrote it
     visit(load, checkpoint);
     checkpoint.run.past_divisions = load_divisions(archive);
-    checkpoint.record.rows = load_rows(archive);
     return checkpoint;
   };
   read_on_trial([&] { (void)read(); }, image.size());

@@ -18,8 +18,9 @@ namespace plica {
 
 /// What had been written when the checkpoint was: files are cut back to it.
 struct RecordMemory {
-  std::vector<Observation> rows;                                                          // of series.csv
-  std::uint64_t series_bytes = 0, lineage_bytes = 0, midline_bytes = 0, cells_bytes = 0;  // 0: no such file
+  std::vector<Observation> rows;  // of series.csv
+  std::uint64_t series_bytes = 0, lineage_bytes = 0, midline_bytes = 0, section_bytes = 0,
+                cells_bytes = 0;      // 0: no such file
   std::vector<double> frame_times_s;  // of the frames, in their order
   double wall_s = 0, solver_s = 0;    // of the run so far
 };

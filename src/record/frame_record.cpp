@@ -53,14 +53,18 @@ FrameTaker::FrameTaker(const Model& model, const FurrowSites& sites, bool with_c
   follow_division();
 }
 
-void FrameTaker::follow_division() { cells_ = std::make_shared<const FrameCells>(model_.tissue); }
+void FrameTaker::follow_division() {
+  cells_ = std::make_shared<const FrameCells>(model_.tissue);
+  section_cells_ = section_cells(model_.tissue, sites_.outward);
+}
 
 FrameRecord FrameTaker::take(const State& state) const {
-  FrameRecord frame{state.time_s, cells_, state.positions, {}, {}, {}, {}, {}};
+  FrameRecord frame{state.time_s, cells_, state.positions, {}, {}, {}, {}, {}, {}};
   for (const NodeColumn& column : node_columns()) frame.vectors.emplace_back(column.name, column.values(model_, state));
   const MeasuredCells measured(model_, state);
   add_cells(measured, frame);
   add_midline(measured, frame);
+  add_sections(measured, frame);
   return frame;
 }
 
@@ -80,6 +84,14 @@ void FrameTaker::add_midline(const MeasuredCells& measured, FrameRecord& frame) 
   Columns of_csv;
   for (const MidlineColumn& column : midline_columns()) of_csv.push_back(column.values(measured, sites_));
   frame.midline_rows = rows_of(of_csv);
+}
+
+void FrameTaker::add_sections(const MeasuredCells& measured, FrameRecord& frame) const {
+  const std::vector<FaceShape> shapes = apical_shapes(measured.model.tissue, section_cells_, measured.state.positions);
+  Columns of_csv;
+  for (const SectionColumn& column : section_columns())
+    of_csv.push_back(column.values({measured, section_cells_, shapes}));
+  frame.section_rows = rows_of(of_csv);
 }
 
 }  // namespace plica

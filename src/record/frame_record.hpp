@@ -32,7 +32,7 @@ struct FrameRecord {
   std::vector<std::pair<std::string, std::vector<double>>> scalars;  // cells
   std::vector<std::pair<std::string, std::vector<int>>> integers;    // cells
   std::vector<double> cell_rows;                                     // of cells.csv, row after row; or none
-  std::vector<double> midline_rows;                                  // of midline.csv
+  std::vector<double> midline_rows, section_rows;                    // of midline.csv and cross_section.csv
 
   [[nodiscard]] MeshElements mesh() const;
   /// Data of the frame's file. They refer to the record.
@@ -55,11 +55,13 @@ class FrameTaker {
  private:
   void add_cells(const MeasuredCells& measured, FrameRecord& frame) const;
   void add_midline(const MeasuredCells& measured, FrameRecord& frame) const;
+  void add_sections(const MeasuredCells& measured, FrameRecord& frame) const;
 
   const Model& model_;
   const FurrowSites& sites_;
   bool with_cell_rows_;
   std::shared_ptr<const FrameCells> cells_;
+  std::vector<SectionCell> section_cells_;
 };
 
 }  // namespace plica

@@ -75,6 +75,7 @@ WallTimes Recorder::wall() const {
 void Recorder::open_tables(const RecordMemory& memory) {
   series_ = table(directory_ / "series.csv", all_series_names(simulation_.observer()), memory.series_bytes);
   midline_ = table(directory_ / "midline.csv", names_of(midline_columns()), memory.midline_bytes);
+  section_ = table(directory_ / "cross_section.csv", names_of(section_columns()), memory.section_bytes);
   if (frame_taker_.with_cell_rows()) cells_ = table(directory_ / "cells.csv", cells_csv_names(), memory.cells_bytes);
   if (!scenario_.divisions.empty())
     lineage_ = table(directory_ / "lineage.csv", names_of(lineage_columns()), memory.lineage_bytes);
@@ -144,6 +145,7 @@ void Recorder::write(const StepRecord& step) {
   record.series_bytes = step.series_bytes;
   record.lineage_bytes = step.lineage_bytes;
   record.midline_bytes = bytes_of(midline_);
+  record.section_bytes = bytes_of(section_);
   record.cells_bytes = bytes_of(cells_);
   record.frame_times_s.clear();
   for (const auto& [time_s, file] : frames_) record.frame_times_s.push_back(time_s);
@@ -152,7 +154,7 @@ void Recorder::write(const StepRecord& step) {
   checkpoint_.run = step.run;
   const Sync sync = checkpoints_.sync_is_due() ? Sync::now : Sync::later;
   if (sync == Sync::now)
-    for (std::optional<RowFile>* file : {&series_, &lineage_, &midline_, &cells_})
+    for (std::optional<RowFile>* file : {&series_, &lineage_, &midline_, &section_, &cells_})
       if (*file) (*file)->sync();
   checkpoints_.write(checkpoint_, sync);
 }
@@ -196,6 +198,7 @@ void Recorder::write(const FrameRecord& frame) {
   if (!listeners_.empty()) tell(frame_of(frame.mesh(), frame.positions, arrays), frame.time_s);
   if (!frame.cell_rows.empty()) cells_->append(csv_rows(frame.cell_rows, cells_csv_names().size()));
   if (!frame.midline_rows.empty()) midline_->append(csv_rows(frame.midline_rows, midline_columns().size()));
+  if (!frame.section_rows.empty()) section_->append(csv_rows(frame.section_rows, section_columns().size()));
 }
 
 void Recorder::tell(const Frame& frame, double time_s) {

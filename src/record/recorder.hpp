@@ -1,8 +1,8 @@
 // Everything that a run leaves in its directory, written while it goes on. Files appear whole or not at all.
 //
-// series.csv and lineage.csv grow at once. A frame (its file, cells.csv, midline.csv, what listeners make of it) is
-// taken from the state at once and then compressed and written beside the computation, and after it the step's
-// checkpoint. What one step leaves is written before the next step is recorded.
+// series.csv and lineage.csv grow at once. A frame (its file, cells.csv, midline.csv, cross_section.csv, what listeners
+// make of it) is taken from the state at once and then compressed and written beside the computation, and after it the
+// step's checkpoint. What one step leaves is written before the next step is recorded.
 #pragma once
 
 #include <chrono>
@@ -80,7 +80,7 @@ class Recorder final : public SimulationListener {
   double last_frame_s_ = 0;
 
   // Of `write`, while frames are being written.
-  std::optional<RowFile> midline_, cells_;
+  std::optional<RowFile> midline_, section_, cells_;
   std::vector<std::pair<double, std::string>> frames_;  // time, file
   Checkpoint checkpoint_;                               // the last one, but for the run's memory
   CheckpointFiles checkpoints_;

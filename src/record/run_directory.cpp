@@ -14,9 +14,9 @@ namespace plica {
 namespace fs = std::filesystem;
 namespace {
 
-const std::vector<std::string> own_files = {"summary.json",  "series.csv",          "cells.csv",
-                                            "midline.csv",   "lineage.csv",         "frames.pvd",
-                                            "scenario.toml", "scenario.input.toml", "report.html"};
+const std::vector<std::string> own_files = {"summary.json",        "series.csv",        "cells.csv",  "midline.csv",
+                                            "lineage.csv",         "cross_section.csv", "frames.pvd", "scenario.toml",
+                                            "scenario.input.toml", "report.html"};
 
 // What frame_file names.
 bool is_frame(const fs::path& file) {

@@ -9,7 +9,10 @@
 #include <optional>
 #include <string_view>
 
+#include "core/memory.hpp"
 #include "core/version.hpp"
+#include "measure/cells.hpp"
+#include "mechanics/energy.hpp"
 #include "scenario/print.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/words.hpp"
@@ -60,6 +63,18 @@ Json stopped_by(const Scenario& scenario, const Simulation& simulation, const Ob
   return names.empty() ? Json(nullptr) : Json(fmt::format("{}", fmt::join(names, ", ")));
 }
 
+// Of the laws that have done anything.
+Json energy_by_law(const Simulation& simulation) {
+  const std::vector<std::string> labels = energy_labels(simulation.model());
+  Json table = Json::object();
+  for (std::size_t l = 0; l < simulation.energies().size(); ++l) {
+    const auto& [active, stored, dissipated] = simulation.energies()[l];
+    if (active != 0 || stored != 0 || dissipated != 0)
+      table[labels[l]] = {{"active", number(active)}, {"stored", number(stored)}, {"dissipated", number(dissipated)}};
+  }
+  return table;
+}
+
 // The last value that a monitor had.
 std::optional<double> last_value(const std::vector<Observation>& rows, std::size_t monitor) {
   std::optional<double> value;
@@ -90,6 +105,7 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   summary["steps"] = simulation.steps();
   summary["wall_s"] = wall.total_s;
   summary["wall_solver_s"] = wall.solver_s;
+  summary["peak_memory_MB"] = peak_memory_MB();
   const auto values = summary_values(rows);
   for (const auto& [column, value] : values)
     if (!column->of_projection) summary[column->name] = in_json(*column, value);
@@ -97,6 +113,10 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   const bool projects = method_of(scenario.volume) == VolumeMethod::projection;
   for (const auto& [column, value] : values)
     if (column->of_projection) summary[column->name] = projects ? in_json(*column, value) : Json(nullptr);
+  summary["energy_by_law_nN_um"] = energy_by_law(simulation);
+  summary["tension_by_law_mN_per_m"] = Json::object();  // nN/um is the same
+  for (const auto& [law, tension] : mean_tensions(simulation.model(), simulation.state()))
+    summary["tension_by_law_mN_per_m"][law] = number(tension);
   summary["provenance"] = {{"version", version()},
                            {"commit", commit()},
                            {"compiler", compiler()},

@@ -235,6 +235,7 @@ void add_contractions(const Scenario& scenario, Model& model) {
     std::vector<Spring> springs = contraction_springs(model.tissue, pattern, rule);
     model.laws.push_back(
         std::make_unique<Contraction>(std::move(springs), make_program(input.program), std::move(pattern)));
+    model.laws.back()->set_label("contraction." + name);
   }
 }
 
@@ -269,6 +270,7 @@ void add_cortices(const Scenario& scenario, Model& model) {
     rule.stiffness_program = make_program(input.stiffness_program);
     rule.own = make_own_state(input);
     model.laws.push_back(std::make_unique<Cortex>(model.tissue, make_pattern(input, model.tissue), std::move(rule)));
+    model.laws.back()->set_label("cortex." + name);
   }
 }
 
@@ -276,8 +278,10 @@ void add_enclosed(const Scenario& scenario, Model& model) {
   for (const auto& [name, input] : scenario.enclosed) {
     const EnclosedState state = meaning_of(words::enclosed_states, input.volume);
     if (state == EnclosedState::held) model.constraints.push_back(std::make_unique<EnclosedVolume>(model.tissue));
-    if (state == EnclosedState::compliant)
+    if (state == EnclosedState::compliant) {
       model.laws.push_back(std::make_unique<ElasticVolume>(model.tissue, *input.bulk_modulus_Pa * units::pascal));
+      model.laws.back()->set_label("enclosed." + name);
+    }
   }
 }
 
@@ -286,17 +290,21 @@ void add_contact(const Scenario& scenario, Model& model) {
   const ContactSurface surface = meaning_of(words::contact_surfaces, input.surface);
   for (const auto& [side, alone] :
        {std::pair(CellSide::apical, ContactSurface::apical), {CellSide::basal, ContactSurface::basal}})
-    if (surface == alone || surface == ContactSurface::both)
+    if (surface == alone || surface == ContactSurface::both) {
       model.laws.push_back(std::make_unique<SelfContact>(
           model.tissue,
           SelfContactRule{side, input.distance_um, input.stiffness_kPa_per_um, input.search_um, input.friction}));
+      model.laws.back()->set_label(side == CellSide::apical ? "self_contact.apical" : "self_contact.basal");
+    }
 }
 
 void add_pressures(const Scenario& scenario, Model& model) {
-  for (const auto& [name, input] : scenario.pressures)
+  for (const auto& [name, input] : scenario.pressures) {
     model.laws.push_back(std::make_unique<FacePressure>(
         model.tissue, meaning_of(words::pressure_faces, input.face), model.tissue.regions.at(input.region),
         input.pressure_Pa * units::pascal, make_program(input.program)));
+    model.laws.back()->set_label("pressure." + name);
+  }
 }
 
 /// Plane strain: no motion along the axis, and every plane across it moves like the first.

@@ -24,7 +24,7 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
     return "its steps are longer than its time";
   if (!fits(state) || state.velocities.size() != nodes || !none_or(state.trend.mean_velocities.size(), nodes) ||
       !none_or(state.trend.accelerations.size(), nodes) || !none_or(state.trend.multiplier_rates.size(), multipliers) ||
-      state.internals.size() != model.laws.size())
+      state.internals.size() != model.laws.size() || !none_or(run.energies.size(), model.laws.size() + 1))
     return "its state is not one of this embryo";
   const FactorMemory& factor = run.factor;
   if (factor.empty()) return std::nullopt;

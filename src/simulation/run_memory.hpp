@@ -30,6 +30,7 @@ struct RunMemory {
   bool criterion_met = false;                // [stop] says that the run is over
   double wanted_step_s = 0;                  // length of the next step; 0: no step yet
   double computing_s = 0;                    // what its steps have taken, wall time
+  std::vector<EnergyFlow> energies;          // of all steps so far, as energy_flows lists them; none before the first
   FactorMemory factor;
   std::vector<std::shared_ptr<const PastDivision>> past_divisions;
 };

@@ -10,6 +10,7 @@
 
 #include "core/clock.hpp"
 #include "mechanics/division.hpp"
+#include "mechanics/energy.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/watch.hpp"
 
@@ -180,6 +181,17 @@ void Simulation::begin_anew_at_a_jump() {
   step_length_ = StepLength(controls_);
 }
 
+// Adds what the step did; what all steps did together. Daughters are as grown as midway, since they work on the way.
+EnergyFlow Simulation::account_for_energy(const State& before) {
+  grow(*model_, 0.5 * (before.time_s + now_.state.time_s));
+  const std::vector<EnergyFlow> flows = energy_flows(*model_, before, now_.state);
+  grow(*model_, now_.state.time_s);
+  now_.energies.resize(flows.size());
+  EnergyFlow sum;
+  for (std::size_t l = 0; l < flows.size(); ++l) sum += now_.energies[l] += flows[l];
+  return sum;
+}
+
 RunStatus Simulation::status() const {
   if (!failure_.empty()) return RunStatus::failed;
   if (!has_ended(now_, controls_)) return RunStatus::under_way;
@@ -213,7 +225,8 @@ bool Simulation::step_towards(double time_s) {
   if (now_.at_equilibrium && !now_.equilibrium_time_s) now_.equilibrium_time_s = state.time_s;
   // At a division, the frame shows the daughters.
   const bool frame_is_due = due.empty() && passes_frame(before.time_s, state.time_s, controls_.frame_every_s);
-  const AcceptedStep step{state, before, state.trend.step_s, *report, speed, frame_is_due, now_.at_equilibrium};
+  const EnergyFlow energy = account_for_energy(before);
+  const AcceptedStep step{state, before, state.trend.step_s, *report, speed, frame_is_due, now_.at_equilibrium, energy};
   measures_ = observer_->observe(step, now_.computing_s);
   now_.criterion_met = measures_.is_over;
   for (SimulationListener* listener : listeners_) listener->step_accepted(step, measures_);

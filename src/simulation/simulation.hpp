@@ -80,6 +80,9 @@ class Simulation {
   [[nodiscard]] double computing_s() const { return now_.computing_s; }
   [[nodiscard]] const RunControls& controls() const { return controls_; }
 
+  /// Where energy has gone in all steps so far, as energy_flows lists it; empty before the first.
+  [[nodiscard]] const std::vector<EnergyFlow>& energies() const { return now_.energies; }
+
   /// Measures of the last accepted step, or of the body at rest.
   [[nodiscard]] const Observation& measures() const { return measures_; }
   [[nodiscard]] const Observer& observer() const { return *observer_; }
@@ -103,6 +106,7 @@ class Simulation {
   void divide(const std::vector<PlannedDivision>& due);
   Division make_division(State& state, const std::vector<PlannedDivision>& planned);
   void begin_anew_at_a_jump();
+  EnergyFlow account_for_energy(const State& before);
   void renew_stepper();
   void recall_factor();
 

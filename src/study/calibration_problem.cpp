@@ -49,14 +49,15 @@ void refuse_repetitions(const CalibrationProblem& problem) {
       throw UsageError(fmt::format("--target {}: is given twice; leave one out", target.name));
 }
 
-bool is_of_the_clock(const std::string& name) { return name.find("wall_s") != std::string::npos; }
+// What the computation has cost, which differs from run to run.
+bool is_a_cost(const std::string& name) { return name == "peak_memory_MB" || name.find("wall_s") != std::string::npos; }
 
-// What of the summary can be a target: numbers, and what may become one, but no computing times.
+// What of the summary can be a target: numbers, and what may become one, but not what it cost.
 std::vector<std::string> known_targets(const Scenario& scenario) {
   std::vector<std::string> names;
   const RunSummary rest = run_at_rest(scenario);
   for (const auto& [name, value] : rest.summary.items())
-    if ((value.is_number() || value.is_null()) && name != "stopped_by" && name != "failure" && !is_of_the_clock(name))
+    if ((value.is_number() || value.is_null()) && name != "stopped_by" && name != "failure" && !is_a_cost(name))
       names.push_back(name);
   return names;
 }
@@ -64,8 +65,9 @@ std::vector<std::string> known_targets(const Scenario& scenario) {
 void refuse_unknown_targets(const CalibrationProblem& problem, const std::vector<std::string>& known) {
   for (const Target& target : problem.targets) {
     if (std::ranges::count(known, target.name) > 0) continue;
-    if (is_of_the_clock(target.name))
-      throw UsageError(fmt::format("--target {}: computing time differs from run to run; give a result", target.name));
+    if (is_a_cost(target.name))
+      throw UsageError(
+          fmt::format("--target {}: what a run costs differs from run to run; give a result", target.name));
     throw UsageError(
         fmt::format("--target {}: is no number of summary.json; {}", target.name, did_you_mean(target.name, known)));
   }

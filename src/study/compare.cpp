@@ -19,7 +19,8 @@ namespace {
 /// Of the clock or of the solver's work, not of the tissue.
 bool says_nothing_of_shape(const std::string& name) {
   return name == "time_s" || name == "step_s" || name == "steps" || name == "newton_iterations" ||
-         name == "linear_iterations" || name.starts_with("wall_") || name.find(".wall_") != std::string::npos;
+         name == "linear_iterations" || name == "peak_memory_MB" || name.starts_with("wall_") ||
+         name.find(".wall_") != std::string::npos;
 }
 
 std::string text_of(const nlohmann::ordered_json& summary, const std::string& key) {

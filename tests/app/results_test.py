@@ -3,8 +3,8 @@ import xml.etree.ElementTree
 from pathlib import Path
 
 import support
-from support import BLOCK, CELL_DATA, CELLS, MIDLINE, POINT_DATA, RESULTS, SERIES, SPHERE, SUMMARY, CommandLine
-from support import plica, read_vtu, table, tree
+from support import BLOCK, CELL_DATA, CELLS, MIDLINE, POINT_DATA, RESULTS, SECTION, SERIES, SPHERE, SUMMARY
+from support import CommandLine, plica, read_vtu, table, tree
 
 
 class Outcomes(CommandLine):
@@ -27,6 +27,10 @@ class Outcomes(CommandLine):
         midline = table(self.out / "midline.csv")
         self.assertEqual(list(midline[0]), MIDLINE)
         self.assertEqual(len({row["time_s"] for row in midline}), len(frames))
+        sections = table(self.out / "cross_section.csv")
+        self.assertEqual(list(sections[0]), SECTION)
+        self.assertEqual(len({row["time_s"] for row in sections}), len(frames))
+        self.assertEqual({row["place_percent"] for row in sections}, {"25", "50", "75"})
         summary = self.summary()
         self.assertEqual([key for key in SUMMARY if key not in summary], [])
         self.assertEqual((summary["status"], summary["cells"], summary["nodes"]), ("end_time", 130, 264))
@@ -39,7 +43,8 @@ class Outcomes(CommandLine):
         self.assertTrue({"version", "commit", "compiler", "threads"} <= set(summary["provenance"]))
         for key, value in summary.items():
             self.assertNotIsInstance(value, list)
-            self.assertTrue(key == "provenance" or not isinstance(value, dict), "flat")
+            tables = ("provenance", "energy_by_law_nN_um", "tension_by_law_mN_per_m")
+            self.assertTrue(key in tables or not isinstance(value, dict), "flat")
 
     def test_every_column_is_in_the_documentation(self):
         page = (Path(__file__).resolve().parents[2] / "docs" / "measures.md").read_text(encoding="utf-8")
@@ -47,7 +52,7 @@ class Outcomes(CommandLine):
         frame = read_vtu(sorted((self.out / "frames").iterdir())[-1])
         arrays = {name for name, (section, _) in frame.items() if section in ("PointData", "CellData")}
         names = set(self.summary()) | {name for name in arrays if not name.startswith("region_")}
-        tables = [self.out / f"{name}.csv" for name in ("series", "cells", "midline", "lineage")]
+        tables = [self.out / f"{name}.csv" for name in ("series", "cells", "midline", "cross_section", "lineage")]
         for file in tables:
             names |= set(file.read_text().splitlines()[0].split(","))
         self.assertGreater(len(names), 60)

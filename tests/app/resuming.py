@@ -15,10 +15,10 @@ for setting in ("division.floor.at_min=0.2", "division.floor.growth_min=0.3", "d
 
 
 def results(out):
-    """What must be the same: every file but checkpoints and the report, wall times and provenance aside."""
+    """What must be the same: every file but checkpoints and the report, what it cost and provenance aside."""
     files = {name: content for name, content in tree(out).items() if name not in CHECKPOINTS | {"report.html"}}
     summary = json.loads(files["summary.json"])
-    for key in [key for key in summary if key.startswith("wall_") or key == "provenance"]:
+    for key in [key for key in summary if key.startswith("wall_") or key in ("peak_memory_MB", "provenance")]:
         del summary[key]
     return files | {"summary.json": summary}
 

@@ -71,20 +71,26 @@ SERIES = (
     "max_node_speed_um_per_s max_volume_error lumen_volume_ratio cells step_s newton_iterations linear_iterations "
     "self_intersections refused_steps vml_height_um min_apical_area_ratio min_corner_jacobian_ratio "
     "enclosed_volume_ratio yolk_pressure_Pa shell_fluid_um3 flank_volume_ratio contact_pairs min_contact_distance_um "
-    "closed_length_ratio lips_closed"
+    "closed_length_ratio lips_closed active_work_nN_um stored_energy_nN_um dissipated_energy_nN_um "
+    "energy_imbalance_ratio flank_section_area_ratio short_edges"
 ).split()
 CELLS = (
     "time_s cell_id mother_id generation x_um y_um z_um volume_um3 apical_area_um2 basal_area_um2 height_um "
     "apical_area_ratio speed_um_per_s pressure_Pa activity self_intersecting"
 ).split()
+SECTION = (
+    "time_s place_percent from_midline cell_id height_um apical_width_um volume_um3 apical_area_ratio "
+    "apical_long_axis_um apical_direction_deg apical_anisotropy_ratio"
+).split()
 MIDLINE = "time_s ap_um depth_um normal_speed_um_per_s apical_area_ratio".split()
 SUMMARY = (
-    "scenario status time_s equilibrium_time_s cells nodes steps wall_s wall_solver_s furrow_depth_um "
+    "scenario status time_s equilibrium_time_s cells nodes steps wall_s wall_solver_s peak_memory_MB furrow_depth_um "
     "furrow_depth_below_lips_um lip_distance_um vml_apical_area_ratio vce_apical_area_ratio vml_displacement_um "
     "vce_displacement_um peak_speed_ratio peak_speed_ratio_time_s ends_lead_until_s "
     "vml_displacement_at_equal_speed_um vce_displacement_at_equal_speed_um max_volume_error "
     "max_shell_penetration_um min_scaled_jacobian self_intersections "
-    "min_apical_area_ratio min_corner_jacobian_ratio closed_length_ratio lips_closed_time_s knee_depth_um provenance"
+    "min_apical_area_ratio min_corner_jacobian_ratio closed_length_ratio lips_closed_time_s knee_depth_um energy_imbalance_ratio "
+    "energy_by_law_nN_um tension_by_law_mN_per_m provenance"
 ).split()
 POINT_DATA = {"displacement_um", "velocity_um_per_s", "force_nN"}
 CELL_DATA = {
@@ -92,7 +98,7 @@ CELL_DATA = {
     "self_intersecting",
 }
 RESULTS = {
-    "summary.json", "series.csv", "cells.csv", "midline.csv", "frames", "frames.pvd", "scenario.toml",
+    "summary.json", "series.csv", "cells.csv", "midline.csv", "cross_section.csv", "frames", "frames.pvd", "scenario.toml",
     "scenario.input.toml", "report.html",
 }
 CHECKPOINTS = {"checkpoint.h5", "checkpoint.previous.h5"}

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "measure/cells.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "mechanics/contact/self_contact.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
@@ -57,6 +58,39 @@ TEST(FlankVolume, IsWhatLiesOnTheSides) {
     positions[n] = Eigen::AngleAxisd(0.2, Vec3::UnitX()) * tissue.rest_positions[n];
   EXPECT_NEAR(*flank_volume(tissue, positions) / at_rest, 1, 0.02);
   EXPECT_FALSE(flank_volume(build_block({}), build_block({}).rest_positions));
+}
+
+// Of a cylinder a ring sector: (120 - 60)/180 of half the ring, on two sides.
+TEST(FlankSectionArea, IsWhatIsCutOnTheSides) {
+  for (const int across : {8, 9}) {
+    const Tissue tissue = build_shell({.length_um = 460, .cells = {18, across, across}});
+    double low = 1e300, high = 0;
+    for (const Vec3& x : tissue.rest_positions)
+      if (std::abs(x.x()) < 100)
+        low = std::min(low, std::hypot(x.y(), x.z())), high = std::max(high, std::hypot(x.y(), x.z()));
+    const double at_rest = *flank_section_area(tissue, tissue.rest_positions), sector = std::numbers::pi / 3;
+    EXPECT_NEAR(at_rest, sector * (high * high - low * low), 0.02 * at_rest) << "chords for arcs";
+    // Twice as far from the axis sideways: at 45 degrees of the stretched one, not of the one at rest.
+    Vectors positions = tissue.rest_positions;
+    for (Vec3& x : positions) x.y() *= 1.2, x.z() *= 1.2;
+    EXPECT_NEAR(*flank_section_area(tissue, positions) / at_rest, 1.44, 1e-9);
+    // What the belly does is nothing to it.
+    positions = tissue.rest_positions;
+    for (Vec3& x : positions)
+      if (x.z() < -std::abs(x.y())) x.z() *= 0.9;
+    EXPECT_NEAR(*flank_section_area(tissue, positions) / at_rest, 1, 1e-9);
+  }
+  EXPECT_FALSE(flank_section_area(build_block({}), build_block({}).rest_positions));
+}
+
+TEST(ShortEdges, AreThoseShorterThanATenthOfTheirLengthAtRest) {
+  const Tissue tissue = build_block({.length_um = 60, .width_um = 40, .cells = {3, 2, 1}});
+  EXPECT_EQ(short_edges(tissue, tissue.rest_positions), 0u);
+  Vectors positions = tissue.rest_positions;
+  for (Vec3& x : positions) x.x() *= 0.11;
+  EXPECT_EQ(short_edges(tissue, positions), 0u);
+  for (Vec3& x : positions) x.x() *= 0.9;
+  EXPECT_EQ(short_edges(tissue, positions), 9u) << "along x: three a row, each once, and none below";
 }
 
 TEST(ShellFluid, IsTheShellLessWhatIsInside) {

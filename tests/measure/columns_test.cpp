@@ -27,6 +27,7 @@ TEST(Columns, AreNamedOnceAndExplained) {
   expect_named_and_explained(cell_columns(), 16);
   expect_named_and_explained(node_columns(), 3);
   expect_named_and_explained(midline_columns(), 5);
+  expect_named_and_explained(section_columns(), 11);
   expect_named_and_explained(lineage_columns(), 4);
 }
 

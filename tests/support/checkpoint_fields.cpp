@@ -65,12 +65,15 @@ struct Fields {
 
   void take_run(const RunMemory& run) {
     const auto& [state, steps, divisions, equilibrium_time_s, at_equilibrium, criterion_met, wanted_step_s, computing_s,
-                 factor, past_divisions] = run;
+                 energies, factor, past_divisions] = run;
     take_state(state);
     take_factor(factor);
     take("steps", steps), take("divisions", divisions), take("equilibrium_time_s", equilibrium_time_s);
     take("at_equilibrium", at_equilibrium), take("criterion_met", criterion_met);
     take("wanted_step_s", wanted_step_s), take("computing_s", computing_s);
+    numbers["energies"];
+    for (const auto& [active, stored, dissipated] : energies)
+      take("energies", active), take("energies", stored), take("energies", dissipated);
     numbers["past_divisions"];
     for (const auto& past : past_divisions) {
       const auto& [time_s, positions, planned] = *past;
@@ -79,8 +82,8 @@ struct Fields {
   }
 
   void take_record(const RecordMemory& record) {
-    const auto& [rows, series_bytes, lineage_bytes, midline_bytes, cells_bytes, frame_times_s, wall_s, solver_s] =
-        record;
+    const auto& [rows, series_bytes, lineage_bytes, midline_bytes, section_bytes, cells_bytes, frame_times_s, wall_s,
+                 solver_s] = record;
     numbers["rows"], numbers["monitors"], numbers["criteria_met"];
     for (const Observation& row : rows) {
       const auto& [values, monitors, criteria_met, is_over] = row;  // is_over is the run's criterion_met
@@ -89,6 +92,7 @@ struct Fields {
     if (!rows.empty()) take("criteria_met", rows.back().criteria_met);  // of others nobody asks
     take("series_bytes", static_cast<double>(series_bytes)), take("lineage_bytes", static_cast<double>(lineage_bytes));
     take("midline_bytes", static_cast<double>(midline_bytes)), take("cells_bytes", static_cast<double>(cells_bytes));
+    take("section_bytes", static_cast<double>(section_bytes));
     take("frame_times_s", frame_times_s), take("wall_s", wall_s), take("solver_s", solver_s);
   }
 };
@@ -109,6 +113,7 @@ Checkpoint marked(Checkpoint checkpoint) {
   run.equilibrium_time_s = 1.5;
   run.at_equilibrium = run.criterion_met = true;
   run.computing_s = 0.25;
+  run.energies = {{1, 2, 3}, {4, 5, 6}};
   run.state.contact_forces = {0.5, 0, 2};
   run.state.in_contact = {1, 0, 1};
   run.state.internals = {{1, 2}, {}, {3}};
@@ -130,6 +135,7 @@ Checkpoint marked(Checkpoint checkpoint) {
   RecordMemory& record = checkpoint.record;
   record.rows.back().criteria_met = {"folded", "at rest"};
   record.series_bytes = 101, record.lineage_bytes = 102, record.midline_bytes = 103, record.cells_bytes = 104;
+  record.section_bytes = 105;
   record.wall_s = 17, record.solver_s = 16;
   return checkpoint;
 }

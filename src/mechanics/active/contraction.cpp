@@ -181,6 +181,23 @@ double Contraction::energy(const Step& step) const {
   return sum;
 }
 
+EnergyFlow Contraction::energy_flow(const MadeStep& made) const {
+  const Step& step = made.whole;
+  EnergyFlow flow;
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    const Spring& spring = springs_[k];
+    const auto nodes = std::span(nodes_).subspan(start_[k], start_[k + 1] - start_[k]);
+    const double before = chain_length(nodes, step.previous_positions), after = chain_length(nodes, step.positions);
+    const auto potential = [&](double length) {
+      const double stretch = std::max(0.0, length - spring.rest_length);
+      return 0.5 * spring.stiffness * stretch * stretch + spring.preload * length;
+    };
+    flow.active -= activity(spring.delay_s, step.end_time_s) * (potential(after) - potential(before));
+    flow.dissipated += spring.damping / step.rate_s * (after - before) * (after - before);
+  }
+  return flow;
+}
+
 void Contraction::add_forces(const Step& step, std::span<Vec3> forces) const {
   for_springs(step, [&](const Pulled& p) {
     for (std::size_t i = 0; i < p.nodes.size(); ++i) forces[p.nodes[i].index()] -= p.tension * p.length_gradient(i);

@@ -120,38 +120,71 @@ double Cortex::of_face(std::size_t f, const OfCell& of_cell) const {
   return face.beyond ? 0.5 * (strong(face.cell) + strong(*face.beyond)) : strong(face.cell);
 }
 
+double Cortex::stiffening_of(std::size_t f, const Step& step) const {
+  return of_face(f, [&](CellId cell) { return stiffening(cell, step); });
+}
+
+Cortex::Response Cortex::active(std::size_t f, double area, const Step& step, bool with_energy) const {
+  const double acting = of_face(f, [&](CellId cell) { return activity(cell, step.end_time_s, step.internal); });
+  const double gamma = acting * rule_.tension, saturation = rule_.saturation * rest_areas_[f];
+  if (saturation <= 0) return {gamma * area, gamma, 0};
+  return {with_energy ? gamma * (area - saturation * std::log1p(area / saturation)) : 0,
+          gamma * area / (area + saturation), gamma * saturation / ((area + saturation) * (area + saturation))};
+}
+
+// With the rest area at the step's end, (A_b + r A)/(1 + r), where A_b is that before (docs/theory/cortex.md).
+Cortex::Response Cortex::elastic(std::size_t f, double area, const Step& step, double b, bool with_energy) const {
+  const double before = rest_area_before(f, step), r = flows() ? step.rate_s / rule_.relaxation_s : 0;
+  const double yielding = before + r * area;
+  double k = rule_.stiffness * b;
+  if (area < before) k *= rule_.compression_ratio;
+  return {with_energy ? k * before / (1 + r) * integral_of_yielding(area / before - 1, r / (1 + r)) : 0,
+          k * (area - before) / yielding, k * (1 + r) * before / (yielding * yielding)};
+}
+
+Cortex::Response Cortex::crowded(std::size_t f, double area, bool with_energy) const {
+  const double c = strengths_[f] * rule_.crowding, ratio = rest_areas_[f] / area;
+  return {with_energy ? c * rest_areas_[f] * ratio : 0, -(c * ratio * ratio), 2 * c * ratio * ratio / area};
+}
+
 Cortex::Response Cortex::respond(std::size_t f, double area, const Step& step, bool with_energy) const {
-  const double strength = strengths_[f], rest = rest_areas_[f];
-  Response response;
-  if (rule_.tension != 0) {
-    const double acting = of_face(f, [&](CellId cell) { return activity(cell, step.end_time_s, step.internal); });
-    const double gamma = acting * rule_.tension, saturation = rule_.saturation * rest;
-    if (saturation > 0) {
-      response.tension += gamma * area / (area + saturation);
-      response.slope += gamma * saturation / ((area + saturation) * (area + saturation));
-      if (with_energy) response.energy += gamma * (area - saturation * std::log1p(area / saturation));
-    } else {
-      response.tension += gamma;
-      if (with_energy) response.energy += gamma * area;
+  Response sum;
+  const auto add = [&](const Response& more) {
+    sum.energy += more.energy;
+    sum.tension += more.tension;
+    sum.slope += more.slope;
+  };
+  if (rule_.tension != 0) add(active(f, area, step, with_energy));
+  if (rule_.stiffness != 0) add(elastic(f, area, step, stiffening_of(f, step), with_energy));
+  if (rule_.crowding != 0) add(crowded(f, area, with_energy));
+  return sum;
+}
+
+EnergyFlow Cortex::energy_flow(const MadeStep& made) const {
+  const std::vector<double> before = areas(made.begin.positions), after = areas(made.end.positions);
+  std::vector<EnergyFlow> flows_of(faces_.size());
+  chunks_.for_elements([&](std::size_t f) {
+    EnergyFlow& flow = flows_of[f];
+    if (rule_.tension != 0)
+      flow.active = active(f, before[f], made.whole, true).energy - active(f, after[f], made.whole, true).energy;
+    if (rule_.stiffness != 0) {
+      // Of unit programs, at the areas and rest areas of then. A program that rises puts in energy; what it lets go of
+      // is lost, as is what the tension does on the face beyond what it stores, where the rest area flows.
+      const double b0 = stiffening_of(f, made.begin), b1 = stiffening_of(f, made.end), mean = 0.5 * (b0 + b1);
+      const Response from = elastic(f, before[f], made.begin, 1, true), to = elastic(f, after[f], made.end, 1, true);
+      const double programmed = (b1 - b0) * 0.5 * (from.energy + to.energy);
+      flow.stored = b1 * to.energy - b0 * from.energy;
+      flow.active += std::max(0.0, programmed);
+      flow.dissipated = std::max(0.0, -programmed);
+      if (flows())
+        flow.dissipated +=
+            mean * (0.5 * (from.tension + to.tension) * (after[f] - before[f]) - (to.energy - from.energy));
     }
-  }
-  if (rule_.stiffness != 0) {
-    // With the rest area at the step's end, (A_b + r A)/(1 + r), where A_b is that before (docs/theory/cortex.md).
-    const double before = rest_area_before(f, step), r = flows() ? step.rate_s / rule_.relaxation_s : 0;
-    const double yielding = before + r * area;
-    double k = rule_.stiffness * of_face(f, [&](CellId cell) { return stiffening(cell, step); });
-    if (area < before) k *= rule_.compression_ratio;
-    response.tension += k * (area - before) / yielding;
-    response.slope += k * (1 + r) * before / (yielding * yielding);
-    if (with_energy) response.energy += k * before / (1 + r) * integral_of_yielding(area / before - 1, r / (1 + r));
-  }
-  if (rule_.crowding != 0) {
-    const double c = strength * rule_.crowding, ratio = rest / area;
-    response.tension -= c * ratio * ratio;
-    response.slope += 2 * c * ratio * ratio / area;
-    if (with_energy) response.energy += c * rest * ratio;
-  }
-  return response;
+    if (rule_.crowding != 0) flow.stored += crowded(f, after[f], true).energy - crowded(f, before[f], true).energy;
+  });
+  EnergyFlow sum;
+  for (const EnergyFlow& flow : flows_of) sum += flow;
+  return sum;
 }
 
 std::vector<double> Cortex::areas(std::span<const Vec3> positions) const {

@@ -43,6 +43,7 @@ class Cortex final : public Law {
   [[nodiscard]] std::string_view name() const override { return "cortex"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Cortex>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
+  [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const override;
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
@@ -76,6 +77,11 @@ class Cortex final : public Law {
     double energy = 0, tension = 0, slope = 0;
   };
   [[nodiscard]] Response respond(std::size_t face, double area, const Step& step, bool with_energy) const;
+  // Its three terms: T of the program, b(t) k (A/A_0 - 1) with a given b (strength included), and crowding.
+  [[nodiscard]] Response active(std::size_t face, double area, const Step& step, bool with_energy) const;
+  [[nodiscard]] Response elastic(std::size_t face, double area, const Step& step, double b, bool with_energy) const;
+  [[nodiscard]] Response crowded(std::size_t face, double area, bool with_energy) const;
+  [[nodiscard]] double stiffening_of(std::size_t face, const Step& step) const;
   struct Pull;  // of all faces at a step's end, as kernels take it
   [[nodiscard]] Pull pull(const Step& step) const;
   [[nodiscard]] bool flows() const { return rule_.relaxation_s > 0; }

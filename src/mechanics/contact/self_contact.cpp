@@ -263,6 +263,14 @@ void add_push(const SelfContact::Point& point, const Pair& pair, const Vec3& pus
 
 }  // namespace
 
+EnergyFlow SelfContact::energy_flow(const MadeStep& made) const {
+  // Pairs are found anew at the step's end, and what the old ones had stored beyond the new ones is lost.
+  Step with_old_pairs = made.end;
+  with_old_pairs.internal = made.begin.internal;
+  const double now = energy(made.end);
+  return {.stored = now - energy(made.begin), .dissipated = energy(with_old_pairs) - now};
+}
+
 void SelfContact::add_forces(const Step& step, std::span<Vec3> forces) const {
   for_pressed(step, [&](const Point& point, const Pair& pair, double inside) {
     add_push(point, pair, rule_.stiffness * point.area * inside * pair.normal, forces);

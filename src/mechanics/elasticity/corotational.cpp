@@ -4,6 +4,7 @@
 
 #include "core/parallel.hpp"
 #include "mechanics/elasticity/turning_elements.hpp"
+#include "mechanics/energy.hpp"
 #include "tissue/division.hpp"
 
 namespace plica {
@@ -18,38 +19,6 @@ void put_stiffness(const Mat12& H, int lane, double (&stiffness)[78][batch_size]
 
 void put_vector(const Vec3& v, int lane, double (&vectors)[3][batch_size]) {
   for (int axis = 0; axis < 3; ++axis) vectors[axis][lane] = v[axis];
-}
-
-// dev S, nine numbers, and h, for an energy without a kernel: nothing that is timed asks for it.
-using Deformation = Eigen::Matrix<double, 21, 1>;
-
-Deformation deformation(const CorotationalBatch& batch, std::size_t lane, std::span<const Vec3> positions) {
-  const auto vector = [&](const double(&of)[3][batch_size]) { return Vec3(of[0][lane], of[1][lane], of[2][lane]); };
-  const auto place = [&](int i) -> const Vec3& { return positions[batch.nodes[i][lane] / 3]; };
-  std::array<Vec3, 7> m;
-  for (int mode = 0; mode < 7; ++mode) {
-    m[mode] = Vec3::Zero();
-    for (int i = 0; i < 8; ++i) m[mode] += hex_modes[mode][i] * (place(i) - place(0));
-  }
-  Mat3 F = Mat3::Zero(), R, S;
-  for (int mode = 0; mode < 6; ++mode) F += m[mode] * vector(batch.gradients[mode]).transpose();
-  polar(F, R, S);
-  Deformation result;
-  for (int a = 0; a < 4; ++a)
-    result.segment<3>(9 + 3 * a) = R.transpose() * (m[3 + a] - F * vector(batch.hourglass[a]));
-  S.diagonal().array() -= S.trace() / 3;
-  result.head<9>() = S.reshaped();
-  return result;
-}
-
-// shear |dev S|^2 / 2 + h^T H h / 2.
-template <class Batch>
-double half_product(const Batch& batch, std::size_t lane, const Deformation& of) {
-  double product = batch.shear[lane] * of.head<9>().squaredNorm();
-  for (int row = 0, at = 0; row < 12; ++row)
-    for (int column = 0; column <= row; ++column, ++at)
-      product += (column < row ? 2 : 1) * batch.stiffness[at][lane] * of[9 + row] * of[9 + column];
-  return product / 2;
 }
 
 }  // namespace
@@ -123,17 +92,16 @@ CorotationalStep Corotational::kernel_step(const Step& step) const {
           .semidefinite_tangent = step.semidefinite_tangent};
 }
 
+EnergyFlow Corotational::energy_flow(const MadeStep& made) const {
+  return viscous_batches_.empty() ? Law::energy_flow(made) : viscous_energy_flow(*this, made);
+}
+
 double Corotational::energy(const Step& step) const {
-  return chunks_.sum_over_elements([&](std::size_t e) {
-    const std::size_t batch = e / batch_size, lane = e % batch_size;
-    const auto deformed = [&](std::span<const Vec3> positions) {
-      return deformation(batches_[batch], lane, positions);
-    };
-    const Deformation now = deformed(step.positions);
-    const double elastic = half_product(batches_[batch], lane, now);
-    if (viscous_batches_.empty()) return elastic;
-    return elastic + half_product(viscous_batches_[batch], lane, now - step.before(deformed)) / step.rate_s;
-  });
+  const CorotationalStep of_kernels = kernel_step(step);
+  std::vector<double> energies(batches_.size() * batch_size);
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) { kernels().write_energies(of_kernels, first, last, energies.data()); });
+  return chunks_.sum_over_elements([&](std::size_t e) { return energies[e]; });
 }
 
 void Corotational::add_forces(const Step& step, std::span<Vec3> forces) const {

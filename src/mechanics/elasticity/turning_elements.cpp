@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/parallel.hpp"
+#include "mechanics/energy.hpp"
 
 namespace plica {
 namespace {
@@ -127,6 +128,10 @@ TurningElements::Frame TurningElements::frame(std::size_t e, const Step& step) c
 
 double TurningElements::energy(const Step& step) const {
   return chunks_.sum_over_elements([&](std::size_t e) { return frame(e, step).energy; });
+}
+
+EnergyFlow TurningElements::energy_flow(const MadeStep& made) const {
+  return viscous_ ? viscous_energy_flow(*this, made) : Law::energy_flow(made);
 }
 
 void TurningElements::add_forces(const Step& step, std::span<Vec3> forces) const {

@@ -32,6 +32,32 @@ inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P,
   scatter(e.batch.nodes, e.lane, count, f, vectors);
 }
 
+// (shear |dev S|^2 + h^T H h)/2.
+template <class Batch>
+inline Lanes half_product(const Elements& e, const Batch& batch, const Sym& S, const Hourglass& h) {
+  Hourglass q;
+  multiply<1>(batch.stiffness, e.lane, {&h}, {&q});
+  const Sym D = deviator(S);
+  const Lanes off = D.xy * D.xy + D.yz * D.yz + D.zx * D.zx;
+  Lanes product = load(batch.shear + e.lane) * (D.xx * D.xx + D.yy * D.yy + D.zz * D.zz + off + off);
+  for (int i = 0; i < 12; ++i) product += h.at[i] * q.at[i];
+  return 0.5 * product;
+}
+
+template <bool viscous>
+[[gnu::flatten]] void write_energies(const CorotationalStep& step, std::size_t first, std::size_t last,
+                                     double* energies) {
+  for_elements(step, first, last, [&](const Elements& e, int) {
+    const Deformation now = deformation(e, step.positions);
+    Lanes energy = half_product(e, e.batch, now.S, now.h);
+    if (viscous) {
+      const Strain change = strain(e, step, now);
+      energy += e.rate * half_product(e, *e.viscous, change.S, change.h);
+    }
+    store_loose(energy, energies + (&e.batch - step.batches) * batch_size + e.lane);
+  });
+}
+
 template <bool viscous>
 [[gnu::flatten]] void add_forces(const CorotationalStep& step, std::size_t first, std::size_t last, double* forces) {
   for_elements(step, first, last, [&](const Elements& e, int count) {
@@ -125,6 +151,10 @@ template <bool viscous>
 }
 
 // One kernel without viscosity, one with: most elements have none, and it must not cost them anything.
+void write_energies(const CorotationalStep& step, std::size_t first, std::size_t last, double* energies) {
+  (step.viscous_batches ? write_energies<true> : write_energies<false>)(step, first, last, energies);
+}
+
 void add_forces(const CorotationalStep& step, std::size_t first, std::size_t last, double* forces) {
   (step.viscous_batches ? add_forces<true> : add_forces<false>)(step, first, last, forces);
 }
@@ -139,6 +169,6 @@ void add_product(const CorotationalStep& step, std::size_t first, std::size_t la
 
 }  // namespace
 
-const CorotationalKernels corotational_kernels = {add_forces, add_product, write_blocks};
+const CorotationalKernels corotational_kernels = {write_energies, add_forces, add_product, write_blocks};
 
 }  // namespace plica::PLICA_KERNELS

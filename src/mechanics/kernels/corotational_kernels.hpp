@@ -39,6 +39,8 @@ struct CorotationalStep {
 
 /// Kernels for the batches from `first` to before `last`. Each comes from one instruction set.
 struct CorotationalKernels {
+  /// Writes their energies, nN um: elements, filled up to whole batches.
+  void (*write_energies)(const CorotationalStep&, std::size_t first, std::size_t last, double* energies);
   /// Adds their forces, nN.
   void (*add_forces)(const CorotationalStep&, std::size_t first, std::size_t last, double* forces);
   /// Adds their tangent times a direction.

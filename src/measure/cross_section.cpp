@@ -1,0 +1,111 @@
+#include "measure/cross_section.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+namespace plica {
+namespace {
+
+constexpr double nothing_um = 1e-6;  // shorter than that is rounding
+
+Vec3 apical_centre_at_rest(const Tissue& tissue, CellId cell) {
+  Vec3 centre = Vec3::Zero();
+  for (int i = 4; i < 8; ++i) centre += tissue.rest_positions[tissue.cells[cell.index()].corners[i].index()] / 4;
+  return centre;
+}
+
+// Cells whose apical faces the plane at x meets at rest, by their angles from the midline, left to right.
+std::vector<std::pair<double, CellId>> ring_at(const Tissue& tissue, double x, const Vec3& outward) {
+  std::map<CellId, double> angles;
+  for (const Facet& facet : tissue.apical_facets) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const NodeId node : facet.nodes) {
+      low = std::min(low, tissue.rest_positions[node.index()].x());
+      high = std::max(high, tissue.rest_positions[node.index()].x());
+    }
+    if (low > x || high <= x) continue;
+    Vec3 centre = apical_centre_at_rest(tissue, facet.cell);
+    if (std::abs(centre.y()) < nothing_um) centre.y() = 0;  // one opposite to the midline counts as right
+    angles[facet.cell] = std::atan2(centre.y(), centre.dot(outward));
+  }
+  std::vector<std::pair<double, CellId>> ring;
+  for (const auto& [cell, angle] : angles) ring.emplace_back(angle, cell);
+  std::ranges::stable_sort(ring, {}, &std::pair<double, CellId>::first);
+  return ring;
+}
+
+// The second moments of the area of a cell's facets, per area, about their mean; and which way they face.
+struct Moments {
+  double area = 0;
+  Vec3 normal = Vec3::Zero(), first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+
+  void take(const std::array<Vec3, 4>& x) {
+    const double g = 1 / std::sqrt(3.0);
+    for (const double s : {-g, g})
+      for (const double t : {-g, g}) {
+        const Vec3 by_s = 0.25 * ((1 - t) * (x[1] - x[0]) + (1 + t) * (x[2] - x[3]));
+        const Vec3 by_t = 0.25 * ((1 - s) * (x[3] - x[0]) + (1 + s) * (x[2] - x[1]));
+        const Vec3 point = 0.25 * ((1 - s) * (1 - t) * x[0] + (1 + s) * (1 - t) * x[1] + (1 + s) * (1 + t) * x[2] +
+                                   (1 - s) * (1 + t) * x[3]);
+        const Vec3 facing = by_s.cross(by_t);
+        const double part = facing.norm();
+        area += part;
+        normal += facing;
+        first += part * point;
+        second += part * point * point.transpose();
+      }
+  }
+
+  [[nodiscard]] FaceShape shape() const {
+    const Vec3 n = normal.normalized(), sideways = n.cross(Vec3::UnitX());
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (!(area > 0) || !(sideways.norm() > 1e-3)) return {none, none, none, none};
+    const Vec3 across = sideways.normalized(), along = across.cross(n), middle = first / area;
+    const Mat3 spread = second / area - middle * middle.transpose();
+    const double aa = along.dot(spread * along), ac = along.dot(spread * across), cc = across.dot(spread * across);
+    const double mean = 0.5 * (aa + cc), half = std::hypot(0.5 * (aa - cc), ac);
+    const auto length = [](double moment) { return std::sqrt(12 * std::max(0.0, moment)); };  // of a rectangle's side
+    const double angle = 0.5 * std::atan2(2 * ac, aa - cc);
+    return {length(mean + half), length(mean - half), std::abs(angle) * 180 / std::numbers::pi, length(cc)};
+  }
+};
+
+}  // namespace
+
+std::vector<SectionCell> section_cells(const Tissue& tissue, const Vec3& outward) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Vec3& x : tissue.rest_positions) low = std::min(low, x.x()), high = std::max(high, x.x());
+  std::vector<SectionCell> cells;
+  std::vector<std::vector<std::pair<double, CellId>>> known;
+  for (const int percent : {50, 25, 75}) {
+    const auto ring = ring_at(tissue, low + 0.01 * percent * (high - low) + 1e-6 * (high - low), outward);
+    if (std::ranges::count(known, ring) > 0) continue;
+    known.push_back(ring);
+    const auto is_left = [](const auto& entry) { return entry.first < 0; };
+    const auto left = std::ranges::count_if(ring, is_left);
+    const bool on_midline = std::ranges::count(ring, 0.0, &std::pair<double, CellId>::first) > 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const int place = static_cast<int>(i) - static_cast<int>(left);  // from the first that is not left
+      cells.push_back({ring[i].second, percent, place < 0 || on_midline ? place : place + 1});
+    }
+  }
+  return cells;
+}
+
+std::vector<FaceShape> apical_shapes(const Tissue& tissue, std::span<const SectionCell> cells,
+                                     std::span<const Vec3> positions) {
+  std::map<CellId, Moments> moments;
+  for (const SectionCell& one : cells) moments[one.cell];
+  for (const Facet& facet : tissue.apical_facets)
+    if (const auto found = moments.find(facet.cell); found != moments.end())
+      found->second.take(gather(positions, facet));
+  std::vector<FaceShape> shapes;
+  for (const SectionCell& one : cells) shapes.push_back(moments.at(one.cell).shape());
+  return shapes;
+}
+
+}  // namespace plica

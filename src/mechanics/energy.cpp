@@ -1,0 +1,62 @@
+#include "mechanics/energy.hpp"
+
+namespace plica {
+namespace {
+
+Step at_rest(const State& state) {
+  Step step;
+  step.positions = step.previous_positions = state.positions;
+  step.previous_velocities = state.velocities;
+  step.rate_s = no_time_s;
+  step.end_time_s = state.time_s;
+  return step;
+}
+
+std::span<const double> internal_of(const State& state, std::size_t law) {
+  return law < state.internals.size() ? std::span<const double>(state.internals[law]) : std::span<const double>{};
+}
+
+// The work of the cells' pressures, by the mean of before and after.
+double work_of_pressures(const Model& model, const State& before, const State& after) {
+  const std::vector<double> from = model.volumes().volumes(before.positions),
+                            to = model.volumes().volumes(after.positions);
+  double work = 0;
+  for (std::size_t c = 0; c < from.size(); ++c)
+    work += 0.5 * (before.multipliers[c] + after.multipliers[c]) * (to[c] - from[c]);
+  return work;
+}
+
+}  // namespace
+
+EnergyFlow viscous_energy_flow(const Law& law, const MadeStep& made) {
+  const double now = law.energy(made.end);
+  return {.stored = now - law.energy(made.begin), .dissipated = 2 * (law.energy(made.whole) - now)};
+}
+
+std::vector<EnergyFlow> energy_flows(const Model& model, const State& before, const State& after) {
+  MadeStep made{at_rest(before), at_rest(after), {}};
+  made.whole.positions = after.positions;
+  made.whole.previous_positions = before.positions;
+  made.whole.previous_velocities = before.velocities;
+  made.whole.rate_s = after.time_s - before.time_s;
+  made.whole.end_time_s = 0.5 * (before.time_s + after.time_s);
+  std::vector<EnergyFlow> flows;
+  for (std::size_t l = 0; l < model.laws.size(); ++l) {
+    made.begin.internal = made.whole.internal = internal_of(before, l);
+    made.end.internal = internal_of(after, l);
+    flows.push_back(model.laws[l]->energy_flow(made));
+  }
+  flows.emplace_back();
+  if (model.volumes().is_held() && !model.growths.empty())
+    flows.back().active = work_of_pressures(model, before, after);
+  return flows;
+}
+
+std::vector<std::string> energy_labels(const Model& model) {
+  std::vector<std::string> labels;
+  for (const auto& law : model.laws) labels.push_back(law->label());
+  labels.emplace_back("growth");
+  return labels;
+}
+
+}  // namespace plica
