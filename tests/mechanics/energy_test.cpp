@@ -14,7 +14,9 @@
 #include "mechanics/contact/self_contact.hpp"
 #include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/corotational.hpp"
+#include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
+#include "mechanics/obstacles/shell_drag.hpp"
 #include "mechanics/surroundings.hpp"
 #include "simulation/simulation.hpp"
 #include "solver/step/newton_stepper.hpp"
@@ -81,6 +83,18 @@ TEST(EnergyFlow, IsTheWorkOfTheLawsForces) {
       {"shape memory",
        [&](const Tissue& t) {
          return std::make_unique<ShapeMemory>(t, AttractorSprings{3, 0, 0, 0}, 2);
+       }},
+      {"neo-Hookean",
+       [&](const Tissue& t) {
+         return std::make_unique<NeoHookean>(t, std::vector{1.0, 2.0});
+       }},
+      {"that flows",
+       [&](const Tissue& t) {
+         return std::make_unique<NeoHookean>(t, std::vector{1.0, 2.0}, std::vector{3.0, 5.0});
+       }},
+      {"shell drag",
+       [](const Tissue& t) {
+         return std::make_unique<ShellDrag>(t, Capsule{.half_axis_um = 0, .radius_um = 1}, 0.14);
        }},
       {"corner barrier", [&](const Tissue& t) { return std::make_unique<CornerBarrier>(t, 1, 0.9); }},
       {"drag", [](const Tissue& t) { return std::make_unique<SurfaceDrag>(t, 0.14); }},

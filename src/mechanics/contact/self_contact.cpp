@@ -268,7 +268,11 @@ EnergyFlow SelfContact::energy_flow(const MadeStep& made) const {
   Step with_old_pairs = made.end;
   with_old_pairs.internal = made.begin.internal;
   const double now = energy(made.end);
-  return {.stored = now - energy(made.begin), .dissipated = energy(with_old_pairs) - now};
+  double rubbed = 0;
+  for_rubbing(made.whole, [&](const Point&, const Pair&, const Coulomb& friction, const Vec3& velocity) {
+    rubbed -= made.whole.rate_s * friction.force(velocity).dot(velocity);
+  });
+  return {.stored = now - energy(made.begin), .dissipated = energy(with_old_pairs) - now + rubbed};
 }
 
 void SelfContact::add_forces(const Step& step, std::span<Vec3> forces) const {

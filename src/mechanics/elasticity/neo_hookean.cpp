@@ -129,6 +129,19 @@ double NeoHookean::energy(const Step& step) const {
   });
 }
 
+// What its forces have taken and the rest shapes do not hold has flowed away.
+EnergyFlow NeoHookean::energy_flow(const MadeStep& made) const {
+  EnergyFlow flow = Law::energy_flow(made);
+  if (!flows()) return flow;
+  Vectors mean(made.end.positions.size(), Vec3::Zero());
+  add_forces(made.begin, mean);
+  add_forces(made.end, mean);
+  for (std::size_t n = 0; n < mean.size(); ++n)
+    flow.dissipated -= 0.5 * mean[n].dot(made.end.positions[n] - made.begin.positions[n]);
+  flow.dissipated -= flow.stored;
+  return flow;
+}
+
 void NeoHookean::add_forces(const Step& step, std::span<Vec3> forces) const {
   const NeoHookeanStep at = kernel_step(step);
   chunks_.for_batches(

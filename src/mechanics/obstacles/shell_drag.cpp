@@ -1,5 +1,7 @@
 #include "mechanics/obstacles/shell_drag.hpp"
 
+#include "mechanics/energy.hpp"
+
 namespace plica {
 
 ShellDrag::ShellDrag(const Tissue& tissue, const Capsule& shell, double drag) : shell_(tissue, shell), drag_(drag) {
@@ -48,6 +50,8 @@ double ShellDrag::energy(const Step& step) const {
   });
   return sum;
 }
+
+EnergyFlow ShellDrag::energy_flow(const MadeStep& made) const { return viscous_energy_flow(*this, made); }
 
 void ShellDrag::add_forces(const Step& step, std::span<Vec3> forces) const {
   for_touching(step, [&](std::size_t n, const Mat3& resistance) { forces[n] -= resistance * change(step, n); });

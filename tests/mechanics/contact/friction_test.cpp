@@ -5,6 +5,7 @@
 
 #include "mechanics/contact/self_contact.hpp"
 #include "mechanics/coulomb.hpp"
+#include "mechanics/energy.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/bodies.hpp"
 #include "support/law_checks.hpp"
@@ -100,6 +101,20 @@ TEST(Friction, TakesPower) {
   EXPECT_GT(push.z(), 10);
   EXPECT_NEAR(sliding.z(), push.z(), 1e-9);
   EXPECT_NEAR(sliding.y(), -coefficient * push.z(), 1e-9);
+
+  // Force times way is lost.
+  Model model(tissue);
+  model.laws.push_back(law.clone());
+  model.laws.push_back(smooth.clone());
+  State before = rest_state(model), after;
+  before.positions = motion.previous_positions;
+  before.internals = {motion.internal, motion.internal};
+  after = before;
+  after.positions = motion.positions;
+  after.time_s = 1;
+  after.internals = {law.next_internal(motion.step()), smooth.next_internal(motion.step())};
+  const std::vector<EnergyFlow> flows = energy_flows(model, before, after);
+  EXPECT_NEAR(flows[0].dissipated - flows[1].dissipated, coefficient * push.z() * 0.1, 1e-9);
 }
 
 // A block is pressed down and pushed along: below the coefficient it creeps as slowly as the law says, above it slides
