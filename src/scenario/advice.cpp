@@ -113,6 +113,13 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
     note(
         "every cell's volume is held exactly, so Poisson's ratio sets only the shear modulus and how far parts of a "
         "cell may swell at each other's cost");
+  if (const double poisson = scenario.elasticity.poisson_ratio;
+      model_of(scenario.elasticity) == ElasticModel::neo_hookean && poisson > 0.1 &&
+      model.tissue.elements.size() == model.tissue.cells.size())
+    warn(
+        fmt::format("neo-hookean cells of one element bend {:.0f} % more easily than Poisson's ratio {} says; take two "
+                    "elements through the height, or model corotational (docs/theory/neo_hookean.md)",
+                    100 * poisson, poisson));
   if (method_of(scenario.volume) == VolumeMethod::projection) {
     note("volumes are projected after the forces: where the embryo comes to rest depends on time.step_s");
     if (!scenario.time.step_s && scenario.volume.projection_weights == "equal")

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "scenario/advice.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
 #include "simulation/simulation.hpp"
@@ -111,6 +112,19 @@ TEST(InteriorKeys, WhatTheyMakeOfTheModel) {
   EXPECT_EQ(laws(neo + "relaxation_min = 6\n"), "elasticity, dilatation, contraction, drag, 768");
   EXPECT_EQ(laws(neo + "[region.one]\nids = [1]\n[elasticity.soft]\nregion = \"one\"\nrelaxation_min = 6\n"),
             "elasticity, dilatation, contraction, drag, 768");
+}
+
+// One element cannot bend as Poisson's ratio says: told where it matters.
+TEST(InteriorKeys, BendingOfOneNeoHookeanElementIsWarnedOf) {
+  const auto warnings = [](const std::string& more) {
+    const Scenario scenario = load_scenario(support::pulled_block("[elasticity]\nmodel = \"neo-hookean\"\n" + more));
+    const std::vector<std::string> lines = advice(scenario, *make_model(scenario));
+    return std::ranges::count_if(lines, [](const std::string& line) {
+      return line.starts_with("warning: neo-hookean cells of one element bend 45 % more easily");
+    });
+  };
+  EXPECT_EQ(warnings(""), 1);
+  EXPECT_EQ(warnings("poisson_ratio = 0\n"), 0);
 }
 
 // A column of two cells under pressure: each is shortened by pressure over its own modulus.

@@ -18,6 +18,18 @@ constexpr std::size_t numbers_a_batch = 8 * 6 * batch_size;  // of a symmetric m
 
 Vec3 gauss_point(int g) { return hex_reference_nodes[static_cast<std::size_t>(g)] / std::sqrt(3.0); }
 
+// dx/d(reference) at a Gauss point: hex_jacobian there.
+Mat3 gauss_jacobian(const HexPoints& points, int g) {
+  static const std::array<std::array<Vec3, 8>, 8> gradients = [] {
+    std::array<std::array<Vec3, 8>, 8> of_point;
+    for (int point = 0; point < 8; ++point) of_point[point] = hex_shape_gradients(gauss_point(point));
+    return of_point;
+  }();
+  Mat3 jacobian = Mat3::Zero();
+  for (int i = 0; i < 8; ++i) jacobian += points[i] * gradients[g][i].transpose();
+  return jacobian;
+}
+
 // Where the numbers of a Gauss point begin among those of all batches; the next is batch_size on.
 std::size_t place_of(std::size_t element, int g) {
   return (element / batch_size * 8 + static_cast<std::size_t>(g)) * 6 * batch_size + element % batch_size;
@@ -36,9 +48,8 @@ Mat3 symmetric_at(const double* first) {
   return result;
 }
 
-Mat3 cauchy_green(const HexPoints& points, const HexPoints& rest, int g) {
-  const Mat3 F = hex_jacobian(points, gauss_point(g)) * hex_jacobian(rest, gauss_point(g)).inverse();
-  return F.transpose() * F;
+Mat3 deformation_gradient(const HexPoints& points, const HexPoints& rest, int g) {
+  return gauss_jacobian(points, g) * gauss_jacobian(rest, g).inverse();
 }
 
 }  // namespace
@@ -66,7 +77,7 @@ void NeoHookean::fit(const Tissue& tissue, std::size_t place) {
   for (int i = 0; i < 8; ++i) batch.nodes[i][lane] = 3 * elements_[e][i].number();
   const std::size_t cell = element_cell_[e].index();
   for (int g = 0; g < 8; ++g) {
-    const Mat3 D0 = hex_jacobian(tissue.element_rest_shape[e], gauss_point(g));
+    const Mat3 D0 = gauss_jacobian(tissue.element_rest_shape[e], g);
     batch.weights[g][lane] = shear_moduli_[cell] * D0.determinant();
     put((D0.transpose() * D0).inverse(), &batch.metrics[g][0][lane]);
     if (!flows()) continue;
@@ -111,10 +122,9 @@ double NeoHookean::energy(const Step& step) const {
     double sum = 0;
     for (int g = 0; g < 8; ++g) {
       const double weight = batches_[e / batch_size].weights[g][e % batch_size];
-      const double J =
-          hex_jacobian(points, gauss_point(g)).determinant() / hex_jacobian(rest_[e], gauss_point(g)).determinant();
+      const Mat3 F = deformation_gradient(points, rest_[e], g), C = F.transpose() * F;
+      const double J = F.determinant();
       if (!(J > 0)) return std::numeric_limits<double>::infinity();
-      const Mat3 C = cauchy_green(points, rest_[e], g);
       const double r = flows() ? step.rate_s * flow_batches_[e / batch_size].rates[e % batch_size] : 0;
       double stored = 0.5 * C.trace();
       if (r > 0) {
@@ -195,18 +205,9 @@ std::vector<double> NeoHookean::next_internal(const Step& step) const {
   const std::size_t size = batches_.size() * numbers_a_batch;
   std::vector<double> internal(2 * size);
   std::copy_n(step.internal.begin(), size, internal.begin() + static_cast<std::ptrdiff_t>(size));
-  parallel_for(
-      batches_.size() * batch_size,
-      [&](std::size_t place) {
-        const std::size_t e = std::min(place, elements_.size() - 1);
-        const HexPoints points = gather(step.positions, elements_[e]);
-        const double r = step.rate_s * flow_batches_[place / batch_size].rates[place % batch_size];
-        for (int g = 0; g < 8; ++g) {
-          const Mat3 flowed = flowed_before(e, g, step) + r * cauchy_green(points, rest_[e], g);
-          put(flowed / std::cbrt(flowed.determinant()), &internal[place_of(place, g)]);
-        }
-      },
-      long_bodies);
+  const NeoHookeanStep at = kernel_step(step);
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) { kernels().write_flowed(at, first, last, internal.data()); });
   return internal;
 }
 

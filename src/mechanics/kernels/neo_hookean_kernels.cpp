@@ -75,8 +75,10 @@ inline Sym load_symmetric(const double* values, int lane) {
   return {at(0), at(1), at(2), at(3), at(4), at(5)};
 }
 
-// Cube roots of numbers of at least about 1, by Halley's iteration: from above it comes down.
+// Cube roots of positive numbers, about 1 for the most part, by Halley's iteration: from above it comes down. Of others
+// there is none, so that no step ends there.
 inline Lanes cube_root(Lanes q) {
+  q = q > 0.0 ? q : broadcast(__builtin_nan(""));
   Lanes y = (1.0 / 3) * (q + 2.0);
   for (int iteration = 0; iteration < 40; ++iteration) {
     const Lanes cube = y * y * y, change = y * (cube - q) / (2.0 * cube + q);
@@ -86,25 +88,40 @@ inline Lanes cube_root(Lanes q) {
   return y;
 }
 
+// How a Gauss point flows: C_p before, D0, and r.
+struct Flow {
+  Sym before;
+  Mat frame;
+  Lanes r;
+};
+inline std::size_t flowed_place(const Elements& e, int g) {
+  return (e.number * 8 + static_cast<std::size_t>(g)) * 6 * batch_size;
+}
+inline Flow flow_at(const NeoHookeanStep& step, const Elements& e, int g) {
+  const std::size_t place = flowed_place(e, g);
+  Sym before = load_symmetric(step.flowed + place, e.lane);
+  if (step.ahead > 0)
+    before = broadcast(1 + step.ahead) * before -
+             broadcast(step.ahead) * load_symmetric(step.flowed_earlier + place, e.lane);
+  const auto frame = [&](int k) { return load(e.flow->frames[g][k] + e.lane); };
+  return {before,
+          {{frame(0), frame(1), frame(2)}, {frame(3), frame(4), frame(5)}, {frame(6), frame(7), frame(8)}},
+          step.rate_s * load(e.flow->rates + e.lane)};
+}
+
 // What a Gauss point is like: w, and B with what its change is made of, d = det(C_p + r C)^(1/3).
 struct Rest {
   Lanes w;
   Sym B;
   Lanes r_over_d;
 };
-
 template <bool flows>
 inline Rest rest_at(const NeoHookeanStep& step, const Elements& e, int g, const Mat& D) {
   const Lanes w = load(e.batch.weights[g] + e.lane);
   if constexpr (!flows) return {w, load_symmetric(e.batch.metrics[g][0], e.lane), Lanes{}};
-  const std::size_t place = (e.number * 8 + static_cast<std::size_t>(g)) * 6 * batch_size;
-  Sym Cp = load_symmetric(step.flowed + place, e.lane);
-  if (step.ahead > 0)
-    Cp = broadcast(1 + step.ahead) * Cp - broadcast(step.ahead) * load_symmetric(step.flowed_earlier + place, e.lane);
-  const auto frame = [&](int k) { return load(e.flow->frames[g][k] + e.lane); };
-  const Mat D0 = {{frame(0), frame(1), frame(2)}, {frame(3), frame(4), frame(5)}, {frame(6), frame(7), frame(8)}};
-  const Lanes J0 = dot(D0.x, cross(D0.y, D0.z)), r = step.rate_s * load(e.flow->rates + e.lane);
-  const Sym flowed = symmetric_product(D0, {Cp * D0.x, Cp * D0.y, Cp * D0.z}) + r * symmetric_product(D, D);
+  const auto [before, D0, r] = flow_at(step, e, g);
+  const Lanes J0 = dot(D0.x, cross(D0.y, D0.z));
+  const Sym flowed = symmetric_product(D0, {before * D0.x, before * D0.y, before * D0.z}) + r * symmetric_product(D, D);
   const Lanes d = cube_root(determinant(flowed) / (J0 * J0));
   return {w, d * inverse(flowed), r / d};
 }
@@ -219,6 +236,24 @@ template <bool flows>
   }
 }
 
+// All lanes of a batch, those that repeat its last element, too: kernels calculate there.
+[[gnu::flatten]] void write_flowed(const NeoHookeanStep& step, std::size_t first, std::size_t last, double* flowed) {
+  for (std::size_t b = first; b < last; ++b)
+    for (int lane = 0; lane < batch_size; lane += width) {
+      const Elements e{step.batches[b], step.flows + b, b, lane};
+      Vec m[7];
+      gather_modes(e.batch.nodes, e.lane, step.positions, m);
+      for (int g = 0; g < 8; ++g) {
+        const auto [before, D0, r] = flow_at(step, e, g);
+        const Mat F = slope(gauss_place(g), m) * transpose(inverse_of(D0).transposed);
+        const Sym C = before + r * symmetric_product(F, F);
+        const Sym next = 1.0 / cube_root(determinant(C)) * C;
+        const Lanes values[6] = {next.xx, next.yy, next.zz, next.xy, next.yz, next.zx};
+        for (int k = 0; k < 6; ++k) store_loose(values[k], flowed + flowed_place(e, g) + k * batch_size + lane);
+      }
+    }
+}
+
 void add_forces(const NeoHookeanStep& step, std::size_t first, std::size_t last, double* forces) {
   (step.flows ? add_forces<true> : add_forces<false>)(step, first, last, forces);
 }
@@ -236,6 +271,6 @@ void write_blocks(const NeoHookeanStep& step, std::size_t batch, HexahedronBlock
 
 }  // namespace
 
-const NeoHookeanKernels neo_hookean_kernels = {add_forces, add_product, write_blocks};
+const NeoHookeanKernels neo_hookean_kernels = {add_forces, add_product, write_blocks, write_flowed};
 
 }  // namespace plica::PLICA_KERNELS

@@ -46,6 +46,8 @@ struct NeoHookeanKernels {
                       double* product);
   /// Writes the tangent of one batch.
   void (*write_blocks)(const NeoHookeanStep&, std::size_t batch, HexahedronBlocks& blocks);
+  /// Writes C_p at the step's end.
+  void (*write_flowed)(const NeoHookeanStep&, std::size_t first, std::size_t last, double* flowed);
 };
 
 namespace generic {
