@@ -22,7 +22,9 @@ namespace fs = std::filesystem;
 struct RenderCommand {
   std::string directory, out, colour = "displacement", range, size;
   std::vector<std::string> views, times;
-  bool strip = false, movie = false, no_edges = false, shell = false, overwrite = false, quiet = false;
+  std::vector<double> at_x_um;
+  bool strip = false, sections = false, movie = false, no_edges = false, shell = false, overwrite = false,
+       quiet = false;
 };
 
 /// The view or quantity of that name.
@@ -70,8 +72,11 @@ void read_size(const std::string& text, PictureOptions& options) {
 PictureOptions options_of(const RenderCommand& command) {
   PictureOptions options;
   std::vector<std::string> wanted = command.views;
-  if (wanted.empty()) wanted = {"antero-ventral"};
-  if (command.views.empty() && command.strip) wanted.emplace_back("cross-section");
+  options.cuts_at_x_um = command.at_x_um;
+  options.sections = command.sections;
+  const bool with_cuts = command.sections || !command.at_x_um.empty();
+  if (wanted.empty() && !with_cuts) wanted = {"antero-ventral"};
+  if (command.views.empty() && command.strip && !with_cuts) wanted.emplace_back("cross-section");
   for (const std::string& name : wanted) options.views.push_back(named("--view", name, views()));
   options.field = named("--colour", command.colour, colour_fields());
   if (!command.range.empty()) options.range = range_in(command.range);
@@ -84,7 +89,8 @@ PictureOptions options_of(const RenderCommand& command) {
 std::vector<double> times_of(const RenderCommand& command, const RunPictures& run) {
   constexpr int panels_of_a_strip = 5;
   if (command.times.empty())
-    return command.strip ? run.telling_times_s(panels_of_a_strip) : std::vector<double>{run.times_s().back()};
+    return command.strip || command.sections ? run.telling_times_s(panels_of_a_strip)
+                                             : std::vector<double>{run.times_s().back()};
   std::vector<double> times;
   for (const std::string& text : command.times) {
     const auto wanted_s = seconds_in(text);
@@ -178,6 +184,14 @@ void add_render_command(CLI::App& app, int& status) {
                    fmt::format("from where: {}; several, a row each", fmt::join(names_of(views()), ", ")))
       ->delimiter(',')
       ->type_name("NAME,...");
+  command
+      ->add_option("--at-x-um", options->at_x_um,
+                   "cross-sections at these places along the embryo; several, a row each; a negative first one needs =")
+      ->delimiter(',')
+      ->type_name("X,...");
+  command->add_flag(
+      "--sections", options->sections,
+      "cross-sections at a quarter, half and three quarters of the length, at five moments or as --time says");
   command->add_option("--time", options->times, "moments as 5min, 300s, 300 or last (default); several, a column each")
       ->delimiter(',')
       ->type_name("TIME,...");
@@ -201,7 +215,9 @@ void add_render_command(CLI::App& app, int& status) {
       "Examples: plica render results/drosophila --out fold.png\n"
       "          plica render results/drosophila --out strip.png --strip\n"
       "          plica render results/drosophila --out rows.png --view ventral,side --time 30s,2min,last \\\n"
-      "            --colour pressure --range=-200:200");
+      "            --colour pressure --range=-200:200\n"
+      "          plica render results/drosophila --out sections.png --sections\n"
+      "          plica render results/drosophila --out cuts.png --at-x-um=-100,0,100 --time last");
   command->callback([options, &status] { status = render(*options); });
 }
 

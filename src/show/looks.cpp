@@ -151,6 +151,24 @@ std::vector<double> field_values(const Frame& frame, const ColourField& field) {
   return lengths;
 }
 
+std::vector<std::string> step_names(const Frame& frame, const ColourField& field, double largest) {
+  if (field.name == "self-intersections") return {"no", "yes"};
+  std::vector<std::string> names;
+  if (field.name == "region") {
+    names = coloured_regions(frame);
+    names.insert(names.begin(), "other cells");
+  } else {
+    for (int step = 0; step <= static_cast<int>(largest); ++step) names.push_back(fmt::format("{}", step));
+  }
+  // Of more than there are colours, the last one has the rest.
+  const std::size_t most = field.map().colours.size();
+  if (names.size() > most) {
+    names.resize(most);
+    names.back() += " …";
+  }
+  return names;
+}
+
 ColourRange colour_range(const ColourField& field, double smallest, double largest) {
   switch (field.kind) {
     case ScaleKind::from_zero:
@@ -180,6 +198,14 @@ const std::vector<View>& views() {
       {"cross-section", "cut across the middle, from the front", {1, 0, 0}, {0, 0, 1}, 0},
       {"sagittal-section", "cut along the midline, anterior to the left", {0, 1, 0}, {0, 0, 1}, 1}};
   return all;
+}
+
+View cross_section_at(double x_um) {
+  View view = *std::ranges::find(views(), "cross-section", &View::name);
+  view.name = fmt::format("x = {}{:.4g} µm", x_um < 0 ? "\u2212" : "", std::abs(x_um));
+  view.label = fmt::format("cut across at {}, from the front", view.name);
+  view.cut_um += x_um;
+  return view;
 }
 
 }  // namespace plica

@@ -66,11 +66,18 @@ struct ColourRange {
   double low = 0, high = 1;
 };
 
+/// What the whole numbers of a field of steps stand for, from 0: "other cells" and the regions by name, no and yes, or
+/// the numbers up to `largest`.
+std::vector<std::string> step_names(const Frame& frame, const ColourField& field, double largest);
+
 /// A scale of the field's kind that holds all values, ends rounded outwards to two digits at most.
 ColourRange colour_range(const ColourField& field, double smallest, double largest);
 
 /// The value's colour; values outside of the range have that of its nearer end.
 Rgb colour_of(const ColourMap& map, const ColourRange& range, double value);
+
+/// Where the views' planes cut: next to the middle, because the middle itself may hold whole walls of cells.
+inline constexpr double view_cut_um = 0.01;
 
 /// From where the embryo is seen, in parallel projection.
 struct View {
@@ -78,12 +85,13 @@ struct View {
   std::string label;            // "from below, anterior to the left"
   Vec3 sight, up;               // from the eye into the picture, and what is upwards; of any length, not parallel
   std::optional<int> cut_axis;  // 0 or 1: what lies before a plane across this axis is taken away
+  double cut_um = view_cut_um;  // where that plane is, from the origin
 };
 
 /// ventral, antero-ventral, side, cross-section, sagittal-section.
 const std::vector<View>& views();
 
-/// Where the views' planes cut: next to the middle, because the middle itself may hold whole walls of cells.
-inline constexpr double view_cut_um = 0.01;
+/// The cross-section at another place along the embryo, called "x = 125 µm".
+View cross_section_at(double x_um);
 
 }  // namespace plica

@@ -35,11 +35,12 @@ struct Picture {
   std::vector<PictureRow> rows;
   ColourField field;
   ColourRange range;
-  std::optional<Frame> rest = {};     // its outline is drawn in sections, in grey, unless the shell is
-  std::optional<Capsule> shell = {};  // drawn around the embryo
-  bool edges = true;                  // outlines of cells
-  bool anatomy = true;                // A, P, D, V, L, R at the ends of the embryo in the first column
-  int width_px = 0, height_px = 0;    // 0: as wide as the number of columns asks for; as high as the content
+  std::vector<std::string> step_names = {};  // of a field of steps: what its numbers stand for, from 0
+  std::optional<Frame> rest = {};            // its outline is drawn in sections, in grey, unless the shell is
+  std::optional<Capsule> shell = {};         // drawn around the embryo
+  bool edges = true;                         // outlines of cells
+  bool anatomy = true;                       // A, P, D, V, L, R at the ends of the embryo in the first column
+  int width_px = 0, height_px = 0;           // 0: as wide as the number of columns asks for; as high as the content
 };
 
 inline constexpr int smallest_picture_px = 200, largest_picture_px = 6000;  // of a side

@@ -115,8 +115,9 @@ class Composer {
   }
 
   [[nodiscard]] double legend_em() const {
-    double labels = 0;
-    for (const double tick : scale_ticks(picture_.range, 8)) labels = std::max(labels, width_em(number_text(tick)));
+    double labels = widest_em(picture_.step_names);
+    if (picture_.step_names.empty())
+      for (const double tick : scale_ticks(picture_.range, 8)) labels = std::max(labels, width_em(number_text(tick)));
     return 2 * gap_em + std::max(widest_em(legend_title_), bar_em + gap_em + labels);
   }
 
@@ -225,8 +226,8 @@ class Composer {
   // The colour bar with its title above, in the middle of the rows' height.
   void add_legend(double top, double bottom) {
     const double title = line_em * static_cast<double>(legend_title_.size()) + 0.6;
-    const bool steps = picture_.field.kind == ScaleKind::steps;
-    const double most = steps ? step_em * (std::floor(picture_.range.high) - std::ceil(picture_.range.low) + 1) : 16;
+    const bool steps = !picture_.step_names.empty();
+    const double most = steps ? step_em * static_cast<double>(picture_.step_names.size()) : 16;
     const double bar = std::min(most, std::max(3.0, 0.94 * (top - bottom) / em_ - title));
     const double left = layout_.width_px - (legend_em() - gap_em) * em_;
     const double bar_bottom = (top + bottom) / 2 - (bar + title) / 2 * em_;
@@ -258,17 +259,16 @@ class Composer {
     }
   }
 
-  // A box for each whole number.
+  // A box for each whole number, and what it stands for.
   void add_steps(const Box& box) {
-    const int low = static_cast<int>(std::ceil(picture_.range.low)),
-              high = static_cast<int>(std::floor(picture_.range.high));
-    const double height = box.height / std::max(1, high - low + 1);
-    for (int value = low; value <= high; ++value) {
-      const Box step = {box.left, box.bottom + (value - low) * height, box.width, 0.85 * height};
+    const double height = box.height / static_cast<double>(picture_.step_names.size());
+    for (std::size_t value = 0; value < picture_.step_names.size(); ++value) {
+      const auto place = static_cast<double>(value);
+      const Box step = {box.left, box.bottom + place * height, box.width, 0.85 * height};
       layout_.rectangles.push_back({{step.left - 1, step.bottom - 1, step.width + 2, step.height + 2}, ink});
-      layout_.rectangles.push_back({step, colour_of(picture_.field.map(), picture_.range, value)});
-      layout_.labels.push_back(
-          {number_text(value), box.left + box.width + gap_em * em_, step.bottom + step.height / 2, em_, Align::left});
+      layout_.rectangles.push_back({step, colour_of(picture_.field.map(), picture_.range, place)});
+      layout_.labels.push_back({picture_.step_names[value], box.left + box.width + gap_em * em_,
+                                step.bottom + step.height / 2, em_, Align::left});
     }
   }
 

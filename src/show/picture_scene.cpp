@@ -76,7 +76,7 @@ void add_cut_outlines(const Frame& frame, const std::vector<CutPolygon>& polygon
 
 void add_section(const Frame& frame, const ColourField& field, const View& view, Scene& scene) {
   const std::vector<double> values = field_values(frame, field);
-  const std::vector<CutPolygon> polygons = cut_by_plane(frame, *view.cut_axis, view_cut_um);
+  const std::vector<CutPolygon> polygons = cut_by_plane(frame, *view.cut_axis, view.cut_um);
   for (const CutPolygon& polygon : polygons) {
     Vectors corners;
     std::vector<double> at_corners;
@@ -92,7 +92,7 @@ void add_section(const Frame& frame, const ColourField& field, const View& view,
 }
 
 // Where the plane of a view cuts the outer side of the embryo.
-std::vector<Segment> cut_outer_side(const Frame& frame, int axis) {
+std::vector<Segment> cut_outer_side(const Frame& frame, int axis, double at_um) {
   std::vector<Segment> segments;
   for (const SkinFacet& facet : skin_of(frame).facets) {
     if (facet.face != apical_face) continue;
@@ -100,7 +100,7 @@ std::vector<Segment> cut_outer_side(const Frame& frame, int axis) {
     for (int i = 0; i < 4; ++i) {
       const Vec3 &from = frame.positions[facet.nodes[i].index()],
                  &to = frame.positions[facet.nodes[(i + 1) % 4].index()];
-      const double before = from[axis] - view_cut_um, after = to[axis] - view_cut_um;
+      const double before = from[axis] - at_um, after = to[axis] - at_um;
       if ((before < 0) != (after < 0)) crossings.push_back(from + before / (before - after) * (to - from));
     }
     if (crossings.size() == 2) segments.push_back({crossings[0], crossings[1]});
@@ -153,7 +153,7 @@ Scene make_scene(const Picture& picture, const PictureColumn& column, const View
   if (view.cut_axis) {
     scene.lit = false;
     add_section(column.frame, picture.field, view, scene);
-    if (picture.rest && !picture.shell) scene.rest = cut_outer_side(*picture.rest, *view.cut_axis);
+    if (picture.rest && !picture.shell) scene.rest = cut_outer_side(*picture.rest, *view.cut_axis, view.cut_um);
   } else {
     add_surface(column.frame, picture.field, scene);
   }

@@ -32,17 +32,6 @@ Vec3 far_middle(const Vectors& positions) {
   return middle.norm() > 0.25 * (high - low).maxCoeff() ? middle : Vec3(Vec3::Zero());
 }
 
-// "region: 1=belly, 2=floor", as the legend's title.
-std::string region_key(const Frame& frame) {
-  std::string key = "region:";
-  int number = 0;
-  for (const std::string& name : coloured_regions(frame)) {
-    key += fmt::format("{} {}={}", number > 0 ? "," : "", number + 1, name);
-    ++number;
-  }
-  return key;
-}
-
 bool passes_through_itself(const Frame& frame) {
   const auto flags = frame.element_scalars.find("self_intersecting");
   return flags != frame.element_scalars.end() &&
@@ -83,6 +72,7 @@ void RunPictures::look_through() {
     Frame frame = run_.frame(i);
     if (i == 0) middle_ = far_middle(frame.positions);
     centre(frame);
+    if (i == 0) add_cuts(frame.positions);
     for (const double value : field_values(frame, options_.field)) {
       if (!std::isfinite(value)) continue;
       smallest_ = std::min(smallest_, value);
@@ -94,6 +84,23 @@ void RunPictures::look_through() {
     }
     farthest_um_.push_back(farthest_displacement_um(frame));
     if (i == 0) rest_ = std::move(frame);
+  }
+}
+
+// Views look at the middle of the body; places are given as the run has them.
+void RunPictures::add_cuts(const Vectors& rest) {
+  const auto [first, last] = std::ranges::minmax_element(rest, {}, [](const Vec3& position) { return position.x(); });
+  const double low = first->x() + middle_.x(), high = last->x() + middle_.x();
+  std::vector<double> places = options_.cuts_at_x_um;
+  if (options_.sections)
+    for (const double part : {0.25, 0.5, 0.75}) places.push_back(low + part * (high - low));
+  for (const double x : places) {
+    if (x <= low || x >= high)
+      throw UsageError(
+          fmt::format("--at-x-um: {:g} misses the embryo, whose x goes from {:.4g} to {:.4g} at rest", x, low, high));
+    View view = cross_section_at(x);
+    view.cut_um -= middle_.x();
+    rows_.push_back({view, {0, 0}});
   }
 }
 
@@ -130,7 +137,7 @@ Picture RunPictures::picture(const std::vector<double>& times_s) const {
   }
   picture.rows = rows_;
   picture.field = options_.field;
-  if (picture.field.name == "region") picture.field.label = region_key(rest_);
+  if (picture.field.kind == ScaleKind::steps) picture.step_names = step_names(rest_, picture.field, largest_);
   picture.range = options_.range.value_or(colour_range(options_.field, smallest_, largest_));
   if (is_embryo_) picture.rest = rest_;
   picture.shell = shell_;

@@ -12,6 +12,8 @@ namespace plica {
 
 struct PictureOptions {
   std::vector<View> views;           // rows
+  std::vector<double> cuts_at_x_um;  // then cross-sections at these places, as the run counts x
+  bool sections = false;             // then those at a quarter, half and three quarters of the length at rest
   ColourField field;                 // what colours the cells
   std::optional<ColourRange> range;  // empty: what all frames of the run need
   bool edges = true;                 // outlines of cells
@@ -45,6 +47,7 @@ class RunPictures {
  private:
   void look_through();
   void centre(Frame& frame) const;
+  void add_cuts(const Vectors& rest);
 
   ReferenceRun run_;
   PictureOptions options_;

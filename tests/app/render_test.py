@@ -141,6 +141,22 @@ class Render(CommandLine):
         self.render("--strip", "--quiet", "--colour", "pressure", "--no-edges", "--overwrite")
         self.assertEqual(size_of(self.picture)[0], 1500)
 
+    # A ball of 200 um: smaller away from its middle, and the same on both sides.
+    def test_cuts_elsewhere_along_the_embryo(self):
+        drawn = []
+        for arguments in (["--at-x-um=-80"], ["--at-x-um", "0"], ["--at-x-um", "80"]):
+            self.render("--size", "300x300", "--no-edges", "--range", "0:0.01", "--overwrite", *arguments)
+            drawn.append(sum(b > r + 30 for row in pixels_of(self.picture) for r, _, b in row[:230]))
+        self.assertGreater(drawn[1], 2000)
+        self.assertLess(drawn[0], 0.9 * drawn[1])
+        self.assertAlmostEqual(drawn[0], drawn[2], delta=0.1 * drawn[0])
+        result = self.render("--sections", "--time", "0,last", "--overwrite")
+        self.assertIn("(0 s, 0.3 s)", result.stdout)
+        width, height = size_of(self.picture)
+        self.assertGreater(height, width, "three rows")
+        self.render("--sections", "--movie", "--size", "300x600", "--overwrite", "--quiet")
+        self.assertEqual(size_of(self.folder / "picture_00003.png"), (300, 600))
+
     def test_another_range_gives_other_colours(self):
         blue = []
         for limits in ("0:0.5", "0:500"):
@@ -165,6 +181,8 @@ class Render(CommandLine):
             (["--range", "3:3"], ["LOW:HIGH"]),
             (["--range", "0:nan"], ["LOW:HIGH"]),
             (["--movie", "--time", "0"], ["--movie"]),
+            (["--at-x-um", "100"], ["100 misses the embryo", "from -99.01 to 99.01"]),
+            (["--at-x-um", "here"], ["--at-x-um", "here"]),
         ):
             message = self.refused(2, *arguments)
             for part in parts:

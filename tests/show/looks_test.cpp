@@ -126,6 +126,29 @@ TEST(FieldValues, RegionsAreNumberedByName) {
   EXPECT_EQ(field_values(frame, *field), (std::vector<double>{1, 2, 1, 0}));
 }
 
+// A legend has what is there and no more: regions by name, generations up to the last.
+TEST(StepNames, AreThoseThatAPictureHas) {
+  const auto named = [](const char* name) { return *std::ranges::find(colour_fields(), name, &ColourField::name); };
+  Frame frame;
+  frame.elements.resize(2);
+  frame.element_scalars = {{"region_all", {1, 1}}, {"region_belly", {1, 0}}};
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(step_names(frame, named("region"), 1), (Names{"other cells", "belly"}));
+  EXPECT_EQ(step_names(frame, named("self-intersections"), 0), (Names{"no", "yes"}));
+  EXPECT_EQ(step_names(frame, named("generation"), 2), (Names{"0", "1", "2"}));
+  for (const char* name : {"a", "b", "c", "d", "e", "f"}) frame.element_scalars["region_" + std::string(name)] = {0, 1};
+  const Names many = step_names(frame, named("region"), 7);
+  EXPECT_EQ(many.size(), named("region").map().colours.size()) << "no more than there are colours";
+  EXPECT_EQ(many.back(), "d …") << "and all others";
+}
+
+TEST(CrossSectionAt, CutsNextToThePlaceAndIsCalledByIt) {
+  const View view = cross_section_at(-125);
+  EXPECT_EQ(view.cut_axis, 0);
+  EXPECT_DOUBLE_EQ(view.cut_um, view_cut_um - 125);
+  EXPECT_EQ(view.name, "x = \u2212125 µm");
+}
+
 TEST(FieldValues, RefusesAFrameWithoutTheArray) {
   EXPECT_THROW(field_values(Frame{}, colour_fields().front()), FileError);
 }

@@ -176,6 +176,48 @@ TEST(Scene, OutlinesOfASectionPartCellsAndNotTheElementsOfOne) {
   EXPECT_EQ(section.outlines.size(), 12u * (2 + 2 + 2));
 }
 
+// On the pill's cap, a quarter of its length from its end.
+TEST(Scene, OfASectionElsewhereIsCutThere) {
+  Picture picture = picture_of(pill(), {"cross-section"}, 1);
+  picture.rest = pill();
+  picture.rows[0].view = cross_section_at(150);
+  const Scene section = make_scene(picture, picture.columns[0], picture.rows[0].view, 3);
+  EXPECT_FALSE(section.corners.empty());
+  for (const Vec3& corner : section.corners) EXPECT_NEAR(corner.x(), 150, 0.02);
+  ASSERT_FALSE(section.rest.empty());
+  for (const auto& [from, to] : section.rest) EXPECT_NEAR(from.x(), 150, 0.02);
+}
+
+// A box for each step that is there, its name beside it, all within the picture.
+TEST(PictureLayout, StepsAreNamedAndFit) {
+  int cases = 0;
+  for (const auto [width, height] : {std::array{0, 0}, {1600, 900}, {1100, 300}})
+    for (const int columns : {1, 3}) {
+      Picture picture = picture_of(pill(), {"ventral"}, columns);
+      picture.field = field("region");
+      picture.range = {0, 5};
+      picture.step_names = {"other cells", "mesoderm", "a-rather-long-name", "furrow"};
+      picture.width_px = width, picture.height_px = height;
+      const Layout layout = make_layout(picture);
+      const std::vector<std::string> texts = texts_of(layout);
+      EXPECT_TRUE(contains(texts, "region"));
+      EXPECT_FALSE(contains(texts, "4")) << "a number that nobody has";
+      for (const std::string& name : picture.step_names) {
+        const auto label = std::ranges::find(layout.labels, name, &Label::text);
+        ASSERT_NE(label, layout.labels.end()) << name;
+        EXPECT_LE(label->x + 0.56 * static_cast<double>(name.size()) * label->size_px, layout.width_px) << name;
+        EXPECT_GE(label->y, 0);
+        EXPECT_LE(label->y, layout.height_px);
+      }
+      for (const Rectangle& rectangle : layout.rectangles) {
+        EXPECT_GE(rectangle.box.bottom, 0);
+        EXPECT_LE(rectangle.box.bottom + rectangle.box.height, layout.height_px);
+      }
+      ++cases;
+    }
+  std::cout << cases << " layouts\n";
+}
+
 TEST(Scene, HasTheRestOutlineOrTheShell) {
   Picture picture = picture_of(pill(), {"cross-section"}, 1);
   const auto scene = [&] { return make_scene(picture, picture.columns[0], picture.rows[0].view, 3); };

@@ -10,6 +10,7 @@ import { Run } from "./run";
 import { RunLooks } from "./run_looks";
 import { RunsTable } from "./runs_table";
 import { State } from "./state";
+import { showSections } from "./sections";
 import { showTables } from "./tables";
 
 const usualPlaySeconds = 10; // for a whole run
@@ -106,6 +107,7 @@ async function start(): Promise<void> {
   plots = new Plots(runs, page, state, looks);
   if (views) panel = new CellPanel(byId("cell"), runs, page, state);
   else byId("cell").hidden = true;
+  if (views) showSections(runs, page, state);
   showTables(runs, state);
   followTheme(() => {
     plots!.rebuild();

@@ -27,7 +27,12 @@ export interface Range {
   high: number;
 }
 
-export type Summary = Record<string, string | number | null | Record<string, string | number | null>>;
+export type Summary = Record<string, string | number | null | object>;
+
+/** Whether a value of a summary is a table of its own: provenance, energies by law. */
+export function isTable(value: unknown): boolean {
+  return typeof value === "object" && value !== null;
+}
 
 export interface RunData {
   name: string;

@@ -1,7 +1,7 @@
 // The runs of a page with several: which there are, in what they differ, what came out; and which of them are shown.
 import { byId, element } from "./dom";
 import { matches, type Traits } from "./filter";
-import { fewRuns, type PageData } from "./page_data";
+import { fewRuns, isTable, type PageData } from "./page_data";
 import type { Run } from "./run";
 import { isNumeric, type RunLooks, sampleOf } from "./run_looks";
 import type { State } from "./state";
@@ -113,7 +113,7 @@ export class RunsTable {
       ({ key, isMain, values, head: element("span", { title: key }, text) });
     const main = ["furrow_depth_um", "time_s", "status"];
     const others = [...new Set(this.runs.flatMap((run) => Object.keys(run.data.summary ?? {})))]
-      .filter((key) => !main.includes(key) && key !== "title" && key !== "provenance");
+      .filter((key) => !main.includes(key) && key !== "title" && !this.runs.some((run) => isTable(run.data.summary?.[key])));
     const value = (run: Run, key: string) => (run.data.summary?.[key] ?? null) as string | number | null;
     return [
       column("furrow_depth_um", true, "furrow depth, µm", this.runs.map((run) => value(run, "furrow_depth_um"))),

@@ -1,14 +1,15 @@
 // Numbers and texts of the runs: summary, provenance, scenario. Of many runs the table of runs has the summaries.
 import { byId, element } from "./dom";
-import { fewRuns } from "./page_data";
+import { fewRuns, isTable } from "./page_data";
 import type { Run } from "./run";
 import type { State } from "./state";
 import { number, words } from "./text";
 
-const shownElsewhere = ["title", "provenance"];
+const shownElsewhere = ["title"]; // and tables
 
 export function showTables(runs: Run[], state: State): void {
   if (runs.length <= fewRuns) byId("numbers").append(element("h2", {}, "Summary"), summaryTable(runs));
+  if (runs.length <= fewRuns) showEnergies(runs);
   byId("texts").append(element("h2", {}, "Provenance"), provenanceTable(runs), element("h2", {}, "Scenario"), ...scenarios(runs, state));
 }
 
@@ -32,7 +33,7 @@ function summaryTable(runs: Run[]): HTMLElement {
   if (runs.every((run) => run.data.summary === null))
     return element("p", { class: "note" }, "There is no summary: the run has not come to its end.");
   const keys = [...new Set(runs.flatMap((run) => Object.keys(run.data.summary ?? {})))].filter(
-    (key) => !shownElsewhere.includes(key),
+    (key) => !shownElsewhere.includes(key) && !runs.some((run) => isTable(run.data.summary?.[key])),
   );
   return table(runs, keys.map((key) => {
     const [name, unit] = words(key);
@@ -42,6 +43,21 @@ function summaryTable(runs: Run[]): HTMLElement {
     });
     return [element("th", { scope: "row", title: key }, unit === "" ? name : `${name}, ${unit}`), cells];
   }));
+}
+
+// What each law has put in, stored and lost.
+function showEnergies(runs: Run[]): void {
+  const kinds = ["active", "stored", "dissipated"];
+  for (const run of runs) {
+    const byLaw = run.data.summary?.energy_by_law_nN_um as Record<string, Record<string, number>> | undefined;
+    if (!byLaw || Object.keys(byLaw).length === 0) continue;
+    const rows: Row[] = Object.entries(byLaw).map(([law, energies]) => [
+      element("th", { scope: "row" }, law), kinds.map((kind) => (energies[kind] ? number(energies[kind]) : "")),
+    ]);
+    byId("numbers").append(
+      element("h2", {}, `Where energy has gone, nN·µm${runs.length > 1 ? `: ${run.name}` : ""}`),
+      element("div", { class: "scroll" }, onePiece(kinds, rows)));
+  }
 }
 
 type Provenance = Record<string, string | number | null>;

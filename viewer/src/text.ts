@@ -35,7 +35,9 @@ const units: [RegExp, string][] = [
   [/_um3$/, "µm³"],
   [/_um2$/, "µm²"],
   [/_um$/, "µm"],
+  [/_nN_um$/, "nN·µm"],
   [/_nN$/, "nN"],
+  [/_MB$/, "MB"],
   [/_Pa$/, "Pa"],
   [/_s$/, "s"],
 ];

@@ -110,6 +110,28 @@ test("on a cut, colours are those of the scale for the cell's value", async () =
   await done();
 });
 
+test("three cuts across follow time and colour; energies stand by law", async () => {
+  const { page, done } = await open("drosophila/report.html");
+  await page.locator("#sections").scrollIntoViewIfNeeded();
+  await page.waitForSelector("#sections[data-drawn]");
+  const captions = await page.locator("#sections span").allTextContents();
+  assert.deepEqual(captions, ["x = −115 µm", "x = 0 µm", "x = 115 µm"]);
+  const canvas = "#sections div:nth-of-type(2) canvas";
+  const last = await pixels(page, canvas);
+  let inked = 0;
+  for (let x = 0; x < last.width; x += 3) for (let y = 0; y < last.height; y += 3) inked += !isPaper(last.rgb(x, y));
+  assert.ok(inked / (last.width * last.height / 9) > 0.2, "a ring of cells");
+  await chosenFrame(page, 0);
+  await page.waitForSelector('#sections[data-drawn="0"]');
+  assert.ok(changed(last, await pixels(page, canvas)) > 0.05, "the furrow has gone");
+  const { active, dissipated } = JSON.parse(readFileSync(join(folder, "drosophila/summary.json"), "utf8"))
+    .energy_by_law_nN_um["contraction.apical"];
+  const cells = page.locator('#numbers tr:has(th:text-is("contraction.apical")) td');
+  near(numberOf(await cells.nth(0).textContent()), active, 1e-3, "active");
+  if (dissipated > 0) near(numberOf(await cells.nth(2).textContent()), dissipated, 1e-3, "dissipated");
+  await done();
+});
+
 test("turning by mouse and keys, zoom, cut, colour and time each change the picture", async () => {
   const { page, done } = await open("drosophila/report.html");
   let last = await pixels(page, ".picture");
