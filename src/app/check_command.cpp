@@ -21,6 +21,7 @@ void add_check_command(CLI::App& app, int&) {
     const auto model = make_model(scenario);
     (void)make_watch(scenario, model->tissue);
     (void)make_furrow_sites(scenario, model->tissue);
+    (void)make_solved_side(scenario, *model);
     fmt::print("{}", resolved_toml(scenario));
     for (const std::string& line : advice(scenario, *model)) fmt::print(stderr, "{}\n", line);
   });

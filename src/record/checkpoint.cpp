@@ -16,7 +16,7 @@
 namespace plica {
 namespace {
 
-constexpr int format = 3;
+constexpr int format = 4;
 constexpr std::size_t trailer_bytes = 64;
 
 std::uint32_t checksum(std::string_view bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }
@@ -162,6 +162,7 @@ void visit(Take& take, AnyCheckpoint& checkpoint) {
   take("run/wanted_step_s", run.wanted_step_s);
   take("run/computing_s", run.computing_s);
   take("run/energies", run.energies);
+  take("run/whole_internals", run.whole_internals);
   auto& factor = run.factor;
   visit_iterate(take, "factor/", factor.at);
   take("factor/previous_positions", factor.previous_positions);

@@ -74,6 +74,10 @@ std::vector<Row> make_rows() {
       embryo("elements_per_cell", &E::elements_per_cell, between(1, 16),
              "Elements of a cell along, across, basal to apical: refines the elements, not the cells.",
              {.shapes = built}),
+      embryo("mirror", &E::mirror, one_of(words::mirror_planes),
+             "The embryo is symmetric about these planes through its middle, `\"x\"` across the axis and `\"y\"` along "
+             "the "
+             "midline: one side is solved, in a half or a quarter of the time, and the whole shown and measured."),
       embryo("file", &E::file, anything, "Hexahedral mesh, path relative to the scenario's file.",
              {.is_path = true, .shapes = {"file"}}),
       embryo("apical_array", &E::apical_array, anything,

@@ -21,7 +21,9 @@
 #include "mechanics/obstacles/shell_drag.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "mechanics/surroundings.hpp"
+#include "scenario/acting.hpp"
 #include "scenario/regions.hpp"
+#include "scenario/symmetry.hpp"
 #include "scenario/words.hpp"
 #include "solver/projection/closed_surface.hpp"
 #include "tissue/faces.hpp"
@@ -148,6 +150,30 @@ void check_elasticities_apart(const Scenario& scenario, const Tissue& tissue, st
   }
 }
 
+void check_holds(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
+  for (const auto& [name, input] : scenario.holds)
+    if (std::ranges::none_of(held_nodes(input, tissue), [](bool is_held) { return is_held; }))
+      errors.push_back(diagnostic_at(scenario, "hold." + name, "no node of the region lies in its ranges",
+                                     "widen x_um, y_um or z_um; see `plica mesh` for where nodes lie"));
+}
+
+/// What only the tissue shows to be wrong, all at once.
+void check_tissue(const Scenario& scenario, const Tissue& tissue) {
+  std::vector<Diagnostic> errors;
+  check_faces(scenario, tissue, errors);
+  check_contact_at_rest(scenario, tissue, errors);
+  check_elasticities_apart(scenario, tissue, errors);
+  check_holds(scenario, tissue, errors);
+  if (const auto why = why_indivisible(tissue); why && !scenario.divisions.empty())
+    errors.push_back(diagnostic_at(scenario, "division." + scenario.divisions.begin()->first,
+                                   "the cells of this embryo cannot divide: " + *why,
+                                   "take one element a cell and one layer of cells"));
+  if (scenario.volume.projection_surface == "embryo") check_encloses(scenario, tissue, errors);
+  check_encloses_yolk(scenario, tissue, errors);
+  if (method_of(scenario.volume) == VolumeMethod::projection) check_is_one_layer(scenario, tissue, errors);
+  if (!errors.empty()) throw ScenarioError(std::move(errors));
+}
+
 /// A number a cell: what a table says of its region, or else `common`.
 std::vector<double> by_region(const Scenario& scenario, const Tissue& tissue,
                               std::optional<double> RegionElasticityInput::*key, double common) {
@@ -196,30 +222,23 @@ void add_elasticity(const Scenario& scenario, Model& model) {
     model.laws.push_back(std::make_unique<Dilatation>(model.tissue, bulk_modulus, model.volumes().is_held(), factors));
 }
 
-/// Of a contraction or a cortex.
+/// The tissue in which cells are counted from a midline, and which part of it the model is.
+struct Origin {
+  const Tissue& whole;
+  const Mirror& mirror;
+};
+
+/// Of the model's cells.
 template <class Acting>
-CellPattern make_pattern(const Acting& input, const Tissue& tissue) {
-  PatternRule pattern;
-  const ProfileInput& profile = input.profile;
-  pattern.profile.shape = meaning_of(words::profile_shapes, profile.shape, pattern.profile.shape);
-  pattern.profile.axis = meaning_of(words::profile_axes, profile.axis, pattern.profile.axis);
-  pattern.profile.in_cells = profile.sigma_cells || profile.full_cells;
-  pattern.profile.half_width = profile.full_cells ? 0.5 * *profile.full_cells : profile.half_width_um.value_or(1);
-  pattern.profile.sigma = profile.sigma_cells.value_or(profile.sigma_um.value_or(1));
-  pattern.profile.fade = profile.fade_cells.value_or(0);
-  pattern.middle = profile.middle.value_or(1);
-  pattern.edge = profile.edge.value_or(0);
-  if (!profile.about.empty()) pattern.about = tissue.regions.at(profile.about);
-  pattern.taper = {profile.full_length_um.value_or(0), profile.fade_um.value_or(0)};
-  pattern.delay.speed = input.delay.speed_um_per_s.value_or(0);
-  pattern.delay.axis = meaning_of(words::delay_axes, input.delay.axis, pattern.delay.axis);
-  pattern.delay.from = meaning_of(words::delay_starts, input.delay.from, pattern.delay.from);
-  pattern.spread = input.variation.spread;
-  pattern.seed = static_cast<std::uint64_t>(input.variation.seed);
-  return cell_pattern(tissue, tissue.regions.at(input.region), pattern);
+CellPattern pattern_of(const Acting& input, const Origin& origin) {
+  const CellPattern of_whole = make_pattern(input, origin.whole);
+  if (!origin.mirror.is_used()) return of_whole;
+  Division side;
+  side.origin = origin.mirror.origins;
+  return of_whole.after_division(side);
 }
 
-void add_contractions(const Scenario& scenario, Model& model) {
+void add_contractions(const Scenario& scenario, const Origin& origin, Model& model) {
   for (const auto& [name, input] : scenario.contractions) {
     ContractionRule rule;
     rule.side = meaning_of(words::edges, input.edges);
@@ -231,7 +250,7 @@ void add_contractions(const Scenario& scenario, Model& model) {
     rule.preload = input.preload_nN;
     rule.damping = input.damping_nN_s_per_um;
     rule.tension = input.tension_mN_per_m;  // nN/um is the same
-    CellPattern pattern = make_pattern(input, model.tissue);
+    CellPattern pattern = pattern_of(input, origin);
     std::vector<Spring> springs = contraction_springs(model.tissue, pattern, rule);
     model.laws.push_back(
         std::make_unique<Contraction>(std::move(springs), make_program(input.program), std::move(pattern)));
@@ -255,7 +274,7 @@ OwnStateRule make_own_state(const CortexInput& input) {
   return rule;
 }
 
-void add_cortices(const Scenario& scenario, Model& model) {
+void add_cortices(const Scenario& scenario, const Origin& origin, Model& model) {
   for (const auto& [name, input] : scenario.cortices) {
     if (input.tension_mN_per_m == 0 && input.stiffness_mN_per_m == 0 && input.crowding_mN_per_m == 0) continue;
     CortexRule rule;  // nN/um is mN/m
@@ -269,7 +288,7 @@ void add_cortices(const Scenario& scenario, Model& model) {
     rule.program = make_program(input.program);
     rule.stiffness_program = make_program(input.stiffness_program);
     rule.own = make_own_state(input);
-    model.laws.push_back(std::make_unique<Cortex>(model.tissue, make_pattern(input, model.tissue), std::move(rule)));
+    model.laws.push_back(std::make_unique<Cortex>(model.tissue, pattern_of(input, origin), std::move(rule)));
     model.laws.back()->set_label("cortex." + name);
   }
 }
@@ -285,15 +304,16 @@ void add_enclosed(const Scenario& scenario, Model& model) {
   }
 }
 
-void add_contact(const Scenario& scenario, Model& model) {
+void add_contact(const Scenario& scenario, const Origin& origin, Model& model) {
   const SelfContactInput& input = scenario.self_contact;
   const ContactSurface surface = meaning_of(words::contact_surfaces, input.surface);
   for (const auto& [side, alone] :
        {std::pair(CellSide::apical, ContactSurface::apical), {CellSide::basal, ContactSurface::basal}})
     if (surface == alone || surface == ContactSurface::both) {
       model.laws.push_back(std::make_unique<SelfContact>(
-          model.tissue,
-          SelfContactRule{side, input.distance_um, input.stiffness_kPa_per_um, input.search_um, input.friction}));
+          origin.whole,
+          SelfContactRule{side, input.distance_um, input.stiffness_kPa_per_um, input.search_um, input.friction},
+          origin.mirror));
       model.laws.back()->set_label(side == CellSide::apical ? "self_contact.apical" : "self_contact.basal");
     }
 }
@@ -314,28 +334,20 @@ void make_endless(const Scenario& scenario, Model& model) {
   model.laws.push_back(std::make_unique<Ties>(ties_along_x(model.tissue), stiffness));
 }
 
-void add_holds(const Scenario& scenario, Model& model, std::vector<Diagnostic>& errors) {
-  const auto inside = [](const std::optional<Range>& range, double value) {
-    // A face given by its place, [a, a], holds the nodes on it despite rounding.
-    return !range || (value >= (*range)[0] - 1e-9 && value <= (*range)[1] + 1e-9);
-  };
+void add_holds(const Scenario& scenario, Model& model) {
   for (const auto& [name, input] : scenario.holds) {
-    const CellSet& cells = model.tissue.regions.at(input.region);
-    bool any = false;
-    for (std::size_t e = 0; e < model.tissue.elements.size(); ++e) {
-      if (!cells[model.tissue.element_cell[e].index()]) continue;
-      for (const NodeId node : model.tissue.elements[e]) {
-        const Vec3& x = model.tissue.rest_positions[node.index()];
-        if (!inside(input.x_um, x.x()) || !inside(input.y_um, x.y()) || !inside(input.z_um, x.z())) continue;
-        any = true;
-        for (const std::string& direction : input.directions)
-          model.held[node.index()][meaning_of(words::axes, direction)] = true;
-      }
-    }
-    if (!any)
-      errors.push_back(diagnostic_at(scenario, "hold." + name, "no node of the region lies in its ranges",
-                                     "widen x_um, y_um or z_um; see `plica mesh` for where nodes lie"));
+    const std::vector<bool> nodes = held_nodes(input, model.tissue);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+      for (const std::string& direction : input.directions)
+        if (nodes[n]) model.held[n][meaning_of(words::axes, direction)] = true;
   }
+}
+
+/// Nodes on a mirror plane stay on it.
+void hold_mirror_planes(Model& model) {
+  for (std::size_t n = 0; n < model.held.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      if (model.tissue.is_mirrored[axis] && model.tissue.rest_positions[n][axis] == 0) model.held[n][axis] = true;
 }
 
 /// Forces at rest that are no finite numbers, of springs stronger than numbers are: there would be nothing to begin
@@ -354,6 +366,39 @@ void check_forces_at_rest(const Scenario& scenario, const Model& model) {
                                      "give weaker springs, smaller preloads or pressures")});
 }
 
+/// All that a scenario puts on a tissue.
+void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model) {
+  const Tissue& tissue = model.tissue;
+  model.volumes().hold(method_of(scenario.volume) == VolumeMethod::coupled);
+  add_elasticity(scenario, model);
+  if (scenario.elasticity.corner_barrier_Pa > 0)
+    model.laws.push_back(
+        std::make_unique<CornerBarrier>(tissue, scenario.elasticity.corner_barrier_Pa * units::pascal));
+  add_contractions(scenario, origin, model);
+  add_cortices(scenario, origin, model);
+  add_enclosed(scenario, model);
+  add_contact(scenario, origin, model);
+  add_pressures(scenario, model);
+  if (scenario.dynamics.surface_drag_Pa_s_per_um > 0)
+    model.laws.push_back(std::make_unique<SurfaceDrag>(
+        tissue, scenario.dynamics.surface_drag_Pa_s_per_um * units::pascal_second_per_um));
+  if (scenario.dynamics.density_kg_per_m3 > 0)
+    model.laws.push_back(
+        std::make_unique<Inertia>(tissue, scenario.dynamics.density_kg_per_m3 * units::kilogram_per_cubic_metre));
+
+  if (shape_of(scenario.embryo) == EmbryoShape::slice) make_endless(scenario, model);
+  add_holds(scenario, model);
+  if (scenario.vitelline.enabled) {
+    Capsule shell = *tissue.outer_shape;
+    shell.radius_um += scenario.vitelline.gap_um;
+    model.obstacles.push_back(std::make_unique<Vitelline>(tissue, shell));
+    if (scenario.vitelline.drag_Pa_s_per_um > 0)
+      model.laws.push_back(std::make_unique<ShellDrag>(
+          tissue, shell, scenario.vitelline.drag_Pa_s_per_um * units::pascal_second_per_um));
+  }
+  check_forces_at_rest(scenario, model);
+}
+
 }  // namespace
 
 Tissue make_tissue(const Scenario& scenario) {
@@ -361,54 +406,24 @@ Tissue make_tissue(const Scenario& scenario) {
   std::vector<Diagnostic> errors;
   check_rest_shape(scenario, tissue, errors);
   add_regions(scenario, tissue, errors);
-  if (errors.empty()) check_elasticities_apart(scenario, tissue, errors);
   if (!errors.empty()) throw ScenarioError(std::move(errors));
   return tissue;
 }
 
 std::unique_ptr<Model> make_model(const Scenario& scenario) {
   auto model = std::make_unique<Model>(make_tissue(scenario));
-  const Tissue& tissue = model->tissue;
-  std::vector<Diagnostic> errors;
-  check_faces(scenario, tissue, errors);
-  check_contact_at_rest(scenario, tissue, errors);
-  model->volumes().hold(method_of(scenario.volume) == VolumeMethod::coupled);
-  add_elasticity(scenario, *model);
-  if (scenario.elasticity.corner_barrier_Pa > 0)
-    model->laws.push_back(
-        std::make_unique<CornerBarrier>(tissue, scenario.elasticity.corner_barrier_Pa * units::pascal));
-  add_contractions(scenario, *model);
-  add_cortices(scenario, *model);
-  add_enclosed(scenario, *model);
-  add_contact(scenario, *model);
-  add_pressures(scenario, *model);
-  if (scenario.dynamics.surface_drag_Pa_s_per_um > 0)
-    model->laws.push_back(std::make_unique<SurfaceDrag>(
-        tissue, scenario.dynamics.surface_drag_Pa_s_per_um * units::pascal_second_per_um));
-  if (scenario.dynamics.density_kg_per_m3 > 0)
-    model->laws.push_back(
-        std::make_unique<Inertia>(tissue, scenario.dynamics.density_kg_per_m3 * units::kilogram_per_cubic_metre));
-
-  if (shape_of(scenario.embryo) == EmbryoShape::slice) make_endless(scenario, *model);
-  add_holds(scenario, *model, errors);
-  if (scenario.vitelline.enabled) {
-    Capsule shell = *tissue.outer_shape;
-    shell.radius_um += scenario.vitelline.gap_um;
-    model->obstacles.push_back(std::make_unique<Vitelline>(tissue, shell));
-    if (scenario.vitelline.drag_Pa_s_per_um > 0)
-      model->laws.push_back(std::make_unique<ShellDrag>(
-          tissue, shell, scenario.vitelline.drag_Pa_s_per_um * units::pascal_second_per_um));
-  }
-  if (const auto why = why_indivisible(tissue); why && !scenario.divisions.empty())
-    errors.push_back(diagnostic_at(scenario, "division." + scenario.divisions.begin()->first,
-                                   "the cells of this embryo cannot divide: " + *why,
-                                   "take one element a cell and one layer of cells"));
-  if (scenario.volume.projection_surface == "embryo") check_encloses(scenario, tissue, errors);
-  check_encloses_yolk(scenario, tissue, errors);
-  if (method_of(scenario.volume) == VolumeMethod::projection) check_is_one_layer(scenario, tissue, errors);
-  if (!errors.empty()) throw ScenarioError(std::move(errors));
-  check_forces_at_rest(scenario, *model);
+  check_tissue(scenario, model->tissue);
+  add_mechanics(scenario, {model->tissue, Mirror()}, *model);
   return model;
+}
+
+std::optional<SolvedSide> make_solved_side(const Scenario& scenario, const Model& whole) {
+  if (scenario.embryo.mirror.empty()) return std::nullopt;
+  MirroredSide side = mirrored_side(scenario, whole.tissue);
+  SolvedSide solved{std::make_unique<Model>(std::move(side.tissue)), std::move(side.mirror)};
+  add_mechanics(scenario, {whole.tissue, solved.mirror}, *solved.model);
+  hold_mirror_planes(*solved.model);
+  return solved;
 }
 
 std::vector<std::string> contracting_regions(const Scenario& scenario, const Tissue& tissue) {

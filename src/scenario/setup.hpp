@@ -2,12 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "measure/furrow.hpp"
 #include "mechanics/model.hpp"
 #include "scenario/scenario.hpp"
+#include "tissue/mirror.hpp"
 
 namespace plica {
 
@@ -15,8 +17,19 @@ namespace plica {
 /// FileError.
 Tissue make_tissue(const Scenario& scenario);
 
-/// The laws of a scenario on its tissue. Throws ScenarioError for what only the tissue shows to be wrong.
+/// The laws of a scenario on its tissue, the whole of it. Throws ScenarioError for what only the tissue shows to be
+/// wrong.
 std::unique_ptr<Model> make_model(const Scenario& scenario);
+
+/// The part of a symmetric embryo that is solved, and what of the whole it stands for.
+struct SolvedSide {
+  std::unique_ptr<Model> model;
+  Mirror mirror;
+};
+
+/// Of the scenario's whole model; nothing where it has no mirror planes. Throws ScenarioError for what is not
+/// symmetric.
+std::optional<SolvedSide> make_solved_side(const Scenario& scenario, const Model& whole);
 
 /// The regions on which contractions act, the largest first: without [furrow], that is where the furrow is measured.
 std::vector<std::string> contracting_regions(const Scenario& scenario, const Tissue& tissue);

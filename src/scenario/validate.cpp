@@ -84,6 +84,19 @@ void check_shell_drag(const Scenario& scenario, Input& input) {
                  "remove it, or choose another scheme or volume.method");
 }
 
+void check_mirror(const Scenario& scenario, Input& input) {
+  const std::vector<std::string>& mirror = scenario.embryo.mirror;
+  const std::string address = "embryo.mirror";
+  if (mirror.empty() || !input.sound(address)) return;
+  if (std::set(mirror.begin(), mirror.end()).size() < mirror.size())
+    return input.report(address, fmt::format("\"{}\" stands there twice", mirror.back()), "give each plane once");
+  if (!scenario.divisions.empty())
+    input.report(address, "cells of which one side is solved do not divide", "remove it, or [division]");
+  if (scenario.time.scheme != "newton" || method_of(scenario.volume) == VolumeMethod::projection)
+    input.report(address, "the paper's algorithm solves whole embryos only",
+                 "remove it, or give time.scheme \"newton\" and volume.method \"coupled\" or \"none\"");
+}
+
 void check_vitelline(Scenario& scenario, Input& input) {
   if (shape_of(scenario.embryo) != EmbryoShape::block || !input.sound("vitelline.enabled")) return;
   if (input.place("vitelline.enabled") == nullptr) scenario.vitelline.enabled = false;
@@ -337,6 +350,7 @@ class RegionCheck {
 
 void validate(Scenario& scenario, Input& input) {
   check_embryo(scenario, input);
+  check_mirror(scenario, input);
   check_vitelline(scenario, input);
   check_shell_drag(scenario, input);
   check_elasticity(scenario, input);

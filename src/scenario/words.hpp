@@ -51,6 +51,9 @@ namespace words {
 
 inline constexpr auto axes = std::to_array<Word<int>>({{"x", 0}, {"y", 1}, {"z", 2}});
 
+// [embryo]
+inline constexpr auto mirror_planes = std::to_array<Word<int>>({{"x", 0}, {"y", 1}});
+
 // [region.NAME]
 inline constexpr auto sides = std::to_array<Word<GridPlace::Face>>({{"ventral", GridPlace::Face::ventral},
                                                                     {"dorsal", GridPlace::Face::dorsal},

@@ -33,6 +33,7 @@ struct RunMemory {
   std::vector<EnergyFlow> energies;          // of all steps so far, as energy_flows lists them; none before the first
   FactorMemory factor;
   std::vector<std::shared_ptr<const PastDivision>> past_divisions;
+  std::vector<std::vector<double>> whole_internals;  // with mirror planes: what laws of the whole remember
 };
 
 /// Whether nothing is left to do.

@@ -67,6 +67,8 @@ Simulation::Parts parts_of(const Scenario& scenario) {
   parts.controls = make_controls(scenario);
   parts.sites = make_furrow_sites(scenario, parts.model->tissue);
   parts.watch = make_watch(scenario, parts.model->tissue);
+  if (auto side = make_solved_side(scenario, *parts.model))
+    parts.whole.emplace(std::exchange(parts.model, std::move(side->model)), std::move(side->mirror));
   return parts;
 }
 
@@ -74,24 +76,26 @@ Simulation::Simulation(const Scenario& scenario) : Simulation(parts_of(scenario)
 
 Simulation::Simulation(Parts parts)
     : model_(std::move(parts.model)),
+      whole_(std::move(parts.whole)),
       controls_(std::move(parts.controls)),
       step_length_(controls_),
-      observer_(std::make_unique<Observer>(*model_, std::move(parts.sites), std::move(parts.watch))) {
+      observer_(std::make_unique<Observer>(model(), std::move(parts.sites), std::move(parts.watch))) {
   for (const auto& law : model_->laws) {
     std::ranges::copy(law->program_points_s(), std::back_inserter(controls_.program_points_s));
     std::ranges::copy(law->program_jumps_s(), std::back_inserter(controls_.program_jumps_s));
   }
   now_.state = rest_state(*model_);
-  measures_ = observer_->observe_rest(now_.state);
+  measures_ = observer_->observe_rest(state());
   renew_stepper();
 }
 
 Simulation::Simulation(const Simulation& other)
     : model_(std::make_unique<Model>(*other.model_)),
+      whole_(other.whole_),
       controls_(other.controls_),
       now_(other.memory()),
       step_length_(other.step_length_),
-      observer_(std::make_unique<Observer>(*model_, *other.observer_)),
+      observer_(std::make_unique<Observer>(model(), *other.observer_)),
       measures_(other.measures_),
       has_begun_(other.has_begun_),
       failure_(other.failure_) {
@@ -131,6 +135,7 @@ RunMemory Simulation::memory() const {
   RunMemory memory = now_;
   memory.wanted_step_s = step_length_.wanted_s();
   memory.factor = stepper_->memory();
+  if (whole_) memory.whole_internals = whole_->state().internals;
   return memory;
 }
 
@@ -143,7 +148,10 @@ void Simulation::go_on_from(RunMemory memory, Observation measures) {
     (void)make_division(then, past->planned);
   }
   if (const auto why = why_unfit(memory, *model_)) throw UnfitMemory(*why);
+  if (memory.whole_internals.size() != (whole_ ? whole_->model().laws.size() : 0))
+    throw UnfitMemory("its whole is not this embryo's");
   now_ = std::move(memory);
+  if (whole_) whole_->go_to(*model_, now_.state, std::move(now_.whole_internals));
   measures_ = std::move(measures);
   step_length_ = StepLength(controls_, now_.wanted_step_s);
   grow(*model_, now_.state.time_s);
@@ -184,7 +192,9 @@ void Simulation::begin_anew_at_a_jump() {
 // Adds what the step did; what all steps did together. Daughters are as grown as midway, since they work on the way.
 EnergyFlow Simulation::account_for_energy(const State& before) {
   grow(*model_, 0.5 * (before.time_s + now_.state.time_s));
-  const std::vector<EnergyFlow> flows = energy_flows(*model_, before, now_.state);
+  std::vector<EnergyFlow> flows = energy_flows(*model_, before, now_.state);
+  const double copies = whole_ ? whole_->copies() : 1;
+  for (auto& [active, stored, dissipated] : flows) active *= copies, stored *= copies, dissipated *= copies;
   grow(*model_, now_.state.time_s);
   now_.energies.resize(flows.size());
   EnergyFlow sum;
@@ -226,7 +236,15 @@ bool Simulation::step_towards(double time_s) {
   // At a division, the frame shows the daughters.
   const bool frame_is_due = due.empty() && passes_frame(before.time_s, state.time_s, controls_.frame_every_s);
   const EnergyFlow energy = account_for_energy(before);
-  const AcceptedStep step{state, before, state.trend.step_s, *report, speed, frame_is_due, now_.at_equilibrium, energy};
+  const State whole_before = whole_ ? whole_->follow(*model_, before, state) : State();
+  const AcceptedStep step{this->state(),
+                          whole_ ? whole_before : before,
+                          state.trend.step_s,
+                          *report,
+                          speed,
+                          frame_is_due,
+                          now_.at_equilibrium,
+                          energy};
   measures_ = observer_->observe(step, now_.computing_s);
   now_.criterion_met = measures_.is_over;
   for (SimulationListener* listener : listeners_) listener->step_accepted(step, measures_);

@@ -14,6 +14,7 @@
 #include "simulation/controls.hpp"
 #include "simulation/run_memory.hpp"
 #include "simulation/step_length.hpp"
+#include "simulation/whole.hpp"
 
 namespace plica {
 
@@ -41,12 +42,14 @@ class Simulation {
   /// At rest. Throws ScenarioError for what only the tissue shows to be wrong, FileError for files that it names.
   explicit Simulation(const Scenario& scenario);
 
-  /// What it is made of. `sites` and `watch`: what is measured beside the sheet as a whole.
+  /// What it is made of. `sites` and `watch`: what is measured beside the sheet as a whole. `whole`: that of which the
+  /// model is one side; else it is a whole by itself.
   struct Parts {
     std::unique_ptr<Model> model;
     RunControls controls;
     FurrowSites sites = {};
     Watch watch = {};
+    std::optional<Whole> whole = {};
   };
   explicit Simulation(Parts parts);
 
@@ -69,8 +72,9 @@ class Simulation {
   /// What gave up, where and when; empty unless the run failed. The state is the last good one.
   [[nodiscard]] const std::string& failure() const { return failure_; }
 
-  [[nodiscard]] const Model& model() const { return *model_; }
-  [[nodiscard]] const State& state() const { return now_.state; }
+  /// Of the whole embryo, also where one side of it is solved.
+  [[nodiscard]] const Model& model() const { return whole_ ? whole_->model() : *model_; }
+  [[nodiscard]] const State& state() const { return whole_ ? whole_->state() : now_.state; }
   [[nodiscard]] double time_s() const { return now_.state.time_s; }
   [[nodiscard]] int steps() const { return now_.steps; }
   [[nodiscard]] int divisions() const { return now_.divisions; }
@@ -110,7 +114,8 @@ class Simulation {
   void renew_stepper();
   void recall_factor();
 
-  std::unique_ptr<Model> model_;
+  std::unique_ptr<Model> model_;  // what is solved, and `now_` of it
+  std::optional<Whole> whole_;    // of which that is one side
   RunControls controls_;
   RunMemory now_;
   std::unique_ptr<Stepper> stepper_;

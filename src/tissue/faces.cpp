@@ -34,6 +34,7 @@ std::vector<Face> lateral_faces(const Tissue& tissue) {
       if (other && (other->cell < e || tissue.element_cell[other->cell] == cell)) continue;
       Face face{face_nodes(tissue.elements[e], f), cell, {}};
       if (other) face.beyond = tissue.element_cell[other->cell];
+      face.share = tissue.own_share(face.nodes);
       faces.push_back(face);
     }
   return faces;

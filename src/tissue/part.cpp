@@ -1,5 +1,7 @@
 #include "tissue/part.hpp"
 
+#include <stdexcept>
+
 namespace plica {
 
 Division keep_only(Tissue& tissue, const CellSet& cells) {
@@ -37,6 +39,35 @@ Division keep_only(Tissue& tissue, const CellSet& cells) {
     for (auto& [name, set] : *sets) set = inherited(division, set);
   tissue = std::move(part);
   return division;
+}
+
+std::vector<NodeId> drop_unused_nodes(Tissue& tissue) {
+  if (!tissue.hanging.empty()) throw std::logic_error("nodes of a tissue whose cells have divided stay");
+  std::vector<NodeId> now(tissue.node_count()), before;
+  for (const auto& nodes : tissue.elements)
+    for (const NodeId node : nodes) now[node.index()] = node;
+  Vectors positions;
+  for (NodeId& node : now) {
+    if (!node.valid()) continue;
+    before.push_back(node);
+    node = NodeId(positions.size());
+    positions.push_back(tissue.rest_positions[before.back().index()]);
+  }
+  const auto renumber = [&](auto& nodes) {
+    for (NodeId& node : nodes) node = now[node.index()];
+  };
+  for (auto& nodes : tissue.elements) renumber(nodes);
+  for (Cell& cell : tissue.cells) {
+    renumber(cell.corners);
+    for (CellEdge& edge : cell.edges) renumber(edge.nodes);
+    for (CellLine& line : cell.lines) renumber(line.chain.nodes);
+    for (auto& wall : cell.walls)
+      for (WallStop& stop : wall) stop = {stop.at, now[stop.basal.index()], now[stop.apical.index()]};
+  }
+  for (auto* facets : {&tissue.apical_facets, &tissue.basal_facets})
+    for (Facet& facet : *facets) renumber(facet.nodes);
+  tissue.rest_positions = std::move(positions);
+  return before;
 }
 
 }  // namespace plica

@@ -9,4 +9,7 @@ namespace plica {
 /// on by the result as after a division.
 Division keep_only(Tissue& tissue, const CellSet& cells);
 
+/// Leaves out nodes that no element has. Where the others were, in their order: new node to old.
+std::vector<NodeId> drop_unused_nodes(Tissue& tissue);
+
 }  // namespace plica

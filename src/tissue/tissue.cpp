@@ -4,6 +4,15 @@
 
 namespace plica {
 
+double Tissue::own_share(std::span<const NodeId> nodes) const {
+  double share = 1;
+  for (int axis = 0; axis < 3; ++axis)
+    if (is_mirrored[axis] &&
+        std::ranges::all_of(nodes, [&](NodeId node) { return rest_positions[node.index()][axis] == 0; }))
+      share /= 2;
+  return share;
+}
+
 void Tissue::place_hanging(std::span<Vec3> vectors) const {
   for (std::size_t h = 0; h < hanging.size(); ++h) vectors[free_node_count() + h] = mean_of(hanging[h], vectors);
 }

@@ -113,6 +113,12 @@ struct Tissue {
   std::map<std::string, CellSet> cell_arrays;  // of a mesh file: cells where the array is not 0
   std::map<std::string, CellSet> regions;      // named; "all" is always there
   int next_cell_id = 0;                        // for Lineage
+  // Axes across whose planes through the origin this is one side of a symmetric tissue (mirror.hpp). Nodes on a plane
+  // are at 0 there.
+  std::array<bool, 3> is_mirrored = {false, false, false};
+
+  /// How much of what these nodes span is this side's own: a half for each mirror plane in which all of them lie.
+  [[nodiscard]] double own_share(std::span<const NodeId> nodes) const;
 
   [[nodiscard]] std::size_t node_count() const { return rest_positions.size(); }
   [[nodiscard]] std::size_t free_node_count() const { return rest_positions.size() - hanging.size(); }

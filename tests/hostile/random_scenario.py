@@ -167,6 +167,10 @@ class Drawer:
             if count * math.prod(per_cell) > MOST_ELEMENTS:
                 draft.drop("embryo.elements_per_cell")
             draft.put("embryo", "cells", cells)
+            if "embryo.mirror" in draft.values and r.random() < 0.7:
+                draft.drop("embryo.mirror")  # mostly: hardly anything drawn is symmetric
+            elif "embryo.mirror" in draft.values:
+                draft.put("embryo", "cells", [2 * max(1, n // 2) for n in cells])
         # As many steps as the longest one allows; an adaptive one is shorter where much happens.
         step = draft.get("time.step_s", "adaptive")
         longest = step if isinstance(step, float) else min(draft.get("time.max_step_s", 30.0), 30.0)

@@ -339,7 +339,7 @@ TEST(LoadScenario, ReportsAllErrorsAtOnceInOrderOfLines) {
             "test.toml:4: contraction.a.region: there is no region \"nowhere\"; known are: all\n"
             "test.toml:6: embryo.length_um: true is of the wrong type; give a number > 0\n"
             "test.toml:7: embryo.speed: unknown key; known are: shape, length_um, diameter_um, width_um, "
-            "cell_height_um, cells, elements_per_cell, file, apical_array\n"
+            "cell_height_um, cells, elements_per_cell, mirror, file, apical_array\n"
             "--set: time.max_step_s: 0 is out of range; give a number > 0");
 }
 

@@ -65,7 +65,7 @@ struct Fields {
 
   void take_run(const RunMemory& run) {
     const auto& [state, steps, divisions, equilibrium_time_s, at_equilibrium, criterion_met, wanted_step_s, computing_s,
-                 energies, factor, past_divisions] = run;
+                 energies, factor, past_divisions, whole_internals] = run;
     take_state(state);
     take_factor(factor);
     take("steps", steps), take("divisions", divisions), take("equilibrium_time_s", equilibrium_time_s);
@@ -74,6 +74,7 @@ struct Fields {
     numbers["energies"];
     for (const auto& [active, stored, dissipated] : energies)
       take("energies", active), take("energies", stored), take("energies", dissipated);
+    take("whole_internals", whole_internals);
     numbers["past_divisions"];
     for (const auto& past : past_divisions) {
       const auto& [time_s, positions, planned] = *past;
@@ -117,6 +118,7 @@ Checkpoint marked(Checkpoint checkpoint) {
   run.state.contact_forces = {0.5, 0, 2};
   run.state.in_contact = {1, 0, 1};
   run.state.internals = {{1, 2}, {}, {3}};
+  run.whole_internals = {{6}, {7, 8}, {}};
   run.state.trend.step_s = 0.75;
   run.state.trend.earlier_s = 0.125;
   run.state.trend.mean_velocities = run.state.trend.accelerations = {Vec3(1, 2, 3), Vec3(-4, 5, 6)};

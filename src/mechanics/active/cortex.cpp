@@ -17,10 +17,10 @@ double area_at_rest(const Tissue& tissue, const Face& face) {
   return facet_area(corners);
 }
 
-// Strength of a face: of its cell, or the mean of the two whose wall it is.
+// Strength of a face: of its cell, or the mean of the two whose wall it is; the tissue's share of that.
 double strength_of(const Face& face, const CellPattern& pattern) {
   const double own = pattern.strengths[face.cell.index()];
-  return face.beyond ? 0.5 * (own + pattern.strengths[face.beyond->index()]) : own;
+  return face.share * (face.beyond ? 0.5 * (own + pattern.strengths[face.beyond->index()]) : own);
 }
 
 std::vector<Face> acting_faces(const Tissue& tissue, CellSide side, const CellPattern& pattern) {
@@ -33,7 +33,8 @@ std::vector<Face> acting_faces(const Tissue& tissue, CellSide side, const CellPa
 ElementChunks chunks_of(const std::vector<Face>& faces) {
   std::vector<std::array<NodeId, 8>> corners;
   corners.reserve(faces.size());
-  for (const auto& [n, cell, beyond] : faces) corners.push_back({n[0], n[1], n[2], n[3], n[0], n[1], n[2], n[3]});
+  for (const auto& [n, cell, beyond, share] : faces)
+    corners.push_back({n[0], n[1], n[2], n[3], n[0], n[1], n[2], n[3]});
   return ElementChunks(corners);
 }
 
@@ -109,7 +110,7 @@ double Cortex::stiffening(CellId cell, const Step& step) const {
   return rule_.stiffness_program.at(own == OwnState::not_yet ? 0 : step.end_time_s - own);
 }
 
-// A number of a cell times its strength; of a wall the mean of those of its two cells.
+// A number of a cell times its strength; of a wall the mean of those of its two cells; the tissue's share of that.
 template <class OfCell>
 double Cortex::of_face(std::size_t f, const OfCell& of_cell) const {
   const auto strong = [&](CellId cell) {
@@ -117,7 +118,7 @@ double Cortex::of_face(std::size_t f, const OfCell& of_cell) const {
     return strength == 0 ? 0 : strength * of_cell(cell);
   };
   const Face& face = faces_[f];
-  return face.beyond ? 0.5 * (strong(face.cell) + strong(*face.beyond)) : strong(face.cell);
+  return face.share * (face.beyond ? 0.5 * (strong(face.cell) + strong(*face.beyond)) : strong(face.cell));
 }
 
 double Cortex::stiffening_of(std::size_t f, const Step& step) const {

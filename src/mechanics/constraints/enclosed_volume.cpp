@@ -56,7 +56,8 @@ std::vector<EnclosedVolume::RimEdge> EnclosedVolume::rim_of(const Tissue& tissue
   for_edges([&](NodeId from, NodeId to) { ++uses[std::minmax(from, to)]; });
   std::vector<RimEdge> rim;
   for_edges([&](NodeId from, NodeId to) {
-    if (uses[std::minmax(from, to)] == 1)
+    // What closes a mirror plane is seen edge-on from the origin, which lies in it: its cone has no volume.
+    if (uses[std::minmax(from, to)] == 1 && tissue.own_share(std::array{from, to}) == 1)
       rim.push_back({from, to, Vec3(tissue.rest_positions[from.index()].x(), 0, 0)});
   });
   return rim;

@@ -11,7 +11,7 @@ namespace plica {
 struct Tissue;
 
 /// Held at its volume at rest; the multiplier is the pressure inside, kPa. The sheet is closed, or a slice that is
-/// closed by planes across x at its ends, in which its nodes must stay.
+/// closed by planes across x at its ends, or by mirror planes, in which its nodes must stay.
 class EnclosedVolume final : public Constraint {
  public:
   explicit EnclosedVolume(const Tissue& tissue);
@@ -42,14 +42,14 @@ class EnclosedVolume final : public Constraint {
   [[nodiscard]] double volume(std::span<const Vec3> positions) const;
   [[nodiscard]] std::size_t facet_count() const { return facets_.size(); }
 
-  /// Whether the basal surface of a tissue is closed, or a slice's.
+  /// Whether the basal surface of a tissue is closed, or a slice's, or one side's of such.
   [[nodiscard]] static bool is_closed(const Tissue& tissue);
 
  private:
   template <class Take>
   void for_blocks(std::span<const Vec3> positions, double pressure, const Take& take) const;
 
-  /// An edge of the rim of a slice, as its facet has it: with a place in its plane, a triangle of the end.
+  /// An edge of the rim at a slice's ends, as its facet has it: with a place in its plane, a triangle of the end.
   struct RimEdge {
     NodeId from, to;
     Vec3 place;

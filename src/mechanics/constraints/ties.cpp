@@ -7,30 +7,31 @@ namespace plica {
 
 double Ties::energy(const Step& step) const {
   double sum = 0;
-  for (const auto& [nodes, apart] : ties_)
-    sum += (step.positions[nodes[1].index()] - step.positions[nodes[0].index()] - apart).squaredNorm();
+  for (const auto& [nodes, apart, share] : ties_)
+    sum += share * (step.positions[nodes[1].index()] - step.positions[nodes[0].index()] - apart).squaredNorm();
   return 0.5 * stiffness_ * sum;
 }
 
 void Ties::add_forces(const Step& step, std::span<Vec3> forces) const {
-  for (const auto& [nodes, apart] : ties_) {
-    const Vec3 pull = stiffness_ * (step.positions[nodes[1].index()] - step.positions[nodes[0].index()] - apart);
+  for (const auto& [nodes, apart, share] : ties_) {
+    const Vec3 pull =
+        share * stiffness_ * (step.positions[nodes[1].index()] - step.positions[nodes[0].index()] - apart);
     forces[nodes[0].index()] += pull;
     forces[nodes[1].index()] -= pull;
   }
 }
 
 void Ties::add_tangent_product(const Step& /*step*/, std::span<const Vec3> direction, std::span<Vec3> product) const {
-  for (const auto& [nodes, apart] : ties_) {
-    const Vec3 change = stiffness_ * (direction[nodes[1].index()] - direction[nodes[0].index()]);
+  for (const auto& [nodes, apart, share] : ties_) {
+    const Vec3 change = share * stiffness_ * (direction[nodes[1].index()] - direction[nodes[0].index()]);
     product[nodes[0].index()] -= change;
     product[nodes[1].index()] += change;
   }
 }
 
 void Ties::add_tangent(const Step& /*step*/, TangentSink& tangent) const {
-  const Mat3 block = stiffness_ * Mat3::Identity();
-  for (const auto& [nodes, apart] : ties_) {
+  for (const auto& [nodes, apart, share] : ties_) {
+    const Mat3 block = share * stiffness_ * Mat3::Identity();
     tangent.add_block(nodes[0], nodes[0], block);
     tangent.add_block(nodes[1], nodes[1], block);
     tangent.add_block(nodes[1], nodes[0], -block);
@@ -60,9 +61,11 @@ std::vector<Ties::Tie> ties_along_x(const Tissue& tissue) {
   }
   std::vector<Ties::Tie> ties;
   for (const auto& [place, nodes] : lines)
-    for (std::size_t i = 1; i < nodes.size(); ++i)
-      ties.push_back(
-          {{nodes[0], nodes[i]}, tissue.rest_positions[nodes[i].index()] - tissue.rest_positions[nodes[0].index()]});
+    for (std::size_t i = 1; i < nodes.size(); ++i) {
+      const std::array tied = {nodes[0], nodes[i]};
+      ties.push_back({tied, tissue.rest_positions[nodes[i].index()] - tissue.rest_positions[nodes[0].index()],
+                      tissue.own_share(tied)});
+    }
   return ties;
 }
 

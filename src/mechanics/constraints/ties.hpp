@@ -14,10 +14,11 @@ class Ties final : public Law {
  public:
   struct Tie {
     std::array<NodeId, 2> nodes;
-    Vec3 apart;  // the second less the first, at rest; um
+    Vec3 apart;        // the second less the first, at rest; um
+    double share = 1;  // how much of it is this tissue's: a half on a mirror plane
   };
 
-  /// `stiffness` k in nN/um: E = k/2 |x_b - x_a - apart|^2 a tie.
+  /// `stiffness` k in nN/um: E = k/2 |x_b - x_a - apart|^2 a tie, times its share.
   Ties(std::vector<Tie> ties, double stiffness) : ties_(std::move(ties)), stiffness_(stiffness) {}
 
   [[nodiscard]] std::string_view name() const override { return "ties"; }

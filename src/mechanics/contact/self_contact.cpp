@@ -71,26 +71,14 @@ std::array<NodeId, 3> triangle_nodes(const std::array<NodeId, 4>& facet, bool se
 
 }  // namespace
 
-Vec3 SelfContact::Point::at(std::span<const Vec3> vectors) const {
-  Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < count; ++i) sum += vectors[nodes[i].index()];
-  return sum / count;
-}
-
-Vec3 SelfContact::Pair::apart(const Point& p, std::span<const Vec3> vectors) const {
-  Vec3 apart = p.at(vectors);
-  for (int k = 0; k < 3; ++k) apart -= weights[k] * vectors[nodes[k].index()];
-  return apart;
-}
-
-Vec3 SelfContact::Pair::along(const Vec3& vector) const { return vector - normal.dot(vector) * normal; }
-
-SelfContact::SelfContact(const Tissue& tissue, const SelfContactRule& rule) : rule_(rule) {
+SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirror mirror)
+    : rule_(rule), mirror_(std::move(mirror)) {
   std::map<NodeId, std::vector<std::size_t>> of_node;
   std::map<NodeId, double> area_of_node;
-  std::vector<double> areas;
-  for (const Facet& facet : rule.side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets) {
-    areas.push_back(facet_area(rest_corners(tissue, facet)));
+  std::vector<double> areas;  // 0 of images, whose points are not this side's
+  for (const Facet& facet : rule.side == CellSide::apical ? whole.apical_facets : whole.basal_facets) {
+    const bool is_own = mirror_.own(facet.cell) == facet.cell;
+    areas.push_back(is_own ? facet_area(rest_corners(whole, facet)) : 0);
     for (const NodeId node : facet.nodes) {
       of_node[node].push_back(facets_.size());
       area_of_node[node] += areas.back() / 8;  // half of the area is the nodes', half the facets' means
@@ -103,10 +91,12 @@ SelfContact::SelfContact(const Tissue& tissue, const SelfContactRule& rule) : ru
   for (const auto& [edge, facet] : edges)
     if (!edges.contains({edge.second, edge.first})) rim_.push_back({edge.first, edge.second, facet});
   for (const auto& [node, facets] : of_node) {
+    if (area_of_node[node] == 0) continue;
     points_.push_back({{node}, 1, area_of_node[node]});
     neighbours_.push_back(facets);
   }
   for (std::size_t f = 0; f < facets_.size(); ++f) {
+    if (areas[f] == 0) continue;
     points_.push_back({facets_[f], 4, areas[f] / 2});
     std::vector<std::size_t> around;
     for (const NodeId node : facets_[f]) around.insert(around.end(), of_node[node].begin(), of_node[node].end());
@@ -116,7 +106,9 @@ SelfContact::SelfContact(const Tissue& tissue, const SelfContactRule& rule) : ru
   }
 }
 
-std::vector<Pair> SelfContact::pairs(std::span<const Vec3> x, std::span<const double> known) const {
+std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<const double> known) const {
+  const Vectors of_whole = mirror_.is_used() ? mirror_.whole(positions) : Vectors();
+  const std::span<const Vec3> x = mirror_.is_used() ? std::span<const Vec3>(of_whole) : positions;
   // Normals of nodes and of points, by the area vectors of their facets.
   Vectors normals(x.size(), Vec3::Zero()), outward(x.size(), Vec3::Zero());
   double longest = 0;
@@ -221,7 +213,7 @@ void SelfContact::for_pressed(const Step& step, const Take& take) const {
   for (std::size_t at = 1; at < step.internal.size(); at += pair_size) {
     const Pair pair = unpacked(step.internal.subspan(at, pair_size));
     const Point& point = points_[pair.point];
-    const double inside = pair.distance - pair.gap(point, step.positions);
+    const double inside = pair.distance - pair.gap(point, MirroredVectors{mirror_, step.positions});
     if (inside > 0) take(point, pair, inside);
   }
 }
@@ -236,7 +228,7 @@ void SelfContact::for_rubbing(const Step& step, const Take& take) const {
     const Point& point = points_[pair.point];
     const double inside = pair.distance - pair.first_gap;
     if (inside <= 0) continue;
-    const auto apart = [&](std::span<const Vec3> x) { return pair.apart(point, x); };
+    const auto apart = [&](std::span<const Vec3> x) { return pair.apart(point, MirroredVectors{mirror_, x}); };
     take(point, pair, Coulomb{rule_.friction * rule_.stiffness * point.area * inside},
          pair.along(apart(step.positions) - step.before(apart)) / step.rate_s);
   }
@@ -253,15 +245,14 @@ double SelfContact::energy(const Step& step) const {
   return sum;
 }
 
-namespace {
-
-// Adds a push to the point's nodes, and its opposite to the triangle's.
-void add_push(const SelfContact::Point& point, const Pair& pair, const Vec3& push, std::span<Vec3> forces) {
-  for (int i = 0; i < point.count; ++i) forces[point.nodes[i].index()] += push / point.count;
-  for (int k = 0; k < 3; ++k) forces[pair.nodes[k].index()] -= pair.weights[k] * push;
+void SelfContact::add_push(const Point& point, const Pair& pair, const Vec3& push, std::span<Vec3> forces) const {
+  const auto add = [&](NodeId of_whole, double part) {
+    const auto [node, signs] = mirror_.image(of_whole);
+    forces[node.index()] += part * signs.cwiseProduct(push);
+  };
+  for (int i = 0; i < point.count; ++i) add(point.nodes[i], 1.0 / point.count);
+  for (int k = 0; k < 3; ++k) add(pair.nodes[k], -pair.weights[k]);
 }
-
-}  // namespace
 
 EnergyFlow SelfContact::energy_flow(const MadeStep& made) const {
   // Pairs are found anew at the step's end, and what the old ones had stored beyond the new ones is lost.
@@ -287,10 +278,11 @@ void SelfContact::add_forces(const Step& step, std::span<Vec3> forces) const {
 void SelfContact::add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                       std::span<Vec3> product) const {
   for_pressed(step, [&](const Point& point, const Pair& pair, double) {
-    add_push(point, pair, rule_.stiffness * point.area * pair.gap(point, direction) * pair.normal, product);
+    const double closer = pair.gap(point, MirroredVectors{mirror_, direction});
+    add_push(point, pair, rule_.stiffness * point.area * closer * pair.normal, product);
   });
   for_rubbing(step, [&](const Point& point, const Pair& pair, const Coulomb& friction, const Vec3& velocity) {
-    const Vec3 slip = pair.along(pair.apart(point, direction));
+    const Vec3 slip = pair.along(pair.apart(point, MirroredVectors{mirror_, direction}));
     add_push(point, pair, pair.along(friction.resistance(velocity) * slip) / step.rate_s, product);
   });
 }
@@ -303,8 +295,13 @@ void SelfContact::add_tangent(const Step& step, TangentSink& tangent) const {
     const bool whole = may_touch(pair);
     for (int i = 0; i < static_cast<int>(nodes.size()); ++i)
       for (int j = 0; j <= i; ++j)
-        if (whole || (i < point.count) == (j < point.count))
-          tangent.add_block(nodes[i], nodes[j], weight(i) * weight(j) * stiffness);
+        if (whole || (i < point.count) == (j < point.count)) {
+          const auto [a, a_signs] = mirror_.image(nodes[i]);
+          const auto [b, b_signs] = mirror_.image(nodes[j]);
+          Mat3 block = weight(i) * weight(j) * (a_signs.asDiagonal() * stiffness * b_signs.asDiagonal());
+          if (i != j && a == b) block += block.transpose().eval();  // a node and its image
+          tangent.add_block(a, b, block);
+        }
   };
   for_pressed(step, [&](const Point& point, const Pair& pair, double) {
     add(point, pair, rule_.stiffness * point.area * pair.normal * pair.normal.transpose());
@@ -325,14 +322,23 @@ double SelfContact::rounding(const Step& step, double position_rounding) const {
 
 NodeGroups SelfContact::node_groups(std::span<const double> internal) const {
   NodeGroups groups;
-  for (const auto& facet : facets_) groups.add(facet);
+  for (const Point& point : points_)
+    if (point.count == 4) add_group(point.nodes, groups);
   add_touching(internal, groups);
   return groups;
 }
 
 void SelfContact::add_touching(std::span<const double> internal, NodeGroups& groups) const {
   for (const Pair& pair : pairs_of(internal))
-    if (may_touch(pair)) groups.add(nodes_of(pair));
+    if (may_touch(pair)) add_group(nodes_of(pair), groups);
+}
+
+// As the side numbers them, each once.
+void SelfContact::add_group(std::span<const NodeId> of_whole, NodeGroups& groups) const {
+  std::vector<NodeId> nodes;
+  for (const NodeId node : of_whole)
+    if (const NodeId own = mirror_.image(node).node; std::ranges::find(nodes, own) == nodes.end()) nodes.push_back(own);
+  groups.add(nodes);
 }
 
 std::unique_ptr<Law> SelfContact::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {

@@ -7,12 +7,16 @@
 // So within a step the law is linear in its forces, and gaps have a sign: a point beyond the surface is pushed out
 // again. A point that faces the other side of a thin ridge lies beyond that, too: only one that has gone through under
 // the eyes of the law counts as inside. Friction is Coulomb's, by the pressure at the step's beginning.
+//
+// Where mirror planes leave one side of a tissue to be solved, its points take triangles of the whole, images too, and
+// push the nodes that these are images of: half of the whole's energy, as the whole would have it.
 #pragma once
 
 #include <array>
 #include <vector>
 
 #include "mechanics/law.hpp"
+#include "tissue/mirror.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -29,7 +33,9 @@ struct SelfContactRule {
 /// their nodes, so that the pattern changes from step to step.
 class SelfContact final : public Law {
  public:
-  SelfContact(const Tissue& tissue, const SelfContactRule& rule);
+  /// Of a tissue, or of its one side. Points, facets and pairs know nodes as the whole numbers them; positions, forces
+  /// and blocks are the side's.
+  SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirror mirror = {});
 
   [[nodiscard]] std::string_view name() const override { return "self-contact"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<SelfContact>(*this); }
@@ -58,7 +64,13 @@ class SelfContact final : public Law {
     std::array<NodeId, 4> nodes;
     int count = 1;
     double area = 0;  // um^2, at rest
-    [[nodiscard]] Vec3 at(std::span<const Vec3> vectors) const;
+    /// Of any vectors of the whole's nodes.
+    template <class VectorsOfNodes>
+    [[nodiscard]] Vec3 at(const VectorsOfNodes& vectors) const {
+      Vec3 sum = Vec3::Zero();
+      for (int i = 0; i < count; ++i) sum += vectors[nodes[i].index()];
+      return sum / count;
+    }
   };
   /// What a point is kept from.
   struct Pair {
@@ -68,14 +80,20 @@ class SelfContact final : public Law {
     Vec3 normal;
     double distance = 0;   // um: where it begins to push. That of the rule; less where it was nearer when first seen
     double first_gap = 0;  // um: at the step's beginning
-    /// p - q; of any vectors of nodes.
-    [[nodiscard]] Vec3 apart(const Point& p, std::span<const Vec3> vectors) const;
+    /// p - q; of any vectors of the whole's nodes.
+    template <class VectorsOfNodes>
+    [[nodiscard]] Vec3 apart(const Point& point, const VectorsOfNodes& vectors) const {
+      Vec3 apart = point.at(vectors);
+      for (int k = 0; k < 3; ++k) apart -= weights[k] * vectors[nodes[k].index()];
+      return apart;
+    }
     /// N.(p - q)
-    [[nodiscard]] double gap(const Point& p, std::span<const Vec3> vectors) const {
-      return normal.dot(apart(p, vectors));
+    template <class VectorsOfNodes>
+    [[nodiscard]] double gap(const Point& point, const VectorsOfNodes& vectors) const {
+      return normal.dot(apart(point, vectors));
     }
     /// What of it lies in the triangle's plane.
-    [[nodiscard]] Vec3 along(const Vec3& vector) const;
+    [[nodiscard]] Vec3 along(const Vec3& vector) const { return vector - normal.dot(vector) * normal; }
   };
   /// In the order of points. `known`: the internal state of the step that ends at these positions.
   [[nodiscard]] std::vector<Pair> pairs(std::span<const Vec3> positions, std::span<const double> known = {}) const;
@@ -88,8 +106,11 @@ class SelfContact final : public Law {
   [[nodiscard]] bool may_touch(const Pair& pair) const { return pair.first_gap < 2 * rule_.distance; }
   /// Adds the nodes of each pair that may touch.
   void add_touching(std::span<const double> internal, NodeGroups& groups) const;
-  /// All nodes of a pair: of the point, of the triangle.
+  void add_group(std::span<const NodeId> of_whole, NodeGroups& groups) const;
+  /// All nodes of a pair, as the whole numbers them: of the point, of the triangle.
   [[nodiscard]] std::vector<NodeId> nodes_of(const Pair& pair) const;
+  /// Adds a push to the point's nodes, and its opposite to the triangle's.
+  void add_push(const Point& point, const Pair& pair, const Vec3& push, std::span<Vec3> forces) const;
   [[nodiscard]] std::vector<double> packed(const std::vector<Pair>& pairs, std::span<const double> before) const;
   template <class Take>
   void for_pressed(const Step& step, const Take& take) const;
@@ -97,13 +118,14 @@ class SelfContact final : public Law {
   void for_rubbing(const Step& step, const Take& take) const;
 
   SelfContactRule rule_;
-  std::vector<std::array<NodeId, 4>> facets_;
+  Mirror mirror_;
+  std::vector<std::array<NodeId, 4>> facets_;  // of the whole
   struct RimEdge {
     NodeId from, to;
     std::size_t facet;
   };
   std::vector<RimEdge> rim_;                          // edges of one facet only, counter-clockwise about it
-  std::vector<Point> points_;                         // nodes of the surface, then means of its facets
+  std::vector<Point> points_;                         // of the side: nodes of the surface, then means of its facets
   std::vector<std::vector<std::size_t>> neighbours_;  // points: facets that share a node with theirs, sorted
 };
 

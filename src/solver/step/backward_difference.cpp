@@ -17,6 +17,19 @@ TimeOrder possible_order(const State& before, double step_s) {
   return step_s <= most_growth * before.trend.step_s ? TimeOrder::second : TimeOrder::first;
 }
 
+BackwardDifference rates_of(const State& before, const State& after) {
+  const bool of_second_order = !after.trend.mean_velocities.empty();
+  if (!of_second_order) return {after.trend.step_s, 0};
+  return backward_difference(after.trend.step_s, before.trend.step_s);
+}
+
+Vectors earlier_positions(const State& state) {
+  Vectors earlier = state.positions;
+  const Vectors& velocities = mean_velocities(state);
+  parallel_for(earlier.size(), [&](std::size_t n) { earlier[n] -= state.trend.step_s * velocities[n]; });
+  return earlier;
+}
+
 const Vectors& mean_velocities(const State& state) {
   return state.trend.mean_velocities.empty() ? state.velocities : state.trend.mean_velocities;
 }

@@ -24,6 +24,12 @@ BackwardDifference backward_difference(double step_s, double last_s);
 /// last.
 TimeOrder possible_order(const State& before, double step_s);
 
+/// How they were taken in the step that led from `before` to `after`.
+BackwardDifference rates_of(const State& before, const State& after);
+
+/// Where nodes were at the beginning of the step that led to `state`, um.
+Vectors earlier_positions(const State& state);
+
 /// Mean velocities over the last step, um/s; nodes.
 const Vectors& mean_velocities(const State& state);
 

@@ -75,9 +75,7 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
   Vectors earlier;
   if (order == TimeOrder::second) {
     rates = backward_difference(duration_s, state.trend.step_s);
-    earlier = state.positions;
-    const Vectors& velocities = mean_velocities(state);
-    parallel_for(earlier.size(), [&](std::size_t n) { earlier[n] -= state.trend.step_s * velocities[n]; });
+    earlier = earlier_positions(state);
   }
   Step step{.positions = at.positions,
             .previous_positions = state.positions,

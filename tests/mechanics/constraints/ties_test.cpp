@@ -38,7 +38,7 @@ TEST(Ties, KeepASliceAsIfItWereEndless) {
                                                                       "time.end_min=18", "output.cells_csv=false"}));
   ASSERT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
   double apart = 0;
-  for (const auto& [nodes, rest] : ties_along_x(simulation.model().tissue))
+  for (const auto& [nodes, rest, share] : ties_along_x(simulation.model().tissue))
     apart = std::max(
         apart, (simulation.state().positions[nodes[1].index()] - simulation.state().positions[nodes[0].index()] - rest)
                    .norm());

@@ -154,6 +154,42 @@ TEST(SelfContact, BesideARimIsNotOverIt) {
 }
 
 // A point that has gone through is pushed back out.
+// Half of a U whose arm faces its own image: half of the energy, the same force. (Which nodes of a facet bear it is a
+// matter of the diagonal along which it is split, and those of the whole are no mirror images.)
+TEST(SelfContact, OneSideLeansOnItsImage) {
+  const Tissue whole = folded(3);
+  const auto [side, mirror] = side_of(whole, {true, false, false});
+  const SelfContactRule rule{.distance = 5, .stiffness = 0.2, .search = 6};
+  const SelfContact of_whole(whole, rule), of_side(whole, rule, mirror);
+  Motion motion = with_pairs(of_side, side), whole_motion = with_pairs(of_whole, whole);
+  const auto pairs = SelfContact::pairs_of(motion.internal);
+  EXPECT_EQ(2 * pairs.size(), SelfContact::pairs_of(whole_motion.internal).size());
+  EXPECT_GT(pairs.size(), 10u);
+  for (Vec3& x : motion.positions) x.x() *= 0.8;
+  whole_motion.positions = mirror.whole(motion.positions);
+  const double energy = of_side.energy(motion.step());
+  EXPECT_GT(energy, 0);
+  EXPECT_NEAR(2 * energy, of_whole.energy(whole_motion.step()), 1e-9 * energy);
+  const Vectors forces = forces_of(of_side, motion.step()), whole_forces = forces_of(of_whole, whole_motion.step());
+  double force = 0, whole_force = 0;  // apart
+  for (std::size_t n = 0; n < whole_forces.size(); ++n) {
+    if (whole_motion.positions[n].x() <= 0) continue;
+    force += forces[mirror.nodes[n].node.index()].x();
+    whole_force += whole_forces[n].x();
+  }
+  EXPECT_GT(force, 0);
+  EXPECT_NEAR(force, whole_force, 1e-9 * force);
+
+  Random random(4);
+  for (Vec3& x : motion.positions) x += random.vector(0.3);
+  expect_forces_are_minus_energy_gradient(of_side, motion, 1e-6);
+  expect_tangent_is_minus_force_gradient(of_side, motion, 1e-6);
+  expect_assembled_is_matrix_free(of_side, motion, 5);
+  const NodeGroups groups = of_side.node_groups(motion.internal);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (const NodeId node : groups[g]) EXPECT_LT(node.index(), side.node_count());
+}
+
 TEST(SelfContact, GapsHaveASign) {
   const Tissue tissue = folded(3);
   const SelfContact law(tissue, {.distance = 0.4, .search = 6});

@@ -1,0 +1,112 @@
+#include "scenario/symmetry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenario/acting.hpp"
+#include "scenario/regions.hpp"
+#include "scenario/words.hpp"
+
+namespace plica {
+namespace {
+
+MirroredSide side_of(const Scenario& scenario, const Tissue& whole) {
+  std::array<bool, 3> axes = {false, false, false};
+  for (const std::string& axis : scenario.embryo.mirror) axes[meaning_of(words::mirror_planes, axis)] = true;
+  try {
+    return plica::side_of(whole, axes);
+  } catch (const NotSymmetric& error) {
+    throw ScenarioError({diagnostic_at(scenario, "embryo.mirror", error.what(), error.remedy)});
+  }
+}
+
+class SymmetryCheck {
+ public:
+  SymmetryCheck(const Scenario& scenario, const Tissue& whole, const Mirror& mirror)
+      : scenario_(scenario), whole_(whole), mirror_(mirror) {}
+
+  void check_acting(const std::string& table, const auto& input) {
+    if (!check_region(table, input.region)) return;
+    const CellPattern pattern = make_pattern(input, whole_);
+    for (const auto& [numbers, what] :
+         {std::pair(&pattern.strengths, "acts with the factor {:.4g} in cell {} and {:.4g} in its image, cell {}"),
+          {&pattern.delays_s, "starts {:.4g} s late in cell {} and {:.4g} s in its image, cell {}"}}) {
+      const double largest = std::abs(*std::ranges::max_element(*numbers, {}, [](double a) { return std::abs(a); }));
+      const auto differ = [&](std::size_t a, std::size_t b) {
+        return std::abs((*numbers)[a] - (*numbers)[b]) > 1e-9 * largest;
+      };
+      if (const auto cell = first_cell(differ))
+        return refuse(table,
+                      fmt::format(fmt::runtime(what), (*numbers)[cell->index()], cell->number(),
+                                  (*numbers)[mirror_.own(*cell).index()], mirror_.own(*cell).number()),
+                      "let variation, delay and profile be symmetric, or remove embryo.mirror");
+    }
+  }
+
+  bool check_region(const std::string& table, const std::string& region) {
+    const CellSet& cells = whole_.regions.at(region);
+    const auto cell = first_cell([&](std::size_t a, std::size_t b) { return cells[a] != cells[b]; });
+    if (!cell) return true;
+    const CellId own = mirror_.own(*cell);
+    const bool has_own = cells[own.index()];
+    refuse(table + ".region",
+           fmt::format("region \"{}\" is not symmetric: it has cell {} and not its image, cell {}", region,
+                       (has_own ? own : *cell).number(), (has_own ? *cell : own).number()),
+           "give one that is, or remove embryo.mirror");
+    return false;
+  }
+
+  void check_hold(const std::string& table, const HoldInput& input) {
+    const std::vector<bool> held = held_nodes(input, whole_);
+    std::vector<NodeId> own(held.size());  // of the side's nodes: the whole's
+    for (std::size_t n = held.size(); n-- > 0;)
+      if (const auto [node, signs] = mirror_.nodes[n]; signs == Vec3::Ones()) own[node.index()] = NodeId(n);
+    for (std::size_t n = 0; n < held.size(); ++n) {
+      if (held[n] == held[own[mirror_.nodes[n].node.index()].index()]) continue;
+      const Vec3& x = whole_.rest_positions[n];
+      return refuse(table,
+                    fmt::format("is not symmetric: of the node at {:.6g}, {:.6g}, {:.6g} um and its image it holds one",
+                                x.x(), x.y(), x.z()),
+                    "give a symmetric region and ranges, or remove embryo.mirror");
+    }
+  }
+
+  void finish() const {
+    if (!errors_.empty()) throw ScenarioError(errors_);
+  }
+
+ private:
+  // The first cell of the whole that differs from its image on the side.
+  template <class Differ>
+  [[nodiscard]] std::optional<CellId> first_cell(const Differ& differ) const {
+    for (std::size_t c = 0; c < whole_.cells.size(); ++c)
+      if (differ(c, mirror_.own(CellId(c)).index())) return CellId(c);
+    return std::nullopt;
+  }
+  void refuse(const std::string& key, std::string problem, std::string remedy) {
+    errors_.push_back(diagnostic_at(scenario_, key, std::move(problem), std::move(remedy)));
+  }
+
+  const Scenario& scenario_;
+  const Tissue& whole_;
+  const Mirror& mirror_;
+  std::vector<Diagnostic> errors_;
+};
+
+}  // namespace
+
+MirroredSide mirrored_side(const Scenario& scenario, const Tissue& whole) {
+  MirroredSide side = side_of(scenario, whole);
+  SymmetryCheck check(scenario, whole, side.mirror);
+  for (const auto& [name, input] : scenario.contractions) check.check_acting("contraction." + name, input);
+  for (const auto& [name, input] : scenario.cortices) check.check_acting("cortex." + name, input);
+  for (const auto& [name, input] : scenario.pressures) check.check_region("pressure." + name, input.region);
+  for (const auto& [name, input] : scenario.region_elasticities) check.check_region("elasticity." + name, input.region);
+  for (const auto& [name, input] : scenario.holds) check.check_hold("hold." + name, input);
+  check.finish();
+  return side;
+}
+
+}  // namespace plica
