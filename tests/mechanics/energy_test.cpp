@@ -29,8 +29,8 @@ namespace {
 
 using namespace support;
 
-// The work of a law's forces on a straight way of length `size` that takes `size` seconds, by the forces midway (as if
-// a step of half the length had led there), and what the law says of it.
+// The work of a law's forces on a straight way of length `size` that takes `size` seconds, by the forces midway, and
+// what the law says of it. Midway, what flows has flown for half of the time.
 struct Work {
   double of_forces, told;
 };
@@ -56,11 +56,19 @@ Work work_over(const std::function<std::unique_ptr<Law>(const Tissue&)>& make, c
   step.rate_s = 0.5 * size;
   step.end_time_s = 1 + 0.5 * size;
   step.internal = before.internals.front();
+  if (step.internal.empty()) {
+    // Rates are the mean ones of the whole way: (q - q_before)/rate with so large an `ahead` that the way from the
+    // beginning to the end is all that counts.
+    step.earlier_positions = after.positions;
+    step.ahead = 1e6;
+    step.rate_s = (0.5 + step.ahead) * size;
+  }
   const Vectors forces = forces_of(law, step);
   double work = 0;
   for (std::size_t n = 0; n < forces.size(); ++n) work += forces[n].dot(after.positions[n] - before.positions[n]);
 
   step.positions = after.positions;
+  step.ahead = 0;
   step.rate_s = size;
   step.end_time_s = after.time_s;
   after.internals.front() = law.next_internal(step);
@@ -119,7 +127,7 @@ TEST(EnergyFlow, IsTheWorkOfTheLawsForces) {
     const Work coarse = work_over(make, tissue, 0.1), fine = work_over(make, tissue, 0.05);
     const double error = coarse.told - coarse.of_forces, finer = fine.told - fine.of_forces;
     EXPECT_GT(std::abs(coarse.of_forces), 1e-3) << name;
-    EXPECT_LE(std::abs(error), 1e-3 * std::abs(coarse.of_forces)) << name;
+    EXPECT_LE(std::abs(error), 0.05 * std::abs(coarse.of_forces)) << name;
     EXPECT_LE(std::abs(finer), std::abs(error) / 6 + 1e-12 * std::abs(fine.of_forces)) << name;
   }
 }
