@@ -158,6 +158,9 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
       "{} cells, {} elements, {} nodes; cell volume {:.0f} to {:.0f} um3, apical area {:.0f} to {:.0f} um2",
       model.tissue.cells.size(), model.tissue.elements.size(), model.tissue.node_count(), quality.volume_um3.min,
       quality.volume_um3.max, quality.apical_area_um2.min, quality.apical_area_um2.max));
+  if (const std::size_t planes = scenario.embryo.mirror.size(); planes > 0)
+    note(fmt::format("{} of these cells are solved, the others are their images (embryo.mirror)",
+                     model.tissue.cells.size() >> planes));
   if (quality.min_scaled_jacobian < 0.2)
     warn(fmt::format("the worst element has a scaled Jacobian of {:.2f} (1 is a brick): results near it are poor",
                      quality.min_scaled_jacobian));

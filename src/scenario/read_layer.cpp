@@ -77,7 +77,7 @@ template <class Item, class Take>
 Problem read_items(const toml::node& node, const Row& row, const Take& take) {
   const toml::array* items = node.as_array();
   if (items == nullptr) return wrong_type(node);
-  if (items->empty()) return "the list is empty";
+  if (items->empty() && !row.options.may_be_empty) return "the list is empty";
   for (const toml::node& item : *items) {
     Item value{};
     if (Problem problem = read(item, row, value)) return problem;

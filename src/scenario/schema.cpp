@@ -76,8 +76,8 @@ std::vector<Row> make_rows() {
              {.shapes = built}),
       embryo("mirror", &E::mirror, one_of(words::mirror_planes),
              "The embryo is symmetric about these planes through its middle, `\"x\"` across the axis and `\"y\"` along "
-             "the "
-             "midline: one side is solved, in a half or a quarter of the time, and the whole shown and measured."),
+             "the midline: one side is solved, at less cost, and the whole shown and measured. `[]`: no planes.",
+             {.may_be_empty = true}),
       embryo("file", &E::file, anything, "Hexahedral mesh, path relative to the scenario's file.",
              {.is_path = true, .shapes = {"file"}}),
       embryo("apical_array", &E::apical_array, anything,

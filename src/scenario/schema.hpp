@@ -39,6 +39,7 @@ struct RowOptions {
   double scale = 1;                  // unit of the key / unit of the field
   bool required = false;
   bool is_path = false;                       // relative to the file that gives it
+  bool may_be_empty = false;                  // a list: has a meaning without items
   std::vector<std::string_view> shapes = {};  // embryo shapes that use it; empty: all
 };
 

@@ -82,6 +82,15 @@ class Embryos(unittest.TestCase):
                     compared += 1
         print(f"{compared} cells compared with their mirror images")
 
+    def test_half_an_embryo_is_shown_as_the_whole(self):
+        summary, half = run("drosophila", 'embryo.mirror=["x"]')
+        self.assertEqual(summary["cells"], 756)
+        self.assertEqual(len(half), len(self.pill))
+        for column, size in (("x_um", 1), ("y_um", 1), ("z_um", 1), ("volume_um3", 1e4), ("apical_area_um2", 500), ("pressure_Pa", 200),
+                             ("activity", 1)):
+            apart = max(abs(float(a[column]) - float(b[column])) for a, b in zip(half, self.pill))
+            self.assertLess(apart, 1e-5 * size, column)
+
     def test_where_it_rests_does_not_depend_on_the_step(self):
         rest = ["stop.equilibrium_speed_um_per_min=0.001", "time.end_s=20000", "output.frame_every_s=0"]
         depths = [run("drosophila", f"time.step_s={step}", *rest)[0]["furrow_depth_um"]

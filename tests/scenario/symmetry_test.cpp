@@ -84,6 +84,7 @@ TEST(Symmetry, RegionsThatAreOnlyMeasuredMayLieOnOneSide) {
 TEST(Symmetry, WithoutPlanesNothingIsHalved) {
   const Scenario scenario = load_scenario({"test", "test.toml", "[embryo]\ncells = [7, 5, 3]"});
   EXPECT_FALSE(make_solved_side(scenario, *make_model(scenario)));
+  EXPECT_TRUE(load_scenario({"test", "test.toml", pill}, {"embryo.mirror=[]"}).embryo.mirror.empty());
 }
 
 }  // namespace
