@@ -76,7 +76,6 @@ struct VolumeInput {
 struct VitellineInput {
   bool enabled = true;
   double gap_um = 0;
-  double friction = 0;  // of its contact: the coefficient
   double drag_Pa_s_per_um = 0;
 };
 
