@@ -1,5 +1,6 @@
 """Whether the surface in a frame passes through itself, by a test of triangles that shares nothing with plica's: every
-facet of the outer and the inner surface is two triangles, and an edge of one that passes through another is a crossing.
+facet of the outer and the inner surface is four triangles from its edges to the mean of its corners, and where an edge of
+one passes through another, they cross.
 
 Usage: crossings.py OUT   prints the crossings in every frame of a run. Needs Debian's python3-vtk9 (with numpy).
 """
@@ -23,12 +24,11 @@ def read(path):
     return vtk_to_numpy(grid.GetPoints().GetData()), vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 8)
 
 
-def surface_triangles(hexahedra):
-    """Two of each facet of the surface."""
+def surface_facets(hexahedra):
+    """The basal and apical faces that are one hexahedron's only."""
     faces = np.concatenate([hexahedra[:, BASAL], hexahedra[:, APICAL]])
     _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    facets = faces[np.sort(first[count == 1])]
-    return np.concatenate([facets[:, corners] for corners in ([0, 1, 2], [0, 2, 3])])
+    return faces[np.sort(first[count == 1])]
 
 
 def near_pairs(low, high):
@@ -57,17 +57,21 @@ def passes_through(p, q, a, b, c):
     return (sides < 0) & inside
 
 
-def crossings(points, triangles):
-    """How many pairs of triangles without a common node cross."""
-    corners = points[triangles].astype(float)
+def crossings(points, facets):
+    """How many pairs of facets without a common node cross."""
+    corners = points[facets].astype(float)
+    middles = corners.mean(axis=1)
     found = 0
     for a, b in near_pairs(corners.min(axis=1), corners.max(axis=1)):
-        apart = ~(triangles[a][:, :, None] == triangles[b][:, None, :]).any(axis=(1, 2))
+        apart = ~(facets[a][:, :, None] == facets[b][:, None, :]).any(axis=(1, 2))
         a, b = a[apart], b[apart]
         cross = np.zeros(len(a), dtype=bool)
         for one, other in ((a, b), (b, a)):
-            for i in range(3):
-                cross |= passes_through(corners[one, i], corners[one, (i + 1) % 3], *corners[other].swapaxes(0, 1))
+            for i in range(4):
+                ends = [corners[one, i], corners[one, (i + 1) % 4], middles[one]]
+                for k in range(4):
+                    triangle = corners[other, k], corners[other, (k + 1) % 4], middles[other]
+                    cross |= passes_through(ends[0], ends[1], *triangle) | passes_through(ends[0], ends[2], *triangle)
         found += int(cross.sum())
     return found
 
@@ -75,8 +79,8 @@ def crossings(points, triangles):
 def crossings_of_run(out):
     """A list of (frame's name, crossings)."""
     frames = sorted((Path(out) / "frames").glob("*.vtu"))
-    triangles = surface_triangles(read(frames[0])[1])
-    return [(frame.stem, crossings(read(frame)[0], triangles)) for frame in frames]
+    facets = surface_facets(read(frames[0])[1])
+    return [(frame.stem, crossings(read(frame)[0], facets)) for frame in frames]
 
 
 if __name__ == "__main__":

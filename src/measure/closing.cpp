@@ -57,7 +57,7 @@ std::optional<Touching> touching(const Model& model, const State& state) {
       if (law->side() != CellSide::apical) continue;
       const SelfContact::Point& point = law->points()[pair.point];
       double beyond = 0;
-      for (int k = 0; k < 3; ++k) beyond += pair.weights[k] * model.tissue.rest_positions[pair.nodes[k].index()].y();
+      for (int k = 0; k < 4; ++k) beyond += pair.weights[k] * model.tissue.rest_positions[pair.nodes[k].index()].y();
       if (point.at(model.tissue.rest_positions).y() * beyond >= 0) continue;  // both of one side
       Interval reach;
       for (int i = 0; i < point.count; ++i) reach.take(state.positions[point.nodes[i].index()].x());

@@ -78,7 +78,8 @@ void check_shell_drag(const Scenario& scenario, Input& input) {
   const std::string key = "vitelline.drag_Pa_s_per_um";
   if (scenario.vitelline.drag_Pa_s_per_um == 0 || !input.sound(key) || !input.sound("vitelline.enabled")) return;
   if (!scenario.vitelline.enabled)
-    input.report(key, "has no meaning without a shell", "remove it, or enable the shell");
+    input.report(key, "has no meaning without a shell",
+                 shape_of(scenario.embryo) == EmbryoShape::block ? "remove it" : "remove it, or give enabled = true");
   else if (method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton")
     input.report(key, "drag of the shell goes with time.scheme \"newton\" and volumes that are not projected",
                  "remove it, or choose another scheme or volume.method");

@@ -104,6 +104,21 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
        "test.toml:1: self_contact.search_um: 6 is under twice distance_um; give several times distance_um"},
       {"[elasticity]\ncorner_barrier_Pa = -1",
        "test.toml:2: elasticity.corner_barrier_Pa: -1 is out of range; give a number >= 0"},
+      {"[self_contact]\nsurface = \"apical\"\nfriction = -0.1",
+       "test.toml:3: self_contact.friction: -0.1 is out of range; give a number >= 0"},
+      {"[self_contact]\nfriction = 0.3",
+       "test.toml:2: self_contact.friction: has no meaning with surface \"none\"; remove it, or choose a surface, such "
+       "as \"apical\""},
+      {"[vitelline]\ndrag_Pa_s_per_um = -5",
+       "test.toml:2: vitelline.drag_Pa_s_per_um: -5 is out of range; give a number >= 0"},
+      {"[vitelline]\nenabled = false\ndrag_Pa_s_per_um = 5",
+       "test.toml:3: vitelline.drag_Pa_s_per_um: has no meaning without a shell; remove it, or give enabled = true"},
+      {"[embryo]\nshape = \"block\"\n[vitelline]\ndrag_Pa_s_per_um = 5",
+       "test.toml:4: vitelline.drag_Pa_s_per_um: has no meaning without a shell; remove it"},
+      {"[vitelline]\ndrag_Pa_s_per_um = 5\n[volume]\nmethod = \"projection\"",
+       "test.toml:2: vitelline.drag_Pa_s_per_um: drag of the shell goes with time.scheme \"newton\" and volumes that "
+       "are "
+       "not projected; remove it, or choose another scheme or volume.method"},
   };
   for (const auto& [text, expected] : cases) {
     const std::vector<std::string> found = complaints(text);
@@ -229,7 +244,9 @@ TEST(CortexKeys, ForcesOfAPartLeaveOutWhatIsNotOfCells) {
 
 // Rest areas that flow and pairs in contact are part of what a run remembers.
 TEST(CortexKeys, ARunGoesOnToTheSameBits) {
-  const Scenario scenario = small_furrow();
+  Scenario scenario = small_furrow();
+  scenario.self_contact.friction = 0.3;
+  scenario.vitelline.drag_Pa_s_per_um = 50;
   Simulation whole(scenario);
   std::optional<RunMemory> kept;
   Observation measures;

@@ -16,12 +16,12 @@ using Pair = SelfContact::Pair;
 
 /// An internal state is the revision of the pattern, then these numbers a pair: point, nodes, weights, normal,
 /// distance, first gap.
-constexpr std::size_t pair_size = 12;
+constexpr std::size_t pair_size = 14;
 
 Pair unpacked(std::span<const double> numbers) {
-  Pair pair{static_cast<std::size_t>(numbers[0]),     {},          {numbers[4], numbers[5], numbers[6]},
-            Vec3(numbers[7], numbers[8], numbers[9]), numbers[10], numbers[11]};
-  for (int k = 0; k < 3; ++k) pair.nodes[k] = NodeId(static_cast<std::size_t>(numbers[1 + k]));
+  Pair pair{static_cast<std::size_t>(numbers[0]),       {},          {numbers[5], numbers[6], numbers[7], numbers[8]},
+            Vec3(numbers[9], numbers[10], numbers[11]), numbers[12], numbers[13]};
+  for (int k = 0; k < 4; ++k) pair.nodes[k] = NodeId(static_cast<std::size_t>(numbers[1 + k]));
   return pair;
 }
 
@@ -65,8 +65,11 @@ Vec3 area_vector(const std::array<NodeId, 4>& facet, std::span<const Vec3> x) {
   return facet_area_vector({x[facet[0].index()], x[facet[1].index()], x[facet[2].index()], x[facet[3].index()]});
 }
 
-std::array<NodeId, 3> triangle_nodes(const std::array<NodeId, 4>& facet, bool second) {
-  return second ? std::array{facet[0], facet[2], facet[3]} : std::array{facet[0], facet[1], facet[2]};
+// One of the four from a facet's edges to the mean of its corners.
+std::array<Vec3, 3> triangle(const std::array<NodeId, 4>& facet, std::size_t edge, std::span<const Vec3> x) {
+  Vec3 middle = Vec3::Zero();
+  for (const NodeId node : facet) middle += x[node.index()] / 4;
+  return {x[facet[edge].index()], x[facet[(edge + 1) % 4].index()], middle};
 }
 
 }  // namespace
@@ -81,7 +84,7 @@ SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirro
     areas.push_back(is_own ? facet_area(rest_corners(whole, facet)) : 0);
     for (const NodeId node : facet.nodes) {
       of_node[node].push_back(facets_.size());
-      area_of_node[node] += areas.back() / 8;  // half of the area is the nodes', half the facets' means
+      area_of_node[node] += areas.back() / 16;
     }
     facets_.push_back(facet.nodes);
   }
@@ -90,19 +93,26 @@ SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirro
     for (int i = 0; i < 4; ++i) edges[{facets_[f][i], facets_[f][(i + 1) % 4]}] = f;
   for (const auto& [edge, facet] : edges)
     if (!edges.contains({edge.second, edge.first})) rim_.push_back({edge.first, edge.second, facet});
+  const auto add_mean = [&](const std::array<NodeId, 4>& nodes, int count, double area) {
+    if (area == 0) return;
+    points_.push_back({nodes, count, area});
+    std::vector<std::size_t> around;
+    for (int i = 0; i < count; ++i) around.insert(around.end(), of_node[nodes[i]].begin(), of_node[nodes[i]].end());
+    std::ranges::sort(around);
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    neighbours_.push_back(std::move(around));
+  };
   for (const auto& [node, facets] : of_node) {
     if (area_of_node[node] == 0) continue;
     points_.push_back({{node}, 1, area_of_node[node]});
     neighbours_.push_back(facets);
   }
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (areas[f] == 0) continue;
-    points_.push_back({facets_[f], 4, areas[f] / 2});
-    std::vector<std::size_t> around;
-    for (const NodeId node : facets_[f]) around.insert(around.end(), of_node[node].begin(), of_node[node].end());
-    std::ranges::sort(around);
-    around.erase(std::unique(around.begin(), around.end()), around.end());
-    neighbours_.push_back(std::move(around));
+  for (std::size_t f = 0; f < facets_.size(); ++f) add_mean(facets_[f], 4, areas[f] / 4);
+  for (const auto& [edge, facet] : edges) {
+    const auto other = edges.find({edge.second, edge.first});
+    const bool on_rim = other == edges.end();
+    if (!on_rim && edge.second < edge.first) continue;
+    add_mean({edge.first, edge.second}, 2, (areas[facet] + (on_rim ? 0 : areas[other->second])) / 8);
   }
 }
 
@@ -124,39 +134,48 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<
     outward[to.index()] += out;
   }
   Grid grid(std::max(rule_.search, 0.5 * longest), rule_.search);
-  for (std::size_t t = 0; t < 2 * facets_.size(); ++t) {
-    const auto nodes = triangle_nodes(facets_[t / 2], t % 2 == 1);
-    grid.add(t, {x[nodes[0].index()], x[nodes[1].index()], x[nodes[2].index()]});
-  }
+  for (std::size_t t = 0; t < 4 * facets_.size(); ++t) grid.add(t, triangle(facets_[t / 4], t % 4, x));
   const std::vector<Pair> before = pairs_of(known);
   auto last = before.begin();  // that of the point or of one after it
   std::vector<Pair> pairs;
   for (std::size_t p = 0; p < points_.size(); ++p) {
     while (last != before.end() && last->point < p) ++last;
     const bool was_seen = last != before.end() && last->point == p;
-    const bool may_be_inside = was_seen && last->gap(points_[p], x) < 0;
+    // How far it may be inside: where it touched, a distance more than its last pair shows, which lags.
+    const double last_gap = was_seen ? last->gap(points_[p], x) : std::numeric_limits<double>::infinity();
+    const double least_gap = last_gap < rule_.distance ? std::min(0.0, last_gap) - rule_.distance : 0;
     const Vec3 place = points_[p].at(x), facing = points_[p].at(normals);
     double nearest2 = rule_.search * rule_.search;
     std::optional<Pair> best;
     for (const std::size_t t : grid.near(place)) {
-      const auto nodes = triangle_nodes(facets_[t / 2], t % 2 == 1);
-      const Vec3 &a = x[nodes[0].index()], &b = x[nodes[1].index()], &c = x[nodes[2].index()];
+      const std::array<NodeId, 4>& nodes = facets_[t / 4];
+      const auto [a, b, c] = triangle(nodes, t % 4, x);
       if (facing.dot((b - a).cross(c - a)) >= 0) continue;  // they look the same way
-      if (std::ranges::binary_search(neighbours_[p], t / 2)) continue;
-      const auto [weights, distance2] = closest_on_triangle(place, a, b, c);
+      if (std::ranges::binary_search(neighbours_[p], t / 4)) continue;
+      const auto [of_corners, distance2] = closest_on_triangle(place, a, b, c);
       if (distance2 >= nearest2) continue;
-      Vec3 normal = Vec3::Zero();
-      for (int k = 0; k < 3; ++k) normal += weights[k] * normals[nodes[k].index()].normalized();
-      if (normal.norm() < 0.1 || normal.dot(facing) >= 0) continue;  // a sharp edge has no side
-      const Pair found{p, nodes, weights, normal.normalized()};
-      if (!may_be_inside && found.gap(points_[p], x) < 0) continue;
+      std::array<double, 4> weights;
+      weights.fill(of_corners[2] / 4);
+      weights[t % 4] += of_corners[0];
+      weights[(t + 1) % 4] += of_corners[1];
+      Vec3 outside = Vec3::Zero();
+      for (int k = 0; k < 4; ++k) outside += weights[k] * normals[nodes[k].index()].normalized();
+      if (outside.norm() < 0.1 || outside.dot(facing) >= 0) continue;  // a sharp edge has no side
+      // Along the shortest way: then nothing comes nearer by sliding.
+      Pair found{p, nodes, weights, outside.normalized()};
+      const Vec3 apart = found.apart(points_[p], x);
+      if (std::ranges::all_of(of_corners, [](double weight) { return weight > 0; }))
+        found.normal = (b - a).cross(c - a).normalized();
+      else if (apart.norm() > 1e-3 * rule_.distance)
+        found.normal = (apart.dot(outside) < 0 ? -apart : apart).normalized();
+      if (found.gap(points_[p], x) < least_gap) continue;
       nearest2 = distance2;
       best = found;
     }
     if (!best) continue;
     // What lies beside an open surface, beyond its rim, is not over it.
     Vec3 out = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) out += best->weights[k] * outward[best->nodes[k].index()];
+    for (int k = 0; k < 4; ++k) out += best->weights[k] * outward[best->nodes[k].index()];
     if (out.dot(best->apart(points_[p], x)) > rule_.distance * out.norm()) continue;
     // One that comes into view nearer than the distance does not jump away.
     const double seen_at = was_seen ? last->distance : -std::numeric_limits<double>::infinity();
@@ -219,7 +238,7 @@ void SelfContact::for_pressed(const Step& step, const Take& take) const {
 }
 
 // Calls take(point, pair, friction, velocity) for every pair that was pressed when the step began; the velocity is that
-// of the point along the triangle.
+// of the point along the facet.
 template <class Take>
 void SelfContact::for_rubbing(const Step& step, const Take& take) const {
   if (rule_.friction == 0) return;
@@ -251,7 +270,7 @@ void SelfContact::add_push(const Point& point, const Pair& pair, const Vec3& pus
     forces[node.index()] += part * signs.cwiseProduct(push);
   };
   for (int i = 0; i < point.count; ++i) add(point.nodes[i], 1.0 / point.count);
-  for (int k = 0; k < 3; ++k) add(pair.nodes[k], -pair.weights[k]);
+  for (int k = 0; k < 4; ++k) add(pair.nodes[k], -pair.weights[k]);
 }
 
 EnergyFlow SelfContact::energy_flow(const MadeStep& made) const {

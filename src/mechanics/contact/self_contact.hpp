@@ -1,7 +1,8 @@
 // Contact of a surface with itself: points against facets (docs/theory/self_contact.md).
 //
-// At the beginning of a step each point of the surface takes the nearest facing triangle of it, outside its own
-// neighbourhood. The place q on that triangle, as weights of its nodes, and the normal N there stay fixed for the step;
+// A facet is four triangles, from its edges to the mean of its corners; points are nodes, middles of edges and these
+// means. At the beginning of a step each point takes the nearest facing triangle outside its own neighbourhood. The
+// place q on it, as weights of its facet's nodes, and the normal N there stay fixed for the step;
 // where the point p comes closer than `distance` along N it is pushed back:
 //   E = k w/2 (distance - N.(p - q))^2,   w the area that the point stands for.
 // So within a step the law is linear in its forces, and gaps have a sign: a point beyond the surface is pushed out
@@ -25,7 +26,7 @@ struct SelfContactRule {
   CellSide side = CellSide::apical;
   double distance = 0.4;  // um
   double stiffness = 1;   // k, nN/um^3 (kPa/um)
-  double search = 6;      // um: how near a triangle must be at the step's beginning
+  double search = 6;      // um: how near a facet must be at the step's beginning
   double friction = 0;    // the coefficient
 };
 
@@ -59,7 +60,7 @@ class SelfContact final : public Law {
     return {};  // no pairs
   }
 
-  /// A point of the surface: the mean of `count` nodes (a node itself, or the corners of a facet).
+  /// A point of the surface: the mean of `count` nodes (a node itself, the ends of an edge, the corners of a facet).
   struct Point {
     std::array<NodeId, 4> nodes;
     int count = 1;
@@ -75,8 +76,8 @@ class SelfContact final : public Law {
   /// What a point is kept from.
   struct Pair {
     std::size_t point;
-    std::array<NodeId, 3> nodes;    // of the triangle
-    std::array<double, 3> weights;  // of the place on it
+    std::array<NodeId, 4> nodes;    // of the facet
+    std::array<double, 4> weights;  // of the place on it
     Vec3 normal;
     double distance = 0;   // um: where it begins to push. That of the rule; less where it was nearer when first seen
     double first_gap = 0;  // um: at the step's beginning
@@ -84,7 +85,7 @@ class SelfContact final : public Law {
     template <class VectorsOfNodes>
     [[nodiscard]] Vec3 apart(const Point& point, const VectorsOfNodes& vectors) const {
       Vec3 apart = point.at(vectors);
-      for (int k = 0; k < 3; ++k) apart -= weights[k] * vectors[nodes[k].index()];
+      for (int k = 0; k < 4; ++k) apart -= weights[k] * vectors[nodes[k].index()];
       return apart;
     }
     /// N.(p - q)
@@ -92,7 +93,7 @@ class SelfContact final : public Law {
     [[nodiscard]] double gap(const Point& point, const VectorsOfNodes& vectors) const {
       return normal.dot(apart(point, vectors));
     }
-    /// What of it lies in the triangle's plane.
+    /// What of it lies in the plane across N.
     [[nodiscard]] Vec3 along(const Vec3& vector) const { return vector - normal.dot(vector) * normal; }
   };
   /// In the order of points. `known`: the internal state of the step that ends at these positions.
@@ -107,9 +108,9 @@ class SelfContact final : public Law {
   /// Adds the nodes of each pair that may touch.
   void add_touching(std::span<const double> internal, NodeGroups& groups) const;
   void add_group(std::span<const NodeId> of_whole, NodeGroups& groups) const;
-  /// All nodes of a pair, as the whole numbers them: of the point, of the triangle.
+  /// All nodes of a pair, as the whole numbers them: of the point, of the facet.
   [[nodiscard]] std::vector<NodeId> nodes_of(const Pair& pair) const;
-  /// Adds a push to the point's nodes, and its opposite to the triangle's.
+  /// Adds a push to the point's nodes, and its opposite to the facet's.
   void add_push(const Point& point, const Pair& pair, const Vec3& push, std::span<Vec3> forces) const;
   [[nodiscard]] std::vector<double> packed(const std::vector<Pair>& pairs, std::span<const double> before) const;
   template <class Take>
@@ -124,8 +125,9 @@ class SelfContact final : public Law {
     NodeId from, to;
     std::size_t facet;
   };
-  std::vector<RimEdge> rim_;                          // edges of one facet only, counter-clockwise about it
-  std::vector<Point> points_;                         // of the side: nodes of the surface, then means of its facets
+  std::vector<RimEdge> rim_;  // edges of one facet only, counter-clockwise about it
+  // Of the side: nodes of the surface, then means of its facets and edges.
+  std::vector<Point> points_;
   std::vector<std::vector<std::size_t>> neighbours_;  // points: facets that share a node with theirs, sorted
 };
 

@@ -1,5 +1,5 @@
 // The vitelline layer: a rigid, frictionless shell around the embryo. Every apical node keeps a gap g(x) >= 0 to it.
-// Inward motion is free; there is no sticking. Theory: docs/theory/vitelline.md.
+// Inward motion is free; there is no sticking (shell_drag.hpp slows sliding). Theory: docs/theory/vitelline.md.
 #pragma once
 
 #include <vector>

@@ -42,7 +42,7 @@ TEST(SelfContact, PairsFaceEachOtherAndAreNoNeighbours) {
     EXPECT_GT(gap, 0);
     EXPECT_LE(gap, 4);
     EXPECT_NEAR(pair.normal.norm(), 1, 1e-12);
-    EXPECT_NEAR(pair.weights[0] + pair.weights[1] + pair.weights[2], 1, 1e-12);
+    EXPECT_NEAR(pair.weights[0] + pair.weights[1] + pair.weights[2] + pair.weights[3], 1, 1e-12);
   }
   // A flat sheet has none, nor has one whose sides are farther apart than the search.
   EXPECT_TRUE(SelfContact(folded(30), {.search = 4}).pairs(folded(30).rest_positions).empty());
@@ -148,7 +148,7 @@ TEST(SelfContact, BesideARimIsNotOverIt) {
     const Tissue tissue = bodies.tissue();
     return SelfContact(tissue, {.distance = 0.4, .search = 4}).pairs(tissue.rest_positions).size();
   };
-  EXPECT_EQ(pairs_at(0), 82u);  // 25 nodes and 16 facets of either
+  EXPECT_EQ(pairs_at(0), 162u);  // 25 nodes, 16 facets and 40 edges of either
   EXPECT_EQ(pairs_at(41), 0u);
   EXPECT_EQ(pairs_at(-41), 0u);
 }
