@@ -31,8 +31,8 @@ struct Place {
   double xi, eta, zeta;
 };
 inline Place gauss_place(int g) {
-  constexpr double third = 0.57735026918962576451;  // its root
-  return {((g + 1) & 2) ? third : -third, (g & 2) ? third : -third, (g & 4) ? third : -third};
+  constexpr double at = 0.57735026918962576451;  // 1 over the root of 3
+  return {((g + 1) & 2) ? at : -at, (g & 2) ? at : -at, (g & 4) ? at : -at};
 }
 
 // dx/d(reference) there, by the modes of x; and the gradient by modes of what has the gradient H by that.
@@ -126,15 +126,11 @@ inline Rest rest_at(const NeoHookeanStep& step, const Elements& e, int g, const 
   return {w, d * inverse(flowed), r / d};
 }
 
-// K/J = D^-T; not a number where the point is inside out, so that no step ends there.
-struct Inverse {
-  Mat transposed;
-  Lanes J;
-};
-inline Inverse inverse_of(const Mat& D) {
+// D^-T, which is K/J; no numbers where the point is inside out, so that no step ends there.
+inline Mat transposed_inverse(const Mat& D) {
   const Mat K = {cross(D.y, D.z), cross(D.z, D.x), cross(D.x, D.y)};
-  const Lanes J = dot(D.x, K.x), upright = J > 0.0 ? 1.0 / J : broadcast(__builtin_nan(""));
-  return {upright * K, J};
+  const Lanes J = dot(D.x, K.x);
+  return (J > 0.0 ? 1.0 / J : broadcast(__builtin_nan(""))) * K;
 }
 
 // What has to be added along rotations so that no direction has negative stiffness: with the two smallest eigenvalues
@@ -157,7 +153,7 @@ template <bool flows>
       const Place at = gauss_place(g);
       const Mat D = slope(at, m);
       const Rest rest = rest_at<flows>(step, e, g, D);
-      add_to_modes(at, rest.w * (D * rest.B - inverse_of(D).transposed), sum);
+      add_to_modes(at, rest.w * (D * rest.B - transposed_inverse(D)), sum);
     }
     scatter_modes(e, count, broadcast(-0.125), sum, forces);
   });
@@ -174,7 +170,7 @@ template <bool flows>
       const Place at = gauss_place(g);
       const Mat D = slope(at, m), dD = slope(at, d);
       const Rest rest = rest_at<flows>(step, e, g, D);
-      const Mat back = inverse_of(D).transposed;
+      const Mat back = transposed_inverse(D);
       Mat dH = dD * rest.B + back * transpose(turn_back(back, dD));
       if (step.semidefinite_tangent) {
         const Vec turn =
@@ -205,7 +201,7 @@ template <bool flows>
     const Place at = gauss_place(g);
     const Mat D = slope(at, m);
     const Rest rest = rest_at<flows>(step, e, g, D);
-    const Mat back = inverse_of(D).transposed;
+    const Mat back = transposed_inverse(D);
     const bool yields = flows && !step.semidefinite_tangent;
     const Lanes own = rest.w, missing = step.semidefinite_tangent ? missing_stiffness(D * rest.B, D) : Lanes{};
     const Mat b = yields ? (own * rest.r_over_d) * (D * rest.B * transpose(D)) : Mat{};
@@ -245,9 +241,8 @@ template <bool flows>
       gather_modes(e.batch.nodes, e.lane, step.positions, m);
       for (int g = 0; g < 8; ++g) {
         const auto [before, D0, r] = flow_at(step, e, g);
-        const Mat F = slope(gauss_place(g), m) * transpose(inverse_of(D0).transposed);
-        const Sym C = before + r * symmetric_product(F, F);
-        const Sym next = 1.0 / cube_root(determinant(C)) * C;
+        const Mat F = slope(gauss_place(g), m) * transpose(transposed_inverse(D0));
+        const Sym sum = before + r * symmetric_product(F, F), next = 1.0 / cube_root(determinant(sum)) * sum;
         const Lanes values[6] = {next.xx, next.yy, next.zz, next.xy, next.yz, next.zx};
         for (int k = 0; k < 6; ++k) store_loose(values[k], flowed + flowed_place(e, g) + k * batch_size + lane);
       }
