@@ -137,8 +137,11 @@ std::span<const MidlineColumn> midline_columns() {
            values.push_back(cell_centre(c.model.tissue.cells[id.index()], c.model.tissue.rest_positions).x());
          return values;
        }},
-      {"depth_um", "Mean depth of the cell's points on the cut; as `furrow_depth_um`. Inward is the same direction everywhere, so near "
-       "the poles, where the shell runs along it, a little shift counts for much.", depths_um},
+      {"depth_um",
+       "Mean depth of the cell's points on the cut; as `furrow_depth_um`. Inward is the same direction everywhere, so "
+       "near "
+       "the poles, where the shell runs along it, a little shift counts for much.",
+       depths_um},
       {"normal_speed_um_per_s", "Inward speed of its apical corners along the normal at rest.", inward_speeds},
       {"apical_area_ratio", "Apical area over that at rest.", [](const C& c, const FurrowSites& sites) {
          const Values ratios = c.apical_area_ratios();
