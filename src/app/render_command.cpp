@@ -21,8 +21,7 @@ namespace fs = std::filesystem;
 
 struct RenderCommand {
   std::string directory, out, colour = "displacement", range, size;
-  std::vector<std::string> views, times;
-  std::vector<double> at_x_um;
+  std::vector<std::string> views, times, at_x_um;
   bool strip = false, sections = false, movie = false, no_edges = false, shell = false, overwrite = false,
        quiet = false;
 };
@@ -46,6 +45,13 @@ std::optional<double> seconds_in(const std::string& text) {
   const auto value = number_in(std::string_view(text).substr(0, text.size() - unit_letters));
   if (!value) throw UsageError(fmt::format("--time {}: is no time; give 5min, 300s, 300 (seconds) or last", text));
   return *value * unit_s;
+}
+
+double place_in(const std::string& text) {
+  const auto place = number_in(text);
+  if (!place)
+    throw UsageError(fmt::format("--at-x-um {}: is no place; give µm along the embryo's axis, as in 0,125", text));
+  return *place;
 }
 
 ColourRange range_in(const std::string& text) {
@@ -72,7 +78,7 @@ void read_size(const std::string& text, PictureOptions& options) {
 PictureOptions options_of(const RenderCommand& command) {
   PictureOptions options;
   std::vector<std::string> wanted = command.views;
-  options.cuts_at_x_um = command.at_x_um;
+  for (const std::string& place : command.at_x_um) options.cuts_at_x_um.push_back(place_in(place));
   options.sections = command.sections;
   const bool with_cuts = command.sections || !command.at_x_um.empty();
   if (wanted.empty() && !with_cuts) wanted = {"antero-ventral"};
