@@ -16,7 +16,7 @@ base = "furrow-slice"
 [cortex.apical]
 variation = { spread = 0.3, seed = 1 }
 """
-# drosophila-living with 1096 cells: profiles are in numbers of cells.
+# drosophila-living with 1096 cells: profiles are in numbers of cells. It closes later.
 COARSE = """
 base = "drosophila-living"
 [embryo]
@@ -34,11 +34,13 @@ profile = { shape = "plateau", about = "mesoderm", full_cells = 6, fade_cells = 
 [cortex.floor-elsewhere]
 profile = { shape = "plateau", about = "mesoderm", full_cells = 6, fade_cells = 1.6, full_length_um = 390, fade_um = 45, \
 middle = 0, edge = 1 }
+[time]
+end_min = 24
 """
 
 
 class ContactNoise(CommandLine):
-    def check(self, text, high, is_closed=True):
+    def check(self, text, high):
         # What the base expects is of a tissue without noise: a missed expectation ends in status 1.
         path = self.write(text)
         result = support.plica("run", path, "--out", self.out, "--quiet", "--overwrite", "--set",
@@ -48,8 +50,7 @@ class ContactNoise(CommandLine):
         self.assertGreater(len(found), 20)
         self.assertEqual([frame for frame in found if frame[1]], [])
         self.assertEqual(self.summary()["self_intersections"], 0)
-        if is_closed:
-            self.assertIsNotNone(self.summary()["lips_closed_time_s"])
+        self.assertGreater(max(int(row["contact_pairs"]) for row in support.table(self.out / "series.csv")), 10)
 
     def test_of_a_slice(self):
         for high in (1, 2):

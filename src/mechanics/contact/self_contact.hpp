@@ -2,12 +2,12 @@
 //
 // A facet is four triangles, from its edges to the mean of its corners; points are nodes, middles of edges and these
 // means. At the beginning of a step each point takes the nearest facing triangle outside its own neighbourhood. The
-// place q on it, as weights of its facet's nodes, and the normal N there stay fixed for the step;
-// where the point p comes closer than `distance` along N it is pushed back:
+// nearest place q on it, as weights of its facet's nodes, and the way N from there to the point stay fixed for the
+// step; where the point p comes closer than `distance` along N it is pushed back:
 //   E = k w/2 (distance - N.(p - q))^2,   w the area that the point stands for.
 // So within a step the law is linear in its forces, and gaps have a sign: a point beyond the surface is pushed out
-// again. A point that faces the other side of a thin ridge lies beyond that, too: only one that has gone through under
-// the eyes of the law counts as inside. Friction is Coulomb's, by the pressure at the step's beginning.
+// again. A point that faces the other side of a thin ridge lies beyond that, too: only one that touched in the step
+// before may lie beyond. Friction is Coulomb's, by the pressure at the step's beginning.
 //
 // Where mirror planes leave one side of a tissue to be solved, its points take triangles of the whole, images too, and
 // push the nodes that these are images of: half of the whole's energy, as the whole would have it.

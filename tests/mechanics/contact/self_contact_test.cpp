@@ -139,6 +139,25 @@ TEST(SelfContact, MatrixCouplesWhatMayTouch) {
   EXPECT_NE(revision_after(1), law.pattern_revision(rest.internal));
 }
 
+// The push runs along the shortest way, however rough the surface: forces and moments add up to zero where a step
+// begins, and sliding brings nothing nearer.
+TEST(SelfContact, PushesAlongTheShortestWay) {
+  const Tissue tissue = folded(3);
+  const SelfContact law(tissue, {.distance = 2.5, .search = 6});
+  Motion motion = with_pairs(law, tissue);
+  Random random(8);
+  for (Vec3& x : motion.positions) x += random.vector(0.6) - (x.x() > 0 ? 0.5 : -0.5) * Vec3::UnitX();
+  motion.internal = law.next_internal(motion.step());
+  const Vectors forces = forces_of(law, motion.step());
+  EXPECT_GT(largest(forces), 10);
+  EXPECT_LE(resultant(forces).norm(), 1e-9);
+  EXPECT_LE(torque(forces, motion.positions).norm(), 1e-8);
+  for (const auto& pair : SelfContact::pairs_of(motion.internal)) {
+    const Vec3 apart = pair.apart(law.points()[pair.point], motion.positions);
+    EXPECT_NEAR(std::abs(pair.normal.dot(apart)), apart.norm(), 1e-9);
+  }
+}
+
 // What lies beside an open sheet is not over it, however near its rim may be.
 TEST(SelfContact, BesideARimIsNotOverIt) {
   const auto pairs_at = [](double aside) {
