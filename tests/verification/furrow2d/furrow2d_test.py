@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A closing furrow in plane strain, ablations and shut-offs, against another program (docs/furrow2d.md).
 
-    furrow2d_test.py PLICA    runs the cases and prints a table; exit status 1 where what misses is not what is known to
+    furrow2d_test.py PLICA    runs the cases and prints a table; exit status 1 where one misses that is not known to
 
 A case is furrow2d.toml with the changes that cases.toml has. The other program's numbers are in furrow2d.csv. A case misses
 when only one of the two closes, when they close more than a minute apart, or when the largest height or a depth (after 6,
@@ -119,20 +119,21 @@ def text(case, course):
 def compare(plica, cases):
     truth = kept()
     wrong = 0
-    print(f"{'':36}{'furrow2d':46} plica")
+    heading = " closes   at height" + "".join(f"{f'd({t})':>6}" for t in depths_min)
     last = None
+    print(f"{'':36}{'furrow2d':46} plica")
     with concurrent.futures.ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
         for case, found in zip(cases, pool.map(lambda case: run(plica, case), cases)):
             other = truth[case["name"]]["plica's"]
             missed, known = misses(case, found, other), case.get("misses", [])
-            wrong += missed != known
-            if last != ("off_min" in case):
-                last = "off_min" in case
-                head = (" goes on at" if last else "  closes at ") + "height " + " ".join(
-                    ("then", "later") if last else (f"d({t})" for t in depths_min))
+            new = [what for what in missed if what not in known]
+            wrong += bool(new)
+            head = "goes on   at height  then later" if "off_min" in case else heading
+            if head != last:
                 print(f"{'':36}{head:46} {head}")
+                last = head
             note = "  misses " + ", ".join(missed) if missed else ""
-            if missed != known:
+            if new:
                 note += "; known: " + (", ".join(known) or "nothing")
             print(f"{case['name']:36}{text(case, other):46} {text(case, found)}{note}", flush=True)
     print(f"{len(cases)} cases; {wrong} not as expected" if wrong else f"{len(cases)} cases, all as expected")
