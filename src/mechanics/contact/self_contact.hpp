@@ -83,15 +83,15 @@ class SelfContact final : public Law {
     double first_gap = 0;  // um: at the step's beginning
     /// p - q; of any vectors of the whole's nodes.
     template <class VectorsOfNodes>
-    [[nodiscard]] Vec3 apart(const Point& point, const VectorsOfNodes& vectors) const {
-      Vec3 apart = point.at(vectors);
-      for (int k = 0; k < 4; ++k) apart -= weights[k] * vectors[nodes[k].index()];
-      return apart;
+    [[nodiscard]] Vec3 apart(const Point& p, const VectorsOfNodes& vectors) const {
+      Vec3 difference = p.at(vectors);
+      for (int k = 0; k < 4; ++k) difference -= weights[k] * vectors[nodes[k].index()];
+      return difference;
     }
     /// N.(p - q)
     template <class VectorsOfNodes>
-    [[nodiscard]] double gap(const Point& point, const VectorsOfNodes& vectors) const {
-      return normal.dot(apart(point, vectors));
+    [[nodiscard]] double gap(const Point& p, const VectorsOfNodes& vectors) const {
+      return normal.dot(apart(p, vectors));
     }
     /// What of it lies in the plane across N.
     [[nodiscard]] Vec3 along(const Vec3& vector) const { return vector - normal.dot(vector) * normal; }
