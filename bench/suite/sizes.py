@@ -43,7 +43,8 @@ class Furrow:
         return " ".join([f"`{self.scenario}`", *(f"`{setting}`" for setting in self.settings)])
 
 
-FURROWS = [Furrow("furrow-slice"), Furrow("drosophila-living")]
+FURROWS = [Furrow("furrow-slice"), Furrow("drosophila-living"), Furrow("drosophila-living", ('embryo.mirror=["y"]',)),
+           Furrow("drosophila-living", ('embryo.mirror=["x", "y"]',))]
 
 
 def by_elements(size):

@@ -236,7 +236,7 @@ bool Simulation::step_towards(double time_s) {
   // At a division, the frame shows the daughters.
   const bool frame_is_due = due.empty() && passes_frame(before.time_s, state.time_s, controls_.frame_every_s);
   const EnergyFlow energy = account_for_energy(before);
-  const State whole_before = whole_ ? whole_->follow(*model_, before, state) : State();
+  const State whole_before = whole_ ? whole_->follow(*model_, state) : State();
   const AcceptedStep step{this->state(),
                           whole_ ? whole_before : before,
                           state.trend.step_s,

@@ -13,24 +13,34 @@ Whole::Whole(std::unique_ptr<Model> model, Mirror mirror)
 Whole::Whole(const Whole& other)
     : model_(std::make_unique<Model>(*other.model_)), mirror_(other.mirror_), state_(other.state_) {}
 
-// But what its laws remember, and what is forecast.
+// All but what its laws remember.
 State Whole::whole_of(const Model& side, const State& state) const {
+  const auto vectors = [&](const Vectors& of_side) { return of_side.empty() ? Vectors() : mirror_.whole(of_side); };
+  const auto multipliers = [&](const std::vector<double>& of_side) {
+    std::vector<double> all;
+    if (of_side.empty()) return all;
+    for (const CellId cell : mirror_.cells) all.push_back(of_side[cell.index()]);
+    const auto others = static_cast<std::ptrdiff_t>(side.tissue.cells.size());
+    all.insert(all.end(), of_side.begin() + others, of_side.end());
+    return all;
+  };
   State whole;
   whole.time_s = state.time_s;
+  whole.positions = vectors(state.positions);
+  whole.velocities = vectors(state.velocities);
+  whole.multipliers = multipliers(state.multipliers);
   whole.divided_until_s = state.divided_until_s;
-  whole.trend.step_s = state.trend.step_s;
-  whole.positions = mirror_.whole(state.positions);
-  whole.velocities = mirror_.whole(state.velocities);
-  for (const CellId cell : mirror_.cells) whole.multipliers.push_back(state.multipliers[cell.index()]);
-  const auto others = static_cast<std::ptrdiff_t>(side.tissue.cells.size());
-  whole.multipliers.insert(whole.multipliers.end(), state.multipliers.begin() + others, state.multipliers.end());
+  whole.trend = {.step_s = state.trend.step_s,
+                 .earlier_s = state.trend.earlier_s,
+                 .mean_velocities = vectors(state.trend.mean_velocities),
+                 .accelerations = vectors(state.trend.accelerations),
+                 .multiplier_rates = multipliers(state.trend.multiplier_rates)};
   std::size_t first = 0;  // of the obstacle's contacts on the side
   for (std::size_t o = 0; o < side.obstacles.size(); ++o) {
     const std::span<const NodeId> nodes = side.obstacles[o]->nodes();
     for (const NodeId of_whole : model_->obstacles[o]->nodes()) {
       const NodeId node = mirror_.image(of_whole).node;
-      const std::size_t contact =
-          first + static_cast<std::size_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
+      const auto contact = first + static_cast<std::size_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
       // A node on a mirror plane bears its own share there.
       whole.contact_forces.push_back(state.contact_forces[contact] / side.tissue.own_share({&node, 1}));
       whole.in_contact.push_back(state.in_contact[contact]);
@@ -40,10 +50,10 @@ State Whole::whole_of(const Model& side, const State& state) const {
   return whole;
 }
 
-State Whole::follow(const Model& side, const State& before, const State& after) {
-  State next = whole_of(side, after);
-  const BackwardDifference rates = rates_of(before, after);
-  const Vectors earlier = rates.ahead > 0 ? mirror_.whole(earlier_positions(before)) : Vectors();
+State Whole::follow(const Model& side, const State& state) {
+  State next = whole_of(side, state);
+  const BackwardDifference rates = rates_of(state_, next);
+  const Vectors earlier = rates.ahead > 0 ? earlier_positions(state_) : Vectors();
   next.internals = next_internals(*model_, {.positions = next.positions,
                                             .previous_positions = state_.positions,
                                             .previous_velocities = state_.velocities,

@@ -29,8 +29,8 @@ class Whole {
     return static_cast<double>(mirror_.cells.size()) / static_cast<double>(mirror_.origins.size());
   }
 
-  /// The side has taken a step, from `before` to `after`. Gives back where the whole was before it.
-  State follow(const Model& side, const State& before, const State& after);
+  /// The side has taken a step. Gives back where the whole was before it.
+  State follow(const Model& side, const State& state);
 
   /// The side is there, and this is what the whole's laws remember.
   void go_to(const Model& side, const State& state, std::vector<std::vector<double>> internals);

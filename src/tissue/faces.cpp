@@ -1,5 +1,6 @@
 #include "tissue/faces.hpp"
 
+#include <algorithm>
 #include <map>
 #include <stdexcept>
 
@@ -7,6 +8,15 @@
 
 namespace plica {
 namespace {
+
+// A half of what lies on a mirror plane, or at an end of a slice, is the other side's.
+double share_of(const Tissue& tissue, const Face& face) {
+  const double share = tissue.own_share(face.nodes);
+  if (!tissue.is_endless || face.beyond || share < 1) return share;
+  const auto x = [&](NodeId node) { return tissue.rest_positions[node.index()].x(); };
+  const double first = x(face.nodes[0]);
+  return std::ranges::all_of(face.nodes, [&](NodeId node) { return x(node) == first; }) ? 0.5 : 1;
+}
 
 std::vector<Face> lateral_faces(const Tissue& tissue) {
   const MeshFaces pairs(tissue.elements);
@@ -34,7 +44,7 @@ std::vector<Face> lateral_faces(const Tissue& tissue) {
       if (other && (other->cell < e || tissue.element_cell[other->cell] == cell)) continue;
       Face face{face_nodes(tissue.elements[e], f), cell, {}};
       if (other) face.beyond = tissue.element_cell[other->cell];
-      face.share = tissue.own_share(face.nodes);
+      face.share = share_of(tissue, face);
       faces.push_back(face);
     }
   return faces;

@@ -14,7 +14,7 @@ struct Face {
   std::array<NodeId, 4> nodes;
   CellId cell;
   std::optional<CellId> beyond;  // of a lateral face: the neighbour, which shares it; none at a rim
-  double share = 1;              // how much of it is this tissue's: a half on a mirror plane
+  double share = 1;              // how much of it is this tissue's: a half on a mirror plane, or at an end of a slice
 };
 
 /// All faces of a side, in the order of the elements. A cell of several elements has several on each side. A lateral

@@ -116,6 +116,7 @@ struct Tissue {
   // Axes across whose planes through the origin this is one side of a symmetric tissue (mirror.hpp). Nodes on a plane
   // are at 0 there.
   std::array<bool, 3> is_mirrored = {false, false, false};
+  bool is_endless = false;  // along x: a slice, whose ends belong to the next slices, too
 
   /// How much of what these nodes span is this side's own: a half for each mirror plane in which all of them lie.
   [[nodiscard]] double own_share(std::span<const NodeId> nodes) const;

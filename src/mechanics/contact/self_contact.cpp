@@ -65,11 +65,24 @@ Vec3 area_vector(const std::array<NodeId, 4>& facet, std::span<const Vec3> x) {
   return facet_area_vector({x[facet[0].index()], x[facet[1].index()], x[facet[2].index()], x[facet[3].index()]});
 }
 
-// One of the four from a facet's edges to the mean of its corners.
-std::array<Vec3, 3> triangle(const std::array<NodeId, 4>& facet, std::size_t edge, std::span<const Vec3> x) {
-  Vec3 middle = Vec3::Zero();
-  for (const NodeId node : facet) middle += x[node.index()] / 4;
-  return {x[facet[edge].index()], x[facet[(edge + 1) % 4].index()], middle};
+struct Triangle {
+  std::array<Vec3, 3> corners;
+  Vec3 area;  // twice its area vector
+};
+
+// Four a facet, from its edges to the mean of its corners.
+std::vector<Triangle> triangles_of(const std::vector<std::array<NodeId, 4>>& facets, std::span<const Vec3> x) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(4 * facets.size());
+  for (const auto& facet : facets) {
+    Vec3 middle = Vec3::Zero();
+    for (const NodeId node : facet) middle += x[node.index()] / 4;
+    for (std::size_t edge = 0; edge < 4; ++edge) {
+      const Vec3 &a = x[facet[edge].index()], &b = x[facet[(edge + 1) % 4].index()];
+      triangles.push_back({{a, b, middle}, (b - a).cross(middle - a)});
+    }
+  }
+  return triangles;
 }
 
 }  // namespace
@@ -134,7 +147,8 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<
     outward[to.index()] += out;
   }
   Grid grid(std::max(rule_.search, 0.5 * longest), rule_.search);
-  for (std::size_t t = 0; t < 4 * facets_.size(); ++t) grid.add(t, triangle(facets_[t / 4], t % 4, x));
+  const std::vector<Triangle> triangles = triangles_of(facets_, x);
+  for (std::size_t t = 0; t < triangles.size(); ++t) grid.add(t, triangles[t].corners);
   const std::vector<Pair> before = pairs_of(known);
   auto last = before.begin();  // that of the point or of one after it
   std::vector<Pair> pairs;
@@ -148,12 +162,12 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<
     double nearest2 = rule_.search * rule_.search;
     std::optional<Pair> best;
     for (const std::size_t t : grid.near(place)) {
-      const std::array<NodeId, 4>& nodes = facets_[t / 4];
-      const auto [a, b, c] = triangle(nodes, t % 4, x);
-      if (facing.dot((b - a).cross(c - a)) >= 0) continue;  // they look the same way
+      if (facing.dot(triangles[t].area) >= 0) continue;  // they look the same way
       if (std::ranges::binary_search(neighbours_[p], t / 4)) continue;
+      const auto& [a, b, c] = triangles[t].corners;
       const auto [of_corners, distance2] = closest_on_triangle(place, a, b, c);
       if (distance2 >= nearest2) continue;
+      const std::array<NodeId, 4>& nodes = facets_[t / 4];
       std::array<double, 4> weights;
       weights.fill(of_corners[2] / 4);
       weights[t % 4] += of_corners[0];
@@ -165,7 +179,7 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<
       Pair found{p, nodes, weights, outside.normalized()};
       const Vec3 apart = found.apart(points_[p], x);
       if (std::ranges::all_of(of_corners, [](double weight) { return weight > 0; }))
-        found.normal = (b - a).cross(c - a).normalized();
+        found.normal = triangles[t].area.normalized();
       else if (apart.norm() > 1e-3 * rule_.distance)
         found.normal = (apart.dot(outside) < 0 ? -apart : apart).normalized();
       if (found.gap(points_[p], x) < least_gap) continue;

@@ -96,6 +96,7 @@ Tissue build_slice(const ShellShape& shape) {
     }
   Tissue tissue = tissue_from_lattices(lattices, std::move(positions));
   tissue.outer_shape = Capsule{shape.length_um / 2, shape.diameter_um / 2};
+  tissue.is_endless = true;
   return tissue;
 }
 

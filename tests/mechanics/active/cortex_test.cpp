@@ -85,6 +85,20 @@ TEST(Cortex, AWallHasHalfOfEachOfItsCells) {
   EXPECT_EQ(shared, 1);
 }
 
+// An endless embryo has one wall across for each cell along, however many cells its slice is long.
+TEST(Cortex, ASliceHasHalfOfTheWallsAtItsEnds) {
+  const auto energy = [](int cells) {
+    const Tissue tissue = build_slice({.length_um = 7.0 * cells,
+                                       .diameter_um = 180,
+                                       .cell_height_um = 35,
+                                       .cells = {cells, 8, 8},
+                                       .elements_per_cell = {1, 1, 2}});
+    const Cortex law(tissue, all_cells(tissue), {.side = CellSide::lateral, .tension = 2});
+    return law.energy(at_rest(tissue).step());
+  };
+  EXPECT_NEAR(energy(3), 3 * energy(1), 1e-9 * energy(3));
+}
+
 // A flat sheet pulls at its held ends with tension times width, however fine, whatever its cells' size.
 TEST(Cortex, ASheetPullsWithTensionTimesWidth) {
   for (const int cells : {1, 4}) {
