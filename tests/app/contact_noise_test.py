@@ -25,14 +25,14 @@ cells = [28, 9, 8]
 face = "ventral"
 cells_across = 7
 [cortex.apical]
-profile = { shape = "gaussian", axis = "across", sigma_cells = 1.5, full_length_um = 390, fade_um = 45 }
+profile = { shape = "gaussian", axis = "across", sigma_cells = 1.86, full_length_um = 390, fade_um = 45 }
 variation = { spread = 0.3, seed = 1 }
 [cortex.shortening]
-profile = { shape = "plateau", about = "mesoderm", full_cells = 5, fade_cells = 1.2, full_length_um = 390, fade_um = 45 }
+profile = { shape = "plateau", about = "mesoderm", full_cells = 6.21, fade_cells = 1.49, full_length_um = 390, fade_um = 45 }
 [cortex.floor]
-profile = { shape = "plateau", about = "mesoderm", full_cells = 6, fade_cells = 1.6, full_length_um = 390, fade_um = 45 }
+profile = { shape = "plateau", about = "mesoderm", full_cells = 7.45, fade_cells = 1.99, full_length_um = 390, fade_um = 45 }
 [cortex.floor-elsewhere]
-profile = { shape = "plateau", about = "mesoderm", full_cells = 6, fade_cells = 1.6, full_length_um = 390, fade_um = 45, \
+profile = { shape = "plateau", about = "mesoderm", full_cells = 7.45, fade_cells = 1.99, full_length_um = 390, fade_um = 45, \
 middle = 0, edge = 1 }
 [time]
 end_min = 24

@@ -9,6 +9,8 @@
 extern "C" void sgemm_(const char* transposed_a, const char* transposed_b, const int* m, const int* n, const int* k,
                        const float* alpha, const float* a, const int* lda, const float* b, const int* ldb,
                        const float* beta, float* c, const int* ldc);
+extern "C" void strsm_(const char* side, const char* triangle, const char* transposed, const char* diagonal, const int* m,
+                       const int* n, const float* alpha, const float* a, const int* lda, float* b, const int* ldb);
 // Other libraries do not have these.
 extern "C" [[gnu::weak]] void openblas_set_num_threads(int number);
 extern "C" [[gnu::weak]] int openblas_get_parallel();
@@ -32,10 +34,11 @@ bool prepare() {
   // is never touched.
   constexpr std::size_t buffer_bytes = (std::size_t{128} << 20) + (std::size_t{64} << 10);
   make_sure_of_memory(buffer_bytes * static_cast<std::size_t>(threads));
-  const int one = 1;
-  const float number = 1;
-  float result = 0;
-  sgemm_("N", "N", &one, &one, &one, &number, &number, &one, &number, &one, &number, &result, &one);
+  // Products of small matrices do without; a triangular solve takes it.
+  const int two = 2;
+  const float number = 1, triangle[] = {1, 0, 0, 1};
+  float right_side[] = {1, 0, 0, 1};
+  strsm_("L", "L", "N", "N", &two, &two, &number, triangle, &two, right_side, &two);
   return true;
 }
 
