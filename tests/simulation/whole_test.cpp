@@ -171,7 +171,7 @@ TEST(Whole, EachLawOfASideIsThatOfAHalfOrAQuarter) {
 }
 
 // Of two runs to the same time, the columns that say where they are.
-void expect_same_end(const Simulation& a, const Simulation& b, double length_um, double pressure_Pa = 0.1) {
+void expect_same_end(const Simulation& a, const Simulation& b, double length_um) {
   const Observation one = a.measures(), other = b.measures();
   const std::vector<std::pair<std::string, double>> tolerances = {{"furrow_depth_um", length_um},
                                                                   {"furrow_depth_below_lips_um", length_um},
@@ -183,7 +183,7 @@ void expect_same_end(const Simulation& a, const Simulation& b, double length_um,
                                                                   {"min_apical_area_ratio", 0.002},
                                                                   {"min_corner_jacobian_ratio", 0.01},
                                                                   {"enclosed_volume_ratio", 1e-6},
-                                                                  {"yolk_pressure_Pa", pressure_Pa},
+                                                                  {"yolk_pressure_Pa", 0.1},
                                                                   {"closed_length_ratio", 0.02},
                                                                   {"flank_volume_ratio", 0.0005},
                                                                   {"cells", 0},
@@ -191,7 +191,9 @@ void expect_same_end(const Simulation& a, const Simulation& b, double length_um,
   for (const auto& [column, tolerance] : tolerances) {
     SCOPED_TRACE(column);
     ASSERT_EQ(one[column].has_value(), other[column].has_value());
-    if (one[column]) EXPECT_NEAR(*one[column], *other[column], tolerance);
+    if (one[column]) {
+      EXPECT_NEAR(*one[column], *other[column], tolerance);
+    }
   }
   EXPECT_LE(*other["max_volume_error"], 1e-9);
   EXPECT_EQ(*other["self_intersections"], 0);
@@ -213,16 +215,20 @@ std::vector<std::string> with(std::vector<std::string> overrides, const std::str
   return overrides;
 }
 
+// Until lips have met. From then on the whole tilts, by 3.5 um at the lips at 17 min, which beside a plane it cannot;
+// contact that was symmetric to the bit would leave it upright (docs/theory/mirror.md).
 TEST(Whole, AFurrowClosesAsItDoesWithoutPlanes) {
-  Simulation plain(load_scenario(find_scenario("furrow-slice"), fine_steps));
-  Simulation mirrored(load_scenario(find_scenario("furrow-slice"), with(fine_steps, planes[0])));
+  const std::vector<std::string> upright = with(fine_steps, "time.end_min=15");
+  Simulation plain(load_scenario(find_scenario("furrow-slice"), upright));
+  Simulation mirrored(load_scenario(find_scenario("furrow-slice"), with(upright, planes[0])));
   const double plain_s = closes_at_s(plain), mirrored_s = closes_at_s(mirrored);
   EXPECT_NEAR(plain_s, mirrored_s, 10);
   EXPECT_GT(mirrored_s, 800);
-  // Before lips touch they are alike to 1e-6 um. Contact then parts them by 0.03 um and 0.2 Pa; why is not known.
-  expect_same_end(plain, mirrored, 0.1, 0.3);
+  expect_same_end(plain, mirrored, 0.01);
   EXPECT_EQ(mirrored.state().positions.size(), plain.state().positions.size());
   EXPECT_EQ(2 * mirrored.memory().state.multipliers.size(), plain.state().multipliers.size());
+
+  EXPECT_EQ(*mirrored.measures()["contact_pairs"], *plain.measures()["contact_pairs"]);
 }
 
 TEST(Whole, AFurrowBetweenTwoPlanesIsThatOfTheWhole) {
