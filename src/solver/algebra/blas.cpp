@@ -9,8 +9,9 @@
 extern "C" void sgemm_(const char* transposed_a, const char* transposed_b, const int* m, const int* n, const int* k,
                        const float* alpha, const float* a, const int* lda, const float* b, const int* ldb,
                        const float* beta, float* c, const int* ldc);
-extern "C" void strsm_(const char* side, const char* triangle, const char* transposed, const char* diagonal, const int* m,
-                       const int* n, const float* alpha, const float* a, const int* lda, float* b, const int* ldb);
+extern "C" void strsm_(const char* side, const char* triangle, const char* transposed, const char* diagonal,
+                       const int* m, const int* n, const float* alpha, const float* a, const int* lda, float* b,
+                       const int* ldb);
 // Other libraries do not have these.
 extern "C" [[gnu::weak]] void openblas_set_num_threads(int number);
 extern "C" [[gnu::weak]] int openblas_get_parallel();
