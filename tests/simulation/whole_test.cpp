@@ -215,8 +215,8 @@ std::vector<std::string> with(std::vector<std::string> overrides, const std::str
   return overrides;
 }
 
-// Until lips have met. From then on the whole tilts, by 3.5 um at the lips at 17 min, which beside a plane it cannot;
-// contact that was symmetric to the bit would leave it upright (docs/theory/mirror.md).
+// Until lips have met. From then on corners that press on corners slip aside, by 0.3 um at 20 min, which beside a plane
+// they cannot (docs/theory/mirror.md).
 TEST(Whole, AFurrowClosesAsItDoesWithoutPlanes) {
   const std::vector<std::string> upright = with(fine_steps, "time.end_min=15");
   Simulation plain(load_scenario(find_scenario("furrow-slice"), upright));
