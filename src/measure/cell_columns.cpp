@@ -139,8 +139,7 @@ std::span<const MidlineColumn> midline_columns() {
        }},
       {"depth_um",
        "Mean depth of the cell's points on the cut; as `furrow_depth_um`. Inward is the same direction everywhere, so "
-       "near "
-       "the poles, where the shell runs along it, a little shift counts for much.",
+       "near the poles, where the shell runs along it, a little shift counts for much.",
        depths_um},
       {"normal_speed_um_per_s", "Inward speed of its apical corners along the normal at rest.", inward_speeds},
       {"apical_area_ratio", "Apical area over that at rest.", [](const C& c, const FurrowSites& sites) {

@@ -320,14 +320,11 @@ std::span<const Column> columns() {
        }},
       {"flank_section_area_ratio", series, last,
        "Area of the tissue cut at x = 0, between its basal and its apical surface, at 60° to 120° from the belly on "
-       "both "
-       "sides, over that at rest: what a cross-section under the microscope, or a model in two dimensions, shows of "
-       "the "
-       "lateral ectoderm. `flank_volume_ratio` is the same of a volume.",
+       "both sides, over that at rest: what a cross-section under the microscope, or a model in two dimensions, shows "
+       "of the lateral ectoderm. `flank_volume_ratio` is the same of a volume.",
        [](const M& m) -> std::optional<double> {
-         const auto at_rest = flank_section_area(m.model.tissue, m.model.tissue.rest_positions);
-         if (at_rest.value_or(0) <= 0) return std::nullopt;
-         return *flank_section_area(m.model.tissue, m.state.positions) / *at_rest;
+         if (m.rest.flank_section_um2.value_or(0) <= 0) return std::nullopt;
+         return *flank_section_area(m.model.tissue, m.state.positions) / *m.rest.flank_section_um2;
        }},
       count({"short_edges", series, largest,
              "Apical edges of cells that are shorter than a tenth of their length at rest: cells of a tissue would "

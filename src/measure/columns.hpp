@@ -23,7 +23,7 @@ struct Observation;
 
 /// What is measured of the body at rest, once.
 struct RestMeasures {
-  std::optional<double> lumen_volume_um3, flank_volume_um3;
+  std::optional<double> lumen_volume_um3, flank_volume_um3, flank_section_um2;
 };
 
 /// What the measures of a step are made from. What several of them need is made once.

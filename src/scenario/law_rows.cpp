@@ -174,8 +174,7 @@ std::vector<Row> law_rows() {
           "trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::own_measures),
           "Both programs begin, cell by cell, when this measure of the cell passes a threshold, and not at time 0: an "
           "area, the height or the largest stretch of the apex over that at rest, as it is at the beginning of a step. "
-          "Before, the tension is 0 and the "
-          "stiffness that of the program's time 0."),
+          "Before, the tension is 0 and the stiffness that of the program's time 0."),
       cortex("trigger.below", &X::trigger, &TriggerInput::below, positive, "They begin when it is smaller than this."),
       cortex("trigger.above", &X::trigger, &TriggerInput::above, positive, "They begin when it is larger."),
       cortex("follow.measure", &X::follow, &FollowInput::measure, one_of(words::own_measures),

@@ -70,7 +70,7 @@ TEST(FlankSectionArea, IsWhatIsCutOnTheSides) {
         low = std::min(low, std::hypot(x.y(), x.z())), high = std::max(high, std::hypot(x.y(), x.z()));
     const double at_rest = *flank_section_area(tissue, tissue.rest_positions), sector = std::numbers::pi / 3;
     EXPECT_NEAR(at_rest, sector * (high * high - low * low), 0.02 * at_rest) << "chords for arcs";
-    // Twice as far from the axis sideways: at 45 degrees of the stretched one, not of the one at rest.
+    // A fifth farther from the axis everywhere.
     Vectors positions = tissue.rest_positions;
     for (Vec3& x : positions) x.y() *= 1.2, x.z() *= 1.2;
     EXPECT_NEAR(*flank_section_area(tissue, positions) / at_rest, 1.44, 1e-9);

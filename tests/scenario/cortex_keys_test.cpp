@@ -9,6 +9,7 @@
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
 #include "simulation/simulation.hpp"
+#include "support/small_furrow.hpp"
 
 namespace plica {
 namespace {
@@ -159,50 +160,8 @@ TEST(CortexKeys, AHeldYolkLeavesWhatItsBaseSaysOfACompliantOne) {
 
 // A belly that is drawn in, with all that a closing furrow has.
 Scenario small_furrow() {
-  return load_scenario({"furrow", "furrow.toml", R"(format = 1
-[embryo]
-length_um = 300
-diameter_um = 160
-cell_height_um = 30
-cells = [12, 8, 8]
-[region.belly]
-face = "ventral"
-cells_across = 4
-[elasticity]
-young_modulus_Pa = 5
-poisson_ratio = 0
-corner_barrier_Pa = 10
-[vitelline]
-gap_um = 0.5
-[dynamics]
-surface_drag_Pa_s_per_um = 4
-[cortex.apical]
-region = "belly"
-tension_mN_per_m = 1
-saturation_ratio = 0.16
-program = { time_min = [0, 1], activity = [0, 1] }
-profile = { shape = "gaussian", sigma_cells = 2, full_length_um = 200, fade_um = 40 }
-[cortex.basal]
-region = "all"
-faces = "basal"
-stiffness_mN_per_m = 0.3
-relaxation_min = 15
-[cortex.walls]
-region = "all"
-faces = "lateral"
-stiffness_mN_per_m = 0.02
-compression_ratio = 0.1
-[self_contact]
-surface = "both"
-search_um = 20
-[enclosed.yolk]
-volume = "compliant"
-bulk_modulus_Pa = 50000
-[time]
-end_min = 2
-[stop]
-at_equilibrium = false
-)"});
+  const std::string yolk = "[enclosed.yolk]\nvolume = \"compliant\"\nbulk_modulus_Pa = 50000\n";
+  return load_scenario({"furrow", "furrow.toml", support::small_furrow + yolk});
 }
 
 // The region of the active apical cortex is where the furrow is measured.

@@ -9,6 +9,7 @@
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
 #include "simulation/simulation.hpp"
+#include "support/small_furrow.hpp"
 #include "support/threads.hpp"
 #include "support/tissues.hpp"
 
@@ -18,63 +19,27 @@ namespace {
 using namespace support;
 
 // A belly that is drawn in, with every law that a mirror goes with.
-const std::string furrow = R"(format = 1
-[embryo]
-length_um = 300
-diameter_um = 160
-cell_height_um = 30
-cells = [12, 8, 8]
-[region.belly]
-face = "ventral"
-cells_across = 4
-[elasticity]
-young_modulus_Pa = 5
-poisson_ratio = 0
-corner_barrier_Pa = 10
-[vitelline]
-gap_um = 0.5
-[dynamics]
-surface_drag_Pa_s_per_um = 4
-[contraction.net]
+const std::string furrow = small_furrow + R"([contraction.net]
 region = "belly"
 stiffness_nN_per_um = 0.01
 diagonals = true
 damping_nN_s_per_um = 0.1
 delay = { speed_um_per_s = 5 }
-[cortex.apical]
-region = "belly"
-tension_mN_per_m = 1
-saturation_ratio = 0.16
-program = { time_min = [0, 1], activity = [0, 1] }
-profile = { shape = "gaussian", sigma_cells = 2, full_length_um = 200, fade_um = 40 }
-[cortex.basal]
-region = "all"
-faces = "basal"
-stiffness_mN_per_m = 0.3
-relaxation_min = 15
-[cortex.walls]
+[cortex.all-walls]
 region = "all"
 faces = "lateral"
 tension_mN_per_m = 0.01
 stiffness_mN_per_m = 0.02
-compression_ratio = 0.1
 relaxation_min = 6
 crowding_mN_per_m = 0.001
 follow = { measure = "height_ratio", from = 0.9, to = 1.1 }
 [pressure.belly]
 region = "belly"
 pressure_Pa = 3
-[self_contact]
-surface = "both"
-search_um = 20
-[time]
-integrator = "bdf2"
-end_min = 2
-[stop]
-at_equilibrium = false
 )";
 
-Scenario scenario_of(const std::string& text, const std::vector<std::string>& overrides) {
+Scenario scenario_of(const std::string& text, std::vector<std::string> overrides) {
+  overrides.insert(overrides.begin(), "time.integrator=bdf2");
   return load_scenario({"furrow", "furrow.toml", text}, overrides);
 }
 

@@ -35,8 +35,8 @@ struct CortexRule {
 
 /// Cells' strengths scale all of it. A wall is the cortex of the two cells that share it: it has the mean of what they
 /// are told, nothing from one that does not act; at a rim, where there is one cell, what that is told; on a mirror
-/// plane, where the other cell is its image, a half of that. The semidefinite tangent leaves out faces under
-/// compression and what changes of shape within a face give.
+/// plane or at the end of a slice, whose other side has the rest, a half of that. The semidefinite tangent leaves out
+/// faces under compression and what changes of shape within a face give.
 class Cortex final : public Law {
  public:
   Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kernels kernels = chosen_kernels());

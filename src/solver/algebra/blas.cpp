@@ -6,9 +6,6 @@
 
 #include "core/memory.hpp"
 
-extern "C" void sgemm_(const char* transposed_a, const char* transposed_b, const int* m, const int* n, const int* k,
-                       const float* alpha, const float* a, const int* lda, const float* b, const int* ldb,
-                       const float* beta, float* c, const int* ldc);
 extern "C" void strsm_(const char* side, const char* triangle, const char* transposed, const char* diagonal,
                        const int* m, const int* n, const float* alpha, const float* a, const int* lda, float* b,
                        const int* ldb);
