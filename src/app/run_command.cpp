@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -10,18 +9,13 @@
 #include "app/progress.hpp"
 #include "app/scenario_options.hpp"
 #include "app/threads.hpp"
-#include "core/directory_lock.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
-#include "core/version.hpp"
-#include "measure/self_intersections.hpp"
 #include "record/archive.hpp"
-#include "record/recorder.hpp"
-#include "record/run_directory.hpp"
 #include "scenario/advice.hpp"
-#include "scenario/print.hpp"
+#include "show/recorded_run.hpp"
 #include "show/report.hpp"
-#include "show/report_writer.hpp"
+#include "simulation/crossing_warning.hpp"
 
 namespace plica {
 namespace {
@@ -54,24 +48,6 @@ void print_result(const nlohmann::ordered_json& summary, const std::string& out)
   fmt::print("  results in {0}{1}\n", out, can_report() ? fmt::format("; to look at: {}/report.html", out) : "");
 }
 
-// A scenario that lies in DIR under a name that plica writes there would be lost.
-void refuse_to_replace_scenario(const std::string& scenario_file, const std::filesystem::path& out) {
-  if (out.empty()) throw UsageError("--out is empty; give the directory for the results");
-  std::error_code error;
-  for (const char* name : {"scenario.toml", "scenario.input.toml"})
-    if (std::filesystem::equivalent(scenario_file, out / name, error))
-      throw UsageError(scenario_file + ": the results would replace it; give another --out, or move the scenario");
-}
-
-// Nor would there be anything to measure against.
-void refuse_to_replace_reference(const std::vector<Monitor>& monitors, const std::filesystem::path& out) {
-  std::error_code error;
-  for (const Monitor& monitor : monitors)
-    if (monitor.reference_run && std::filesystem::equivalent(monitor.reference_run->directory(), out, error))
-      throw UsageError(
-          fmt::format("--out {} is the reference of monitor \"{}\"; give another --out", out.string(), monitor.name));
-}
-
 int exit_status(RunStatus status, bool missed) {
   if (status == RunStatus::failed) return exit_gave_up;
   if (status == RunStatus::under_way) return interrupted_status();
@@ -82,83 +58,22 @@ int exit_status(RunStatus status, bool missed) {
 // for 10 s and more.
 constexpr double step_patience_s = 3;
 
-// A tissue that passes through itself is a tissue no more: said once, with place and time, also with --quiet.
-std::string crossing_warning(const Simulation& simulation) {
-  const Tissue& tissue = simulation.model().tissue;
-  const Vectors& positions = simulation.state().positions;
-  for (const auto& [side, facets] : {std::pair("apical", &tissue.apical_facets), {"basal", &tissue.basal_facets}}) {
-    const auto pairs = crossing_facets(*facets, positions);
-    if (pairs.empty()) continue;
-    const Facet &one = (*facets)[pairs.front().first], &other = (*facets)[pairs.front().second];
-    Vec3 place = Vec3::Zero();
-    for (const NodeId node : one.nodes) place += positions[node.index()] / 4;
-    const auto id = [&](const Facet& facet) { return tissue.cells[facet.cell.index()].lineage.id; };
-    return fmt::format(
-        "warning: the tissue passes through itself: at t = {:.4g} min the {} faces of cells {} and {} cross, at x = "
-        "{:.1f}, y = {:.1f}, z = {:.1f} um ({} pairs in all); what comes after is no tissue any more{}\n",
-        simulation.time_s() / units::minute, side, id(one), id(other), place.x(), place.y(), place.z(), pairs.size(),
-        simulation.measures()["contact_pairs"] ? "" : "; [self_contact] would hold it off");
-  }
-  return "";
-}
-
-// The checkpoint in the directory `out`; nothing: begin. UsageError when it is of another run; FileError when it is
-// damaged, or when there are results that belong to none.
-std::optional<Checkpoint> checkpoint_to_resume(const std::string& out, const Scenario& scenario, const Model& at_rest) {
-  if (!can_archive()) throw UsageError("this plica was built without HDF5: it has no checkpoints to resume from");
-  std::string complaint;
-  std::optional<Checkpoint> checkpoint = read_checkpoint(out, complaint);
-  if (!complaint.empty()) fmt::print(stderr, "plica: {}; going on from the checkpoint before it\n", complaint);
-  if (!checkpoint) {
-    if (holds_steps(out))
-      throw FileError(out + ": holds results without a checkpoint; begin anew with --overwrite, or give another --out");
-    return std::nullopt;
-  }
-  const std::string now = resolved_toml(scenario);
-  if (const auto other = other_scenario(checkpoint->scenario, now))
-    throw UsageError(
-        fmt::format("{}: the checkpoint is of another scenario: {}; only [time], [stop] and [output] may change: give "
-                    "another --out",
-                    out, *other));
-  if (checkpoint->at_rest != fingerprint(at_rest.tissue))
-    throw UsageError(fmt::format("{}: the checkpoint is of another embryo ({}; this one has {}); has its mesh changed?",
-                                 out, checkpoint->at_rest, fingerprint(at_rest.tissue)));
-  if (checkpoint->program != version())
-    fmt::print(stderr, "plica: {} was written by version {}; what follows may differ from it in the last digits\n", out,
-               checkpoint->program);
-  // What ended the run may not end it any more: the next step is asked.
-  if (other_stop(checkpoint->scenario, now)) checkpoint->run.criterion_met = checkpoint->run.at_equilibrium = false;
-  return checkpoint;
-}
-
-// Brings simulation and recorder from rest to where the checkpoint is.
-void go_on_from(Checkpoint checkpoint, const std::string& out, Simulation& simulation, Recorder& recorder,
-                const std::string& input_toml) {
-  try {
-    simulation.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
-  } catch (const UnfitMemory& error) {
-    throw FileError(out + ": the checkpoint is damaged: " + error.what());
-  }
-  recorder.go_on(input_toml, std::move(checkpoint.record));
-}
-
 // To the end, or an interruption.
-nlohmann::ordered_json simulate(Simulation& simulation, Recorder& recorder, bool quiet) {
+nlohmann::ordered_json simulate(Simulation& simulation, RecordedRun& record, bool quiet) {
   Progress progress(simulation.controls(), quiet);
-  simulation.listen(recorder);
-  simulation.stop_when([&] { return interrupted_for(step_patience_s) || recorder.has_failed(); });
+  simulation.stop_when([&] { return interrupted_for(step_patience_s) || record.has_failed(); });
   bool has_crossed = false;
   while (simulation.step()) {
     if (!has_crossed && simulation.measures()["self_intersections"] > 0) {
       has_crossed = true;
       progress.finish();
-      fmt::print(stderr, "{}", crossing_warning(simulation));
+      fmt::print(stderr, "warning: {}\n", crossing_warning(simulation));
     }
     progress.show(simulation.measures());
     if (interrupted()) break;
   }
   progress.finish();
-  return recorder.finish();
+  return record.finish();
 }
 
 // Once a run has begun, what ends it can be mended, and nothing is lost.
@@ -198,32 +113,22 @@ int run_scenario(const RunOptions& options) {
     for (const std::string& line : advice(scenario, simulation.model()))
       if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
 
-  refuse_to_replace_scenario(source.file, options.out);
-  refuse_to_replace_reference(simulation.observer().monitors(), options.out);
-  auto lock = std::make_unique<DirectoryLock>(options.out);
-  std::optional<Checkpoint> checkpoint;
-  if (options.resume) checkpoint = checkpoint_to_resume(options.out, scenario, simulation.model());
-  if (checkpoint && has_ended(checkpoint->run, simulation.controls()) && holds_ending(options.out, can_report())) {
+  using Start = RecordedRun::Start;
+  RecordedRun record(options.out, scenario, source, simulation,
+                     options.resume      ? Start::resumed
+                     : options.overwrite ? Start::over
+                                         : Start::fresh,
+                     start);
+  for (const std::string& note : record.notes()) fmt::print(stderr, "plica: {}\n", note);
+  if (record.is_finished()) {
     if (!options.quiet) fmt::print("{}: the run is finished; nothing is left to do\n", options.out);
     return exit_done;
   }
-  if (!checkpoint) {
-    prepare_directory(options.out, options.overwrite || options.resume);
-    lock.reset();
-    lock = std::make_unique<DirectoryLock>(options.out);  // it may have been made only now
-  }
   catch_interruptions();
-  ReportWriter report(options.out);
-  Recorder recorder(options.out, scenario, simulation, start);
-  if (can_report()) recorder.listen(report);
   const nlohmann::ordered_json summary = with_a_way_on([&] {
-    if (checkpoint) {
-      go_on_from(std::move(*checkpoint), options.out, simulation, recorder, source.text);
-      if (!options.quiet) fmt::print("going on after step {}, t = {:g} s\n", simulation.steps(), simulation.time_s());
-    } else {
-      recorder.begin(source.text);
-    }
-    return simulate(simulation, recorder, options.quiet);
+    if (record.begin() && !options.quiet)
+      fmt::print("going on after step {}, t = {:g} s\n", simulation.steps(), simulation.time_s());
+    return simulate(simulation, record, options.quiet);
   });
   std::vector<std::string> missed;
   if (simulation.status() == RunStatus::equilibrium || simulation.status() == RunStatus::end_time)

@@ -3,22 +3,16 @@
 #include <omp.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
 #include <vector>
 
+#include "core/threads.hpp"
+
 namespace plica {
 namespace {
-
-int threads_for(int asked, std::size_t elements) {
-  if (asked > 0) return asked;
-  if (std::getenv("OMP_NUM_THREADS") != nullptr) return omp_get_max_threads();
-  constexpr std::size_t elements_a_thread = 10000;
-  return static_cast<int>(std::min<std::size_t>(omp_get_num_procs(), 1 + elements / elements_a_thread));
-}
 
 // The same program with the same arguments, unless the user has said how threads wait. Returns where it cannot be
 // begun.

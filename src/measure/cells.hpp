@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -52,6 +53,9 @@ Vectors active_forces(const Model& model, const State& state);
 /// What pulls at the nodes of a body that stands still, nN: elasticity, contractions without their dampers, applied
 /// pressures. No drag, no inertia; volumes and the shell, which balance these, are not in it.
 Vectors driving_forces(const Model& model, const State& state);
+
+/// The same of one law alone, active or not, by its label.
+Vectors forces_of_law(const Model& model, const State& state, std::string_view label);
 
 /// Mean tension of the faces that each cortex acts on, by area, nN/um; with the cortex's label.
 std::vector<std::pair<std::string, double>> mean_tensions(const Model& model, const State& state);

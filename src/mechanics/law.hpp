@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -180,6 +181,13 @@ class Law {
   [[nodiscard]] virtual std::optional<double> activity_of(CellId /*cell*/, double /*time_s*/,
                                                           std::span<const double> /*internal*/) const {
     return {};
+  }
+
+  /// The internal state with activities that cells are told from outside instead of those of their programs
+  /// (given_activities.hpp). std::logic_error of a law by which no cell acts.
+  [[nodiscard]] virtual std::vector<double> with_activities(std::span<const double> /*internal*/,
+                                                            std::span<const double> /*activities*/) const {
+    throw std::logic_error(label() + ": no cell acts by it");
   }
 
   /// Mass that the law gives to nodes, g; empty for none. At most one law of a model has any.

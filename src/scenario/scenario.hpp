@@ -4,11 +4,14 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace plica {
+
+struct HexahedralMesh;
 
 using Range = std::array<double, 2>;  // low, high
 
@@ -43,6 +46,7 @@ struct EmbryoInput {
   std::string file;                 // shape = "file": a hexahedral mesh that VTK reads
   std::string apical_array;  // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;
                              // empty: the outer surface
+  std::shared_ptr<const HexahedralMesh> mesh;  // in place of what the file holds: from a program, not from TOML
 };
 
 enum class ElasticModel { corotational, shape_memory, neo_hookean };

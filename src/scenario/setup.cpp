@@ -36,7 +36,8 @@ Program make_program(const ProgramInput& input) { return {input.time_s, input.ac
 Tissue read_tissue(const Scenario& scenario) {
   const EmbryoInput& embryo = scenario.embryo;
   try {
-    Tissue tissue = read_mesh_file(embryo.file, embryo.apical_array, embryo.elements_per_cell);
+    Tissue tissue = embryo.mesh ? tissue_from_mesh(*embryo.mesh, embryo.elements_per_cell)
+                                : read_mesh_file(embryo.file, embryo.apical_array, embryo.elements_per_cell);
     if (scenario.vitelline.enabled) tissue.outer_shape = enclosing_capsule(tissue.rest_positions);
     return tissue;
   } catch (const MeshError& error) {

@@ -1,6 +1,7 @@
 #include "simulation/simulation.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,6 +10,8 @@
 #include <utility>
 
 #include "core/clock.hpp"
+#include "core/errors.hpp"
+#include "mechanics/active/given_activities.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"
 #include "scenario/setup.hpp"
@@ -45,9 +48,8 @@ std::optional<CellId> held_cell_that_grows(const Model& model, const State& stat
   return std::nullopt;
 }
 
-std::string failure_text(StepReport report, const Model& model, const State& state, double duration_s) {
+std::string failure_text(const StepReport& report, const Model& model, const State& state, double duration_s) {
   const std::optional<CellId> held = held_cell_that_grows(model, state);
-  if (report.cell) report.cell = CellId(id_of(model, *report.cell));
   std::string text =
       fmt::format("{} at t = {:g} s, with steps down to {:g} s", report.reason(), state.time_s, duration_s);
   if (held)
@@ -98,7 +100,8 @@ Simulation::Simulation(const Simulation& other)
       observer_(std::make_unique<Observer>(model(), *other.observer_)),
       measures_(other.measures_),
       has_begun_(other.has_begun_),
-      failure_(other.failure_) {
+      failure_(other.failure_),
+      failed_cell_(other.failed_cell_) {
   renew_stepper();
   recall_factor();
 }
@@ -137,6 +140,30 @@ RunMemory Simulation::memory() const {
   memory.factor = stepper_->memory();
   if (whole_) memory.whole_internals = whole_->state().internals;
   return memory;
+}
+
+void Simulation::set_activity(const std::string& label, std::vector<double> activities) {
+  std::vector<std::string> labels;
+  std::size_t place = model_->laws.size();
+  for (std::size_t l = 0; l < model_->laws.size(); ++l) {
+    if (!model_->laws[l]->is_active()) continue;
+    labels.push_back(model_->laws[l]->label());
+    if (labels.back() == label) place = l;
+  }
+  if (place == model_->laws.size())
+    throw UsageError(fmt::format("no cells act by \"{}\"; they do by: {}", label, fmt::join(labels, ", ")));
+  const std::size_t cells = model().tissue.cells.size();
+  if (!activities.empty() && activities.size() != cells)
+    throw UsageError(fmt::format("{}: {} activities for {} cells; give one a cell", label, activities.size(), cells));
+  for (std::size_t c = 0; c < activities.size(); ++c)
+    if (activities[c] != GivenActivities::as_programmed && !(activities[c] >= 0 && std::isfinite(activities[c])))
+      throw UsageError(fmt::format("{}: the activity of cell {} is {}; give a number of 0 or more", label,
+                                   id_of(model(), CellId(c)), activities[c]));
+  if (whole_) activities = whole_->take_activities(place, activities);
+  std::vector<double>& internal = now_.state.internals[place];
+  internal = model_->laws[place]->with_activities(internal, activities);
+  now_.at_equilibrium = false;
+  now_.equilibrium_time_s.reset();
 }
 
 void Simulation::go_on_from(RunMemory memory, Observation measures) {
@@ -210,11 +237,11 @@ RunStatus Simulation::status() const {
 }
 
 RunStatus Simulation::run_until(double time_s) {
-  while (!has_come(time_s, now_.state.time_s) && step_towards(time_s)) continue;
+  while (!has_come(time_s, now_.state.time_s) && step(time_s)) continue;
   return status();
 }
 
-bool Simulation::step_towards(double time_s) {
+bool Simulation::step(double until_s) {
   if (!has_begun_) divide(due_divisions(*model_, now_.state, controls_.divisions));
   has_begun_ = true;
   if (status() != RunStatus::under_way) return false;
@@ -222,7 +249,7 @@ bool Simulation::step_towards(double time_s) {
   begin_anew_at_a_jump();
   const auto start = std::chrono::steady_clock::now();
   State before;
-  const std::optional<StepReport> report = take_step(time_s, before);
+  const std::optional<StepReport> report = take_step(until_s, before);
   now_.computing_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!report) return false;
 
@@ -281,6 +308,7 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
     if (solved) continue;
     stepper_->forget_factor();
     if (step_length_.halve(controls_, duration_s)) continue;
+    if (report.cell) failed_cell_ = id_of(*model_, *report.cell), report.cell = CellId(*failed_cell_);
     failure_ = failure_text(report, *model_, now_.state, duration_s);
     break;
   }

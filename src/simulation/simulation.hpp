@@ -60,9 +60,9 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Takes the next step, shorter ones until one is accepted; then cells divide that are due. False when there is no
-  /// next step, when it failed, or when it was stopped.
-  bool step() { return step_towards(std::numeric_limits<double>::infinity()); }
+  /// Takes the next step, shorter ones until one is accepted, which ends at `until_s` at the latest; then cells divide
+  /// that are due. False when there is no next step, when it failed, or when it was stopped.
+  bool step(double until_s = std::numeric_limits<double>::infinity());
 
   /// Steps until `time_s`, on which a step ends, or until the run ends, fails or is stopped.
   RunStatus run_until(double time_s);
@@ -71,6 +71,8 @@ class Simulation {
   [[nodiscard]] RunStatus status() const;
   /// What gave up, where and when; empty unless the run failed. The state is the last good one.
   [[nodiscard]] const std::string& failure() const { return failure_; }
+  /// The id of the cell that it gave up at, where it was one.
+  [[nodiscard]] const std::optional<int>& failed_cell() const { return failed_cell_; }
 
   /// Of the whole embryo, also where one side of it is solved.
   [[nodiscard]] const Model& model() const { return whole_ ? whole_->model() : *model_; }
@@ -98,6 +100,12 @@ class Simulation {
   /// UnfitMemory when it cannot be one of this model. Listeners do not hear of past divisions.
   void go_on_from(RunMemory memory, Observation measures);
 
+  /// From now on, cells act by the law of this label (contraction.apical) as they are told, not by their programs:
+  /// factors on what the scenario says, one a cell, >= 0 or GivenActivities::as_programmed; none: programs again. What
+  /// had come to rest goes on. UsageError for another label, number of cells, or number, and for what is not symmetric
+  /// where one side is solved.
+  void set_activity(const std::string& label, std::vector<double> activities);
+
   void listen(SimulationListener& listener) { listeners_.push_back(&listener); }
   void stop_listening(SimulationListener& listener) { std::erase(listeners_, &listener); }
 
@@ -105,7 +113,6 @@ class Simulation {
   void stop_when(std::function<bool()> stop_requested);
 
  private:
-  bool step_towards(double time_s);
   std::optional<StepReport> take_step(double until_s, State& before);
   void divide(const std::vector<PlannedDivision>& due);
   Division make_division(State& state, const std::vector<PlannedDivision>& planned);
@@ -124,6 +131,7 @@ class Simulation {
   Observation measures_;
   bool has_begun_ = false;  // since it was made, or went on: whoever was due then has divided
   std::string failure_;
+  std::optional<int> failed_cell_;
   std::vector<SimulationListener*> listeners_;
   std::function<bool()> stop_requested_;
 };

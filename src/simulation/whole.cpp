@@ -1,8 +1,11 @@
 #include "simulation/whole.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "core/errors.hpp"
 #include "solver/step/backward_difference.hpp"
 
 namespace plica {
@@ -68,6 +71,20 @@ State Whole::follow(const Model& side, const State& state) {
 void Whole::go_to(const Model& side, const State& state, std::vector<std::vector<double>> internals) {
   state_ = whole_of(side, state);
   state_.internals = std::move(internals);
+}
+
+std::vector<double> Whole::take_activities(std::size_t law, const std::vector<double>& activities) {
+  for (std::size_t c = 0; c < activities.size(); ++c)
+    if (const CellId own = mirror_.own(CellId(c)); activities[c] != activities[own.index()])
+      throw UsageError(
+          fmt::format("{}: cells {} and {} are mirror images, and their activities are {} and {}; give the "
+                      "same to both, or leave out embryo.mirror",
+                      model_->laws[law]->label(), c, own.index(), activities[c], activities[own.index()]));
+  std::vector<double> of_side;
+  for (const CellId cell : mirror_.origins)
+    if (!activities.empty()) of_side.push_back(activities[cell.index()]);
+  state_.internals[law] = model_->laws[law]->with_activities(state_.internals[law], activities);
+  return of_side;
 }
 
 }  // namespace plica

@@ -35,6 +35,10 @@ class Whole {
   /// The side is there, and this is what the whole's laws remember.
   void go_to(const Model& side, const State& state, std::vector<std::vector<double>> internals);
 
+  /// Cells of the whole act by a law as they are told. Gives back what that is for the cells of the side. UsageError
+  /// where a cell and its image are told different things.
+  std::vector<double> take_activities(std::size_t law, const std::vector<double>& activities);
+
  private:
   [[nodiscard]] State whole_of(const Model& side, const State& state) const;
 

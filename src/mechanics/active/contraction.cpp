@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mechanics/active/given_activities.hpp"
 #include "tissue/division.hpp"
 
 namespace plica {
@@ -102,9 +103,25 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
 
 double Contraction::activity(double delay_s, double time_s) const { return program_.delayed_at(delay_s, time_s); }
 
-std::optional<double> Contraction::activity_of(CellId cell, double time_s, std::span<const double> /*internal*/) const {
+double Contraction::activity(const Spring& spring, const Step& step) const {
+  const std::optional<double> given = GivenActivities(step.internal, 0).of(spring.cell);
+  return given ? *given : activity(spring.delay_s, step.end_time_s);
+}
+
+std::optional<double> Contraction::activity_of(CellId cell, double time_s, std::span<const double> internal) const {
   if (pattern_.cells.empty() || !pattern_.cells[cell.index()]) return std::nullopt;
+  if (const auto given = GivenActivities(internal, 0).of(cell)) return given;
   return activity(pattern_.delays_s[cell.index()], time_s);
+}
+
+std::vector<double> Contraction::with_activities(std::span<const double> internal,
+                                                 std::span<const double> activities) const {
+  return GivenActivities::put(internal, 0, activities);
+}
+
+std::vector<double> Contraction::internal_after_division(std::span<const double> internal, const Tissue&,
+                                                         const Division& division) const {
+  return GivenActivities(internal, 0).after_division(division);
 }
 
 std::vector<double> Contraction::delays_s() const {
@@ -170,7 +187,7 @@ void Contraction::for_springs(const Step& step, const Take& take) const {
       segments[s] = {length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero()), length};
     }
     pulled.segments = std::span(segments).first(pulled.nodes.size() - 1);
-    pulled.respond(springs_[k], step, activity(springs_[k].delay_s, step.end_time_s));
+    pulled.respond(springs_[k], step, activity(springs_[k], step));
     take(pulled);
   }
 }
@@ -192,7 +209,7 @@ EnergyFlow Contraction::energy_flow(const MadeStep& made) const {
       const double stretch = std::max(0.0, length - spring.rest_length);
       return 0.5 * spring.stiffness * stretch * stretch + spring.preload * length;
     };
-    flow.active -= activity(spring.delay_s, step.end_time_s) * (potential(after) - potential(before));
+    flow.active -= activity(spring, step) * (potential(after) - potential(before));
     flow.dissipated += spring.damping / step.rate_s * (after - before) * (after - before);
   }
   return flow;

@@ -59,6 +59,8 @@ class Contraction final : public Law {
   /// facet have none. A diagonal stays whole.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
+                                                            const Division& division) const override;
 
   [[nodiscard]] const Program& program() const { return program_; }
   /// Activity at a time for springs with a delay: that of the program `delay_s` earlier, 0 before the program's time 0.
@@ -66,12 +68,15 @@ class Contraction final : public Law {
   [[nodiscard]] bool is_active() const override { return true; }
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
                                                   std::span<const double> internal) const override;
+  [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
+                                                    std::span<const double> activities) const override;
   [[nodiscard]] std::vector<double> program_points_s() const override { return program_.delayed_points_s(delays_s()); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.delayed_jumps_s(delays_s()); }
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
 
  private:
   struct Pulled;  // a spring at given positions
+  [[nodiscard]] double activity(const Spring& spring, const Step& step) const;
   template <class Take>
   void for_springs(const Step& step, const Take& take) const;
   [[nodiscard]] std::vector<double> delays_s() const;

@@ -43,7 +43,7 @@ std::pair<int, int> cells_of(CellId cell, std::optional<CellId> beyond) {
   return std::minmax(cell.number(), beyond ? beyond->number() : -1);
 }
 
-std::vector<double> joined(std::vector<double> a, const std::vector<double>& b) {
+std::vector<double> joined(std::vector<double> a, std::span<const double> b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
@@ -96,6 +96,7 @@ double Cortex::rest_area_before(std::size_t face, const Step& step) const {
 
 // How active a cell is, strength apart.
 double Cortex::activity(CellId cell, double time_s, std::span<const double> internal) const {
+  if (const auto told = given(internal).of(cell)) return *told;
   const double delay_s = pattern_.delays_s[cell.index()];
   if (!own_.is_used()) return rule_.program.delayed_at(delay_s, time_s);
   const double own = internal[area_numbers() + cell.index()];
@@ -284,9 +285,15 @@ std::vector<double> Cortex::next_internal(const Step& step) const {
     internal.insert(internal.end(), step.internal.begin(),
                     step.internal.begin() + static_cast<std::ptrdiff_t>(faces_.size()));
   }
-  if (!own_.is_used()) return internal;
-  return joined(std::move(internal),
-                own_.numbers(step.positions, step.end_time_s, step.internal.subspan(area_numbers())));
+  if (own_.is_used())
+    internal = joined(std::move(internal),
+                      own_.numbers(step.positions, step.end_time_s, step.internal.subspan(area_numbers())));
+  return joined(std::move(internal), given(step.internal).numbers());
+}
+
+std::vector<double> Cortex::with_activities(std::span<const double> internal,
+                                            std::span<const double> activities) const {
+  return GivenActivities::put(internal, own_numbers(), activities);
 }
 
 std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const Division& division,
@@ -298,9 +305,11 @@ std::vector<double> Cortex::internal_after_division(std::span<const double> inte
                                                     const Division& division) const {
   std::vector<double> after;
   if (flows()) after = rest_areas_after_division(internal, tissue, division);
-  if (!own_.is_used()) return after;
-  const std::span<const double> own = internal.subspan(area_numbers());
-  return joined(std::move(after), inherited(division, std::vector(own.begin(), own.end())));
+  if (own_.is_used()) {
+    const std::span<const double> own = internal.subspan(area_numbers(), pattern_.cells.size());
+    after = joined(std::move(after), inherited(division, std::vector(own.begin(), own.end())));
+  }
+  return joined(std::move(after), given(internal).after_division(division));
 }
 
 std::vector<double> Cortex::rest_areas_after_division(std::span<const double> internal, const Tissue& tissue,

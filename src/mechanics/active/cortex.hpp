@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mechanics/active/cell_pattern.hpp"
+#include "mechanics/active/given_activities.hpp"
 #include "mechanics/active/own_state.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/kernels/element_chunks.hpp"
@@ -51,7 +52,7 @@ class Cortex final : public Law {
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
 
   /// Where rest areas flow: those at the beginning of the step, then those at the beginning of the step before. Then
-  /// the cells' own states, where these matter.
+  /// the cells' own states, where these matter; then activities that are given from outside.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
 
@@ -67,6 +68,9 @@ class Cortex final : public Law {
   [[nodiscard]] bool is_active() const override { return rule_.tension != 0; }
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
                                                   std::span<const double> internal) const override;
+  /// Of the tension: stiffness keeps its program.
+  [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
+                                                    std::span<const double> activities) const override;
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   /// Areas and tensions at a step's end; faces.
@@ -90,6 +94,10 @@ class Cortex final : public Law {
   [[nodiscard]] std::vector<double> rest_areas_after_division(std::span<const double> internal, const Tissue& tissue,
                                                               const Division& division) const;
   [[nodiscard]] std::size_t area_numbers() const { return flows() ? 2 * faces_.size() : 0; }
+  [[nodiscard]] std::size_t own_numbers() const {
+    return area_numbers() + (own_.is_used() ? pattern_.cells.size() : 0);
+  }
+  [[nodiscard]] GivenActivities given(std::span<const double> internal) const { return {internal, own_numbers()}; }
   [[nodiscard]] double activity(CellId cell, double time_s, std::span<const double> internal) const;
   [[nodiscard]] double stiffening(CellId cell, const Step& step) const;
   template <class OfCell>

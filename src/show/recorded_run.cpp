@@ -1,0 +1,112 @@
+#include "show/recorded_run.hpp"
+
+#include <fmt/format.h>
+
+#include "core/errors.hpp"
+#include "core/version.hpp"
+#include "record/archive.hpp"
+#include "record/run_directory.hpp"
+#include "scenario/print.hpp"
+#include "show/report.hpp"
+
+namespace plica {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A scenario that lies in DIR under a name that plica writes there would be lost.
+void refuse_to_replace_scenario(const std::string& scenario_file, const fs::path& out) {
+  if (out.empty()) throw UsageError("--out is empty; give the directory for the results");
+  std::error_code error;
+  for (const char* name : {"scenario.toml", "scenario.input.toml"})
+    if (fs::equivalent(scenario_file, out / name, error))
+      throw UsageError(scenario_file + ": the results would replace it; give another --out, or move the scenario");
+}
+
+// Nor would there be anything to measure against.
+void refuse_to_replace_reference(const std::vector<Monitor>& monitors, const fs::path& out) {
+  std::error_code error;
+  for (const Monitor& monitor : monitors)
+    if (monitor.reference_run && fs::equivalent(monitor.reference_run->directory(), out, error))
+      throw UsageError(
+          fmt::format("--out {} is the reference of monitor \"{}\"; give another --out", out.string(), monitor.name));
+}
+
+}  // namespace
+
+RecordedRun::RecordedRun(fs::path out, const Scenario& scenario, const ScenarioSource& source, Simulation& simulation,
+                         Start start, Recorder::Clock::time_point since)
+    : out_(std::move(out)), input_toml_(source.text), simulation_(simulation), report_(out_) {
+  refuse_to_replace_scenario(source.file, out_);
+  refuse_to_replace_reference(simulation.observer().monitors(), out_);
+  if (simulation.divisions() > 0)
+    throw UsageError("cells have divided already; a record begins before the first division");
+  lock_ = std::make_unique<DirectoryLock>(out_);
+  if (start == Start::resumed) look_for_checkpoint(scenario);
+  is_finished_ = checkpoint_ && has_ended(checkpoint_->run, simulation.controls()) && holds_ending(out_, can_report());
+  if (is_finished_) return;
+  if (!checkpoint_) {
+    prepare_directory(out_, start != Start::fresh);
+    lock_.reset();
+    lock_ = std::make_unique<DirectoryLock>(out_);  // it may have been made only now
+  }
+  recorder_ = std::make_unique<Recorder>(out_, scenario, simulation, since);
+  if (can_report()) recorder_->listen(report_);
+}
+
+RecordedRun::~RecordedRun() {
+  if (recorder_) simulation_.stop_listening(*recorder_);
+}
+
+// UsageError when it is of another run; FileError when it is damaged, or when there are results that belong to none.
+void RecordedRun::look_for_checkpoint(const Scenario& scenario) {
+  if (!can_archive()) throw UsageError("this plica was built without HDF5: it has no checkpoints to resume from");
+  std::string complaint;
+  checkpoint_ = read_checkpoint(out_, complaint);
+  if (!complaint.empty()) notes_.push_back(complaint + "; going on from the checkpoint before it");
+  if (!checkpoint_) {
+    if (holds_steps(out_))
+      throw FileError(out_.string() +
+                      ": holds results without a checkpoint; begin anew with --overwrite, or give another --out");
+    return;
+  }
+  const std::string now = resolved_toml(scenario);
+  if (const auto other = other_scenario(checkpoint_->scenario, now))
+    throw UsageError(
+        fmt::format("{}: the checkpoint is of another scenario: {}; only [time], [stop] and [output] may change: give "
+                    "another --out",
+                    out_.string(), *other));
+  const std::string at_rest = fingerprint(simulation_.model().tissue);
+  if (checkpoint_->at_rest != at_rest)
+    throw UsageError(fmt::format("{}: the checkpoint is of another embryo ({}; this one has {}); has its mesh changed?",
+                                 out_.string(), checkpoint_->at_rest, at_rest));
+  if (checkpoint_->program != version())
+    notes_.push_back(fmt::format("{} was written by version {}; what follows may differ from it in the last digits",
+                                 out_.string(), checkpoint_->program));
+  // What ended the run may not end it any more: the next step is asked.
+  if (other_stop(checkpoint_->scenario, now)) checkpoint_->run.criterion_met = checkpoint_->run.at_equilibrium = false;
+}
+
+bool RecordedRun::begin() {
+  const bool goes_on = checkpoint_.has_value();
+  if (goes_on) {
+    try {
+      simulation_.go_on_from(std::move(checkpoint_->run), checkpoint_->record.rows.back());
+    } catch (const UnfitMemory& error) {
+      throw FileError(out_.string() + ": the checkpoint is damaged: " + error.what());
+    }
+    recorder_->go_on(input_toml_, std::move(checkpoint_->record));
+    checkpoint_.reset();
+  } else {
+    recorder_->begin(input_toml_);
+  }
+  simulation_.listen(*recorder_);
+  return goes_on;
+}
+
+nlohmann::ordered_json RecordedRun::finish() {
+  simulation_.stop_listening(*recorder_);
+  return recorder_->finish();
+}
+
+}  // namespace plica
