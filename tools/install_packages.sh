@@ -1,7 +1,7 @@
 #!/bin/bash
 # Installs the packages of Debian (12 or 13) that plica needs: with root or sudo, and only when some are missing.
-# Usage: tools/install_packages.sh [GROUP...], of: build libraries viewer browser firefox tests checks tidy pictures
-# fuzz. Without a group: all of them.
+# Usage: tools/install_packages.sh [GROUP...], of: build libraries viewer browser firefox python tests checks tidy
+# pictures fuzz. Without a group: all of them.
 set -euo pipefail
 
 # The one list of packages. docs/dependencies.md says why each library is here.
@@ -16,6 +16,8 @@ declare -A packages=(
   [browser]="chromium fonts-dejavu-core"
   # To test it in a second browser, ./test --all: on a screen without a device, without which Firefox offers no WebGL.
   [firefox]="firefox-esr fonts-dejavu-core xvfb xauth libgl1-mesa-dri"
+  # To build and test the Python package (tools/python_environment.sh).
+  [python]="python3-dev python3-venv"
   [tests]="libgtest-dev libbenchmark-dev zlib1g-dev"
   [checks]="clang-format python3 python3-vtk9 python3-pandas python3-matplotlib"
   [tidy]="clang-tidy"
@@ -28,7 +30,7 @@ declare -A packages=(
 )
 
 groups=("$@")
-[ ${#groups[@]} -gt 0 ] || groups=(build libraries viewer browser firefox tests checks tidy pictures fuzz)
+[ ${#groups[@]} -gt 0 ] || groups=(build libraries viewer browser firefox python tests checks tidy pictures fuzz)
 
 wanted=()
 for group in "${groups[@]}"; do

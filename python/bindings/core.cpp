@@ -1,0 +1,178 @@
+// The module plica._core: what the package's Python is written on. Not for users.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include "core/threads.hpp"
+#include "core/version.hpp"
+#include "errors.hpp"
+#include "record/checkpoint.hpp"
+#include "scenario/advice.hpp"
+#include "scenario/builtin.hpp"
+#include "scenario/print.hpp"
+#include "show/looks.hpp"
+#include "simulation.hpp"
+#include "study/calibrate.hpp"
+#include "thread_count.hpp"
+#include "tissue/hexahedral_mesh.hpp"
+
+namespace plica::python {
+namespace {
+
+using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+using Whole = nb::ndarray<const int, nb::c_contig, nb::device::cpu>;
+
+/// Cells as a program has them: arrays whose shapes and numbers have been looked at.
+std::shared_ptr<const HexahedralMesh> mesh_of(const Numbers& points, const Whole& hexahedra,
+                                              const std::vector<int>& apical_faces,
+                                              const std::map<std::string, std::vector<bool>>& arrays) {
+  auto mesh = std::make_shared<HexahedralMesh>();
+  for (std::size_t n = 0; n < points.shape(0); ++n)
+    mesh->points.emplace_back(points.data()[3 * n], points.data()[3 * n + 1], points.data()[3 * n + 2]);
+  for (std::size_t c = 0; c < hexahedra.shape(0); ++c) {
+    auto& cell = mesh->cells.emplace_back();
+    for (std::size_t i = 0; i < 8; ++i) cell[i] = NodeId(hexahedra.data()[8 * c + i]);
+  }
+  mesh->apical_faces = apical_faces;
+  for (const auto& [name, cells] : arrays) mesh->arrays[name] = cells;
+  return mesh;
+}
+
+CheckedScenario load(const std::string& name, const std::string& file, const std::string& text,
+                     const std::vector<std::string>& overrides, const std::map<std::string, std::vector<int>>& regions,
+                     const std::shared_ptr<const HexahedralMesh>& mesh) {
+  CheckedScenario checked{{name, file, text}, load_scenario({name, file, text}, overrides)};
+  for (const auto& [region, ids] : regions) checked.scenario.regions[region] = RegionInput{.ids = ids};
+  checked.scenario.embryo.mesh = mesh;
+  return checked;
+}
+
+nb::dict calibration(const CheckedScenario& scenario, const std::vector<std::string>& overrides,
+                     const std::map<std::string, std::pair<double, double>>& vary,
+                     const std::map<std::string, std::pair<double, double>>& targets, int most_trials,
+                     const nb::callable& on_trial) {
+  CalibrationProblem problem{scenario.source, overrides, {}, {}, most_trials};
+  for (const auto& [key, bounds] : vary) problem.keys.push_back({key, bounds.first, bounds.second});
+  for (const auto& [name, target] : targets) problem.targets.push_back({name, target.first, target.second});
+  std::optional<nb::python_error> raised;
+  CalibrationHooks hooks;
+  hooks.stop_requested = [&] {
+    if (raised) return true;
+    const nb::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() != 0) raised.emplace();
+    return raised.has_value();
+  };
+  const auto as_dict = [&](const Trial& trial) {
+    nb::dict row, values, found;
+    for (std::size_t k = 0; k < trial.values.size(); ++k) values[problem.keys[k].key.c_str()] = trial.values[k];
+    for (std::size_t t = 0; t < trial.found.size(); ++t)
+      found[problem.targets[t].name.c_str()] = trial.found[t] ? nb::cast(*trial.found[t]) : nb::none();
+    row["trial"] = trial.number;
+    row["values"] = values;
+    row["found"] = found;
+    row["failure"] = trial.failure;
+    row["worst_miss"] = trial.worst_miss;
+    row["wall_s"] = trial.wall_s;
+    return row;
+  };
+  hooks.on_trial = [&](const Trial& trial, bool best) {
+    const nb::gil_scoped_acquire held;
+    try {
+      on_trial(as_dict(trial), best);
+    } catch (nb::python_error& error) {
+      raised.emplace(std::move(error));
+    }
+  };
+  Calibration result;
+  {
+    const nb::gil_scoped_release free;
+    const ThreadCount count(threads_for(0, 0));
+    result = calibrate(problem, hooks);
+  }
+  if (raised) throw std::move(*raised);
+  nb::dict answer;
+  const char* ends[] = {"met", "not_met", "trials_spent", "interrupted"};
+  answer["end"] = ends[static_cast<int>(result.end)];
+  answer["trials"] = result.trials;
+  answer["best"] = result.best ? nb::object(as_dict(*result.best)) : nb::none();
+  return answer;
+}
+
+/// How results look: the quantities that colour an embryo, by which colours, and from where it is seen.
+nb::dict looks() {
+  nb::dict fields, views_of, answer;
+  for (const ColourField& field : colour_fields()) {
+    nb::dict row;
+    row["label"] = field.title();
+    row["array"] = field.array;
+    row["on_nodes"] = field.on_nodes;
+    row["kind"] = field.kind == ScaleKind::from_zero ? "from_zero" : field.kind == ScaleKind::about ? "about" : "steps";
+    row["centre"] = field.centre;
+    std::vector<std::tuple<double, double, double>> colours;
+    for (const Rgb& rgb : field.map().colours) colours.emplace_back(rgb[0], rgb[1], rgb[2]);
+    row["colours"] = colours;
+    fields[field.name.c_str()] = row;
+  }
+  for (const View& view : views()) {
+    nb::dict row;
+    row["sight"] = std::tuple(view.sight.x(), view.sight.y(), view.sight.z());
+    row["up"] = std::tuple(view.up.x(), view.up.y(), view.up.z());
+    row["cut_axis"] = view.cut_axis;
+    row["cut_um"] = view.cut_um;
+    views_of[view.name.c_str()] = row;
+  }
+  answer["fields"] = fields;
+  answer["views"] = views_of;
+  return answer;
+}
+
+}  // namespace
+
+NB_MODULE(_core, module) {
+  translate_errors();
+  module.attr("version") = version();
+  module.attr("scenarios") = [] {
+    nb::dict texts;
+    for (const BuiltinScenario& scenario : builtin_scenarios())
+      texts[std::string(scenario.name).c_str()] = std::string(scenario.toml);
+    return texts;
+  }();
+  nb::class_<HexahedralMesh>(module, "Mesh");
+  module.def("mesh", &mesh_of, nb::arg("points"), nb::arg("hexahedra"), nb::arg("apical_faces"), nb::arg("arrays"));
+  nb::class_<CheckedScenario>(module, "Scenario")
+      .def_prop_ro("title", [](const CheckedScenario& s) { return s.scenario.title; })
+      .def("toml", [](const CheckedScenario& s) { return resolved_toml(s.scenario); })
+      .def("advice", [](const CheckedScenario& s) {
+        const nb::gil_scoped_release free;
+        const ThreadCount count(1);
+        return advice(s.scenario, *make_model(s.scenario));
+      });
+  module.def(
+      "find",
+      [](const std::string& name_or_path) {
+        const ScenarioSource found = find_scenario(name_or_path);
+        return std::tuple(found.name, found.file, found.text);
+      },
+      nb::arg("name_or_path"));
+  module.def("load", &load, nb::arg("name"), nb::arg("file"), nb::arg("text"), nb::arg("overrides"), nb::arg("regions"),
+             nb::arg("mesh").none());
+  module.def("calibrate", &calibration, nb::arg("scenario"), nb::arg("overrides"), nb::arg("vary"), nb::arg("targets"),
+             nb::arg("most_trials"), nb::arg("on_trial"));
+  module.def(
+      "scenario_of_saved",
+      [](const nb::bytes& saved) {
+        return read_checkpoint_bytes({saved.c_str(), saved.size()}).scenario;
+      },
+      nb::arg("saved"));
+  module.def("looks", &looks);
+  bind_simulation(module);
+}
+
+}  // namespace plica::python

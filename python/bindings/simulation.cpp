@@ -1,0 +1,321 @@
+#include "simulation.hpp"
+
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+#include <pthread.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "arrays.hpp"
+#include "core/threads.hpp"
+#include "core/units.hpp"
+#include "core/version.hpp"
+#include "errors.hpp"
+#include "measure/cell_columns.hpp"
+#include "measure/cells.hpp"
+#include "mechanics/energy.hpp"
+#include "record/checkpoint.hpp"
+#include "scenario/advice.hpp"
+#include "scenario/print.hpp"
+#include "scenario/setup.hpp"
+#include "simulation/crossing_warning.hpp"
+#include "thread_count.hpp"
+#include "tissue/faces.hpp"
+
+namespace plica::python {
+namespace {
+
+std::unique_ptr<Simulation> simulation_of(const Scenario& scenario, int threads) {
+  const nb::gil_scoped_release free;
+  const ThreadCount count(threads);
+  return std::make_unique<Simulation>(scenario);
+}
+
+nb::dict measures(const Simulation& simulation) {
+  nb::dict result;
+  const Observation& row = simulation.measures();
+  const auto put = [&](const char* name, const std::optional<double>& value) {
+    result[name] = value ? nb::cast(*value) : nb::none();
+  };
+  for (std::size_t c = 0; c < columns().size(); ++c)
+    if (columns()[c].in_series) put(std::string(columns()[c].name).c_str(), row.values[c]);
+  const std::vector<Monitor>& monitors = simulation.observer().monitors();
+  for (std::size_t m = 0; m < row.monitors.size(); ++m) put(monitors[m].column().c_str(), row.monitors[m]);
+  return result;
+}
+
+nb::dict cell_data(const Simulation& simulation) {
+  nb::dict result;
+  const MeasuredCells measured(simulation.model(), simulation.state());
+  for (const CellColumn& column : cell_columns())
+    if (column.in_csv) result[std::string(column.name).c_str()] = array_of(column.values(measured));
+  return result;
+}
+
+nb::dict regions(const Simulation& simulation) {
+  nb::dict result;
+  for (const auto& [name, cells] : simulation.model().tissue.regions) result[name.c_str()] = array_of(cells);
+  return result;
+}
+
+nb::dict energies(const Simulation& simulation) {
+  nb::dict result;
+  const std::vector<std::string> labels = energy_labels(simulation.model());
+  for (std::size_t l = 0; l < simulation.energies().size(); ++l) {
+    const auto& [active, stored, dissipated] = simulation.energies()[l];
+    nb::dict row;
+    row["active"] = active;
+    row["stored"] = stored;
+    row["dissipated"] = dissipated;
+    result[labels[l].c_str()] = row;
+  }
+  return result;
+}
+
+std::vector<std::string> laws(const Simulation& simulation, bool active_only) {
+  std::vector<std::string> labels;
+  for (const auto& law : simulation.model().laws)
+    if (law->is_active() || !active_only) labels.push_back(law->label());
+  return labels;
+}
+
+nb::object forces(const Simulation& simulation, const std::string& law) {
+  const std::vector<std::string> all = laws(simulation, false);
+  if (std::ranges::find(all, law) == all.end()) {
+    std::string names;
+    for (const std::string& name : all) names += (names.empty() ? "" : ", ") + name;
+    throw UsageError("there is no law \"" + law + "\"; there are: " + names);
+  }
+  return array_of(std::span<const Vec3>(forces_of_law(simulation.model(), simulation.state(), law)));
+}
+
+nb::object activity(const Simulation& simulation, const std::string& label) {
+  const Model& model = simulation.model();
+  const State& state = simulation.state();
+  for (std::size_t l = 0; l < model.laws.size(); ++l) {
+    if (model.laws[l]->label() != label || !model.laws[l]->is_active()) continue;
+    std::vector<double> result;
+    for (std::size_t c = 0; c < model.tissue.cells.size(); ++c)
+      result.push_back(model.laws[l]->activity_of(CellId(c), state.time_s, state.internals[l]).value_or(std::nan("")));
+    return array_of(std::move(result));
+  }
+  std::string names;
+  for (const std::string& name : laws(simulation, true)) names += (names.empty() ? "" : ", ") + name;
+  throw UsageError("no cells act by \"" + label + "\"; they do by: " + names);
+}
+
+nb::object pressures_Pa(const Simulation& simulation) {
+  std::vector<double> result;
+  for (const double pressure : simulation.state().pressures(simulation.model()))
+    result.push_back(pressure / units::pascal);
+  return array_of(std::move(result));
+}
+
+nb::object neighbours(const Simulation& simulation) {
+  std::vector<std::pair<int, int>> pairs;
+  for (const Face& face : faces_of(simulation.model().tissue, CellSide::lateral))
+    if (face.beyond) pairs.push_back(std::minmax(face.cell.number(), face.beyond->number()));
+  std::ranges::sort(pairs);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  std::vector<int> numbers;
+  for (const auto& [a, b] : pairs) numbers.insert(numbers.end(), {a, b});
+  return array_of(std::move(numbers), 2);
+}
+
+const char* status(const Simulation& simulation) {
+  switch (simulation.status()) {
+    case RunStatus::under_way:
+      return "under_way";
+    case RunStatus::equilibrium:
+      return "equilibrium";
+    case RunStatus::end_time:
+      return "end_time";
+    case RunStatus::failed:
+      return "failed";
+  }
+  return "";
+}
+
+}  // namespace
+
+SimulationOf::Turn::Turn(SimulationOf& owner) : owner_(owner) {
+  if (owner.is_busy_.exchange(true))
+    throw std::runtime_error("this simulation is taking a step in another thread; wait for it, or use a copy()");
+}
+
+SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads, std::unique_ptr<Simulation> simulation)
+    : scenario_(std::make_unique<CheckedScenario>(scenario)), simulation_(std::move(simulation)), threads_(threads) {
+  heed_signals();
+}
+
+SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads)
+    : SimulationOf(scenario, threads, simulation_of(scenario.scenario, threads)) {
+  threads_ = threads_for(threads, simulation_->model().tissue.elements.size());
+}
+
+SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads, const nb::bytes& saved)
+    : SimulationOf(scenario, threads) {
+  Checkpoint checkpoint = read_checkpoint_bytes({saved.c_str(), saved.size()});
+  if (checkpoint.at_rest != fingerprint(simulation_->model().tissue))
+    throw FileError("what was saved is of another embryo; has its mesh changed?");
+  if (checkpoint.record.rows.empty()) throw FileError("what was saved has no measures");
+  try {
+    const ThreadCount count(threads_);
+    simulation_->go_on_from(std::move(checkpoint.run), std::move(checkpoint.record.rows.back()));
+  } catch (const UnfitMemory& error) {
+    throw FileError(std::string("what was saved is damaged: ") + error.what());
+  }
+}
+
+// Python's signal handlers run in its main thread only, when it asks: seldom enough to cost nothing.
+void SimulationOf::heed_signals() {
+  using Clock = std::chrono::steady_clock;
+  simulation_->stop_when([this, last = Clock::now()]() mutable {
+    if (raised_) return true;
+    if (record_ && record_->has_failed()) return true;
+    if (Clock::now() - last < std::chrono::milliseconds(50)) return false;
+    const nb::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() != 0) raised_.emplace();
+    last = Clock::now();
+    return raised_.has_value();
+  });
+}
+
+std::unique_ptr<SimulationOf> SimulationOf::copy() {
+  const Turn turn(*this);
+  const ThreadCount count(threads_);
+  return std::unique_ptr<SimulationOf>(
+      new SimulationOf(*scenario_, threads_, std::make_unique<Simulation>(*simulation_)));
+}
+
+bool SimulationOf::step(double until_s) {
+  const Turn turn(*this);
+  bool more = false;
+  {
+    const nb::gil_scoped_release free;
+    const ThreadCount count(threads_);
+    more = simulation_->step(until_s);
+  }
+  if (raised_) {
+    nb::python_error error = std::move(*raised_);
+    raised_.reset();
+    throw error;
+  }
+  if (!more && simulation_->status() == RunStatus::failed)
+    throw GaveUp{simulation_->failure(), simulation_->failed_cell(), simulation_->time_s()};
+  return more;
+}
+
+void SimulationOf::set_activity(const std::string& law, std::vector<double> activities) {
+  const Turn turn(*this);
+  simulation_->set_activity(law, std::move(activities));
+}
+
+nb::bytes SimulationOf::save() {
+  const Turn turn(*this);
+  Checkpoint checkpoint{version(), resolved_toml(scenario_->scenario), {}, simulation_->memory(), {}};
+  const ThreadCount count(threads_);
+  checkpoint.at_rest = fingerprint(make_tissue(scenario_->scenario));
+  checkpoint.record.rows.push_back(simulation_->measures());
+  const std::string bytes = checkpoint_bytes(checkpoint);
+  return nb::bytes(bytes.data(), bytes.size());
+}
+
+std::vector<std::string> SimulationOf::begin_record(const std::string& out, const std::string& start) {
+  const Turn turn(*this);
+  const nb::gil_scoped_release free;
+  auto record = std::make_unique<RecordedRun>(out, scenario_->scenario, scenario_->source, *simulation_,
+                                              start == "resume"      ? RecordedRun::Start::resumed
+                                              : start == "overwrite" ? RecordedRun::Start::over
+                                                                     : RecordedRun::Start::fresh);
+  std::vector<std::string> notes = record->notes();
+  if (record->is_finished()) {
+    notes.push_back(out + ": the run is finished; nothing is left to do");
+    return notes;
+  }
+  const ThreadCount count(threads_);
+  record->begin();
+  record_ = std::move(record);
+  return notes;
+}
+
+std::string SimulationOf::end_record() {
+  const Turn turn(*this);
+  const nb::gil_scoped_release free;
+  const std::unique_ptr<RecordedRun> record = std::move(record_);
+  return record->finish().dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+void bind_simulation(nb::module_& module) {
+  pthread_atfork(nullptr, nullptr, [] { ThreadCount::is_forked = true; });
+  using S = SimulationOf;
+  // A function of the simulation that only looks.
+  const auto looks = [](auto look) { return [look](S& self) { return self.with(look); }; };
+  const auto of_state = [looks](auto member) {
+    return looks([member](const Simulation& s) { return array_of(std::span<const Vec3>(s.state().*member)); });
+  };
+  const auto of_tissue = [looks](auto take) {
+    return looks([take](const Simulation& s) { return take(s.model().tissue); });
+  };
+  nb::class_<S>(module, "Simulation")
+      .def(nb::init<const CheckedScenario&, int>(), nb::arg("scenario"), nb::arg("threads"))
+      .def(nb::init<const CheckedScenario&, int, const nb::bytes&>(), nb::arg("scenario"), nb::arg("threads"),
+           nb::arg("saved"))
+      .def("copy", &S::copy)
+      .def("step", &S::step, nb::arg("until_s"))
+      .def("set_activity", &S::set_activity, nb::arg("law"), nb::arg("activities"))
+      .def("save", &S::save)
+      .def("begin_record", &S::begin_record, nb::arg("out"), nb::arg("start"))
+      .def("end_record", &S::end_record)
+      .def_prop_ro("is_recording", &S::is_recording)
+      .def_prop_ro("threads", &S::threads)
+      .def_prop_ro("status", looks([](const Simulation& s) { return status(s); }))
+      .def_prop_ro(
+          "advice",
+          [](S& self) { return self.with([&](const Simulation& s) { return advice(self.scenario(), s.model()); }); })
+      .def_prop_ro("failure", looks([](const Simulation& s) { return s.failure(); }))
+      .def_prop_ro("time_s", looks([](const Simulation& s) { return s.time_s(); }))
+      .def_prop_ro("end_s", looks([](const Simulation& s) { return s.controls().end_s; }))
+      .def_prop_ro("steps", looks([](const Simulation& s) { return s.steps(); }))
+      .def_prop_ro("divisions", looks([](const Simulation& s) { return s.divisions(); }))
+      .def_prop_ro("computing_s", looks([](const Simulation& s) { return s.computing_s(); }))
+      .def_prop_ro("measures", looks(measures))
+      .def_prop_ro("crossing_warning", looks(crossing_warning))
+      .def_prop_ro("positions", of_state(&State::positions))
+      .def_prop_ro("velocities", of_state(&State::velocities))
+      .def_prop_ro("pressures", looks(pressures_Pa))
+      .def_prop_ro("cell_data", looks(cell_data))
+      .def_prop_ro("regions", looks(regions))
+      .def_prop_ro("neighbours", looks(neighbours))
+      .def_prop_ro("energies", looks(energies))
+      .def_prop_ro("rest_positions",
+                   of_tissue([](const Tissue& t) { return array_of(std::span<const Vec3>(t.rest_positions)); }))
+      .def_prop_ro("hexahedra", of_tissue([](const Tissue& t) { return array_of_ids(t.elements, 8); }))
+      .def_prop_ro("hexahedron_cell", of_tissue([](const Tissue& t) {
+                     std::vector<int> cells;
+                     for (const CellId cell : t.element_cell) cells.push_back(cell.number());
+                     return array_of(std::move(cells));
+                   }))
+      .def(
+          "laws", [](S& self, bool active) { return self.with([&](const Simulation& s) { return laws(s, active); }); },
+          nb::arg("active"))
+      .def(
+          "forces",
+          [](S& self, const std::string& law) {
+            return self.with([&](const Simulation& s) { return forces(s, law); });
+          },
+          nb::arg("law"))
+      .def(
+          "activity",
+          [](S& self, const std::string& law) {
+            return self.with([&](const Simulation& s) { return activity(s, law); });
+          },
+          nb::arg("law"));
+}
+
+}  // namespace plica::python

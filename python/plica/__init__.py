@@ -1,0 +1,42 @@
+"""plica simulates how sheets of living cells fold: tissue in, mechanics solved, folds measured and shown.
+
+>>> import plica
+>>> sim = plica.Simulation("drosophila")
+>>> sim.run(until_min=1)
+>>> round(sim.measures["furrow_depth_um"], 1)
+9.9
+"""
+from __future__ import annotations
+
+from ._core import version as __version__
+from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaError, ScenarioError
+from .results import Frame, Run
+from .results import open_run as open
+from .scenario import Scenario, Tissue, builtin_scenarios
+from .simulation import Simulation, Step, load
+from .studies import Calibration, Comparison, Trial, calibrate, compare, render
+
+__all__ = [
+    "Calibration",
+    "Comparison",
+    "Diagnostic",
+    "FileError",
+    "Frame",
+    "MissingExtra",
+    "NumericsError",
+    "PlicaError",
+    "Run",
+    "Scenario",
+    "ScenarioError",
+    "Simulation",
+    "Step",
+    "Tissue",
+    "Trial",
+    "__version__",
+    "builtin_scenarios",
+    "calibrate",
+    "compare",
+    "load",
+    "open",
+    "render",
+]

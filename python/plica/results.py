@@ -1,0 +1,349 @@
+"""What a run has left in its directory."""
+from __future__ import annotations
+
+import fcntl
+import html
+import importlib
+import json
+import math
+import os
+import xml.etree.ElementTree as xml
+import zlib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional, Union, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import FileError, MissingExtra
+from .scenario import Scenario
+
+if TYPE_CHECKING:
+    import pandas
+
+__all__ = ["Run", "Frame", "open_run"]
+
+EXTRAS = {"pandas": "plot", "matplotlib": "plot", "pyvista": "plot", "meshio": "plot", "IPython": "notebook"}
+
+
+def _needed(package: str, what: str) -> Any:
+    """A package that only this needs, imported now."""
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        name = package.split(".")[0]
+        raise MissingExtra(what, name, EXTRAS[name]) from error
+
+
+def _pandas(what: str) -> Any:
+    return _needed("pandas", what)
+
+
+def _grid(points: NDArray[Any], hexahedra: NDArray[Any], point_data: dict[str, Any], cell_data: dict[str, Any]) -> Any:
+    pyvista = _needed("pyvista", "a mesh for PyVista")
+    cells = np.column_stack([np.full(len(hexahedra), 8), hexahedra]).ravel()
+    grid = pyvista.UnstructuredGrid(cells, np.full(len(hexahedra), pyvista.CellType.HEXAHEDRON), np.array(points))
+    for name, values in point_data.items():
+        grid.point_data[name] = values
+    for name, values in cell_data.items():
+        grid.cell_data[name] = values
+    return grid
+
+
+class Frame:
+    """A moment of a run, as it lies in one of its ``.vtu`` files.
+
+    Attributes
+    ----------
+    path : Path
+    time_s : float
+        Of the moment, s.
+    points : ndarray of float, shape (nodes, 3)
+        Where the nodes are, µm.
+    hexahedra : ndarray of int, shape (elements, 8)
+        Nodes of the elements, in VTK's order, the last four on the apical side.
+    point_data, cell_data : dict of str to ndarray
+        Arrays by node and by element, units in the names.
+    """
+
+    def __init__(self, path: Path, time_s: float) -> None:
+        self.path, self.time_s = path, time_s
+        arrays = _read_vtu(path)
+        self.points: NDArray[np.float64] = next(iter(arrays["Points"].values()))
+        cells = arrays["Cells"]
+        self.hexahedra: NDArray[np.int64] = cells["connectivity"].reshape(-1, 8)
+        self.point_data: dict[str, NDArray[Any]] = arrays["PointData"]
+        self.cell_data: dict[str, NDArray[Any]] = arrays["CellData"]
+
+    @property
+    def time_min(self) -> float:
+        """Of the moment, minutes."""
+        return self.time_s / 60
+
+    def to_pyvista(self) -> Any:
+        """The frame as a ``pyvista.UnstructuredGrid``."""
+        return _grid(self.points, self.hexahedra, self.point_data, self.cell_data)
+
+    def to_meshio(self) -> Any:
+        """The frame as a ``meshio.Mesh``."""
+        meshio = _needed("meshio", "a mesh for meshio")
+        cell_data = {name: [values] for name, values in self.cell_data.items()}
+        return meshio.Mesh(self.points, [("hexahedron", self.hexahedra)], point_data=self.point_data, cell_data=cell_data)
+
+    def __repr__(self) -> str:
+        return f"Frame(at {self.time_min:.4g} min, {len(self.hexahedra)} elements)"
+
+
+class Frames(Sequence[Frame]):
+    """The frames of a run in the order of time, read from their files when asked for."""
+
+    def __init__(self, directory: Path) -> None:
+        listing = directory / "frames.pvd"
+        try:
+            root = xml.parse(listing).getroot()
+            self._files = [
+                (float(one.attrib["timestep"]), directory / one.attrib["file"]) for one in root.iter("DataSet")
+            ]
+        except FileNotFoundError:
+            self._files = []
+        except (OSError, ValueError, KeyError, xml.ParseError) as error:
+            raise FileError(f"{listing}: cannot be read: {error}") from error
+
+    @property
+    def times_s(self) -> list[float]:
+        """Their times, s."""
+        return [time_s for time_s, _ in self._files]
+
+    def at(self, time_min: float) -> Frame:
+        """The frame nearest to a time, minutes."""
+        if not self._files:
+            raise FileError("the run has no frame")
+        return self[min(range(len(self)), key=lambda i: abs(self._files[i][0] - 60 * time_min))]
+
+    def __len__(self) -> int:
+        return len(self._files)
+
+    @overload
+    def __getitem__(self, index: int) -> Frame: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Frame]: ...
+    def __getitem__(self, index: Union[int, slice]) -> Union[Frame, list[Frame]]:
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        time_s, path = self._files[index]
+        return Frame(path, time_s)
+
+    def __repr__(self) -> str:
+        return f"Frames({len(self)}, to {self.times_s[-1] / 60:.4g} min)" if self._files else "Frames(none)"
+
+
+class Run:
+    """A directory of results: of a run that has finished, is under way, or was killed.
+
+    Tables are read when asked for, and again the next time, so that a run under way shows how far it is.
+
+    Parameters
+    ----------
+    directory : str or path
+
+    Raises
+    ------
+    FileError
+        There is no run.
+    """
+
+    def __init__(self, directory: Union[str, os.PathLike[str]]) -> None:
+        self.directory = Path(directory)
+        if not self.directory.is_dir():
+            raise FileError(f"{self.directory}: there is no such directory")
+        if not (self.directory / "series.csv").is_file():
+            raise FileError(f"{self.directory}: holds no run (no series.csv)")
+
+    @property
+    def series(self) -> pandas.DataFrame:
+        """A row a step; a column of no value is NaN."""
+        return self._table("series.csv")
+
+    @property
+    def cells(self) -> pandas.DataFrame:
+        """A row a cell and frame."""
+        return self._table("cells.csv", "embryos of over 2000 cells have none, unless output.cells_csv is true")
+
+    @property
+    def midline(self) -> pandas.DataFrame:
+        """A row a cell of the furrow's midline and frame."""
+        return self._table("midline.csv")
+
+    @property
+    def cross_section(self) -> pandas.DataFrame:
+        """A row a cell of three cross-sections and frame."""
+        return self._table("cross_section.csv")
+
+    @property
+    def lineage(self) -> pandas.DataFrame:
+        """A row a daughter, when she is born."""
+        return self._table("lineage.csv", "no cells divide in this scenario")
+
+    @property
+    def frames(self) -> Frames:
+        """The moments that were saved as meshes."""
+        return Frames(self.directory)
+
+    @property
+    def summary(self) -> Optional[dict[str, Any]]:
+        """What the run came to (``summary.json``); None while it has not ended."""
+        path = self.directory / "summary.json"
+        try:
+            return dict(json.loads(path.read_text(encoding="utf-8")))
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError) as error:
+            raise FileError(f"{path}: cannot be read: {error}") from error
+
+    @property
+    def status(self) -> str:
+        """How it ended ("equilibrium", "end_time", "failed", "interrupted"), or "running", or "killed"."""
+        summary = self.summary
+        if summary is not None:
+            return str(summary["status"])
+        return "running" if self._is_held() else "killed"
+
+    @property
+    def scenario(self) -> Scenario:
+        """What it was made from. ScenarioError where another version of plica wrote what this one does not read."""
+        return Scenario(self.directory / "scenario.toml")
+
+    def plot(self, columns: Union[str, Sequence[str]] = ("furrow_depth_um", "max_node_speed_um_per_s"), ax: Any = None) -> Any:
+        """Draws columns of `series` over time, each in axes of its own.
+
+        Parameters
+        ----------
+        columns : str or sequence of str
+        ax : matplotlib Axes, or sequence of them, optional
+            By default a new figure is made.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        plt = _needed("matplotlib.pyplot", "plot")
+        names = [columns] if isinstance(columns, str) else list(columns)
+        series = self.series
+        missing = [name for name in names if name not in series]
+        if missing:
+            raise ValueError(f"series.csv has no column {missing[0]}; it has {', '.join(series.columns)}")
+        if ax is None:
+            figure, drawn = plt.subplots(len(names), 1, sharex=True, squeeze=False, figsize=(6, 1 + 2 * len(names)))
+            axes = list(drawn[:, 0])
+        else:
+            axes = list(np.ravel(np.asarray(ax, dtype=object)))
+            figure = axes[0].figure
+        for name, one in zip(names, axes):
+            one.plot(series["time_s"] / 60, series[name])
+            one.set_ylabel(name)
+        axes[-1].set_xlabel("time (min)")
+        figure.tight_layout()
+        return figure
+
+    def show(self, height: int = 800) -> Any:
+        """The report, inside a notebook.
+
+        Parameters
+        ----------
+        height : int
+            Pixels.
+        """
+        display = _needed("IPython.display", "show")
+        report = self.directory / "report.html"
+        try:
+            page = report.read_text(encoding="utf-8")
+        except OSError as error:
+            raise FileError(f"{report}: cannot be read; `plica report {self.directory}` makes it") from error
+        return display.HTML(f'<iframe srcdoc="{html.escape(page)}" width="100%" height="{int(height)}"></iframe>')
+
+    def _table(self, name: str, why: str = "") -> pandas.DataFrame:
+        path = self.directory / name
+        try:
+            table: pandas.DataFrame = _pandas(name).read_csv(path)
+            return table
+        except FileNotFoundError:
+            raise FileError(f"{path}: there is no such file" + (f"; {why}" if why else "")) from None
+        except (OSError, ValueError) as error:
+            raise FileError(f"{path}: cannot be read: {error}") from error
+
+    def _is_held(self) -> bool:
+        descriptor = os.open(self.directory, os.O_RDONLY | os.O_DIRECTORY)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+        except OSError:  # a file system without locks
+            return False
+        finally:
+            os.close(descriptor)
+        return False
+
+    def __repr__(self) -> str:
+        return f"Run({str(self.directory)!r}, {self.status}, {len(self.frames)} frames)"
+
+    def _repr_html_(self) -> str:
+        summary = self.summary or {}
+        rows = "".join(
+            f"<tr><td style='text-align:left'>{html.escape(name)}</td><td>{html.escape(_short(value))}</td></tr>"
+            for name, value in summary.items()
+            if isinstance(value, (int, float, str)) and not isinstance(value, bool)
+        )
+        return f"{html.escape(repr(self))}<details><summary>summary</summary><table>{rows}</table></details>"
+
+
+def open_run(directory: Union[str, os.PathLike[str]]) -> Run:
+    """Opens a directory of results; ``plica.open``.
+
+    Parameters
+    ----------
+    directory : str or path
+        What ``plica run --out`` or ``Simulation.run(out=...)`` left there, or is still writing; of older versions, too.
+
+    Returns
+    -------
+    Run
+    """
+    return Run(directory)
+
+
+def _short(value: Union[int, float, str]) -> str:
+    return f"{value:.6g}" if isinstance(value, float) and math.isfinite(value) else str(value)
+
+
+# VTK's XML of unstructured grids as plica writes it: appended raw data, in blocks that zlib has compressed.
+TYPES = {"Float64": "<f8", "Float32": "<f4", "Int64": "<i8", "Int32": "<i4", "UInt8": "u1", "Int8": "i1"}
+
+
+def _read_vtu(path: Path) -> dict[str, dict[str, NDArray[Any]]]:
+    try:
+        content = path.read_bytes()
+        head, _, rest = content.partition(b"<AppendedData")
+        appended = rest[rest.index(b"_") + 1 :]
+        root = xml.fromstring(head + b"</VTKFile>")
+        found: dict[str, dict[str, NDArray[Any]]] = {}
+        for group in ("Points", "Cells", "PointData", "CellData"):
+            found[group] = {}
+            for one in root.findall(f"./UnstructuredGrid/Piece/{group}/DataArray"):
+                values = np.frombuffer(b"".join(_blocks(appended, int(one.attrib["offset"]))), TYPES[one.attrib["type"]])
+                width = int(one.attrib.get("NumberOfComponents", "1"))
+                found[group][one.attrib.get("Name", group)] = values.reshape(-1, width) if width > 1 else values
+        if len(found["Points"]) != 1 or "connectivity" not in found["Cells"]:
+            raise ValueError("it has no points or no cells")
+        return found
+    except (OSError, ValueError, KeyError, zlib.error, xml.ParseError) as error:
+        raise FileError(f"{path}: cannot be read as a frame: {error}") from error
+
+
+def _blocks(appended: bytes, offset: int) -> Iterator[bytes]:
+    count = int(np.frombuffer(appended, "<u8", 1, offset)[0])
+    sizes = np.frombuffer(appended, "<u8", count, offset + 24)
+    start = offset + 24 + 8 * count
+    for size in map(int, sizes):
+        yield zlib.decompress(appended[start : start + size])
+        start += size

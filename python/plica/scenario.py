@@ -1,0 +1,384 @@
+"""What is simulated: a scenario, as data that can be read and changed."""
+from __future__ import annotations
+
+import difflib
+import html
+import math
+import os
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from .errors import ScenarioError
+
+__all__ = ["Scenario", "Tissue", "builtin_scenarios"]
+
+GIVEN = "<Python>"  # stands in messages for the file that a scenario made of text or a dict has not
+
+
+def builtin_scenarios() -> dict[str, str]:
+    """Names and titles of the scenarios that plica brings along.
+
+    Returns
+    -------
+    dict of str to str
+        Title by name.
+
+    Examples
+    --------
+    >>> import plica
+    >>> "drosophila" in plica.builtin_scenarios()
+    True
+    """
+    return {name: str(tomllib.loads(text).get("title", "")) for name, text in _core.scenarios.items()}
+
+
+class Tissue:
+    """A tissue of one's own: hexahedral cells, one layer of them, as arrays.
+
+    Parameters
+    ----------
+    points : array_like of float, shape (n, 3)
+        Places of the nodes at rest, µm.
+    hexahedra : array_like of int, shape (cells, 8)
+        The nodes of each cell, from 0, in VTK's order of a hexahedron.
+    apical_faces : array_like of int, shape (cells,), optional
+        Which of its six faces is each cell's apical one: 0 to 5 for its nodes (0,4,7,3), (1,2,6,5), (0,1,5,4), (3,7,6,2),
+        (0,3,2,1), (4,5,6,7). Without it the cells must form one closed layer, and apical is outside.
+    regions : mapping of str to array_like of bool, shape (cells,), optional
+        Named sets of cells, which the scenario's tables can then be about.
+
+    Raises
+    ------
+    ValueError
+        Arrays of another shape or type, numbers that are not finite, nodes that there are not.
+
+    Examples
+    --------
+    >>> import numpy as np, plica
+    >>> x, y, z = np.meshgrid([0, 20, 40], [0, 20], [0, 30], indexing="ij")
+    >>> points = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+    >>> number = np.arange(12).reshape(3, 2, 2)
+    >>> cells = [[number[i + a, b, c] for a, b, c in
+    ...           [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]] for i in (0, 1)]
+    >>> plica.Tissue(points, cells, apical_faces=[5, 5], regions={"left": [True, False]})
+    Tissue(2 cells, 12 nodes, regions: left)
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        hexahedra: ArrayLike,
+        *,
+        apical_faces: Optional[ArrayLike] = None,
+        regions: Optional[Mapping[str, ArrayLike]] = None,
+    ) -> None:
+        self.points = np.array(points, dtype=np.float64)
+        self.hexahedra = _whole_numbers(hexahedra, "hexahedra")
+        if self.points.ndim != 2 or self.points.shape[1] != 3:
+            raise ValueError(f"points: shape {self.points.shape}; give (n, 3): x, y, z of each node, in µm")
+        if not np.isfinite(self.points).all():
+            node = int(np.argwhere(~np.isfinite(self.points))[0, 0])
+            raise ValueError(f"points: node {node} is at {self.points[node]}; give finite numbers")
+        if self.hexahedra.ndim != 2 or self.hexahedra.shape[1] != 8 or len(self.hexahedra) == 0:
+            raise ValueError(f"hexahedra: shape {self.hexahedra.shape}; give (cells, 8): the nodes of each cell")
+        bad = (self.hexahedra < 0) | (self.hexahedra >= len(self.points))
+        if bad.any():
+            cell = int(np.argwhere(bad)[0, 0])
+            raise ValueError(f"hexahedra: cell {cell} has nodes {self.hexahedra[cell]}; there are {len(self.points)}, from 0")
+        self.apical_faces: Optional[NDArray[np.int32]] = None
+        if apical_faces is not None:
+            faces = _whole_numbers(apical_faces, "apical_faces")
+            if faces.shape != (len(self.hexahedra),) or faces.min() < 0 or faces.max() > 5:
+                raise ValueError("apical_faces: give one number from 0 to 5 a cell")
+            self.apical_faces = faces
+        self.regions = {name: _mask(mask, len(self.hexahedra), f"region {name}") for name, mask in (regions or {}).items()}
+
+    def _mesh(self) -> _core.Mesh:
+        return _core.mesh(
+            self.points,
+            self.hexahedra,
+            [] if self.apical_faces is None else self.apical_faces.tolist(),
+            {name: mask.tolist() for name, mask in self.regions.items()},
+        )
+
+    def __repr__(self) -> str:
+        regions = f", regions: {', '.join(self.regions)}" if self.regions else ""
+        return f"Tissue({len(self.hexahedra)} cells, {len(self.points)} nodes{regions})"
+
+
+class Scenario:
+    """Everything that a simulation is made from. It is always a valid one: what would break a rule is refused.
+
+    Parameters
+    ----------
+    source : str, path or mapping
+        The name of a built-in scenario, a TOML file, TOML text (of several lines, or with an "="), or the same as a dict.
+    tissue : Tissue, optional
+        Cells of one's own, instead of an embryo that plica builds.
+
+    Raises
+    ------
+    ScenarioError
+        With all that is wrong, each with its key and what would be right.
+    FileError
+        The file cannot be read.
+    ValueError
+        There is neither a built-in scenario nor a file of that name.
+
+    Examples
+    --------
+    >>> import plica
+    >>> s = plica.Scenario("drosophila")
+    >>> s["contraction.apical.stiffness_nN_per_um"] = 5
+    >>> s["contraction.apical.stiffness_nN_per_um"]
+    5
+    >>> s.diff(plica.Scenario("drosophila"))["contraction.apical.stiffness_nN_per_um"]
+    (5, 4.82)
+    """
+
+    def __init__(self, source: Union[str, os.PathLike[str], Mapping[str, Any]], *, tissue: Optional[Tissue] = None) -> None:
+        self._source: tuple[str, str, str]  # name, file, text
+        if isinstance(source, Mapping):
+            self._source = ("scenario", GIVEN, _toml_of(source))
+        elif isinstance(source, str) and ("\n" in source or "=" in source):
+            self._source = ("scenario", GIVEN, source)
+        else:
+            self._source = _core.find(os.fspath(source))
+        self._changes: dict[str, str] = {}
+        self._regions: dict[str, NDArray[np.bool_]] = {}
+        self._tissue = tissue
+        if tissue is not None:
+            self._changes = {"embryo.shape": '"file"', "embryo.file": f'"{GIVEN}"'}
+        self._load()
+
+    # The one place where a scenario is checked. Nothing of self changes where that fails.
+    def _load(self, changes: Optional[dict[str, str]] = None, regions: Optional[dict[str, NDArray[np.bool_]]] = None) -> None:
+        changes = self._changes if changes is None else changes
+        regions = self._regions if regions is None else regions
+        core = _core.load(
+            *self._source,
+            [f"{key}={value}" for key, value in changes.items()],
+            {name: np.flatnonzero(mask).tolist() for name, mask in regions.items()},
+            None if self._tissue is None else self._tissue._mesh(),
+        )
+        self._core, self._changes, self._regions = core, changes, regions
+        self._resolved: Optional[dict[str, Any]] = None
+
+    @property
+    def name(self) -> str:
+        """The built-in scenario's name, or that of the file without its ending."""
+        return self._source[0]
+
+    @property
+    def title(self) -> str:
+        """What the scenario says it is."""
+        return self._core.title
+
+    @property
+    def tissue(self) -> Optional[Tissue]:
+        """The tissue that it was given; None where plica builds the embryo, or reads it from a file."""
+        return self._tissue
+
+    def to_toml(self) -> str:
+        """The whole scenario as TOML text: every key, with its default filled in.
+
+        Returns
+        -------
+        str
+            What a run leaves as ``scenario.toml``. It loads back to the same scenario.
+        """
+        return self._core.toml()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The whole scenario as nested dicts: every key, with its default filled in."""
+        return tomllib.loads(self.to_toml())
+
+    def __getitem__(self, key: str) -> Any:
+        if self._resolved is None:
+            self._resolved = self.to_dict()
+        value: Any = self._resolved
+        for part in key.split("."):
+            if not isinstance(value, dict) or part not in value:
+                near = difflib.get_close_matches(key, list(dict(_items(self._resolved))), 3)
+                hint = f"; near are: {', '.join(near)}" if near else ""
+                raise KeyError(f"{key}: has no value in this scenario{hint}")
+            value = value[part]
+        return value
+
+    def __setitem__(self, key: str, value: Any) -> None:
+        self.update({key: value})
+
+    def __contains__(self, key: object) -> bool:
+        return key in set(self.keys())
+
+    def keys(self) -> Iterator[str]:
+        """All dotted keys that have a value."""
+        return (key for key, _ in _items(self.to_dict()))
+
+    def update(self, changes: Mapping[str, Any]) -> None:
+        """Changes several keys at once, for changes that make sense together only.
+
+        Parameters
+        ----------
+        changes : mapping of str to value
+            Dotted keys, as in ``plica run --set``, and numbers, texts, lists, tables (dicts) or booleans.
+
+        Raises
+        ------
+        ScenarioError
+            The scenario is then what it was before.
+
+        Examples
+        --------
+        >>> import plica
+        >>> s = plica.Scenario("drosophila")
+        >>> s.update({"elasticity.model": "neo-hookean", "elasticity.relaxation_s": 300})
+        """
+        merged = dict(self._changes)
+        for key, value in changes.items():
+            merged.pop(key, None)  # the last change comes last
+            merged[key] = _toml_value(value, key)
+        self._load(changes=merged)
+
+    def set_region(self, name: str, cells: ArrayLike) -> None:
+        """Makes a region of the cells that an array names, in place of what the scenario says of it.
+
+        Parameters
+        ----------
+        name : str
+            Of the region, new or old.
+        cells : array_like of bool, shape (cells,)
+            True for the cells that are in it, in the order of ``Simulation.cell_data``.
+
+        Raises
+        ------
+        ValueError
+            Not an array of booleans, or no cell is in it.
+        """
+        mask = np.asarray(cells)
+        mask = _mask(mask, len(mask) if mask.ndim else 0, f"region {name}")
+        if not mask.any():
+            raise ValueError(f"region {name}: no cell is in it; let at least one be True")
+        self._load(regions={**self._regions, name: mask.copy()})
+
+    def _check_masks(self, cells: int) -> None:
+        for name, mask in self._regions.items():
+            if len(mask) != cells:
+                problem = f"was given as an array for {len(mask)} cells, and there are {cells}"
+                raise ScenarioError([("", 0, f"region.{name}", problem, "give one boolean a cell")])
+
+    def copy(self) -> Scenario:
+        """Another scenario, the same for now."""
+        other = object.__new__(Scenario)
+        other.__setstate__(self.__getstate__())
+        return other
+
+    def diff(self, other: Scenario) -> dict[str, tuple[Any, Any]]:
+        """In which keys two scenarios differ.
+
+        Returns
+        -------
+        dict of str to (value, value)
+            This one's value and the other's; None where a scenario has none. What a built-in scenario expects of its
+            results is not compared.
+        """
+        mine, others = (dict(_items(scenario.to_dict())) for scenario in (self, other))
+        keys = [key for key in {**mine, **others} if not key.startswith("expect.")]
+        return {key: (mine.get(key), others.get(key)) for key in keys if mine.get(key) != others.get(key)}
+
+    def advice(self) -> list[str]:
+        """What is not wrong, but worth knowing before it runs: lines that begin with "warning: " or "note: "."""
+        return self._core.advice()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scenario):
+            return NotImplemented
+        return self.to_dict() == other.to_dict() and self._tissue is other._tissue
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"source": self._source, "changes": self._changes, "regions": self._regions, "tissue": self._tissue}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._source, self._tissue = state["source"], state["tissue"]
+        self._load(dict(state["changes"]), dict(state["regions"]))
+
+    def __repr__(self) -> str:
+        changed = [f"{key} = {value}" for key, value in self._changes.items() if value != f'"{GIVEN}"']
+        changed += [f"region.{name} of {mask.sum()} cells" for name, mask in self._regions.items()]
+        return f"Scenario({self.name!r}{', with ' if changed else ''}{', '.join(changed)})"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td style='text-align:left'>{html.escape(key)}</td>"
+            f"<td style='text-align:left'>{html.escape(str(value))}</td></tr>"
+            for key, value in _items(self.to_dict())
+        )
+        return (
+            f"<b>{html.escape(self.name)}</b>: {html.escape(self.title)}"
+            f"<details><summary>{html.escape(repr(self))}</summary><table>{rows}</table></details>"
+        )
+
+
+def _items(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            yield from _items(value, f"{before}{key}.")
+        else:
+            yield before + key, value
+
+
+def _mask(cells: Any, count: int, what: str) -> NDArray[np.bool_]:
+    mask = np.asarray(cells)
+    if mask.dtype != np.bool_ or mask.shape != (count,):
+        raise ValueError(f"{what}: an array of {mask.dtype} and shape {mask.shape}; give one boolean a cell ({count})")
+    return mask
+
+
+def _whole_numbers(values: ArrayLike, what: str) -> NDArray[np.int32]:
+    numbers = np.asarray(values)
+    if not np.issubdtype(numbers.dtype, np.integer):
+        raise ValueError(f"{what}: an array of {numbers.dtype}; give whole numbers")
+    if numbers.size and (numbers.min() < -(2**31) or numbers.max() >= 2**31):
+        raise ValueError(f"{what}: numbers go beyond what 32 bits hold")
+    return np.ascontiguousarray(numbers, dtype=np.int32)
+
+
+def _toml_value(value: Any, key: str) -> str:
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    if isinstance(value, (float, np.floating)):
+        number = float(value)
+        return repr(number) if math.isfinite(number) else str(number)  # nan and inf are TOML's, and refused there
+    if isinstance(value, (str, Path)):
+        return _toml_text(str(value))
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_toml_key(k)} = {_toml_value(v, f'{key}.{k}')}" for k, v in value.items()) + "}"
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return "[" + ", ".join(_toml_value(item, key) for item in value) + "]"
+    raise TypeError(f"{key}: a value of type {type(value).__name__}; give a number, text, boolean, list or dict")
+
+
+def _toml_text(text: str) -> str:
+    escaped = "".join(
+        {'"': '\\"', "\\": "\\\\"}.get(c, c if c >= " " and c != "\x7f" else f"\\u{ord(c):04X}") for c in text
+    )
+    return f'"{escaped}"'
+
+
+def _toml_key(key: Any) -> str:
+    text = str(key)
+    return text if text and all(c.isascii() and (c.isalnum() or c in "-_") for c in text) else _toml_text(text)
+
+
+def _toml_of(table: Mapping[str, Any]) -> str:
+    return "".join(f"{_toml_key(key)} = {_toml_value(value, str(key))}\n" for key, value in table.items())

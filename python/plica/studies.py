@@ -1,0 +1,323 @@
+"""Runs beside each other, pictures of them, and values that meet targets."""
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from .results import Frame, Run, _needed, _pandas, open_run
+from .scenario import Scenario
+from .simulation import Simulation
+
+if TYPE_CHECKING:
+    import pandas
+
+__all__ = ["Comparison", "Calibration", "Trial", "compare", "render", "calibrate"]
+
+PathOrRun = Union[Run, str, "os.PathLike[str]"]
+
+
+class Distances(NamedTuple):
+    """How far something lies away: mean, root of the mean square, largest; µm."""
+
+    mean_um: float
+    rms_um: float
+    max_um: float
+
+
+def _distances(lengths: NDArray[np.float64]) -> Distances:
+    return Distances(float(lengths.mean()), float(np.sqrt((lengths**2).mean())), float(lengths.max()))
+
+
+class Comparison:
+    """Two runs beside each other, at the moments of two frames; made by `compare`.
+
+    Attributes
+    ----------
+    a, b : Run
+    frame_a, frame_b : Frame
+    """
+
+    def __init__(self, a: Run, b: Run, time_min: Optional[float]) -> None:
+        self.a, self.b = a, b
+        self.frame_a: Frame = a.frames[-1] if time_min is None else a.frames.at(time_min)
+        self.frame_b: Frame = b.frames[-1] if time_min is None else b.frames.at(time_min)
+
+    @property
+    def scenario(self) -> dict[str, tuple[Any, Any]]:
+        """Keys in which the scenarios differ, with both values."""
+        return self.a.scenario.diff(self.b.scenario)
+
+    @property
+    def summary(self) -> pandas.DataFrame:
+        """The numbers of both summaries: columns a, b and difference (a - b), a row a number."""
+        first, second = self.a.summary or {}, self.b.summary or {}
+
+        def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
+            return {k: float(v) for k, v in summary.items() if isinstance(v, (int, float)) and not isinstance(v, bool)}
+
+        table: pandas.DataFrame = _pandas("summary").DataFrame({"a": numbers(first), "b": numbers(second)})
+        table["difference"] = table["a"] - table["b"]
+        return table
+
+    @property
+    def nodes(self) -> Optional[Distances]:
+        """How far nodes of the same number lie apart; None where the meshes are not the same."""
+        if not np.array_equal(self.frame_a.hexahedra, self.frame_b.hexahedra):
+            return None
+        return _distances(np.linalg.norm(self.frame_a.points - self.frame_b.points, axis=1))
+
+    @cached_property
+    def surface(self) -> Distances:
+        """How far the nodes of a's surface lie from that of b. Needs PyVista."""
+        first = self.frame_a.to_pyvista().extract_surface()
+        second = self.frame_b.to_pyvista().extract_surface().triangulate()
+        return _distances(np.abs(np.asarray(first.compute_implicit_distance(second)["implicit_distance"])))
+
+    def __repr__(self) -> str:
+        apart = self.nodes
+        told = "" if apart is None else f", nodes up to {apart.max_um:.3g} µm apart"
+        return f"Comparison({self.a.directory.name} and {self.b.directory.name}, {len(self.scenario)} keys differ{told})"
+
+
+def compare(a: PathOrRun, b: PathOrRun, *, time_min: Optional[float] = None) -> Comparison:
+    """Holds two runs beside each other.
+
+    Parameters
+    ----------
+    a, b : Run or path
+    time_min : float, optional
+        The frames nearest to this time; by default the last ones.
+
+    Returns
+    -------
+    Comparison
+    """
+    return Comparison(_run_of(a), _run_of(b), time_min)
+
+
+def _run_of(run: PathOrRun) -> Run:
+    return run if isinstance(run, Run) else open_run(run)
+
+
+def render(
+    what: Union[PathOrRun, Frame, Simulation],
+    path: Optional[Union[str, os.PathLike[str]]] = None,
+    *,
+    color: str = "displacement",
+    view: str = "antero-ventral",
+    time_min: Optional[float] = None,
+    size: tuple[int, int] = (1000, 700),
+) -> Any:
+    """Draws an embryo, off screen. Needs PyVista.
+
+    Parameters
+    ----------
+    what : Run, path, Frame or Simulation
+    path : str or path, optional
+        A PNG file to write.
+    color : str
+        What colours it: displacement, speed, area-ratio, pressure, volume-error, volume, contraction, generation, region or
+        self-intersections. Of a simulation, what ``Simulation.cell_data`` has.
+    view : str
+        ventral, antero-ventral, side, cross-section or sagittal-section.
+    time_min : float, optional
+        Of a run: the frame nearest to this time; by default the last.
+    size : (int, int)
+        Width and height, pixels.
+
+    Returns
+    -------
+    ndarray of uint8, shape (height, width, 3)
+        The picture.
+
+    Raises
+    ------
+    ValueError
+        There is no such colour or view.
+    """
+    pyvista = _needed("pyvista", "render")
+    looks = _core.looks()
+    for name, value, known in (("color", color, looks["fields"]), ("view", view, looks["views"])):
+        if value not in known:
+            raise ValueError(f"{name} {value!r}: there is none of that name; there are: {', '.join(known)}")
+    field, seen = looks["fields"][color], looks["views"][view]
+    if isinstance(what, Simulation):
+        grid = what.to_pyvista()
+        grid.point_data["displacement_um"] = what.positions - what.rest_positions
+        grid.point_data["velocity_um_per_s"] = what.velocities
+        for region, cells in what.regions.items():
+            grid.cell_data[f"region_{region}"] = cells[what.hexahedron_cell]
+    else:
+        frame = what if isinstance(what, Frame) else _frame_of(what, time_min)
+        grid = frame.to_pyvista()
+    values, names = _values(grid, field)
+    data = grid.point_data if field["on_nodes"] else grid.cell_data
+    data["colour"] = values
+    sight, up = np.array(seen["sight"], dtype=float), seen["up"]
+    if seen["cut_axis"] is not None:  # what lies before the plane is taken away
+        origin = np.zeros(3)
+        origin[seen["cut_axis"]] = seen["cut_um"]
+        grid = grid.clip(normal=-sight, origin=origin, invert=False)
+    low, high = _range(values, field)
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(size))
+    plotter.background_color = "white"
+    colours = pyvista.LookupTable(np.array([[*(round(255 * c) for c in rgb), 255] for rgb in field["colours"]], dtype=np.uint8)) \
+        if field["kind"] == "steps" else _ramp(field["colours"])
+    options: dict[str, Any] = {"scalar_bar_args": {"title": field["label"], "color": "black"}}
+    if names:
+        options = {"annotations": dict(enumerate(names)), "scalar_bar_args": {"title": field["label"], "color": "black", "n_labels": 0}}
+        low, high = -0.5, len(field["colours"]) - 0.5
+    plotter.add_mesh(grid.extract_surface(), scalars="colour", cmap=colours, clim=(low, high), show_edges=True,
+                     edge_color="#404040", line_width=0.5, **options)
+    plotter.enable_parallel_projection()
+    plotter.camera_position = [tuple(-1000 * sight / np.linalg.norm(sight)), (0.0, 0.0, 0.0), up]
+    plotter.reset_camera()
+    picture = plotter.screenshot(None if path is None else os.fspath(path), return_img=True)
+    plotter.close()
+    return picture
+
+
+def _frame_of(run: PathOrRun, time_min: Optional[float]) -> Frame:
+    frames = _run_of(run).frames
+    return frames[-1] if time_min is None else frames.at(time_min)
+
+
+def _values(grid: Any, field: Mapping[str, Any]) -> tuple[NDArray[np.float64], list[str]]:
+    """What colours it; and, of whole numbers, what they stand for."""
+    if field["array"] == "region":
+        masks = {k.removeprefix("region_"): np.asarray(v) > 0 for k, v in grid.cell_data.items() if k.startswith("region_")}
+        parts = sorted((name for name, mask in masks.items() if not mask.all()))
+        values = np.zeros(grid.n_cells)
+        # The smallest region that a cell is in is drawn last.
+        for name in sorted(parts, key=lambda one: -int(masks[one].sum())):
+            values[masks[name]] = parts.index(name) + 1
+        return values, ["other cells", *parts]
+    data = grid.point_data if field["on_nodes"] else grid.cell_data
+    if field["array"] not in data:
+        raise ValueError(f"there is no {field['array']} in what is to be drawn; there are: {', '.join(data.keys())}")
+    values = np.asarray(data[field["array"]], dtype=float)
+    return (np.linalg.norm(values, axis=1) if values.ndim == 2 else values), []
+
+
+def _range(values: NDArray[np.float64], field: Mapping[str, Any]) -> tuple[float, float]:
+    if field["kind"] == "about":
+        reach = float(np.nanmax(np.abs(values - field["centre"]))) or 1.0
+        return field["centre"] - reach, field["centre"] + reach
+    return 0.0, float(np.nanmax(values)) or 1.0
+
+
+def _ramp(colours: list[tuple[float, float, float]]) -> Any:
+    return _needed("matplotlib.colors", "render").LinearSegmentedColormap.from_list("plica", colours)
+
+
+class Trial(NamedTuple):
+    """One run of a calibration.
+
+    Attributes
+    ----------
+    number : int
+    values : dict of str to float
+        Of the keys.
+    found : dict of str to float or None
+        What the targets came to.
+    failure : str
+        Why there is no value; empty where all have one.
+    worst_miss : float
+        The largest miss, in units of its tolerance: met up to 1.
+    """
+
+    number: int
+    values: dict[str, float]
+    found: dict[str, Optional[float]]
+    failure: str
+    worst_miss: float
+
+
+class Calibration(NamedTuple):
+    """What a calibration came to.
+
+    Attributes
+    ----------
+    end : str
+        "met", "not_met" (no better place nearby), or "trials_spent".
+    best : Trial or None
+    trials : list of Trial
+    scenario : Scenario or None
+        That of the best trial.
+    """
+
+    end: str
+    best: Optional[Trial]
+    trials: list[Trial]
+    scenario: Optional[Scenario]
+
+
+def calibrate(
+    scenario: Union[Scenario, str],
+    vary: Mapping[str, tuple[float, float]],
+    targets: Mapping[str, tuple[float, float]],
+    *,
+    most_trials: int = 40,
+    callback: Optional[Callable[[Trial], object]] = None,
+) -> Calibration:
+    """Finds values of some keys with which a scenario's results meet targets: the same search as ``plica calibrate``.
+
+    Parameters
+    ----------
+    scenario : Scenario or what makes one
+    vary : mapping of str to (float, float)
+        Dotted keys, and between which values each may be.
+    targets : mapping of str to (float, float)
+        Numbers of ``summary.json``, what each is to come to, and within how much.
+    most_trials : int
+        Runs that may be made.
+    callback : callable, optional
+        Called with each `Trial`.
+
+    Raises
+    ------
+    ValueError
+        A target that a summary does not have.
+    ScenarioError
+        A key that is not known, or may not take the values of its bounds.
+
+    Examples
+    --------
+    >>> import plica
+    >>> found = plica.calibrate("division-demo", {"elasticity.young_modulus_Pa": (500, 2000)}, {"steps": (50, 1000)})
+    >>> found.end
+    'met'
+    """
+    base = scenario if isinstance(scenario, Scenario) else Scenario(scenario)
+    if base.tissue is not None or base._regions:
+        raise ValueError("calibrate runs what a file can say: neither a tissue nor regions given as arrays")
+    trials: list[Trial] = []
+
+    def trial_of(row: Mapping[str, Any]) -> Trial:
+        return Trial(row["trial"], row["values"], row["found"], row["failure"], row["worst_miss"])
+
+    def take(row: Mapping[str, Any], _best: bool) -> None:
+        trials.append(trial_of(row))
+        if callback is not None:
+            callback(trials[-1])
+
+    result = _core.calibrate(
+        base._core,
+        [f"{key}={value}" for key, value in base._changes.items()],
+        {key: (float(low), float(high)) for key, (low, high) in vary.items()},
+        {name: (float(value), float(within)) for name, (value, within) in targets.items()},
+        int(most_trials),
+        take,
+    )
+    best = None if result["best"] is None else trial_of(result["best"])
+    found = None
+    if best is not None:
+        found = base.copy()
+        found.update(best.values)
+    return Calibration(result["end"], best, trials, found)

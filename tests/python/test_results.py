@@ -1,0 +1,143 @@
+"""Directories of results from Python: of finished, running, killed and broken runs."""
+import subprocess
+import sys
+
+import numpy as np
+import plica
+import pytest
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    s = plica.Scenario("drosophila")
+    s["time.end_min"] = 1
+    return plica.Simulation(s).run(out=tmp_path_factory.mktemp("results") / "run")
+
+
+def test_tables(run):
+    assert run.series["time_s"].iloc[-1] == 60 and run.summary["time_s"] == 60 and run.status == "end_time"
+    assert set(run.cells["cell_id"]) == set(range(756)) and len(run.midline) > 0 and len(run.cross_section) > 0
+    with pytest.raises(plica.FileError, match="divide"):
+        run.lineage
+    assert run.scenario["time.end_s"] == 60
+
+
+def test_frames(run):
+    frames = run.frames
+    assert len(frames) == len(frames.times_s) >= 5 and frames[-1].time_min == 1 and frames.at(0.3).time_s == 15
+    frame = frames[-1]
+    assert frame.points.shape[1] == 3 and frame.hexahedra.shape == (756, 8)
+    assert np.allclose(frame.points - frames[0].points, frame.point_data["displacement_um"], atol=1e-9)
+    assert set(frame.cell_data) >= {"volume_um3", "region_furrow"}
+    assert [one.time_s for one in frames[1:3]] == [15, 30]
+    with pytest.raises(IndexError):
+        frames[99]
+    assert "elements" in repr(frame) and "Frames" in repr(frames)
+
+
+def test_looks(run):
+    assert "end_time" in repr(run) and "furrow_depth_um" in run._repr_html_()
+    figure = run.plot("furrow_depth_um")
+    assert figure.axes[0].get_ylabel() == "furrow_depth_um"
+    with pytest.raises(ValueError, match="furrow_depth_um"):
+        run.plot("depth")
+
+
+def test_show(run):
+    pytest.importorskip("IPython")
+    if not (run.directory / "report.html").exists():
+        pytest.skip("built without the report's page")
+    assert "<iframe" in run.show().data
+
+
+def test_compare(run, tmp_path):
+    s = run.scenario
+    s["contraction.apical.stiffness_nN_per_um"] = 2
+    other = plica.Simulation(s).run(out=tmp_path / "other")
+    comparison = plica.compare(run, other)
+    assert list(comparison.scenario) == ["contraction.apical.stiffness_nN_per_um"]
+    assert comparison.summary.loc["furrow_depth_um", "difference"] > 0
+    assert 0 < comparison.nodes.mean_um < comparison.nodes.max_um
+    assert plica.compare(run, run.directory).nodes.max_um == 0
+    assert plica.compare(run, other, time_min=0).nodes.max_um == 0
+    assert "keys differ" in repr(comparison)
+
+
+def test_render(run, tmp_path):
+    pytest.importorskip("pyvista")
+    for color in ("displacement", "region", "area-ratio"):
+        picture = plica.render(run, tmp_path / "fold.png", color=color, size=(400, 300))
+        assert picture.shape == (300, 400, 3) and len(np.unique(picture.reshape(-1, 3), axis=0)) > 50
+        assert (tmp_path / "fold.png").stat().st_size > 1000
+    assert plica.render(run.frames[0], view="cross-section", size=(300, 300)).std() > 1
+    with pytest.raises(ValueError, match="area-ratio"):
+        plica.render(run, color="colour")
+
+
+def test_surface_distance(run):
+    pytest.importorskip("pyvista")
+    assert plica.compare(run, run).surface.max_um < 1e-3
+
+
+def test_running_and_killed(tmp_path):
+    code = (
+        "import plica, sys\n"
+        "sim = plica.Simulation('drosophila')\n"
+        f"sim.run(out={str(tmp_path / 'run')!r}, callback=lambda s, step: s.steps == 5 and (print('there', flush=True), sys.stdin.read()))\n"
+    )
+    child = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    assert child.stdout.readline() == "there\n"
+    run = plica.open(tmp_path / "run")
+    assert run.status == "running" and run.summary is None and len(run.series) == 6
+    with pytest.raises(plica.FileError):
+        plica.Simulation("drosophila").run(out=tmp_path / "run", overwrite=True)
+    child.kill()
+    child.wait()
+    assert run.status == "killed" and len(run.frames) >= 1
+    again = plica.Simulation("drosophila").run(out=tmp_path / "run", resume=True, until_min=1)
+    assert again.series["time_s"].is_monotonic_increasing and again.status == "interrupted"
+
+
+def test_no_run(tmp_path):
+    for place in (tmp_path, tmp_path / "none"):
+        with pytest.raises(plica.FileError, match=str(place)):
+            plica.open(place)
+
+
+def test_damaged(run, tmp_path):
+    file = run.frames[1].path
+    whole = file.read_bytes()
+    for cut in (0, 10, 500, len(whole) // 2, len(whole) - 300):
+        file.write_bytes(whole[:cut])
+        with pytest.raises(plica.FileError, match="cannot be read"):
+            run.frames[1]
+    file.write_bytes(whole)
+    saved = tmp_path / "moment.h5"
+    plica.Simulation(run.scenario).save(saved)
+    whole = saved.read_bytes()
+    for cut in (0, 100, len(whole) // 2, len(whole) - 1):
+        saved.write_bytes(whole[:cut])
+        with pytest.raises(plica.FileError, match="moment.h5"):
+            plica.load(saved)
+    with pytest.raises(plica.FileError, match="cannot be read"):
+        plica.load(tmp_path / "none.h5")
+
+
+def test_calibrate():
+    seen = []
+    found = plica.calibrate("division-demo", {"elasticity.young_modulus_Pa": (500, 2000)}, {"steps": (50, 1000)}, callback=seen.append)
+    assert found.end == "met" and found.trials == seen and found.best.failure == ""
+    assert found.scenario["elasticity.young_modulus_Pa"] == found.best.values["elasticity.young_modulus_Pa"]
+    with pytest.raises(ValueError, match="depth"):
+        plica.calibrate("division-demo", {"elasticity.young_modulus_Pa": (500, 2000)}, {"depth": (1, 1)})
+    with pytest.raises(plica.ScenarioError):
+        plica.calibrate("division-demo", {"elasticity.young": (500, 2000)}, {"steps": (1, 1)})
+
+
+def test_import_is_light():
+    code = (
+        "import sys, time; t = time.perf_counter(); import numpy; u = time.perf_counter(); import plica; v = time.perf_counter()\n"
+        "assert not {'pandas', 'matplotlib', 'pyvista', 'IPython', 'tqdm'} & set(sys.modules), sys.modules\n"
+        "print(v - u)"
+    )
+    assert float(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout) < 0.3

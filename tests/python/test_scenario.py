@@ -1,0 +1,167 @@
+"""Scenarios from Python: read, changed, refused, copied."""
+import pickle
+
+import numpy as np
+import plica
+import pytest
+
+KEY = "contraction.apical.stiffness_nN_per_um"
+
+
+def test_sources(tmp_path):
+    text = 'base = "drosophila"\n[time]\nend_min = 3\n'
+    (tmp_path / "mine.toml").write_text(text)
+    as_dict = plica.Scenario({"base": "drosophila", "time": {"end_min": 3}})
+    from_file, from_text = plica.Scenario(tmp_path / "mine.toml"), plica.Scenario(text)
+    assert from_file.name == "mine" and from_file == from_text == as_dict
+    assert as_dict["time.end_s"] == 180
+    assert plica.Scenario(as_dict.to_toml()) == as_dict
+    assert set(plica.builtin_scenarios()) > {"drosophila", "drosophila-living"}
+
+
+def test_keys():
+    s = plica.Scenario("drosophila")
+    before = s.copy()
+    s[KEY] = 5
+    assert s[KEY] == 5 and KEY in s and before[KEY] != 5
+    assert s.diff(before) == {KEY: (5.0, before[KEY])}
+    assert s != before and s == s.copy()
+    with pytest.raises(KeyError, match="stiffness_nN_per_um"):
+        s["contraction.apical.stifness"]
+
+
+@pytest.mark.parametrize(
+    "key, value, told",
+    [
+        (KEY, -1, "contraction.apical.stiffness_nN_per_um"),
+        (KEY, "strong", "contraction.apical.stiffness_nN_per_um"),
+        (KEY, float("nan"), "contraction.apical.stiffness_nN_per_um"),
+        ("contraction.apical.stifness", 1, "stiffness_nN_per_um"),
+        ("contraction.apical.region", "nowhere", "nowhere"),
+        ("elasticity.poisson_ratio", 0.6, "elasticity.poisson_ratio"),
+        ("base", "xenopus", "base"),
+        ("a key", 1, "a key"),
+        ("", 1, "unknown key"),
+        ("title", 'quotes " and \n lines', None),
+    ],
+)
+def test_every_change_is_checked(key, value, told):
+    s = plica.Scenario("drosophila")
+    before = s.to_toml()
+    if told is None:
+        s[key] = value
+        assert s[key] == value
+        return
+    with pytest.raises(plica.ScenarioError, match=told.replace(".", r"\.")) as caught:
+        s[key] = value
+    assert s.to_toml() == before
+    assert caught.value.diagnostics[0].file == "" and pickle.loads(pickle.dumps(caught.value)).args == caught.value.args
+    assert "--set" not in str(caught.value)
+
+
+def test_all_errors_at_once():
+    with pytest.raises(plica.ScenarioError) as caught:
+        plica.Scenario("[time]\nend_min = -1\n[elasticity]\npoisson_ratio = 2\n")
+    assert [d.line for d in caught.value.diagnostics] == [2, 4]
+    assert len(str(caught.value).splitlines()) == 2
+
+
+def test_wrong_sources(tmp_path):
+    with pytest.raises(ValueError, match='did you mean "drosophila"'):
+        plica.Scenario("drosofila")
+    with pytest.raises(plica.ScenarioError, match="TOML"):
+        plica.Scenario("[time\nend_min = 1")
+    with pytest.raises(TypeError, match="time.end_min"):
+        plica.Scenario({"time": {"end_min": object()}})
+
+
+def test_changes_that_make_sense_together():
+    s = plica.Scenario("drosophila")
+    with pytest.raises(plica.ScenarioError):
+        s["elasticity.relaxation_s"] = 100
+    s.update({"elasticity.model": "neo-hookean", "elasticity.relaxation_s": 100})
+    assert s["elasticity.relaxation_s"] == 100
+
+
+def test_region_of_booleans():
+    s = plica.Scenario("drosophila")
+    x = plica.Simulation(s).cell_data["x_um"]
+    s.set_region("furrow", np.abs(x) < 100)
+    sim = plica.Simulation(s)
+    assert np.array_equal(sim.regions["furrow"], np.abs(x) < 100)
+    assert np.array_equal(~np.isnan(sim.activity("apical")), np.abs(x) < 100)
+    for wrong in (x, np.zeros(756, bool), [[True]], 3):
+        with pytest.raises(ValueError, match="furrow"):
+            s.set_region("furrow", wrong)
+    for count in (3, 800):
+        s.set_region("furrow", np.ones(count, bool))
+        with pytest.raises(plica.ScenarioError, match="furrow"):
+            plica.Simulation(s)
+
+
+def test_pickle_and_looks():
+    s = plica.Scenario("drosophila")
+    s[KEY] = 5
+    s.set_region("strip", np.arange(756) < 10)
+    again = pickle.loads(pickle.dumps(s))
+    assert again == s and again.name == "drosophila"
+    assert KEY in repr(s) and "10 cells" in repr(s) and "<table>" in s._repr_html_()
+    assert all(line.startswith(("warning: ", "note: ")) for line in s.advice())
+
+
+def box(n=4, size=10.0):
+    """A row of cubes along x."""
+    points = np.array([[size * i, size * j, size * k] for i in range(n + 1) for j in (0, 1) for k in (0, 1)])
+    at = lambda i, j, k: 4 * i + 2 * j + k  # noqa: E731
+    hexahedra = [
+        [at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 1, 0), at(i, 1, 0), at(i, 0, 1), at(i + 1, 0, 1), at(i + 1, 1, 1), at(i, 1, 1)]
+        for i in range(n)
+    ]
+    return points, np.array(hexahedra)
+
+
+def test_a_tissue_of_arrays():
+    points, hexahedra = box()
+    tissue = plica.Tissue(points, hexahedra, apical_faces=[5] * 4, regions={"left": [True, True, False, False]})
+    s = plica.Scenario(
+        {"vitelline": {"enabled": False}, "region": {"left": {"array": "left"}},
+         "contraction": {"apical": {"region": "left", "stiffness_nN_per_um": 3}}, "time": {"end_min": 1}},
+        tissue=tissue,
+    )
+    sim = plica.Simulation(s)
+    assert len(sim.pressures) == 4 and np.allclose(np.sort(sim.rest_positions, axis=0), np.sort(points, axis=0))
+    assert sim.regions["left"].tolist() == [True, True, False, False]
+    sim.run()
+    assert np.abs(sim.positions - sim.rest_positions).max() > 0.1
+    again = pickle.loads(pickle.dumps(sim))
+    assert np.array_equal(again.positions, sim.positions)
+
+
+@pytest.mark.parametrize(
+    "change, told",
+    [
+        (dict(points=[[0, 0]]), "points"),
+        (dict(points=np.full((20, 3), np.nan)), "node 0"),
+        (dict(hexahedra=[[0, 1, 2, 3]]), "hexahedra"),
+        (dict(hexahedra=[[0.5] * 8]), "whole numbers"),
+        (dict(hexahedra=[[0, 1, 2, 3, 4, 5, 6, 99]]), "99"),
+        (dict(hexahedra=np.zeros((0, 8), int)), "hexahedra"),
+        (dict(apical_faces=[5, 5]), "apical_faces"),
+        (dict(apical_faces=[6] * 4), "apical_faces"),
+        (dict(regions={"left": [1, 0, 0, 0]}), "left"),
+        (dict(regions={"left": [True]}), "left"),
+    ],
+)
+def test_wrong_arrays(change, told):
+    points, hexahedra = box()
+    given = {"points": points, "hexahedra": hexahedra, "apical_faces": [5] * 4, **change}
+    with pytest.raises(ValueError, match=told):
+        plica.Tissue(given.pop("points"), given.pop("hexahedra"), **given)
+
+
+def test_unusable_cells_are_named():
+    points, hexahedra = box()
+    hexahedra[2] = hexahedra[2][::-1]
+    hexahedra[3][0] = hexahedra[3][1]
+    with pytest.raises((plica.ScenarioError, plica.FileError), match="cell"):
+        plica.Simulation(plica.Scenario({"vitelline": {"enabled": False}}, tissue=plica.Tissue(points, hexahedra, apical_faces=[5] * 4)))

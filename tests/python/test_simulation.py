@@ -1,0 +1,272 @@
+"""The simulation from Python: the same bits as the command line's, and what Python people expect of an object."""
+import copy
+import multiprocessing
+import os
+import pickle
+import signal
+import subprocess
+import threading
+import time
+
+import numpy as np
+import plica
+import pytest
+
+QUICK = {"time.end_min": 1}
+
+
+def scenario(**changes):
+    s = plica.Scenario("drosophila")
+    s.update({**QUICK, **changes})
+    return s
+
+
+@pytest.fixture()
+def sim():
+    return plica.Simulation(scenario(), threads=1)
+
+
+def program():
+    return os.environ["PLICA"]
+
+
+def test_steps_have_measures(sim):
+    step = sim.step()
+    assert step.time_s == sim.time_s > 0
+    assert step.newton_iterations > 0 and step.volume_error < 1e-6
+    assert step["furrow_depth_um"] == sim.measures["furrow_depth_um"]
+    while not sim.finished:
+        step = sim.step()
+    assert sim.status == "end_time" and sim.time_min == 1 and sim.step() is None
+
+
+def test_same_bits_and_files_as_the_command_line(tmp_path):
+    run = plica.Simulation(scenario()).run(out=tmp_path / "python")
+    subprocess.run([program(), "run", "drosophila", "--out", tmp_path / "program", "--quiet", "--set", "time.end_min=1"], check=True)
+    names = sorted(p.relative_to(tmp_path / "program") for p in (tmp_path / "program").rglob("*") if p.is_file())
+    assert names == sorted(p.relative_to(tmp_path / "python") for p in (tmp_path / "python").rglob("*") if p.is_file())
+    same = [n for n in names if n.suffix in (".vtu", ".pvd", ".toml") or n.name in ("cells.csv", "midline.csv", "cross_section.csv")]
+    assert len(same) > 6
+    for name in same:
+        assert (tmp_path / "python" / name).read_bytes() == (tmp_path / "program" / name).read_bytes(), name
+    assert run.summary["furrow_depth_um"] == plica.open(tmp_path / "program").summary["furrow_depth_um"]
+
+
+def test_any_number_of_threads(sim):
+    other = plica.Simulation(scenario(), threads=2)
+    sim.run()
+    other.run()
+    assert np.array_equal(sim.positions, other.positions)
+
+
+def test_arrays(sim):
+    sim.run(until_min=0.2)
+    nodes, elements, cells = len(sim.positions), len(sim.hexahedra), len(sim.pressures)
+    assert sim.positions.shape == sim.velocities.shape == sim.rest_positions.shape == (nodes, 3)
+    assert sim.hexahedra.shape == (elements, 8) and sim.hexahedra.max() == nodes - 1
+    assert sim.hexahedron_cell.shape == (elements,) and cells == 756
+    assert sim.regions["furrow"].dtype == bool and 0 < sim.regions["furrow"].sum() < cells
+    pairs = sim.neighbours
+    assert pairs.shape[1] == 2 and (pairs[:, 0] < pairs[:, 1]).all() and len(np.unique(pairs, axis=0)) == len(pairs)
+    data = sim.cell_data
+    assert all(len(values) == cells for values in data.values())
+    assert np.allclose(data["pressure_Pa"], sim.pressures)
+    with pytest.raises(ValueError):
+        sim.positions[0] = 0
+    before = sim.positions
+    kept = before.copy()
+    sim.step()
+    assert np.array_equal(before, kept) and not np.array_equal(sim.positions, kept)
+    del sim
+    assert np.array_equal(before, kept)  # outlives the simulation
+
+
+def test_forces_and_energies(sim):
+    sim.run(until_min=0.5)
+    assert "contraction.apical" in sim.laws
+    pull = sim.forces("contraction.apical")
+    assert pull.shape == sim.positions.shape and np.abs(pull).max() > 1
+    assert np.allclose(pull.sum(axis=0), 0, atol=1e-9)
+    energy = sim.energies
+    active = sum(row["active"] for row in energy.values())
+    assert active > 0 and active >= sum(row["stored"] for row in energy.values())
+    with pytest.raises(ValueError, match="contraction.apical"):
+        sim.forces("contraction.basal")
+
+
+def test_copies_go_their_own_ways(sim):
+    sim.run(until_min=0.3)
+    fork, twin = sim.copy(), copy.deepcopy(sim)
+    fork.set_activity("apical", 0)
+    for one in (sim, fork, twin):
+        one.run()
+    assert np.array_equal(sim.positions, twin.positions)
+    assert sim.measures["furrow_depth_um"] > fork.measures["furrow_depth_um"] + 0.1
+
+
+@pytest.mark.parametrize("way", ["pickle", "file"])
+def test_saved_goes_on_to_the_same_bits(sim, tmp_path, way):
+    sim.run(until_min=0.3)
+    x = sim.cell_data["x_um"]
+    sim.set_activity("apical", np.where(x > 0, 0.5, np.nan))
+    sim.step()
+    if way == "pickle":
+        again = pickle.loads(pickle.dumps(sim))
+    else:
+        sim.save(tmp_path / "moment.h5")
+        again = plica.load(tmp_path / "moment.h5", threads=1)
+        assert list(tmp_path.iterdir()) == [tmp_path / "moment.h5"]
+    assert again.time_s == sim.time_s and again.measures == sim.measures
+    sim.run()
+    again.run()
+    assert np.array_equal(sim.positions, again.positions) and np.array_equal(sim.velocities, again.velocities)
+
+
+def test_a_fork_may_be_recorded(sim, tmp_path):
+    sim.run(until_min=0.3)
+    fork = sim.copy()
+    fork.set_activity("apical", 0)
+    run = fork.run(out=tmp_path / "fork")
+    series = run.series
+    assert series["time_s"].iloc[0] == pytest.approx(18) and series["time_s"].iloc[-1] == 60
+    assert run.frames[0].time_s == pytest.approx(18) and run.status == "end_time"
+    # And gone on with, told what it was told.
+    again = plica.load(tmp_path / "fork" / "checkpoint.h5")
+    assert np.array_equal(again.activity("apical"), fork.activity("apical"), equal_nan=True)
+
+
+def test_activity(sim):
+    activity = sim.activity("contraction.apical")
+    assert np.isnan(activity).sum() == (~sim.regions["furrow"]).sum()
+    sim.set_activity("apical", 0.5)
+    assert np.nanmax(sim.activity("apical")) == 0.5
+    sim.set_activity("apical", None)
+    assert np.array_equal(sim.activity("apical"), activity, equal_nan=True)
+    for wrong in ([1, 2], -1.0, np.full(756, np.inf), "much"):
+        with pytest.raises(ValueError):
+            sim.set_activity("apical", wrong)
+    with pytest.raises(ValueError, match="contraction.apical"):
+        sim.set_activity("basal", 1.0)
+
+
+def test_callback_and_progress(sim, capfd):
+    seen = []
+    sim.run(progress=True, callback=lambda s, step: seen.append(step.time_s) or len(seen) == 3)
+    assert len(seen) == 3 and sim.steps == 3
+    assert "µm deep" in capfd.readouterr().err
+
+
+def test_record_resumes(tmp_path):
+    plica.Simulation(scenario()).run(out=tmp_path / "whole")
+    plica.Simulation(scenario()).run(out=tmp_path / "parts", until_min=0.4)
+    with pytest.raises(plica.FileError, match="overwrite"):
+        plica.Simulation(scenario()).run(out=tmp_path / "parts")
+    plica.Simulation(scenario()).run(out=tmp_path / "parts", resume=True)
+    a, b = plica.open(tmp_path / "whole"), plica.open(tmp_path / "parts")
+    assert a.status == b.status == "end_time"
+
+
+def test_numerics_give_up():
+    s = scenario(**{"contraction.apical.stiffness_nN_per_um": 1e6, "contraction.apical.program": {"time_min": [0, 0.1], "activity": [0, 1]},
+                    "volume.method": "none"})
+    sim = plica.Simulation(s)
+    with pytest.raises(plica.NumericsError) as caught:
+        sim.run()
+    assert caught.value.time_s == sim.time_s and sim.status == "failed" and sim.finished
+    assert np.isfinite(sim.positions).all()
+    assert str(caught.value) and pickle.loads(pickle.dumps(caught.value)).cell == caught.value.cell
+
+
+def test_ctrl_c_saves_everything(tmp_path):
+    s = plica.Scenario("drosophila")
+    sim = plica.Simulation(s)
+    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        while True:
+            sim.run(out=tmp_path / "run", overwrite=True)
+            sim = plica.Simulation(s)
+    run = plica.open(tmp_path / "run")
+    assert run.summary["status"] == "interrupted" and len(run.series) > 1
+
+
+def test_two_simulations_in_two_threads(sim):
+    others = [plica.Simulation(scenario(), threads=2) for _ in range(2)]
+    workers = [threading.Thread(target=one.run) for one in others]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    sim.run()
+    for one in others:
+        assert np.array_equal(sim.positions, one.positions)
+
+
+def test_one_simulation_belongs_to_one_thread():
+    sim = plica.Simulation("drosophila")
+    failures = []
+
+    def step():
+        try:
+            for _ in range(5):
+                sim.step()
+        except RuntimeError as error:
+            failures.append(str(error))
+
+    workers = [threading.Thread(target=step) for _ in range(4)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert failures and "another thread" in failures[0]
+
+
+def test_python_goes_on_while_a_step_is_solved():
+    s = plica.Scenario("drosophila")
+    s["embryo.elements_per_cell"] = [2, 2, 2]
+    sim = plica.Simulation(s, threads=1)
+    ticks = []
+    worker = threading.Thread(target=sim.step)
+    worker.start()
+    while worker.is_alive():
+        ticks.append(time.monotonic())
+        time.sleep(0.005)
+    assert len(ticks) > 5
+
+
+def _in_child(queue):
+    sim = plica.Simulation(scenario(), threads=2)
+    sim.run()
+    queue.put(sim.positions)
+
+
+def test_a_fork_after_use_does_not_hang(sim):
+    first = plica.Simulation(scenario(), threads=2)
+    first.run()
+    context = multiprocessing.get_context("fork")
+    queue = context.Queue()
+    child = context.Process(target=_in_child, args=(queue,))
+    child.start()
+    positions = queue.get(timeout=60)
+    child.join(timeout=60)
+    assert child.exitcode == 0 and np.array_equal(positions, first.positions)
+
+
+def test_looks(sim):
+    sim.run(until_min=0.2)
+    assert "drosophila" in repr(sim) and "0.2 min" in repr(sim)
+    assert "furrow_depth_um" in sim._repr_html_()
+    assert "Newton" in repr(sim.step())
+
+
+@pytest.mark.parametrize("threads", [0, -1, 1.5, True, "two", 10_000])
+def test_wrong_threads(threads):
+    with pytest.raises(ValueError, match="threads"):
+        plica.Simulation("drosophila", threads=threads)
+
+
+def test_wrong_times(sim):
+    for wrong in (float("nan"), "soon", True):
+        with pytest.raises(ValueError, match="until_min"):
+            sim.run(until_min=wrong)
+    with pytest.raises(ValueError, match="out"):
+        sim.run(resume=True)
