@@ -16,4 +16,4 @@ def test_blocks_run(page, tmp_path, monkeypatch, capsys):
     for block in blocks:
         exec(compile(block, page, "exec"), names)
     whole, half = map(float, capsys.readouterr().out.split())
-    assert whole > half > 0
+    assert whole > 10 and half > 10 and abs(whole - half) > 0.1
