@@ -135,9 +135,6 @@ def test_calibrate():
 
 
 def test_import_is_light():
-    code = (
-        "import sys, time; t = time.perf_counter(); import numpy; u = time.perf_counter(); import plica; v = time.perf_counter()\n"
-        "assert not {'pandas', 'matplotlib', 'pyvista', 'IPython', 'tqdm'} & set(sys.modules), sys.modules\n"
-        "print(v - u)"
-    )
-    assert float(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout) < 0.3
+    """What is large is imported when it is first needed. (How long an import takes is not tested: machines differ.)"""
+    code = "import sys, plica; print({'pandas', 'matplotlib', 'pyvista', 'IPython', 'tqdm'} & set(sys.modules))"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "set()\n"
