@@ -1,6 +1,7 @@
 """Runs beside each other, pictures of them, and values that meet targets."""
 from __future__ import annotations
 
+import inspect
 import os
 from collections.abc import Callable, Mapping
 from functools import cached_property
@@ -32,6 +33,12 @@ class Distances(NamedTuple):
 
 def _distances(lengths: NDArray[np.float64]) -> Distances:
     return Distances(float(lengths.mean()), float(np.sqrt((lengths**2).mean())), float(lengths.max()))
+
+
+def _surface(grid: Any) -> Any:
+    # Newer versions ask which algorithm; older ones know one only.
+    known = inspect.signature(grid.extract_surface).parameters
+    return grid.extract_surface(algorithm="dataset_surface") if "algorithm" in known else grid.extract_surface()
 
 
 class Comparison:
@@ -75,8 +82,8 @@ class Comparison:
     @cached_property
     def surface(self) -> Distances:
         """How far the nodes of a's surface lie from that of b. Needs PyVista."""
-        first = self.frame_a.to_pyvista().extract_surface()
-        second = self.frame_b.to_pyvista().extract_surface().triangulate()
+        first = _surface(self.frame_a.to_pyvista())
+        second = _surface(self.frame_b.to_pyvista()).triangulate()
         return _distances(np.abs(np.asarray(first.compute_implicit_distance(second)["implicit_distance"])))
 
     def __repr__(self) -> str:
@@ -163,17 +170,19 @@ def render(
     if seen["cut_axis"] is not None:  # what lies before the plane is taken away
         origin = np.zeros(3)
         origin[seen["cut_axis"]] = seen["cut_um"]
-        grid = grid.clip(normal=-sight, origin=origin, invert=False)
+        grid = grid.clip(normal=-sight, origin=origin)
     low, high = _range(values, field)
     plotter = pyvista.Plotter(off_screen=True, window_size=list(size))
     plotter.background_color = "white"
-    colours = pyvista.LookupTable(np.array([[*(round(255 * c) for c in rgb), 255] for rgb in field["colours"]], dtype=np.uint8)) \
-        if field["kind"] == "steps" else _ramp(field["colours"])
-    options: dict[str, Any] = {"scalar_bar_args": {"title": field["label"], "color": "black"}}
+    steps = field["kind"] == "steps"
+    colours = _colours(field["colours"][: max(2, len(names))] if names else field["colours"], steps)
+    bar: dict[str, Any] = {"title": field["label"] + "\n", "color": "black", "position_x": 0.2, "position_y": 0.08}
+    options: dict[str, Any] = {"scalar_bar_args": bar}
     if names:
-        options = {"annotations": dict(enumerate(names)), "scalar_bar_args": {"title": field["label"], "color": "black", "n_labels": 0}}
-        low, high = -0.5, len(field["colours"]) - 0.5
-    plotter.add_mesh(grid.extract_surface(), scalars="colour", cmap=colours, clim=(low, high), show_edges=True,
+        options["annotations"] = dict(enumerate(names))
+        bar["n_labels"] = 0
+        low, high = -0.5, max(2, len(names)) - 0.5
+    plotter.add_mesh(_surface(grid), scalars="colour", cmap=colours, clim=(low, high), show_edges=True,
                      edge_color="#404040", line_width=0.5, **options)
     plotter.enable_parallel_projection()
     plotter.camera_position = [tuple(-1000 * sight / np.linalg.norm(sight)), (0.0, 0.0, 0.0), up]
@@ -212,8 +221,9 @@ def _range(values: NDArray[np.float64], field: Mapping[str, Any]) -> tuple[float
     return 0.0, float(np.nanmax(values)) or 1.0
 
 
-def _ramp(colours: list[tuple[float, float, float]]) -> Any:
-    return _needed("matplotlib.colors", "render").LinearSegmentedColormap.from_list("plica", colours)
+def _colours(colours: list[tuple[float, float, float]], of_steps: bool) -> Any:
+    maps = _needed("matplotlib.colors", "render")
+    return maps.ListedColormap(colours) if of_steps else maps.LinearSegmentedColormap.from_list("plica", colours)
 
 
 class Trial(NamedTuple):
