@@ -1,7 +1,6 @@
 // The module plica._core: what the package's Python is written on. Not for users.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/function.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -18,6 +17,7 @@
 #include "scenario/builtin.hpp"
 #include "scenario/print.hpp"
 #include "show/looks.hpp"
+#include "signals.hpp"
 #include "simulation.hpp"
 #include "study/calibrate.hpp"
 #include "thread_count.hpp"
@@ -61,14 +61,9 @@ nb::dict calibration(const CheckedScenario& scenario, const std::vector<std::str
   CalibrationProblem problem{scenario.source, overrides, {}, {}, most_trials};
   for (const auto& [key, bounds] : vary) problem.keys.push_back({key, bounds.first, bounds.second});
   for (const auto& [name, target] : targets) problem.targets.push_back({name, target.first, target.second});
-  std::optional<nb::python_error> raised;
+  Signals signals;
   CalibrationHooks hooks;
-  hooks.stop_requested = [&] {
-    if (raised) return true;
-    const nb::gil_scoped_acquire held;
-    if (PyErr_CheckSignals() != 0) raised.emplace();
-    return raised.has_value();
-  };
+  hooks.stop_requested = [&] { return signals.have_come(); };
   const auto as_dict = [&](const Trial& trial) {
     nb::dict row, values, found;
     for (std::size_t k = 0; k < trial.values.size(); ++k) values[problem.keys[k].key.c_str()] = trial.values[k];
@@ -79,7 +74,6 @@ nb::dict calibration(const CheckedScenario& scenario, const std::vector<std::str
     row["found"] = found;
     row["failure"] = trial.failure;
     row["worst_miss"] = trial.worst_miss;
-    row["wall_s"] = trial.wall_s;
     return row;
   };
   hooks.on_trial = [&](const Trial& trial, bool best) {
@@ -87,20 +81,20 @@ nb::dict calibration(const CheckedScenario& scenario, const std::vector<std::str
     try {
       on_trial(as_dict(trial), best);
     } catch (nb::python_error& error) {
-      raised.emplace(std::move(error));
+      signals.raise_later(std::move(error));
     }
   };
   Calibration result;
   {
     const nb::gil_scoped_release free;
-    const ThreadCount count(threads_for(0, 0));
+    const SafeThreadCount count(threads_for(0, 0));
     result = calibrate(problem, hooks);
   }
-  if (raised) throw std::move(*raised);
+  signals.rethrow();
   nb::dict answer;
-  const char* ends[] = {"met", "not_met", "trials_spent", "interrupted"};
-  answer["end"] = ends[static_cast<int>(result.end)];
-  answer["trials"] = result.trials;
+  answer["end"] = result.end == CalibrationEnd::met       ? "met"
+                  : result.end == CalibrationEnd::not_met ? "not_met"
+                                                          : "trials_spent";
   answer["best"] = result.best ? nb::object(as_dict(*result.best)) : nb::none();
   return answer;
 }
@@ -151,7 +145,7 @@ NB_MODULE(_core, module) {
       .def("toml", [](const CheckedScenario& s) { return resolved_toml(s.scenario); })
       .def("advice", [](const CheckedScenario& s) {
         const nb::gil_scoped_release free;
-        const ThreadCount count(1);
+        const SafeThreadCount count(1);
         return advice(s.scenario, *make_model(s.scenario));
       });
   module.def(

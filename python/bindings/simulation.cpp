@@ -1,14 +1,11 @@
 #include "simulation.hpp"
 
-#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 #include <pthread.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "arrays.hpp"
@@ -22,7 +19,6 @@
 #include "record/checkpoint.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/print.hpp"
-#include "scenario/setup.hpp"
 #include "simulation/crossing_warning.hpp"
 #include "thread_count.hpp"
 #include "tissue/faces.hpp"
@@ -32,7 +28,7 @@ namespace {
 
 std::unique_ptr<Simulation> simulation_of(const Scenario& scenario, int threads) {
   const nb::gil_scoped_release free;
-  const ThreadCount count(threads);
+  const SafeThreadCount count(threads);
   return std::make_unique<Simulation>(scenario);
 }
 
@@ -84,29 +80,21 @@ std::vector<std::string> laws(const Simulation& simulation, bool active_only) {
   return labels;
 }
 
-nb::object forces(const Simulation& simulation, const std::string& law) {
-  const std::vector<std::string> all = laws(simulation, false);
-  if (std::ranges::find(all, law) == all.end()) {
-    std::string names;
-    for (const std::string& name : all) names += (names.empty() ? "" : ", ") + name;
-    throw UsageError("there is no law \"" + law + "\"; there are: " + names);
-  }
-  return array_of(std::span<const Vec3>(forces_of_law(simulation.model(), simulation.state(), law)));
+nb::object forces(const Simulation& simulation, const std::string& label) {
+  const Model& model = simulation.model();
+  const Law& law = *model.laws[place_of_law(model, label)];
+  return array_of(std::span<const Vec3>(forces_of_law(model, simulation.state(), law)));
 }
 
 nb::object activity(const Simulation& simulation, const std::string& label) {
   const Model& model = simulation.model();
   const State& state = simulation.state();
-  for (std::size_t l = 0; l < model.laws.size(); ++l) {
-    if (model.laws[l]->label() != label || !model.laws[l]->is_active()) continue;
-    std::vector<double> result;
-    for (std::size_t c = 0; c < model.tissue.cells.size(); ++c)
-      result.push_back(model.laws[l]->activity_of(CellId(c), state.time_s, state.internals[l]).value_or(std::nan("")));
-    return array_of(std::move(result));
-  }
-  std::string names;
-  for (const std::string& name : laws(simulation, true)) names += (names.empty() ? "" : ", ") + name;
-  throw UsageError("no cells act by \"" + label + "\"; they do by: " + names);
+  const std::size_t place = place_of_law(model, label, true);
+  std::vector<double> result;
+  for (std::size_t c = 0; c < model.tissue.cells.size(); ++c)
+    result.push_back(
+        model.laws[place]->activity_of(CellId(c), state.time_s, state.internals[place]).value_or(std::nan("")));
+  return array_of(std::move(result));
 }
 
 nb::object pressures_Pa(const Simulation& simulation) {
@@ -127,20 +115,6 @@ nb::object neighbours(const Simulation& simulation) {
   return array_of(std::move(numbers), 2);
 }
 
-const char* status(const Simulation& simulation) {
-  switch (simulation.status()) {
-    case RunStatus::under_way:
-      return "under_way";
-    case RunStatus::equilibrium:
-      return "equilibrium";
-    case RunStatus::end_time:
-      return "end_time";
-    case RunStatus::failed:
-      return "failed";
-  }
-  return "";
-}
-
 }  // namespace
 
 SimulationOf::Turn::Turn(SimulationOf& owner) : owner_(owner) {
@@ -148,49 +122,39 @@ SimulationOf::Turn::Turn(SimulationOf& owner) : owner_(owner) {
     throw std::runtime_error("this simulation is taking a step in another thread; wait for it, or use a copy()");
 }
 
-SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads, std::unique_ptr<Simulation> simulation)
-    : scenario_(std::make_unique<CheckedScenario>(scenario)), simulation_(std::move(simulation)), threads_(threads) {
-  heed_signals();
+SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads, std::unique_ptr<Simulation> simulation,
+                           std::string at_rest)
+    : scenario_(std::make_unique<CheckedScenario>(scenario)),
+      simulation_(std::move(simulation)),
+      threads_(threads),
+      at_rest_(std::move(at_rest)) {
+  simulation_->stop_when([this] { return (record_ && record_->has_failed()) || signals_.have_come(); });
 }
 
 SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads)
-    : SimulationOf(scenario, threads, simulation_of(scenario.scenario, threads)) {
+    : SimulationOf(scenario, threads, simulation_of(scenario.scenario, threads), "") {
   threads_ = threads_for(threads, simulation_->model().tissue.elements.size());
+  at_rest_ = fingerprint(simulation_->model().tissue);
 }
 
 SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads, const nb::bytes& saved)
     : SimulationOf(scenario, threads) {
   Checkpoint checkpoint = read_checkpoint_bytes({saved.c_str(), saved.size()});
-  if (checkpoint.at_rest != fingerprint(simulation_->model().tissue))
-    throw FileError("what was saved is of another embryo; has its mesh changed?");
+  if (checkpoint.at_rest != at_rest_) throw FileError("what was saved is of another embryo; has its mesh changed?");
   if (checkpoint.record.rows.empty()) throw FileError("what was saved has no measures");
   try {
-    const ThreadCount count(threads_);
+    const SafeThreadCount count(threads_);
     simulation_->go_on_from(std::move(checkpoint.run), std::move(checkpoint.record.rows.back()));
   } catch (const UnfitMemory& error) {
     throw FileError(std::string("what was saved is damaged: ") + error.what());
   }
 }
 
-// Python's signal handlers run in its main thread only, when it asks: seldom enough to cost nothing.
-void SimulationOf::heed_signals() {
-  using Clock = std::chrono::steady_clock;
-  simulation_->stop_when([this, last = Clock::now()]() mutable {
-    if (raised_) return true;
-    if (record_ && record_->has_failed()) return true;
-    if (Clock::now() - last < std::chrono::milliseconds(50)) return false;
-    const nb::gil_scoped_acquire held;
-    if (PyErr_CheckSignals() != 0) raised_.emplace();
-    last = Clock::now();
-    return raised_.has_value();
-  });
-}
-
 std::unique_ptr<SimulationOf> SimulationOf::copy() {
   const Turn turn(*this);
-  const ThreadCount count(threads_);
+  const SafeThreadCount count(threads_);
   return std::unique_ptr<SimulationOf>(
-      new SimulationOf(*scenario_, threads_, std::make_unique<Simulation>(*simulation_)));
+      new SimulationOf(*scenario_, threads_, std::make_unique<Simulation>(*simulation_), at_rest_));
 }
 
 bool SimulationOf::step(double until_s) {
@@ -198,14 +162,10 @@ bool SimulationOf::step(double until_s) {
   bool more = false;
   {
     const nb::gil_scoped_release free;
-    const ThreadCount count(threads_);
+    const SafeThreadCount count(threads_);
     more = simulation_->step(until_s);
   }
-  if (raised_) {
-    nb::python_error error = std::move(*raised_);
-    raised_.reset();
-    throw error;
-  }
+  signals_.rethrow();
   if (!more && simulation_->status() == RunStatus::failed)
     throw GaveUp{simulation_->failure(), simulation_->failed_cell(), simulation_->time_s()};
   return more;
@@ -218,9 +178,7 @@ void SimulationOf::set_activity(const std::string& law, std::vector<double> acti
 
 nb::bytes SimulationOf::save() {
   const Turn turn(*this);
-  Checkpoint checkpoint{version(), resolved_toml(scenario_->scenario), {}, simulation_->memory(), {}};
-  const ThreadCount count(threads_);
-  checkpoint.at_rest = fingerprint(make_tissue(scenario_->scenario));
+  Checkpoint checkpoint{version(), resolved_toml(scenario_->scenario), at_rest_, simulation_->memory(), {}};
   checkpoint.record.rows.push_back(simulation_->measures());
   const std::string bytes = checkpoint_bytes(checkpoint);
   return nb::bytes(bytes.data(), bytes.size());
@@ -238,21 +196,21 @@ std::vector<std::string> SimulationOf::begin_record(const std::string& out, cons
     notes.push_back(out + ": the run is finished; nothing is left to do");
     return notes;
   }
-  const ThreadCount count(threads_);
+  const SafeThreadCount count(threads_);
   record->begin();
   record_ = std::move(record);
   return notes;
 }
 
-std::string SimulationOf::end_record() {
+void SimulationOf::end_record() {
   const Turn turn(*this);
   const nb::gil_scoped_release free;
   const std::unique_ptr<RecordedRun> record = std::move(record_);
-  return record->finish().dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  record->finish();
 }
 
 void bind_simulation(nb::module_& module) {
-  pthread_atfork(nullptr, nullptr, [] { ThreadCount::is_forked = true; });
+  pthread_atfork(nullptr, nullptr, [] { is_forked = true; });
   using S = SimulationOf;
   // A function of the simulation that only looks.
   const auto looks = [](auto look) { return [look](S& self) { return self.with(look); }; };
@@ -274,7 +232,7 @@ void bind_simulation(nb::module_& module) {
       .def("end_record", &S::end_record)
       .def_prop_ro("is_recording", &S::is_recording)
       .def_prop_ro("threads", &S::threads)
-      .def_prop_ro("status", looks([](const Simulation& s) { return status(s); }))
+      .def_prop_ro("status", looks([](const Simulation& s) { return word(s.status()); }))
       .def_prop_ro(
           "advice",
           [](S& self) { return self.with([&](const Simulation& s) { return advice(self.scenario(), s.model()); }); })

@@ -4,14 +4,13 @@
 #include <nanobind/nanobind.h>
 
 #include <atomic>
-#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "scenario/load.hpp"
 #include "show/recorded_run.hpp"
+#include "signals.hpp"
 #include "simulation/simulation.hpp"
 
 namespace plica::python {
@@ -42,8 +41,7 @@ class SimulationOf {
 
   /// Returns what is odd about the checkpoint that it goes on from.
   std::vector<std::string> begin_record(const std::string& out, const std::string& start);
-  /// summary.json.
-  std::string end_record();
+  void end_record();
   [[nodiscard]] bool is_recording() const { return record_ != nullptr; }
 
   /// Calls look(simulation), unless another thread steps.
@@ -67,15 +65,16 @@ class SimulationOf {
     SimulationOf& owner_;
   };
 
-  SimulationOf(const CheckedScenario& scenario, int threads, std::unique_ptr<Simulation> simulation);
-  void heed_signals();
+  SimulationOf(const CheckedScenario& scenario, int threads, std::unique_ptr<Simulation> simulation,
+               std::string at_rest);
 
   std::unique_ptr<CheckedScenario> scenario_;
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<RecordedRun> record_;
   int threads_;
   std::atomic<bool> is_busy_ = false;
-  std::optional<nb::python_error> raised_;  // by a signal handler, within a step
+  Signals signals_;
+  std::string at_rest_;  // fingerprint of its tissue before the first step
 };
 
 void bind_simulation(nb::module_& module);

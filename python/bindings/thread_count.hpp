@@ -1,29 +1,22 @@
-// How many OpenMP threads a Python thread's work takes.
+// How many OpenMP threads the work of a Python thread takes.
 #pragma once
-
-#include <omp.h>
 
 #include <algorithm>
 #include <atomic>
 
+#include "core/threads.hpp"
+
 namespace plica::python {
 
-/// That many, until the end of the scope. GNU's OpenMP waits for ever for the threads of its parent in a process that
-/// was forked after these had worked: there it is one thread, which needs none of them. Results are the same.
-/// Everything that computes is called within such a scope.
-class ThreadCount {
+/// Set in a process that was forked.
+inline std::atomic<bool> is_forked = false;
+
+/// A ThreadCount of so many; in a forked process of one. There GNU's OpenMP would wait for ever for the threads of the
+/// parent, where these have worked before, and one thread needs none of them. Results are the same. Everything that
+/// computes is called within such a scope.
+class SafeThreadCount : public ThreadCount {
  public:
-  static inline std::atomic<bool> is_forked = false;
-
-  explicit ThreadCount(int threads) : before_(omp_get_max_threads()) {
-    omp_set_num_threads(is_forked ? 1 : std::max(1, threads));
-  }
-  ~ThreadCount() { omp_set_num_threads(before_); }
-  ThreadCount(const ThreadCount&) = delete;
-  ThreadCount& operator=(const ThreadCount&) = delete;
-
- private:
-  int before_;
+  explicit SafeThreadCount(int threads) : ThreadCount(is_forked ? 1 : std::max(1, threads)) {}
 };
 
 }  // namespace plica::python

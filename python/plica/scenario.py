@@ -7,6 +7,7 @@ import math
 import os
 import tomllib
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Optional, Union
 
@@ -78,7 +79,7 @@ class Tissue:
         apical_faces: Optional[ArrayLike] = None,
         regions: Optional[Mapping[str, ArrayLike]] = None,
     ) -> None:
-        self.points = np.array(points, dtype=np.float64)
+        self.points = np.array(points, dtype=np.float64, order="C")
         self.hexahedra = _whole_numbers(hexahedra, "hexahedra")
         if self.points.ndim != 2 or self.points.shape[1] != 3:
             raise ValueError(f"points: shape {self.points.shape}; give (n, 3): x, y, z of each node, in µm")
@@ -99,6 +100,10 @@ class Tissue:
             self.apical_faces = faces
         self.regions = {name: _mask(mask, len(self.hexahedra), f"region {name}") for name, mask in (regions or {}).items()}
 
+        for array in (self.points, self.hexahedra):
+            array.flags.writeable = False  # a scenario that has it does not change
+
+    @cached_property
     def _mesh(self) -> _core.Mesh:
         return _core.mesh(
             self.points,
@@ -106,6 +111,9 @@ class Tissue:
             [] if self.apical_faces is None else self.apical_faces.tolist(),
             {name: mask.tolist() for name, mask in self.regions.items()},
         )
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "_mesh"}
 
     def __repr__(self) -> str:
         regions = f", regions: {', '.join(self.regions)}" if self.regions else ""
@@ -165,7 +173,7 @@ class Scenario:
             *self._source,
             [f"{key}={value}" for key, value in changes.items()],
             {name: np.flatnonzero(mask).tolist() for name, mask in regions.items()},
-            None if self._tissue is None else self._tissue._mesh(),
+            None if self._tissue is None else self._tissue._mesh,
         )
         self._core, self._changes, self._regions = core, changes, regions
         self._resolved: Optional[dict[str, Any]] = None
@@ -348,7 +356,7 @@ def _whole_numbers(values: ArrayLike, what: str) -> NDArray[np.int32]:
         raise ValueError(f"{what}: an array of {numbers.dtype}; give whole numbers")
     if numbers.size and (numbers.min() < -(2**31) or numbers.max() >= 2**31):
         raise ValueError(f"{what}: numbers go beyond what 32 bits hold")
-    return np.ascontiguousarray(numbers, dtype=np.int32)
+    return np.array(numbers, dtype=np.int32, order="C")
 
 
 def _toml_value(value: Any, key: str) -> str:

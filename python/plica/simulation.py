@@ -17,12 +17,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .errors import FileError
+from .results import Run, _grid, _pandas, open_run
 from .scenario import Scenario, Tissue
 
 if TYPE_CHECKING:
     import pandas
-
-    from .results import Run
 
 __all__ = ["Simulation", "Step", "load"]
 
@@ -94,10 +93,11 @@ class Simulation:
 
     def __init__(self, scenario: Union[Scenario, str, os.PathLike[str], Mapping[str, Any]], *, threads: Optional[int] = None) -> None:
         own = scenario.copy() if isinstance(scenario, Scenario) else Scenario(scenario)
-        self._begin(own, _core.Simulation(own._core, _threads(threads)))
+        core = _core.Simulation(own._core, _threads(threads))
+        own._check_masks(len(core.pressures))
+        self._begin(own, core)
 
     def _begin(self, scenario: Scenario, core: _core.Simulation) -> None:
-        scenario._check_masks(len(core.pressures) if core.divisions == 0 else 0) if scenario._regions else None
         self._scenario, self._core = scenario, core
         self._has_crossed = False
         for line in core.advice if core.steps == 0 else []:
@@ -122,7 +122,7 @@ class Simulation:
         Returns
         -------
         Step or None
-            None when the simulation has finished.
+            None when the simulation has finished, or that time has come.
 
         Raises
         ------
@@ -131,13 +131,15 @@ class Simulation:
         KeyboardInterrupt
             Ctrl-C came within the step, which is given up; the next call takes it again.
         """
-        limit = math.inf if until_min is None else 60 * _number(until_min, "until_min")
-        if not self._core.step(limit):
+        return self._step(_seconds(until_min))
+
+    def _step(self, until_s: float) -> Optional[Step]:
+        if not self._core.step(until_s):
             return None
         measures = self._core.measures
         if not self._has_crossed and (measures["self_intersections"] or 0) > 0:
             self._has_crossed = True
-            warnings.warn(self._core.crossing_warning, stacklevel=2)
+            warnings.warn(self._core.crossing_warning, stacklevel=3)
         return Step(self._core.time_s, measures)
 
     def run(
@@ -179,18 +181,14 @@ class Simulation:
         KeyboardInterrupt
             All that is done by then is saved first; the same call with ``resume=True`` goes on.
         """
-        end_s = math.inf if until_min is None else 60 * _number(until_min, "until_min")
-        if out is not None:
-            for note in self._begin_record(os.fspath(out), "resume" if resume else "overwrite" if overwrite else "fresh"):
-                log.warning("%s", note)
-        elif resume or overwrite:
+        end_s = _seconds(until_min)
+        if out is None and (resume or overwrite):
             raise ValueError("overwrite and resume are about the directory of the results; give it as out")
+        if out is not None and not self._begin_record(os.fspath(out), overwrite, resume):
+            return open_run(out)
         bar = _Progress(min(end_s, self._core.end_s)) if progress else None
         try:
-            while self._core.time_s < end_s - 1e-9:
-                step = self.step(until_min=None if end_s == math.inf else end_s / 60)
-                if step is None:
-                    break
+            while (step := self._step(end_s)) is not None:
                 if bar is not None:
                     bar.show(step)
                 if callback is not None and callback(self, step):
@@ -200,19 +198,17 @@ class Simulation:
                 bar.close()
             if self._core.is_recording:
                 self._core.end_record()
-        if out is None:
-            return None
-        from .results import open_run
+        return None if out is None else open_run(out)
 
-        return open_run(out)
-
-    def _begin_record(self, out: str, start: str) -> list[str]:
+    def _begin_record(self, out: str, overwrite: bool, resume: bool) -> bool:
+        """False where the run that lies there has finished."""
+        if overwrite and resume:
+            raise ValueError("give overwrite or resume, not both")
         if self._core.is_recording:
             raise ValueError("this simulation is being recorded already; end that run first")
-        tissue = self._scenario.tissue
-        if tissue is not None:
-            log.info("%s: a tissue given as arrays is no file; plica.load and --resume need it again", out)
-        return self._core.begin_record(out, start)
+        for note in self._core.begin_record(out, "resume" if resume else "overwrite" if overwrite else "fresh"):
+            log.warning("%s", note)
+        return self._core.is_recording
 
     @property
     def finished(self) -> bool:
@@ -397,8 +393,6 @@ class Simulation:
     @property
     def cells(self) -> pandas.DataFrame:
         """The same as a table, a row a cell."""
-        from .results import _pandas
-
         table: pandas.DataFrame = _pandas("cells").DataFrame({k: v.copy() for k, v in self._core.cell_data.items()})
         return table
 
@@ -444,9 +438,8 @@ class Simulation:
 
     def to_pyvista(self) -> Any:
         """The mesh as it is now, with `cell_data` on its elements: a ``pyvista.UnstructuredGrid``."""
-        from .results import _grid
-
-        data = {name: values[self.hexahedron_cell] for name, values in self.cell_data.items()}
+        cell = self.hexahedron_cell
+        data = {name: values[cell] for name, values in self.cell_data.items()}
         return _grid(self.positions, self.hexahedra, {}, data)
 
     def __repr__(self) -> str:
@@ -501,10 +494,13 @@ def _threads(threads: Optional[int]) -> int:
     return int(threads)
 
 
-def _number(value: float, what: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float, np.number)) or math.isnan(float(value)):
-        raise ValueError(f"{what}: {value!r}; give a number")
-    return float(value)
+def _seconds(until_min: Optional[float]) -> float:
+    """Of a time in minutes; without one, never."""
+    if until_min is None:
+        return math.inf
+    if isinstance(until_min, bool) or not isinstance(until_min, (int, float, np.number)) or math.isnan(float(until_min)):
+        raise ValueError(f"until_min: {until_min!r}; give a number")
+    return 60 * float(until_min)
 
 
 class _Progress:

@@ -140,8 +140,8 @@ Vectors active_forces(const Model& model, const State& state) {
   return forces_of_laws(model, state, std::mem_fn(&Law::is_active));
 }
 
-Vectors forces_of_law(const Model& model, const State& state, std::string_view label) {
-  return forces_of_laws(model, state, [&](const Law& law) { return law.label() == label; });
+Vectors forces_of_law(const Model& model, const State& state, const Law& law) {
+  return forces_of_laws(model, state, [&](const Law& other) { return &other == &law; });
 }
 
 Vectors driving_forces(const Model& model, const State& state) {

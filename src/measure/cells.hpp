@@ -4,7 +4,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -54,8 +53,8 @@ Vectors active_forces(const Model& model, const State& state);
 /// pressures. No drag, no inertia; volumes and the shell, which balance these, are not in it.
 Vectors driving_forces(const Model& model, const State& state);
 
-/// The same of one law alone, active or not, by its label.
-Vectors forces_of_law(const Model& model, const State& state, std::string_view label);
+/// The same of one law alone, active or not.
+Vectors forces_of_law(const Model& model, const State& state, const Law& law);
 
 /// Mean tension of the faces that each cortex acts on, by area, nN/um; with the cortex's label.
 std::vector<std::pair<std::string, double>> mean_tensions(const Model& model, const State& state);

@@ -1,8 +1,13 @@
 #include "mechanics/model.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/errors.hpp"
 
 namespace plica {
 
@@ -55,6 +60,17 @@ double Model::elastic_rounding() const {
     thinnest = std::max(thinnest, area / hex_volume(rest) * area);
   }
   return stiffness_scale * thinnest * position_rounding() * std::sqrt(static_cast<double>(tissue.node_count()));
+}
+
+std::size_t place_of_law(const Model& model, const std::string& label, bool acting) {
+  std::vector<std::string> labels;
+  for (std::size_t l = 0; l < model.laws.size(); ++l) {
+    if (acting && !model.laws[l]->is_active()) continue;
+    labels.push_back(model.laws[l]->label());
+    if (labels.back() == label) return l;
+  }
+  throw UsageError(fmt::format("{} \"{}\"; {}: {}", acting ? "no cells act by" : "there is no law", label,
+                               acting ? "they do by" : "there are", fmt::join(labels, ", ")));
 }
 
 std::vector<std::vector<double>> next_internals(const Model& model, const Step& step) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "mechanics/constraint.hpp"
@@ -59,6 +60,10 @@ struct Model {
   /// How far positions are rounded, with a margin for sums, um.
   [[nodiscard]] double position_rounding() const;
 };
+
+/// The place in model.laws of the one that tables call so; of those by which cells act, where `acting` asks for that.
+/// UsageError, with the names that there are.
+std::size_t place_of_law(const Model& model, const std::string& label, bool acting = false);
 
 /// Calls body(law, step as that law sees it) for every law.
 template <class Body>

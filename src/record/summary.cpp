@@ -42,20 +42,6 @@ std::string hash(std::string_view text) {
   return fmt::format("{:016x}", value);
 }
 
-const char* word(RunStatus status) {
-  switch (status) {
-    case RunStatus::equilibrium:
-      return "equilibrium";
-    case RunStatus::end_time:
-      return "end_time";
-    case RunStatus::failed:
-      return "failed";
-    case RunStatus::under_way:
-      return "interrupted";
-  }
-  return "";
-}
-
 // What ended the run: the criteria that were met and rest, where they count; null at the end of time or a failure.
 Json stopped_by(const Scenario& scenario, const Simulation& simulation, const Observation& last) {
   std::vector<std::string> names = simulation.criterion_met() ? last.criteria_met : std::vector<std::string>{};
@@ -93,7 +79,8 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   Json summary;
   summary["scenario"] = scenario.name;
   summary["title"] = scenario.title;
-  summary["status"] = word(simulation.status());
+  // Nobody records a run that goes on: this one was interrupted.
+  summary["status"] = simulation.status() == RunStatus::under_way ? "interrupted" : word(simulation.status());
   summary["stopped_by"] = stopped_by(scenario, simulation, last);
   summary["failure"] = simulation.failure().empty() ? Json(nullptr) : Json(simulation.failure());
   summary["time_s"] = last.time_s();

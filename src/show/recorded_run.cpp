@@ -41,6 +41,8 @@ RecordedRun::RecordedRun(fs::path out, const Scenario& scenario, const ScenarioS
   refuse_to_replace_reference(simulation.observer().monitors(), out_);
   if (simulation.divisions() > 0)
     throw UsageError("cells have divided already; a record begins before the first division");
+  if (start == Start::resumed && simulation.steps() > 0)
+    throw UsageError("the simulation has taken steps already; resume a run with one that is at rest");
   lock_ = std::make_unique<DirectoryLock>(out_);
   if (start == Start::resumed) look_for_checkpoint(scenario);
   is_finished_ = checkpoint_ && has_ended(checkpoint_->run, simulation.controls()) && holds_ending(out_, can_report());

@@ -1,7 +1,6 @@
 #include "simulation/simulation.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -48,8 +47,9 @@ std::optional<CellId> held_cell_that_grows(const Model& model, const State& stat
   return std::nullopt;
 }
 
-std::string failure_text(const StepReport& report, const Model& model, const State& state, double duration_s) {
+std::string failure_text(StepReport report, const Model& model, const State& state, double duration_s) {
   const std::optional<CellId> held = held_cell_that_grows(model, state);
+  if (report.cell) report.cell = CellId(id_of(model, *report.cell));
   std::string text =
       fmt::format("{} at t = {:g} s, with steps down to {:g} s", report.reason(), state.time_s, duration_s);
   if (held)
@@ -143,15 +143,7 @@ RunMemory Simulation::memory() const {
 }
 
 void Simulation::set_activity(const std::string& label, std::vector<double> activities) {
-  std::vector<std::string> labels;
-  std::size_t place = model_->laws.size();
-  for (std::size_t l = 0; l < model_->laws.size(); ++l) {
-    if (!model_->laws[l]->is_active()) continue;
-    labels.push_back(model_->laws[l]->label());
-    if (labels.back() == label) place = l;
-  }
-  if (place == model_->laws.size())
-    throw UsageError(fmt::format("no cells act by \"{}\"; they do by: {}", label, fmt::join(labels, ", ")));
+  const std::size_t place = place_of_law(*model_, label, true);
   const std::size_t cells = model().tissue.cells.size();
   if (!activities.empty() && activities.size() != cells)
     throw UsageError(fmt::format("{}: {} activities for {} cells; give one a cell", label, activities.size(), cells));
@@ -236,12 +228,27 @@ RunStatus Simulation::status() const {
   return before_end && now_.at_equilibrium ? RunStatus::equilibrium : RunStatus::end_time;
 }
 
+const char* word(RunStatus status) {
+  switch (status) {
+    case RunStatus::under_way:
+      return "under_way";
+    case RunStatus::equilibrium:
+      return "equilibrium";
+    case RunStatus::end_time:
+      return "end_time";
+    case RunStatus::failed:
+      return "failed";
+  }
+  return "";
+}
+
 RunStatus Simulation::run_until(double time_s) {
-  while (!has_come(time_s, now_.state.time_s) && step(time_s)) continue;
+  while (step(time_s)) continue;
   return status();
 }
 
 bool Simulation::step(double until_s) {
+  if (has_come(until_s, now_.state.time_s)) return false;
   if (!has_begun_) divide(due_divisions(*model_, now_.state, controls_.divisions));
   has_begun_ = true;
   if (status() != RunStatus::under_way) return false;
@@ -308,7 +315,7 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
     if (solved) continue;
     stepper_->forget_factor();
     if (step_length_.halve(controls_, duration_s)) continue;
-    if (report.cell) failed_cell_ = id_of(*model_, *report.cell), report.cell = CellId(*failed_cell_);
+    if (report.cell) failed_cell_ = id_of(*model_, *report.cell);
     failure_ = failure_text(report, *model_, now_.state, duration_s);
     break;
   }

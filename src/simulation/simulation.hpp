@@ -20,6 +20,9 @@ namespace plica {
 
 enum class RunStatus { under_way, equilibrium, end_time, failed };
 
+/// What other programs call it.
+const char* word(RunStatus status);
+
 /// Hears of what happens in a simulation. Outlives it, or stops listening.
 class SimulationListener {
  public:
@@ -61,7 +64,7 @@ class Simulation {
   ~Simulation();
 
   /// Takes the next step, shorter ones until one is accepted, which ends at `until_s` at the latest; then cells divide
-  /// that are due. False when there is no next step, when it failed, or when it was stopped.
+  /// that are due. False when there is no next step, when it failed or was stopped, or when that time has come.
   bool step(double until_s = std::numeric_limits<double>::infinity());
 
   /// Steps until `time_s`, on which a step ends, or until the run ends, fails or is stopped.

@@ -6,14 +6,14 @@
 #include <new>
 #include <vector>
 
-#include "support/threads.hpp"
+#include "core/threads.hpp"
 
 namespace plica {
 namespace {
 
 TEST(Parallel, FindsTheFirstOnAnyThreads) {
   for (const int count : {1, 2, 4}) {
-    const support::Threads scope(count);
+    const ThreadCount scope(count);
     for (const std::size_t first : {0U, 777U, 60'000U, 99'999U})
       EXPECT_EQ(parallel_find(100'000, [&](std::size_t i) { return i >= first && (i - first) % 1000 == 0; }), first);
     EXPECT_EQ(parallel_find(100'000, [](std::size_t) { return false; }), 100'000U);
@@ -24,7 +24,7 @@ TEST(Parallel, FindsTheFirstOnAnyThreads) {
 TEST(Parallel, SquaredNormIsThatOfAllVectorsAndTheSameBitsOnAnyThreads) {
   const Vectors vectors(50'001, Vec3(0.1, -0.2, 0.3));
   const auto on = [&](int threads) {
-    const support::Threads scope(threads);
+    const ThreadCount scope(threads);
     return parallel_squared_norm(vectors);
   };
   EXPECT_NEAR(on(1), 50'001 * 0.14, 1e-8);
@@ -35,7 +35,7 @@ TEST(Parallel, SquaredNormIsThatOfAllVectorsAndTheSameBitsOnAnyThreads) {
 TEST(Parallel, WhatAnIterationThrowsComesOut) {
   int cases = 0;
   for (const int count : {1, 2, 4}) {
-    const support::Threads scope(count);
+    const ThreadCount scope(count);
     EXPECT_THROW(parallel_for(50'000,
                               [](std::size_t i) {
                                 if (i == 31'234) throw std::bad_alloc();

@@ -7,11 +7,11 @@
 #include <cstdlib>
 
 #include "core/parallel.hpp"
+#include "core/threads.hpp"
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/elasticity/turning_elements.hpp"
 #include "support/law_checks.hpp"
-#include "support/threads.hpp"
 
 namespace plica {
 namespace {
@@ -206,7 +206,7 @@ TEST(Kernels, NewRestShapesAreTakenWhereverTheElementLies) {
 
 // All results that are sums over elements, as bits.
 std::vector<double> results_with(int threads, const Tissue& tissue, const Motion& motion, Kernels kernels) {
-  const support::Threads scope(threads);
+  const ThreadCount scope(threads);
   const Corotational elasticity(tissue, moduli, 1, {}, kernels);
   const Dilatation dilatation(tissue, moduli.bulk_modulus(), false, {}, kernels);
   const CellVolumes volumes(tissue, kernels);

@@ -164,6 +164,16 @@ def test_record_resumes(tmp_path):
     plica.Simulation(scenario()).run(out=tmp_path / "parts", resume=True)
     a, b = plica.open(tmp_path / "whole"), plica.open(tmp_path / "parts")
     assert a.status == b.status == "end_time"
+    assert 24 in b.series["time_s"].tolist() and b.summary["steps"] == len(b.series) - 1
+    # Steps end elsewhere, so not to the bit: by the tolerance of a step.
+    assert np.abs(a.frames[-1].points - b.frames[-1].points).max() < 0.05
+    # What is finished is left alone.
+    sim = plica.Simulation(scenario())
+    again = sim.run(out=tmp_path / "parts", resume=True)
+    assert sim.steps == 0 and again.status == "end_time"
+    sim.step()
+    with pytest.raises(ValueError, match="at rest"):
+        sim.run(out=tmp_path / "parts", resume=True)
 
 
 def test_numerics_give_up():
@@ -262,6 +272,25 @@ def test_looks(sim):
 def test_wrong_threads(threads):
     with pytest.raises(ValueError, match="threads"):
         plica.Simulation("drosophila", threads=threads)
+
+
+def test_a_time_that_has_come(sim):
+    sim.run(until_min=0.5)
+    before = sim.steps
+    assert sim.step(until_min=0.5) is None and sim.step(until_min=0.1) is None
+    sim.run(until_min=0.2)
+    assert sim.steps == before and sim.time_min == 0.5 and not sim.finished
+
+
+def test_a_tissue_that_has_divided_is_saved_with_its_regions():
+    s = plica.Scenario("division-demo")
+    cells = len(plica.Simulation(s).pressures)
+    s.set_region("some", np.arange(cells) < 3)
+    sim = plica.Simulation(s)
+    while len(sim.pressures) == cells:
+        assert sim.step() is not None
+    again = pickle.loads(pickle.dumps(sim))
+    assert np.array_equal(again.positions, sim.positions) and again.regions["some"].sum() >= 3
 
 
 def test_wrong_times(sim):

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/threads.hpp"
 #include "measure/self_intersections.hpp"
 #include "record/archive.hpp"
 #include "record/checkpoint.hpp"
@@ -10,7 +11,6 @@
 #include "scenario/setup.hpp"
 #include "simulation/simulation.hpp"
 #include "support/small_furrow.hpp"
-#include "support/threads.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {
@@ -230,7 +230,7 @@ TEST(Whole, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
   Observation measures;
   std::optional<Simulation> fork;
   const auto run = [&](int threads) {
-    const Threads so_many(threads);
+    const ThreadCount so_many(threads);
     Simulation simulation(scenario);
     while (simulation.step())
       if (simulation.steps() == 9) {

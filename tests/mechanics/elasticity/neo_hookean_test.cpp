@@ -4,12 +4,12 @@
 
 #include <cmath>
 
+#include "core/threads.hpp"
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/elasticity/hexahedron_stiffness.hpp"
 #include "solver/step/backward_difference.hpp"
 #include "support/divided.hpp"
 #include "support/law_checks.hpp"
-#include "support/threads.hpp"
 
 namespace plica {
 namespace {
@@ -150,7 +150,7 @@ TEST(NeoHookean, EveryInstructionSetAndAnyThreadsHaveTheSame) {
       const Motion motion = flowing_motion(law, tissue, 0.5, 2);
       const Vectors direction = Random(6).vectors(tissue.node_count());
       const auto results = [&](int threads) {
-        const Threads scope(threads);
+        const ThreadCount scope(threads);
         Vectors sums = forces_of(law, motion.step());
         law.add_tangent_product(motion.step(), direction, sums);
         return std::tuple(sums, law.energy(motion.step()), law.next_internal(motion.step()));

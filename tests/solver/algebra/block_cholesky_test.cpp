@@ -4,8 +4,8 @@
 
 #include <utility>
 
+#include "core/threads.hpp"
 #include "support/cubes.hpp"
-#include "support/threads.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {
@@ -109,7 +109,7 @@ TEST(BlockCholesky, GivesTheSameBitsOnAnyNumberOfThreads) {
   const System system(20, 16, 2);  // large enough for subtrees to be shared out
   std::vector<float> on_one;
   for (const int threads : {1, 2, 3, 8}) {
-    const support::Threads scope(threads);
+    const ThreadCount scope(threads);
     BlockCholesky cholesky(system.pattern);
     ASSERT_TRUE(cholesky.factorise(system.values));
     auto x = system.b;
@@ -121,7 +121,7 @@ TEST(BlockCholesky, GivesTheSameBitsOnAnyNumberOfThreads) {
 
 TEST(BlockCholesky, SaysWhenAMatrixIsNotPositiveDefinite) {
   for (const int threads : {1, 2}) {
-    const support::Threads scope(threads);
+    const ThreadCount scope(threads);
     for (System system : {System(6, 5, 2), System(20, 16, 2)}) {
       BlockCholesky cholesky(system.pattern);
       float& value = system.values[9 * static_cast<std::size_t>(system.pattern.find(17, 17)) + 4];

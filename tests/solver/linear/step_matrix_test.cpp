@@ -4,9 +4,9 @@
 
 #include <set>
 
+#include "core/threads.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
-#include "support/threads.hpp"
 #include "tissue/shapes/embryo.hpp"
 
 namespace plica {
@@ -89,7 +89,7 @@ TEST(StepMatrix, PressureForcesAreTheSameBitsOnOneAndTwoThreads) {
   std::vector<double> pressures(jacobian.sparse_rows());
   for (double& pressure : pressures) pressure = random.number();
   const auto forces_on = [&](int count) {
-    const support::Threads scope(count);
+    const ThreadCount scope(count);
     Vectors forces(model.tissue.node_count(), Vec3::Ones());
     jacobian.add_forces(pressures, 0.3, forces);
     return forces;

@@ -2,10 +2,10 @@
 
 #include <limits>
 
+#include "core/threads.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "solver/algebra/block_cholesky.hpp"
 #include "support/models.hpp"
-#include "support/threads.hpp"
 
 namespace plica {
 namespace {
@@ -238,7 +238,7 @@ TEST(Multigrid, GivesTheSameBitsForAnyThreadsAndHistory) {
   const Doubles r = system.noise(6);
   std::vector<Doubles> results;
   for (const int count : {1, 2, 4}) {
-    const support::Threads scope(count);
+    const ThreadCount scope(count);
     const auto multigrid = make_multigrid(system.pattern);
     if (count == 4) {
       ASSERT_TRUE(multigrid->factorise(other.values, other.near_kernel));

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/threads.hpp"
 #include "solver/multigrid/smoother.hpp"
 #include "support/cubes.hpp"
-#include "support/threads.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {
@@ -83,7 +83,7 @@ TEST(MultigridOrder, SweepsGroupByGroupLeaveTheResidualOfWhatTheyFound) {
   for (float& value : b) value = static_cast<float>(random.number());
   std::vector<float> first;
   for (const int threads : {1, 2, 4}) {
-    const support::Threads scope(threads);
+    const ThreadCount scope(threads);
     std::vector<float> r = b, x(b.size()), Ax(b.size());
     smoother.start(r, x);
     matrix.multiply(x, Ax);

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/threads.hpp"
 #include "solver/make_stepper.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
-#include "support/threads.hpp"
 
 namespace plica {
 namespace {
@@ -182,7 +182,7 @@ TEST(ProjectedStepper, OneAndTwoThreadsGiveTheSameBits) {
   for (const Forces forces : {Forces::newton, Forces::linearly_implicit}) {
     std::vector<State> ends;
     for (const int count : {1, 2}) {
-      const support::Threads scope(count);
+      const ThreadCount scope(count);
       const auto stepper = make_stepper(model, scheme(forces));
       State state = rest_state(model), next;
       for (int k = 0; k < 3; ++k) {

@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/threads.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "support/loads.hpp"
 #include "support/models.hpp"
-#include "support/threads.hpp"
 
 namespace plica {
 namespace {
@@ -186,7 +186,7 @@ TEST(NewtonStepper, OneAndTwoThreadsGiveTheSameBits) {
   const Model model = furrowing_sphere();
   std::vector<State> ends;
   for (const int count : {1, 2}) {
-    const support::Threads scope(count);
+    const ThreadCount scope(count);
     NewtonStepper solver(model);
     ends.push_back(steps(solver, rest_state(model), 2, 4));
   }
