@@ -8,9 +8,9 @@ if [[ $version != *"version 14."* ]]; then
   echo "skipped: not clang-format 14 but $version"
   exit 77
 fi
-mapfile -t files < <(find src tests bench -name '*.cpp' -o -name '*.hpp' | sort)
+mapfile -t files < <(find src tests bench python -name '*.cpp' -o -name '*.hpp' | sort)
 echo "clang-format on ${#files[@]} files"
 clang-format --dry-run -Werror "${files[@]}" || {
-  echo "To mend it: clang-format -i \$(find src tests bench -name '*.cpp' -o -name '*.hpp')" >&2
+  echo "To mend it: clang-format -i \$(find src tests bench python -name '*.cpp' -o -name '*.hpp')" >&2
   exit 1
 }

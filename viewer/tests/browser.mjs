@@ -61,6 +61,17 @@ export async function open(file, { width = 1280, height = 900, dark = false } = 
   return { page, done };
 }
 
+// Ticks a box, or takes its tick away. On a busy machine Firefox's driver may say that it has clicked before the page has
+// heard of it, and Playwright's own `check` looks at once; a click that the page never heard of is repeated.
+export async function tick(page, selector, on) {
+  const isSo = ([selector, on]) => document.querySelector(selector).checked === on;
+  for (let tries = 3; !(await page.evaluate(isSo, [selector, on])); --tries) {
+    assert.ok(tries > 0, `${selector} does not become ${on} by clicks`);
+    await page.click(selector);
+    await page.waitForFunction(isSo, [selector, on], { timeout: 10_000 }).catch(() => {});
+  }
+}
+
 /** What a click on the button saves: the file's name and its bytes. */
 export async function saved(page, button) {
   if (!isFirefox) {

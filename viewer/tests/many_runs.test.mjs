@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { begin, changed, end, folder, near, numberOf, open, pixels, report, run, saved, table } from "./browser.mjs";
+import { begin, changed, end, folder, near, numberOf, open, pixels, report, run, saved, table, tick } from "./browser.mjs";
 
 const moduli = [500, 750, 1000, 1500, 2000];
 const stiffnesses = [2, 3, 4, 5, 6, 7];
@@ -90,7 +90,7 @@ test("text and ticks show and hide runs everywhere at once", async () => {
   const wanted = ["E1000-k7", "E1500-k7", "E2000-k7"];
   for (const part of [".runs", "#canvases", "#midline", "#texts"]) assert.deepEqual((await shownRuns(page, part)).sort(), wanted, part);
   assert.match(await page.textContent("#shown-count"), /3 of 30/);
-  await page.uncheck('.runs tr[data-run="E1500-k7"] input');
+  await tick(page, '.runs tr[data-run="E1500-k7"] input', false);
   for (const part of ["#canvases", "#midline"]) assert.deepEqual((await shownRuns(page, part)).sort(), ["E1000-k7", "E2000-k7"], part);
   const rows = (await saved(page, "#save-table")).bytes.toString().trim().split("\n").slice(1);
   assert.equal(rows.length, table("E1000-k7/series.csv").length + table("E2000-k7/series.csv").length);

@@ -7,7 +7,7 @@ import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import {
   begin, changed, chosenFrame, difference, end, folder, isPaper, launch, near, numberOf, open, pixels, report, run, saved, shownSeries,
-  table,
+  table, tick,
 } from "./browser.mjs";
 
 const hostileTitle = `</script><script>window.hacked=1</script>"'<img src=x onerror="window.hacked=1">\u{1F9EC}${"fold ".repeat(2000)}`;
@@ -52,7 +52,7 @@ test("values beside the plots are those of series.csv, at the end and in between
 test("the picture is the embryo: its outline, its symmetry, its colours", async () => {
   const { page, done } = await open("drosophila/report.html");
   await page.click("#view-ventral");
-  for (const part of ["marks", "shell", "edges"]) await page.uncheck(`#${part}`);
+  for (const part of ["marks", "shell", "edges"]) await tick(page, `#${part}`, false);
   const picture = await pixels(page, ".picture");
   const { width, height } = picture;
   let [left, right, top, bottom] = [width, 0, height, 0];
@@ -83,7 +83,7 @@ test("on a cut, colours are those of the scale for the cell's value", async () =
   const { page, done } = await open("drosophila/report.html");
   await page.click("#view-cross-section");
   await page.selectOption("#field", "pressure");
-  await page.uncheck("#edges");
+  await tick(page, "#edges", false);
   const box = await page.locator(".picture").boundingBox();
   let checked = 0;
   for (const [across, down] of [[0, -0.3], [0.18, -0.25], [-0.2, -0.22], [0, 0.24]]) {
@@ -154,7 +154,7 @@ test("turning by mouse and keys, zoom, cut, colour and time each change the pict
       slider.dispatchEvent(new Event("input"));
     }),
     "whole again": () => page.selectOption("#cut", ""),
-    edges: () => page.uncheck("#edges"),
+    edges: () => tick(page, "#edges", false),
     scrub: () => chosenFrame(page, 0),
   };
   for (const [name, act] of Object.entries(actions)) {
@@ -352,7 +352,7 @@ test("no label of an axis is cut", async () => {
   for (const file of ["drosophila/report.html", "curl/report.html"]) {
     const { page, done } = await open(file, { width: 390, height: 844 });
     for (const logarithmic of [false, true]) {
-      await page.locator("#logarithmic-time").setChecked(logarithmic);
+      await tick(page, "#logarithmic-time", logarithmic);
       for (let i = 1; i <= (await page.locator(".chart .uplot").count()); ++i) {
         const { edge } = await plotOf(page, `:nth-match(.chart .uplot, ${i})`);
         assert.ok(edge.every(([, , , alpha]) => alpha === 0), `${file}: plot ${i} is inked up to its edge`);
@@ -381,7 +381,7 @@ test("the midline's last frame shows, on a logarithmic axis too, which ends with
   const reach = 1.05 * Math.max(...rows.map((row) => Math.abs(row.ap_um)));
   let compared = 0;
   for (const logarithmic of [false, true]) {
-    await page.locator("#logarithmic-time").setChecked(logarithmic);
+    await tick(page, "#logarithmic-time", logarithmic);
     const plot = await plotOf(page, "#midline .uplot");
     for (const [part, time] of [[0.995, 900], ...(logarithmic ? [[0.005, 15]] : [[0.005, 0], [0.5, 450]])])
       for (const row of rows.filter((candidate) => candidate.time_s === time && Math.abs(candidate.ap_um) < 0.9 * reach)) {
