@@ -9,6 +9,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "core/memory.hpp"
 #include "core/threads.hpp"
 #include "core/version.hpp"
 #include "errors.hpp"
@@ -130,6 +131,7 @@ nb::dict looks() {
 }  // namespace
 
 NB_MODULE(_core, module) {
+  keep_some_freed_memory();
   translate_errors();
   module.attr("version") = version();
   module.attr("scenarios") = [] {

@@ -23,6 +23,13 @@ void keep_freed_memory() {
 #endif
 }
 
+void keep_some_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 128 << 20);
+#endif
+}
+
 double peak_memory_MB() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);

@@ -13,6 +13,9 @@ void make_sure_of_memory(std::size_t bytes);
 /// To be called at the start of a program.
 void keep_freed_memory();
 
+/// The same up to some 100 MB, for a module in somebody else's program.
+void keep_some_freed_memory();
+
 /// The most memory that this process has had at once, MB (1e6 bytes).
 double peak_memory_MB();
 

@@ -1,0 +1,21 @@
+# `cmake --install`, and a package of Debian: cmake --build build/release --target package. The program holds its scenarios
+# and the report's page; which other packages it needs is read off what it links.
+include(GNUInstallDirs)
+install(TARGETS plica RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION share/doc/plica)
+install(FILES LICENSE DESTINATION share/doc/plica RENAME copyright)
+install(DIRECTORY scenarios DESTINATION share/doc/plica)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "The plica authors <maintainers@plica.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "simulator of how sheets of living cells fold")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "plica simulates how a sheet of living cells folds, cell by cell and in three dimensions.
+A scenario says which cells contract, how strongly and when; out come the folding
+tissue to turn and cut, pictures, and tables of depths, areas and speeds.")
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# Pictures where there is no screen.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "xvfb, libgl1-mesa-dri")
+set(CPACK_STRIP_FILES ON)
+include(CPack)

