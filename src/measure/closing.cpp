@@ -55,13 +55,11 @@ std::optional<Touching> touching(const Model& model, const State& state) {
       if (pair.first_gap >= pair.distance) continue;
       ++result->pairs;
       if (law->side() != CellSide::apical) continue;
-      const SelfContact::Point& point = law->points()[pair.point];
-      double beyond = 0;
-      for (int k = 0; k < 4; ++k) beyond += pair.weights[k] * model.tissue.rest_positions[pair.nodes[k].index()].y();
-      if (point.at(model.tissue.rest_positions).y() * beyond >= 0) continue;  // both of one side
+      const Vectors& at_rest = model.tissue.rest_positions;
+      if (pair.p.at(at_rest).y() * pair.q.at(at_rest).y() >= 0) continue;  // both of one side
       Interval reach;
-      for (int i = 0; i < point.count; ++i) reach.take(state.positions[point.nodes[i].index()].x());
-      for (const NodeId node : pair.nodes) reach.take(state.positions[node.index()].x());
+      for (const SurfacePlace* place : {&pair.p, &pair.q})
+        for (const NodeId node : place->all_nodes()) reach.take(state.positions[node.index()].x());
       closed.push_back(reach);
       if (reach.low <= 0 && reach.high >= 0) result->middle_is_closed = true;
     }

@@ -16,7 +16,7 @@
 namespace plica {
 namespace {
 
-constexpr int format = 4;
+constexpr int format = 5;
 constexpr std::size_t trailer_bytes = 64;
 
 std::uint32_t checksum(std::string_view bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }

@@ -1,6 +1,8 @@
 // A run that goes on from a memory of itself ends in the same bits as one that was never interrupted.
 #include <gtest/gtest.h>
 
+#include "core/threads.hpp"
+#include "mechanics/contact/self_contact.hpp"
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
 
@@ -143,6 +145,46 @@ TEST(Resume, WithCellsThatFlowAcrossDivisions) {
                    {"division.floor.at_min=0.2", "division.floor.growth_min=0.3", "division.borders.at_min=0.5",
                     "time.end_min=0.7", second_order, neo_hookean, flowing},
                    11);
+}
+
+// A furrow that closes under noise, until edges press on edges; from there on on three threads, and from the memory of
+// then.
+TEST(Resume, WithEdgesThatPress) {
+  const Scenario scenario =
+      load_scenario(find_scenario("furrow-slice"),
+                    {"embryo.cells=[3,20,20]", "embryo.length_um=21", "cortex.apical.variation.spread=0.3",
+                     "cortex.apical.variation.seed=1", "self_contact.distance_um=0.8", "time.end_min=20"});
+  Simulation whole(scenario);
+  const auto pressing_edges = [](const Simulation& simulation) {
+    std::ptrdiff_t count = 0;
+    for (std::size_t l = 0; l < simulation.model().laws.size(); ++l)
+      if (dynamic_cast<const SelfContact*>(simulation.model().laws[l].get()) != nullptr)
+        count += std::ranges::count_if(
+            SelfContact::pairs_of(simulation.state().internals[l]),
+            [](const ContactPair& pair) { return pair.is_of_edges() && pair.first_gap < pair.distance; });
+    return count;
+  };
+  while (pressing_edges(whole) == 0) ASSERT_TRUE(whole.step()) << whole.failure();
+  std::printf("%td pairs of edges press after step %d, at %.0f s\n", pressing_edges(whole), whole.steps(),
+              whole.state().time_s);
+  const RunMemory then = whole.memory();
+  const Observation measures = whole.measures();
+  Simulation on_three = whole;
+  Simulation resumed(scenario);
+  resumed.go_on_from(RunMemory(then), measures);
+  int pressed = 0;
+  for (int step = 0; step < 5; ++step) {
+    ASSERT_TRUE(whole.step());
+    ASSERT_TRUE(resumed.step());
+    {
+      const ThreadCount three(3);
+      ASSERT_TRUE(on_three.step());
+    }
+    pressed += pressing_edges(whole) > 0;
+    expect_same(whole.state(), resumed.state());
+    expect_same(whole.state(), on_three.state());
+  }
+  EXPECT_GE(pressed, 3);
 }
 
 // Divisions lie behind some memories and before others; growth is under way in many.

@@ -30,4 +30,18 @@ ClosestPoint closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, co
   return {w, (p - w[0] * a - w[1] * b - w[2] * c).squaredNorm()};
 }
 
+std::optional<PlacesOnSegments> nearest_inside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  // Rounding may not tell on which side of an end a place lies; an end is a point's business.
+  constexpr double least_sine = 1e-3, least_part = 1e-9;
+  const Vec3 u = b - a, v = d - c, w = c - a;
+  const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const double determinant = uu * vv - uv * uv;
+  if (!(determinant > least_sine * least_sine * uu * vv)) return std::nullopt;
+  // Where the way between the lines a + s u and c + t v is across both.
+  const double s = (uw * vv - uv * vw) / determinant, t = (uw * uv - uu * vw) / determinant;
+  const auto is_inside = [](double part) { return part > least_part && part < 1 - least_part; };
+  if (!is_inside(s) || !is_inside(t)) return std::nullopt;
+  return PlacesOnSegments{s, t};
+}
+
 }  // namespace plica

@@ -1,0 +1,44 @@
+// Which boxes are near a place: a grid of cubes, each of which lists the boxes that it touches.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "core/vector.hpp"
+
+namespace plica {
+
+struct Box {
+  Vec3 low, high;
+  void take(const Vec3& place) { low = low.cwiseMin(place), high = high.cwiseMax(place); }
+  [[nodiscard]] Box widened(double by) const { return {low.array() - by, high.array() + by}; }
+  [[nodiscard]] bool overlaps(const Box& other) const {
+    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+  }
+};
+
+class BoxGrid {
+ public:
+  explicit BoxGrid(double cube_size) : size_(cube_size) {}
+
+  void add(std::size_t number, const Box& box);
+  /// Of the boxes of the place's cube, in the order in which they were added.
+  [[nodiscard]] std::span<const std::size_t> near(const Vec3& place) const;
+  /// Of the boxes of all cubes that a box touches, each once, in ascending order; instead of what was in `found`.
+  void find_near(const Box& box, std::vector<std::size_t>& found) const;
+
+ private:
+  using Cube = std::array<long, 3>;
+  [[nodiscard]] Cube cube(const Vec3& place) const;
+  [[nodiscard]] static std::uint64_t key(const Cube& cube);
+  template <class Take>
+  void for_cubes(const Box& box, const Take& take) const;
+
+  double size_;
+  std::unordered_map<std::uint64_t, std::vector<std::size_t>> numbers_;
+};
+
+}  // namespace plica

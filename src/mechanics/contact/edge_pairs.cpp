@@ -1,0 +1,201 @@
+#include "mechanics/contact/edge_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "mechanics/contact/box_grid.hpp"
+#include "mechanics/contact/closest_point.hpp"
+
+namespace plica {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// What the pairs of the step before say about a node of the side, all that are near it taken together.
+struct Memory {
+  double least_gap = infinite;       // um, now
+  double edge_distance = -infinite;  // um: the largest that a pair of edges has
+};
+
+class Memories {
+ public:
+  Memories(std::span<const ContactPair> known, std::span<const Vec3> positions, const Mirror& mirror)
+      : mirror_(mirror), of_nodes_(positions.size()) {
+    for (const ContactPair& pair : known) {
+      const double gap = pair.gap(positions);
+      for (const SurfacePlace* place : {&pair.p, &pair.q})
+        for (const NodeId node : place->all_nodes()) {
+          Memory& memory = of_nodes_[mirror.image(node).node.index()];
+          memory.least_gap = std::min(memory.least_gap, gap);
+          if (pair.is_of_edges()) memory.edge_distance = std::max(memory.edge_distance, pair.distance);
+        }
+    }
+  }
+  [[nodiscard]] Memory of(const Segment& segment) const {
+    Memory result;
+    for (int i = 0; i < segment.count; ++i) {
+      const Memory& memory = of_nodes_[mirror_.image(segment.nodes[i]).node.index()];
+      result.least_gap = std::min(result.least_gap, memory.least_gap);
+      result.edge_distance = std::max(result.edge_distance, memory.edge_distance);
+    }
+    return result;
+  }
+
+ private:
+  const Mirror& mirror_;
+  std::vector<Memory> of_nodes_;
+};
+
+bool are_neighbours(const Segment& a, const Segment& b) {
+  for (int i = 0; i < a.count; ++i)
+    for (int k = 0; k < b.count; ++k)
+      if (a.nodes[i] == b.nodes[k]) return true;
+  for (const std::size_t of_a : a.triangles)
+    for (const std::size_t of_b : b.triangles)
+      if (of_a / 4 == of_b / 4) return true;
+  return false;
+}
+
+/// A segment that is looked at: where it lies, and the way out of its triangles.
+struct Placed {
+  std::size_t segment;
+  Vec3 from, to, outward;
+  Box box;
+};
+
+std::vector<Placed> placed(const std::vector<Segment>& segments, const EdgePairs::Surface& surface,
+                           const Mirror& mirror, const std::vector<char>& is_searched) {
+  const auto end_of = [&](const Segment& segment) { return segment.at(1).at(surface.positions); };
+  const auto is_near = [&](const Segment& segment) {
+    return std::any_of(segment.nodes.begin(), segment.nodes.begin() + segment.count,
+                       [&](NodeId node) { return is_searched[mirror.image(node).node.index()]; });
+  };
+  std::vector<Placed> result;
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    const Segment& segment = segments[s];
+    if (!is_near(segment)) continue;
+    const Vec3& from = surface.positions[segment.nodes[0].index()];
+    const Vec3 to = end_of(segment);
+    const auto& [one, other] = segment.triangles;
+    Box box{from, from};
+    box.take(to);
+    result.push_back({s, from, to, (surface.triangle_areas[one] + surface.triangle_areas[other]).normalized(), box});
+  }
+  return result;
+}
+
+class Search {
+ public:
+  Search(const std::vector<Segment>& segments, std::span<const Vec3> positions, double distance,
+         std::span<const ContactPair> known, const Mirror& mirror)
+      : segments_(segments),
+        positions_(positions),
+        distance_(distance),
+        known_(std::ranges::partition_point(known, [](const ContactPair& pair) { return !pair.is_of_edges(); }),
+               known.end()),
+        memories_(known, positions, mirror) {}
+
+  [[nodiscard]] double reach() const { return 4 * distance_; }
+
+  [[nodiscard]] std::optional<ContactPair> pair_of(const Placed& a, const Placed& b) const {
+    constexpr double rounded = -1e-9;  // of a cosine: what is square to each other on one side is so on its image
+    if (a.outward.dot(b.outward) > rounded) return std::nullopt;  // they look the same way
+    const Segment &of_a = segments_[a.segment], &of_b = segments_[b.segment];
+    if (of_a.area == 0 && of_b.area == 0) return std::nullopt;  // images: a pair of the side's stands for them
+    const std::optional<PlacesOnSegments> places = nearest_inside(a.from, a.to, b.from, b.to);
+    if (!places) return std::nullopt;
+    ContactPair pair{a.segment, static_cast<int>(b.segment), of_a.at(places->on_first), of_b.at(places->on_second),
+                     (a.to - a.from).cross(b.to - b.from).normalized()};
+    if (pair.apart(positions_).squaredNorm() >= reach() * reach() || are_neighbours(of_a, of_b)) return std::nullopt;
+    const ContactPair* last = last_of(pair);
+    if (!turn(pair, last, b.outward - a.outward)) return std::nullopt;
+    pair.first_gap = pair.gap(positions_);
+    // Beyond each other only where both touched, and then by no more than the distance more than is known.
+    const Memory memory_a = memories_.of(of_a), memory_b = memories_.of(of_b);
+    const double last_gap = std::max(memory_a.least_gap, memory_b.least_gap);
+    if (pair.first_gap < (last_gap < distance_ ? std::min(0.0, last_gap) - distance_ : 0)) return std::nullopt;
+    // One that slides in from a neighbouring segment pushes as that did.
+    const double seen_at = last ? last->distance : std::min(memory_a.edge_distance, memory_b.edge_distance);
+    pair.distance = std::min(distance_ / 2, std::max({seen_at, pair.first_gap, 0.0}));
+    pair.area = (of_a.area + of_b.area) / 2;
+    return pair;
+  }
+
+ private:
+  [[nodiscard]] const ContactPair* last_of(const ContactPair& pair) const {
+    const auto segments = [](const ContactPair& one) { return std::pair(one.first, one.second); };
+    const auto found = std::ranges::lower_bound(known_, segments(pair), {}, segments);
+    return found != known_.end() && segments(*found) == segments(pair) ? &*found : nullptr;
+  }
+
+  /// Turns the normal to the side of the first segment: that of the step before, or by the way in which the two look.
+  /// False where neither says which.
+  static bool turn(ContactPair& pair, const ContactPair* last, const Vec3& facing) {
+    constexpr double least_as_before = 0.5, least_as_facing = 0.2;  // cosines
+    double to_first = last ? pair.normal.dot(last->normal) : 0;
+    if (std::abs(to_first) < least_as_before) {
+      to_first = pair.normal.dot(facing.normalized());
+      if (std::abs(to_first) < least_as_facing) return false;
+    }
+    if (to_first < 0) pair.normal = -pair.normal;
+    return true;
+  }
+
+  const std::vector<Segment>& segments_;
+  std::span<const Vec3> positions_;
+  double distance_;
+  std::span<const ContactPair> known_;  // of edges
+  Memories memories_;
+};
+
+}  // namespace
+
+SurfacePlace Segment::at(double part) const {
+  if (count == 2) return {nodes, {1 - part, part}, 2};
+  return {nodes, {1 - 0.75 * part, 0.25 * part, 0.25 * part, 0.25 * part}, 4};
+}
+
+EdgePairs::EdgePairs(std::span<const std::array<NodeId, 4>> facets, std::span<const double> areas) {
+  // A facet's triangles have a quarter of its area each, and three segments.
+  std::map<std::pair<NodeId, NodeId>, std::size_t> edges;
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    for (std::size_t i = 0; i < 4; ++i) {
+      const NodeId from = facets[f][i], to = facets[f][(i + 1) % 4];
+      const std::size_t triangle = 4 * f + i, before = 4 * f + (i + 3) % 4;
+      segments_.push_back(
+          {{from, to, facets[f][(i + 2) % 4], facets[f][(i + 3) % 4]}, 4, {before, triangle}, areas[f] / 6});
+      const auto [known, is_new] = edges.try_emplace(std::minmax(from, to), segments_.size());
+      if (is_new) {
+        segments_.push_back({{from, to}, 2, {triangle, triangle}, areas[f] / 12});
+      } else {
+        segments_[known->second].triangles[1] = triangle;
+        segments_[known->second].area += areas[f] / 12;
+      }
+    }
+}
+
+std::vector<ContactPair> EdgePairs::find(const Surface& surface, double distance, const Mirror& mirror,
+                                         std::span<const ContactPair> known,
+                                         const std::vector<char>& is_searched) const {
+  const std::vector<Placed> all = placed(segments_, surface, mirror, is_searched);
+  const Search search(segments_, surface.positions, distance, known, mirror);
+  double longest = 0;
+  for (const Placed& one : all) longest = std::max(longest, (one.to - one.from).norm());
+  BoxGrid grid(std::max(search.reach(), 0.5 * longest));
+  for (std::size_t i = 0; i < all.size(); ++i) grid.add(i, all[i].box);
+  std::vector<ContactPair> pairs;
+  std::vector<std::size_t> candidates;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Box around = all[i].box.widened(search.reach());
+    grid.find_near(around, candidates);
+    for (auto k = std::ranges::upper_bound(candidates, i); k != candidates.end(); ++k)
+      if (all[*k].box.overlaps(around))
+        if (const std::optional<ContactPair> pair = search.pair_of(all[i], all[*k])) pairs.push_back(*pair);
+  }
+  return pairs;
+}
+
+}  // namespace plica

@@ -1,0 +1,187 @@
+// Edges that cross between points: two roofs whose ridges are pressed on each other.
+#include "mechanics/contact/edge_pairs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "measure/self_intersections.hpp"
+#include "mechanics/contact/self_contact.hpp"
+#include "solver/step/newton_stepper.hpp"
+#include "support/bodies.hpp"
+#include "support/law_checks.hpp"
+#include "support/models.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+constexpr double ridge = 40, slope = 10, height = 30;  // um
+constexpr double aside = 5;                            // um: from the middle of either ridge to where they cross
+
+// Two cells each, whose apical faces are the two sides of a roof: a lower one along x with its ridge at z = 0, and one
+// above it, upside down, along y. Both middles, and all other points, are 5 um or more from the other ridge.
+struct Roofs {
+  Bodies bodies;
+  std::size_t upper;
+
+  explicit Roofs(double gap) {
+    bodies.add({1, 2, 1}, [](int i, int j, int k) {
+      const double y = slope * (j - 1);
+      return Vec3(ridge * (i - 0.5), y, k == 1 ? -std::abs(y) : -height);
+    });
+    upper = bodies.add({1, 2, 1}, [&](int i, int j, int k) {
+      const double x = slope * (j - 1);
+      return Vec3(x + aside, ridge * (i - 0.5) - aside, gap + (k == 1 ? std::abs(x) : height));
+    });
+  }
+};
+
+// The same roofs, the upper one lifted, so that only what is near counts.
+Motion moved_down(const Tissue& tissue, const SelfContact& law, std::size_t upper, double by) {
+  Motion motion = at_rest(tissue);
+  motion.internal = law.first_internal(tissue);
+  for (std::size_t n = upper; n < tissue.node_count(); ++n) motion.positions[n].z() -= by;
+  return motion;
+}
+
+std::vector<ContactPair> edges_of(std::span<const double> internal) {
+  std::vector<ContactPair> pairs = SelfContact::pairs_of(internal);
+  std::erase_if(pairs, [](const ContactPair& pair) { return !pair.is_of_edges(); });
+  return pairs;
+}
+
+constexpr SelfContactRule rule{.distance = 0.4, .stiffness = 2, .search = 6};
+
+TEST(EdgePairs, TwoRidgesAreASpring) {
+  const Roofs roofs(1);
+  const Tissue tissue = roofs.bodies.tissue();
+  const SelfContact law(tissue, rule);
+  const auto at = [&](double gap) { return moved_down(tissue, law, roofs.upper, 1 - gap); };
+  const std::vector<ContactPair> pairs = edges_of(at(1).internal);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_NEAR(pairs[0].first_gap, 1, 1e-12);
+  EXPECT_NEAR(std::abs(pairs[0].normal.z()), 1, 1e-12);
+  EXPECT_NEAR(pairs[0].distance, rule.distance / 2, 1e-12);
+  // A third of a quarter of each of the two sides.
+  const double area = 2 * ridge * slope * std::sqrt(2) / 12;
+  EXPECT_NEAR(pairs[0].area, area, 1e-9);
+  EXPECT_EQ(law.energy(at(0.21).step()), 0);
+  for (const double gap : {0.15, 0.0, -0.1}) {
+    const double inside = rule.distance / 2 - gap, push = rule.stiffness * area * inside;
+    EXPECT_NEAR(law.energy(at(gap).step()), push * inside / 2, 1e-9);
+    const Vectors forces = forces_of(law, at(gap).step());
+    EXPECT_LT((sum_from(forces, roofs.upper) - Vec3(0, 0, push)).norm(), 1e-9);
+    EXPECT_LT(resultant(forces).norm(), 1e-9);
+    // The crossing is at 5/8 of the way along either ridge, and the two share the push so.
+    for (std::size_t n = 0; n < roofs.upper; ++n) {
+      const Vec3& x = tissue.rest_positions[n];
+      const bool is_end = x.z() == 0;
+      EXPECT_NEAR(forces[n].z(), is_end ? -push * (x.x() > 0 ? 0.625 : 0.375) : 0, 1e-9);
+    }
+  }
+  // None where it is farther than four distances.
+  EXPECT_TRUE(
+      edges_of(SelfContact(Roofs(1.7).bodies.tissue(), rule).first_internal(Roofs(1.7).bodies.tissue())).empty());
+}
+
+TEST(EdgePairs, DerivativesAgreeWithFiniteDifferences) {
+  const Roofs roofs(0.3);
+  const Tissue tissue = roofs.bodies.tissue();
+  SelfContactRule rough = rule;
+  for (const double friction : {0.0, 0.5}) {
+    rough.friction = friction;
+    const SelfContact law(tissue, rough);
+    Motion motion = moved_down(tissue, law, roofs.upper, 0.2);
+    motion.previous_positions = motion.positions;
+    motion.internal = law.next_internal(motion.step());
+    ASSERT_EQ(edges_of(motion.internal).size(), 1u);
+    Random random(7);
+    for (Vec3& x : motion.positions) x += random.vector(0.03);
+    ASSERT_GT(law.energy(motion.step()), 0.01);
+    const Vectors direction = random.vectors(tissue.node_count());
+    const double d = 1e-6;
+    const auto there = [&](double way) {
+      Motion moved = motion;
+      for (std::size_t n = 0; n < direction.size(); ++n) moved.positions[n] += way * direction[n];
+      return moved;
+    };
+    const Eigen::VectorXd forces = flat(forces_of(law, motion.step()));
+    EXPECT_NEAR((law.energy(there(d).step()) - law.energy(there(-d).step())) / (2 * d), -forces.dot(flat(direction)),
+                1e-6 * forces.norm());
+    const Eigen::VectorXd product = product_of(law, motion.step(), direction);
+    const Eigen::VectorXd difference =
+        -(flat(forces_of(law, there(d).step())) - flat(forces_of(law, there(-d).step()))) / (2 * d);
+    EXPECT_GT(difference.norm(), 0.1);
+    EXPECT_LE((product - difference).norm(), 1e-4 * difference.norm());
+    expect_assembled_is_matrix_free(law, motion, 3);
+    EXPECT_LE(resultant(forces_of(law, motion.step())).norm(), 1e-9);
+  }
+}
+
+// A pair that has gone through knows it, and is pushed back; one that was never seen apart is not.
+TEST(EdgePairs, RememberTheirSide) {
+  const Roofs roofs(0.5);
+  const Tissue tissue = roofs.bodies.tissue();
+  const SelfContact law(tissue, rule);
+  Motion motion = moved_down(tissue, law, roofs.upper, 0.4);
+  double push = 0;
+  for (const double by : {0.0, 0.15, 0.1, 0.1}) {  // to a gap of 0.1, then -0.05, -0.15 and -0.25
+    for (std::size_t n = roofs.upper; n < tissue.node_count(); ++n) motion.positions[n].z() -= by;
+    motion.internal = law.next_internal(motion.step());
+    ASSERT_EQ(edges_of(motion.internal).size(), 1u) << by;
+    const double now = sum_from(forces_of(law, motion.step()), roofs.upper).z();
+    EXPECT_GT(now, push);
+    push = now;
+  }
+  EXPECT_NEAR(edges_of(motion.internal)[0].first_gap, -0.25, 1e-12);
+  EXPECT_EQ(motion.internal.size(), law.next_internal(motion.step()).size());
+  const Tissue through = Roofs(-0.25).bodies.tissue();
+  EXPECT_TRUE(edges_of(SelfContact(through, rule).first_internal(through)).empty());
+}
+
+// Pressed together until the crossing has given way by several distances: with edges the roofs bend, without they pass
+// through each other, and no point notices.
+TEST(EdgePairs, RidgesDoNotPassThroughEachOther) {
+  for (const bool with_edges : {false, true}) {
+    const Roofs roofs(0.5);
+    Model model(roofs.bodies.tissue());
+    const Tissue& tissue = model.tissue;
+    model.volumes().hold(false);
+    const ElasticModuli soft = ElasticModuli::from_young(0.3, 0.3);
+    model.laws.push_back(std::make_unique<Corotational>(tissue, soft, 0));
+    model.laws.push_back(std::make_unique<Dilatation>(tissue, soft.bulk_modulus()));
+    add_drag(model);
+    SelfContactRule pressed = rule;
+    pressed.with_edges = with_edges;
+    model.laws.push_back(std::make_unique<SelfContact>(tissue, pressed));
+    for (std::size_t n = 0; n < tissue.node_count(); ++n) {
+      const double z = tissue.rest_positions[n].z();
+      if (z < -height + 1e-9 || z > height + 0.5 - 1e-9) model.held[n] = {true, true, true};
+    }
+    NewtonStepper stepper(model);
+    State state = rest_state(model), next;
+    std::size_t crossed = 0, pressed_steps = 0;
+    for (int step = 0; step < 20; ++step) {
+      for (std::size_t n = roofs.upper; n < tissue.node_count(); ++n)
+        if (model.held[n][0]) state.positions[n].z() -= 0.1;
+      const StepReport report = stepper.advance(state, 5, true, next);
+      ASSERT_TRUE(report.converged()) << report.reason();
+      std::swap(state, next);
+      crossed += self_intersections(tissue, state.positions);
+      for (const ContactPair& pair : SelfContact::pairs_of(state.internals.back())) {
+        if (pair.first_gap >= pair.distance) continue;
+        EXPECT_TRUE(pair.is_of_edges()) << "a point touches";
+        ++pressed_steps;
+      }
+    }
+    std::printf("%s edges: %zu crossings in 20 steps, edges press in %zu\n", with_edges ? "with" : "without", crossed,
+                pressed_steps);
+    EXPECT_EQ(crossed == 0, with_edges);
+    EXPECT_EQ(pressed_steps > 10, with_edges);
+  }
+}
+
+}  // namespace
+}  // namespace plica
