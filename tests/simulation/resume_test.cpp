@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "core/threads.hpp"
-#include "mechanics/contact/self_contact.hpp"
+#include "record/checkpoint.hpp"
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
+#include "support/loads.hpp"
+#include "support/roofs.hpp"
 
 namespace plica {
 namespace {
@@ -147,44 +149,48 @@ TEST(Resume, WithCellsThatFlowAcrossDivisions) {
                    11);
 }
 
-// A furrow that closes under noise, until edges press on edges; from there on on three threads, and from the memory of
-// then.
+// Two roofs that only their edges keep apart: on three threads, from a memory, and by the bytes of a checkpoint.
 TEST(Resume, WithEdgesThatPress) {
-  const Scenario scenario =
-      load_scenario(find_scenario("furrow-slice"),
-                    {"embryo.cells=[3,20,20]", "embryo.length_um=21", "cortex.apical.variation.spread=0.3",
-                     "cortex.apical.variation.seed=1", "self_contact.distance_um=0.8", "time.end_min=20"});
-  Simulation whole(scenario);
-  const auto pressing_edges = [](const Simulation& simulation) {
-    std::ptrdiff_t count = 0;
-    for (std::size_t l = 0; l < simulation.model().laws.size(); ++l)
-      if (dynamic_cast<const SelfContact*>(simulation.model().laws[l].get()) != nullptr)
-        count += std::ranges::count_if(
-            SelfContact::pairs_of(simulation.state().internals[l]),
-            [](const ContactPair& pair) { return pair.is_of_edges() && pair.first_gap < pair.distance; });
-    return count;
+  const auto fresh = [] {
+    support::Roofs roofs(0.5);
+    // So many elements beside them that threads share the loops.
+    roofs.bodies.add({16, 16, 9}, [](int i, int j, int k) { return Vec3(100 + 10 * i, 10 * j, 10 * k); });
+    Simulation::Parts parts;
+    parts.model = std::make_unique<Model>(support::model_of(roofs, {.stiffness = 2, .search = 6, .friction = 0.3}));
+    Vectors loads(parts.model->tissue.node_count(), Vec3::Zero());
+    for (std::size_t n = roofs.upper; n < roofs.upper + 12; ++n)
+      if (parts.model->tissue.rest_positions[n].z() > support::Roofs::height) loads[n] = {0, 0.1, -0.5};
+    parts.model->laws.push_back(std::make_unique<support::NodalForces>(loads));
+    parts.controls.fixed_step_s = 4;
+    parts.controls.end_s = 90;
+    parts.controls.stop_at_equilibrium = false;
+    return Simulation(std::move(parts));
   };
-  while (pressing_edges(whole) == 0) ASSERT_TRUE(whole.step()) << whole.failure();
-  std::printf("%td pairs of edges press after step %d, at %.0f s\n", pressing_edges(whole), whole.steps(),
-              whole.state().time_s);
-  const RunMemory then = whole.memory();
-  const Observation measures = whole.measures();
-  Simulation on_three = whole;
-  Simulation resumed(scenario);
-  resumed.go_on_from(RunMemory(then), measures);
-  int pressed = 0;
-  for (int step = 0; step < 5; ++step) {
-    ASSERT_TRUE(whole.step());
+  const auto press = [](const Simulation& simulation) {
+    const std::vector<ContactPair> edges =
+        support::edges_of(simulation.state().internals.at(simulation.state().internals.size() - 2));
+    return std::ranges::any_of(edges, [](const ContactPair& pair) { return pair.first_gap < pair.distance; });
+  };
+  Simulation whole = fresh();
+  while (!press(whole)) ASSERT_TRUE(whole.step()) << whole.failure();
+  Checkpoint checkpoint{"", "", "", whole.memory(), {}};
+  checkpoint.record.rows.push_back(whole.measures());
+  Simulation fork = whole, resumed = fresh(), from_bytes = fresh();
+  resumed.go_on_from(whole.memory(), whole.measures());
+  if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
+  from_bytes.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  int steps = 0, pressed = 0;
+  while (whole.step()) {
+    ++steps, pressed += press(whole);
     ASSERT_TRUE(resumed.step());
-    {
-      const ThreadCount three(3);
-      ASSERT_TRUE(on_three.step());
-    }
-    pressed += pressing_edges(whole) > 0;
-    expect_same(whole.state(), resumed.state());
-    expect_same(whole.state(), on_three.state());
+    ASSERT_TRUE(from_bytes.step());
+    const ThreadCount three(3);
+    ASSERT_TRUE(fork.step());
+    for (const Simulation* other : {&resumed, &from_bytes, &fork}) expect_same(whole.state(), other->state());
   }
-  EXPECT_GE(pressed, 3);
+  std::printf("edges press in %d of %d steps\n", pressed, steps);
+  EXPECT_EQ(whole.status(), RunStatus::end_time) << whole.failure();
+  EXPECT_GE(pressed, 10);
 }
 
 // Divisions lie behind some memories and before others; growth is under way in many.

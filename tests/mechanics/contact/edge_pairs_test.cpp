@@ -6,50 +6,21 @@
 #include <cmath>
 
 #include "measure/self_intersections.hpp"
-#include "mechanics/contact/self_contact.hpp"
 #include "solver/step/newton_stepper.hpp"
-#include "support/bodies.hpp"
 #include "support/law_checks.hpp"
-#include "support/models.hpp"
+#include "support/roofs.hpp"
 
 namespace plica {
 namespace {
 
 using namespace support;
 
-constexpr double ridge = 40, slope = 10, height = 30;  // um
-constexpr double aside = 5;                            // um: from the middle of either ridge to where they cross
-
-// Two cells each, whose apical faces are the two sides of a roof: a lower one along x with its ridge at z = 0, and one
-// above it, upside down, along y. Both middles, and all other points, are 5 um or more from the other ridge.
-struct Roofs {
-  Bodies bodies;
-  std::size_t upper;
-
-  explicit Roofs(double gap) {
-    bodies.add({1, 2, 1}, [](int i, int j, int k) {
-      const double y = slope * (j - 1);
-      return Vec3(ridge * (i - 0.5), y, k == 1 ? -std::abs(y) : -height);
-    });
-    upper = bodies.add({1, 2, 1}, [&](int i, int j, int k) {
-      const double x = slope * (j - 1);
-      return Vec3(x + aside, ridge * (i - 0.5) - aside, gap + (k == 1 ? std::abs(x) : height));
-    });
-  }
-};
-
-// The same roofs, the upper one lifted, so that only what is near counts.
+// The upper one, with the pairs of where it was at rest.
 Motion moved_down(const Tissue& tissue, const SelfContact& law, std::size_t upper, double by) {
   Motion motion = at_rest(tissue);
   motion.internal = law.first_internal(tissue);
   for (std::size_t n = upper; n < tissue.node_count(); ++n) motion.positions[n].z() -= by;
   return motion;
-}
-
-std::vector<ContactPair> edges_of(std::span<const double> internal) {
-  std::vector<ContactPair> pairs = SelfContact::pairs_of(internal);
-  std::erase_if(pairs, [](const ContactPair& pair) { return !pair.is_of_edges(); });
-  return pairs;
 }
 
 constexpr SelfContactRule rule{.distance = 0.4, .stiffness = 2, .search = 6};
@@ -65,7 +36,7 @@ TEST(EdgePairs, TwoRidgesAreASpring) {
   EXPECT_NEAR(std::abs(pairs[0].normal.z()), 1, 1e-12);
   EXPECT_NEAR(pairs[0].distance, rule.distance / 2, 1e-12);
   // A third of a quarter of each of the two sides.
-  const double area = 2 * ridge * slope * std::sqrt(2) / 12;
+  const double area = 2 * Roofs::ridge * Roofs::slope * std::sqrt(2) / 12;
   EXPECT_NEAR(pairs[0].area, area, 1e-9);
   EXPECT_EQ(law.energy(at(0.21).step()), 0);
   for (const double gap : {0.15, 0.0, -0.1}) {
@@ -146,20 +117,12 @@ TEST(EdgePairs, RememberTheirSide) {
 TEST(EdgePairs, RidgesDoNotPassThroughEachOther) {
   for (const bool with_edges : {false, true}) {
     const Roofs roofs(0.5);
-    Model model(roofs.bodies.tissue());
-    const Tissue& tissue = model.tissue;
-    model.volumes().hold(false);
-    const ElasticModuli soft = ElasticModuli::from_young(0.3, 0.3);
-    model.laws.push_back(std::make_unique<Corotational>(tissue, soft, 0));
-    model.laws.push_back(std::make_unique<Dilatation>(tissue, soft.bulk_modulus()));
-    add_drag(model);
     SelfContactRule pressed = rule;
     pressed.with_edges = with_edges;
-    model.laws.push_back(std::make_unique<SelfContact>(tissue, pressed));
-    for (std::size_t n = 0; n < tissue.node_count(); ++n) {
-      const double z = tissue.rest_positions[n].z();
-      if (z < -height + 1e-9 || z > height + 0.5 - 1e-9) model.held[n] = {true, true, true};
-    }
+    Model model = model_of(roofs, pressed);
+    const Tissue& tissue = model.tissue;
+    for (std::size_t n = roofs.upper; n < tissue.node_count(); ++n)
+      if (tissue.rest_positions[n].z() > Roofs::height) model.held[n] = {true, true, true};
     NewtonStepper stepper(model);
     State state = rest_state(model), next;
     std::size_t crossed = 0, pressed_steps = 0;
