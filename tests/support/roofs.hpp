@@ -1,6 +1,8 @@
 // Two roofs whose ridges cross between all points: what only contact of edges keeps apart.
 #pragma once
 
+#include <cmath>
+
 #include "mechanics/contact/self_contact.hpp"
 #include "support/bodies.hpp"
 #include "support/models.hpp"
@@ -16,10 +18,11 @@ struct Roofs {
   Bodies bodies;
   std::size_t upper;  // its first node
 
-  explicit Roofs(double gap) {
-    bodies.add({1, 2, 1}, [](int i, int j, int k) {
+  /// `parts`: into how many cells the lower one is divided along its ridge.
+  explicit Roofs(double gap, int parts = 1) {
+    bodies.add({parts, 2, 1}, [parts](int i, int j, int k) {
       const double y = slope * (j - 1);
-      return Vec3(ridge * (i - 0.5), y, k == 1 ? -std::abs(y) : -height);
+      return Vec3(ridge * (static_cast<double>(i) / parts - 0.5), y, k == 1 ? -std::abs(y) : -height);
     });
     upper = bodies.add({1, 2, 1}, [&](int i, int j, int k) {
       const double x = slope * (j - 1);

@@ -112,6 +112,32 @@ TEST(EdgePairs, RememberTheirSide) {
   EXPECT_TRUE(edges_of(SelfContact(through, rule).first_internal(through)).empty());
 }
 
+// A ridge that slides from one edge of the other onto the next pushes as before; where none was seen, a pair begins
+// without a force.
+TEST(EdgePairs, SlideFromEdgeToEdge) {
+  const Roofs roofs(0.5, 2);
+  const Tissue tissue = roofs.bodies.tissue();
+  const SelfContact law(tissue, rule);
+  Motion motion = moved_down(tissue, law, roofs.upper, 0.4);
+  motion.internal = law.next_internal(motion.step());
+  const auto push = [&] { return sum_from(forces_of(law, motion.step()), roofs.upper).z(); };
+  const double before = push();
+  const ContactPair first = edges_of(motion.internal).at(0);
+  EXPECT_NEAR(before, rule.stiffness * first.area * 0.1, 1e-9);
+  for (std::size_t n = roofs.upper; n < tissue.node_count(); ++n) motion.positions[n].x() -= Roofs::aside + 5;
+  motion.internal = law.next_internal(motion.step());
+  const std::vector<ContactPair> now = edges_of(motion.internal);
+  ASSERT_EQ(now.size(), 1u);
+  EXPECT_FALSE(now[0].first == first.first && now[0].second == first.second);
+  EXPECT_NEAR(now[0].distance, rule.distance / 2, 1e-12);
+  EXPECT_NEAR(push(), before, 1e-9);
+
+  const Tissue near = Roofs(0.1, 2).bodies.tissue();
+  const std::vector<ContactPair> at_rest = edges_of(SelfContact(near, rule).first_internal(near));
+  ASSERT_EQ(at_rest.size(), 1u);
+  EXPECT_NEAR(at_rest[0].distance, 0.1, 1e-12);
+}
+
 // Pressed together until the crossing has given way by several distances: with edges the roofs bend, without they pass
 // through each other, and no point notices.
 TEST(EdgePairs, RidgesDoNotPassThroughEachOther) {
