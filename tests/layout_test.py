@@ -2,7 +2,7 @@
 """Holds the layout of the sources: who includes whom, where VTK may be, headers, file lengths, theory pages, links.
 
 Usage: layout_test.py ROOT [PLICA]; with the program, docs/scenario.md and the end of docs/measures.md are compared with
-what `plica reference` prints, too.
+what `plica reference` prints, and docs/cli.md with the help of the commands.
 Prints what it counted; on a breach, a line each, and exit status 1.
 """
 import re
@@ -166,6 +166,15 @@ def check_reference():
         breach(page, "is not what the program prints; run: plica reference > docs/scenario.md")
 
 
+
+def check_command_line():
+    page, maker = root / "docs/cli.md", root / "docs/make_cli.py"
+    expected = subprocess.run([sys.executable, maker, program], capture_output=True, text=True, check=True).stdout
+    count("commands", expected.count("\n## "))
+    if not page.is_file() or page.read_text(encoding="utf-8") != expected:
+        breach(page, "is not what the program prints; run: docs/make_cli.py build/release/plica > docs/cli.md")
+
+
 check_includes()
 check_headers()
 check_lengths()
@@ -175,6 +184,7 @@ if program:
     check_reference()
     check_measures()
     check_units()
+    check_command_line()
 
 # A check that looked at nothing is a broken check.
 for what in ("includes", "headers", "source files", "laws", "pages", "links"):

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Installs the packages of Debian (12 or 13) that plica needs: with root or sudo, and only when some are missing.
 # Usage: tools/install_packages.sh [GROUP...], of: build libraries viewer browser firefox python tests checks tidy
-# pictures fuzz. Without a group: all of them.
+# pictures site fuzz. Without a group: all of them.
 set -euo pipefail
 
 # The one list of packages. docs/dependencies.md says why each library is here.
@@ -24,13 +24,15 @@ declare -A packages=(
   # What plica render draws with where there is no screen: an X server without one, and OpenGL in software. (xauth: for
   # xvfb-run, by which ParaView's test does so.)
   [pictures]="xvfb xauth libgl1-mesa-dri"
+  # To make the site of the documentation (docs/build), whose notebooks draw with PyVista.
+  [site]="python3-venv nodejs npm libgl1 libegl1 libgl1-mesa-dri"
   # To fuzz the readers, fuzz/run, and for the preset tsan. (Clang with libFuzzer and the sanitizers; its OpenMP with
   # Archer.)
   [fuzz]="clang libclang-rt-dev libomp-dev"
 )
 
 groups=("$@")
-[ ${#groups[@]} -gt 0 ] || groups=(build libraries viewer browser firefox python tests checks tidy pictures fuzz)
+[ ${#groups[@]} -gt 0 ] || groups=(build libraries viewer browser firefox python tests checks tidy pictures site fuzz)
 
 wanted=()
 for group in "${groups[@]}"; do

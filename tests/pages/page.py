@@ -6,6 +6,8 @@ The language of a block says what is done with it:
 - ```text, or "output" after another language, is what the block before prints: each line stands among the printed ones,
   in their order, with the same words, and numbers within 1 %. There … stands for anything, and ... for any lines.
 
+Notebooks (docs/notebooks) are for docs/build --run-notebooks.
+
 Comments of the page change that. On the line before a block: <!-- not run: REASON -->, or <!-- slow: REASON --> for one
 that is run only when asked. Anywhere: <!-- run first: COMMAND -->, for what another page or ./demo has left.
 """
@@ -90,6 +92,8 @@ def script_of(blocks, place, with_slow):
 
 def run_page(page, program, place, with_slow=False):
     """Runs a page's blocks in a folder that is not there yet or empty. Returns how many; PageError where one fails."""
+    if page.resolve().parent.name == "notebooks":
+        raise PageError("is a notebook: docs/build --run-notebooks runs it")
     blocks = [found.groupdict() for found in BLOCK.finditer(page.read_text(encoding="utf-8"))]
     fences = len(re.findall(r"^```", page.read_text(encoding="utf-8"), re.M))
     if fences != 2 * sum(block["kind"] is not None for block in blocks):
