@@ -191,13 +191,13 @@ class Run:
         return Frames(self.directory)
 
     @property
-    def summary(self) -> Optional[dict[str, Any]]:
-        """What the run came to (``summary.json``); None while it has not ended."""
+    def summary(self) -> dict[str, Any]:
+        """What the run came to (``summary.json``); empty while it has not ended."""
         path = self.directory / "summary.json"
         try:
             return dict(json.loads(path.read_text(encoding="utf-8")))
         except FileNotFoundError:
-            return None
+            return {}
         except (OSError, ValueError) as error:
             raise FileError(f"{path}: cannot be read: {error}") from error
 
@@ -205,7 +205,7 @@ class Run:
     def status(self) -> str:
         """How it ended ("equilibrium", "end_time", "failed", "interrupted"), or "running", or "killed"."""
         summary = self.summary
-        if summary is not None:
+        if summary:
             return str(summary["status"])
         return "running" if self._is_held() else "killed"
 
@@ -288,7 +288,7 @@ class Run:
         return f"Run({str(self.directory)!r}, {self.status}, {len(self.frames)} frames)"
 
     def _repr_html_(self) -> str:
-        summary = self.summary or {}
+        summary = self.summary
         rows = "".join(
             f"<tr><td style='text-align:left'>{html.escape(name)}</td><td>{html.escape(_short(value))}</td></tr>"
             for name, value in summary.items()

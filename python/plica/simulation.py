@@ -10,7 +10,7 @@ import time
 import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -142,6 +142,26 @@ class Simulation:
             warnings.warn(self._core.crossing_warning, stacklevel=3)
         return Step(self._core.time_s, measures)
 
+    @overload
+    def run(
+        self,
+        *,
+        until_min: Optional[float] = None,
+        out: Union[str, os.PathLike[str]],
+        overwrite: bool = False,
+        resume: bool = False,
+        progress: bool = False,
+        callback: Optional[Callable[[Simulation, Step], object]] = None,
+    ) -> Run: ...
+    @overload
+    def run(
+        self,
+        *,
+        until_min: Optional[float] = None,
+        out: None = None,
+        progress: bool = False,
+        callback: Optional[Callable[[Simulation, Step], object]] = None,
+    ) -> None: ...
     def run(
         self,
         *,

@@ -1,6 +1,7 @@
 """Runs beside each other, pictures of them, and values that meet targets."""
 from __future__ import annotations
 
+import ctypes
 import inspect
 import os
 from collections.abc import Callable, Mapping
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .errors import PlicaError
 from .results import Frame, Run, _needed, _pandas, open_run
 from .scenario import Scenario
 from .simulation import Simulation
@@ -63,7 +65,7 @@ class Comparison:
     @property
     def summary(self) -> pandas.DataFrame:
         """The numbers of both summaries: columns a, b and difference (a - b), a row a number."""
-        first, second = self.a.summary or {}, self.b.summary or {}
+        first, second = self.a.summary, self.b.summary
 
         def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
             return {k: float(v) for k, v in summary.items() if isinstance(v, (int, float)) and not isinstance(v, bool)}
@@ -147,8 +149,11 @@ def render(
     ------
     ValueError
         There is no such colour or view.
+    PlicaError
+        There is neither a screen nor a library that draws without one.
     """
     pyvista = _needed("pyvista", "render")
+    _make_sure_of_drawing()
     looks = _core.looks()
     for name, value, known in (("color", color, looks["fields"]), ("view", view, looks["views"])):
         if value not in known:
@@ -190,6 +195,19 @@ def render(
     picture = plotter.screenshot(None if path is None else os.fspath(path), return_img=True)
     plotter.close()
     return picture
+
+
+def _make_sure_of_drawing() -> None:
+    """VTK ends the process where it finds nothing to draw with."""
+    if os.environ.get("DISPLAY"):
+        return
+    for library in ("libEGL.so.1", "libOSMesa.so.8", "libOSMesa.so"):
+        try:
+            ctypes.CDLL(library)
+            return
+        except OSError:
+            pass
+    raise PlicaError("render needs OpenGL, and there is neither a screen nor libEGL; on Debian: apt-get install libegl1")
 
 
 def _frame_of(run: PathOrRun, time_min: Optional[float]) -> Frame:

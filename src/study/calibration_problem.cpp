@@ -35,6 +35,20 @@ double value_at(const VariedKey& key, double place) {
   return std::clamp(*number_in(fmt::format("{:.{}f}", value, decimals)), key.low, key.high);
 }
 
+void refuse_impossible_numbers(const CalibrationProblem& problem) {
+  if (problem.keys.empty() || problem.targets.empty())
+    throw UsageError("nothing to calibrate; give at least one key to vary and one target");
+  for (const auto& [key, low, high] : problem.keys)
+    if (!std::isfinite(high - low) || !(low < high))
+      throw UsageError(fmt::format("{}: may be from {} to {}; give two numbers, the lower one first", key, low, high));
+  for (const auto& [name, value, within] : problem.targets)
+    if (!std::isfinite(value) || !std::isfinite(within) || !(within > 0))
+      throw UsageError(
+          fmt::format("{}: is to be {} within {}; give two numbers, the tolerance over 0", name, value, within));
+  if (problem.most_trials < 1)
+    throw UsageError(fmt::format("{} runs may be made; allow at least one", problem.most_trials));
+}
+
 void refuse_repetitions(const CalibrationProblem& problem) {
   std::set<std::string> keys, targets;
   for (const VariedKey& key : problem.keys) {
@@ -155,6 +169,7 @@ Scenario load_trial(const CalibrationProblem& problem, const std::vector<double>
 }
 
 void check_calibration(const CalibrationProblem& problem) {
+  refuse_impossible_numbers(problem);
   refuse_repetitions(problem);
   const std::vector<double> low(problem.keys.size(), 0), high(problem.keys.size(), 1);
   for (const auto& place : {low, high}) (void)make_model(load_trial(problem, values_at(problem, place)));

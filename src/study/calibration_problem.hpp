@@ -35,8 +35,8 @@ VariedKey parse_varied_key(const std::string& text);
 /// UsageError where it is none of them, or the tolerance is not over zero.
 Target parse_target(const std::string& text);
 
-/// Throws, before anything is run, UsageError (a key or target twice, a target that the summary does not have) or
-/// ScenarioError (a key that is not known, or may not take the values of its bounds).
+/// Throws, before anything is run, UsageError (bounds that are none, no tolerance, a key or target twice, a target that
+/// the summary does not have) or ScenarioError (a key that is not known, or may not take the values of its bounds).
 void check_calibration(const CalibrationProblem& problem);
 
 /// A place, with a coordinate from 0 to 1 for each key, as values of the keys: to a millionth of the bounds' width, so

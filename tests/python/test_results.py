@@ -88,7 +88,7 @@ def test_running_and_killed(tmp_path):
     child = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     assert child.stdout.readline() == "there\n"
     run = plica.open(tmp_path / "run")
-    assert run.status == "running" and run.summary is None and len(run.series) == 6
+    assert run.status == "running" and run.summary == {} and len(run.series) == 6
     with pytest.raises(plica.FileError):
         plica.Simulation("drosophila").run(out=tmp_path / "run", overwrite=True)
     child.kill()
@@ -132,6 +132,18 @@ def test_calibrate():
         plica.calibrate("division-demo", {"elasticity.young_modulus_Pa": (500, 2000)}, {"depth": (1, 1)})
     with pytest.raises(plica.ScenarioError):
         plica.calibrate("division-demo", {"elasticity.young": (500, 2000)}, {"steps": (1, 1)})
+
+
+@pytest.mark.parametrize("vary, targets, said", [
+    ({}, {"steps": (1, 1)}, "at least one key"),
+    ({"elasticity.young_modulus_Pa": (500, 500)}, {"steps": (1, 1)}, "from 500 to 500; give two numbers, the lower one first"),
+    ({"elasticity.young_modulus_Pa": (500, float("inf"))}, {"steps": (1, 1)}, "from 500 to inf"),
+    ({"elasticity.young_modulus_Pa": (500, 600)}, {"steps": (1, 0)}, "1 within 0; give two numbers, the tolerance over 0"),
+    ({"elasticity.young_modulus_Pa": (500, 600)}, {"steps": (float("nan"), 1)}, "nan within 1"),
+])
+def test_calibrate_refuses_what_is_no_search(vary, targets, said):
+    with pytest.raises(ValueError, match=said):
+        plica.calibrate("division-demo", vary, targets)
 
 
 def test_import_is_light():
