@@ -108,6 +108,9 @@ def resolve(app, doctree, docname):
     for link in doctree.findall(nodes.reference):
         kind, _, target = link.get("refuri", "").partition(":")
         if kind == "source":
+            if not (Path(app.srcdir).parent / target).exists():
+                log.warning("there is no %s", target, location=link)
+                continue
             app.plica_sources.add(target)
             link["refuri"] = app.builder.get_relative_uri(docname, f"source/{target}")
         elif kind == "bib":
