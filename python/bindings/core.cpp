@@ -50,7 +50,10 @@ CheckedScenario load(const std::string& name, const std::string& file, const std
                      const std::vector<std::string>& overrides, const std::map<std::string, std::vector<int>>& regions,
                      const std::shared_ptr<const HexahedralMesh>& mesh) {
   CheckedScenario checked{{name, file, text}, load_scenario({name, file, text}, overrides)};
-  for (const auto& [region, ids] : regions) checked.scenario.regions[region] = RegionInput{.ids = ids};
+  for (const auto& [region, ids] : regions) {
+    checked.scenario.regions[region] = {};
+    checked.scenario.regions[region].ids = ids;
+  }
   checked.scenario.embryo.mesh = mesh;
   return checked;
 }

@@ -503,6 +503,8 @@ def load(
         simulation._begin(scenario, _core.Simulation(scenario._core, _threads(threads), saved))
     except FileError as error:
         raise FileError(f"{source}: {error}") from error
+    except UnicodeDecodeError as error:
+        raise FileError(f"{source}: is damaged: the scenario in it is no text") from error
     return simulation
 
 
