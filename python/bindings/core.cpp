@@ -9,6 +9,9 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+
+#include "core/errors.hpp"
 #include "core/memory.hpp"
 #include "core/threads.hpp"
 #include "core/version.hpp"
@@ -171,6 +174,15 @@ NB_MODULE(_core, module) {
       },
       nb::arg("saved"));
   module.def("looks", &looks);
+  module.def(
+      "colour_range",
+      [](const std::string& name, double smallest, double largest) {
+        const auto field = std::ranges::find(colour_fields(), name, &ColourField::name);
+        if (field == colour_fields().end()) throw UsageError("there is no colour " + name);
+        const ColourRange range = colour_range(*field, smallest, largest);
+        return std::pair(range.low, range.high);
+      },
+      nb::arg("field"), nb::arg("smallest"), nb::arg("largest"));
   bind_simulation(module);
 }
 

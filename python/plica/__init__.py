@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from ._core import version as __version__
 from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaError, ScenarioError
-from .results import Frame, Run
+from .results import Frame, Frames, Run
 from .results import open_run as open
 from .scenario import Scenario, Tissue, builtin_scenarios
 from .simulation import Simulation, Step, load
@@ -22,6 +22,7 @@ __all__ = [
     "Diagnostic",
     "FileError",
     "Frame",
+    "Frames",
     "MissingExtra",
     "NumericsError",
     "PlicaError",

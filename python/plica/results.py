@@ -22,7 +22,7 @@ from .scenario import Scenario
 if TYPE_CHECKING:
     import pandas
 
-__all__ = ["Run", "Frame", "open_run"]
+__all__ = ["Run", "Frame", "Frames", "open_run"]
 
 EXTRAS = {"pandas": "plot", "matplotlib": "plot", "pyvista": "plot", "meshio": "plot", "IPython": "notebook"}
 
@@ -260,7 +260,7 @@ class Run:
             page = report.read_text(encoding="utf-8")
         except OSError as error:
             raise FileError(f"{report}: cannot be read; `plica report {self.directory}` makes it") from error
-        return display.HTML(f'<iframe srcdoc="{html.escape(page)}" width="100%" height="{int(height)}"></iframe>')
+        return display.HTML(f'<div><iframe srcdoc="{html.escape(page)}" width="100%" height="{int(height)}"></iframe></div>')
 
     def _table(self, name: str, why: str = "") -> pandas.DataFrame:
         path = self.directory / name

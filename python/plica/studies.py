@@ -122,6 +122,7 @@ def render(
     view: str = "antero-ventral",
     time_min: Optional[float] = None,
     size: tuple[int, int] = (1000, 700),
+    limits: Optional[tuple[float, float]] = None,
 ) -> Any:
     """Draws an embryo, off screen. Needs PyVista.
 
@@ -139,6 +140,8 @@ def render(
         Of a run: the frame nearest to this time; by default the last.
     size : (int, int)
         Width and height, pixels.
+    limits : (float, float), optional
+        The values of the first and the last colour, to compare pictures; by default those of what is drawn.
 
     Returns
     -------
@@ -176,7 +179,9 @@ def render(
         origin = np.zeros(3)
         origin[seen["cut_axis"]] = seen["cut_um"]
         grid = grid.clip(normal=-sight, origin=origin)
-    low, high = _range(values, field)
+    low, high = limits or _core.colour_range(color, float(np.nanmin(values)), float(np.nanmax(values)))
+    if not low < high:
+        raise ValueError(f"limits {limits!r}: give two numbers, the lower one first")
     plotter = pyvista.Plotter(off_screen=True, window_size=list(size))
     plotter.background_color = "white"
     steps = field["kind"] == "steps"
@@ -230,13 +235,6 @@ def _values(grid: Any, field: Mapping[str, Any]) -> tuple[NDArray[np.float64], l
         raise ValueError(f"there is no {field['array']} in what is to be drawn; there are: {', '.join(data.keys())}")
     values = np.asarray(data[field["array"]], dtype=float)
     return (np.linalg.norm(values, axis=1) if values.ndim == 2 else values), []
-
-
-def _range(values: NDArray[np.float64], field: Mapping[str, Any]) -> tuple[float, float]:
-    if field["kind"] == "about":
-        reach = float(np.nanmax(np.abs(values - field["centre"]))) or 1.0
-        return field["centre"] - reach, field["centre"] + reach
-    return 0.0, float(np.nanmax(values)) or 1.0
 
 
 def _colours(colours: list[tuple[float, float, float]], of_steps: bool) -> Any:

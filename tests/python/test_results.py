@@ -72,6 +72,10 @@ def test_render(run, tmp_path):
     assert plica.render(run.frames[0], view="cross-section", size=(300, 300)).std() > 1
     with pytest.raises(ValueError, match="area-ratio"):
         plica.render(run, color="colour")
+    same = [plica.render(run.frames[-1], color="area-ratio", limits=limits, size=(200, 150)) for limits in (None, (0, 2), (0, 20))]
+    assert (same[0] == plica.render(run.frames[-1], color="area-ratio", size=(200, 150))).all() and (same[1] != same[2]).any()
+    with pytest.raises(ValueError, match="the lower one first"):
+        plica.render(run, limits=(1, 1))
 
 
 def test_surface_distance(run):
