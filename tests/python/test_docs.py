@@ -4,16 +4,28 @@ from pathlib import Path
 
 import pytest
 
-DOCS = Path(__file__).parents[2] / "docs"
+ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("page", ["python.md"])
-def test_blocks_run(page, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    blocks = re.findall(r"^```python\n(.*?)^```", (DOCS / page).read_text(encoding="utf-8"), re.M | re.S)
+def run_blocks(page):
+    blocks = re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(encoding="utf-8"), re.M | re.S)
     assert blocks
     names = {}
     for block in blocks:
         exec(compile(block, page, "exec"), names)
+
+
+def test_python_page(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    run_blocks("docs/python.md")
     whole, half = map(float, capsys.readouterr().out.split())
     assert whole > 10 and half > 10 and abs(whole - half) > 0.1
+
+
+def test_readme(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    run_blocks("README.md")
+    depth, closed = re.match(r"([\d.]+) µm deep; lips closed at ([\d.]+) min", capsys.readouterr().out).groups()
+    assert 45 < float(depth) < 75 and 14 < float(closed) < 20
+    assert (tmp_path / "furrow.png").stat().st_size > 1000
