@@ -273,7 +273,11 @@ class Scenario:
         mask = _mask(mask, len(mask) if mask.ndim else 0, f"region {name}")
         if not mask.any():
             raise ValueError(f"region {name}: no cell is in it; let at least one be True")
-        self._load(regions={**self._regions, name: mask.copy()})
+        changes = self._changes
+        if name not in self.to_dict().get("region", {}):
+            # Keys may name it from now on; the array says which cells are in it.
+            changes = {f"region.{name}.ids": f"[{int(np.argmax(mask))}]", **changes}
+        self._load(changes=changes, regions={**self._regions, name: mask.copy()})
 
     def _check_masks(self, cells: int) -> None:
         for name, mask in self._regions.items():
@@ -319,7 +323,9 @@ class Scenario:
         self._load(dict(state["changes"]), dict(state["regions"]))
 
     def __repr__(self) -> str:
-        changed = [f"{key} = {value}" for key, value in self._changes.items() if value != f'"{GIVEN}"']
+        of_arrays = {f"region.{name}.ids" for name in self._regions}
+        shown = {key: value for key, value in self._changes.items() if key not in of_arrays and value != f'"{GIVEN}"'}
+        changed = [f"{key} = {value}" for key, value in shown.items()]
         changed += [f"region.{name} of {mask.sum()} cells" for name, mask in self._regions.items()]
         return f"Scenario({self.name!r}{', with ' if changed else ''}{', '.join(changed)})"
 

@@ -165,3 +165,13 @@ def test_unusable_cells_are_named():
     hexahedra[3][0] = hexahedra[3][1]
     with pytest.raises((plica.ScenarioError, plica.FileError), match="cell"):
         plica.Simulation(plica.Scenario({"vitelline": {"enabled": False}}, tissue=plica.Tissue(points, hexahedra, apical_faces=[5] * 4)))
+
+
+def test_a_new_region_can_be_named_by_keys():
+    s = plica.Scenario("drosophila")
+    x = plica.Simulation(s).cell_data["x_um"]
+    s.set_region("oval", np.abs(x) < 60)
+    s["contraction.apical.region"] = "oval"
+    assert "region.oval of" in repr(s) and "region.oval.ids" not in repr(s)
+    sim = plica.Simulation(pickle.loads(pickle.dumps(s)))
+    assert (np.isfinite(sim.activity("apical")) == (np.abs(x) < 60)).all()
