@@ -120,7 +120,7 @@ class Search {
     // One that slides in from a neighbouring segment pushes as that did.
     const double seen_at = last ? last->distance : std::min(memory_a.edge_distance, memory_b.edge_distance);
     pair.distance = std::min(distance_ / 2, std::max({seen_at, pair.first_gap, 0.0}));
-    pair.area = (of_a.area + of_b.area) / 2;
+    pair.area = EdgePairs::stiffening * (of_a.area + of_b.area) / 2;
     return pair;
   }
 

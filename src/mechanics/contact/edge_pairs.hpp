@@ -28,6 +28,10 @@ struct Segment {
 
 class EdgePairs {
  public:
+  /// A pair counts so many times its area: it bears at one place what points bear over facets, within half the
+  /// distance.
+  static constexpr double stiffening = 4;
+
   EdgePairs() = default;
   /// Of facets of the whole, and their areas at rest, 0 of images. Triangle 4 f + i is the one at edge i of facet f.
   EdgePairs(std::span<const std::array<NodeId, 4>> facets, std::span<const double> areas);

@@ -36,7 +36,7 @@ TEST(EdgePairs, TwoRidgesAreASpring) {
   EXPECT_NEAR(std::abs(pairs[0].normal.z()), 1, 1e-12);
   EXPECT_NEAR(pairs[0].distance, rule.distance / 2, 1e-12);
   // A third of a quarter of each of the two sides.
-  const double area = 2 * Roofs::ridge * Roofs::slope * std::sqrt(2) / 12;
+  const double area = EdgePairs::stiffening * 2 * Roofs::ridge * Roofs::slope * std::sqrt(2) / 12;
   EXPECT_NEAR(pairs[0].area, area, 1e-9);
   EXPECT_EQ(law.energy(at(0.21).step()), 0);
   for (const double gap : {0.15, 0.0, -0.1}) {
