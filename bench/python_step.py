@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What a step from Python costs over one in C++: both loops to the end of a scenario, in turns, on one
-thread, in seconds of processor time.
+"""What a step from Python costs over one in C++: both loops to the end of a scenario, in turns, on one thread.
 
 usage: python_step.py [--build DIR] [--scenario NAME] [--repeats N], with a Python that finds plica, as build/venv's
-with PYTHONPATH=build/release/python. Prints JSON: the medians of both, and the median, least and most of their ratio.
+with PYTHONPATH=build/release/python. Prints JSON: the medians of both in seconds of
+processor time, and the median, least and most of their ratio.
 """
 import argparse
 import json
@@ -40,11 +40,10 @@ def main():
 
     pairs = []
     for repeat in range(chosen.repeats):
-        both = [lambda: loop(chosen.build / "bench/loop"), lambda: loop(sys.executable, "-c", LOOP)]
-        if repeat % 2:  # a drift of the machine's speed falls on both
-            second, first = both[1](), both[0]()
-        else:
-            first, second = both[0](), both[1]()
+        commands = {"cpp": [chosen.build / "bench/loop"], "python": [sys.executable, "-c", LOOP]}
+        order = sorted(commands, reverse=repeat % 2 == 1)  # a drift of the machine's speed falls on both
+        done = {name: loop(*commands[name]) for name in order}
+        first, second = done["cpp"], done["python"]
         if abs(first["sum"] - second["sum"]) > 1e-6 * abs(first["sum"]) or first["steps"] != second["steps"]:
             sys.exit(f"the two are not the same run: {first} {second}")
         pairs.append((first["loop_s"], second["loop_s"]))

@@ -2,9 +2,9 @@
 # and the report's page; which other packages it needs is read off what it links.
 include(GNUInstallDirs)
 install(TARGETS plica RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION share/doc/plica)
-install(FILES LICENSE DESTINATION share/doc/plica RENAME copyright)
-install(DIRECTORY scenarios DESTINATION share/doc/plica)
+install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
+install(DIRECTORY scenarios DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The plica authors <maintainers@plica.invalid>")

@@ -166,7 +166,6 @@ def check_reference():
         breach(page, "is not what the program prints; run: plica reference > docs/scenario.md")
 
 
-
 def check_command_line():
     page, maker = root / "docs/cli.md", root / "docs/make_cli.py"
     expected = subprocess.run([sys.executable, maker, program], capture_output=True, text=True, check=True).stdout

@@ -32,7 +32,7 @@ struct ContactPair {
   int second;            // of the other segment; no_segment where a point faces a facet
   SurfacePlace p, q;     // q: on the facet, or on the other segment
   Vec3 normal;           // N, from q to p where p is outside
-  double area = 0;       // um^2, at rest: what the pair stands for
+  double area = 0;       // um^2, at rest: what the pair counts for; of edges, a multiple of theirs (edge_pairs.hpp)
   double distance = 0;   // um: where it begins to push. That of the rule; less where it was nearer when first seen
   double first_gap = 0;  // um: at the step's beginning
 
