@@ -146,9 +146,19 @@ NB_MODULE(_core, module) {
       texts[std::string(scenario.name).c_str()] = std::string(scenario.toml);
     return texts;
   }();
+#ifdef PLICA_WITH_VTK
+  module.attr("reads_meshes") = true;
+#else
+  module.attr("reads_meshes") = false;
+#endif
   nb::class_<HexahedralMesh>(module, "Mesh");
   module.def("mesh", &mesh_of, nb::arg("points"), nb::arg("hexahedra"), nb::arg("apical_faces"), nb::arg("arrays"));
   nb::class_<CheckedScenario>(module, "Scenario")
+      .def_prop_ro("has_mesh", [](const CheckedScenario& s) { return s.scenario.embryo.mesh != nullptr; })
+      .def(
+          "give_mesh",
+          [](CheckedScenario& s, const std::shared_ptr<const HexahedralMesh>& mesh) { s.scenario.embryo.mesh = mesh; },
+          nb::arg("mesh"))
       .def_prop_ro("title", [](const CheckedScenario& s) { return s.scenario.title; })
       .def("toml", [](const CheckedScenario& s) { return resolved_toml(s.scenario); })
       .def("advice", [](const CheckedScenario& s) {

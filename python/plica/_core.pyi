@@ -7,11 +7,14 @@ from numpy.typing import NDArray
 
 version: str
 scenarios: dict[str, str]
+reads_meshes: bool
 
 class Mesh: ...
 
 class Scenario:
     title: str
+    has_mesh: bool
+    def give_mesh(self, mesh: Mesh) -> None: ...
     def toml(self) -> str: ...
     def advice(self) -> list[str]: ...
 

@@ -1,7 +1,8 @@
 """What can go wrong. Messages say what is wrong, where, and what would be right."""
 from __future__ import annotations
 
-from typing import NamedTuple, Optional, Sequence
+import importlib
+from typing import Any, NamedTuple, Optional, Sequence
 
 
 class Diagnostic(NamedTuple):
@@ -89,3 +90,15 @@ class MissingExtra(PlicaError, ImportError):
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         return type(self), (self.what, self.package, self.extra)
+
+
+EXTRAS = {"pandas": "plot", "matplotlib": "plot", "pyvista": "plot", "meshio": "plot", "IPython": "notebook"}
+
+
+def needed(package: str, what: str) -> Any:
+    """A package that only this needs, imported now."""
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        name = package.split(".")[0]
+        raise MissingExtra(what, name, EXTRAS[name]) from error

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import fcntl
 import html
-import importlib
 import json
 import math
 import os
@@ -16,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import FileError, MissingExtra
+from .errors import FileError, needed
 from .scenario import Scenario
 
 if TYPE_CHECKING:
@@ -24,24 +23,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Run", "Frame", "Frames", "open_run"]
 
-EXTRAS = {"pandas": "plot", "matplotlib": "plot", "pyvista": "plot", "meshio": "plot", "IPython": "notebook"}
-
-
-def _needed(package: str, what: str) -> Any:
-    """A package that only this needs, imported now."""
-    try:
-        return importlib.import_module(package)
-    except ImportError as error:
-        name = package.split(".")[0]
-        raise MissingExtra(what, name, EXTRAS[name]) from error
-
-
 def _pandas(what: str) -> Any:
-    return _needed("pandas", what)
+    return needed("pandas", what)
 
 
 def _grid(points: NDArray[Any], hexahedra: NDArray[Any], point_data: dict[str, Any], cell_data: dict[str, Any]) -> Any:
-    pyvista = _needed("pyvista", "a mesh for PyVista")
+    pyvista = needed("pyvista", "a mesh for PyVista")
     cells = np.column_stack([np.full(len(hexahedra), 8), hexahedra]).ravel()
     grid = pyvista.UnstructuredGrid(cells, np.full(len(hexahedra), pyvista.CellType.HEXAHEDRON), np.array(points))
     for name, values in point_data.items():
@@ -87,7 +74,7 @@ class Frame:
 
     def to_meshio(self) -> Any:
         """The frame as a ``meshio.Mesh``."""
-        meshio = _needed("meshio", "a mesh for meshio")
+        meshio = needed("meshio", "a mesh for meshio")
         cell_data = {name: [values] for name, values in self.cell_data.items()}
         return meshio.Mesh(self.points, [("hexahedron", self.hexahedra)], point_data=self.point_data, cell_data=cell_data)
 
@@ -227,7 +214,7 @@ class Run:
         -------
         matplotlib.figure.Figure
         """
-        plt = _needed("matplotlib.pyplot", "plot")
+        plt = needed("matplotlib.pyplot", "plot")
         names = [columns] if isinstance(columns, str) else list(columns)
         series = self.series
         missing = [name for name in names if name not in series]
@@ -254,7 +241,7 @@ class Run:
         height : int
             Pixels.
         """
-        display = _needed("IPython.display", "show")
+        display = needed("IPython.display", "show")
         report = self.directory / "report.html"
         try:
             page = report.read_text(encoding="utf-8")

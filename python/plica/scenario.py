@@ -1,8 +1,10 @@
 """What is simulated: a scenario, as data that can be read and changed."""
 from __future__ import annotations
 
+import contextlib
 import difflib
 import html
+import io
 import math
 import os
 import tomllib
@@ -15,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .errors import ScenarioError
+from .errors import FileError, ScenarioError, needed
 
 __all__ = ["Scenario", "Tissue", "builtin_scenarios"]
 
@@ -102,6 +104,59 @@ class Tissue:
 
         for array in (self.points, self.hexahedra):
             array.flags.writeable = False  # a scenario that has it does not change
+
+    @classmethod
+    def from_file(cls, path: Union[str, os.PathLike[str]], *, apical_array: str = "") -> Tissue:
+        """Reads hexahedral cells through meshio: VTK's ``.vtu`` and ``.vtk``, Abaqus, Gmsh, XDMF and what else it knows.
+
+        Parameters
+        ----------
+        path : str or path
+            The file. Coordinates are taken as µm.
+        apical_array : str, optional
+            The cell array that says which face of each cell is apical, as in ``embryo.apical_array``.
+
+        Returns
+        -------
+        Tissue
+            Every other cell array of one number a cell is a region: the cells where it is neither 0 nor NaN.
+
+        Raises
+        ------
+        FileError
+            The file cannot be read, or holds other than hexahedra.
+        MissingExtra
+            meshio is not installed.
+        """
+        meshio = needed("meshio", f"reading {Path(path).name}")
+        if not Path(path).is_file():
+            raise FileError(f"{path}: cannot be read: {'it is a directory' if Path(path).is_dir() else 'there is no such file'}")
+        said = io.StringIO()
+        try:
+            # Of a file that it does not know, meshio prints what is wrong and exits.
+            with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+                mesh = meshio.read(path)
+        except (Exception, SystemExit) as error:
+            why = " ".join(said.getvalue().split()) or f"{type(error).__name__}: {error}"
+            raise FileError(f"{path}: cannot be read: {why}") from error
+        others = sorted({block.type for block in mesh.cells} - {"hexahedron"})
+        if others or not mesh.cells:
+            found = f"cells of type {', '.join(others)}" if others else "no cells"
+            raise FileError(f"{path}: has {found}; every cell must be a hexahedron")
+        arrays = {name: np.concatenate(blocks) for name, blocks in mesh.cell_data.items()}
+        single = {name: values.reshape(-1) for name, values in arrays.items() if values.size == len(values)}
+        if apical_array and apical_array not in single:
+            there = ", ".join(single) or "none"
+            raise FileError(f"{path}: there is no cell array {apical_array!r} of one number a cell; there are: {there}")
+        faces = single.pop(apical_array) if apical_array else None
+        try:
+            if faces is not None and (faces == np.floor(faces)).all():
+                faces = faces.astype(np.int64)
+            regions = {name: (values != 0) & ~np.isnan(values) for name, values in single.items()}
+            hexahedra = np.concatenate([block.data for block in mesh.cells])
+            return cls(mesh.points, hexahedra.astype(np.int64), apical_faces=faces, regions=regions)
+        except (ValueError, TypeError) as error:
+            raise FileError(f"{path}: {error}") from error
 
     @cached_property
     def _mesh(self) -> _core.Mesh:
@@ -279,6 +334,14 @@ class Scenario:
             changes = {f"region.{name}.ids": f"[{int(np.argmax(mask))}]", **changes}
         self._load(changes=changes, regions={**self._regions, name: mask.copy()})
 
+    @property
+    def _ready(self) -> _core.Scenario:
+        """What the module makes a simulation from: where it has no VTK, with the cells of a mesh file."""
+        embryo = self.to_dict()["embryo"]
+        if embryo["shape"] == "file" and not self._core.has_mesh and not _core.reads_meshes:
+            self._core.give_mesh(Tissue.from_file(embryo["file"], apical_array=embryo.get("apical_array", ""))._mesh)
+        return self._core
+
     def _check_masks(self, cells: int) -> None:
         for name, mask in self._regions.items():
             if len(mask) != cells:
@@ -306,7 +369,7 @@ class Scenario:
 
     def advice(self) -> list[str]:
         """What is not wrong, but worth knowing before it runs: lines that begin with "warning: " or "note: "."""
-        return self._core.advice()
+        return self._ready.advice()
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scenario):

@@ -93,7 +93,7 @@ class Simulation:
 
     def __init__(self, scenario: Union[Scenario, str, os.PathLike[str], Mapping[str, Any]], *, threads: Optional[int] = None) -> None:
         own = scenario.copy() if isinstance(scenario, Scenario) else Scenario(scenario)
-        core = _core.Simulation(own._core, _threads(threads))
+        core = _core.Simulation(own._ready, _threads(threads))
         own._check_masks(len(core.pressures))
         self._begin(own, core)
 
@@ -346,7 +346,7 @@ class Simulation:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         scenario = state["scenario"]
-        self._begin(scenario, _core.Simulation(scenario._core, state["threads"], state["saved"]))
+        self._begin(scenario, _core.Simulation(scenario._ready, state["threads"], state["saved"]))
 
     # How it is now
 
@@ -500,7 +500,7 @@ def load(
     try:
         scenario = Scenario(_core.scenario_of_saved(saved), tissue=tissue)
         simulation = object.__new__(Simulation)
-        simulation._begin(scenario, _core.Simulation(scenario._core, _threads(threads), saved))
+        simulation._begin(scenario, _core.Simulation(scenario._ready, _threads(threads), saved))
     except FileError as error:
         raise FileError(f"{source}: {error}") from error
     except UnicodeDecodeError as error:

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from .errors import PlicaError
-from .results import Frame, Run, _needed, _pandas, open_run
+from .errors import PlicaError, needed
+from .results import Frame, Run, _pandas, open_run
 from .scenario import Scenario
 from .simulation import Simulation
 
@@ -155,7 +155,7 @@ def render(
     PlicaError
         There is neither a screen nor a library that draws without one.
     """
-    pyvista = _needed("pyvista", "render")
+    pyvista = needed("pyvista", "render")
     _make_sure_of_drawing()
     looks = _core.looks()
     for name, value, known in (("color", color, looks["fields"]), ("view", view, looks["views"])):
@@ -238,7 +238,7 @@ def _values(grid: Any, field: Mapping[str, Any]) -> tuple[NDArray[np.float64], l
 
 
 def _colours(colours: list[tuple[float, float, float]], of_steps: bool) -> Any:
-    maps = _needed("matplotlib.colors", "render")
+    maps = needed("matplotlib.colors", "render")
     return maps.ListedColormap(colours) if of_steps else maps.LinearSegmentedColormap.from_list("plica", colours)
 
 
@@ -323,6 +323,8 @@ def calibrate(
     base = scenario if isinstance(scenario, Scenario) else Scenario(scenario)
     if base.tissue is not None or base._regions:
         raise ValueError("calibrate runs what a file can say: neither a tissue nor regions given as arrays")
+    if base["embryo.shape"] == "file" and not _core.reads_meshes:
+        raise ValueError("calibrate cannot read embryo.file: this plica was built without VTK; build it with VTK for that")
     trials: list[Trial] = []
 
     def trial_of(row: Mapping[str, Any]) -> Trial:

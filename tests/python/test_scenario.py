@@ -159,6 +159,50 @@ def test_wrong_arrays(change, told):
         plica.Tissue(given.pop("points"), given.pop("hexahedra"), **given)
 
 
+def test_a_mesh_file_without_vtk(tmp_path, monkeypatch):
+    """meshio reads the same cells as VTK does: the simulation is the same to the bit."""
+    meshio = pytest.importorskip("meshio")
+    points, hexahedra = box()
+    data = {"top": [np.full(4, 5)], "left": [np.array([1.0, 2.0, 0.0, np.nan])], "vectors": [np.ones((4, 3))]}
+    meshio.Mesh(points, [("hexahedron", hexahedra)], cell_data=data).write(tmp_path / "box.vtu")
+    (tmp_path / "box.toml").write_text(
+        'embryo = {shape = "file", file = "box.vtu", apical_array = "top"}\nvitelline.enabled = false\n'
+        'region.left.array = "left"\ncontraction.apical = {region = "left", stiffness_nN_per_um = 3}\ntime.end_min = 0.5\n'
+    )
+    sims = []
+    for reads in (plica._core.reads_meshes, False):
+        monkeypatch.setattr(plica._core, "reads_meshes", reads)
+        s = plica.Scenario(tmp_path / "box.toml")
+        assert isinstance(s.advice(), list)
+        sims.append(plica.Simulation(s))
+        sims[-1].run()
+    assert sims[0].regions["left"].tolist() == [True, True, False, False] and len(sims[0].hexahedra) == 4
+    assert np.array_equal(sims[0].positions, sims[-1].positions)
+
+    tissue = plica.Tissue.from_file(tmp_path / "box.vtu", apical_array="top")
+    assert repr(tissue) == "Tissue(4 cells, 20 nodes, regions: left)"
+    with pytest.raises(ValueError, match="calibrate"):
+        plica.calibrate(tmp_path / "box.toml", {"time.end_min": (1, 2)}, {"steps": (5, 2)})
+
+
+def test_mesh_files_that_are_none(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    points, hexahedra = box()
+    meshio.Mesh(points, [("tetra", hexahedra[:, :4])]).write(tmp_path / "tetra.vtu")
+    meshio.Mesh(points, [("hexahedron", hexahedra)], cell_data={"top": [np.full(4, 7.5)]}).write(tmp_path / "wrong.vtu")
+    meshio.Mesh(points * np.nan, [("hexahedron", hexahedra)]).write(tmp_path / "nan.vtu")
+    (tmp_path / "text.vtu").write_text("no mesh")
+    (tmp_path / "mesh.unheard").write_text("no mesh")
+    (tmp_path / "cut.vtu").write_bytes((tmp_path / "wrong.vtu").read_bytes()[:700])
+    for name, told in [("tetra.vtu", "tetra"), ("nan.vtu", "node 0"), ("text.vtu", "cannot be read"), ("mesh.unheard", "cannot be"),
+                       ("cut.vtu", "cannot be read"), ("none.vtu", "no such file"), ("", "directory")]:
+        with pytest.raises(plica.FileError, match=told):
+            plica.Tissue.from_file(tmp_path / name)
+    for array, told in [("side", "there are: top"), ("top", "top|whole")]:
+        with pytest.raises(plica.FileError, match=told):
+            plica.Tissue.from_file(tmp_path / "wrong.vtu", apical_array=array)
+
+
 def test_unusable_cells_are_named():
     points, hexahedra = box()
     hexahedra[2] = hexahedra[2][::-1]

@@ -11,7 +11,10 @@ namespace plica {
 namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& file) {
-  throw FileError(fmt::format("{}: cannot be read: plica was built without VTK", file.string()));
+  throw FileError(
+      fmt::format("{}: cannot be read: this plica was built without VTK. Build it with VTK, or read the "
+                  "file from Python, which takes meshio for it: pip install 'plica[plot]'",
+                  file.string()));
 }
 
 }  // namespace
