@@ -39,6 +39,17 @@ std::vector<Triangle> triangles_of(const std::vector<std::array<NodeId, 4>>& fac
   return triangles;
 }
 
+bool have_common_node(std::span<const NodeId> some, std::span<const NodeId> others) {
+  return std::ranges::any_of(some, [&](NodeId node) { return std::ranges::find(others, node) != others.end(); });
+}
+
+// The pair whose q is now nearest to a place; nullptr of none.
+const Pair* nearest_of(std::span<const Pair> pairs, const Vec3& place, std::span<const Vec3> x) {
+  const auto away = [&](const Pair& pair) { return (pair.q.at(x) - place).squaredNorm(); };
+  const auto nearest = std::ranges::min_element(pairs, {}, away);
+  return nearest == pairs.end() ? nullptr : &*nearest;
+}
+
 }  // namespace
 
 SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirror mirror)
@@ -125,18 +136,31 @@ struct SelfContact::Surface {
   }
 };
 
-std::optional<Pair> SelfContact::pair_of(std::size_t p, const Pair* last, const Surface& surface) const {
+// Whether no facet about q is nearer to the place than q itself.
+bool SelfContact::is_nearest_about(const SurfacePlace& q, const Vec3& place, const Surface& surface) const {
+  const double limit = (1 - 1e-9) * (q.at(surface.x) - place).squaredNorm();
+  return std::ranges::none_of(surface.grid.near(place), [&](std::size_t t) {
+    const auto& facet = facets_[t / 4];
+    const auto& [a, b, c] = surface.triangles[t].corners;
+    for (int k = 0; k < q.count; ++k)
+      if (q.weights[k] > 0 && std::ranges::find(facet, q.nodes[k]) != facet.end())
+        return closest_on_triangle(place, a, b, c).squared_distance < limit;
+    return false;
+  });
+}
+
+std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> known, const Surface& surface,
+                                         const Pair* first) const {
   const auto& [x, normals, outward, triangles, grid] = surface;
   const SurfacePlace& point = points_[p].place;
-  // How far it may be inside: where it touched, a distance more than its last pair shows, which lags.
-  const double last_gap = last ? last->gap(x) : std::numeric_limits<double>::infinity();
-  const double least_gap = last_gap < rule_.distance ? std::min(0.0, last_gap) - rule_.distance : 0;
-  const Vec3 place = point.at(x), facing = point.at(normals);
-  double nearest2 = rule_.search * rule_.search;
+  const Vec3 place = point.at(x), facing = point.at(normals).normalized();
+  const double within = first ? reach_of_second() : rule_.search;
+  double nearest2 = within * within;
   std::optional<Pair> best;
   for (const std::size_t t : grid.near(place)) {
     if (facing.dot(triangles[t].area) >= 0) continue;  // they look the same way
     if (std::ranges::binary_search(neighbours_[p], t / 4)) continue;
+    if (first && have_common_node(first->q.all_nodes(), facets_[t / 4])) continue;
     const auto& [a, b, c] = triangles[t].corners;
     const auto [of_corners, distance2] = closest_on_triangle(place, a, b, c);
     if (distance2 >= nearest2) continue;
@@ -146,7 +170,7 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, const Pair* last, const 
     q.weights[(t + 1) % 4] += of_corners[1];
     Vec3 outside = Vec3::Zero();
     for (int k = 0; k < 4; ++k) outside += q.weights[k] * normals[q.nodes[k].index()].normalized();
-    if (outside.norm() < 0.1 || outside.dot(facing) >= 0) continue;  // a sharp edge has no side
+    if (outside.norm() < 0.1) continue;  // a sharp edge has no side
     // Along the shortest way: then nothing comes nearer by sliding.
     Pair found{p, Pair::no_segment, point, q, outside.normalized(), points_[p].area};
     const Vec3 apart = found.apart(x);
@@ -154,18 +178,21 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, const Pair* last, const 
       found.normal = triangles[t].area.normalized();
     else if (apart.norm() > 1e-3 * rule_.distance)
       found.normal = (apart.dot(outside) < 0 ? -apart : apart).normalized();
-    if (found.gap(x) < least_gap) continue;
+    // Tips of two ridges may lean on each other though both look the same way; then each is the other's nearest place.
+    constexpr double rounded = -1e-9;  // of a cosine: what is square to each other on one side is so on its image
+    if (found.normal.dot(facing) > rounded) continue;
+    if ((first || outside.dot(facing) >= 0) && !is_nearest_about(q, place, surface)) continue;
+    // How far it may be inside: where it touched, a distance more than its last pair shows, which lags.
+    const Pair* last = nearest_of(known, q.at(x), x);
+    const double last_gap = last ? last->gap(x) : std::numeric_limits<double>::infinity();
+    found.first_gap = found.gap(x);
+    if (found.first_gap < (last_gap < rule_.distance ? std::min(0.0, last_gap) - rule_.distance : 0)) continue;
+    // One that comes into view nearer than the distance does not jump away.
+    const double seen_at = last ? last->distance : -std::numeric_limits<double>::infinity();
+    found.distance = std::min(rule_.distance, std::max(seen_at, found.first_gap));
     nearest2 = distance2;
     best = found;
   }
-  if (!best) return std::nullopt;
-  // What lies beside an open surface, beyond its rim, is not over it.
-  const Vec3 out = best->q.at(outward);
-  if (out.dot(best->apart(x)) > rule_.distance * out.norm()) return std::nullopt;
-  // One that comes into view nearer than the distance does not jump away.
-  const double seen_at = last ? last->distance : -std::numeric_limits<double>::infinity();
-  best->first_gap = best->gap(x);
-  best->distance = std::min(rule_.distance, std::max(seen_at, best->first_gap));
   return best;
 }
 
@@ -176,9 +203,22 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<
   auto last = before.begin();  // that of the point or of one after it; then those of edges
   std::vector<Pair> pairs;
   for (std::size_t p = 0; p < points_.size(); ++p) {
-    while (last != before.end() && !last->is_of_edges() && last->first < p) ++last;
-    const bool was_seen = last != before.end() && !last->is_of_edges() && last->first == p;
-    if (const std::optional<Pair> pair = pair_of(p, was_seen ? &*last : nullptr, surface)) pairs.push_back(*pair);
+    const auto is_known = [&] { return last != before.end() && !last->is_of_edges(); };
+    while (is_known() && last->first < p) ++last;
+    const auto first_known = last;
+    while (is_known() && last->first == p) ++last;
+    const std::span<const Pair> known_of_p(first_known, last);
+    const std::optional<Pair> first = pair_of(p, known_of_p, surface, nullptr);
+    if (!first) continue;
+    const auto add = [&](const Pair& pair) {
+      // What lies beside an open surface, beyond its rim, is not over it.
+      const Vec3 out = pair.q.at(surface.outward);
+      if (out.dot(pair.apart(surface.x)) <= rule_.distance * out.norm()) pairs.push_back(pair);
+    };
+    add(*first);
+    // Where three ridges meet, a point leans on two.
+    if (first->apart(surface.x).norm() < reach_of_second())
+      if (const std::optional<Pair> second = pair_of(p, known_of_p, surface, &*first)) add(*second);
   }
   // Edges are looked for only about what points see.
   std::vector<char> is_searched(surface.x.size(), 0);

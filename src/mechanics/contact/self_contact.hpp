@@ -1,7 +1,8 @@
 // Contact of a surface with itself: points against facets, and edges against edges (docs/theory/self_contact.md).
 //
 // A facet is four triangles, from its edges to the mean of its corners; points are nodes, middles of edges and these
-// means. At the beginning of a step each point takes the nearest facing triangle outside its own neighbourhood. The
+// means. At the beginning of a step each point takes the nearest facing triangle outside its own neighbourhood, and
+// the nearest one of another part of the surface, if that is as near as 4 distances. The
 // nearest place q on it, as weights of its facet's nodes, and the way N from there to the point stay fixed for the
 // step; where the point p comes closer than `distance` along N it is pushed back:
 //   E = k w/2 (distance - N.(p - q))^2,   w the area that the point stands for.
@@ -80,8 +81,12 @@ class SelfContact final : public Law {
 
  private:
   struct Surface;
-  /// Of a point: with the nearest triangle that faces it.
-  [[nodiscard]] std::optional<Pair> pair_of(std::size_t point, const Pair* last, const Surface& surface) const;
+  /// Of a point: with the nearest triangle that faces it; after a `first` pair, with the nearest one of another part of
+  /// the surface. `known`: the point's pairs of the step before.
+  [[nodiscard]] std::optional<Pair> pair_of(std::size_t point, std::span<const Pair> known, const Surface& surface,
+                                            const Pair* first) const;
+  [[nodiscard]] bool is_nearest_about(const SurfacePlace& q, const Vec3& place, const Surface& surface) const;
+  [[nodiscard]] double reach_of_second() const { return 4 * rule_.distance; }
   [[nodiscard]] bool may_touch(const Pair& pair) const { return pair.first_gap < 2 * rule_.distance; }
   /// Adds the nodes of each pair that may touch.
   void add_touching(std::span<const double> internal, NodeGroups& groups) const;

@@ -244,6 +244,63 @@ TEST(SelfContact, EdgesLeanOnTheirImages) {
   expect_assembled_is_matrix_free(of_side, motion, 5);
 }
 
+// A ridge along x between two apical faces, in the y-z plane from a over the tip to b, clockwise about the tissue,
+// which reaches towards `inside`.
+void add_ridge(Bodies& bodies, const std::array<Vec3, 3>& way, const Vec3& inside) {
+  bodies.add({1, 2, 1}, [=](int i, int j, int k) -> Vec3 {
+    const Vec3& place = way[j];
+    return Vec3(10.0 * i, 0, 0) + (k == 1 ? place : Vec3(place + 0.4 * (inside - place)));
+  });
+}
+
+// The pairs of points that are nodes at a place.
+std::vector<ContactPair> pairs_at(const Vec3& place, const std::vector<ContactPair>& pairs, const Tissue& tissue) {
+  std::vector<ContactPair> result;
+  for (const ContactPair& pair : pairs)
+    if (!pair.is_of_edges() && pair.p.count == 1 && (pair.p.at(tissue.rest_positions) - place).norm() < 1e-9)
+      result.push_back(pair);
+  return result;
+}
+
+// Lips that lean on each other with their last edges: however wide the faces are that lead away from them.
+TEST(SelfContact, TipsSeeEachOther) {
+  for (const double width : {5, 16, 40}) {
+    Bodies bodies;
+    const Vec3 left(0, -0.1, 0), right(0, 0.1, 0);
+    add_ridge(bodies, {Vec3(0, -0.1, 16), left, Vec3(0, -width, 0)}, {0, -10, 10});
+    add_ridge(bodies, {Vec3(0, width, 0), right, Vec3(0, 0.1, 16)}, {0, 10, 10});
+    const Tissue tissue = bodies.tissue();
+    const auto pairs = SelfContact(tissue, {.distance = 0.4, .search = 4}).pairs(tissue.rest_positions);
+    for (const auto& [tip, way] : {std::pair(left, -1.0), std::pair(right, 1.0)}) {
+      const auto of_tip = pairs_at(tip, pairs, tissue);
+      ASSERT_EQ(of_tip.size(), 1u) << width;
+      EXPECT_NEAR(of_tip[0].normal.y(), way, 1e-12);
+      EXPECT_NEAR(of_tip[0].first_gap, 0.2, 1e-12);
+    }
+  }
+}
+
+// Where three ridges meet, each tip leans on both others.
+TEST(SelfContact, ATipLeansOnTwo) {
+  Bodies bodies;
+  const std::array tips = {Vec3(0, -0.2, 0), Vec3(0, 0.2, 0), Vec3(0, 0, 0.3)};
+  add_ridge(bodies, {Vec3(0, -10, 10), tips[0], Vec3(0, -10, -6)}, {0, -20, 0});
+  add_ridge(bodies, {Vec3(0, 10, -6), tips[1], Vec3(0, 10, 10)}, {0, 20, 0});
+  add_ridge(bodies, {Vec3(0, 10, 10.6), tips[2], Vec3(0, -10, 10.6)}, {0, 0, 20});
+  const Tissue tissue = bodies.tissue();
+  const SelfContact law(tissue, {.distance = 0.4, .search = 4});
+  const auto pairs = law.pairs(tissue.rest_positions);
+  for (const Vec3& tip : tips) {
+    const auto of_tip = pairs_at(tip, pairs, tissue);
+    ASSERT_EQ(of_tip.size(), 2u);
+    EXPECT_LE(of_tip[0].first_gap, of_tip[1].first_gap + 1e-12);
+    EXPECT_GT(of_tip[0].first_gap, 0);
+  }
+  // Each remembers its own, not the other's.
+  Motion motion = with_pairs(law, tissue);
+  EXPECT_EQ(law.next_internal(motion.step()), motion.internal);
+}
+
 // A point that has gone through is pushed back out.
 TEST(SelfContact, GapsHaveASign) {
   const Tissue tissue = folded(3);
