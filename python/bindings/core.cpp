@@ -194,6 +194,7 @@ NB_MODULE(_core, module) {
       },
       nb::arg("field"), nb::arg("smallest"), nb::arg("largest"));
   bind_simulation(module);
+  bind_study(module);
 }
 
 }  // namespace plica::python

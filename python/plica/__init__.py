@@ -14,6 +14,7 @@ from .results import Frame, Frames, Run
 from .results import open_run as open
 from .scenario import Scenario, Tissue, builtin_scenarios
 from .simulation import Simulation, Step, load
+from .study import Study
 from .studies import Calibration, Comparison, Trial, calibrate, compare, render
 
 __all__ = [
@@ -31,6 +32,7 @@ __all__ = [
     "ScenarioError",
     "Simulation",
     "Step",
+    "Study",
     "Tissue",
     "Trial",
     "__version__",

@@ -92,7 +92,8 @@ class MissingExtra(PlicaError, ImportError):
         return type(self), (self.what, self.package, self.extra)
 
 
-EXTRAS = {"pandas": "plot", "matplotlib": "plot", "pyvista": "plot", "meshio": "plot", "IPython": "notebook"}
+EXTRAS = {"pandas": "plot", "matplotlib": "plot", "pyvista": "plot", "meshio": "plot", "IPython": "notebook",
+          "xarray": "study"}
 
 
 def needed(package: str, what: str) -> Any:

@@ -1,22 +1,74 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
+#include <optional>
+#include <thread>
 
 #include "app/commands.hpp"
+#include "app/interruption.hpp"
 #include "app/scenario_options.hpp"
+#include "app/words.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/threads.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/print.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/watch.hpp"
+#include "study/check_study.hpp"
 
 namespace plica {
+namespace {
+
+// The study that a file holds; nothing where it is a scenario's, or there is none.
+std::optional<StudyInput> study_in(const ScenarioOptions& options) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(options.name_or_path, error)) return {};
+  if (!is_study(read_file(options.name_or_path))) return {};
+  if (!options.overrides.empty())
+    throw UsageError("--set does not go with a study; write it into [set] of " + options.name_or_path);
+  return read_study(options.name_or_path);
+}
+
+std::string bytes_text(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} kB", std::max(1.0, bytes / 1e3));
+  return bytes < 1e9 ? fmt::format("{:.0f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
+}
+
+void check_study(const StudyInput& input) {
+  const ThreadCount one(1);
+  const Study study(input);
+  fmt::print(stderr, "running the first point to see how long it takes (Ctrl-C: without)\n");
+  catch_interruptions();
+  const StudyForecast found = forecast(study, interrupted);
+  fmt::print("{}: {}, {} of {}\n", study.input().name, plural(found.points, "point"), plural(found.runs, "run"),
+             input.scenario.name);
+  for (const std::string& key : study.design().keys) fmt::print("  varies {}\n", key);
+  for (const std::string& name : study.measures()) fmt::print("  measures {}\n", name);
+  if (!found.refused.empty())
+    fmt::print("{} no valid scenario, to stand in the table as refused; the first:\n  {}\n",
+               found.refused.size() == 1 ? "1 point is" : fmt::format("{} points are", found.refused.size()),
+               found.refused.front());
+  if (found.first.status.empty()) return;
+  const auto cores = std::max(1U, std::thread::hardware_concurrency());
+  const auto runs = static_cast<double>(found.runs - found.refused.size() * found.runs / found.points);
+  fmt::print("point {}: {} after {} steps, in {}; all of them some {} on {}, and {} on the disk\n",
+             study.design().runs[found.first_run].point, found.first.status, found.first.steps,
+             duration(found.first.wall_s), duration(found.first.wall_s * runs / cores), plural(cores, "core"),
+             bytes_text(found.bytes_a_run * runs));
+}
+
+}  // namespace
 
 void add_check_command(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("check", "validate a scenario; print it with every default filled in");
+  CLI::App* command = app.add_subcommand(
+      "check", "validate a scenario, and print it with every default filled in; or a study, and say what it takes");
   auto options = std::make_shared<ScenarioOptions>();
   options->add_to(*command);
   command->footer("Example: plica check my.toml --set embryo.elements_per_cell=[2,2,2]");
   command->callback([options] {
+    if (const std::optional<StudyInput> study = study_in(*options)) return check_study(*study);
     const Scenario scenario = options->load();
     const auto model = make_model(scenario);
     (void)make_watch(scenario, model->tissue);

@@ -20,6 +20,7 @@ enum ExitStatus : int {
 void add_run_command(CLI::App& app, int& status);
 void add_compare_command(CLI::App& app, int& status);
 void add_calibrate_command(CLI::App& app, int& status);
+void add_study_command(CLI::App& app, int& status);
 void add_reproduce_command(CLI::App& app, int& status);
 void add_report_command(CLI::App& app, int& status);
 void add_render_command(CLI::App& app, int& status);

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   add_run_command(app, status);
   add_compare_command(app, status);
   add_calibrate_command(app, status);
+  add_study_command(app, status);
   add_reproduce_command(app, status);
   add_report_command(app, status);
   add_render_command(app, status);

@@ -28,13 +28,6 @@ Json in_json(const Column& column, std::optional<double> value) {
   return column.is_count && value ? Json(static_cast<std::int64_t>(*value)) : number(value);
 }
 
-std::string cpu_name() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown";
-}
-
 // FNV-1a, 64 bits: tells scenarios apart, no more.
 std::string hash(std::string_view text) {
   std::uint64_t value = 0xcbf29ce484222325;
@@ -107,10 +100,17 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   summary["provenance"] = {{"version", version()},
                            {"commit", commit()},
                            {"compiler", compiler()},
-                           {"cpu", cpu_name()},
+                           {"cpu", processor_name()},
                            {"threads", omp_get_max_threads()},
                            {"scenario_hash", hash(resolved_toml(scenario))}};
   return summary;
+}
+
+std::string processor_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown";
 }
 
 std::vector<std::string> missed_expectations(const Scenario& scenario, const Json& summary) {

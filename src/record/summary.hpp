@@ -21,6 +21,9 @@ struct WallTimes {
 nlohmann::ordered_json make_summary(const Scenario& scenario, const Simulation& simulation,
                                     const std::vector<Observation>& rows, const WallTimes& wall);
 
+/// The type of this machine's processor, as it calls itself.
+std::string processor_name();
+
 /// One line for each of the scenario's [expect] that the summary misses; empty when all are met.
 std::vector<std::string> missed_expectations(const Scenario& scenario, const nlohmann::ordered_json& summary);
 

@@ -63,19 +63,6 @@ void refuse_repetitions(const CalibrationProblem& problem) {
       throw UsageError(fmt::format("--target {}: is given twice; leave one out", target.name));
 }
 
-// What the computation has cost, which differs from run to run.
-bool is_a_cost(const std::string& name) { return name == "peak_memory_MB" || name.find("wall_s") != std::string::npos; }
-
-// What of the summary can be a target: numbers, and what may become one, but not what it cost.
-std::vector<std::string> known_targets(const Scenario& scenario) {
-  std::vector<std::string> names;
-  const RunSummary rest = run_at_rest(scenario);
-  for (const auto& [name, value] : rest.summary.items())
-    if ((value.is_number() || value.is_null()) && name != "stopped_by" && name != "failure" && !is_a_cost(name))
-      names.push_back(name);
-  return names;
-}
-
 void refuse_unknown_targets(const CalibrationProblem& problem, const std::vector<std::string>& known) {
   for (const Target& target : problem.targets) {
     if (std::ranges::count(known, target.name) > 0) continue;
@@ -173,7 +160,7 @@ void check_calibration(const CalibrationProblem& problem) {
   refuse_repetitions(problem);
   const std::vector<double> low(problem.keys.size(), 0), high(problem.keys.size(), 1);
   for (const auto& place : {low, high}) (void)make_model(load_trial(problem, values_at(problem, place)));
-  refuse_unknown_targets(problem, known_targets(load_trial(problem, values_at(problem, low))));
+  refuse_unknown_targets(problem, result_names(run_at_rest(load_trial(problem, values_at(problem, low))).summary));
 }
 
 }  // namespace plica

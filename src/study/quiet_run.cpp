@@ -33,4 +33,14 @@ RunSummary run_at_rest(const Scenario& scenario) {
   return ended(scenario, simulation, {simulation.measures()}, {});
 }
 
+bool is_a_cost(const std::string& name) { return name == "peak_memory_MB" || name.find("wall_s") != std::string::npos; }
+
+std::vector<std::string> result_names(const nlohmann::ordered_json& summary) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : summary.items())
+    if ((value.is_number() || value.is_null()) && name != "stopped_by" && name != "failure" && !is_a_cost(name))
+      names.push_back(name);
+  return names;
+}
+
 }  // namespace plica

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "measure/observation.hpp"
@@ -28,5 +29,11 @@ RunSummary quiet_run(const Scenario& scenario, const QuietRunHooks& hooks = {});
 
 /// The summary of a run that has not begun: every key that one of this scenario will have.
 RunSummary run_at_rest(const Scenario& scenario);
+
+/// What the computation has cost, which differs from run to run.
+bool is_a_cost(const std::string& name);
+
+/// What of a summary is a result: the names of its numbers, and of what may become one, without what it cost.
+std::vector<std::string> result_names(const nlohmann::ordered_json& summary);
 
 }  // namespace plica

@@ -1,0 +1,362 @@
+"""Many runs of a scenario, with keys that vary, and their table."""
+from __future__ import annotations
+
+import functools
+import io
+import json
+import os
+import pickle
+import queue
+import subprocess
+import sys
+import threading
+from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import Executor, as_completed
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+
+from . import _core
+from .errors import FileError, needed
+from .results import _pandas
+from .scenario import GIVEN, _toml_of
+
+if TYPE_CHECKING:
+    import pandas
+
+__all__ = ["Study"]
+
+
+class _Spec(NamedTuple):
+    """What a worker needs to know of a study."""
+
+    name: str
+    file: str
+    text: str
+    points: str
+    directory: str
+
+
+class Study:
+    """A scenario, keys that vary, and a design of points: many runs, and a table with a row for each.
+
+    Parameters
+    ----------
+    source : str, path or mapping
+        A study's TOML file, TOML text (of several lines), or the same as a dict: ``scenario``, ``vary``, ``design``, and
+        ``set`` and ``keep`` if need be (docs/studies.md). Or the directory of a study that has been run, or is running.
+
+    Raises
+    ------
+    ScenarioError
+        With all that is wrong, each with its key and what would be right.
+    FileError
+        The file cannot be read.
+
+    Examples
+    --------
+    >>> import plica
+    >>> study = plica.Study({
+    ...     "scenario": "division-demo",
+    ...     "set": {"time.end_min": 1},
+    ...     "vary": {"elasticity.young_modulus_Pa": {"values": [500, 1000]}},
+    ...     "design": {"kind": "grid"},
+    ...     "keep": {"measures": ["furrow_depth_um"]},
+    ... })
+    >>> study
+    Study('study' of division-demo: 2 runs of elasticity.young_modulus_Pa)
+    >>> table = study.run(jobs=1)
+    >>> list(table.status)
+    ['end_time', 'end_time']
+    """
+
+    def __init__(self, source: Union[str, os.PathLike[str], Mapping[str, Any]]) -> None:
+        if isinstance(source, Mapping):
+            name, file, text = "study", GIVEN, _toml_of(source)
+        elif isinstance(source, str) and "\n" in source:
+            name, file, text = "study", GIVEN, source
+        else:
+            path = Path(source)
+            name, file, text = path.stem, str(path), "" if path.is_dir() else _text_of(path)
+        self._rows: dict[int, str] = {}
+        if text:
+            self._core = _core.Study(name, file, text)
+        else:
+            begun = json.loads(_text_of(path / "study.json"))
+            name, file, text = begun["name"], begun["file"], _text_of(path / "study.toml")
+            directory, self._core = _core.StudyDirectory.open(str(path))
+            self._rows = dict(directory.rows)
+        self._spec = _Spec(name, file, text, self._core.points_csv, "")
+
+    @property
+    def keys(self) -> list[str]:
+        """The keys that vary."""
+        return self._core.keys
+
+    @property
+    def measures(self) -> list[str]:
+        """The results that the table has."""
+        return self._core.measures
+
+    @property
+    def points(self) -> pandas.DataFrame:
+        """The runs in their order: point, replicate, and the values of the keys."""
+        table = self.table
+        return table[["point", "replicate", *self.keys]]
+
+    @property
+    def table(self) -> pandas.DataFrame:
+        """A row a run: point, keys, replicate, status, measures, steps, wall_s, reason. What has not run is ``not_run``."""
+        rows = [self._rows.get(run) or self._core.not_run(run) for run in range(len(self))]
+        text = io.StringIO("\n".join([self._core.header, *rows]))
+        table: pandas.DataFrame = _pandas("the table of a study").read_csv(text, float_precision="round_trip")
+        return table
+
+    def to_xarray(self) -> Any:
+        """The measures over the keys: of a grid with a dimension for each key, else over the points.
+
+        Returns
+        -------
+        xarray.Dataset
+        """
+        needed("xarray", "a study as an xarray")
+        table = self.table
+        replicates = ["replicate"] if table.replicate.nunique() > 1 else []
+        dimensions = [key for key in self.keys if table[key].nunique() > 1] + replicates
+        is_grid = not table.duplicated(dimensions).any() and len(table) == table[dimensions].nunique().prod()
+        index = dimensions if is_grid and dimensions else ["point", *replicates]
+        kept = [*([] if is_grid else self.keys), "status", *self.measures, "steps"]
+        return table.set_index(index)[kept].to_xarray()
+
+    def run(
+        self,
+        *,
+        out: Optional[Union[str, os.PathLike[str]]] = None,
+        jobs: Optional[int] = None,
+        executor: Optional[Executor] = None,
+        overwrite: bool = False,
+        resume: bool = False,
+        progress: bool = False,
+    ) -> pandas.DataFrame:
+        """Runs what has not run yet.
+
+        Parameters
+        ----------
+        out : str or path, optional
+            A directory for the table and what is kept of the runs, as ``plica study --out`` leaves it. Rows are written there
+            as they come.
+        jobs : int, optional
+            Processes of this machine; by default one a core.
+        executor : concurrent.futures.Executor, optional
+            Whose workers run it instead: a process pool, Dask's ``Client.get_executor()``, mpi4py, submitit. They need
+            plica, and where files are kept, the same directory.
+        overwrite, resume : bool, optional
+            Replace the study in `out`; go on with it.
+        progress : bool, optional
+            Show a bar.
+
+        Returns
+        -------
+        pandas.DataFrame
+            `table`.
+
+        Raises
+        ------
+        ValueError
+            Files are to be kept, and there is no `out`; or `out` holds another study.
+        FileError
+            Something cannot be written.
+        KeyboardInterrupt
+            Ctrl-C. What has run is in `table`, and in `out`, where it can be resumed.
+        """
+        if out is None and self._core.keeps_files:
+            raise ValueError("out is missing: keep.each of this study leaves files")
+        directory = None
+        if out is not None:
+            start = "resumed" if resume else "over" if overwrite else "fresh"
+            directory = _core.StudyDirectory.begin(os.fspath(out), self._core, start)
+            self._rows = dict(directory.rows)
+        spec = self._spec._replace(directory="" if out is None else str(Path(out).resolve()))
+        open_runs = [run for run in range(len(self)) if run not in self._rows]
+        rows = _by_executor(executor, spec, open_runs) if executor else _by_processes(jobs, spec, open_runs, self._core)
+        bar = _bar(len(self), len(self._rows)) if progress else None
+        try:
+            for run, row in rows:
+                if not row:
+                    continue  # somebody else is at it
+                self._rows[run] = row
+                if directory is not None:
+                    directory.add(run, row)
+                if bar is not None:
+                    bar.update()
+        finally:
+            if bar is not None:
+                bar.close()
+            if directory is not None:
+                self._rows = dict(directory.rows)
+                directory.gather(self._core)
+        return self.table
+
+    def __len__(self) -> int:
+        return self._core.runs
+
+    def __repr__(self) -> str:
+        runs = f"{len(self)} run{'s' if len(self) != 1 else ''}"
+        return f"Study({self._spec.name!r} of {self._core.scenario_name}: {runs} of {', '.join(self.keys)})"
+
+
+def _text_of(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(f"{path}: cannot be read: {error}") from error
+
+
+@functools.lru_cache(maxsize=4)
+def _study_of(spec: _Spec) -> _core.Study:
+    return _core.Study(spec.name, spec.file, spec.text, spec.points)
+
+
+def _rows_of(spec: _Spec, runs: list[int]) -> list[tuple[int, str]]:
+    study = _study_of(spec)
+    return [(run, study.row(run, spec.directory)) for run in runs]
+
+
+def _by_executor(executor: Executor, spec: _Spec, runs: list[int]) -> Iterator[tuple[int, str]]:
+    # Few enough for each worker to have several, so that they end together.
+    size = max(1, min(50, len(runs) // 64))
+    futures = [executor.submit(_rows_of, spec, runs[at : at + size]) for at in range(0, len(runs), size)]
+    try:
+        for future in as_completed(futures):
+            yield from future.result()
+    finally:
+        for future in futures:
+            future.cancel()
+
+
+def _by_processes(jobs: Optional[int], spec: _Spec, runs: list[int], study: _core.Study) -> Iterator[tuple[int, str]]:
+    count = min(jobs or len(os.sched_getaffinity(0)), len(runs))
+    if jobs is not None and jobs < 1:
+        raise ValueError(f"jobs: {jobs}; give 1 or more")
+    if count <= 1:
+        yield from ((run, row) for one in runs for run, row in _rows_of(spec, [one]))
+        return
+    pool = _Processes(count, spec, runs, study)
+    try:
+        yield from pool.rows()
+    finally:
+        pool.stop()
+
+
+class _Processes:
+    """Python processes that each run one run after another. One that dies takes only its run with it, which is begun again.
+
+    Not multiprocessing's: that begins the caller's script anew in each process, or forks one that has threads.
+    """
+
+    def __init__(self, count: int, spec: _Spec, runs: Iterable[int], study: _core.Study) -> None:
+        self.spec, self.study = spec, study
+        self.open: queue.SimpleQueue[int] = queue.SimpleQueue()
+        self.done: queue.SimpleQueue[Union[tuple[int, str], BaseException]] = queue.SimpleQueue()
+        self.count = 0
+        for run in runs:
+            self.open.put(run)
+            self.count += 1
+        self.stopping = threading.Event()
+        self.processes: list[Optional[subprocess.Popen[bytes]]] = [None] * count
+        self.threads = [threading.Thread(target=self._serve, args=(w,), daemon=True) for w in range(count)]
+        for thread in self.threads:
+            thread.start()
+
+    def rows(self) -> Iterator[tuple[int, str]]:
+        for _ in range(self.count):
+            row = self.done.get()
+            if isinstance(row, BaseException):
+                raise row
+            yield row
+
+    def stop(self) -> None:
+        self.stopping.set()
+        for process in self.processes:
+            if process is not None and process.poll() is None:
+                process.kill()
+        for thread in self.threads:
+            thread.join()
+
+    def _serve(self, worker: int) -> None:
+        try:
+            while not self.stopping.is_set():
+                try:
+                    run = self.open.get_nowait()
+                except queue.Empty:
+                    break
+                row, how = self._row(worker, run)
+                if row is None and not self.stopping.is_set():
+                    row, how = self._row(worker, run)
+                self.done.put((run, self.study.crashed(run, f"its process ended twice, the second time by {how}") if row is None else row))
+        except BaseException as error:
+            self.done.put(error)
+        process = self.processes[worker]
+        if process is not None and process.stdin is not None:
+            process.stdin.close()
+            process.wait()
+
+    def _row(self, worker: int, run: int) -> tuple[Optional[str], str]:
+        process = self.processes[worker]
+        if process is None or process.poll() is not None:
+            path = os.pathsep.join(entry for entry in sys.path if entry)
+            process = subprocess.Popen(
+                [sys.executable, "-c", "from plica.study import _work; _work()"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                env={**os.environ, "PYTHONPATH": path},
+                start_new_session=True,  # Ctrl-C is for the parent, which ends them
+            )
+            self.processes[worker] = process
+            assert process.stdin is not None
+            pickle.dump(tuple(self.spec), process.stdin)
+        assert process.stdin is not None and process.stdout is not None
+        try:
+            process.stdin.write(f"{run}\n".encode())
+            process.stdin.flush()
+            answer = process.stdout.readline().decode()
+        except OSError:
+            answer = ""
+        if not answer.endswith("\n"):
+            return None, f"status {process.wait()}"
+        kind, _, text = answer[:-1].partition(" ")
+        if kind == "error":
+            raise FileError(text)
+        return text, ""
+
+
+def _work() -> None:
+    """What such a process does: numbers of runs come in, rows go out."""
+    spec = _Spec(*pickle.load(sys.stdin.buffer))
+    for line in sys.stdin.buffer:
+        try:
+            ((_, row),) = _rows_of(spec, [int(line)])
+            print("row", row, flush=True)
+        except FileError as error:
+            print("error", " ".join(str(error).split("\n")), flush=True)
+
+
+def _bar(total: int, done: int) -> Any:
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        return _Line(total, done)
+    return tqdm(total=total, initial=done, unit="run")
+
+
+class _Line:
+    """A line on the terminal, where tqdm is not installed."""
+
+    def __init__(self, total: int, done: int) -> None:
+        self.total, self.done = total, done
+
+    def update(self) -> None:
+        self.done += 1
+        print(f"\r{self.done} of {self.total} runs", end="", file=sys.stderr, flush=True)
+
+    def close(self) -> None:
+        print(file=sys.stderr)

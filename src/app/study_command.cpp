@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "app/commands.hpp"
+#include "app/interruption.hpp"
+#include "app/words.hpp"
+#include "core/errors.hpp"
+#include "core/threads.hpp"
+#include "study/csv_fields.hpp"
+#include "study/run_study.hpp"
+
+namespace plica {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct StudyOptions {
+  std::string study, out, engine = "local";
+  int jobs = 0;
+  bool resume = false, overwrite = false, quiet = false;
+};
+
+// How many runs have ended, and how long the rest will take: a live line on a terminal, a line now and then in a file.
+class StudyProgress {
+ public:
+  StudyProgress(std::size_t done, std::size_t runs, bool quiet)
+      : done_(done), before_(done), runs_(runs), quiet_(quiet) {}
+
+  void show(const std::string& row, const Study& study) {
+    ++done_;
+    const auto status = csv_status(row, study);
+    if (status == "failed" || status == "crashed" || status == "refused") ++failed_;
+    const auto now = Clock::now();
+    if (quiet_ || (now - last_ < std::chrono::milliseconds(on_terminal_ ? 100 : 10'000) && done_ < runs_)) return;
+    last_ = now;
+    const double elapsed_s = std::chrono::duration<double>(now - start_).count();
+    const double left_s = elapsed_s * static_cast<double>(runs_ - done_) / static_cast<double>(done_ - before_);
+    constexpr std::size_t width = 24;
+    const std::size_t filled = width * done_ / runs_;
+    fmt::print(stderr, "{}[{}{}] {} of {} runs{}, {} left{}", on_terminal_ ? "\r" : "", std::string(filled, '#'),
+               std::string(width - filled, '.'), done_, runs_,
+               failed_ > 0 ? fmt::format(", {} without a result", failed_) : "", duration(left_s),
+               on_terminal_ ? "\033[K" : "\n");
+    std::fflush(stderr);
+  }
+  void finish() const {
+    if (!quiet_ && on_terminal_) fmt::print(stderr, "\r\033[K");
+  }
+
+ private:
+  static std::string csv_status(const std::string& row, const Study& study) {
+    const auto fields = csv_fields(row);
+    return fields.empty() ? "" : fields.front()[study.design().keys.size() + 2];
+  }
+
+  std::size_t done_, before_, runs_, failed_ = 0;
+  bool quiet_, on_terminal_ = isatty(STDERR_FILENO) != 0;
+  Clock::time_point start_ = Clock::now(), last_ = start_;
+};
+
+std::string by_status(const StudyStatus& status) {
+  std::vector<std::string> texts;
+  std::size_t ended = 0;
+  for (const auto& [word, count] : status.by_status) {
+    texts.push_back(fmt::format("{} {}", count, word));
+    ended += count;
+  }
+  if (ended < status.runs) texts.push_back(fmt::format("{} not run", status.runs - ended));
+  return fmt::format("{}: {}", plural(status.runs, "run"), fmt::join(texts, ", "));
+}
+
+void print_reasons(const StudyStatus& status) {
+  std::vector<std::pair<std::size_t, std::string>> reasons;
+  for (const auto& [reason, count] : status.by_reason) reasons.emplace_back(count, reason);
+  std::ranges::sort(reasons, std::greater());
+  for (std::size_t r = 0; r < reasons.size() && r < 10; ++r)
+    fmt::print("  {:>5} x {}\n", reasons[r].first, reasons[r].second);
+  if (reasons.size() > 10) fmt::print("  and {} other reasons\n", reasons.size() - 10);
+}
+
+int run(const StudyOptions& options) {
+  if (options.study.empty()) throw UsageError("which study? give STUDY.toml, or see plica study --help");
+  if (options.out.empty()) throw UsageError("--out DIR is missing: where is the table to go?");
+  const auto start = Clock::now();
+  const ThreadCount one(1);
+  const Study study(read_study(options.study));
+  using Start = StudyDirectory::Start;
+  StudyDirectory directory = StudyDirectory::begin(options.out, study,
+                                                   options.resume      ? Start::resumed
+                                                   : options.overwrite ? Start::over
+                                                                       : Start::fresh);
+  const int jobs =
+      options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  catch_interruptions();
+  StudyProgress progress(directory.rows().size(), study.runs(), options.quiet);
+  run_study(study, directory, jobs, {},
+            {[&](std::size_t, const std::string& row) { progress.show(row, study); }, interrupted});
+  progress.finish();
+  directory.gather(study);
+  if (!options.quiet) {
+    const StudyStatus status = status_of(directory, study);
+    fmt::print("{}: {} in {}\n", study.input().name, by_status(status),
+               duration(std::chrono::duration<double>(Clock::now() - start).count()));
+    print_reasons(status);
+    fmt::print("  table in {}/runs.csv\n", options.out);
+  }
+  if (!interrupted()) return exit_done;
+  fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");
+  return interrupted_status();
+}
+
+void print_status(const std::string& out) {
+  const auto [directory, study] = StudyDirectory::open(out);
+  const StudyStatus status = status_of(directory, study);
+  fmt::print("{}: {}; {} of processor time so far\n", study.input().name, by_status(status), duration(status.run_s));
+  print_reasons(status);
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("study", "run a scenario many times, with keys that vary");
+  auto options = std::make_shared<StudyOptions>();
+  command->add_option("STUDY", options->study, "a TOML file: scenario, keys that vary, design");
+  command->add_option("--out,--output,-o", options->out, "directory for the table, runs.csv");
+  command->add_option("--jobs,-j", options->jobs, "runs at a time; by default one a core")->check(CLI::Range(1, 4096));
+  auto* overwrite = command->add_flag("--overwrite", options->overwrite, "replace the study in DIR");
+  command->add_flag("--resume", options->resume, "go on with the study in DIR; begin where there is none")
+      ->excludes(overwrite);
+  command->add_flag("--quiet", options->quiet, "no progress and no result on the terminal");
+  command->footer(
+      "Examples: plica study stiffness.toml --out results/stiffness\n          plica study status results/stiffness");
+
+  CLI::App* status_command = command->add_subcommand("status", "how far a study is, and what failed");
+  auto out = std::make_shared<std::string>();
+  status_command->add_option("DIR", *out, "the directory of a study")->required();
+  status_command->callback([out] { print_status(*out); });
+
+  command->callback([options, command, &status] {
+    if (command->get_subcommands().empty()) status = run(*options);
+  });
+}
+
+}  // namespace plica

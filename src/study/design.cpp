@@ -1,0 +1,315 @@
+#include "study/design.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/random/sobol.hpp>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <sstream>
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/numbers.hpp"
+#include "scenario/print.hpp"
+#include "study/csv_fields.hpp"
+
+namespace plica {
+namespace {
+
+constexpr std::size_t most_runs = 10'000'000;
+
+// Numbers from 0 to below 1, the same with every C++ library.
+class Uniform {
+ public:
+  explicit Uniform(std::uint64_t seed) : engine_(seed) {}
+  double operator()() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>((*this)() * static_cast<double>(count)); }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+using Places = std::vector<std::vector<double>>;  // points, each with a coordinate from 0 to 1 for each dimension
+
+// Sobol's sequence, digitally shifted: each dimension's bits turned over where those of a random number are set. So it
+// stays evenly spread, and is another for each seed.
+Places sobol(std::size_t count, std::size_t dimensions, std::uint64_t seed) {
+  boost::random::sobol sequence(dimensions);
+  std::mt19937_64 random(seed);
+  std::vector<std::uint64_t> shift(dimensions);
+  for (std::uint64_t& bits : shift) bits = random();
+  Places places(count, std::vector<double>(dimensions));
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      const std::uint64_t bits = i == 0 ? 0 : sequence();  // Boost leaves the first out, which is 0
+      places[i][d] = static_cast<double>((bits ^ shift[d]) >> 11) * 0x1p-53;
+    }
+  return places;
+}
+
+// Each dimension is cut into as many slices as there are points, and each slice holds one.
+Places latin_hypercube(std::size_t count, std::size_t dimensions, std::uint64_t seed) {
+  Uniform uniform(seed);
+  Places places(count, std::vector<double>(dimensions));
+  std::vector<std::size_t> slices(count);
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    std::iota(slices.begin(), slices.end(), 0);
+    for (std::size_t i = count; i-- > 1;) std::swap(slices[i], slices[uniform.below(i + 1)]);
+    for (std::size_t i = 0; i < count; ++i)
+      places[i][d] = (static_cast<double>(slices[i]) + uniform()) / static_cast<double>(count);
+  }
+  return places;
+}
+
+// Saltelli's: for each of `count` pairs of places A and B, A, then A with one coordinate of B for each dimension, then
+// B.
+Places for_sobol_indices(std::size_t count, std::size_t dimensions, std::uint64_t seed) {
+  Places places;
+  for (const auto& pair : sobol(count, 2 * dimensions, seed)) {
+    const std::vector<double> a(pair.begin(), pair.begin() + static_cast<long>(dimensions));
+    const std::vector<double> b(pair.begin() + static_cast<long>(dimensions), pair.end());
+    places.push_back(a);
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      places.push_back(a);
+      places.back()[d] = b[d];
+    }
+    places.push_back(b);
+  }
+  return places;
+}
+
+std::string text_of(double value) {
+  const std::string text = fmt::format("{}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+// A key that takes whole numbers only has whole bounds and a whole step; its values are written without a point.
+std::string text_of(const StudyKey& key, double value) {
+  const auto is_whole = [](double number) { return number == std::floor(number); };
+  if (key.step && is_whole(*key.step) && is_whole(key.low)) return fmt::format("{:.0f}", value);
+  return text_of(value);
+}
+
+std::string value_at(const StudyKey& key, double place) {
+  if (!key.values.empty()) {
+    const auto count = static_cast<double>(key.values.size());
+    return key.values[static_cast<std::size_t>(std::min(place * count, count - 1))];
+  }
+  if (key.mean) {
+    const boost::math::normal_distribution<> normal(*key.mean, *key.sd);
+    const double from = std::isfinite(key.low) ? boost::math::cdf(normal, key.low) : 0;
+    const double to = std::isfinite(key.high) ? boost::math::cdf(normal, key.high) : 1;
+    const double part = std::clamp(from + place * (to - from), 1e-12, 1 - 1e-12);
+    return text_of(std::clamp(boost::math::quantile(normal, part), key.low, key.high));
+  }
+  if (key.step) {
+    const double steps = std::floor((key.high - key.low) / *key.step * (1 + 1e-12));
+    return text_of(key, key.low + *key.step * std::min(std::floor(place * (steps + 1)), steps));
+  }
+  const double value = key.is_log ? key.low * std::pow(key.high / key.low, place) : std::lerp(key.low, key.high, place);
+  return text_of(std::clamp(value, key.low, key.high));
+}
+
+// Those of a grid.
+std::vector<std::string> values_of(const StudyKey& key) {
+  if (!key.values.empty()) return key.values;
+  const double steps = key.step ? std::floor((key.high - key.low) / *key.step * (1 + 1e-12)) : *key.count - 1;
+  std::vector<std::string> values;
+  for (double i = 0; i <= steps; ++i)
+    values.push_back(key.step ? text_of(key, key.low + *key.step * i) : value_at(key, steps > 0 ? i / steps : 0));
+  return values;
+}
+
+using Values = std::vector<std::vector<std::string>>;  // points, each with a value for each key
+
+void refuse_too_many(const StudyInput& study, double runs) {
+  if (runs > static_cast<double>(most_runs))
+    throw ScenarioError({{study.file, 0, "design", fmt::format("has {:.0f} runs", runs),
+                          fmt::format("at most {} are taken; give fewer points, values or replicates", most_runs)}});
+}
+
+// The last key changes first.
+Values grid(const StudyInput& study) {
+  Values points = {{}};
+  for (const StudyKey& key : study.keys) {
+    const std::vector<std::string> values = values_of(key);
+    refuse_too_many(study, static_cast<double>(points.size()) * static_cast<double>(values.size()));
+    Values more;
+    for (const auto& point : points)
+      for (const std::string& value : values) {
+        more.push_back(point);
+        more.back().push_back(value);
+      }
+    points = std::move(more);
+  }
+  return points;
+}
+
+Values list(const StudyInput& study) {
+  Values points(study.keys.front().values.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (const StudyKey& key : study.keys) points[i].push_back(key.values[i]);
+  return points;
+}
+
+// The scenario's own value of a key; ScenarioError where it has none.
+std::string own_value(const StudyInput& study, const toml::table& resolved, const StudyKey& key) {
+  const toml::node_view<const toml::node> node = toml::at_path(resolved, key.key);
+  if (const auto text = node.value<std::string>()) return in_toml(*text);
+  if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
+  if (const auto* number = node.as_floating_point()) return text_of(number->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  throw ScenarioError({{study.file, key.line, "vary." + key.key, "has no single value in the scenario to vary about",
+                        "give it one by [set], or another kind of design"}});
+}
+
+// The scenario itself, then one key after another through its values, the others as in the scenario.
+Values one_at_a_time(const StudyInput& study) {
+  const toml::table resolved = toml::parse(resolved_toml(load_scenario(study.scenario, study.overrides)));
+  std::vector<std::string> own;
+  for (const StudyKey& key : study.keys) own.push_back(own_value(study, resolved, key));
+  Values points = {own};
+  for (std::size_t k = 0; k < study.keys.size(); ++k)
+    for (const std::string& value : values_of(study.keys[k])) {
+      points.push_back(own);
+      points.back()[k] = value;
+    }
+  return points;
+}
+
+Values drawn(const StudyInput& study) {
+  const std::size_t count = static_cast<std::size_t>(study.points), dimensions = study.keys.size();
+  refuse_too_many(study, static_cast<double>(count) *
+                             (study.kind == DesignKind::sobol_indices ? static_cast<double>(dimensions) + 2 : 1));
+  const Places places = study.kind == DesignKind::sobol             ? sobol(count, dimensions, study.seed)
+                        : study.kind == DesignKind::latin_hypercube ? latin_hypercube(count, dimensions, study.seed)
+                                                                    : for_sobol_indices(count, dimensions, study.seed);
+  Values points;
+  for (const auto& place : places) {
+    points.emplace_back();
+    for (std::size_t k = 0; k < dimensions; ++k) points.back().push_back(value_at(study.keys[k], place[k]));
+  }
+  return points;
+}
+
+// A value in a cell of a CSV file: TOML, or a bare word.
+std::string in_toml_or_word(const std::string& field) {
+  try {
+    if (toml::parse("v = " + field).size() == 1) return field;
+  } catch (const toml::parse_error&) {
+  }
+  return in_toml(field);
+}
+
+StudyDesign of_file(const StudyInput& study) {
+  const std::string& file = study.points_file;
+  const std::vector<std::vector<std::string>> rows = csv_fields(read_file(file));
+  if (rows.size() < 2 || rows.front().empty())
+    throw ScenarioError({{file, 0, "", "holds no points", "give a row of keys, and a row of values for each point"}});
+  StudyDesign design{rows.front(), {}};
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    if (rows[r].size() != design.keys.size())
+      throw ScenarioError({{file, static_cast<int>(r) + 1, "", fmt::format("has {} values", rows[r].size()),
+                            fmt::format("give {}, one for each key of the first line", design.keys.size())}});
+    StudyPoint point;
+    for (const std::string& field : rows[r]) point.values.push_back(in_toml_or_word(field));
+    design.runs.push_back(std::move(point));
+  }
+  return design;
+}
+
+// The keys of all seeds in the scenario, and their values.
+std::vector<std::pair<std::string, std::int64_t>> seeds_of(const StudyInput& study, const StudyDesign& design) {
+  std::vector<std::pair<std::string, std::int64_t>> seeds;
+  bool varies = std::ranges::any_of(design.keys, [](const auto& key) { return key.ends_with("variation.spread"); });
+  const toml::table resolved = toml::parse(resolved_toml(load_scenario(study.scenario, study.overrides)));
+  for (const char* group : {"contraction", "cortex"})
+    if (const toml::table* laws = resolved[group].as_table())
+      for (const auto& [name, law] : *laws) {
+        const auto variation = toml::node_view(law)["variation"];
+        const auto seed = variation["seed"].value<std::int64_t>();
+        if (!seed) continue;
+        varies = varies || variation["spread"].value_or(0.0) > 0;
+        seeds.emplace_back(fmt::format("{}.{}.variation.seed", group, name.str()), *seed);
+      }
+  if (!varies)
+    throw ScenarioError({{study.file, 0, "design.replicates", "would all be the same: nothing is random here",
+                          "give a contraction or cortex of the scenario a variation.spread, or remove replicates"}});
+  return seeds;
+}
+
+}  // namespace
+
+StudyDesign design_of(const StudyInput& study) {
+  StudyDesign design;
+  if (study.kind == DesignKind::file) {
+    design = of_file(study);
+  } else {
+    for (const StudyKey& key : study.keys) design.keys.push_back(key.key);
+    for (auto& values : study.kind == DesignKind::grid            ? grid(study)
+                        : study.kind == DesignKind::list          ? list(study)
+                        : study.kind == DesignKind::one_at_a_time ? one_at_a_time(study)
+                                                                  : drawn(study))
+      design.runs.push_back({0, 1, std::move(values), {}});
+  }
+  refuse_too_many(study, static_cast<double>(design.runs.size()) * study.replicates);
+  const auto seeds = study.replicates > 1 ? seeds_of(study, design) : decltype(seeds_of(study, design)){};
+  std::vector<StudyPoint> runs;
+  for (std::size_t p = 0; p < design.runs.size(); ++p)
+    for (int r = 1; r <= study.replicates; ++r) {
+      runs.push_back({static_cast<int>(p) + 1, r, design.runs[p].values, {}});
+      for (const auto& [key, seed] : seeds) runs.back().seeds.push_back(fmt::format("{}={}", key, seed + r - 1));
+    }
+  design.runs = std::move(runs);
+  return design;
+}
+
+std::vector<std::string> overrides_of(const StudyInput& study, const StudyDesign& design, const StudyPoint& run) {
+  std::vector<std::string> overrides = study.overrides;
+  overrides.insert(overrides.end(), run.seeds.begin(), run.seeds.end());
+  for (std::size_t k = 0; k < design.keys.size(); ++k) overrides.push_back(design.keys[k] + "=" + run.values[k]);
+  return overrides;
+}
+
+std::string points_csv(const StudyDesign& design) {
+  const auto& [keys, runs] = design;
+  std::string text = "run,point,replicate";
+  for (const std::string& key : keys) text += ',' + csv_field(key);
+  text += ",seeds\n";
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    text += fmt::format("{},{},{}", r, runs[r].point, runs[r].replicate);
+    for (const std::string& value : runs[r].values) text += ',' + csv_field(value);
+    text += ',' + csv_field(fmt::format("{}", fmt::join(runs[r].seeds, " "))) + '\n';
+  }
+  return text;
+}
+
+StudyDesign points_of_csv(const std::string& text) {
+  const auto rows = csv_fields(text);
+  const auto refuse = [] { throw FileError("points.csv is no list of points; start the study anew"); };
+  if (rows.empty() || rows.front().size() < 4) refuse();
+  StudyDesign design;
+  design.keys.assign(rows.front().begin() + 3, rows.front().end() - 1);
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    const auto& row = rows[r];
+    if (row.size() != rows.front().size()) refuse();
+    StudyPoint point;
+    point.point = static_cast<int>(number_in(row[1]).value_or(0));
+    point.replicate = static_cast<int>(number_in(row[2]).value_or(0));
+    point.values.assign(row.begin() + 3, row.end() - 1);
+    for (std::size_t begin = 0; begin < row.back().size();) {
+      const std::size_t end = std::min(row.back().find(' ', begin), row.back().size());
+      point.seeds.push_back(row.back().substr(begin, end - begin));
+      begin = end + 1;
+    }
+    design.runs.push_back(std::move(point));
+  }
+  return design;
+}
+
+}  // namespace plica

@@ -1,0 +1,34 @@
+// The points of a study: which values its keys take, run by run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/study_input.hpp"
+
+namespace plica {
+
+/// One run of a study.
+struct StudyPoint {
+  int point = 0;                    // from 1 on: the place in the design
+  int replicate = 1;                // from 1 on: the same place with other seeds
+  std::vector<std::string> values;  // of the keys, in TOML
+  std::vector<std::string> seeds;   // of replicates, as of --set
+};
+
+struct StudyDesign {
+  std::vector<std::string> keys;
+  std::vector<StudyPoint> runs;  // point by point, and its replicates
+};
+
+/// The same for the same study, on any machine. FileError or ScenarioError for a file of points that is none.
+StudyDesign design_of(const StudyInput& study);
+
+/// What a run says otherwise than the study's scenario: [set], its values, and its seeds. As of --set.
+std::vector<std::string> overrides_of(const StudyInput& study, const StudyDesign& design, const StudyPoint& run);
+
+/// As points.csv, and back. FileError where a text is no such thing.
+std::string points_csv(const StudyDesign& design);
+StudyDesign points_of_csv(const std::string& text);
+
+}  // namespace plica

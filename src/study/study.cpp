@@ -1,0 +1,175 @@
+#include "study/study.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+#include <nlohmann/json.hpp>
+
+#include "core/directory_lock.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "scenario/suggest.hpp"
+#include "show/recorded_run.hpp"
+#include "study/csv_fields.hpp"
+#include "study/quiet_run.hpp"
+
+namespace plica {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A text without its quotes, anything else as it is.
+std::string shown(const std::string& in_toml) {
+  if (!in_toml.starts_with('"')) return in_toml;
+  const toml::table document = toml::parse("v = " + in_toml);
+  return document["v"].value_or(in_toml);
+}
+
+std::string one_line(std::string text) {
+  while (text.ends_with('\n')) text.pop_back();
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at)) text.replace(at, 1, " | ");
+  return printable(text);
+}
+
+// In the lines of the study's file: what is wrong with a key that varies, or that [set] has.
+ScenarioError in_study(const ScenarioError& error, const StudyInput& study) {
+  std::vector<Diagnostic> diagnostics = error.diagnostics();
+  for (Diagnostic& diagnostic : diagnostics) {
+    if (diagnostic.file != "--set") continue;
+    diagnostic.file = study.file;
+    const auto key = std::ranges::find(study.keys, diagnostic.key, &StudyKey::key);
+    diagnostic.line = key != study.keys.end() ? key->line : 0;
+    diagnostic.key = (key != study.keys.end() ? "vary." : "set.") + diagnostic.key;
+    if (diagnostic.problem.ends_with("is not an integer"))
+      diagnostic.remedy = "it takes whole numbers: give values, or low and high with step = 1";
+  }
+  return ScenarioError(std::move(diagnostics));
+}
+
+RunRow row_of(const Json& summary, const std::vector<std::string>& measures) {
+  RunRow row;
+  row.status = summary.at("status").get<std::string>();
+  row.steps = summary.at("steps").get<int>();
+  if (summary.contains("failure") && summary.at("failure").is_string())
+    row.reason = summary.at("failure").get<std::string>();
+  for (const std::string& name : measures) {
+    const auto found = summary.find(name);
+    const bool has_value = found != summary.end() && found->is_number();
+    row.measures.push_back(has_value ? std::optional(found->get<double>()) : std::nullopt);
+  }
+  return row;
+}
+
+// Whether another process is running it.
+bool is_taken(const fs::path& directory) {
+  try {
+    const DirectoryLock lock(directory);
+    return false;
+  } catch (const FileError&) {
+    return true;
+  }
+}
+
+Json recorded(const Scenario& scenario, const ScenarioSource& source, const fs::path& directory,
+              const std::function<bool()>& stop) {
+  Simulation simulation(scenario);
+  RecordedRun record(directory, scenario, source, simulation, RecordedRun::Start::resumed);
+  if (record.is_finished()) return Json::parse(read_file(directory / "summary.json"));
+  record.begin();
+  simulation.stop_when([&] { return stop() || record.has_failed(); });
+  while (!stop() && simulation.step()) {
+  }
+  return record.finish();
+}
+
+}  // namespace
+
+Study::Study(StudyInput input) : input_(std::move(input)) {
+  try {
+    design_ = design_of(input_);
+    check();
+  } catch (const ScenarioError& error) {
+    throw in_study(error, input_);
+  }
+}
+
+Study::Study(StudyInput input, StudyDesign design) : input_(std::move(input)), design_(std::move(design)) { check(); }
+
+// Measures are those of the first point that is a scenario.
+void Study::check() {
+  std::optional<ScenarioError> first_error;
+  std::vector<std::string> known;
+  for (std::size_t r = 0; r < runs() && known.empty(); ++r) try {
+      known = result_names(run_at_rest(scenario_of(r)).summary);
+    } catch (const ScenarioError& error) {
+      if (!first_error) first_error = error;
+    }
+  if (known.empty()) throw first_error.value();
+  std::vector<Diagnostic> diagnostics;
+  for (const std::string& name : input_.measures)
+    if (std::ranges::count(known, name) == 0)
+      diagnostics.push_back({input_.file, 0, "keep.measures", fmt::format("\"{}\" is no number of summary.json", name),
+                             did_you_mean(name, known)});
+  if (!diagnostics.empty()) throw ScenarioError(std::move(diagnostics));
+  measures_ = input_.measures.empty() ? known : input_.measures;
+  std::erase(measures_, "steps");  // has a column of its own
+}
+
+Scenario Study::scenario_of(std::size_t run) const {
+  return load_scenario(input_.scenario, overrides_of(input_, design_, design_.runs[run]));
+}
+
+std::string Study::name_of(std::size_t run) const {
+  const auto& [point, replicate, values, seeds] = design_.runs[run];
+  return input_.replicates == 1 ? fmt::format("{:06}", point) : fmt::format("{:06}_{}", point, replicate);
+}
+
+std::optional<RunRow> Study::run(std::size_t run, const fs::path& directory, const std::function<bool()>& stop) const {
+  const auto start = std::chrono::steady_clock::now();
+  const auto is_stopped = [&] { return stop && stop(); };
+  RunRow row;
+  try {
+    const Scenario scenario = scenario_of(run);
+    const fs::path place = directory / "points" / name_of(run);
+    if (input_.each == KeptOfRun::full && is_taken(place)) return {};
+    const Json summary = input_.each == KeptOfRun::full ? recorded(scenario, input_.scenario, place, is_stopped)
+                                                        : quiet_run(scenario, {.stop_requested = is_stopped}).summary;
+    row = row_of(summary, measures_);
+    if (row.status == "interrupted") return {};
+    if (input_.each == KeptOfRun::summary) {
+      std::error_code error;
+      fs::create_directories(place, error);
+      write_file(place / "summary.json", summary.dump(2) + '\n');
+    }
+  } catch (const ScenarioError& error) {
+    row = {"refused", {}, 0, 0, error.what()};
+  } catch (const std::bad_alloc&) {
+    row = {"failed", {}, 0, 0, "out of memory"};
+  }
+  row.measures.resize(measures_.size());
+  row.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return row;
+}
+
+std::string Study::header() const {
+  std::string line = "point";
+  for (const std::string& key : design_.keys) line += ',' + csv_field(key);
+  line += ",replicate,status";
+  for (const std::string& name : measures_) line += ',' + csv_field(name);
+  return line + ",steps,wall_s,reason";
+}
+
+std::string Study::line_of(std::size_t run, const RunRow& row) const {
+  const auto& [point, replicate, values, seeds] = design_.runs[run];
+  std::string line = fmt::format("{}", point);
+  for (const std::string& value : values) line += ',' + csv_field(one_line(shown(value)));
+  line += fmt::format(",{},{}", replicate, row.status);
+  for (const auto& value : row.measures) line += value ? fmt::format(",{}", *value) : ",";
+  return line + fmt::format(",{},{:.3f},{}", row.steps, row.wall_s, csv_field(one_line(row.reason)));
+}
+
+}  // namespace plica

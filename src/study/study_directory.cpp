@@ -1,0 +1,177 @@
+#include "study/study_directory.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "core/errors.hpp"
+#include "core/numbers.hpp"
+#include "core/version.hpp"
+#include "record/summary.hpp"
+#include "scenario/print.hpp"
+#include "study/csv_fields.hpp"
+
+namespace plica {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string resolved_scenario(const StudyInput& input) {
+  try {
+    return resolved_toml(load_scenario(input.scenario, input.overrides));
+  } catch (const ScenarioError&) {  // points mend it
+    return input.scenario.text;
+  }
+}
+
+std::string this_plica() { return fmt::format("{} ({}, {})", version(), commit(), compiler()); }
+
+Json read_json(const fs::path& file) {
+  try {
+    return Json::parse(read_file(file));
+  } catch (const Json::exception&) {
+    throw FileError(file.string() + ": is damaged; start the study anew with --overwrite");
+  }
+}
+
+void require_same_plica(const fs::path& directory, const Json& begun) {
+  const std::string with = begun.value("plica", "");
+  if (with != this_plica())
+    throw UsageError(
+        fmt::format("{}: was begun by plica {}, and this is {}; rows of two versions are not mixed: go on "
+                    "with that one, or start anew with --overwrite",
+                    directory.string(), with, this_plica()));
+}
+
+// Whole rows of a file: "run,row".
+void read_rows(const fs::path& file, StudyRows& rows, std::size_t runs) {
+  const std::string text = read_file(file);
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find('\n', begin);
+    if (end == std::string::npos) return;  // was being written when its process was killed
+    std::size_t run = 0;
+    const auto [comma, error] = std::from_chars(text.data() + begin, text.data() + end, run);
+    if (error == std::errc() && *comma == ',' && run < runs)
+      rows.try_emplace(run, text.substr(static_cast<std::size_t>(comma + 1 - text.data()),
+                                        static_cast<std::size_t>(text.data() + end - comma - 1)));
+    begin = end + 1;
+  }
+}
+
+}  // namespace
+
+StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& study, Start start) {
+  StudyDirectory result(directory);
+  std::error_code error;
+  const StudyInput& input = study.input();
+  const bool holds_one = fs::exists(directory / "study.json", error);
+  if (holds_one && start == Start::resumed) {
+    const Json begun = read_json(directory / "study.json");
+    require_same_plica(directory, begun);
+    if (read_file(directory / "study.toml") != input.text)
+      throw UsageError(
+          fmt::format("{}: the study has changed since it was begun: {} is not {}; change it back, or "
+                      "give another --out",
+                      directory.string(), input.file, (directory / "study.toml").string()));
+    if (read_file(directory / "scenario.toml") != resolved_scenario(input))
+      throw UsageError(fmt::format("{}: the scenario {} has changed since the study was begun; it was {}",
+                                   directory.string(), input.scenario.file, (directory / "scenario.toml").string()));
+    if (read_file(directory / "points.csv") != points_csv(study.design()))
+      throw UsageError(fmt::format("{}: the points of the study have changed since it was begun", directory.string()));
+    return result;
+  }
+  if (holds_one && start == Start::fresh)
+    throw UsageError(directory.string() +
+                     ": holds a study; go on with it by --resume, replace it by --overwrite, or give another --out");
+  if (!holds_one && fs::exists(directory, error) && !fs::is_empty(directory, error) && start != Start::resumed)
+    throw UsageError(directory.string() + ": is there already and holds no study; give another --out");
+  fs::create_directories(directory, error);
+  if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
+  fs::remove(directory / "study.json", error);
+  for (const char* name : {"rows", "points", "chunks"}) fs::remove_all(directory / name, error);
+  fs::remove(directory / "runs.csv", error);
+  fs::create_directories(directory / "rows", error);
+  write_file(directory / "study.toml", input.text);
+  write_file(directory / "scenario.toml", resolved_scenario(input));
+  write_file(directory / "points.csv", points_csv(study.design()));
+  const Json begun = {{"format", 1},
+                      {"plica", this_plica()},
+                      {"processor", processor_name()},
+                      {"name", input.name},
+                      {"file", fs::absolute(input.file).lexically_normal().string()},
+                      {"runs", study.runs()},
+                      {"keys", study.design().keys},
+                      {"measures", study.measures()}};
+  write_file(directory / "study.json", begun.dump(2) + '\n');
+  return result;
+}
+
+std::pair<StudyDirectory, Study> StudyDirectory::open(const fs::path& directory) {
+  std::error_code error;
+  if (!fs::exists(directory / "study.json", error))
+    throw FileError(directory.string() + ": holds no study; make one with plica study STUDY.toml --out DIR");
+  const Json begun = read_json(directory / "study.json");
+  require_same_plica(directory, begun);
+  StudyInput input =
+      parse_study(begun.value("name", "study"), begun.value("file", "study.toml"), read_file(directory / "study.toml"));
+  if (read_file(directory / "scenario.toml") != resolved_scenario(input))
+    throw UsageError(fmt::format("{}: the scenario {} has changed since the study was begun; it was {}",
+                                 directory.string(), input.scenario.file, (directory / "scenario.toml").string()));
+  return {StudyDirectory(directory), Study(std::move(input), points_of_csv(read_file(directory / "points.csv")))};
+}
+
+StudyRows StudyDirectory::rows() const {
+  const std::size_t runs = read_json(directory_ / "study.json").value("runs", std::size_t{0});
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory_ / "rows", error)) files.push_back(entry.path());
+  std::ranges::sort(files);
+  StudyRows rows;
+  for (const fs::path& file : files) read_rows(file, rows, runs);
+  return rows;
+}
+
+void StudyDirectory::add(std::size_t run, const std::string& row) {
+  if (!own_rows_) {
+    std::string host(256, '\0');
+    ::gethostname(host.data(), host.size() - 1);
+    host.resize(host.find('\0'));
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    own_rows_ = std::make_unique<RowFile>(
+        directory_ / "rows" / fmt::format("{}-{}-{}.csv", host, ::getpid(), now / std::chrono::nanoseconds(1)));
+  }
+  own_rows_->append(fmt::format("{},{}", run, row));
+}
+
+void StudyDirectory::gather(const Study& study) const {
+  const StudyRows rows = this->rows();
+  std::string text = study.header() + '\n';
+  for (std::size_t r = 0; r < study.runs(); ++r) {
+    const auto row = rows.find(r);
+    text += row != rows.end() ? row->second : study.line_of(r, study.not_run());
+    text += '\n';
+  }
+  write_file(directory_ / "runs.csv", text);
+}
+
+StudyStatus status_of(const StudyDirectory& directory, const Study& study) {
+  StudyStatus status;
+  status.runs = study.runs();
+  const std::size_t status_at = study.design().keys.size() + 2;
+  for (const auto& [run, text] : directory.rows()) {
+    const auto rows = csv_fields(text);
+    if (rows.size() != 1 || rows.front().size() < status_at + 4) continue;
+    const auto& row = rows.front();
+    ++status.by_status[row[status_at]];
+    if (!row.back().empty()) ++status.by_reason[row.back()];
+    status.run_s += number_in(row[row.size() - 2]).value_or(0);
+  }
+  return status;
+}
+
+}  // namespace plica

@@ -1,0 +1,343 @@
+#include "study/study_input.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "scenario/nesting.hpp"
+#include "scenario/print.hpp"
+#include "scenario/suggest.hpp"
+
+namespace plica {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+template <class Word, std::size_t count>
+using Words = std::array<std::pair<const char*, Word>, count>;
+
+constexpr Words<DesignKind, 7> kinds = {{{"grid", DesignKind::grid},
+                                         {"list", DesignKind::list},
+                                         {"one-at-a-time", DesignKind::one_at_a_time},
+                                         {"sobol", DesignKind::sobol},
+                                         {"latin-hypercube", DesignKind::latin_hypercube},
+                                         {"sobol-indices", DesignKind::sobol_indices},
+                                         {"file", DesignKind::file}}};
+constexpr Words<KeptOfRun, 3> kept = {
+    {{"row", KeptOfRun::row}, {"summary", KeptOfRun::summary}, {"full", KeptOfRun::full}}};
+
+// A value in TOML, on one line.
+std::string text_of(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) {
+    const std::string text = fmt::format("{}", number->get());
+    return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+  }
+  if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  if (const auto* text = node.as_string()) return in_toml(text->get());
+  std::vector<std::string> parts;
+  if (const auto* array = node.as_array()) {
+    for (const toml::node& part : *array) parts.push_back(text_of(part));
+    return fmt::format("[{}]", fmt::join(parts, ", "));
+  }
+  if (const auto* table = node.as_table()) {
+    for (const auto& [key, part] : *table)
+      parts.push_back(fmt::format("{} = {}", in_toml(std::string(key.str())), text_of(part)));
+    return fmt::format("{{{}}}", fmt::join(parts, ", "));
+  }
+  return "";  // dates: no key of a scenario has one
+}
+
+class Reader {
+ public:
+  Reader(StudyInput& study, const toml::table& document) : study_(study), document_(document) {}
+
+  void read() {
+    refuse_unknown(document_, "", {"format", "scenario", "set", "vary", "design", "keep"});
+    if (const toml::node* format = document_.get("format"); format && format->value<int>() != 1)
+      report(*format, "format", "is not one that this plica reads", "write format = 1");
+    read_scenario();
+    if (const toml::table* set = table("set")) read_overrides(*set, "");
+    if (const toml::table* vary = table("vary")) read_keys(*vary, "");
+    read_design();
+    read_kept();
+    if (diagnostics_.empty()) check_design();
+    if (!diagnostics_.empty()) throw ScenarioError(std::move(diagnostics_));
+  }
+
+ private:
+  void report_at(int line, std::string key, std::string problem, std::string remedy) {
+    diagnostics_.push_back({study_.file, line, std::move(key), std::move(problem), std::move(remedy)});
+  }
+  void report(const toml::node& node, std::string key, std::string problem, std::string remedy) {
+    report_at(static_cast<int>(node.source().begin.line), std::move(key), std::move(problem), std::move(remedy));
+  }
+
+  void refuse_unknown(const toml::table& table, const std::string& before, const std::vector<std::string>& known) {
+    for (const auto& [key, node] : table)
+      if (std::ranges::count(known, key.str()) == 0)
+        report_at(static_cast<int>(key.source().begin.line), before + std::string(key.str()), "unknown key",
+                  did_you_mean(key.str(), known));
+  }
+
+  // A table of the document; nothing where it is not there.
+  const toml::table* table(const char* name) {
+    const toml::node* node = document_.get(name);
+    if (node == nullptr) return nullptr;
+    if (!node->is_table()) report(*node, name, "is not a table", fmt::format("write [{}]", name));
+    return node->as_table();
+  }
+
+  template <class Value>
+  std::optional<Value> get(const toml::table& table, const char* key, const std::string& path, const char* what) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return {};
+    const std::optional<Value> value = node->value_exact<Value>();
+    if constexpr (std::is_same_v<Value, double>) {
+      const std::optional<double> number = node->is_number() ? node->value<double>() : std::nullopt;
+      if (number && std::isfinite(*number)) return number;
+    } else if (value) {
+      return value;
+    }
+    report(*node, path + key, "is not " + std::string(what), fmt::format("give {}", what));
+    return {};
+  }
+
+  // A whole number from 1 on, that is.
+  std::optional<int> count(const toml::table& table, const char* key, const std::string& path) {
+    const auto number = get<std::int64_t>(table, key, path, "a whole number");
+    if (number && *number >= 1 && *number <= 10'000'000) return static_cast<int>(*number);
+    if (number) report(*table.get(key), path + key, fmt::format("is {}", *number), "give 1 to 10 000 000");
+    return {};
+  }
+
+  template <class Choices>
+  auto word(const toml::table& table, const char* key, const std::string& path, const Choices& choices,
+            decltype(choices[0].second) usual) {
+    const auto text = get<std::string>(table, key, path, "a text");
+    if (!text) return usual;
+    std::vector<std::string> known;
+    for (const auto& [name, value] : choices) {
+      if (name == *text) return value;
+      known.emplace_back(name);
+    }
+    report(*table.get(key), path + key, fmt::format("\"{}\" is no known word", *text), did_you_mean(*text, known));
+    return usual;
+  }
+
+  void read_scenario() {
+    const auto name = get<std::string>(document_, "scenario", "", "a text");
+    if (!document_.contains("scenario")) report_at(0, "scenario", "is missing", "name a built-in one, or a file");
+    if (!name) return;
+    const toml::node& node = *document_.get("scenario");
+    try {
+      const fs::path folder = fs::path(study_.file).parent_path();
+      std::error_code unknown;
+      const bool is_file = fs::is_regular_file(folder / *name, unknown);
+      study_.scenario = find_scenario(is_file ? (folder / *name).string() : *name);
+    } catch (const std::runtime_error& error) {
+      report(node, "scenario", error.what(), "name a built-in scenario, or a file, relative to this one");
+    }
+  }
+
+  void read_overrides(const toml::table& table, const std::string& before) {
+    for (const auto& [key, node] : table) {
+      const std::string path = before + std::string(key.str());
+      const bool is_nested = node.is_table() && !node.as_table()->is_inline();
+      if (is_nested)
+        read_overrides(*node.as_table(), path + ".");
+      else
+        study_.overrides.push_back(path + "=" + text_of(node));
+    }
+  }
+
+  // Keys in their order in the file.
+  void read_keys(const toml::table& table, const std::string& before) {
+    std::vector<std::pair<std::string, const toml::node*>> rows;
+    for (const auto& [key, node] : table) rows.emplace_back(key.str(), &node);
+    std::ranges::stable_sort(rows, {}, [](const auto& row) {
+      const auto& begin = row.second->source().begin;
+      return std::pair(begin.line, begin.column);
+    });
+    for (const auto& [name, node] : rows) {
+      const std::string path = before + name;
+      if (node->is_table() && !node->as_table()->is_inline())
+        read_keys(*node->as_table(), path + ".");
+      else
+        read_key(path, *node);
+    }
+  }
+
+  void read_key(const std::string& path, const toml::node& node) {
+    const std::string place = "vary." + path;
+    StudyKey key;
+    key.key = path, key.line = static_cast<int>(node.source().begin.line);
+    const toml::table* given = node.as_table();
+    if (given == nullptr)
+      return report(node, place, "does not say how it varies", "give { low = 1, high = 2 } or { values = [1, 2] }");
+    refuse_unknown(*given, place + ".", {"values", "low", "high", "scale", "step", "count", "mean", "sd"});
+    if (const toml::node* values = given->get("values")) {
+      const toml::array* list = values->as_array();
+      if (list == nullptr || list->empty()) return report(*values, place + ".values", "is no list", "give [1, 2, 3]");
+      if (given->size() > 1)
+        return report(node, place, "has values and more", "give either values, or low and high, or mean and sd");
+      for (const toml::node& value : *list) key.values.push_back(text_of(value));
+      study_.keys.push_back(std::move(key));
+      return;
+    }
+    const std::size_t wrong = diagnostics_.size();
+    const auto number = [&](const char* name) { return get<double>(*given, name, place + ".", "a number"); };
+    key.mean = number("mean"), key.sd = number("sd"), key.step = number("step");
+    key.count = count(*given, "count", place + ".");
+    const auto scale = get<std::string>(*given, "scale", place + ".", "\"linear\" or \"log\"");
+    key.is_log = scale == "log";
+    const bool is_normal = given->contains("mean") || given->contains("sd");
+    key.low = number("low").value_or(is_normal ? -infinite : 0);
+    key.high = number("high").value_or(is_normal ? infinite : 0);
+    if (diagnostics_.size() > wrong) return;
+
+    if (scale && *scale != "log" && *scale != "linear")
+      return report(node, place + ".scale", fmt::format("\"{}\" is no known word", *scale), "give linear or log");
+    if (is_normal && !(key.mean && key.sd && *key.sd > 0))
+      return report(node, place, "is no distribution", "give mean and sd, the latter over 0");
+    if (is_normal && (key.is_log || key.step || key.count))
+      return report(node, place, "has a normal distribution and more", "give mean and sd, and low and high if need be");
+    if (!is_normal && !(given->contains("low") && given->contains("high")))
+      return report(node, place, "has no bounds", "give low and high, or values, or mean and sd");
+    if (!(key.low < key.high))
+      return report(node, place, "is an empty range", "give a low that is below high; one value only goes into [set]");
+    if (key.is_log && key.low <= 0) return report(node, place, "is logarithmic from 0", "give a low over 0");
+    if (key.step && !(*key.step > 0 && *key.step <= key.high - key.low))
+      return report(node, place + ".step", "does not fit between low and high", "give a step over 0, up to their gap");
+    if (key.step && (key.is_log || key.count))
+      return report(node, place, "has a step and more", "give step, or count, or scale = \"log\"");
+    study_.keys.push_back(std::move(key));
+  }
+
+  void read_design() {
+    const toml::table* design = table("design");
+    if (design == nullptr) {
+      if (!document_.contains("design")) report_at(0, "design", "is missing", "write [design] and kind = \"grid\"");
+      return;
+    }
+    refuse_unknown(*design, "design.", {"kind", "points", "seed", "replicates", "file"});
+    if (!design->contains("kind"))
+      report(*design, "design.kind", "is missing", "give grid, list, one-at-a-time, sobol, latin-hypercube or file");
+    study_.kind = word(*design, "kind", "design.", kinds, DesignKind::grid);
+    study_.points = count(*design, "points", "design.").value_or(0);
+    study_.replicates = count(*design, "replicates", "design.").value_or(1);
+    const auto seed = get<std::int64_t>(*design, "seed", "design.", "a whole number");
+    if (seed && *seed < 0) report(*design->get("seed"), "design.seed", "is below 0", "give 0 or more");
+    study_.seed = static_cast<std::uint64_t>(seed.value_or(1));
+    if (const auto file = get<std::string>(*design, "file", "design.", "a text"))
+      study_.points_file = (fs::path(study_.file).parent_path() / *file).string();
+  }
+
+  void read_kept() {
+    const toml::table* keep = table("keep");
+    if (keep == nullptr) return;
+    refuse_unknown(*keep, "keep.", {"measures", "each"});
+    study_.each = word(*keep, "each", "keep.", kept, KeptOfRun::row);
+    const toml::node* measures = keep->get("measures");
+    if (measures == nullptr) return;
+    const toml::array* list = measures->as_array();
+    if (list == nullptr || list->empty())
+      return report(*measures, "keep.measures", "is no list of names", "give [\"furrow_depth_um\"], or leave it out");
+    for (const toml::node& name : *list) {
+      if (!name.is_string()) return report(name, "keep.measures", "has what is no name", "give names in quotes");
+      study_.measures.push_back(name.as_string()->get());
+    }
+  }
+
+  // What the kind of design asks of keys, and what it has no use for.
+  void check_design() {
+    const toml::table& design = *document_.get("design")->as_table();
+    const bool draws = study_.kind == DesignKind::sobol || study_.kind == DesignKind::latin_hypercube ||
+                       study_.kind == DesignKind::sobol_indices;
+    const bool is_of_file = study_.kind == DesignKind::file;
+    if (draws && study_.points == 0) report(design, "design.points", "is missing", "say how many points to draw");
+    if (!draws && study_.points > 0)
+      report(*design.get("points"), "design.points", "has no meaning here",
+             "remove it: the keys say how many points there are");
+    if (!draws && design.contains("seed"))
+      report(*design.get("seed"), "design.seed", "has no meaning here", "remove it: nothing is drawn");
+    if (is_of_file && study_.points_file.empty())
+      report(design, "design.file", "is missing", "name a CSV file with a column for each key");
+    if (!is_of_file && !study_.points_file.empty())
+      report(*design.get("file"), "design.file", "has no meaning here", "remove it, or write kind = \"file\"");
+    if (is_of_file && !study_.keys.empty())
+      report_at(study_.keys.front().line, "vary", "has no meaning here", "remove it: the file has the values");
+    if (!is_of_file && study_.keys.empty())
+      report_at(0, "vary", "is empty", "name the keys that vary: [vary] \"a.key\" = { values = [1, 2] }");
+    for (const StudyKey& key : study_.keys) check_key(key, draws);
+  }
+
+  void check_key(const StudyKey& key, bool draws) {
+    const std::string place = "vary." + key.key;
+    for (const std::string& override : study_.overrides)
+      if (override.starts_with(key.key + "="))
+        report_at(key.line, place, "is fixed by [set] as well", "remove one of the two");
+    if (draws) {
+      if (key.count) report_at(key.line, place + ".count", "has no meaning here", "remove it: values are drawn");
+      return;
+    }
+    if (study_.kind == DesignKind::list) {
+      const std::size_t others = study_.keys.front().values.size();
+      if (key.values.empty())
+        report_at(key.line, place, "has no values", "a list needs { values = [...] } of every key");
+      else if (key.values.size() != others)
+        report_at(key.line, place,
+                  fmt::format("has {} values, and {} has {}", key.values.size(), study_.keys.front().key, others),
+                  "a list takes the first of each, then the second of each, and so on: give as many of every key");
+      return;
+    }
+    if (key.values.empty() && !key.step && !key.count)
+      report_at(key.line, place, "does not say which values to take", "give values, or low, high and count, or step");
+  }
+
+  StudyInput& study_;
+  const toml::table& document_;
+  std::vector<Diagnostic> diagnostics_;
+};
+
+}  // namespace
+
+bool is_study(const std::string& text) {
+  try {
+    const toml::table document = toml::parse(text);
+    return document.contains("design") || document.contains("vary");
+  } catch (const toml::parse_error&) {
+    return false;
+  }
+}
+
+StudyInput parse_study(const std::string& name, const std::string& file, const std::string& text) {
+  StudyInput study;
+  study.name = name, study.file = file, study.text = text;
+  if (const int line = line_of_too_deep_key(text); line > 0)
+    throw ScenarioError({{file, line, "", "a key has too many parts", "a scenario's keys have at most four"}});
+  try {
+    const toml::table document = toml::parse(text);
+    Reader(study, document).read();
+  } catch (const toml::parse_error& error) {
+    const int line = static_cast<int>(error.source().begin.line);
+    throw ScenarioError({{file, line, "", std::string(error.description()), "write it in TOML syntax"}});
+  }
+  return study;
+}
+
+StudyInput read_study(const std::string& file) {
+  return parse_study(fs::path(file).stem().string(), file, read_file(file));
+}
+
+}  // namespace plica

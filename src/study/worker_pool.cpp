@@ -1,0 +1,204 @@
+#include "study/worker_pool.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+#include "core/errors.hpp"
+
+namespace plica {
+namespace {
+
+volatile std::sig_atomic_t told_to_stop = 0;
+
+void note_stop(int) { told_to_stop = 1; }
+
+bool write_all(int end, const void* data, std::size_t size) {
+  const char* at = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t written = ::send(end, at, size, MSG_NOSIGNAL);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    at += written, size -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+bool read_all(int end, void* data, std::size_t size) {
+  char* at = static_cast<char*>(data);
+  while (size > 0) {
+    const ssize_t count = ::recv(end, at, size, 0);
+    if (count < 0 && errno == EINTR && told_to_stop == 0) continue;
+    if (count <= 0) return false;
+    at += count, size -= static_cast<std::size_t>(count);
+  }
+  return true;
+}
+
+// A letter for the kind of answer (r, or f: a FileError), its length, and its text.
+bool send_answer(int end, char kind, const std::string& text) {
+  const std::uint64_t size = text.size();
+  return write_all(end, &kind, 1) && write_all(end, &size, sizeof size) && write_all(end, text.data(), text.size());
+}
+
+[[noreturn]] void run_worker(int end, const std::function<std::string(std::size_t)>& do_work) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  std::signal(SIGINT, SIG_IGN);  // of the terminal: the parent says when to stop
+  struct sigaction action = {};
+  action.sa_handler = note_stop;  // without SA_RESTART: one that waits for work ends
+  ::sigaction(SIGTERM, &action, nullptr);
+  std::uint64_t piece = 0;
+  while (told_to_stop == 0 && read_all(end, &piece, sizeof piece)) {
+    try {
+      const std::string answer = do_work(static_cast<std::size_t>(piece));
+      if (told_to_stop != 0 || !send_answer(end, 'r', answer)) break;
+    } catch (const FileError& error) {
+      send_answer(end, 'f', error.what());
+      break;
+    }
+  }
+  ::_exit(0);  // without destructors and buffers, which are the parent's
+}
+
+class Worker {
+ public:
+  Worker(const std::function<std::string(std::size_t)>& do_work, const std::vector<int>& ends_of_others) {
+    std::array<int, 2> ends{};
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) throw_unstarted();
+    process_ = ::fork();
+    if (process_ < 0) {
+      for (const int end : ends) ::close(end);
+      throw_unstarted();
+    }
+    if (process_ == 0) {
+      ::close(ends[0]);
+      for (const int end : ends_of_others) ::close(end);  // else these would not see their parent's end closed
+      run_worker(ends[1], do_work);
+    }
+    ::close(ends[1]);
+    end_ = ends[0];
+  }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+  ~Worker() { (void)ended(); }
+
+  void give(std::size_t piece) {
+    piece_ = piece;
+    const std::uint64_t number = piece;
+    write_all(end_, &number, sizeof number);  // one that has ended shows when its answer is read
+  }
+  [[nodiscard]] int end() const { return end_; }
+  [[nodiscard]] std::optional<std::size_t> piece() const { return piece_; }
+
+  struct Answer {
+    char kind = 0;  // 0: the process has ended
+    std::string text;
+  };
+  [[nodiscard]] Answer answer() {
+    Answer answer;
+    std::uint64_t size = 0;
+    char kind = 0;
+    if (!read_all(end_, &kind, 1) || !read_all(end_, &size, sizeof size)) return {};
+    answer.text.resize(size);
+    if (!read_all(end_, answer.text.data(), size)) return {};
+    answer.kind = kind;
+    piece_.reset();
+    return answer;
+  }
+
+  void stop() const { ::kill(process_, SIGTERM); }
+
+  // Waits for it, after half a minute without patience. How it ended.
+  std::string ended() {
+    if (process_ < 0) return "";
+    ::close(end_);
+    int status = 0;
+    const auto start = std::chrono::steady_clock::now();
+    for (bool is_killed = false; ::waitpid(process_, &status, is_killed ? 0 : WNOHANG) != process_;) {
+      if (std::chrono::steady_clock::now() - start > std::chrono::seconds(30))
+        ::kill(process_, SIGKILL), is_killed = true;
+      ::poll(nullptr, 0, 2);
+    }
+    process_ = -1;
+    if (WIFSIGNALED(status)) return fmt::format("signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+    return fmt::format("status {}", WEXITSTATUS(status));
+  }
+
+ private:
+  [[noreturn]] static void throw_unstarted() {
+    throw FileError("no process can be started: " + std::generic_category().message(errno));
+  }
+
+  pid_t process_ = -1;
+  int end_ = -1;
+  std::optional<std::size_t> piece_;
+};
+
+}  // namespace
+
+bool worker_is_to_stop() { return told_to_stop != 0; }
+
+void work_in_processes(int workers, std::span<const std::size_t> pieces,
+                       const std::function<std::string(std::size_t)>& do_work, const WorkerHooks& hooks) {
+  std::deque<std::size_t> open(pieces.begin(), pieces.end());
+  std::map<std::size_t, int> ends_over;  // how often a process ended over a piece
+  std::vector<std::unique_ptr<Worker>> pool;
+  const auto under_way = [&] {
+    return std::ranges::any_of(pool, [](const auto& worker) { return worker->piece().has_value(); });
+  };
+  const auto give = [&](Worker& worker) {
+    if (open.empty()) return;
+    worker.give(open.front());
+    open.pop_front();
+  };
+  while (!open.empty() || under_way()) {
+    if (hooks.stop_requested && hooks.stop_requested()) {
+      for (const auto& worker : pool) worker->stop();
+      return;
+    }
+    while (pool.size() < static_cast<std::size_t>(workers) && !open.empty()) {
+      std::vector<int> ends;
+      for (const auto& worker : pool) ends.push_back(worker->end());
+      pool.push_back(std::make_unique<Worker>(do_work, ends));
+      give(*pool.back());
+    }
+    std::vector<pollfd> waits_for;
+    for (const auto& worker : pool) waits_for.push_back({worker->end(), POLLIN, 0});
+    ::poll(waits_for.data(), waits_for.size(), 100);
+    for (std::size_t w = pool.size(); w-- > 0;) {
+      if (waits_for[w].revents == 0) continue;
+      const std::optional<std::size_t> piece = pool[w]->piece();
+      const Worker::Answer answer = pool[w]->answer();
+      if (answer.kind == 'f') throw FileError(answer.text);
+      if (answer.kind == 'r') {
+        hooks.on_answer(*piece, answer.text, "");
+        give(*pool[w]);
+        continue;
+      }
+      const std::string how = pool[w]->ended();
+      pool.erase(pool.begin() + static_cast<long>(w));
+      if (!piece) continue;
+      if (++ends_over[*piece] < 2)
+        open.push_front(*piece);
+      else
+        hooks.on_answer(*piece, "", "its process ended twice, the second time by " + how);
+    }
+  }
+}
+
+}  // namespace plica

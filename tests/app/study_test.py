@@ -1,0 +1,192 @@
+"""plica study from outside: the table, whatever is killed and whoever runs it."""
+import csv
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import support
+from support import CommandLine, plica, start
+
+STUDY = """\
+format = 1
+scenario = "drosophila"
+[set]
+"time.end_min" = 0.2
+"output.frame_every_min" = 0.1
+[vary]
+"contraction.apical.stiffness_nN_per_um" = { low = 3, high = 7 }
+[design]
+kind = "latin-hypercube"
+points = 24
+[keep]
+measures = ["furrow_depth_um", "max_volume_error"]
+"""
+KILLS = int(os.environ.get("PLICA_STUDY_KILLS", "5"))
+
+
+def children(process):
+    pids = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True, check=False).stdout
+    return [int(pid) for pid in pids.split()]
+
+
+class Study(CommandLine):
+    def setUp(self):
+        super().setUp()
+        self.out = self.folder / "out"
+
+    def study(self, *arguments, status=0, text=STUDY):
+        self.file = self.write(text)
+        result = plica("study", self.file, "--out", self.out, *arguments)
+        self.assertEqual(result.returncode, status, f"{result.args}\n{result.stdout}{result.stderr}")
+        return result
+
+    def table(self, out=None):
+        """All but wall_s."""
+        with open((out or self.out) / "runs.csv", newline="", encoding="utf-8") as file:
+            return [{key: value for key, value in row.items() if key != "wall_s"} for row in csv.DictReader(file)]
+
+    def rows_written(self):
+        return sum(len(file.read_text().splitlines()) for file in (self.out / "rows").iterdir())
+
+    def test_the_table(self):
+        result = self.study("--jobs", 1)
+        self.assertRegex(result.stdout, r"24 runs: 24 end_time in .*\n  table in .*runs\.csv\n")
+        rows = self.table()
+        self.assertEqual(list(rows[0]), ["point", "contraction.apical.stiffness_nN_per_um", "replicate", "status",
+                                         "furrow_depth_um", "max_volume_error", "steps", "reason"])
+        self.assertEqual([row["point"] for row in rows], [str(n) for n in range(1, 25)])
+        first = self.folder / "first"
+        key = "contraction.apical.stiffness_nN_per_um"
+        plica("run", "drosophila", "--set", "time.end_min=0.2", "--set", "output.frame_every_min=0.1", "--set", f"{key}={rows[0][key]}",
+              "--out", first, "--quiet")
+        summary = self.summary(first)
+        self.assertEqual(float(rows[0]["furrow_depth_um"]), summary["furrow_depth_um"])
+
+    def test_any_number_of_jobs_and_any_kill_leave_the_same_table(self):
+        self.study("--jobs", 1, "--quiet")
+        truth = self.table()
+        chance = random.Random(5)
+        shutil.rmtree(self.out)
+        for _ in range(KILLS):
+            process = start("study", self.file, "--out", self.out, "--resume", "--jobs", 3, stdout=subprocess.DEVNULL,
+                            stderr=subprocess.DEVNULL)
+            time.sleep(chance.uniform(0.1, 0.5))
+            at = chance.choice(["parent", "child", "interrupt"])
+            victims = children(process)
+            if at == "child" and victims and process.poll() is None:
+                try:
+                    os.kill(chance.choice(victims), signal.SIGKILL)
+                except ProcessLookupError:
+                    pass
+                time.sleep(0.2)
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT if at == "interrupt" else signal.SIGKILL)
+            process.wait()
+            for _ in range(100):  # children end with their parent
+                if not any(Path(f"/proc/{pid}").exists() for pid in victims):
+                    break
+                time.sleep(0.05)
+            else:
+                self.fail("a worker outlives its study")
+        self.study("--resume", "--jobs", 2, "--quiet")
+        self.assertEqual(self.table(), truth)
+        self.assertEqual(self.rows_written(), len(truth))  # none was run again that had a row
+
+    def test_an_interruption_leaves_a_table(self):
+        process = start("study", self.write(STUDY), "--out", self.out, "--jobs", 1)
+        while not list(self.out.glob("rows/*")):
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate()
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("--resume", errors)
+        statuses = {row["status"] for row in self.table()}
+        self.assertEqual(statuses, {"end_time", "not_run"})
+        told = plica("study", "status", self.out)
+        self.assertRegex(told.stdout, r"24 runs: \d+ end_time, \d+ not run")
+        self.assertEqual(plica("study", "status", self.folder).returncode, 4)
+
+    def test_a_failed_point_is_a_row(self):
+        text = STUDY.replace("{ low = 3, high = 7 }", "{ values = [3, -3, 1e9] }").replace('"latin-hypercube"\npoints = 24', '"grid"')
+        result = self.study(text=text)
+        rows = self.table()
+        self.assertEqual(rows[0]["status"], "end_time")
+        self.assertEqual(rows[1]["status"], "refused")
+        self.assertIn("stiffness_nN_per_um", rows[1]["reason"])
+        self.assertIn("1 x ", result.stdout)
+        self.assertIn(rows[2]["status"], ("failed", "end_time"))
+        checked = plica("check", self.file)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+        self.assertIn("1 point is no valid scenario", checked.stdout)
+
+    def test_what_each_run_leaves(self):
+        text = STUDY.replace("points = 24", "points = 3")
+        self.study(text=text + 'each = "summary"\n')
+        self.assertEqual(self.summary(self.out / "points/000002")["status"], "end_time")
+        shutil.rmtree(self.out)
+        self.study("--jobs", 3, text=text + 'each = "full"\n')
+        for point in range(1, 4):
+            self.assertTrue((self.out / f"points/{point:06}/report.html").is_file())
+        table = self.table()
+        shutil.rmtree(self.out / "rows")
+        (self.out / "rows").mkdir()
+        self.study("--resume", text=text + 'each = "full"\n')  # from what is there
+        self.assertEqual(self.table(), table)
+
+    def test_what_does_not_go_on(self):
+        few = STUDY.replace("points = 24", "points = 2")
+        self.study(text=few)
+        self.assertIn("--resume", self.study(text=few, status=2).stderr)
+        self.assertIn("has changed", self.study("--resume", text=few + "\n# a word\n", status=2).stderr)
+        before = (self.out / "runs.csv").read_bytes()
+        begun = self.out / "study.json"
+        begun.write_text(begun.read_text().replace('"plica": "', '"plica": "9.'))
+        self.assertIn("begun by plica 9.", self.study("--resume", text=few, status=2).stderr)
+        begun.write_text("{")
+        self.assertIn("damaged", self.study("--resume", text=few, status=4).stderr)
+        self.assertEqual((self.out / "runs.csv").read_bytes(), before)
+        self.study("--overwrite", text=few)
+        foreign = self.folder / "foreign"
+        foreign.mkdir()
+        (foreign / "thesis.txt").write_text("mine")
+        refused = plica("study", self.file, "--out", foreign)
+        self.assertEqual((refused.returncode, sorted(p.name for p in foreign.iterdir())), (2, ["thesis.txt"]))
+        for arguments, told in [([], "which study"), ([self.file], "--out"), (["none.toml", "--out", "x"], "none.toml")]:
+            result = plica("study", *arguments)
+            self.assertIn(result.returncode, (2, 4))
+            self.assertIn(told, result.stderr)
+
+    def test_a_full_disk(self):
+        def small_files():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (900, 900))
+
+        self.file = self.write(STUDY.replace("points = 24", "points = 12"))
+        self.study("--jobs", 1, "--quiet", text=STUDY.replace("points = 24", "points = 12"))
+        truth = self.table()
+        shutil.rmtree(self.out / "rows")
+        (self.out / "rows").mkdir()
+        result = subprocess.run([support.PROGRAM, "study", str(self.file), "--out", str(self.out), "--resume", "--jobs", "1"],
+                                capture_output=True, text=True, preexec_fn=small_files, check=False)
+        self.assertEqual(result.returncode, 4, result.stderr)
+        self.assertIn("cannot be written", result.stderr)
+        self.study("--resume", "--jobs", 1, "--quiet", text=STUDY.replace("points = 24", "points = 12"))
+        self.assertEqual(self.table(), truth)
+
+    def test_points_of_a_file(self):
+        (self.folder / "points.csv").write_text("contraction.apical.stiffness_nN_per_um,contraction.apical.region\n3.5,furrow\n4,all\n")
+        text = STUDY[:STUDY.index("[vary]")] + '[design]\nkind = "file"\nfile = "points.csv"\n[keep]\nmeasures = ["furrow_depth_um"]\n'
+        self.study(text=text)
+        self.assertEqual([row["contraction.apical.region"] for row in self.table()], ["furrow", "all"])
+        (self.folder / "points.csv").write_text("contraction.apical.stiffness_nN_per_um\n3.5,furrow\n")
+        self.assertRegex(self.study("--overwrite", text=text, status=2).stderr, r"points\.csv:2: has 2 values")
+        (self.folder / "points.csv").write_text("")
+        self.assertIn("holds no points", self.study("--overwrite", text=text, status=2).stderr)
+
+
+if __name__ == "__main__":
+    support.main()

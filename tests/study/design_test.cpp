@@ -1,0 +1,227 @@
+#include "study/design.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/errors.hpp"
+#include "core/numbers.hpp"
+#include "study/csv_fields.hpp"
+#include "study/study.hpp"
+
+namespace plica {
+namespace {
+
+const std::string young = "elasticity.young_modulus_Pa", ratio = "elasticity.poisson_ratio";
+
+StudyInput input_of(const std::string& vary, const std::string& design, const std::string& more = "") {
+  return parse_study(
+      "test", "test.toml",
+      "format = 1\nscenario = \"division-demo\"\n" + more + "\n[vary]\n" + vary + "\n[design]\n" + design);
+}
+
+std::vector<std::vector<double>> numbers(const StudyDesign& design) {
+  std::vector<std::vector<double>> result;
+  for (const StudyPoint& run : design.runs) {
+    result.emplace_back();
+    for (const std::string& value : run.values) result.back().push_back(number_in(value).value_or(NAN));
+  }
+  return result;
+}
+
+std::vector<std::vector<double>> numbers(const std::string& vary, const std::string& design) {
+  return numbers(design_of(input_of(vary, design)));
+}
+
+using Rows = std::vector<std::vector<double>>;
+
+TEST(Design, GridTakesEveryValueWithEveryOther) {
+  EXPECT_EQ(
+      numbers("\"" + young + "\" = { low = 400, high = 800, count = 3 }\n\"" + ratio + "\" = { values = [0.3, 0.4] }",
+              "kind = \"grid\""),
+      (Rows{{400, 0.3}, {400, 0.4}, {600, 0.3}, {600, 0.4}, {800, 0.3}, {800, 0.4}}));
+  EXPECT_EQ(numbers("\"" + young + "\" = { low = 1, high = 100, count = 3, scale = \"log\" }", "kind = \"grid\""),
+            (Rows{{1}, {10}, {100}}));
+  EXPECT_EQ(numbers("\"" + young + "\" = { low = 3, high = 8, step = 2 }", "kind = \"grid\""), (Rows{{3}, {5}, {7}}));
+}
+
+TEST(Design, WholeStepsAreWrittenAsWholeNumbers) {
+  const StudyDesign design =
+      design_of(input_of("\"embryo.cells\" = { values = [[4, 4, 1], [6, 6, 1]] }\n"
+                         "\"output.frame_every_s\" = { low = 10, high = 30, step = 10 }",
+                         "kind = \"grid\""));
+  EXPECT_EQ(design.runs[0].values, (std::vector<std::string>{"[4, 4, 1]", "10"}));
+  EXPECT_EQ(design.runs[5].values, (std::vector<std::string>{"[6, 6, 1]", "30"}));
+}
+
+TEST(Design, ListTakesValuesSideBySide) {
+  EXPECT_EQ(numbers("\"" + young + "\" = { values = [1, 2] }\n\"" + ratio + "\" = { values = [0.3, 0.4] }",
+                    "kind = \"list\""),
+            (Rows{{1, 0.3}, {2, 0.4}}));
+}
+
+TEST(Design, OneAtATimeKeepsTheOthersAsInTheScenario) {
+  const auto rows = numbers("\"" + young + "\" = { values = [1, 2] }\n\"" + ratio + "\" = { values = [0.3] }",
+                            "kind = \"one-at-a-time\"");
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[1], (std::vector<double>{1, rows[0][1]}));
+  EXPECT_EQ(rows[3], (std::vector<double>{rows[0][0], 0.3}));
+}
+
+TEST(Design, LatinHypercubeHasOnePointInEverySlice) {
+  const auto rows =
+      numbers("\"" + young + "\" = { low = 100, high = 200 }\n\"" + ratio + "\" = { low = 0, high = 0.4 }",
+              "kind = \"latin-hypercube\"\npoints = 50\nseed = 7");
+  std::set<int> first, second;
+  for (const auto& row : rows)
+    first.insert(static_cast<int>((row[0] - 100) / 2)), second.insert(static_cast<int>(row[1] / 0.008));
+  EXPECT_EQ(first.size(), 50u);
+  EXPECT_EQ(second.size(), 50u);
+}
+
+// Of 64 points of a digital net in two dimensions, every box of an area of 1/64 whose sides are powers of 2 has one.
+TEST(Design, SobolIsEvenlySpreadForEverySeed) {
+  const std::string two = "\"" + young + "\" = { low = 1, high = 2 }\n\"" + ratio + "\" = { low = 0, high = 0.25 }";
+  std::set<std::vector<double>> first_points;
+  for (int seed = 0; seed < 5; ++seed) {
+    const auto rows = numbers(two, "kind = \"sobol\"\npoints = 64\nseed = " + std::to_string(seed));
+    for (int along = 1; along <= 64; along *= 2) {
+      std::set<std::pair<int, int>> boxes;
+      for (const auto& row : rows)
+        boxes.emplace(static_cast<int>((row[0] - 1) * along), static_cast<int>(row[1] * 4 * 64 / along));
+      EXPECT_EQ(boxes.size(), 64u) << "seed " << seed << ", " << along;
+    }
+    first_points.insert(rows.front());
+  }
+  EXPECT_EQ(first_points.size(), 5u);
+}
+
+// Saltelli's: each block has A, A with one coordinate of B, and B.
+TEST(Design, SobolIndicesChangeOneKeyAtATime) {
+  const auto rows = numbers("\"" + young + "\" = { low = 1, high = 2 }\n\"" + ratio + "\" = { low = 0, high = 0.4 }",
+                            "kind = \"sobol-indices\"\npoints = 8");
+  ASSERT_EQ(rows.size(), 8u * 4);
+  for (std::size_t block = 0; block < rows.size(); block += 4) {
+    const auto &a = rows[block], &b = rows[block + 3];
+    EXPECT_EQ(rows[block + 1], (std::vector<double>{b[0], a[1]}));
+    EXPECT_EQ(rows[block + 2], (std::vector<double>{a[0], b[1]}));
+  }
+}
+
+TEST(Design, NormalDistributionsHaveTheirMeanAndAreCutOff) {
+  const auto rows = numbers("\"" + young + "\" = { mean = 500, sd = 50 }\n\"" + ratio +
+                                "\" = { mean = 0.3, sd = 0.2, low = 0.1, high = 0.45 }",
+                            "kind = \"sobol\"\npoints = 4096");
+  double sum = 0, squares = 0;
+  for (const auto& row : rows) {
+    sum += row[0], squares += (row[0] - 500) * (row[0] - 500);
+    EXPECT_GE(row[1], 0.1);
+    EXPECT_LE(row[1], 0.45);
+  }
+  EXPECT_NEAR(sum / 4096, 500, 0.1);
+  EXPECT_NEAR(std::sqrt(squares / 4096), 50, 0.1);
+}
+
+TEST(Design, ReplicatesHaveSeedsOfTheirOwn) {
+  const StudyInput input =
+      parse_study("test", "test.toml",
+                  "scenario = \"drosophila\"\n[set]\n\"contraction.apical.variation.spread\" = 0.3\n"
+                  "[vary]\n\"" +
+                      young +
+                      "\" = { values = [900, 1000] }\n"
+                      "[design]\nkind = \"grid\"\nreplicates = 3\n");
+  const StudyDesign design = design_of(input);
+  ASSERT_EQ(design.runs.size(), 6u);
+  EXPECT_EQ(design.runs[4].point, 2);
+  EXPECT_EQ(design.runs[4].replicate, 2);
+  EXPECT_EQ(design.runs[4].seeds, std::vector<std::string>{"contraction.apical.variation.seed=2"});
+  EXPECT_EQ(load_scenario(input.scenario, overrides_of(input, design, design.runs[4]))
+                .contractions.at("apical")
+                .variation.seed,
+            2);
+  // As a file and back.
+  const StudyDesign again = points_of_csv(points_csv(design));
+  EXPECT_EQ(points_csv(again), points_csv(design));
+  EXPECT_EQ(again.runs[5].seeds, design.runs[5].seeds);
+}
+
+TEST(CsvFields, ReadWhatTheyWrite) {
+  const std::vector<std::string> fields = {"a", "", "1,5", "say \"no\"", "two\nlines", "[1, 2]"};
+  std::string line;
+  for (const std::string& field : fields) line += (line.empty() ? "" : ",") + csv_field(field);
+  EXPECT_EQ(csv_fields(line + "\n\nx,y\r\n"), (std::vector<std::vector<std::string>>{fields, {"x", "y"}}));
+}
+
+// The messages of a study that is none.
+std::string refusal(const std::string& text) {
+  try {
+    const Study study(parse_study("test", "test.toml", text));
+  } catch (const ScenarioError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(StudyInput, WhatIsNoStudySaysWhere) {
+  const std::string head = "scenario = \"division-demo\"\n", vary = "[vary]\n\"" + young + "\" = ";
+  const std::string good = "{ values = [400, 500] }\n", grid = "[design]\nkind = \"grid\"\n";
+  EXPECT_EQ(refusal(head + vary + good + grid), "");
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"[", "test.toml:1"},
+      {vary + good + grid, "scenario: is missing"},
+      {"scenario = \"nowhere\"\n" + vary + good + grid, "test.toml:1: scenario"},
+      {"scenario = 3\n" + vary + good + grid, "is not a text"},
+      {"format = 2\n" + head + vary + good + grid, "format = 1"},
+      {head + vary + good, "design: is missing"},
+      {head + "design = 3\n" + vary + good, "is not a table"},
+      {head + vary + good + "[design]\n", "design.kind: is missing"},
+      {head + vary + good + "[design]\nkind = \"gird\"\n", "did you mean \"grid\"?"},
+      {head + vary + good + grid + "point = 3\n", "did you mean \"points\"?"},
+      {head + vary + good + grid + "points = 3\n", "has no meaning here"},
+      {head + vary + good + grid + "seed = 3\n", "nothing is drawn"},
+      {head + vary + good + grid + "replicates = 0\n", "is 0"},
+      {head + vary + good + grid + "replicates = 2\n", "nothing is random here"},
+      {head + vary + good + grid + "file = \"a.csv\"\n", "has no meaning here"},
+      {head + vary + good + "[design]\nkind = \"sobol\"\n", "how many points"},
+      {head + vary + good + "[design]\nkind = \"sobol\"\npoints = 1.5\n", "is not a whole number"},
+      {head + vary + good + "[design]\nkind = \"sobol\"\npoints = 3\nseed = -1\n", "is below 0"},
+      {head + vary + good + "[design]\nkind = \"file\"\nfile = \"a.csv\"\n", "the file has the values"},
+      {head + "[design]\nkind = \"file\"\n", "design.file: is missing"},
+      {head + grid, "vary: is empty"},
+      {head + vary + "3\n" + grid, "does not say how it varies"},
+      {head + vary + "{ values = [] }\n" + grid, "is no list"},
+      {head + vary + "{ values = [1], low = 2 }\n" + grid, "has values and more"},
+      {head + vary + "{ low = 1 }\n" + grid, "has no bounds"},
+      {head + vary + "{ low = 2, high = 1 }\n" + grid, "is an empty range"},
+      {head + vary + "{ low = 1, high = 1 }\n" + grid, "one value only goes into [set]"},
+      {head + vary + "{ low = 1, high = inf, count = 3 }\n" + grid, "is not a number"},
+      {head + vary + "{ low = 1, high = 2 }\n" + grid, "which values to take"},
+      {head + vary + "{ low = 1, high = 2, step = 3 }\n" + grid, "does not fit"},
+      {head + vary + "{ low = 1, high = 2, step = 1, count = 2 }\n" + grid, "has a step and more"},
+      {head + vary + "{ low = 0, high = 2, count = 3, scale = \"log\" }\n" + grid, "logarithmic from 0"},
+      {head + vary + "{ low = 1, high = 2, count = 3, scale = \"cubic\" }\n" + grid, "give linear or log"},
+      {head + vary + "{ mean = 1 }\n[design]\nkind = \"sobol\"\npoints = 2\n", "is no distribution"},
+      {head + vary + "{ mean = 1, sd = 1, count = 2 }\n" + grid, "a normal distribution and more"},
+      {head + vary + "{ low = 1, hihg = 2 }\n" + grid, "did you mean \"high\"?"},
+      {head + vary + "{ low = 1, high = 2 }\n[design]\nkind = \"list\"\n", "has no values"},
+      {head + vary + good + "\"" + ratio + "\" = { values = [0.3] }\n[design]\nkind = \"list\"\n",
+       "as many of every key"},
+      {head + "[set]\n\"" + young + "\" = 3\n" + vary + good + grid, "is fixed by [set]"},
+      {head + vary + good + grid + "[keep]\nmeasures = 3\n", "is no list of names"},
+      {head + vary + good + grid + "[keep]\nmeasures = [\"max_volume_eror\"]\n", "did you mean \"max_volume_error\"?"},
+      {head + vary + good + grid + "[keep]\neach = \"rows\"\n", "did you mean \"row\"?"},
+      {head + "[vary]\n\"elasticity.young_modulus\" = " + good + grid, "vary.elasticity.young_modulus"},
+      {head + "[vary]\n\"embryo.cells\" = " + good + grid, "test.toml:3: vary.embryo.cells"},
+      {head + vary + "{ values = [-1, -2] }\n" + grid, "test.toml:3: vary." + young},
+      {head + vary + "{ low = 1, high = 2, count = 9999999 }\n\"" + ratio +
+           "\" = { low = 0, high = 0.3, count = 9 }\n" + grid,
+       "runs"},
+  };
+  for (const auto& [text, told] : cases)
+    EXPECT_NE(refusal(text).find(told), std::string::npos) << text << "\n-> " << refusal(text);
+}
+
+}  // namespace
+}  // namespace plica
