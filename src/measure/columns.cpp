@@ -54,6 +54,11 @@ Column count(Column column) {
   return column;
 }
 
+Column costly(Column column) {
+  column.is_costly = true;
+  return column;
+}
+
 Column of_projection(Column column) {
   column.of_projection = true;
   return count(std::move(column));
@@ -203,10 +208,11 @@ std::span<const Column> columns() {
        [](const M& m) { return max_volume_error(m.model, m.state.positions); }},
       {"max_shell_penetration_um", no_series, largest, "Deepest place of any apical node outside the shell.",
        [](const M& m) { return shell_penetration(m.model, m.state.positions); }},
-      {"min_scaled_jacobian", no_series, least, "Worst corner of an element: 1 is a brick, 0 is flat.",
-       [](const M& m) { return min_scaled_jacobian(m.model.tissue, m.state.positions); }},
-      {"lumen_volume_ratio", series, last,
-       "Volume inside the basal surface over that at rest; none where that surface is not closed.", lumen_ratio},
+      costly({"min_scaled_jacobian", no_series, least, "Worst corner of an element: 1 is a brick, 0 is flat.",
+              [](const M& m) { return min_scaled_jacobian(m.model.tissue, m.state.positions); }}),
+      costly({"lumen_volume_ratio", series, last,
+              "Volume inside the basal surface over that at rest; none where that surface is not closed.",
+              lumen_ratio}),
       count({"cells", series, nothing, "Number of cells, before those divide that are due at the step's end.",
              [](const M& m) { return static_cast<double>(m.model.tissue.cells.size()); }}),
       {"step_s", series, nothing, "Length of the step; 0 at rest.",
@@ -217,10 +223,11 @@ std::span<const Column> columns() {
       count({"linear_iterations", series, sum,
              "Newton: solves with a factor. Linearly implicit: iterations of conjugate gradients.",
              reported(&StepReport::linear_solves)}),
-      count({"self_intersections", series, largest,
-             "Pairs of facets of the apical surface, or of the basal one, that pass through each other. Nothing stops "
-             "that: what comes after the first is no tissue any more.",
-             [](const M& m) { return self_intersections(m.model.tissue, m.state.positions); }}),
+      costly(count(
+          {"self_intersections", series, largest,
+           "Pairs of facets of the apical surface, or of the basal one, that pass through each other. Nothing stops "
+           "that: what comes after the first is no tissue any more.",
+           [](const M& m) { return self_intersections(m.model.tissue, m.state.positions); }})),
       of_projection({"projection_sweeps", no_series, sum,
                      "With `volume.method = \"projection\"` only: sweeps over the volumes "
                      "([theory/paper_algorithm.md](theory/paper_algorithm.md)).",
@@ -238,11 +245,11 @@ std::span<const Column> columns() {
            sum += cell_height(m.model.tissue.cells[cell.index()], m.state.positions);
          return sum / static_cast<double>(m.sites.vml.size());
        }},
-      {"min_apical_area_ratio", series, least, "The smallest of all cells' apical areas over those at rest.",
-       [](const M& m) { return min_apical_area_ratio(m.model.tissue, m.state.positions); }},
-      {"min_corner_jacobian_ratio", series, least,
-       "Smallest Jacobian of an element's corner over that at rest: 0 is a corner that is flat.",
-       [](const M& m) { return min_corner_jacobian_ratio(m.model.tissue, m.state.positions); }},
+      costly({"min_apical_area_ratio", series, least, "The smallest of all cells' apical areas over those at rest.",
+              [](const M& m) { return min_apical_area_ratio(m.model.tissue, m.state.positions); }}),
+      costly({"min_corner_jacobian_ratio", series, least,
+              "Smallest Jacobian of an element's corner over that at rest: 0 is a corner that is flat.",
+              [](const M& m) { return min_corner_jacobian_ratio(m.model.tissue, m.state.positions); }}),
       {"enclosed_volume_ratio", series, last,
        "Of a volume that `[enclosed.NAME]` keeps, the yolk's: over what it is kept at.",
        [](const M& m) { return part(m.enclosed, &Enclosed::volume_ratio); }},
@@ -251,19 +258,20 @@ std::span<const Column> columns() {
          if (!m.enclosed) return std::nullopt;
          return m.enclosed->pressure_kPa / units::pascal;
        }},
-      {"shell_fluid_um3", series, last,
-       "Volume between the apical surface and the shell; the fluid has no pressure. None of a slice.",
-       [](const M& m) -> std::optional<double> {
-         if (!m.rest.lumen_volume_um3) return std::nullopt;  // the shell's caps are not the sheet's
-         return fluid_under_shell_um3(m.model, m.state.positions);
-       }},
-      {"flank_volume_ratio", series, last,
-       "Volume of the cells at 60° to 120° from the belly, on the middle half of the length, over that at rest; a cell "
-       "counts by the part of its angle that lies there. What the furrow takes from the lateral ectoderm.",
-       [](const M& m) -> std::optional<double> {
-         if (m.rest.flank_volume_um3.value_or(0) <= 0) return std::nullopt;
-         return *flank_volume(m.model.tissue, m.state.positions) / *m.rest.flank_volume_um3;
-       }},
+      costly({"shell_fluid_um3", series, last,
+              "Volume between the apical surface and the shell; the fluid has no pressure. None of a slice.",
+              [](const M& m) -> std::optional<double> {
+                if (!m.rest.lumen_volume_um3) return std::nullopt;  // the shell's caps are not the sheet's
+                return fluid_under_shell_um3(m.model, m.state.positions);
+              }}),
+      costly({"flank_volume_ratio", series, last,
+              "Volume of the cells at 60° to 120° from the belly, on the middle half of the length, over that at rest; "
+              "a cell "
+              "counts by the part of its angle that lies there. What the furrow takes from the lateral ectoderm.",
+              [](const M& m) -> std::optional<double> {
+                if (m.rest.flank_volume_um3.value_or(0) <= 0) return std::nullopt;
+                return *flank_volume(m.model.tissue, m.state.positions) / *m.rest.flank_volume_um3;
+              }}),
       count({"contact_pairs", series, largest,
              "With `[self_contact]`: places of a surface that press on another place of it.",
              [](const M& m) { return part(m.touching, &Touching::pairs); }}),
@@ -318,19 +326,22 @@ std::span<const Column> columns() {
          const auto& [active, stored, dissipated] = m.step->energy;
          return (active - stored - dissipated) / active;
        }},
-      {"flank_section_area_ratio", series, last,
-       "Area of the tissue cut at x = 0, between its basal and its apical surface, at 60° to 120° from the belly on "
-       "both sides, over that at rest: what a cross-section under the microscope, or a model in two dimensions, shows "
-       "of the lateral ectoderm. `flank_volume_ratio` is the same of a volume.",
-       [](const M& m) -> std::optional<double> {
-         if (m.rest.flank_section_um2.value_or(0) <= 0) return std::nullopt;
-         return *flank_section_area(m.model.tissue, m.state.positions) / *m.rest.flank_section_um2;
-       }},
-      count({"short_edges", series, largest,
-             "Apical edges of cells that are shorter than a tenth of their length at rest: cells of a tissue would "
-             "change neighbours there, which plica's do not. Of an edge of 7 µm that is 0.7 µm, where a microscope no "
-             "longer tells two vertices from one.",
-             [](const M& m) { return static_cast<double>(short_edges(m.model.tissue, m.state.positions)); }}),
+      costly({"flank_section_area_ratio", series, last,
+              "Area of the tissue cut at x = 0, between its basal and its apical surface, at 60° to 120° from the "
+              "belly on "
+              "both sides, over that at rest: what a cross-section under the microscope, or a model in two dimensions, "
+              "shows "
+              "of the lateral ectoderm. `flank_volume_ratio` is the same of a volume.",
+              [](const M& m) -> std::optional<double> {
+                if (m.rest.flank_section_um2.value_or(0) <= 0) return std::nullopt;
+                return *flank_section_area(m.model.tissue, m.state.positions) / *m.rest.flank_section_um2;
+              }}),
+      costly(count(
+          {"short_edges", series, largest,
+           "Apical edges of cells that are shorter than a tenth of their length at rest: cells of a tissue would "
+           "change neighbours there, which plica's do not. Of an edge of 7 µm that is 0.7 µm, where a microscope no "
+           "longer tells two vertices from one.",
+           [](const M& m) { return static_cast<double>(short_edges(m.model.tissue, m.state.positions)); }})),
   };
   return all;
 }

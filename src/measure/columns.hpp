@@ -57,6 +57,7 @@ struct Column {
   OfRun of_run = {};           // its value in the summary, of the run as a whole
   bool is_count = false;       // a whole number
   bool of_projection = false;  // null in the summary of a run that does not project volumes
+  bool is_costly = false;      // takes more than a hundredth of a step; nothing else is made from it
 };
 
 /// All of them, in the order of series.csv.

@@ -24,13 +24,13 @@ Observer::Observer(const Model& model, FurrowSites sites, Watch watch)
 }
 
 Observer::Observer(const Model& model, const Observer& other)
-    : model_(model), sites_(other.sites_), watch_(other.watch_), rest_(other.rest_) {}
+    : model_(model), sites_(other.sites_), watch_(other.watch_), rest_(other.rest_), is_left_out_(other.is_left_out_) {}
 
 Observation Observer::row_of(const State& state, const AcceptedStep* step, double wall_s) const {
   Observation row;
   const MeasuredStep measured(model_, sites_, rest_, state, step);
   for (std::size_t c = 0; c < columns().size(); ++c)
-    if (columns()[c].of_step) row.values[c] = columns()[c].of_step(measured);
+    if (columns()[c].of_step && !is_left_out_[c]) row.values[c] = columns()[c].of_step(measured);
 
   std::vector<Reading> readings;
   for (const Monitor& monitor : watch_.monitors) readings.push_back(read_monitor(monitor, {model_, state, wall_s}));
@@ -38,6 +38,10 @@ Observation Observer::row_of(const State& state, const AcceptedStep* step, doubl
   row.criteria_met = watch_.stop.met(readings);
   row.is_over = watch_.stop.is_over(row.criteria_met.size(), step != nullptr && step->at_equilibrium);
   return row;
+}
+
+void Observer::leave_out(const std::function<bool(const Column&)>& which) {
+  for (std::size_t c = 0; c < columns().size(); ++c) is_left_out_[c] = which(columns()[c]);
 }
 
 Observation Observer::observe(const AcceptedStep& step, double wall_s) const {

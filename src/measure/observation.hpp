@@ -1,6 +1,7 @@
 // One row of series.csv: an accepted step as it is measured.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -56,6 +57,9 @@ class Observer {
   [[nodiscard]] const FurrowSites& sites() const { return sites_; }
   [[nodiscard]] const std::vector<Monitor>& monitors() const { return watch_.monitors; }
 
+  /// From now on these have no value, and cost nothing.
+  void leave_out(const std::function<bool(const Column&)>& which);
+
   /// The model's cells have divided.
   void follow_division(const Division& division) { plica::follow_division(sites_, model_.tissue, division); }
 
@@ -66,6 +70,7 @@ class Observer {
   FurrowSites sites_;
   Watch watch_;
   RestMeasures rest_;
+  std::vector<char> is_left_out_ = std::vector<char>(columns().size(), 0);  // by column
 };
 
 }  // namespace plica

@@ -92,6 +92,8 @@ class Simulation {
   /// Where energy has gone in all steps so far, as energy_flows lists it; empty before the first.
   [[nodiscard]] const std::vector<EnergyFlow>& energies() const { return now_.energies; }
 
+  /// From the next step on, measures leave these out.
+  void leave_out(const std::function<bool(const Column&)>& which) { observer_->leave_out(which); }
   /// Measures of the last accepted step, or of the body at rest.
   [[nodiscard]] const Observation& measures() const { return measures_; }
   [[nodiscard]] const Observer& observer() const { return *observer_; }

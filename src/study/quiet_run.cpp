@@ -20,6 +20,7 @@ RunSummary quiet_run(const Scenario& scenario, const QuietRunHooks& hooks) {
   const auto stop = [&] { return hooks.stop_requested && hooks.stop_requested(); };
   Simulation simulation(scenario);
   simulation.stop_when(stop);
+  if (hooks.leave_out) simulation.leave_out(hooks.leave_out);
   std::vector<Observation> rows = {simulation.measures()};
   while (!stop() && simulation.step()) {
     rows.push_back(simulation.measures());

@@ -21,6 +21,7 @@ struct RunSummary {
 struct QuietRunHooks {
   std::function<bool()> stop_requested = {};            // asked often; once true, the run ends as interrupted
   std::function<void(const Observation&)> on_row = {};  // after every accepted step
+  std::function<bool(const Column&)> leave_out = {};    // what is not measured
 };
 
 /// Runs to equilibrium or the end of time, to the same bits as `plica run`. Threads are as set (omp_set_num_threads).

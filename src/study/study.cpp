@@ -131,13 +131,16 @@ std::string Study::name_of(std::size_t run) const {
 std::optional<RunRow> Study::run(std::size_t run, const fs::path& directory, const std::function<bool()>& stop) const {
   const auto start = std::chrono::steady_clock::now();
   const auto is_stopped = [&] { return stop && stop(); };
+  const auto not_kept = [&](const Column& column) {
+    return column.is_costly && input_.each == KeptOfRun::row && std::ranges::count(measures_, column.name) == 0;
+  };
   RunRow row;
   try {
     const Scenario scenario = scenario_of(run);
     const fs::path place = directory / "points" / name_of(run);
     if (input_.each == KeptOfRun::full && is_taken(place)) return {};
     const Json summary = input_.each == KeptOfRun::full ? recorded(scenario, input_.scenario, place, is_stopped)
-                                                        : quiet_run(scenario, {.stop_requested = is_stopped}).summary;
+                                                        : quiet_run(scenario, {is_stopped, {}, not_kept}).summary;
     row = row_of(summary, measures_);
     if (row.status == "interrupted") return {};
     if (input_.each == KeptOfRun::summary) {
