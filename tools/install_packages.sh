@@ -1,7 +1,7 @@
 #!/bin/bash
 # Installs the packages of Debian (12 or 13) that plica needs: with root or sudo, and only when some are missing.
 # Usage: tools/install_packages.sh [GROUP...], of: build libraries viewer browser firefox python tests checks tidy
-# pictures site fuzz. Without a group: all of them.
+# pictures site fuzz slurm. Without a group: all of them but slurm.
 set -euo pipefail
 
 # The one list of packages. docs/dependencies.md says why each library is here.
@@ -29,6 +29,8 @@ declare -A packages=(
   # To fuzz the readers, fuzz/run, and for the preset tsan. (Clang with libFuzzer and the sanitizers; its OpenMP with
   # Archer.)
   [fuzz]="clang libclang-rt-dev libomp-dev"
+  # A Slurm of one machine, to try job arrays on (tools/slurm_here). Not among the groups that no argument stands for.
+  [slurm]="munge slurmctld slurmd slurm-client"
 )
 
 groups=("$@")
