@@ -85,6 +85,15 @@ def scenarios():
     write("scenario", "strings.toml", b'title = """\na "quoted" \\u00b5 """""\n["region".\'a\']\nids = [0x1, 1_0]\n# "\n')
 
 
+def studies():
+    for file in sorted((root.parent / "docs/studies").glob("*.toml")):
+        write("study", file.name, file.read_bytes())
+    write("study", "drawn.toml", b'scenario = "xenopus"\n[set]\ntime.end_min = 1\n[vary]\ncontraction.apical.stiffness_nN_per_um = '
+          b'{ mean = 5, sd = 1, low = 3 }\ntime.tolerance_um = { low = 0.01, high = 1, scale = "log" }\nembryo.cells = '
+          b'{ values = [[5, 5, 4], [7, 7, 4]] }\n[design]\nkind = "latin-hypercube"\npoints = 7\nseed = 3\n[keep]\neach = "full"\n')
+    write("study", "points.csv", b'run,point,replicate,a.b,c,seeds\n0,1,1,"[1, 2]",3.5,a.seed=1 b.seed=2\n1,2,1,"""x""",1e9,\n')
+
+
 def items(form, values):
     return struct.pack("<Q", len(values)) + b"".join(struct.pack("<" + form, *value) for value in values)
 
@@ -126,6 +135,7 @@ def checkpoints():
 
 
 scenarios()
+studies()
 meshes()
 checkpoints()
 print(f"{sum(f.stat().st_size for f in (root / 'corpus').rglob('*') if f.is_file())} bytes in {root / 'corpus'}")

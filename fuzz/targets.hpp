@@ -18,4 +18,7 @@ bool fuzz_mesh(std::string_view bytes);
 /// the right checksum is added, so that damage gets beyond it.
 bool fuzz_checkpoint(std::string_view bytes);
 
+/// A study's text, its design where that is small, and the same bytes as a list of points.
+bool fuzz_study(std::string_view bytes);
+
 }  // namespace plica

@@ -13,6 +13,7 @@
 #include "core/threads.hpp"
 #include "study/csv_fields.hpp"
 #include "study/run_study.hpp"
+#include "study/slurm.hpp"
 
 namespace plica {
 namespace {
@@ -22,7 +23,8 @@ using Clock = std::chrono::steady_clock;
 struct StudyOptions {
   std::string study, out, engine = "local";
   int jobs = 0;
-  bool resume = false, overwrite = false, quiet = false;
+  bool resume = false, overwrite = false, quiet = false, wait = false;
+  std::vector<std::string> sbatch;
 };
 
 // How many runs have ended, and how long the rest will take: a live line on a terminal, a line now and then in a file.
@@ -83,24 +85,8 @@ void print_reasons(const StudyStatus& status) {
   if (reasons.size() > 10) fmt::print("  and {} other reasons\n", reasons.size() - 10);
 }
 
-int run(const StudyOptions& options) {
-  if (options.study.empty()) throw UsageError("which study? give STUDY.toml, or see plica study --help");
-  if (options.out.empty()) throw UsageError("--out DIR is missing: where is the table to go?");
-  const auto start = Clock::now();
-  const ThreadCount one(1);
-  const Study study(read_study(options.study));
-  using Start = StudyDirectory::Start;
-  StudyDirectory directory = StudyDirectory::begin(options.out, study,
-                                                   options.resume      ? Start::resumed
-                                                   : options.overwrite ? Start::over
-                                                                       : Start::fresh);
-  const int jobs =
-      options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  catch_interruptions();
-  StudyProgress progress(directory.rows().size(), study.runs(), options.quiet);
-  run_study(study, directory, jobs, {},
-            {[&](std::size_t, const std::string& row) { progress.show(row, study); }, interrupted});
-  progress.finish();
+// Prints how it ended; the command's status.
+int ended(const Study& study, const StudyDirectory& directory, const StudyOptions& options, Clock::time_point start) {
   directory.gather(study);
   if (!options.quiet) {
     const StudyStatus status = status_of(directory, study);
@@ -114,12 +100,87 @@ int run(const StudyOptions& options) {
   return interrupted_status();
 }
 
+int run_here(const Study& study, StudyDirectory& directory, const StudyOptions& options, Clock::time_point start) {
+  const int jobs =
+      options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  StudyProgress progress(directory.rows().size(), study.runs(), options.quiet);
+  run_study(study, directory, jobs, {},
+            {[&](std::size_t, const std::string& row) { progress.show(row, study); }, interrupted});
+  progress.finish();
+  return ended(study, directory, options, start);
+}
+
+int run_on_slurm(const Study& study, StudyDirectory& directory, const StudyOptions& options, Clock::time_point start) {
+  if (!options.quiet) fmt::print(stderr, "running the first point here, to see what a run takes\n");
+  const SlurmSubmission plan = submit_to_slurm(study, directory, {options.sbatch, 2}, interrupted);
+  if (interrupted() || plan.tasks == 0) return ended(study, directory, options, start);
+  if (!options.quiet)
+    fmt::print(
+        "{}: {} in {} of {}, submitted as job {}; job {} gathers them\n"
+        "  a run takes {}; a task may take {} min and {} MB\n"
+        "  how far it is: plica study status {}; to stop it: plica study cancel {}\n",
+        study.input().name, plural(plan.runs, "run"), plural(plan.tasks, "task"), plan.runs_a_task, plan.array,
+        plan.gather, duration(plan.run_s), plan.limit_min, plan.memory_MB, options.out, options.out);
+  if (!options.wait) return exit_done;
+  StudyProgress progress(0, study.runs(), options.quiet);
+  std::size_t seen = 0;
+  while (!slurm_has_ended(directory) && !interrupted()) {
+    const StudyRows rows = directory.rows();
+    for (auto row = rows.begin(); rows.size() > seen; ++row) {
+      progress.show(row->second, study);
+      ++seen;
+    }
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+  }
+  progress.finish();
+  if (!interrupted()) return ended(study, directory, options, start);
+  fmt::print(stderr, "plica: no longer waiting; the jobs go on\n");
+  return interrupted_status();
+}
+
+int run(const StudyOptions& options) {
+  if (options.study.empty()) throw UsageError("which study? give STUDY.toml, or see plica study --help");
+  if (options.out.empty()) throw UsageError("--out DIR is missing: where is the table to go?");
+  const auto start = Clock::now();
+  const ThreadCount one(1);
+  const Study study(read_study(options.study));
+  using Start = StudyDirectory::Start;
+  StudyDirectory directory = StudyDirectory::begin(options.out, study,
+                                                   options.resume      ? Start::resumed
+                                                   : options.overwrite ? Start::over
+                                                                       : Start::fresh);
+  catch_interruptions();
+  return options.engine == "slurm" ? run_on_slurm(study, directory, options, start)
+                                   : run_here(study, directory, options, start);
+}
+
+// What a task of an array does.
+int work(const std::string& out, int task) {
+  const ThreadCount one(1);
+  auto [directory, study] = StudyDirectory::open(out);
+  catch_interruptions();
+  run_study(study, directory, 1, runs_of_task(directory, task), {{}, interrupted});
+  return interrupted() ? interrupted_status() : exit_done;
+}
+
+void gather(const std::string& out) {
+  const ThreadCount one(1);
+  auto [directory, study] = StudyDirectory::open(out);
+  if (was_submitted(directory))
+    fmt::print("{}\n", gather_from_slurm(study, directory));
+  else
+    directory.gather(study);
+}
+
 void print_status(const std::string& out) {
   const auto [directory, study] = StudyDirectory::open(out);
   const StudyStatus status = status_of(directory, study);
   fmt::print("{}: {}; {} of processor time so far\n", study.input().name, by_status(status), duration(status.run_s));
   print_reasons(status);
+  if (was_submitted(directory)) fmt::print("  {}\n", jobs_on_slurm(directory));
 }
+
+void cancel(const std::string& out) { cancel_on_slurm(StudyDirectory::open(out).first); }
 
 }  // namespace
 
@@ -133,13 +194,31 @@ void add_study_command(CLI::App& app, int& status) {
   command->add_flag("--resume", options->resume, "go on with the study in DIR; begin where there is none")
       ->excludes(overwrite);
   command->add_flag("--quiet", options->quiet, "no progress and no result on the terminal");
+  command->add_option("--engine", options->engine, "local: processes of this machine; slurm: an array of jobs")
+      ->check(CLI::IsMember({"local", "slurm"}));
+  command
+      ->add_option("--sbatch", options->sbatch, "slurm: an option for sbatch, as --sbatch=--partition=long; repeatable")
+      ->allow_extra_args(false);
+  command->add_flag("--wait", options->wait, "slurm: wait until the jobs have ended");
   command->footer(
       "Examples: plica study stiffness.toml --out results/stiffness\n          plica study status results/stiffness");
 
-  CLI::App* status_command = command->add_subcommand("status", "how far a study is, and what failed");
-  auto out = std::make_shared<std::string>();
-  status_command->add_option("DIR", *out, "the directory of a study")->required();
-  status_command->callback([out] { print_status(*out); });
+  const auto of_directory = [command](const char* name, const char* what) {
+    CLI::App* one = command->add_subcommand(name, what);
+    auto out = std::make_shared<std::string>();
+    one->add_option("DIR", *out, "the directory of a study")->required();
+    return std::pair(one, out);
+  };
+  const auto [of_status, status_out] = of_directory("status", "how far a study is, and what failed");
+  of_status->callback([out = status_out] { print_status(*out); });
+  const auto [of_cancel, cancel_out] = of_directory("cancel", "cancel its jobs on Slurm; rows that there are stay");
+  of_cancel->callback([out = cancel_out] { cancel(*out); });
+  const auto [of_gather, gather_out] = of_directory("gather", "write runs.csv from the rows that there are");
+  of_gather->callback([out = gather_out] { gather(*out); });
+  const auto [of_work, work_out] = of_directory("work", "run what a task of an array is to run");
+  auto task = std::make_shared<int>(0);
+  of_work->add_option("--task", *task, "its number, from 0")->required();
+  of_work->callback([out = work_out, task, &status] { status = work(*out, *task); });
 
   command->callback([options, command, &status] {
     if (command->get_subcommands().empty()) status = run(*options);

@@ -293,18 +293,23 @@ StudyDesign points_of_csv(const std::string& text) {
   const auto rows = csv_fields(text);
   const auto refuse = [] { throw FileError("points.csv is no list of points; start the study anew"); };
   if (rows.empty() || rows.front().size() < 4) refuse();
+  const auto whole_number = [&](const std::string& text) {
+    const double number = number_in(text).value_or(0);
+    if (!(number >= 1 && number <= static_cast<double>(most_runs) && number == std::floor(number))) refuse();
+    return static_cast<int>(number);
+  };
   StudyDesign design;
   design.keys.assign(rows.front().begin() + 3, rows.front().end() - 1);
   for (std::size_t r = 1; r < rows.size(); ++r) {
     const auto& row = rows[r];
     if (row.size() != rows.front().size()) refuse();
     StudyPoint point;
-    point.point = static_cast<int>(number_in(row[1]).value_or(0));
-    point.replicate = static_cast<int>(number_in(row[2]).value_or(0));
+    point.point = whole_number(row[1]);
+    point.replicate = whole_number(row[2]);
     point.values.assign(row.begin() + 3, row.end() - 1);
     for (std::size_t begin = 0; begin < row.back().size();) {
       const std::size_t end = std::min(row.back().find(' ', begin), row.back().size());
-      point.seeds.push_back(row.back().substr(begin, end - begin));
+      if (end > begin) point.seeds.push_back(row.back().substr(begin, end - begin));
       begin = end + 1;
     }
     design.runs.push_back(std::move(point));

@@ -1,11 +1,35 @@
 #include "study/run_study.hpp"
 
-#include <numeric>
+#include <fmt/format.h>
 
+#include <filesystem>
+#include <numeric>
+#include <utility>
+
+#include "core/errors.hpp"
 #include "core/threads.hpp"
 #include "study/worker_pool.hpp"
 
 namespace plica {
+namespace fs = std::filesystem;
+namespace {
+
+// By what the first run has left: before the disk is full, and not after hours.
+void require_room(const fs::path& directory, const std::string& run, std::size_t left) {
+  std::error_code error;
+  double bytes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(directory / "points" / run, error))
+    if (entry.is_regular_file(error)) bytes += static_cast<double>(entry.file_size(error));
+  const auto free = static_cast<double>(fs::space(directory, error).available);
+  const double needed = bytes * static_cast<double>(left);
+  if (!error && needed > free)
+    throw FileError(
+        fmt::format("{}: the other {} runs will leave {:.1f} GB, and {:.1f} GB are free on the disk; keep less "
+                    "(keep.each), give another --out, or make room and go on with --resume",
+                    directory.string(), left, needed / 1e9, free / 1e9));
+}
+
+}  // namespace
 
 void run_study(const Study& study, StudyDirectory& directory, int jobs, const std::vector<std::size_t>& runs,
                const StudyHooks& hooks) {
@@ -22,12 +46,16 @@ void run_study(const Study& study, StudyDirectory& directory, int jobs, const st
     const std::optional<RunRow> row = study.run(run, directory.path(), worker_is_to_stop);
     return row ? study.line_of(run, *row) : "";
   };
+  bool has_room = study.input().each == KeptOfRun::row;  // or has been looked at
+  std::size_t left = open.size();
   const auto take = [&](std::size_t run, const std::string& answer, const std::string& reason) {
     RunRow crashed = study.not_run();
     crashed.status = "crashed", crashed.reason = reason;
     const std::string row = reason.empty() ? answer : study.line_of(run, crashed);
     if (row.empty()) return;  // another process is at it
     directory.add(run, row);
+    --left;
+    if (!std::exchange(has_room, true)) require_room(directory.path(), study.name_of(run), left);
     if (hooks.on_row) hooks.on_row(run, row);
   };
   work_in_processes(jobs, open, row_of, {take, hooks.stop_requested});

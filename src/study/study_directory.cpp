@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -48,6 +49,15 @@ void require_same_plica(const fs::path& directory, const Json& begun) {
                     directory.string(), with, this_plica()));
 }
 
+// Whether there is what a study that was killed as it began does not leave.
+bool holds_something_else(const fs::path& directory) {
+  constexpr std::array<std::string_view, 4> own = {"rows", "study.toml", "scenario.toml", "points.csv"};
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error))
+    if (std::ranges::find(own, entry.path().filename().string()) == own.end()) return true;
+  return fs::exists(directory, error) && !fs::is_directory(directory, error);
+}
+
 // Whole rows of a file: "run,row".
 void read_rows(const fs::path& file, StudyRows& rows, std::size_t runs) {
   const std::string text = read_file(file);
@@ -88,12 +98,12 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
   if (holds_one && start == Start::fresh)
     throw UsageError(directory.string() +
                      ": holds a study; go on with it by --resume, replace it by --overwrite, or give another --out");
-  if (!holds_one && fs::exists(directory, error) && !fs::is_empty(directory, error) && start != Start::resumed)
+  if (!holds_one && holds_something_else(directory))
     throw UsageError(directory.string() + ": is there already and holds no study; give another --out");
   fs::create_directories(directory, error);
   if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
   fs::remove(directory / "study.json", error);
-  for (const char* name : {"rows", "points", "chunks"}) fs::remove_all(directory / name, error);
+  for (const char* name : {"rows", "points", "slurm"}) fs::remove_all(directory / name, error);
   fs::remove(directory / "runs.csv", error);
   fs::create_directories(directory / "rows", error);
   write_file(directory / "study.toml", input.text);

@@ -154,8 +154,10 @@ class Study(CommandLine):
         foreign = self.folder / "foreign"
         foreign.mkdir()
         (foreign / "thesis.txt").write_text("mine")
-        refused = plica("study", self.file, "--out", foreign)
-        self.assertEqual((refused.returncode, sorted(p.name for p in foreign.iterdir())), (2, ["thesis.txt"]))
+        (foreign / "points").mkdir()
+        for flags in ([], ["--resume"], ["--overwrite"]):
+            refused = plica("study", self.file, "--out", foreign, *flags)
+            self.assertEqual((refused.returncode, sorted(p.name for p in foreign.iterdir())), (2, ["points", "thesis.txt"]))
         for arguments, told in [([], "which study"), ([self.file], "--out"), (["none.toml", "--out", "x"], "none.toml")]:
             result = plica("study", *arguments)
             self.assertIn(result.returncode, (2, 4))

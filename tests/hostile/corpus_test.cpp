@@ -49,6 +49,11 @@ TEST(FuzzCorpus, Scenarios) {
   EXPECT_GE(counts.taken, 3);
 }
 
+TEST(FuzzCorpus, Studies) {
+  const Counts counts = replay("study", fuzz_study, 300);
+  EXPECT_GE(counts.taken, 4);
+}
+
 TEST(FuzzCorpus, Meshes) {
   const Counts counts = replay("mesh", fuzz_mesh, 1000);
   EXPECT_GE(counts.taken, 4);

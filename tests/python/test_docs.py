@@ -10,9 +10,10 @@ ROOT = Path(__file__).parents[2]
 def run_blocks(page):
     blocks = re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(encoding="utf-8"), re.M | re.S)
     assert blocks
-    names = {}
+    names: dict = {}
     for block in blocks:
         exec(compile(block, page, "exec"), names)
+    return names
 
 
 def test_python_page(tmp_path, monkeypatch, capsys):
@@ -20,6 +21,16 @@ def test_python_page(tmp_path, monkeypatch, capsys):
     run_blocks("docs/python.md")
     whole, half = map(float, capsys.readouterr().out.split())
     assert whole > 10 and half > 10 and abs(whole - half) > 0.1
+
+
+def test_studies_page(tmp_path, monkeypatch):
+    pytest.importorskip("xarray")
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs/studies.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"^```toml\n# stiffness.toml\n(.*?)^```", page, re.M | re.S)
+    (tmp_path / "stiffness.toml").write_text(text.replace("[vary]", '[set]\n"time.end_min" = 0.2\n[vary]'))
+    names = run_blocks("docs/studies.md")
+    assert dict(names["depths"].sizes) == {"contraction.apical.stiffness_nN_per_um": 4, "region.furrow.cells_across": 3}
 
 
 def test_readme(tmp_path, monkeypatch, capsys):

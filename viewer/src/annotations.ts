@@ -24,7 +24,7 @@ export interface Frame {
   title: string; // "": none
   time: string; // "": none
   showMarks: boolean;
-  isSmall: boolean; // the scale's length stands beside its bar, not above it
+  isSmall: boolean; // time is in small letters; the scale's length stands beside its bar, not above it
 }
 
 export function annotate(context: CanvasRenderingContext2D, frame: Frame): void {
@@ -34,8 +34,8 @@ export function annotate(context: CanvasRenderingContext2D, frame: Frame): void 
   drawScaleBar(context, frame);
   context.textAlign = "left";
   context.textBaseline = "top";
-  context.font = `600 15px ${font}`;
-  context.fillText(frame.time, 10, 10);
+  context.font = frame.isSmall ? `11px ${font}` : `600 15px ${font}`;
+  context.fillText(frame.time, frame.isSmall ? 8 : 10, frame.isSmall ? 3 : 10);
   if (frame.title !== "") {
     context.font = `13px ${font}`;
     context.fillText(shortened(context, frame.title, frame.width - 20), 10, 30);

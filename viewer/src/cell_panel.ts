@@ -26,7 +26,7 @@ export class CellPanel {
       void this.pick(run, Number(this.input.value));
     });
     this.holder.append(element("h2", {}, "Picked cell"), form, this.content);
-    state.on(["picked", "time", "field"], () => this.update());
+    state.on(["picked", "time", "field", "shown"], () => this.update());
     this.update();
   }
 
@@ -48,8 +48,8 @@ export class CellPanel {
   }
 
   private update(): void {
-    const { picked, time } = this.state.now;
-    if (!picked) {
+    const { picked, time, shown } = this.state.now;
+    if (!picked || !shown.has(picked.run)) {
       this.content.replaceChildren(element("p", { class: "note" }, "A click on a cell shows its values here."));
       this.chart?.destroy();
       this.chart = null;

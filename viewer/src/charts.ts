@@ -5,7 +5,7 @@ import { element, styleColour } from "./dom";
 import { fewRuns } from "./page_data";
 import type { Run } from "./run";
 import { type LineLook, type RunLooks, sampleOf } from "./run_looks";
-import type { State } from "./state";
+import { pointWith, type State } from "./state";
 import { number, words } from "./text";
 
 const plotHeight = 190;
@@ -134,7 +134,8 @@ export class Chart {
     this.fillLegend();
     this.plot = new uPlot(this.options(), this.data(), this.holder);
     this.line = new TimeLine(this.plot);
-    if (this.many) this.pointByHand(this.plot);
+    const { plot } = this;
+    if (this.many) pointWith(plot.over, (event) => this.runNear(plot, event), this.state);
     this.showTime();
     this.showPointed();
   }
@@ -227,14 +228,7 @@ export class Chart {
     this.pointedValue.textContent = curve ? `${curve.run.name}: ${number(nearestPoint(curve.points, time)?.value)}` : "";
   }
 
-  private pointByHand(plot: uPlot): void {
-    const point = (event: PointerEvent) => this.state.set({ pointed: this.runNear(plot, event) });
-    plot.over.addEventListener("pointermove", point);
-    plot.over.addEventListener("pointerdown", point);
-    plot.over.addEventListener("pointerleave", () => this.state.set({ pointed: null }));
-  }
-
-  private runNear(plot: uPlot, { clientX, clientY }: PointerEvent): number | null {
+  private runNear(plot: uPlot, { clientX, clientY }: MouseEvent): number | null {
     const { left, top } = plot.over.getBoundingClientRect();
     const time = plot.posToVal(clientX - left, "x");
     let [nearest, least]: [number | null, number] = [null, pointingReach];

@@ -6,7 +6,7 @@ import { fewRuns, type PageData } from "./page_data";
 import type { Run } from "./run";
 import type { RunLooks } from "./run_looks";
 import { Painter, RunView, screenRatio } from "./run_view";
-import type { State } from "./state";
+import { pointWith, type State } from "./state";
 
 const clickTolerance = 4; // pixels between press and release
 const turnStep = 0.12; // rad a key press
@@ -244,8 +244,7 @@ export class EmbryoViews {
       this.arrange();
       if (this.large) this.large.box.scrollIntoView({ block: "nearest" });
     });
-    view.box.addEventListener("pointerenter", () => this.state.set({ pointed: view.run.number }));
-    view.box.addEventListener("pointerleave", () => this.state.set({ pointed: null }));
+    pointWith(view.box, view.run.number, this.state);
     let pressed = { x: 0, y: 0 };
     view.canvas.addEventListener("pointerdown", (event) => (pressed = { x: event.clientX, y: event.clientY }));
     view.canvas.addEventListener("pointerup", (event) => {

@@ -16,7 +16,7 @@ function oneRun(run: Run, named: boolean): string {
   if (!summary) return `${run.name}: not finished`;
   const crossing = Number(summary.self_intersections ?? 0) > 0 ? ", passes through itself" : "";
   const depth = typeof summary.furrow_depth_um === "number" ? `, furrow ${number(summary.furrow_depth_um)} µm deep` : "";
-  return `${named ? `${run.name}: ` : ""}${summary.cells} cells, ${summary.status} at ${number(Number(summary.time_s) / 60)} min${depth}${crossing}`;
+  return `${named ? `${run.name}: ` : ""}${summary.cells} cells, ${String(summary.status).replaceAll("_", " ")} at ${number(Number(summary.time_s) / 60)} min${depth}${crossing}`;
 }
 
 function manyRuns(runs: Run[], page: PageData): string {
@@ -25,6 +25,8 @@ function manyRuns(runs: Run[], page: PageData): string {
   if (keys.length > 0) parts.push(`differ in ${keys.slice(0, 4).join(", ")}${keys.length > 4 ? ` and ${keys.length - 4} more keys` : ""}`);
   const depths = runs.map((run) => run.data.summary?.furrow_depth_um).filter((depth) => typeof depth === "number");
   if (depths.length > 0) parts.push(`furrows ${number(Math.min(...depths), 3)} to ${number(Math.max(...depths), 3)} µm deep`);
+  const failed = runs.filter((run) => run.failed).length;
+  if (failed > 0) parts.push(`${failed} failed`);
   const unfinished = runs.filter((run) => !run.data.summary).length;
   if (unfinished > 0) parts.push(`${unfinished} not finished`);
   return parts.join("; ");
@@ -34,24 +36,26 @@ function manyRuns(runs: Run[], page: PageData): string {
 function showCrossings(runs: Run[]): void {
   const since = runs.flatMap((run) => {
     const first = run.series.column("self_intersections").findIndex((pairs) => (pairs ?? 0) > 0);
-    if (first < 0) return [];
-    return [`${runs.length > 1 ? `${run.name}: from` : "From"} ${number((run.series.column("time_s")[first] ?? 0) / 60)} min`];
+    return first < 0 ? [] : [{ name: run.name, minutes: (run.series.column("time_s")[first] ?? 0) / 60 }];
   });
   if (since.length === 0) return;
   const notice = byId("crossing");
-  notice.textContent = `${since.join("; ")} on, the tissue passes through itself: colour it by “passes through itself” to see where. What comes after is no tissue any more.`;
+  const first = number(Math.min(...since.map(({ minutes }) => minutes)));
+  const when = since.length > fewRuns
+    ? `In ${since.length} of ${runs.length} runs (their status says which), the first from ${first} min`
+    : since.map(({ name, minutes }) => `${runs.length > 1 ? `${name}: from` : "From"} ${number(minutes)} min`).join("; ");
+  notice.textContent = `${when} on, the tissue passes through itself: colour it by “passes through itself” to see where. What comes after is no tissue any more.`;
   notice.hidden = false;
 }
 
 function showThinning(runs: Run[]): void {
-  const names = new Map<string, string[]>();
-  for (const { name, frames, data } of runs) {
-    if (data.every <= 1) continue;
-    const text = `${frames.length} of ${data.frames_saved} saved frames are in this page (every ` +
-      `${data.every === 2 ? "2nd" : `${data.every}th`}, the last, and those on both sides of a division), so that it stays small.`;
-    names.set(text, [...(names.get(text) ?? []), name]);
-  }
-  byId("thinned").textContent = [...names]
-    .map(([text, of]) => `${of.length <= 3 ? of.join(", ") : `${of.length} runs, each`}: ${text}`)
-    .join(" ");
+  const thinned = runs.filter((run) => run.data.every > 1);
+  if (thinned.length === 0) return;
+  // Of many runs how many frames each has stands with its scenario.
+  const which = thinned.length > fewRuns
+    ? `Of ${thinned.length} of ${runs.length} runs not all saved frames are in this page`
+    : thinned.map(({ name, frames, data }) => `${name}: ${frames.length} of ${data.frames_saved} saved frames are in this page`).join("; ");
+  const steps = [...new Set(thinned.map((run) => run.data.every))].sort((a, b) => a - b);
+  byId("thinned").textContent = `${which} (every ${steps.map((every) => (every === 2 ? "2nd" : `${every}th`)).join(" or ")}, ` +
+    "the last, and those on both sides of a division), so that it stays small.";
 }

@@ -5,7 +5,7 @@ import { colourAt, css } from "./colour";
 import { element, styleColour, whenNear } from "./dom";
 import { fewRuns, type PageData } from "./page_data";
 import type { Run } from "./run";
-import type { State } from "./state";
+import { pointWith, type State } from "./state";
 import { number } from "./text";
 
 export const midlineQuantities = ["depth_um", "normal_speed_um_per_s", "apical_area_ratio"];
@@ -72,8 +72,7 @@ export class Kymograph {
     new ResizeObserver(() => this.fit()).observe(this.holder);
     state.on(["time"], () => this.line?.show(state.now.time));
     state.on(["pointed"], () => this.box.classList.toggle("pointed", state.now.pointed === run.number));
-    this.box.addEventListener("pointerenter", () => state.set({ pointed: run.number }));
-    this.box.addEventListener("pointerleave", () => state.set({ pointed: null }));
+    pointWith(this.box, run.number, state);
     const sort = () => (this.box.style.order = String(state.now.order.indexOf(run.number)));
     state.on(["order"], sort);
     sort();

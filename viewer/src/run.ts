@@ -161,6 +161,10 @@ export class Run {
     return this.frames.length > 0;
   }
 
+  get failed(): boolean {
+    return this.data.summary?.status === "failed";
+  }
+
   get endTime(): number {
     const rows = this.series.rows;
     return Math.max(this.frames.at(-1)?.time ?? 0, rows.at(-1)?.[0] ?? 0);

@@ -10,8 +10,8 @@ export interface LineLook {
   dash: number[];
 }
 
-// With six colours: thirty runs.
-const dashes: number[][] = [[], [8, 4], [2, 3], [9, 3, 2, 3], [16, 4]];
+// With six colours: 36 runs.
+const dashes: number[][] = [[], [8, 4], [2, 3], [9, 3, 2, 3], [16, 4], [9, 3, 2, 3, 2, 3]];
 
 // From the least value to the greatest, evenly in lightness, so that order shows with any kind of colour vision; darker
 // than what they stand on by day, lighter by night.

@@ -106,6 +106,15 @@ export class RunView {
     this.caption.replaceChildren(sampleOf(looks.lookOf(this.run)), element("span", {}, this.run.name));
   }
 
+  // In small pictures time stands only where it is not the page's: the run has ended before, and this is its end.
+  private get timeShown(): string {
+    const { endTime, failed, data } = this.run;
+    const { time } = this.state.now;
+    if (!this.isSmall) return timeText(Math.min(time, endTime));
+    const how = failed ? "failed" : data.summary ? "ended" : "still";
+    return time > endTime ? `${how} at ${timeText(endTime)}` : "";
+  }
+
   get size(): { width: number; height: number } {
     return { width: this.canvas.clientWidth, height: this.canvas.clientHeight };
   }
@@ -154,12 +163,11 @@ export class RunView {
     this.painter.draw(this.scene.scene, this.camera, width, height, ratio);
     context.imageSmoothingQuality = "high";
     context.drawImage(this.painter.canvas, 0, 0, width, height);
-    const shown = Math.min(this.state.now.time, this.run.endTime);
     const scene = this.scene;
     annotate(context, {
       width, height, camera: this.camera, centre: this.run.centre,
       reach: (right, up, along) => scene.reach(right, up, along),
-      title: this.hasCaption ? "" : title, time: this.isSmall ? "" : timeText(shown), showMarks: this.state.now.marks,
+      title: this.hasCaption ? "" : title, time: this.timeShown, showMarks: this.state.now.marks,
       isSmall: this.isSmall,
     });
   }

@@ -4,7 +4,7 @@ import { matches, type Traits } from "./filter";
 import { fewRuns, isTable, type PageData } from "./page_data";
 import type { Run } from "./run";
 import { isNumeric, type RunLooks, sampleOf } from "./run_looks";
-import type { State } from "./state";
+import { pointWith, type State } from "./state";
 import { number, words } from "./text";
 
 const mostKeys = 6; // as columns; the others with "all measures and keys"
@@ -74,7 +74,8 @@ export class RunsTable {
       return made;
     };
     const parts: HTMLElement[] = [
-      this.text, this.count, button("tick-all", "All", () => tickAll(true)), button("tick-none", "None", () => tickAll(false)),
+      this.text, this.count,
+      element("span", { class: "group" }, button("tick-all", "All", () => tickAll(true)), button("tick-none", "None", () => tickAll(false))),
     ];
     if (this.looks.keys.length > 0) parts.push(element("label", {}, "Line colour ", this.colourChoice()), this.ramp);
     return parts;
@@ -115,6 +116,9 @@ export class RunsTable {
     const others = [...new Set(this.runs.flatMap((run) => Object.keys(run.data.summary ?? {})))]
       .filter((key) => !main.includes(key) && key !== "title" && !this.runs.some((run) => isTable(run.data.summary?.[key])));
     const value = (run: Run, key: string) => (run.data.summary?.[key] ?? null) as string | number | null;
+    // Words after numbers: why a run has failed is a sentence or two.
+    const isText = (key: string) => this.runs.some((run) => typeof value(run, key) === "string");
+    others.sort((a, b) => Number(isText(a)) - Number(isText(b)));
     return [
       column("furrow_depth_um", true, "furrow depth, µm", this.runs.map((run) => value(run, "furrow_depth_um"))),
       column("time_s", true, "time, s", this.runs.map((run) => value(run, "time_s") ?? run.endTime)),
@@ -159,8 +163,7 @@ export class RunsTable {
       const text = typeof value === "number" ? number(value) : (value ?? "–");
       row.append(element("td", { "data-key": key, class: isMain ? "" : "more" }, text));
     }
-    row.addEventListener("pointerenter", () => this.state.set({ pointed: run.number }));
-    row.addEventListener("pointerleave", () => this.state.set({ pointed: null }));
+    pointWith(row, run.number, this.state);
     return row;
   }
 

@@ -53,3 +53,16 @@ export class State {
     return () => void this.listeners.splice(this.listeners.indexOf(listener), 1);
   }
 }
+
+/** What points at `box` points at a run, which then stands out: a mouse while it is there, a finger's tap until the next. */
+export function pointWith(box: HTMLElement, run: number | ((event: MouseEvent) => number | null), state: State): void {
+  let byFinger = false;
+  const point = (event: MouseEvent) => state.set({ pointed: typeof run === "number" ? run : run(event) });
+  for (const kind of ["pointerenter", "pointermove", "pointerdown"] as const)
+    box.addEventListener(kind, (event) => {
+      byFinger = event.pointerType === "touch"; // which may be moving the page
+      if (!byFinger) point(event);
+    });
+  box.addEventListener("pointerleave", () => !byFinger && state.set({ pointed: null }));
+  box.addEventListener("click", (event) => byFinger && point(event));
+}

@@ -23,9 +23,12 @@ function table(runs: Run[], rows: Row[], heads = runs.map((run) => run.name)): H
   return element("div", { class: "tables" }, ...pieces.map((piece) => element("div", { class: "scroll" }, onePiece(heads, piece))));
 }
 
+const longestNumber = 14; // characters; what has no more of them is not broken into lines
+
 function onePiece(heads: string[], rows: Row[]): HTMLElement {
-  const head = element("tr", {}, element("th", {}, ""), ...heads.map((head) => element("th", { scope: "col" }, head)));
-  const body = rows.map(([name, values]) => element("tr", {}, name, ...values.map((value) => element("td", {}, value))));
+  const look = (text: string) => (text.length <= longestNumber ? { class: "short" } : undefined);
+  const head = element("tr", {}, element("th", {}, ""), ...heads.map((head) => element("th", { scope: "col", ...look(head) }, head)));
+  const body = rows.map(([name, values]) => element("tr", {}, name, ...values.map((value) => element("td", look(value), value))));
   return element("table", {}, element("thead", {}, head), element("tbody", {}, ...body));
 }
 
@@ -85,7 +88,9 @@ function isShared(runs: Run[], key: string): boolean {
 function scenarios(runs: Run[], state: State): HTMLElement[] {
   const details = runs.map((run) => {
     const own = Object.entries(provenanceOf(run)).filter(([key]) => runs.length > fewRuns && !isShared(runs, key));
-    const text = own.map(([key, value]) => `${key.replaceAll("_", " ")} ${value}`).join("; ");
+    const parts = own.map(([key, value]) => `${key.replaceAll("_", " ")} ${value}`);
+    if (runs.length > fewRuns && run.data.every > 1) parts.push(`${run.frames.length} of ${run.data.frames_saved} saved frames are in this page`);
+    const text = parts.join("; ");
     return element("details", { "data-run": run.name },
       element("summary", {}, runs.length > fewRuns ? run.name : `${run.name}: as resolved, every default filled in`),
       ...(text === "" ? [] : [element("p", { class: "note" }, text)]),

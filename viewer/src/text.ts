@@ -21,6 +21,7 @@ export function time(seconds: number): string {
   return seconds < 120 ? `${number(seconds)} s` : `${number(seconds / 60)} min`;
 }
 
+// Before each, those that end in it.
 const units: [RegExp, string][] = [
   [/_nN_s_per_um$/, "nN·s/µm"],
   [/_nN_per_um$/, "nN/µm"],
@@ -29,13 +30,13 @@ const units: [RegExp, string][] = [
   [/_Pa_s$/, "Pa·s"],
   [/_kg_per_m3$/, "kg/m³"],
   [/_percent$/, "%"],
-  [/_min$/, "min"],
   [/_um_per_min$/, "µm/min"],
+  [/_min$/, "min"],
   [/_um_per_s$/, "µm/s"],
   [/_um3$/, "µm³"],
   [/_um2$/, "µm²"],
-  [/_um$/, "µm"],
   [/_nN_um$/, "nN·µm"],
+  [/_um$/, "µm"],
   [/_nN$/, "nN"],
   [/_MB$/, "MB"],
   [/_Pa$/, "Pa"],

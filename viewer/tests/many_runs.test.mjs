@@ -1,6 +1,6 @@
 // The report of thirty runs: one table, one filter, one context of WebGL, and what a phone makes of it.
 import assert from "node:assert/strict";
-import { readFileSync, statSync } from "node:fs";
+import { readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { begin, changed, end, folder, near, numberOf, open, pixels, report, run, saved, table, tick } from "./browser.mjs";
@@ -12,8 +12,8 @@ const stiffnessKey = "contraction.apical.stiffness_nN_per_um";
 before(async () => {
   const coarse = ["embryo.cells=[12, 7, 6]", "region.furrow.cells_along=8", "region.furrow.cells_across=3", "furrow.vce_cell=1",
     "time.end_s=20", "output.frame_every_s=10"];
-  const one = (name, young, stiffness) =>
-    run("drosophila", name, ...[...coarse, `elasticity.young_modulus_Pa=${young}`, `${stiffnessKey}=${stiffness}`]
+  const one = (name, young, stiffness, ...more) =>
+    run("drosophila", name, ...[...coarse, `elasticity.young_modulus_Pa=${young}`, `${stiffnessKey}=${stiffness}`, ...more]
       .flatMap((setting) => ["--set", setting]));
   const names = [];
   for (const young of moduli)
@@ -25,10 +25,35 @@ before(async () => {
   const ramp = [];
   for (let i = 0; i < 6; ++i) ramp.push(`E1000-k${stiffnesses[(5 * i + 2) % 6]}`);
   report(ramp, "ramp.html");
+  one("failed", 1000, 2.5, "time.end_s=10");
+  report(["failed", ...ramp.slice(1)], "uneven.html");
+  makeUneven("uneven.html");
   await begin();
 });
 
 after(end);
+
+// As if the run called failed had failed, half of all frames had been left out, and the others' tissue passed through itself.
+function makeUneven(file) {
+  const page = readFileSync(join(folder, file), "utf8");
+  const [mark, ending] = ['<script type="application/json" id="data">', "</script>"];
+  const from = page.indexOf(mark) + mark.length;
+  const data = JSON.parse(page.slice(from, page.indexOf(ending, from)));
+  for (const one of data.runs) {
+    one.every = 2;
+    one.frames_saved *= 2;
+    if (one.name === "failed") {
+      Object.assign(one.summary, { status: "failed", failure: `a cell turns inside out; ${"lower what pulls; ".repeat(20)}` });
+      continue;
+    }
+    const [head, ...rows] = one.series.trim().split("\n").map((line) => line.split(","));
+    const place = head.indexOf("self_intersections");
+    for (const row of rows) row[place] = "1";
+    one.series = [head, ...rows].map((row) => row.join(",")).join("\n");
+  }
+  const text = JSON.stringify(data).replaceAll("<", "\\u003c");
+  writeFileSync(join(folder, file), page.slice(0, from) + text + page.slice(page.indexOf(ending, from)));
+}
 
 const shownRuns = (page, part) =>
   page.locator(`${part} [data-run]:visible`).evaluateAll((all) => all.map((one) => one.dataset.run));
@@ -70,6 +95,11 @@ test("thirty runs have thirty lines; where one number differs, lightness follows
   assert.equal(new Set(lines.map(({ colour, dash }) => `${colour} ${dash}`)).size, 30);
   await thirty.page.selectOption("#colour-by", stiffnessKey);
   assert.equal(new Set((await samples(thirty.page)).map(({ colour }) => colour)).size, 6);
+  // Six runs of one modulus have one colour: dashes tell them apart.
+  await thirty.page.selectOption("#colour-by", "elasticity.young_modulus_Pa");
+  const byModulus = await samples(thirty.page);
+  assert.equal(new Set(byModulus.map(({ colour }) => colour)).size, 5);
+  assert.equal(new Set(byModulus.map(({ colour, dash }) => `${colour} ${dash}`)).size, 30);
   await thirty.done();
   for (const dark of [false, true]) {
     const { page, done } = await open("ramp.html", { dark });
@@ -141,6 +171,60 @@ test("what the hand points at stands out in every plot", async () => {
   assert.ok(values.length >= 8 && values.every((value) => value.startsWith("E500-k7: ")), values.join());
   near(numberOf(values[0].split(": ")[1]), table("E500-k7/series.csv").at(-1).furrow_depth_um, 1e-3, "depth");
   assert.ok(changed(before, await pixels(page, "#plots .uplot")) > 0.002, "the others fade");
+  await done();
+});
+
+test("a finger's tap makes a run stand out until the next one; moving the page does not", async () => {
+  const { page, done } = await open("thirty.html", { width: 390, height: 844 });
+  const touch = (selector, ...kinds) => page.locator(selector).first().evaluate((target, kinds) => {
+    for (const kind of kinds)
+      target.dispatchEvent(new PointerEvent(kind, { pointerType: "touch", bubbles: kind === "click" || kind === "pointerdown" }));
+  }, kinds);
+  const pointed = () => page.locator(".runs tr.pointed").evaluateAll((rows) => rows.map((row) => row.dataset.run));
+  const begun = ["pointerenter", "pointerdown"];
+  await touch('.runs tr[data-run="E500-k3"]', ...begun, "pointerleave");
+  assert.deepEqual(await pointed(), [], "the page was moved");
+  await touch('.runs tr[data-run="E500-k3"]', ...begun, "pointerleave", "click");
+  assert.deepEqual(await pointed(), ["E500-k3"]);
+  await touch('#midline [data-run="E750-k2"]', ...begun, "pointerleave", "click");
+  assert.deepEqual(await pointed(), ["E750-k2"]);
+  assert.match(await page.locator(".pointed-value").first().textContent(), /^E750-k2: /);
+  await done();
+});
+
+test("what a page of many runs says of each is said once: ends before the time shown, failures, frames left out, crossings", async () => {
+  const { page, done } = await open("uneven.html");
+  assert.match(await page.textContent("#headline"), /^6 runs; .*; 1 failed$/);
+  assert.match(await page.textContent("#thinned"), /^Of 6 of 6 runs not all saved frames are in this page \(every 2nd, /);
+  assert.match(await page.textContent("#crossing"), /^In 5 of 6 runs \(their status says which\), the first from [\d.]+ min on, /);
+  assert.match(await page.locator("#texts .note").nth(1).textContent(), /\d+ of \d+ saved frames are in this page/);
+  // Why one has failed is more than one line has room for: it comes after all numbers.
+  const columns = await page.locator(".runs thead th").evaluateAll((heads) => heads.map((head) => head.dataset.key));
+  assert.ok(columns.indexOf("failure") > columns.indexOf("max_volume_error"), "words after numbers");
+  // The picture of a run that has ended says so; the others have the page's time.
+  const written = async (name) => {
+    const picture = await pixels(page, `.view[data-run="${name}"] .picture`);
+    let dark = 0;
+    for (let y = 2; y < 16; ++y) for (let x = 6; x < picture.width - 6; ++x) dark += Math.max(...picture.rgb(x, y)) < 120;
+    return dark;
+  };
+  const ended = await written("failed");
+  assert.ok(ended > 20, `${ended} dark pixels above the run that has failed`);
+  assert.equal(await written("E1000-k7"), 0);
+  await done();
+});
+
+test("a picked cell goes with its run when that is hidden, and comes back with it", async () => {
+  const { page, done } = await open("thirty.html");
+  await page.fill("#cell-id", "3");
+  await page.click("#cell button");
+  await page.waitForSelector("#cell dl");
+  const name = await page.locator("#cell dd").first().textContent();
+  await tick(page, `.runs tr[data-run="${name}"] input`, false);
+  assert.equal(await page.locator("#cell dl").count(), 0);
+  assert.equal(await page.locator("#cell .chart").count(), 0);
+  await tick(page, `.runs tr[data-run="${name}"] input`, true);
+  assert.equal(await page.locator("#cell dl").count(), 1);
   await done();
 });
 

@@ -295,6 +295,21 @@ test("phone width and dark mode", async () => {
   }
 });
 
+test("numbers stay in one line on a phone, and have the units of their columns", async () => {
+  const { page, done } = await open("drosophila/report.html", { width: 390, height: 844 });
+  const numbers = await page.locator("#numbers td").evaluateAll((cells) => cells
+    .filter(({ textContent }) => /^−?\d/.test(textContent))
+    .map((cell) => {
+      const range = document.createRange();
+      range.selectNodeContents(cell);
+      return { text: cell.textContent, lines: range.getClientRects().length };
+    }));
+  assert.ok(numbers.length >= 30, `${numbers.length} numbers`);
+  assert.deepEqual(numbers.filter(({ lines }) => lines !== 1), []);
+  assert.equal(await page.locator('#numbers th[title="active_work_nN_um"]').textContent(), "active work, nN·µm");
+  await done();
+});
+
 test("the picture and the table are saved", async () => {
   const { page, done } = await open("drosophila/report.html");
   const { name, bytes: png } = await saved(page, "#save-picture");

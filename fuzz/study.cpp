@@ -1,0 +1,44 @@
+#include <string>
+
+#include "core/errors.hpp"
+#include "study/csv_fields.hpp"
+#include "study/design.hpp"
+#include "targets.hpp"
+
+namespace plica {
+namespace {
+
+void require(bool holds) {
+  if (!holds) __builtin_trap();
+}
+
+// A list of points that is one is written as it was read, but for quotes.
+void check_points(const std::string& text) try {
+  const StudyDesign design = points_of_csv(text);
+  const std::string written = points_csv(design);
+  require(points_csv(points_of_csv(written)) == written);
+} catch (const FileError&) {
+}
+
+}  // namespace
+
+bool fuzz_study(std::string_view bytes) try {
+  const std::string text(bytes);
+  check_points(text);
+  const StudyInput study = parse_study("fuzzed", "/nowhere/fuzzed.toml", text);
+  require(!study.keys.empty() || study.kind == DesignKind::file);
+  // Designs that need no scenario, of a size that is made at once.
+  if (study.replicates > 1 || study.points > 1000 || study.keys.size() > 4) return true;
+  if (study.kind != DesignKind::sobol && study.kind != DesignKind::latin_hypercube) return true;
+  const StudyDesign design = design_of(study);
+  require(design.runs.size() == static_cast<std::size_t>(study.points));
+  for (const StudyPoint& run : design.runs) require(run.values.size() == study.keys.size());
+  return true;
+} catch (const ScenarioError& error) {
+  require(!error.diagnostics().empty());
+  for (const Diagnostic& diagnostic : error.diagnostics())
+    require(!diagnostic.problem.empty() && diagnostic.text().find('\n') == std::string::npos);
+  return false;
+}
+
+}  // namespace plica

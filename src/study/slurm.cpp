@@ -1,0 +1,225 @@
+#include "study/slurm.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+
+#include "core/command.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/numbers.hpp"
+#include "study/csv_fields.hpp"
+#include "study/run_study.hpp"
+
+namespace plica {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double task_s = 600;            // what a task is to take: long beside what Slurm needs to start it
+constexpr std::size_t most_tasks = 1000;  // Slurm's usual largest array
+constexpr int most_restarts = 20;         // of a task that runs into its limit
+
+fs::path folder(const StudyDirectory& directory) { return fs::absolute(directory.path()) / "slurm"; }
+
+std::string in_shell(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+std::vector<std::size_t> open_runs(const Study& study, const StudyDirectory& directory) {
+  const StudyRows rows = directory.rows();
+  std::vector<std::size_t> open;
+  for (std::size_t r = 0; r < study.runs(); ++r)
+    if (!rows.contains(r)) open.push_back(r);
+  return open;
+}
+
+// Slurm's limit is near, or it wants the place back: plica ends well, and a task that has more to do is queued again.
+std::string task_script(const fs::path& folder, const SlurmSubmission& plan) {
+  const std::string program = in_shell(fs::read_symlink("/proc/self/exe").string());
+  const std::string study = in_shell(folder.parent_path().string());
+  return fmt::format(R"(#!/bin/bash
+#SBATCH --job-name=plica-study
+#SBATCH --requeue --open-mode=append --signal=B:USR1@60
+#SBATCH --ntasks=1 --cpus-per-task=1 --time={} --mem={}M
+ended() {{ kill -TERM "$child" 2>/dev/null; wait "$child"; }}
+again() {{
+  ended
+  [ "${{SLURM_RESTART_COUNT:-0}}" -ge {} ] || scontrol requeue "${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID"
+  exit 0
+}}
+trap again USR1
+trap 'ended; exit 143' TERM
+export OMP_NUM_THREADS=1
+{} study work {} --task "$SLURM_ARRAY_TASK_ID" & child=$!  # bash hears of signals only while it waits
+wait "$child"
+)",
+                     plan.limit_min, plan.memory_MB, most_restarts, program, study);
+}
+
+std::string gather_script(const fs::path& folder) {
+  return fmt::format(R"(#!/bin/bash
+#SBATCH --job-name=plica-gather
+#SBATCH --requeue --open-mode=append
+#SBATCH --ntasks=1 --cpus-per-task=1 --time=60
+export OMP_NUM_THREADS=1
+exec {} study gather {}
+)",
+                     in_shell(fs::read_symlink("/proc/self/exe").string()), in_shell(folder.parent_path().string()));
+}
+
+std::string submit(std::vector<std::string> words, const SlurmOptions& options) {
+  words.insert(words.begin(), {"sbatch", "--parsable"});
+  words.insert(words.begin() + 2, options.sbatch.begin(), options.sbatch.end());
+  const CommandResult result = run_command(words);
+  if (result.status == -1) throw UsageError("sbatch cannot be run: is this a machine from which jobs are submitted?");
+  const std::string number = result.output.substr(0, result.output.find_first_of(";\n"));
+  if (result.status != 0 || !number_in(number))
+    throw UsageError("Slurm does not take the study: " +
+                     result.output.substr(0, result.output.find_last_not_of('\n') + 1));
+  return number;
+}
+
+Json jobs_in(const StudyDirectory& directory) {
+  try {
+    return Json::parse(read_file(folder(directory) / "jobs.json"));
+  } catch (const std::exception&) {
+    throw FileError((folder(directory) / "jobs.json").string() + ": cannot be read: was the study submitted to Slurm?");
+  }
+}
+
+void submit_open(const Study& study, const StudyDirectory& directory, const SlurmOptions& options, int attempt,
+                 SlurmSubmission& plan) {
+  const std::vector<std::size_t> open = open_runs(study, directory);
+  const fs::path here = folder(directory);
+  plan.runs = open.size();
+  const double a_task =
+      std::max({1.0, task_s / std::max(plan.run_s, 1e-3), std::ceil(static_cast<double>(open.size()) / most_tasks)});
+  plan.runs_a_task = static_cast<std::size_t>(std::min(a_task, std::ceil(static_cast<double>(open.size()) / 8)));
+  plan.runs_a_task = std::max(plan.runs_a_task, (open.size() + most_tasks - 1) / most_tasks);
+  plan.tasks = (open.size() + plan.runs_a_task - 1) / plan.runs_a_task;
+  plan.limit_min = 10 + static_cast<int>(std::ceil(3 * plan.run_s * static_cast<double>(plan.runs_a_task) / 60));
+  write_file(here / "runs.txt", fmt::format("{}\n{}\n", plan.runs_a_task, fmt::join(open, "\n")));
+  write_file(here / "task.sh", task_script(here, plan));
+  write_file(here / "gather.sh", gather_script(here));
+  std::error_code error;
+  fs::remove(here / "ended", error);
+  plan.array = submit({fmt::format("--array=0-{}", plan.tasks - 1), "--output=" + (here / "log" / "%A_%a.txt").string(),
+                       (here / "task.sh").string()},
+                      options);
+  plan.gather = submit({"--dependency=afterany:" + plan.array, "--output=" + (here / "log" / "gather_%j.txt").string(),
+                        (here / "gather.sh").string()},
+                       options);
+  const Json jobs = {{"array", plan.array},        {"gather", plan.gather},    {"attempt", attempt},
+                     {"retries", options.retries}, {"sbatch", options.sbatch}, {"run_s", plan.run_s},
+                     {"memory_MB", plan.memory_MB}};
+  write_file(here / "jobs.json", jobs.dump(2) + '\n');
+}
+
+}  // namespace
+
+SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, const SlurmOptions& options,
+                                const std::function<bool()>& stop) {
+  std::error_code error;
+  fs::create_directories(folder(directory) / "log", error);
+  if (error) throw FileError(folder(directory).string() + ": cannot be made: " + error.message());
+  fs::remove(folder(directory) / "cancelled", error);
+  SlurmSubmission plan;
+  const std::vector<std::size_t> open = open_runs(study, directory);
+  if (!open.empty())
+    run_study(study, directory, 1, {open.front()},
+              {[&](std::size_t, const std::string& row) {
+                 const auto fields = csv_fields(row).front();
+                 plan.run_s = number_in(fields[fields.size() - 2]).value_or(0);
+               },
+               stop});
+  rusage used{};
+  ::getrusage(RUSAGE_CHILDREN, &used);
+  plan.memory_MB = 200 + static_cast<int>(1.5 * static_cast<double>(used.ru_maxrss) / 1024);
+  if (stop && stop()) return plan;
+  if (open.size() <= 1) {
+    directory.gather(study);
+    write_file(folder(directory) / "ended", "");
+    return plan;
+  }
+  submit_open(study, directory, options, 0, plan);
+  return plan;
+}
+
+std::vector<std::size_t> runs_of_task(const StudyDirectory& directory, int task) {
+  std::istringstream text(read_file(folder(directory) / "runs.txt"));
+  std::size_t runs_a_task = 0;
+  text >> runs_a_task;
+  std::vector<std::size_t> all, result;
+  for (std::size_t run = 0; text >> run;) all.push_back(run);
+  const std::size_t begin = static_cast<std::size_t>(task) * runs_a_task;
+  if (task < 0 || runs_a_task == 0 || begin >= all.size())
+    throw UsageError(fmt::format("--task {}: the study has no such task", task));
+  result.assign(all.begin() + static_cast<long>(begin),
+                all.begin() + static_cast<long>(std::min(begin + runs_a_task, all.size())));
+  return result;
+}
+
+std::string gather_from_slurm(const Study& study, StudyDirectory& directory) {
+  directory.gather(study);
+  const std::size_t missing = open_runs(study, directory).size();
+  const Json jobs = jobs_in(directory);
+  const int attempt = jobs.value("attempt", 0);
+  std::error_code error;
+  const bool is_cancelled = fs::exists(folder(directory) / "cancelled", error);
+  if (missing > 0 && !is_cancelled && attempt < jobs.value("retries", 0)) {
+    SlurmSubmission plan;
+    plan.run_s = jobs.value("run_s", 0.0), plan.memory_MB = jobs.value("memory_MB", 1000);
+    submit_open(study, directory, {jobs.value("sbatch", std::vector<std::string>{}), jobs.value("retries", 0)},
+                attempt + 1, plan);
+    return fmt::format("{} runs have no row; submitted again as job {}", missing, plan.array);
+  }
+  write_file(folder(directory) / "ended", "");
+  return missing == 0 ? "all runs have their row" : fmt::format("{} runs have no row", missing);
+}
+
+bool was_submitted(const StudyDirectory& directory) {
+  std::error_code error;
+  return fs::exists(folder(directory) / "jobs.json", error);
+}
+
+bool slurm_has_ended(const StudyDirectory& directory) {
+  std::error_code error;
+  return fs::exists(folder(directory) / "ended", error);
+}
+
+void cancel_on_slurm(const StudyDirectory& directory) {
+  const Json jobs = jobs_in(directory);
+  write_file(folder(directory) / "cancelled", "");
+  const CommandResult result = run_command({"scancel", jobs.value("array", ""), jobs.value("gather", "")});
+  if (result.status != 0) throw UsageError("scancel does not do it: " + result.output);
+  write_file(folder(directory) / "ended", "");
+}
+
+std::string jobs_on_slurm(const StudyDirectory& directory) {
+  const Json jobs = jobs_in(directory);
+  if (slurm_has_ended(directory)) return "its jobs have ended";
+  const CommandResult result = run_command({"squeue", "--noheader", "--array", "--format=%T",
+                                            "--jobs=" + jobs.value("array", "") + "," + jobs.value("gather", "")});
+  if (result.status != 0) return "what has become of its jobs Slurm does not say";
+  std::map<std::string, int> by_state;
+  std::istringstream lines(result.output);
+  for (std::string state; lines >> state;) ++by_state[state];
+  std::vector<std::string> texts;
+  for (const auto& [state, count] : by_state) texts.push_back(fmt::format("{} {}", count, state));
+  return texts.empty() ? "none of its jobs is left"
+                       : fmt::format("jobs {} and {}: {}", jobs.value("array", ""), jobs.value("gather", ""),
+                                     fmt::join(texts, ", "));
+}
+
+}  // namespace plica
