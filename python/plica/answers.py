@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .errors import PlicaError, needed
 from .results import open_run
@@ -23,6 +24,7 @@ __all__ = ["verdict"]
 FINISHED = ("equilibrium", "end_time")  # the status of a run that has results
 VERDICT_COLUMNS = ("self_intersections", "lips_closed_time_s", "furrow_depth_below_lips_um")
 FURROWED_UM = 1.0  # docs/measures.md: below that, a belly is flattened
+LETTERS = "abcdefghijklmnopqrstuvwxyz"
 COLOURS = {"closed": "#009E73", "furrowed": "#0072B2", "flattened": "#F0E442", "passes through itself": "#D55E00",
            "failed": "#555555", "refused": "#999999", "not run": "#E5E5E5", "replicates differ": "#FFFFFF"}
 OTHER_COLOURS = ("#56B4E9", "#E69F00", "#CC79A7", "#8C6D31", "#6A51A3", "#31A354", "#843C39", "#17BECF")
@@ -121,7 +123,11 @@ def curves(study: Study, measure: str) -> Any:
     for key, ax in zip(keys, axes.flat):
         others = [other for other in keys if other != key]
         on_curve = (table[others] == list(first[others])).all(axis=1)
-        _curve(ax, table.loc[on_curve, key], results[on_curve], own.get(key), study._given.get(f"vary.{key}.scale") == "log")
+        _curve(ax, table.loc[on_curve, key], results[on_curve], own.get(key))
+        if study._given.get(f"vary.{key}.scale") == "log":
+            _set_log(ax.xaxis)
+        if table.replicate.nunique() > 1:
+            _mark_replicates(ax, table.loc[on_curve, key], results[on_curve])
         ax.set_xlabel(_label(key))
     for ax in axes[:, 0]:
         ax.set_ylabel(_label(measure))
@@ -129,13 +135,9 @@ def curves(study: Study, measure: str) -> Any:
     return figure
 
 
-def _curve(ax: Any, values: pandas.Series[Any], results: pandas.Series[float], own: Any, is_log: bool) -> None:
-    is_number = _is_number(values)
-    words = [] if is_number else list(dict.fromkeys(map(str, values)))
-    x = values.astype(float) if is_number else values.map(lambda value: float(words.index(str(value))))
+def _curve(ax: Any, values: pandas.Series[Any], results: pandas.Series[float], own: Any) -> None:
+    is_number, (x, words) = _is_number(values), _places(values)
     means = results.groupby(x).mean()  # sorted; NaN where there is none, which breaks the line
-    if x.duplicated().any():
-        ax.plot(x, results, ".", color="C0", alpha=0.5, label="a replicate")
     ax.plot(means.index, means, "o-" if is_number else "o", color="C0", label="result")
     lost = sorted(set(x[results.isna()]))
     if lost:
@@ -146,12 +148,22 @@ def _curve(ax: Any, values: pandas.Series[Any], results: pandas.Series[float], o
         ax.axvline(at, color="0.6", linestyle=":", zorder=0, label="the scenario's own value")
         if np.isfinite(means.get(at, np.nan)):
             ax.plot([at], [means[at]], "D", color="k", markersize=8, fillstyle="none", label="the scenario")
-    if is_log and is_number:
-        ax.set_xscale("log")
     if words:
         ax.set_xticks(range(len(words)), words)
         ax.margins(x=0.15)
     ax.grid(alpha=0.3)
+
+
+def _mark_replicates(ax: Any, values: pandas.Series[Any], results: pandas.Series[float]) -> None:
+    ax.plot(_places(values)[0], results, ".", color="C0", alpha=0.5, label="a replicate")
+
+
+def _places(values: pandas.Series[Any]) -> tuple[pandas.Series[float], list[str]]:
+    """Where values stand along an axis, and the words at 0, 1, 2, … where they are none."""
+    if _is_number(values):
+        return values.astype(float), []
+    words = list(dict.fromkeys(map(str, values)))
+    return values.map(lambda value: float(words.index(str(value)))), words
 
 
 def phase_diagram(
@@ -207,6 +219,8 @@ def phase_diagram(
     _check_is_plane(study, table, x, y)
     columns, rows = _in_order(table[x]), _in_order(table[y])
     shown = list(thumbnails) if not isinstance(thumbnails, int) else _diagonal(table, x, y, columns, rows, thumbnails)
+    if len(shown) > len(LETTERS):
+        raise ValueError(f"thumbnails: {len(shown)} embryos; give {len(LETTERS)} at most")
     if shown and (study._directory is None or study._given.get("keep.each") != "full"):
         raise ValueError('thumbnails: the study has not kept its runs; run it with keep.each = "full" and out')
 
@@ -304,22 +318,25 @@ def _diagonal(table: pandas.DataFrame, x: str, y: str, columns: list[Any], rows:
 def _add_thumbnails(study: Study, table: pandas.DataFrame, ax: Any, below: Any, points: list[int], across: tuple[str, list[Any]],
                     up: tuple[str, list[Any]], view: str) -> None:
     effects = needed("matplotlib.patheffects", "thumbnails")
-    pictures = below.subplots(1, len(points), squeeze=False)[0]
-    for letter, point, picture in zip("abcdefghijklmnopqrstuvwxyz", points, pictures):
+    images: list[NDArray[np.uint8]] = []
+    for letter, point in zip(LETTERS, points):
         found = table[table.point == point]
         if found.empty:
             raise ValueError(f"thumbnails: there is no point {point} in this diagram; there are {sorted(set(table.point))}")
         directory = study._run_directory(int(found.index[0]))
         try:
-            image = render(open_run(directory), view=view, color="contraction", size=(500, 400), bar=False)
+            images.append(render(open_run(directory), view=view, color="region", size=(500, 400), bar=False))
         except (OSError, IndexError) as error:
             raise ValueError(f"thumbnails: point {point} has left no frame in {directory}; choose other points") from error
-        picture.imshow(image)
-        picture.set_title(letter, fontsize="medium")
-        picture.axis("off")
         place = (across[1].index(found[across[0]].iloc[0]), up[1].index(found[up[0]].iloc[0]))
         text = ax.text(*place, letter, color="k", ha="center", va="center", fontweight="bold")
         text.set_path_effects([effects.withStroke(linewidth=3, foreground="w")])
+    drawn = np.any([(image < 250).any(axis=2) for image in images], axis=0)  # what lies around all embryos is cut off
+    up_down, left_right = (np.flatnonzero(drawn.any(axis=axis)) for axis in (1, 0))
+    for letter, image, picture in zip(LETTERS, images, below.subplots(1, len(images), squeeze=False)[0]):
+        picture.imshow(image[up_down[0] : up_down[-1] + 1, left_right[0] : left_right[-1] + 1])
+        picture.set_title(letter, fontsize="medium", fontweight="bold")
+        picture.axis("off")
 
 
 def _results(table: pandas.DataFrame, measure: str) -> pandas.Series[float]:
@@ -359,7 +376,7 @@ def _in_order(values: pandas.Series[Any]) -> list[Any]:
 
 
 def _shown(value: Any) -> str:
-    return f"{value:.4g}" if isinstance(value, (int, float)) and not isinstance(value, bool) else str(value)
+    return f"{value:.3g}" if isinstance(value, (int, float)) and not isinstance(value, bool) else str(value)
 
 
 def _name_and_unit(name: str) -> tuple[str, str]:
@@ -377,12 +394,21 @@ def _label(name: str, with_unit: bool = True) -> str:
     text, unit = _name_and_unit(name)
     if "." in text:  # a key, which stays as one would write it; a long one in two lines
         front, dot, last = text.rpartition(".")
-        text = f"{front}.\n{last}" if len(text) > 24 else text
+        text = f"{front}.\n{last}" if len(text) > 30 else text
     else:
         text = text.replace("_", " ")
     return f"{text} ({unit})" if unit and with_unit else text
 
 
+def _set_log(axis: Any) -> None:
+    """Makes an axis logarithmic, with numbers at 1, 2, 5, 10, … as one reads them."""
+    ticker = needed("matplotlib.ticker", "a logarithmic axis")
+    (axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale)("log")
+    axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_formatter(ticker.NullFormatter())
+
+
 def _legend_below(figure: Any, axes: Any) -> None:
     entries = {label: handle for ax in axes for handle, label in zip(*ax.get_legend_handles_labels())}
-    figure.legend(entries.values(), entries.keys(), loc="outside lower center", ncols=3, frameon=False)
+    figure.legend(entries.values(), entries.keys(), loc="outside lower center", ncols=5, frameon=False)

@@ -61,7 +61,7 @@ class SobolIndices(NamedTuple):
         ax.set_yticks(places, [_label(key, with_unit=False) for key in self.table.index])
         ax.invert_yaxis()
         ax.axvline(0, color="k", linewidth=0.8)
-        ax.set_xlabel(f"share of the variance of {_label(self.measure)}")
+        ax.set_xlabel(f"share of the variance of {_label(self.measure, with_unit=False)}")
         ax.legend(loc="lower center", bbox_to_anchor=(0.4, 1.0), ncols=2, frameon=False)
         ax.grid(axis="x", alpha=0.3)
         return ax.figure

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy as np
 
-from .answers import _label, _results
+from .answers import _label, _results, _set_log
 from .emulator import Array, Emulator, Range, _range
 from .errors import needed
 from .scenario import Scenario
@@ -78,7 +78,7 @@ class Posterior(NamedTuple):
         count, weights = len(self.keys), self.samples.weight
         figure, axes = plt.subplots(count, count, squeeze=False, sharex="col", layout="constrained",
                                     figsize=(1.2 + 2.3 * count, 1.0 + 2.1 * count))
-        bins = int(np.clip(self.effective_size**0.5, 10, 40))
+        bins = int(np.clip(self.effective_size**0.35, 8, 30))
         edges = {key: one.from_unit(np.linspace(0.0, 1.0, bins + 1, dtype=np.float64)) for key, one in self.ranges.items()}
         for row, y in enumerate(self.keys):
             for column, x in enumerate(self.keys):
@@ -88,13 +88,15 @@ class Posterior(NamedTuple):
                     continue
                 if x == y:
                     ax.hist(self.samples[x], edges[x], weights=weights, color="#0072B2")
-                    ax.set_yticks([])
+                    ax.set(yticks=[], xlim=self.ranges[x][:2])
                 else:
                     ax.hist2d(self.samples[x], self.samples[y], [edges[x], edges[y]], weights=weights, cmap="Blues")
-                    ax.set_yscale("log" if self.ranges[y].is_log else "linear")
+                    if self.ranges[y].is_log:
+                        _set_log(ax.yaxis)
                     ax.set_ylabel(_label(y) if column == 0 else "")
                     ax.tick_params(labelleft=column == 0)
-                ax.set_xscale("log" if self.ranges[x].is_log else "linear")
+                if self.ranges[x].is_log:
+                    _set_log(ax.xaxis)
                 if row == count - 1:
                     ax.set_xlabel(_label(x))
         axes[0, 0].set_ylabel("probability")
@@ -108,7 +110,7 @@ def posterior(
     *,
     on: str = "emulator",
     runs: Optional[int] = None,
-    samples: int = 4000,
+    samples: int = 10000,
     seed: int = 1,
     jobs: Optional[int] = None,
     progress: bool = False,

@@ -191,7 +191,7 @@ def test_thumbnails_of_runs_that_were_kept(tmp_path):
         pytest.skip(str(error))
     assert {"a", "b"} <= texts_of(figure)
     pictures = [np.asarray(ax.images[0].get_array()) for ax in figure.axes if ax.images]
-    assert sum(picture.shape[:2] == (400, 500) and picture.std() > 5 for picture in pictures) == 2
+    assert sum(picture.ndim == 3 and picture.std() > 5 for picture in pictures) == 2
     with pytest.raises(ValueError, match="no point 9"):
         study.phase_diagram(thumbnails=[9])
 
@@ -222,7 +222,7 @@ def test_sobol_indices_of_ishigami():
     assert again.table.equals(found.table) and not study.sobol_indices(DEPTH, resamples=200, seed=2).table.equals(found.table)
     assert study.sobol_indices(DEPTH, resamples=50, seed=0).table.equals(study.sobol_indices(DEPTH, resamples=50, seed=0).table)
     figure = found.plot()
-    assert len(figure.axes[0].patches) == 6 and "furrow depth (µm)" in figure.axes[0].get_xlabel()
+    assert len(figure.axes[0].patches) == 6 and figure.axes[0].get_xlabel() == "share of the variance of furrow depth"
 
 
 def linear_indices(points=256, **design):
@@ -386,7 +386,7 @@ def test_posterior_of_a_scenario():
     scenario = plica.Scenario("division-demo")
     scenario["time.end_min"] = 0.5
     found = plica.posterior(scenario, {YOUNG: (300, 1500)}, {"max_volume_error": (1e-9, 1.0)}, runs=8, jobs=1)
-    assert len(found.samples) == 4000 and found.mean[YOUNG] == pytest.approx(900, rel=0.05)
+    assert len(found.samples) == 10000 and found.mean[YOUNG] == pytest.approx(900, rel=0.05)
 
 
 @pytest.mark.parametrize("arguments, told", [
