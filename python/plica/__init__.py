@@ -13,7 +13,7 @@ from .answers import verdict
 from .emulator import Emulator
 from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaError, ScenarioError
 from .indices import SobolIndices
-from .posterior import Posterior, posterior
+from .posteriors import Posterior, posterior
 from .results import Frame, Frames, Run
 from .results import open_run as open
 from .scenario import Scenario, Tissue, builtin_scenarios

@@ -376,7 +376,9 @@ def _in_order(values: pandas.Series[Any]) -> list[Any]:
 
 
 def _shown(value: Any) -> str:
-    return f"{value:.3g}" if isinstance(value, (int, float)) and not isinstance(value, bool) else str(value)
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
+        return str(value)
+    return np.format_float_positional(float(value), precision=3, fractional=False, trim="-")
 
 
 def _name_and_unit(name: str) -> tuple[str, str]:

@@ -192,11 +192,11 @@ def emulator(study: Study, measures: Union[str, Sequence[str]], *, folds: int = 
         if not has.all():
             warnings.warn(f"emulator: {int((~has).sum())} of {len(table)} runs have no {measure} and are left out; it is guessed "
                           "there, too", stacklevel=2)
+        model = models[measure] = _fitted(processes, places, values, _covariance(processes, len(ranges)), 1, seed)
         mean, sd = np.empty_like(values), np.empty_like(values)
-        for part in range(folds):
+        for part in range(folds):  # lengths and noise are fitted anew, too, from where they are for all
             out = parts == part
-            mean[out], sd[out] = _in_parts(_fitted(processes, places[~out], values[~out], seed), places[out])
-        models[measure] = _fitted(processes, places, values, seed)
+            mean[out], sd[out] = _in_parts(_fitted(processes, places[~out], values[~out], model.kernel_, 0, seed), places[out])
         held_out[measure] = pandas.DataFrame({"run": values, "mean": mean, "sd": sd}, index=table.index[has])
         square = float(((values - mean) ** 2).mean())
         spread = float(values.var())
@@ -223,15 +223,17 @@ def _parts(points: NDArray[Any], folds: int, seed: int) -> NDArray[np.int64]:
     return np.asarray(parts[of_run])
 
 
-def _fitted(processes: Any, places: Array, values: Array, seed: int) -> Any:
+def _covariance(processes: Any, keys: int) -> Any:
     kernels = processes.kernels
-    covariance = kernels.ConstantKernel(1.0, (1e-3, 1e6)) * kernels.Matern(np.ones(places.shape[1]), (5e-2, 1e3), nu=2.5)
-    noise = kernels.WhiteKernel(1e-4, (1e-10, 1e1))
-    model = processes.GaussianProcessRegressor(covariance + noise, normalize_y=True, n_restarts_optimizer=1, random_state=seed)
+    signal = kernels.ConstantKernel(1.0, (1e-3, 1e6)) * kernels.Matern(np.ones(keys), (5e-2, 1e3), nu=2.5)
+    return signal + kernels.WhiteKernel(1e-4, (1e-10, 1e1))
+
+
+def _fitted(processes: Any, places: Array, values: Array, covariance: Any, restarts: int, seed: int) -> Any:
+    model = processes.GaussianProcessRegressor(covariance, normalize_y=True, n_restarts_optimizer=restarts, random_state=seed)
     with warnings.catch_warnings():  # of lengths at their bounds: of a key that does nothing, or of results without noise
         warnings.simplefilter("ignore", needed("sklearn.exceptions", "emulator").ConvergenceWarning)
-        # One thread is as quick for a few hundred runs, and much quicker where others are busy.
-        with needed("threadpoolctl", "emulator").threadpool_limits(1 if len(values) < 500 else None):
+        with _one_thread(len(values)):
             return model.fit(places, values)
 
 
@@ -239,5 +241,11 @@ def _in_parts(model: Any, places: Array) -> tuple[Array, Array]:
     """So many points at a time that their covariances with all runs do not fill the memory."""
     with warnings.catch_warnings():  # of a variance that rounding makes a little less than 0, and that is taken as 0
         warnings.filterwarnings("ignore", "Predicted variances smaller than 0")
-        parts = [model.predict(places[at : at + 2000], return_std=True) for at in range(0, len(places), 2000)]
+        with _one_thread(len(model.X_train_)):
+            parts = [model.predict(places[at : at + 2000], return_std=True) for at in range(0, len(places), 2000)]
     return np.concatenate([mean for mean, _ in parts]), np.concatenate([sd for _, sd in parts])
+
+
+def _one_thread(runs: int) -> Any:
+    """One thread is as quick for a few hundred runs, and much quicker where others are busy."""
+    return needed("threadpoolctl", "emulator").threadpool_limits(1 if runs < 500 else None)

@@ -6,7 +6,7 @@ import pytest
 
 import plica
 from plica.answers import _name_and_unit
-from plica.posterior import population_monte_carlo
+from plica.posteriors import population_monte_carlo
 
 YOUNG, POISSON = "elasticity.young_modulus_Pa", "elasticity.poisson_ratio"
 TENSION = "cortex.shortening.tension_mN_per_m"

@@ -40,3 +40,30 @@ def test_readme(tmp_path, monkeypatch, capsys):
     depth, closed = re.match(r"([\d.]+) µm deep; lips closed at ([\d.]+) min", capsys.readouterr().out).groups()
     assert 45 < float(depth) < 75 and 14 < float(closed) < 20
     assert (tmp_path / "furrow.png").stat().st_size > 1000
+
+
+def test_answers_page(tmp_path, monkeypatch):
+    """Its blocks, with smooth results made up, since its runs take minutes."""
+    for package in ("SALib", "sklearn", "matplotlib"):
+        pytest.importorskip(package)
+    import plica
+
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs/answers.md").read_text(encoding="utf-8")
+    for name, text in re.findall(r"^```toml\n# (\w+.toml)\n(.*?)^```", page, re.M | re.S):
+        (tmp_path / name).write_text(text)
+
+    def made_up(self, **_):
+        table = self.table.assign(status="end_time", steps=1, wall_s=0.1, reason="")
+        places = sum((table[key] - table[key].min()) / (table[key].max() - table[key].min()) for key in self.keys)
+        for number, measure in enumerate(self.measures):
+            table[measure] = 0 if measure == "self_intersections" else 54 + number * places + places**2
+        self._rows = dict(enumerate(table.to_csv(index=False).splitlines()[1:]))
+
+    monkeypatch.setattr(plica.Study, "run", made_up)
+    of_grid = plica.Study.phase_diagram
+    monkeypatch.setattr(plica.Study, "phase_diagram", lambda self, *, thumbnails=0, **how: of_grid(self, **how))
+    names = run_blocks("docs/answers.md")
+    assert names["found"].effective_size > 100 and names["mean"].shape == (3, 3)
+    for name in re.findall(r"images/answers/(\w+.png)", page):
+        assert (tmp_path / name).stat().st_size > 1000
