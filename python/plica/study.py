@@ -33,6 +33,7 @@ class _Spec(NamedTuple):
     file: str
     text: str
     points: str
+    measures: tuple[str, ...]
     directory: str
 
 
@@ -85,7 +86,7 @@ class Study:
             name, file, text = begun["name"], begun["file"], _text_of(path / "study.toml")
             directory, self._core = _core.StudyDirectory.open(str(path))
             self._rows = dict(directory.rows)
-        self._spec = _Spec(name, file, text, self._core.points_csv, "")
+        self._spec = _Spec(name, file, text, self._core.points_csv, tuple(self._core.measures), "")
 
     @property
     def keys(self) -> list[str]:
@@ -213,7 +214,7 @@ def _text_of(path: Path) -> str:
 
 @functools.lru_cache(maxsize=4)
 def _study_of(spec: _Spec) -> _core.Study:
-    return _core.Study(spec.name, spec.file, spec.text, spec.points)
+    return _core.Study(spec.name, spec.file, spec.text, spec.points, spec.measures)
 
 
 def _rows_of(spec: _Spec, runs: list[int]) -> list[tuple[int, str]]:

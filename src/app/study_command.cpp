@@ -157,7 +157,7 @@ int run(const StudyOptions& options) {
 // What a task of an array does.
 int work(const std::string& out, int task) {
   const ThreadCount one(1);
-  auto [directory, study] = StudyDirectory::open(out);
+  auto [directory, study] = StudyDirectory::open_to_run(out);
   catch_interruptions();
   run_study(study, directory, 1, runs_of_task(directory, task), {{}, interrupted});
   return interrupted() ? interrupted_status() : exit_done;
@@ -165,7 +165,7 @@ int work(const std::string& out, int task) {
 
 void gather(const std::string& out) {
   const ThreadCount one(1);
-  auto [directory, study] = StudyDirectory::open(out);
+  auto [directory, study] = StudyDirectory::open_to_run(out);
   if (was_submitted(directory))
     fmt::print("{}\n", gather_from_slurm(study, directory));
   else
@@ -175,7 +175,7 @@ void gather(const std::string& out) {
 void print_status(const std::string& out) {
   const auto [directory, study] = StudyDirectory::open(out);
   const StudyStatus status = status_of(directory, study);
-  fmt::print("{}: {}; {} of processor time so far\n", study.input().name, by_status(status), duration(status.run_s));
+  fmt::print("{}: {}; {} of running time so far\n", study.input().name, by_status(status), duration(status.run_s));
   print_reasons(status);
   if (was_submitted(directory)) fmt::print("  {}\n", jobs_on_slurm(directory));
 }

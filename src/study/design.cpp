@@ -293,8 +293,8 @@ StudyDesign points_of_csv(const std::string& text) {
   const auto rows = csv_fields(text);
   const auto refuse = [] { throw FileError("points.csv is no list of points; start the study anew"); };
   if (rows.empty() || rows.front().size() < 4) refuse();
-  const auto whole_number = [&](const std::string& text) {
-    const double number = number_in(text).value_or(0);
+  const auto whole_number = [&](const std::string& field) {
+    const double number = number_in(field).value_or(0);
     if (!(number >= 1 && number <= static_cast<double>(most_runs) && number == std::floor(number))) refuse();
     return static_cast<int>(number);
   };

@@ -97,7 +97,8 @@ Study::Study(StudyInput input) : input_(std::move(input)) {
   }
 }
 
-Study::Study(StudyInput input, StudyDesign design) : input_(std::move(input)), design_(std::move(design)) { check(); }
+Study::Study(StudyInput input, StudyDesign design, std::vector<std::string> measures)
+    : input_(std::move(input)), design_(std::move(design)), measures_(std::move(measures)) {}
 
 // Measures are those of the first point that is a scenario.
 void Study::check() {

@@ -30,8 +30,10 @@ class StudyDirectory {
   /// none to go on with, or it was begun by another plica; FileError when it cannot be written.
   static StudyDirectory begin(const std::filesystem::path& directory, const Study& study, Start start);
 
-  /// The study that a directory holds. FileError when it holds none.
+  /// The study that a directory holds; to look at, or to run, which only the plica does that began it, and while the
+  /// scenario is what it was. FileError when it holds none.
   static std::pair<StudyDirectory, Study> open(const std::filesystem::path& directory);
+  static std::pair<StudyDirectory, Study> open_to_run(const std::filesystem::path& directory);
 
   [[nodiscard]] const std::filesystem::path& path() const { return directory_; }
   [[nodiscard]] StudyRows rows() const;
