@@ -9,7 +9,11 @@
 from __future__ import annotations
 
 from ._core import version as __version__
+from .answers import verdict
+from .emulator import Emulator
 from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaError, ScenarioError
+from .indices import SobolIndices
+from .posterior import Posterior, posterior
 from .results import Frame, Frames, Run
 from .results import open_run as open
 from .scenario import Scenario, Tissue, builtin_scenarios
@@ -21,16 +25,19 @@ __all__ = [
     "Calibration",
     "Comparison",
     "Diagnostic",
+    "Emulator",
     "FileError",
     "Frame",
     "Frames",
     "MissingExtra",
     "NumericsError",
     "PlicaError",
+    "Posterior",
     "Run",
     "Scenario",
     "ScenarioError",
     "Simulation",
+    "SobolIndices",
     "Step",
     "Study",
     "Tissue",
@@ -41,5 +48,7 @@ __all__ = [
     "compare",
     "load",
     "open",
+    "posterior",
     "render",
+    "verdict",
 ]

@@ -93,7 +93,7 @@ class MissingExtra(PlicaError, ImportError):
 
 
 EXTRAS = {"pandas": "plot", "matplotlib": "plot", "pyvista": "plot", "meshio": "plot", "IPython": "notebook",
-          "xarray": "study"}
+          "xarray": "study", "SALib": "study", "sklearn": "study", "threadpoolctl": "study"}
 
 
 def needed(package: str, what: str) -> Any:

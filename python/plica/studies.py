@@ -123,6 +123,7 @@ def render(
     time_min: Optional[float] = None,
     size: tuple[int, int] = (1000, 700),
     limits: Optional[tuple[float, float]] = None,
+    bar: bool = True,
 ) -> Any:
     """Draws an embryo, off screen. Needs PyVista.
 
@@ -142,6 +143,8 @@ def render(
         Width and height, pixels.
     limits : (float, float), optional
         The values of the first and the last colour, to compare pictures; by default those of what is drawn.
+    bar : bool
+        Whether to say what the colours mean.
 
     Returns
     -------
@@ -186,11 +189,11 @@ def render(
     plotter.background_color = "white"
     steps = field["kind"] == "steps"
     colours = _colours(field["colours"][: max(2, len(names))] if names else field["colours"], steps)
-    bar: dict[str, Any] = {"title": field["label"] + "\n", "color": "black", "position_x": 0.2, "position_y": 0.08}
-    options: dict[str, Any] = {"scalar_bar_args": bar}
+    legend: dict[str, Any] = {"title": field["label"] + "\n", "color": "black", "position_x": 0.2, "position_y": 0.08}
+    options: dict[str, Any] = {"scalar_bar_args": legend, "show_scalar_bar": bar}
     if names:
         options["annotations"] = dict(enumerate(names))
-        bar["n_labels"] = 0
+        legend["n_labels"] = 0
         low, high = -0.5, max(2, len(names)) - 0.5
     plotter.add_mesh(_surface(grid), scalars="colour", cmap=colours, clim=(low, high), show_edges=True,
                      edge_color="#404040", line_width=0.5, **options)

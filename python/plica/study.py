@@ -10,15 +10,18 @@ import queue
 import subprocess
 import sys
 import threading
+import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Executor, as_completed
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
-from . import _core
+from . import _core, answers
+from .emulator import emulator as emulator_of
 from .errors import FileError, needed
+from .indices import sobol_indices as sobol_indices_of
 from .results import _pandas
-from .scenario import GIVEN, _toml_of
+from .scenario import GIVEN, _items, _toml_of
 
 if TYPE_CHECKING:
     import pandas
@@ -79,14 +82,42 @@ class Study:
             path = Path(source)
             name, file, text = path.stem, str(path), "" if path.is_dir() else _text_of(path)
         self._rows: dict[int, str] = {}
+        self._directory: Optional[Path] = None
         if text:
             self._core = _core.Study(name, file, text)
         else:
+            self._directory = path
             begun = json.loads(_text_of(path / "study.json"))
             name, file, text = begun["name"], begun["file"], _text_of(path / "study.toml")
             directory, self._core = _core.StudyDirectory.open(str(path))
             self._rows = dict(directory.rows)
         self._spec = _Spec(name, file, text, self._core.points_csv, tuple(self._core.measures), "")
+
+    @classmethod
+    def _of_table(cls, source: Union[str, Mapping[str, Any]], table: pandas.DataFrame) -> Study:
+        """A study whose runs came to `table`, which has the columns and rows of ``Study(source).table``; for tests."""
+        study = cls(source)
+        lines = table.to_csv(index=False).splitlines()
+        if lines[0] != study._core.header or len(lines) != len(study) + 1:
+            raise ValueError(f"a table of {len(lines) - 1} rows of {lines[0]}; give {len(study)} of {study._core.header}")
+        study._rows = dict(enumerate(lines[1:]))
+        return study
+
+    @property
+    def kind(self) -> str:
+        """How its points were chosen: the kind of its design."""
+        return str(self._given["design.kind"])
+
+    @property
+    def _given(self) -> dict[str, Any]:
+        """What the study's file says, by dotted keys."""
+        return dict(_items(tomllib.loads(self._spec.text)))
+
+    def _run_directory(self, run: int) -> Path:
+        """Where what is kept of a run lies, the runs counted from 0."""
+        row = self.points.iloc[run]
+        name = f"{int(row.point):06}" + (f"_{int(row.replicate)}" if self._given.get("design.replicates", 1) > 1 else "")
+        return Path(self._directory or ".") / "points" / name
 
     @property
     def keys(self) -> list[str]:
@@ -175,6 +206,7 @@ class Study:
         if out is not None:
             start = "resumed" if resume else "over" if overwrite else "fresh"
             directory = _core.StudyDirectory.begin(os.fspath(out), self._core, start)
+            self._directory = Path(out)
             self._rows = dict(directory.rows)
         spec = self._spec._replace(directory="" if out is None else str(Path(out).resolve()))
         open_runs = [run for run in range(len(self)) if run not in self._rows]
@@ -196,6 +228,11 @@ class Study:
                 self._rows = dict(directory.rows)
                 directory.gather(self._core)
         return self.table
+
+    curves = answers.curves
+    phase_diagram = answers.phase_diagram
+    sobol_indices = sobol_indices_of
+    emulator = emulator_of
 
     def __len__(self) -> int:
         return self._core.runs

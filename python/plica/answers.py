@@ -1,0 +1,388 @@
+"""What a study says, in pictures: curves over one key, phase diagrams over two; and in a word, what became of an embryo."""
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+import numpy as np
+
+from .errors import PlicaError, needed
+from .results import open_run
+from .scenario import Scenario, _items
+from .studies import render
+
+if TYPE_CHECKING:
+    import pandas
+
+    from .study import Study
+
+__all__ = ["verdict"]
+
+FINISHED = ("equilibrium", "end_time")  # the status of a run that has results
+VERDICT_COLUMNS = ("self_intersections", "lips_closed_time_s", "furrow_depth_below_lips_um")
+FURROWED_UM = 1.0  # docs/measures.md: below that, a belly is flattened
+COLOURS = {"closed": "#009E73", "furrowed": "#0072B2", "flattened": "#F0E442", "passes through itself": "#D55E00",
+           "failed": "#555555", "refused": "#999999", "not run": "#E5E5E5", "replicates differ": "#FFFFFF"}
+OTHER_COLOURS = ("#56B4E9", "#E69F00", "#CC79A7", "#8C6D31", "#6A51A3", "#31A354", "#843C39", "#17BECF")
+UNITS = {"um": "µm", "um2": "µm²", "um3": "µm³", "m": "m", "m3": "m³", "s": "s", "min": "min", "nN": "nN", "mN": "mN", "Pa": "Pa",
+         "kPa": "kPa", "deg": "°", "kg": "kg", "MB": "MB", "percent": "%"}
+
+
+def verdict(row: Any) -> str:
+    """What became of an embryo, in a word.
+
+    The first that is true: "not run", "refused" (no valid scenario), "failed", "passes through itself"
+    (``self_intersections`` over 0), "closed" (``lips_closed_time_s`` has a value), "furrowed"
+    (``furrow_depth_below_lips_um`` of 1 µm or more), "flattened".
+
+    Parameters
+    ----------
+    row : pandas.Series or mapping
+        A row of `Study.table`, with these three measures.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    ValueError
+        A measure is not in the row.
+
+    Examples
+    --------
+    >>> import plica
+    >>> plica.verdict({"status": "end_time", "self_intersections": 0, "lips_closed_time_s": None,
+    ...                "furrow_depth_below_lips_um": 12.0})
+    'furrowed'
+    """
+    missing = [name for name in VERDICT_COLUMNS if name not in row]
+    if missing:
+        raise ValueError(f"a verdict needs {', '.join(missing)}; add it to keep.measures, or colour by a measure that is kept")
+    if row["status"] in ("not_run", "refused"):
+        return str(row["status"]).replace("_", " ")
+    if row["status"] not in FINISHED:
+        return "failed"
+    intersections, closed_s, depth_um = (_number(row[name]) for name in VERDICT_COLUMNS)
+    if intersections > 0:
+        return "passes through itself"
+    if np.isfinite(closed_s):
+        return "closed"
+    return "furrowed" if depth_um >= FURROWED_UM else "flattened"
+
+
+def curves(study: Study, measure: str) -> Any:
+    """Draws a measure over each key while the others stay as they are in the scenario: a panel a key.
+
+    The scenario's own values are marked. A run without the result (it failed, or its embryo has none) is a red cross at the
+    foot of the panel, and no line is drawn through it. Replicates are dots, and the line joins their means.
+
+    Parameters
+    ----------
+    measure : str
+        A column of `table`; its unit, the end of its name, stands at the axis.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    ValueError
+        The study is neither of kind "one-at-a-time" nor of one key, or has no such measure.
+
+    Examples
+    --------
+    >>> import plica
+    >>> study = plica.Study({
+    ...     "scenario": "division-demo", "set": {"time.end_min": 0.2},
+    ...     "vary": {"elasticity.young_modulus_Pa": {"values": [500, 1000]}}, "design": {"kind": "one-at-a-time"},
+    ... })
+    >>> table = study.run(jobs=1)
+    >>> study.curves("furrow_depth_um").savefig("curves.png")  # doctest: +SKIP
+    """
+    plt = needed("matplotlib.pyplot", "curves")
+    one_at_a_time = study.kind == "one-at-a-time"
+    if not one_at_a_time and len(study.keys) != 1:
+        raise ValueError(f'curves: the study is of kind "{study.kind}" with {len(study.keys)} keys; '
+                         'give one of kind "one-at-a-time", or with one key')
+    table = study.table
+    results, keys = _results(table, measure), study.keys
+    first = table.iloc[0]  # of kind one-at-a-time: the scenario itself
+    own = dict(first[keys]) if one_at_a_time else _own_values(study)
+    across = min(3, len(keys))
+    down = -(-len(keys) // across)
+    figure, axes = plt.subplots(down, across, sharey=True, squeeze=False, layout="constrained",
+                                figsize=(0.6 + 3.4 * across, 0.7 + 2.9 * down))
+    for spare in axes.flat[len(keys):]:
+        spare.remove()
+    for key, ax in zip(keys, axes.flat):
+        others = [other for other in keys if other != key]
+        on_curve = (table[others] == list(first[others])).all(axis=1)
+        _curve(ax, table.loc[on_curve, key], results[on_curve], own.get(key), study._given.get(f"vary.{key}.scale") == "log")
+        ax.set_xlabel(_label(key))
+    for ax in axes[:, 0]:
+        ax.set_ylabel(_label(measure))
+    _legend_below(figure, axes.flat[: len(keys)])
+    return figure
+
+
+def _curve(ax: Any, values: pandas.Series[Any], results: pandas.Series[float], own: Any, is_log: bool) -> None:
+    is_number = _is_number(values)
+    words = [] if is_number else list(dict.fromkeys(map(str, values)))
+    x = values.astype(float) if is_number else values.map(lambda value: float(words.index(str(value))))
+    means = results.groupby(x).mean()  # sorted; NaN where there is none, which breaks the line
+    if x.duplicated().any():
+        ax.plot(x, results, ".", color="C0", alpha=0.5, label="a replicate")
+    ax.plot(means.index, means, "o-" if is_number else "o", color="C0", label="result")
+    lost = sorted(set(x[results.isna()]))
+    if lost:
+        ax.plot(lost, [0.04] * len(lost), "x", color="#D55E00", markersize=8, markeredgewidth=2, label="no result",
+                transform=ax.get_xaxis_transform(), clip_on=False)
+    if own is not None and (is_number or str(own) in words):
+        at = float(own) if is_number else float(words.index(str(own)))
+        ax.axvline(at, color="0.6", linestyle=":", zorder=0, label="the scenario's own value")
+        if np.isfinite(means.get(at, np.nan)):
+            ax.plot([at], [means[at]], "D", color="k", markersize=8, fillstyle="none", label="the scenario")
+    if is_log and is_number:
+        ax.set_xscale("log")
+    if words:
+        ax.set_xticks(range(len(words)), words)
+        ax.margins(x=0.15)
+    ax.grid(alpha=0.3)
+
+
+def phase_diagram(
+    study: Study,
+    x: Optional[str] = None,
+    y: Optional[str] = None,
+    *,
+    measure: Union[str, Callable[[pandas.Series[Any]], str]] = "verdict",
+    at: Optional[Mapping[str, Any]] = None,
+    thumbnails: Union[int, Sequence[int]] = 0,
+    view: str = "cross-section",
+) -> Any:
+    """Draws a grid over two keys: a cell for each pair of values, coloured by what came out.
+
+    Cells are equally large and carry their values at the axes, evenly spaced or not.
+
+    Parameters
+    ----------
+    x, y : str, optional
+        The keys along the axes; by default the first and the second that vary.
+    measure : str or callable
+        What colours a cell: "verdict" (the words of `plica.verdict`), a column of `table`, or a function of a row that
+        gives a word. Of replicates, the mean; or "replicates differ", where their words do.
+    at : mapping of str to value, optional
+        Values of the other keys, where the grid has more than two.
+    thumbnails : int or sequence of int
+        How many embryos to show below, along the diagonal from the first values to the last; or which points. The study
+        has to have kept the runs (``keep.each = "full"``); needs PyVista.
+    view : str
+        From where, as of `plica.render`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    ValueError
+        The study is no grid over these keys; there is no such measure; another key needs a value; or runs were not kept.
+
+    Examples
+    --------
+    >>> import plica
+    >>> study = plica.Study("results/closing")                                   # doctest: +SKIP
+    >>> study.phase_diagram(thumbnails=4).savefig("phases.png")                  # doctest: +SKIP
+    """
+    plt, colors = needed("matplotlib.pyplot", "phase_diagram"), needed("matplotlib.colors", "phase_diagram")
+    table, (x, y) = study.table, _two_keys(study, x, y)
+    for key, value in (at or {}).items():
+        if key not in study.keys:
+            raise ValueError(f"at: {key} does not vary in the study; there are {', '.join(study.keys)}")
+        table = table[table[key] == value]
+    _check_is_plane(study, table, x, y)
+    columns, rows = _in_order(table[x]), _in_order(table[y])
+    shown = list(thumbnails) if not isinstance(thumbnails, int) else _diagonal(table, x, y, columns, rows, thumbnails)
+    if shown and (study._directory is None or study._given.get("keep.each") != "full"):
+        raise ValueError('thumbnails: the study has not kept its runs; run it with keep.each = "full" and out')
+
+    wide, high = 3.2 + 0.55 * len(columns), 1.6 + 0.5 * len(rows)
+    figure = plt.figure(figsize=(max(wide, 5.5), max(high, 3.6) + (1.9 if shown else 0)), layout="constrained")
+    above, below = figure.subfigures(2, 1, height_ratios=[max(high, 3.6), 1.9]) if shown else (figure, None)
+    ax = above.subplots()
+    if callable(measure) or measure == "verdict" or not _is_number(table.get(measure, table.status)):
+        _paint_words(ax, colors, _words(table, measure).groupby([table[y], table[x]]).agg(_common).unstack(), rows, columns)
+    else:
+        _paint_numbers(ax, _results(table, measure).groupby([table[y], table[x]]).mean().unstack(), rows, columns, measure)
+    for axis, names, key in ((ax.xaxis, columns, x), (ax.yaxis, rows, y)):
+        places = range(0, len(names), -(-len(names) // 10))
+        axis.set_ticks(list(places), [_shown(names[i]) for i in places])
+        axis.set_label_text(_label(key))
+    if shown:
+        _add_thumbnails(study, table, ax, below, shown, (x, columns), (y, rows), view)
+    return figure
+
+
+def _two_keys(study: Study, x: Optional[str], y: Optional[str]) -> tuple[str, str]:
+    free = [key for key in study.keys if key not in (x, y)]
+    x = x or (free.pop(0) if free else "")
+    y = y or (free.pop(0) if free else "")
+    for key in (x, y):
+        if key not in study.keys:
+            raise ValueError(f"phase_diagram: needs two keys that vary in the study; there are {', '.join(study.keys)}")
+    return x, y
+
+
+def _check_is_plane(study: Study, table: pandas.DataFrame, x: str, y: str) -> None:
+    others = [key for key in study.keys if key not in (x, y) and table[key].nunique() > 1]
+    if others:
+        values = ", ".join(map(_shown, _in_order(table[others[0]])))
+        raise ValueError(f"phase_diagram: {others[0]} varies, too; give at={{{others[0]!r}: …}} one of {values}")
+    pairs = table[[x, y, "replicate"]]
+    if table.empty or pairs.duplicated().any() or len(pairs[[x, y]].drop_duplicates()) != table[x].nunique() * table[y].nunique():
+        raise ValueError(f'phase_diagram: the study (of kind "{study.kind}") has not one point for each pair of values; '
+                         "give a grid")
+
+
+def _words(table: pandas.DataFrame, measure: Union[str, Callable[[pandas.Series[Any]], str]]) -> pandas.Series[str]:
+    if not callable(measure) and measure != "verdict" and measure not in table:
+        _results(table, measure)  # says what there is
+    if not callable(measure) and measure in table:
+        return table[measure].astype(str)
+    judge = measure if callable(measure) else verdict
+    return table.apply(lambda row: str(judge(row)), axis=1)
+
+
+def _common(words: pandas.Series[str]) -> str:
+    return str(words.iloc[0]) if words.nunique() == 1 else "replicates differ"
+
+
+def _paint_words(ax: Any, colors: Any, cells: pandas.DataFrame, rows: list[Any], columns: list[Any]) -> None:
+    cells = cells.reindex(index=rows, columns=columns)
+    there = set(cells.to_numpy().ravel())
+    words = [word for word in COLOURS if word in there] + sorted(word for word in there if word not in COLOURS)
+    others: Iterator[str] = iter(OTHER_COLOURS * (1 + len(words) // len(OTHER_COLOURS)))
+    colours = [COLOURS.get(word) or next(others) for word in words]
+    numbers = np.array([[words.index(word) for word in row] for row in cells.to_numpy()])
+    ax.imshow(numbers, origin="lower", aspect="auto", cmap=colors.ListedColormap(colours), vmin=-0.5, vmax=len(words) - 0.5)
+    _separate(ax, rows, columns)
+    for word, colour in zip(words, colours):
+        ax.plot([], [], "s", color=colour, markeredgecolor="0.3", markersize=10, label=word)
+    ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False, borderaxespad=0)
+
+
+def _paint_numbers(ax: Any, cells: pandas.DataFrame, rows: list[Any], columns: list[Any], measure: str) -> None:
+    cells = cells.reindex(index=rows, columns=columns)
+    ax.set_facecolor("0.9")
+    image = ax.imshow(cells.to_numpy(dtype=float), origin="lower", aspect="auto", cmap="viridis")
+    _separate(ax, rows, columns)
+    for row, column in np.argwhere(cells.isna().to_numpy()):
+        ax.plot(column, row, "x", color="#D55E00", markersize=8, markeredgewidth=2)
+    ax.figure.colorbar(image, ax=ax, label=_label(measure))
+    if cells.isna().any(axis=None):
+        ax.set_title("× no result", color="#D55E00", fontsize="medium", loc="right")
+
+
+def _separate(ax: Any, rows: list[Any], columns: list[Any]) -> None:
+    ax.set_xticks(np.arange(1, len(columns)) - 0.5, minor=True)
+    ax.set_yticks(np.arange(1, len(rows)) - 0.5, minor=True)
+    ax.grid(which="minor", color="white", linewidth=1)
+    ax.tick_params(which="minor", length=0)
+
+
+def _diagonal(table: pandas.DataFrame, x: str, y: str, columns: list[Any], rows: list[Any], count: int) -> list[int]:
+    pairs = {(columns[round(part * (len(columns) - 1))], rows[round(part * (len(rows) - 1))]): None
+             for part in np.linspace(0, 1, count)}
+    points = table.groupby([x, y]).point.first()
+    return [int(points[pair]) for pair in pairs]
+
+
+def _add_thumbnails(study: Study, table: pandas.DataFrame, ax: Any, below: Any, points: list[int], across: tuple[str, list[Any]],
+                    up: tuple[str, list[Any]], view: str) -> None:
+    effects = needed("matplotlib.patheffects", "thumbnails")
+    pictures = below.subplots(1, len(points), squeeze=False)[0]
+    for letter, point, picture in zip("abcdefghijklmnopqrstuvwxyz", points, pictures):
+        found = table[table.point == point]
+        if found.empty:
+            raise ValueError(f"thumbnails: there is no point {point} in this diagram; there are {sorted(set(table.point))}")
+        directory = study._run_directory(int(found.index[0]))
+        try:
+            image = render(open_run(directory), view=view, color="contraction", size=(500, 400), bar=False)
+        except (OSError, IndexError) as error:
+            raise ValueError(f"thumbnails: point {point} has left no frame in {directory}; choose other points") from error
+        picture.imshow(image)
+        picture.set_title(letter, fontsize="medium")
+        picture.axis("off")
+        place = (across[1].index(found[across[0]].iloc[0]), up[1].index(found[up[0]].iloc[0]))
+        text = ax.text(*place, letter, color="k", ha="center", va="center", fontweight="bold")
+        text.set_path_effects([effects.withStroke(linewidth=3, foreground="w")])
+
+
+def _results(table: pandas.DataFrame, measure: str) -> pandas.Series[float]:
+    """The measure of the runs that ended well; NaN of the others, whose last good state is no result."""
+    if measure not in table or not _is_number(table[measure]):
+        known = list(table.columns)[list(table.columns).index("status") + 1 : -2]
+        raise ValueError(f"the study has no measure {measure!r}; it has {', '.join(known)}")
+    return table[measure].astype(float).where(table.status.isin(FINISHED))
+
+
+def _own_values(study: Study) -> dict[str, Any]:
+    """What the study's scenario says of its keys, as far as it can still be read."""
+    given = tomllib.loads(study._spec.text)
+    try:
+        if study._directory is not None:
+            scenario = Scenario(study._directory / "scenario.toml")
+        else:
+            file = Path(study._spec.file).parent / given["scenario"]
+            scenario = Scenario(file if file.is_file() else given["scenario"])
+            scenario.update(dict(_items(given.get("set", {}))))
+        return {key: scenario[key] for key in study.keys}
+    except (PlicaError, KeyError):
+        return {}
+
+
+def _is_number(values: pandas.Series[Any]) -> bool:
+    return values.dtype.kind in "iuf"
+
+
+def _number(value: Any) -> float:
+    return float("nan") if value is None else float(value)
+
+
+def _in_order(values: pandas.Series[Any]) -> list[Any]:
+    distinct = list(dict.fromkeys(values))
+    return sorted(distinct) if _is_number(values) else distinct
+
+
+def _shown(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, (int, float)) and not isinstance(value, bool) else str(value)
+
+
+def _name_and_unit(name: str) -> tuple[str, str]:
+    """A column or key without the unit at its end, and that unit: stiffness_nN_per_um is stiffness, nN/µm."""
+    words = name.split("_")
+    for first in range(1, len(words)):
+        end = words[first:]
+        if end[0] != "per" and end[-1] != "per" and all(word in UNITS or word == "per" for word in end):
+            unit = " ".join(UNITS.get(word, "/") for word in end).replace(" / ", "/")
+            return "_".join(words[:first]), unit
+    return name, ""
+
+
+def _label(name: str, with_unit: bool = True) -> str:
+    text, unit = _name_and_unit(name)
+    if "." in text:  # a key, which stays as one would write it; a long one in two lines
+        front, dot, last = text.rpartition(".")
+        text = f"{front}.\n{last}" if len(text) > 24 else text
+    else:
+        text = text.replace("_", " ")
+    return f"{text} ({unit})" if unit and with_unit else text
+
+
+def _legend_below(figure: Any, axes: Any) -> None:
+    entries = {label: handle for ax in axes for handle, label in zip(*ax.get_legend_handles_labels())}
+    figure.legend(entries.values(), entries.keys(), loc="outside lower center", ncols=3, frameon=False)

@@ -1,0 +1,145 @@
+"""Sobol's indices: how much of the variance of a result each key of a study makes."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .answers import _label, _results
+from .errors import needed
+
+if TYPE_CHECKING:
+    import pandas
+
+    from .study import Study
+
+__all__ = ["SobolIndices"]
+
+
+class SobolIndices(NamedTuple):
+    """What each key is to the variance of a measure; made by `Study.sobol_indices`.
+
+    Attributes
+    ----------
+    measure : str
+    table : pandas.DataFrame
+        A row a key. ``first``: the share of the variance that would go if this key were known; ``total``: the share that
+        would stay if all others were. Both from 0 to 1, but for the error of the estimate. ``*_low`` and ``*_high`` bound
+        their confidence intervals.
+    base_points : int
+        How many groups of runs they come from.
+    confidence : float
+    """
+
+    measure: str
+    table: pandas.DataFrame
+    base_points: int
+    confidence: float
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws both indices of each key as bars with their confidence intervals.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            By default a new figure is made.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        plt = needed("matplotlib.pyplot", "plot")
+        if ax is None:
+            _, ax = plt.subplots(figsize=(7, 1.4 + 0.75 * len(self.table)), layout="constrained")
+        places = np.arange(len(self.table))
+        for name, shift, colour, text in (("first", -0.19, "#0072B2", "alone"),
+                                          ("total", 0.19, "#E69F00", "with what it does together with others")):
+            share = self.table[name]
+            ends = [share - self.table[f"{name}_low"], self.table[f"{name}_high"] - share]
+            ax.barh(places + shift, share, 0.36, xerr=ends, color=colour, capsize=3, label=text)
+        ax.set_yticks(places, [_label(key, with_unit=False) for key in self.table.index])
+        ax.invert_yaxis()
+        ax.axvline(0, color="k", linewidth=0.8)
+        ax.set_xlabel(f"share of the variance of {_label(self.measure)}")
+        ax.legend(loc="lower center", bbox_to_anchor=(0.4, 1.0), ncols=2, frameon=False)
+        ax.grid(axis="x", alpha=0.3)
+        return ax.figure
+
+
+def sobol_indices(
+    study: Study, measure: str, *, confidence: float = 0.95, resamples: int = 1000, seed: int = 1, drop_missing: bool = False
+) -> SobolIndices:
+    """Says how much of a measure's variance each key makes, alone and with the others. Needs SALib.
+
+    The estimators are those of Saltelli et al. (2010), as SALib has them (Herman and Usher 2017; docs/references.bib): with
+    outputs f(A), f(B) and f(A with column k of B), of N base points and variance V, first_k = mean(f(B) (f(AB_k) - f(A))) / V and
+    total_k = mean((f(A) - f(AB_k))²) / 2V. Their confidence intervals are normal, with the deviation of bootstrap resamples.
+
+    Parameters
+    ----------
+    measure : str
+        A column of `table`.
+    confidence : float
+        Of the intervals.
+    resamples : int
+        Of the bootstrap.
+    seed : int
+        Of the bootstrap, 0 or more.
+    drop_missing : bool
+        Leave out each base point of which a run has no result, and say only something about the rest of the ranges.
+
+    Returns
+    -------
+    SobolIndices
+
+    Raises
+    ------
+    ValueError
+        The study is of another kind, there is no such measure, it is the same in all runs, or runs have no value of it.
+
+    Examples
+    --------
+    >>> import plica
+    >>> study = plica.Study({
+    ...     "scenario": "division-demo", "set": {"time.end_min": 0.2}, "design": {"kind": "sobol-indices", "points": 4},
+    ...     "vary": {"elasticity.young_modulus_Pa": {"low": 500, "high": 1000}}, "keep": {"measures": ["steps", "cells"]},
+    ... })
+    >>> table = study.run(jobs=1)
+    >>> indices = study.sobol_indices("cells")
+    Traceback (most recent call last):
+    ValueError: sobol_indices: cells is the same in all runs, so no key makes a difference to it
+    """
+    if study.kind != "sobol-indices":
+        raise ValueError(f'sobol_indices: the study is of kind "{study.kind}"; make one of kind "sobol-indices"')
+    table, keys = study.table, study.keys
+    results = _results(table, measure).groupby(table.point).mean()  # of replicates, the mean
+    group = len(keys) + 2
+    groups: NDArray[np.float64] = np.asarray(results, dtype=np.float64).reshape(-1, group)
+    complete: NDArray[np.bool_] = np.asarray(np.isfinite(groups).all(axis=1))
+    if not complete.all() and not drop_missing:
+        raise ValueError(_what_is_missing(table, measure, int(complete.sum()), len(groups)))
+    groups = groups[complete]
+    if len(groups) < 2:
+        raise ValueError(f"sobol_indices: {len(groups)} of {len(complete)} base points are complete; at least 2 are needed")
+    if np.ptp(groups) == 0:
+        raise ValueError(f"sobol_indices: {measure} is the same in all runs, so no key makes a difference to it")
+    analysis = needed("SALib.analyze.sobol", "sobol_indices")
+    problem = {"num_vars": len(keys), "names": np.array(keys), "bounds": [[0, 1]] * len(keys)}
+    # SALib draws without a seed where it is 0.
+    found = analysis.analyze(problem, groups.ravel(), calc_second_order=False, num_resamples=resamples, conf_level=confidence,
+                             seed=seed + 1)
+    columns: dict[str, NDArray[np.float64]] = {}
+    for name, short in (("first", "S1"), ("total", "ST")):
+        columns |= {name: found[short], f"{name}_low": found[short] - found[f"{short}_conf"],
+                    f"{name}_high": found[short] + found[f"{short}_conf"]}
+    pandas = needed("pandas", "sobol_indices")
+    return SobolIndices(measure, pandas.DataFrame(columns, index=pandas.Index(keys, name="key")), len(groups), confidence)
+
+
+def _what_is_missing(table: pandas.DataFrame, measure: str, complete: int, of: int) -> str:
+    lost = table[_results(table, measure).isna()]
+    why = ", ".join(f"{count} {status}" for status, count in lost.status.value_counts().items())
+    return (f"sobol_indices: {len(lost)} of {len(table)} runs have no {measure} ({why}), and a base point needs all its runs; "
+            f"{complete} of {of} base points have them. Run what has not run; narrow the ranges to where every run has a "
+            "result; take a measure that every run has; or give drop_missing=True, and say so where you show the indices")

@@ -1,0 +1,359 @@
+"""Which values of keys explain what was measured: not one set of them, but all, each with its weight.
+
+Targets are taken as measured with normal errors, so the likelihood is known, and importance sampling needs no distance and no
+tolerance, as approximate Bayesian computation does. pyABC was tried: it comes to the same posterior (docs/answers.md).
+"""
+from __future__ import annotations
+
+import tempfile
+import warnings
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+
+import numpy as np
+
+from .answers import _label, _results
+from .emulator import Array, Emulator, Range, _range
+from .errors import needed
+from .scenario import Scenario
+from .study import Study
+
+if TYPE_CHECKING:
+    import pandas
+
+__all__ = ["Posterior", "posterior"]
+
+FEW = 100  # effective samples, below which means and deviations are off by a tenth of a deviation and more
+MOST_ROUNDS = 30
+CENTRES = 400  # of the mixture that proposals are drawn from
+
+
+class Posterior(NamedTuple):
+    """The values of some keys that agree with targets; made by `posterior`.
+
+    Attributes
+    ----------
+    samples : pandas.DataFrame
+        A row a sample: the keys, and ``weight``; weights sum to 1. Without them the rows mean nothing.
+    targets : pandas.DataFrame
+        A row a measure: the target's ``value`` and ``sd``; ``mean`` and ``posterior_sd`` of what the samples come to. A mean
+        some ``sd`` off its value says that no values of the keys meet all targets.
+    ranges : dict of str to (low, high, is_log)
+        The prior: each key evenly between, independent of the others.
+    effective_size : float
+        How many samples of equal weight they are worth, 1 / sum(weight²) (Kong 1992; docs/references.bib).
+    """
+
+    samples: pandas.DataFrame
+    targets: pandas.DataFrame
+    ranges: dict[str, Range]
+    effective_size: float
+
+    @property
+    def keys(self) -> list[str]:
+        """What is to be known."""
+        return list(self.ranges)
+
+    @property
+    def mean(self) -> pandas.Series[float]:
+        """Of each key, in its unit."""
+        mean: pandas.Series[float] = self.samples[self.keys].mul(self.samples.weight, axis=0).sum()
+        return mean
+
+    @property
+    def covariance(self) -> pandas.DataFrame:
+        """Of each pair of keys, in the product of their units."""
+        away = self.samples[self.keys] - self.mean
+        return away.mul(self.samples.weight, axis=0).T @ away
+
+    def plot(self) -> Any:
+        """Draws each key's distribution, and below how each pair goes together. Axes span the prior.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        plt = needed("matplotlib.pyplot", "plot")
+        count, weights = len(self.keys), self.samples.weight
+        figure, axes = plt.subplots(count, count, squeeze=False, sharex="col", layout="constrained",
+                                    figsize=(1.2 + 2.3 * count, 1.0 + 2.1 * count))
+        bins = int(np.clip(self.effective_size**0.5, 10, 40))
+        edges = {key: one.from_unit(np.linspace(0.0, 1.0, bins + 1, dtype=np.float64)) for key, one in self.ranges.items()}
+        for row, y in enumerate(self.keys):
+            for column, x in enumerate(self.keys):
+                ax = axes[row, column]
+                if column > row:
+                    ax.axis("off")
+                    continue
+                if x == y:
+                    ax.hist(self.samples[x], edges[x], weights=weights, color="#0072B2")
+                    ax.set_yticks([])
+                else:
+                    ax.hist2d(self.samples[x], self.samples[y], [edges[x], edges[y]], weights=weights, cmap="Blues")
+                    ax.set_yscale("log" if self.ranges[y].is_log else "linear")
+                    ax.set_ylabel(_label(y) if column == 0 else "")
+                    ax.tick_params(labelleft=column == 0)
+                ax.set_xscale("log" if self.ranges[x].is_log else "linear")
+                if row == count - 1:
+                    ax.set_xlabel(_label(x))
+        axes[0, 0].set_ylabel("probability")
+        return figure
+
+
+def posterior(
+    source: Union[Study, Scenario, str],
+    keys: Optional[Mapping[str, tuple[float, float]]] = None,
+    targets: Optional[Mapping[str, tuple[float, float]]] = None,
+    *,
+    on: str = "emulator",
+    runs: Optional[int] = None,
+    samples: int = 4000,
+    seed: int = 1,
+    jobs: Optional[int] = None,
+    progress: bool = False,
+) -> Posterior:
+    """Finds all values of some keys with which results agree with several targets, and how well each does.
+
+    The prior is even between the bounds of each key (in the logarithm where the study says so). The likelihood is normal: a
+    target's `sd` holds the error of the measurement, and what the model cannot be expected to meet. On the emulator the
+    variance of its guess is added, so that a poor emulator gives a wide posterior and not a wrong one. Samples come from
+    population Monte Carlo (Cappé et al. 2004; docs/references.bib): rounds of importance sampling, each drawn around the weighted
+    samples of the one before, with a likelihood that sharpens until it is whole.
+
+    Parameters
+    ----------
+    source : Study, Scenario or what names one
+        Runs that were made, with the keys varied and the targets measured; or a scenario, of which `runs` are made now (Sobol's
+        sequence over the bounds).
+    keys : mapping of str to (float, float)
+        Between which values each may be. Of a study, keys that are left out take their whole range.
+    targets : mapping of str to (float, float)
+        Measures, each with its value and standard deviation, in its unit.
+    on : str
+        "emulator": of Gaussian processes fitted to the runs. "runs": of the runs themselves, each weighted by its likelihood; a
+        run without a target's measure has weight 0. It needs a study of kind "sobol" or "latin-hypercube", and many runs.
+    runs : int, optional
+        Of a scenario; by default 20 a key.
+    samples : int
+        Drawn on the emulator.
+    seed : int
+    jobs, progress
+        As of `Study.run`.
+
+    Returns
+    -------
+    Posterior
+
+    Raises
+    ------
+    ValueError
+        There are no targets; a deviation is not over 0; bounds go beyond the study's; or no sample agrees at all.
+    ScenarioError
+        A key or a measure is not known.
+
+    Warns
+    -----
+    UserWarning
+        Fewer than 100 effective samples; or a target is missed by more than 3 standard deviations on average.
+
+    Examples
+    --------
+    >>> import plica
+    >>> found = plica.posterior("furrow-slice",
+    ...                         keys={"cortex.apical.tension_mN_per_m": (1, 2), "cortex.shortening.tension_mN_per_m": (0.2, 0.7)},
+    ...                         targets={"furrow_depth_um": (55, 3), "lips_closed_time_s": (900, 60)})  # doctest: +SKIP
+    >>> found.mean, found.plot()                                                                        # doctest: +SKIP
+    """
+    if not targets or not all(sd > 0 for _, sd in targets.values()):
+        raise ValueError("posterior: give targets as {measure: (value, sd)}, each sd over 0")
+    if on not in ("emulator", "runs"):
+        raise ValueError(f'posterior: on={on!r}; give "emulator" or "runs"')
+    if isinstance(source, Study):
+        study, keys = source, keys or {}
+    else:
+        if not keys:
+            raise ValueError("posterior: give keys as {key: (low, high)}")
+        study = _made(source, keys, list(targets), runs or 20 * len(keys), seed, jobs, progress)
+    ranges = _prior(study, keys)
+    found = _of_runs(study, ranges, targets) if on == "runs" else _on_emulator(study, ranges, targets, samples, seed)
+    if found.effective_size < FEW:
+        more = "take more runs, or the emulator" if on == "runs" else "take more samples"
+        warnings.warn(f"posterior: worth {found.effective_size:.0f} samples only; {more}", stacklevel=2)
+    for measure, row in found.targets.iterrows():
+        if abs(row["mean"] - row.value) > 3 * row.sd:
+            warnings.warn(f"posterior: {measure} comes to {row['mean']:.4g} where {row.value:g} ± {row.sd:g} was the target; "
+                          "no values of the keys meet all targets", stacklevel=2)
+    return found
+
+
+def _made(source: Union[Scenario, str], keys: Mapping[str, tuple[float, float]], measures: list[str], runs: int, seed: int,
+          jobs: Optional[int], progress: bool) -> Study:
+    scenario = source if isinstance(source, Scenario) else Scenario(source)
+    if scenario.tissue is not None or scenario._regions:
+        raise ValueError("posterior runs what a file can say: neither a tissue nor regions given as arrays")
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "scenario.toml"
+        file.write_text(scenario.to_toml(), encoding="utf-8")
+        study = Study({
+            "scenario": str(file), "vary": {key: {"low": low, "high": high} for key, (low, high) in keys.items()},
+            "design": {"kind": "sobol", "points": runs, "seed": seed}, "keep": {"measures": measures},
+        })
+        study.run(jobs=jobs, progress=progress)
+    return study
+
+
+def _prior(study: Study, keys: Mapping[str, tuple[float, float]]) -> dict[str, Range]:
+    unknown = [key for key in keys if key not in study.keys]
+    if unknown:
+        raise ValueError(f"posterior: {unknown[0]} does not vary in the study; there are {', '.join(study.keys)}")
+    table, ranges = study.table, {}
+    for key in study.keys:
+        tried = _range(study, table, key)
+        low, high = keys.get(key, tried[:2])
+        if not tried.low <= low < high <= tried.high:
+            raise ValueError(f"posterior: {key} from {low:g} to {high:g}; the study has runs from {tried.low:g} to {tried.high:g}")
+        ranges[key] = Range(float(low), float(high), tried.is_log)
+    return ranges
+
+
+def _of_runs(study: Study, ranges: dict[str, Range], targets: Mapping[str, tuple[float, float]]) -> Posterior:
+    if study.kind not in ("sobol", "latin-hypercube"):
+        raise ValueError(f'posterior: the points of a study of kind "{study.kind}" are not spread as the prior is; '
+                         'give one of kind "sobol" or "latin-hypercube", or on="emulator"')
+    if any(name.endswith(".mean") for name in study._given if name.startswith("vary.")):
+        raise ValueError("posterior: a key of the study has a normal distribution, and the prior is even; give low and high")
+    table = study.table
+    inside = np.logical_and.reduce([table[key].between(one.low, one.high) for key, one in ranges.items()])
+    table = table[inside & (table.status != "not_run")]
+    results = np.column_stack([_results(table, measure) for measure in targets])
+    return _weighted(table[list(ranges)], _log_likelihood(results, np.zeros_like(results), targets), results, ranges, targets)
+
+
+def _on_emulator(study: Study, ranges: dict[str, Range], targets: Mapping[str, tuple[float, float]], samples: int,
+                 seed: int) -> Posterior:
+    emulator: Emulator = study.emulator(list(targets), seed=seed)
+    pandas = needed("pandas", "posterior")
+
+    def values_at(places: Array) -> dict[str, Array]:
+        return {key: one.from_unit(places[:, k]) for k, (key, one) in enumerate(ranges.items())}
+
+    def predict(places: Array) -> tuple[Array, Array]:
+        values = values_at(places)
+        return emulator._predict(np.column_stack([one.to_unit(values[key]) for key, one in emulator.ranges.items()]))
+
+    def log_likelihood(places: Array) -> Array:
+        return _log_likelihood(*predict(places), targets)
+
+    places, log_weights = population_monte_carlo(log_likelihood, len(ranges), samples, np.random.default_rng(seed))
+    return _weighted(pandas.DataFrame(values_at(places)), log_weights, predict(places)[0], ranges, targets)
+
+
+def _log_likelihood(means: Array, deviations: Array, targets: Mapping[str, tuple[float, float]]) -> Array:
+    """Of each row of results, but for a constant; -infinity where a result is missing."""
+    value, sd = np.array(list(targets.values()), dtype=float).T
+    variance = sd**2 + deviations**2
+    logs = -0.5 * ((means - value) ** 2 / variance + np.log(variance)).sum(axis=1)
+    return np.where(np.isfinite(logs), logs, -np.inf)
+
+
+def _weighted(values: pandas.DataFrame, log_weights: Array, results: Array, ranges: dict[str, Range],
+              targets: Mapping[str, tuple[float, float]]) -> Posterior:
+    if not np.isfinite(log_weights).any():
+        raise ValueError("posterior: no sample agrees with the targets at all; do runs have these measures?")
+    weights = np.exp(log_weights - log_weights.max())
+    weights /= weights.sum()
+    kept = weights > 0
+    pandas = needed("pandas", "posterior")
+    mean = weights[kept] @ results[kept]
+    spread = np.sqrt(weights[kept] @ (results[kept] - mean) ** 2)
+    rows = {"value": [value for value, _ in targets.values()], "sd": [sd for _, sd in targets.values()], "mean": mean,
+            "posterior_sd": spread}
+    table = pandas.DataFrame(rows, index=pandas.Index(list(targets), name="measure"), dtype=float)
+    samples = values[kept].assign(weight=weights[kept]).reset_index(drop=True)
+    return Posterior(samples, table, ranges, float(1 / (weights**2).sum()))
+
+
+def population_monte_carlo(log_likelihood: Callable[[Array], Array], dimensions: int, count: int,
+                           random: np.random.Generator) -> tuple[Array, Array]:
+    """Weighted samples of a likelihood over the unit cube.
+
+    Returns
+    -------
+    places : ndarray of float, shape (count, dimensions)
+    log_weights : ndarray of float, shape (count,)
+        Not normalised.
+    """
+    places: Array = random.random((count, dimensions))
+    log_proposal: Array = np.zeros(count)
+    for _ in range(MOST_ROUNDS):
+        logs = log_likelihood(places)
+        power = _power(logs, log_proposal, 0.3 * count)
+        if power == 1:
+            break
+        weights = _normal(power * logs - log_proposal)
+        places, log_proposal = _proposed(places, weights, random)
+    return places, logs - log_proposal
+
+
+def _power(logs: Array, log_proposal: Array, least: float) -> float:
+    """The largest power of the likelihood, up to 1, with which samples are worth as many as `least`."""
+    def worth(power: float) -> float:
+        return float(1 / (_normal(power * logs - log_proposal) ** 2).sum())
+
+    if worth(1) >= least:
+        return 1
+    low, high = 0.0, 1.0
+    for _ in range(40):
+        middle = (low + high) / 2
+        low, high = (middle, high) if worth(middle) >= least else (low, middle)
+    return max(low, 1e-6)
+
+
+def _normal(log_weights: Array) -> Array:
+    weights = np.exp(log_weights - log_weights.max())
+    return np.asarray(weights / weights.sum())
+
+
+def _proposed(places: Array, weights: Array, random: np.random.Generator) -> tuple[Array, Array]:
+    """New places, nine of ten from normal distributions around weighted old ones and one of ten from anywhere, and their density.
+
+    What falls outside of the cube is drawn again, so all densities there are larger by one factor, which is counted.
+    """
+    count, dimensions = places.shape
+    away = places - weights @ places
+    factor = np.linalg.cholesky((weights[:, None] * away).T @ away + 1e-12 * np.eye(dimensions))
+    centres = places[random.choice(count, CENTRES, p=weights)]
+    factor = factor * _width(_squares(np.linalg.solve(factor, centres.T).T), dimensions)
+    near: list[Array] = []
+    drawn = kept = 0
+    wanted = count - count // 10
+    while kept < wanted:
+        trial = centres[random.integers(CENTRES, size=count)] + random.standard_normal((count, dimensions)) @ factor.T
+        inside = trial[((trial >= 0) & (trial <= 1)).all(axis=1)]
+        near.append(inside)
+        drawn, kept = drawn + count, kept + len(inside)
+    new = np.concatenate([np.concatenate(near)[:wanted], random.random((count - wanted, dimensions))])
+    squares = _squares(np.linalg.solve(factor, new.T).T, np.linalg.solve(factor, centres.T).T)
+    constant = (2 * np.pi) ** (dimensions / 2) * np.prod(np.diag(factor))
+    density = np.exp(-0.5 * squares).mean(axis=1) / constant * drawn / kept
+    return new, np.log(0.9 * density + 0.1)
+
+
+def _width(squares: Array, dimensions: int) -> float:
+    """How wide the normal distributions around centres should be, in deviations of all: the width that predicts each centre
+    best from the others. Narrow where samples lie in two heaps, or on a bent ridge."""
+    away = squares > 1e-9  # not the same sample, drawn twice
+
+    def told(width: float) -> float:
+        density = np.where(away, np.exp(-0.5 * squares / width**2), 0).sum(axis=1) / width**dimensions
+        return float(np.log(density + 1e-300).sum())
+
+    return max((0.7 * 0.75**step for step in range(16)), key=told)
+
+
+def _squares(places: Array, others: Optional[Array] = None) -> Array:
+    """Squared distances of each place to each of the others, or of the places themselves."""
+    others = places if others is None else others
+    squares = (places**2).sum(axis=1)[:, None] + (others**2).sum(axis=1) - 2 * places @ others.T
+    return np.asarray(np.maximum(squares, 0))
