@@ -94,7 +94,7 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
   if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
   fs::remove(directory / "study.json", error);
   for (const char* name : {"rows", "points", "chunks"}) fs::remove_all(directory / name, error);
-  fs::remove(directory / "runs.csv", error);
+  for (const char* name : {"runs.csv", "report.html"}) fs::remove(directory / name, error);
   fs::create_directories(directory / "rows", error);
   write_file(directory / "study.toml", input.text);
   write_file(directory / "scenario.toml", resolved_scenario(input));
@@ -111,10 +111,15 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
   return result;
 }
 
-std::pair<StudyDirectory, Study> StudyDirectory::open(const fs::path& directory) {
+StudyDirectory StudyDirectory::look(const fs::path& directory) {
   std::error_code error;
   if (!fs::exists(directory / "study.json", error))
     throw FileError(directory.string() + ": holds no study; make one with plica study STUDY.toml --out DIR");
+  return StudyDirectory(directory);
+}
+
+std::pair<StudyDirectory, Study> StudyDirectory::open(const fs::path& directory) {
+  StudyDirectory result = look(directory);
   const Json begun = read_json(directory / "study.json");
   require_same_plica(directory, begun);
   StudyInput input =
@@ -122,7 +127,7 @@ std::pair<StudyDirectory, Study> StudyDirectory::open(const fs::path& directory)
   if (read_file(directory / "scenario.toml") != resolved_scenario(input))
     throw UsageError(fmt::format("{}: the scenario {} has changed since the study was begun; it was {}",
                                  directory.string(), input.scenario.file, (directory / "scenario.toml").string()));
-  return {StudyDirectory(directory), Study(std::move(input), points_of_csv(read_file(directory / "points.csv")))};
+  return {std::move(result), Study(std::move(input), points_of_csv(read_file(directory / "points.csv")))};
 }
 
 StudyRows StudyDirectory::rows() const {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -311,6 +312,10 @@ class Reader {
 };
 
 }  // namespace
+
+const char* word_of(DesignKind kind) {
+  return std::ranges::find(kinds, kind, &decltype(kinds)::value_type::second)->first;
+}
 
 bool is_study(const std::string& text) {
   try {

@@ -57,3 +57,8 @@ export function words(key: string): [string, string] {
     .replace(/\byoung modulus\b/, "Young's modulus").replace(/\bpoisson ratio\b/, "Poisson's ratio");
   return [name, unit];
 }
+
+/** The last part of a dotted key. */
+export function lastOf(key: string): string {
+  return key.slice(key.lastIndexOf(".") + 1);
+}
