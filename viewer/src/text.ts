@@ -58,6 +58,11 @@ export function words(key: string): [string, string] {
   return [name, unit];
 }
 
+/** How many there are: "10 000". */
+export function count(many: number): string {
+  return String(many).replace(/\B(?=(\d{3})+$)/g, "\u202f");
+}
+
 /** The last part of a dotted key. */
 export function lastOf(key: string): string {
   return key.slice(key.lastIndexOf(".") + 1);

@@ -13,7 +13,16 @@ export class Colours {
   /** Of the places that placeOf gives; the last is for runs without a value. */
   readonly list: string[];
 
-  constructor(readonly column: Column) {
+  private static last: { colours: Colours; paper: string } | null = null;
+
+  /** Made once for a column and a theme. */
+  static of(column: Column): Colours {
+    const paper = styleColour("paper");
+    if (this.last?.paper !== paper || this.last.colours.column !== column) this.last = { colours: new Colours(column), paper };
+    return this.last.colours;
+  }
+
+  private constructor(readonly column: Column) {
     const faint = styleColour("faint");
     const own = column.words
       ? column.words.map((word, i) => colourOfWord(column, word, i, faint))
@@ -26,15 +35,16 @@ export class Colours {
     return this.column.words ? value : Math.round(this.part(value) * (rampSteps - 1));
   }
 
-  of(value: number): string {
+  at(value: number): string {
     return this.list[this.placeOf(value)];
   }
 
   /** Where a value lies between the least and the greatest, 0 to 1. */
   private part(value: number): number {
-    const { low, high, isLogarithmic } = this.column;
+    const { usualRange: { low, high }, isLogarithmic } = this.column;
     if (!(high > low)) return 0.5;
-    return isLogarithmic && low > 0 ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
+    const part = isLogarithmic && low > 0 ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
+    return Math.min(Math.max(part, 0), 1);
   }
 
   /** The ramp with its ends; a column of words has ticks instead. */
@@ -47,7 +57,8 @@ export class Colours {
     } else {
       const strip = element("span", { class: "strip" });
       strip.style.background = `linear-gradient(to right, ${[0, 0.25, 0.5, 0.75, 1].map(rampColour).join(", ")})`;
-      box.append(number(column.low, 3), strip, number(column.high, 3));
+      const { low, high } = column.usualRange;
+      box.append((low > column.low ? "≤ " : "") + number(low, 3), strip, (high < column.high ? "≥ " : "") + number(high, 3));
     }
     if (column.missing > 0) box.append(swatch(this.list.at(-1)!), "none");
     return box;

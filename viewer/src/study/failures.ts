@@ -1,5 +1,6 @@
 // Runs without a result, by reason. A click leaves only those of a reason.
 import { element } from "../dom";
+import { count as countText } from "../text";
 import type { Selection } from "./selection";
 import type { Column, Study } from "./study_data";
 
@@ -29,7 +30,8 @@ export function failuresOf(study: Study): Failures[] {
   return [...groups.values()].sort((a, b) => b.count - a.count);
 }
 
-function patternOf(reason: string): string {
+/** A reason with "…" for its numbers. */
+export function patternOf(reason: string): string {
   return reason.replace(/(?<![A-Za-z_])-?\d+(\.\d+)?(e[-+]?\d+)?/g, "…");
 }
 
@@ -40,7 +42,7 @@ export function showFailures(box: HTMLElement, selection: Selection): void {
   const reason: Column = selection.study.the("reason");
   const rows = failures.map(({ reason: text, count, statuses, values }, i) => {
     const button = element("button", { type: "button", class: "reason", "aria-pressed": "false" }, text);
-    const row = element("tr", { class: i < mostReasons ? "" : "more" }, element("td", { class: "number" }, String(count)),
+    const row = element("tr", { class: i < mostReasons ? "" : "more" }, element("td", { class: "number" }, countText(count)),
       element("td", {}, statuses.join(", ")), element("td", {}, button));
     button.addEventListener("click", () => selection.setTicks(reason, button.getAttribute("aria-pressed") === "true" ? null : values));
     selection.on("shown", () => button.setAttribute("aria-pressed", String(selection.ticks.get(reason) === values)));
@@ -51,7 +53,7 @@ export function showFailures(box: HTMLElement, selection: Selection): void {
     element("tbody", {}, ...rows));
   const many = failures.reduce((sum, { count }) => sum + count, 0);
   box.append(
-    element("h2", {}, `${many} ${many === 1 ? "run" : "runs"} without a result, by reason`),
+    element("h2", {}, `${countText(many)} ${many === 1 ? "run" : "runs"} without a result, by reason`),
     element("p", { class: "note" }, "A click on a reason leaves its runs only, here and everywhere; another click takes that back."),
     element("div", { class: "scroll" }, table),
   );

@@ -1,9 +1,10 @@
 // What stands above all: the filter, what is left out and how to take that back, and what gives runs their colours.
 import { byId, download, element } from "../dom";
 import { csvText } from "../table";
-import { number } from "../text";
+import { count, number } from "../text";
 import { columnSelect } from "./column_choice";
 import { Colours, colourOfStatus, swatch } from "./colours";
+import { patternOf } from "./failures";
 import type { RowsTable } from "./rows_table";
 import type { Selection } from "./selection";
 import type { Column } from "./study_data";
@@ -29,6 +30,8 @@ export class FilterBar {
       this.text, this.count, this.statuses, this.rangeForm, save,
       element("span", { class: "group" }, element("label", {}, "Colour ", colour), this.legend), this.chips,
     );
+    new ResizeObserver(([{ target }]) =>
+      document.body.style.setProperty("--bar", `${(target as HTMLElement).offsetHeight}px`)).observe(byId("runs-bar"));
     this.fillStatuses();
     selection.on("shown", () => this.show());
     selection.on("colour", () => this.rebuild());
@@ -38,7 +41,7 @@ export class FilterBar {
 
   /** Colours have changed. */
   rebuild(): void {
-    const legend = new Colours(this.selection.colour).legend();
+    const legend = Colours.of(this.selection.colour).legend();
     this.legend.replaceChildren(...legend.childNodes);
     for (const dot of this.statuses.querySelectorAll<HTMLElement>("[data-status] .swatch"))
       dot.style.background = colourOfStatus(dot.closest<HTMLElement>("[data-status]")!.dataset.status!);
@@ -50,7 +53,7 @@ export class FilterBar {
       const box = element("input", { type: "checkbox" });
       box.checked = true;
       const many = status.values.reduce((sum, own) => sum + Number(own === value), 0);
-      this.statuses.append(element("label", { "data-status": word }, box, swatch(colourOfStatus(word)), `${status.textOf(value)} ${many}`));
+      this.statuses.append(element("label", { "data-status": word }, box, swatch(colourOfStatus(word)), `${status.textOf(value)} ${count(many)}`));
       return box;
     });
     this.statuses.hidden = boxes.length < 2;
@@ -96,7 +99,7 @@ export class FilterBar {
   private show(): void {
     const { selection } = this;
     const { ranges, ticks, shownRows, study } = selection;
-    this.count.textContent = `${shownRows.length} of ${study.runs} shown`;
+    this.count.textContent = `${count(shownRows.length)} of ${count(study.runs)} shown`;
     if (this.text.value !== selection.text) this.text.value = selection.text;
     const chip = (column: Column, text: string, drop: () => void) => {
       const made = element("button", { type: "button", class: "chip", title: "Take this back", "data-key": column.name }, `${text} ×`);
@@ -107,8 +110,9 @@ export class FilterBar {
       ...[...ranges].map(([column, { low, high }]) => chip(column, rangeText(column, low, high), () => selection.setRange(column, null))),
       ...[...ticks].filter(([column]) => column.role !== "status").map(([column, values]) => {
         const first = column.textOf([...values][0]);
-        const short = first.length > 40 ? `${first.slice(0, 40)}…` : first;
-        return chip(column, `${column.label}: ${values.size > 1 ? `${values.size} kinds` : short}`, () => selection.setTicks(column, null));
+        const shown = values.size > 1 ? patternOf(first) : first;
+        const short = shown.length > 60 ? `${shown.slice(0, 60)}…` : shown;
+        return chip(column, `${column.label}: ${short}`, () => selection.setTicks(column, null));
       }),
     ];
     if (ranges.size > 0 || ticks.size > 0 || selection.text !== "") {

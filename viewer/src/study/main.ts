@@ -1,6 +1,6 @@
 // The page of a study begins here: reads its data, then shows its parts, which share one selection of runs.
 import { byId, element } from "../dom";
-import { time } from "../text";
+import { count, time } from "../text";
 import { followTheme } from "../theme";
 import { FilterBar } from "./filter_bar";
 import { showFailures } from "./failures";
@@ -20,13 +20,13 @@ function showHeadline(study: Study): void {
   const status = study.the("status");
   const counts = status.words!.map((_, value) => {
     const many = status.values.reduce((sum, own) => sum + Number(own === value), 0);
-    return `${many} ${status.textOf(value)}`;
+    return `${count(many)} ${status.textOf(value)}`;
   });
   const took = study.the("wall_s").values.reduce((sum, own) => sum + (own || 0), 0);
   const parts = [
     `${page.design === "" ? "Points" : `${page.design.charAt(0).toUpperCase()}${page.design.slice(1)}`} over ${study.of("key").length} ` +
       `${study.of("key").length === 1 ? "key" : "keys"} of ${page.scenario}`,
-    `${study.runs} ${study.runs === 1 ? "run" : "runs"}: ${counts.join(", ")}`,
+    `${count(study.runs)} ${study.runs === 1 ? "run" : "runs"}: ${counts.join(", ")}`,
     `${took >= 7200 ? `${(took / 3600).toFixed(1)} h` : time(took)} of processor time`,
   ];
   byId("headline").textContent = parts.join("; ");
@@ -38,6 +38,11 @@ function showHeadline(study: Study): void {
 // A measure that says most, or else how runs ended.
 function firstColour(study: Study): Column {
   return study.mainMeasures(1).find(({ varies }) => varies) ?? study.the("status");
+}
+
+function firstWithResult(study: Study): number {
+  const measure = study.mainMeasures(1)[0];
+  return measure ? Math.max(0, measure.values.findIndex((value) => !Number.isNaN(value))) : 0;
 }
 
 function varying(study: Study): Column[] {
@@ -62,6 +67,8 @@ async function start(): Promise<void> {
   const bar = new FilterBar(selection, table);
   const panel = new RunPanel(byId("run"), selection);
   byId("texts").append(element("details", {}, element("summary", {}, "The study's file"), element("pre", {}, study.page.study)));
+  // Beside the rest there is room for a run from the start; on a phone it would hide the rest.
+  if (matchMedia("(min-width: 901px)").matches) selection.pick(firstWithResult(study));
   followTheme(() => {
     parallel.draw();
     scatter.draw();

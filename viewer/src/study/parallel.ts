@@ -10,8 +10,8 @@ import type { Column } from "./study_data";
 
 const room = { top: 52, bottom: 10, sides: 54 };
 const leastGap = 92; // pixels between axes; narrower places scroll
-const linesAtOnce = 1200;
-const mostFaint = 3000; // lines of runs that are left out
+const linesAtOnce = 700;
+const mostFaint = 1200; // lines of runs that are left out
 const reach = 8; // pixels from the hand to the line that it means
 const handle = 34; // pixels that take a drag, about an axis
 
@@ -56,10 +56,10 @@ export class Parallel {
     const gap = this.shownColumns.length > 1 ? (width - 2 * room.sides) / (this.shownColumns.length - 1) : 0;
     this.places = this.shownColumns.map((_, i) => room.sides + i * gap);
     this.axes = this.shownColumns.map((column) => new Axis(column, height - room.bottom, room.top));
+    this.placeHandles(gap);
     this.layers.clear(base);
     this.drawFaint();
     this.drawLines();
-    this.placeHandles(gap);
     this.drawOver();
   }
 
@@ -88,7 +88,7 @@ export class Parallel {
   private drawLines(): void {
     const { base } = this.layers;
     const { shownRows, colour } = this.selection;
-    const colours = new Colours(colour);
+    const colours = Colours.of(colour);
     const run = ++this.drawing;
     // In an order that mixes early and late runs: the first part is a sample of all.
     const stride = Math.max(1, Math.floor(shownRows.length / linesAtOnce));
@@ -104,7 +104,7 @@ export class Parallel {
         if (group) group.push(row);
         else groups.set(place, [row]);
       }
-      base.globalAlpha = Math.min(0.85, Math.max(0.1, 40 / Math.sqrt(order.length * 20)));
+      base.globalAlpha = Math.min(0.85, Math.max(0.05, 25 / order.length ** 0.65));
       base.lineWidth = order.length > 500 ? 1 : 1.4;
       for (const [place, rows] of groups) {
         base.strokeStyle = colours.list[place];

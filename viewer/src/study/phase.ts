@@ -59,7 +59,6 @@ export class Phase {
     [this.x, this.y, this.points.x, this.points.y] = [x, y, x, y];
     this.layers.box.hidden = !this.isOfCells;
     this.points.layers.box.hidden = this.isOfCells;
-    this.told.textContent = "\u00a0";
     this.redraw();
   }
 
@@ -85,10 +84,21 @@ export class Phase {
     drawTicks(layers, this.frame, ticks(x, (i) => this.box(i, 0).x + this.size.width / 2),
               ticks(y, (j) => this.box(0, j).y + this.size.height / 2), false);
     drawTitles(layers, this.frame, x.title, y.title);
-    const colours = new Colours(this.selection.colour);
+    const colours = Colours.of(this.selection.colour);
     for (const cell of this.cells.values()) this.drawCell(cell, colours);
     this.drawOver();
     layers.box.dataset.cells = String(this.cells.size);
+    this.told.textContent = this.legend();
+  }
+
+  // What cells are, until the hand is over one.
+  private legend(): string {
+    const { colour } = this.selection;
+    const cells = [...this.cells.values()];
+    const most = Math.max(0, ...cells.map(({ rows }) => rows.length));
+    const several = most < 2 ? "" : `Up to ${most} runs a cell, which has the colour${colour.words ? "s of all" : " of their mean"}. `;
+    const isEmpty = cells.some(({ rows }) => rows.every((row) => !colour.has(row)));
+    return several + (isEmpty ? "Hatched: no run has a value." : "");
   }
 
   private get size(): { width: number; height: number } {
@@ -109,13 +119,13 @@ export class Phase {
     const values = cell.rows.map((row) => colour.values[row]).filter((value) => !Number.isNaN(value));
     if (values.length === 0) return this.hatch(x, y, width, height);
     if (!colour.words) {
-      base.fillStyle = colours.of(mean(values));
+      base.fillStyle = colours.at(mean(values));
       base.fillRect(x, y, width, height);
       return;
     }
     values.sort((a, b) => a - b);
     values.forEach((value, i) => {
-      base.fillStyle = colours.of(value);
+      base.fillStyle = colours.at(value);
       base.fillRect(x + (i / values.length) * width, y, width / values.length + 0.3, height);
     });
   }
@@ -177,7 +187,10 @@ export class Phase {
       this.selection.point(cell ? cell.rows[0] : null);
       if (cell) this.tell(cell);
     });
-    box.addEventListener("pointerleave", () => this.selection.point(null));
+    box.addEventListener("pointerleave", () => {
+      this.selection.point(null);
+      this.told.textContent = this.legend();
+    });
     box.addEventListener("click", (event) => {
       const cell = this.cellAt(event);
       if (!cell) return;

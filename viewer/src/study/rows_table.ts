@@ -17,7 +17,8 @@ export class RowsTable {
   private readonly before = element("tr", { "aria-hidden": "true" }); // as high as the rows above
   private readonly after = element("tr", { "aria-hidden": "true" });
   private columns: Column[];
-  private order: number[] = [];
+  private all: number[] = []; // runs as they are sorted
+  private order: number[] = []; // those that are shown
   private sortedBy: { column: Column; down: boolean };
   private drawn = "";
 
@@ -37,7 +38,7 @@ export class RowsTable {
     this.scroll.addEventListener("scroll", () => this.draw(false));
     new ResizeObserver(() => this.draw(false)).observe(this.scroll);
     this.followHand();
-    selection.on("shown", () => this.sort());
+    selection.on("shown", () => this.filter());
     selection.on("picked", () => this.showPicked());
     this.fillHead();
     this.sort();
@@ -71,11 +72,11 @@ export class RowsTable {
       for (let row = 0; row < study.runs; row += every) longest = Math.max(longest, column.text(row).length);
       return Math.min(longest + (column.role === "status" ? 2 : 0), 44);
     });
-    this.head.replaceChildren(...this.columns.map((column, i) => this.headOf(column, widths[i])));
+    this.head.replaceChildren(...this.columns.map((column) => this.headOf(column)));
     const group = element("colgroup", {}, ...this.columns.map((column, i) => {
       const col = element("col");
       const section = column.role === "key" ? sectionOf(column).length * 0.9 : 0;
-      col.style.width = `${Math.max(widths[i], Math.min(Math.max(longestWord(column.title), section), 26)) * 7.6 + 26}px`;
+      col.style.width = `${Math.max(widths[i], Math.min(Math.max(longestWord(column.title), section), 26)) * 7.6 + 38}px`;
       return col;
     }));
     this.table.querySelector("colgroup")?.remove();
@@ -84,12 +85,12 @@ export class RowsTable {
     this.drawn = "";
   }
 
-  private headOf(column: Column, width: number): HTMLElement {
+  private headOf(column: Column): HTMLElement {
     const section = column.role === "key" ? sectionOf(column) : "";
     const title = element("span", { title: column.name }, ...(section ? [element("small", {}, section)] : []), column.title);
     const button = element("button", { type: "button", class: "sort" }, title);
     const { column: sorted, down } = this.sortedBy;
-    const head = element("th", { scope: "col", "data-key": column.name, "data-width": String(width),
+    const head = element("th", { scope: "col", "data-key": column.name, class: column.words ? "" : "number",
       "aria-sort": sorted !== column ? "none" : down ? "descending" : "ascending" }, button);
     button.addEventListener("click", () => {
       this.sortedBy = { column, down: this.sortedBy.column === column && !this.sortedBy.down };
@@ -103,9 +104,14 @@ export class RowsTable {
   private sort(): void {
     const { column, down } = this.sortedBy;
     const value = (row: number) => (!column.has(row) ? null : column.words ? column.text(row) : column.values[row]);
-    const keyed = this.selection.shownRows.map((row) => ({ row, value: value(row) }));
+    const keyed = Array.from(column.values, (_, row) => ({ row, value: value(row) }));
     keyed.sort((a, b) => compareValues(a.value, b.value, down) || a.row - b.row);
-    this.order = keyed.map(({ row }) => row);
+    this.all = keyed.map(({ row }) => row);
+    this.filter();
+  }
+
+  private filter(): void {
+    this.order = this.all.filter((row) => this.selection.shown[row]);
     this.scroll.scrollTop = 0;
     this.draw();
   }

@@ -18,6 +18,7 @@ export class Selection {
   readonly ticks = new Map<Column, Set<number>>(); // values that a column of words may have
   picked: number | null = null;
   pointed: number | null = null;
+  private isWaiting = false;
   private readonly listeners: { what: What; tell: () => void }[] = [];
 
   constructor(readonly study: Study, private colouredBy: Column) {
@@ -42,7 +43,7 @@ export class Selection {
   setRange(column: Column, range: Range | null): void {
     if (range) this.ranges.set(column, range);
     else this.ranges.delete(column);
-    this.apply();
+    this.applySoon();
   }
 
   setRanges(ranges: [Column, Range][]): void {
@@ -77,6 +78,16 @@ export class Selection {
   colourBy(column: Column): void {
     this.colouredBy = column;
     this.tell("colour");
+  }
+
+  // Once a picture, however fast the hand moves.
+  private applySoon(): void {
+    if (this.isWaiting) return;
+    this.isWaiting = true;
+    requestAnimationFrame(() => {
+      this.isWaiting = false;
+      this.apply();
+    });
   }
 
   private apply(): void {

@@ -41,6 +41,7 @@ export class Column {
   readonly high: number;
   readonly missing: number; // how many runs have no value
   readonly steps: number[] | null; // the values, where they are few
+  private usual: { low: number; high: number } | null = null;
   label: string;
   readonly unit: string;
 
@@ -65,6 +66,17 @@ export class Column {
 
   get title(): string {
     return this.unit === "" ? this.label : `${this.label}, ${this.unit}`;
+  }
+
+  /** From the least value to the greatest, or without a hundredth at each end where those lie far off. */
+  get usualRange(): { low: number; high: number } {
+    if (!this.usual) {
+      const sorted = this.values.filter((value) => !Number.isNaN(value)).sort();
+      const [low, high] = [0.01, 0.99].map((part) => sorted[Math.round(part * (sorted.length - 1))]);
+      const areFar = !this.words && high > low && this.high - this.low > 1.5 * (high - low);
+      this.usual = areFar ? { low, high } : { low: this.low, high: this.high };
+    }
+    return this.usual;
   }
 
   /** Whether it has more than one value. */
@@ -128,7 +140,8 @@ export class Study {
   /** The measures that are shown at first: all that a study names, else those that vary. */
   mainMeasures(most: number): Column[] {
     const measures = this.of("measure").filter(({ low, high }) => low <= high);
-    const rank = (column: Column) => Number(!column.varies) * 2 + Number(!usualMeasures.includes(column.name));
+    const place = (column: Column) => (usualMeasures.includes(column.name) ? usualMeasures.indexOf(column.name) : usualMeasures.length);
+    const rank = (column: Column) => Number(!column.varies) * 1000 + place(column);
     return measures.length <= most ? measures : [...measures].sort((a, b) => rank(a) - rank(b)).slice(0, most);
   }
 }
