@@ -11,9 +11,11 @@
 #include "app/words.hpp"
 #include "core/errors.hpp"
 #include "core/threads.hpp"
+#include "show/report.hpp"
 #include "study/csv_fields.hpp"
 #include "study/run_study.hpp"
 #include "study/slurm.hpp"
+#include "study/study_report.hpp"
 
 namespace plica {
 namespace {
@@ -88,12 +90,14 @@ void print_reasons(const StudyStatus& status) {
 // Prints how it ended; the command's status.
 int ended(const Study& study, const StudyDirectory& directory, const StudyOptions& options, Clock::time_point start) {
   directory.gather(study);
+  if (can_report()) write_study_report(options.out);
   if (!options.quiet) {
     const StudyStatus status = status_of(directory, study);
     fmt::print("{}: {} in {}\n", study.input().name, by_status(status),
                duration(std::chrono::duration<double>(Clock::now() - start).count()));
     print_reasons(status);
-    fmt::print("  table in {}/runs.csv\n", options.out);
+    fmt::print("  table in {0}/runs.csv{1}\n", options.out,
+               can_report() ? fmt::format("; to look at: {}/report.html", options.out) : "");
   }
   if (!interrupted()) return exit_done;
   fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");

@@ -276,6 +276,10 @@ std::vector<std::string> overrides_of(const StudyInput& study, const StudyDesign
   return overrides;
 }
 
+std::string name_of_run(const StudyPoint& run, bool has_replicates) {
+  return has_replicates ? fmt::format("{:06}_{}", run.point, run.replicate) : fmt::format("{:06}", run.point);
+}
+
 std::string points_csv(const StudyDesign& design) {
   const auto& [keys, runs] = design;
   std::string text = "run,point,replicate";

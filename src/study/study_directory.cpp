@@ -108,7 +108,7 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
   if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
   fs::remove(directory / "study.json", error);
   for (const char* name : {"rows", "points", "slurm"}) fs::remove_all(directory / name, error);
-  fs::remove(directory / "runs.csv", error);
+  for (const char* name : {"runs.csv", "report.html"}) fs::remove(directory / name, error);
   fs::create_directories(directory / "rows", error);
   write_file(directory / "study.toml", input.text);
   write_file(directory / "scenario.toml", resolved_scenario(input));
@@ -125,15 +125,20 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
   return result;
 }
 
-std::pair<StudyDirectory, Study> StudyDirectory::open(const fs::path& directory) {
+StudyDirectory StudyDirectory::look(const fs::path& directory) {
   std::error_code error;
   if (!fs::exists(directory / "study.json", error))
     throw FileError(directory.string() + ": holds no study; make one with plica study STUDY.toml --out DIR");
+  return StudyDirectory(directory);
+}
+
+std::pair<StudyDirectory, Study> StudyDirectory::open(const fs::path& directory) {
+  StudyDirectory result = look(directory);
   const Json begun = read_json(directory / "study.json");
   StudyInput input =
       parse_study(begun.value("name", "study"), begun.value("file", "study.toml"), read_file(directory / "study.toml"));
-  return {StudyDirectory(directory), Study(std::move(input), points_of_csv(read_file(directory / "points.csv")),
-                                           begun.value("measures", std::vector<std::string>{}))};
+  return {std::move(result), Study(std::move(input), points_of_csv(read_file(directory / "points.csv")),
+                                   begun.value("measures", std::vector<std::string>{}))};
 }
 
 std::pair<StudyDirectory, Study> StudyDirectory::open_to_run(const fs::path& directory) {
