@@ -1,12 +1,13 @@
-# Bundles viewer/ into one page with npm's packages (viewer/package-lock.json) and puts it into plica_core.
+# Bundles viewer/ into two pages, of runs and of a study, with npm's packages (viewer/package-lock.json) and puts them into plica_core.
 set(viewer_dir ${PROJECT_SOURCE_DIR}/viewer)
 set(report_template ${CMAKE_BINARY_DIR}/generated/report_template.html)
+set(study_template ${CMAKE_BINARY_DIR}/generated/study_template.html)
 find_program(PLICA_NPM npm)
 find_program(PLICA_NODE node)
 if(NOT PLICA_NPM OR NOT PLICA_NODE)
   message(FATAL_ERROR "report.html needs Node and npm: apt-get install nodejs npm, or configure with -DPLICA_WITH_VIEWER=OFF")
 endif()
-file(GLOB viewer_sources CONFIGURE_DEPENDS ${viewer_dir}/src/*)
+file(GLOB_RECURSE viewer_sources CONFIGURE_DEPENDS ${viewer_dir}/src/*)
 
 # npm's own record of what it installed. The packages need no scripts of theirs to run.
 set(installed ${viewer_dir}/node_modules/.package-lock.json)
@@ -16,12 +17,12 @@ add_custom_command(OUTPUT ${installed}
   DEPENDS ${viewer_dir}/package.json ${viewer_dir}/package-lock.json
   WORKING_DIRECTORY ${viewer_dir}
   COMMENT "Installing the viewer's packages (npm ci)" VERBATIM)
-add_custom_command(OUTPUT ${report_template}
-  COMMAND ${PLICA_NODE} ${viewer_dir}/build.mjs ${report_template}
+add_custom_command(OUTPUT ${report_template} ${study_template}
+  COMMAND ${PLICA_NODE} ${viewer_dir}/build.mjs ${report_template} ${study_template}
   DEPENDS ${installed} ${viewer_dir}/build.mjs ${viewer_sources}
-  COMMENT "Bundling the report's page" VERBATIM)
-add_custom_target(report_template DEPENDS ${report_template})
+  COMMENT "Bundling the reports' pages" VERBATIM)
+add_custom_target(report_template DEPENDS ${report_template} ${study_template})
 add_dependencies(plica_core report_template)
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/show/report_template.cpp PROPERTIES
-  COMPILE_DEFINITIONS PLICA_REPORT_TEMPLATE="${report_template}"
-  OBJECT_DEPENDS ${report_template})
+  COMPILE_DEFINITIONS "PLICA_REPORT_TEMPLATE=\"${report_template}\";PLICA_STUDY_TEMPLATE=\"${study_template}\""
+  OBJECT_DEPENDS "${report_template};${study_template}")

@@ -1,13 +1,13 @@
-// Bundles the viewer into one HTML file without data: node build.mjs OUT.html
+// Bundles the viewer into two HTML files without data: node build.mjs RUNS.html STUDY.html
 import { build } from "esbuild";
 import { readFile, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const out = process.argv[2];
-if (!out) {
-  console.error("usage: node build.mjs OUT.html");
+const [ofRuns, ofStudy] = process.argv.slice(2);
+if (!ofStudy) {
+  console.error("usage: node build.mjs RUNS.html STUDY.html");
   process.exit(2);
 }
 
@@ -31,23 +31,28 @@ async function licence(name) {
   return `${name} ${version}\n${await readFile(join(folder, "LICENSE"), "utf8")}`;
 }
 
-const [page, script, style, three, uplot] = await Promise.all([
-  readFile(join(here, "src", "page.html"), "utf8"),
-  bundle("main.ts"),
-  bundle("style.css"),
-  licence("three"),
-  licence("uplot"),
-]);
-// "</script" inside a string of the program would end the element.
-const parts = {
-  "<!--plica:style-->": `<style>${style}</style>`,
-  "<!--plica:script-->": `<script>${script.replaceAll("</script", "<\\/script")}</script>`,
-  "<!--plica:licences-->": `${three}\n${uplot}`.replaceAll("<", "&lt;"),
-};
-let html = page;
-for (const [place, content] of Object.entries(parts)) {
-  if (!html.includes(place)) throw new Error(`page.html has no ${place}`);
-  html = html.replace(place, () => content);
+// A page and its program and style, from a folder of src, into `file`.
+async function make(file, folder, licences) {
+  const [page, script, style] = await Promise.all([
+    readFile(join(here, "src", folder, "page.html"), "utf8"),
+    bundle(join(folder, "main.ts")),
+    bundle(join(folder, "style.css")),
+  ]);
+  // "</script" inside a string of the program would end the element.
+  const parts = {
+    "<!--plica:style-->": `<style>${style}</style>`,
+    "<!--plica:script-->": `<script>${script.replaceAll("</script", "<\\/script")}</script>`,
+    "<!--plica:licences-->": licences.join("\n").replaceAll("<", "&lt;"),
+  };
+  let html = page;
+  for (const [place, content] of Object.entries(parts)) {
+    if (!html.includes(place)) throw new Error(`page.html has no ${place}`);
+    html = html.replace(place, () => content);
+  }
+  await writeFile(file, html);
+  console.log(`${file}: ${Math.round(html.length / 1024)} kB`);
 }
-await writeFile(out, html);
-console.log(`${out}: ${Math.round(html.length / 1024)} kB`);
+
+const [three, uplot] = await Promise.all([licence("three"), licence("uplot")]);
+await make(ofRuns, "", [three, uplot]);
+await make(ofStudy, "study", [uplot]);

@@ -46,15 +46,16 @@ void bind_study(nb::module_& module) {
       .def(
           "__init__",
           [](Study* self, const std::string& name, const std::string& file, const std::string& text,
-             const std::string& points) {
+             const std::string& points, const std::vector<std::string>& measures) {
             StudyInput input = parse_study(name, file, text);
             const SafeThreadCount count(1);
             if (points.empty())
               new (self) Study(std::move(input));
             else
-              new (self) Study(std::move(input), points_of_csv(points));
+              new (self) Study(std::move(input), points_of_csv(points), measures);
           },
-          nb::arg("name"), nb::arg("file"), nb::arg("text"), nb::arg("points") = "")
+          nb::arg("name"), nb::arg("file"), nb::arg("text"), nb::arg("points") = "",
+          nb::arg("measures") = std::vector<std::string>{})
       .def_prop_ro("runs", &Study::runs)
       .def_prop_ro("scenario_name", [](const Study& s) { return s.input().scenario.name; })
       .def_prop_ro("keys", [](const Study& s) { return s.design().keys; })

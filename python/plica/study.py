@@ -36,6 +36,7 @@ class _Spec(NamedTuple):
     file: str
     text: str
     points: str
+    measures: tuple[str, ...]
     directory: str
 
 
@@ -90,7 +91,7 @@ class Study:
             name, file, text = begun["name"], begun["file"], _text_of(path / "study.toml")
             directory, self._core = _core.StudyDirectory.open(str(path))
             self._rows = dict(directory.rows)
-        self._spec = _Spec(name, file, text, self._core.points_csv, "")
+        self._spec = _Spec(name, file, text, self._core.points_csv, tuple(self._core.measures), "")
 
     @classmethod
     def _of_table(cls, source: Union[str, Mapping[str, Any]], table: pandas.DataFrame) -> Study:
@@ -250,7 +251,7 @@ def _text_of(path: Path) -> str:
 
 @functools.lru_cache(maxsize=4)
 def _study_of(spec: _Spec) -> _core.Study:
-    return _core.Study(spec.name, spec.file, spec.text, spec.points)
+    return _core.Study(spec.name, spec.file, spec.text, spec.points, spec.measures)
 
 
 def _rows_of(spec: _Spec, runs: list[int]) -> list[tuple[int, str]]:

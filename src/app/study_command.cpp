@@ -11,9 +11,11 @@
 #include "app/words.hpp"
 #include "core/errors.hpp"
 #include "core/threads.hpp"
+#include "show/report.hpp"
 #include "study/csv_fields.hpp"
 #include "study/run_study.hpp"
 #include "study/slurm.hpp"
+#include "study/study_report.hpp"
 
 namespace plica {
 namespace {
@@ -88,12 +90,14 @@ void print_reasons(const StudyStatus& status) {
 // Prints how it ended; the command's status.
 int ended(const Study& study, const StudyDirectory& directory, const StudyOptions& options, Clock::time_point start) {
   directory.gather(study);
+  if (can_report()) write_study_report(options.out);
   if (!options.quiet) {
     const StudyStatus status = status_of(directory, study);
     fmt::print("{}: {} in {}\n", study.input().name, by_status(status),
                duration(std::chrono::duration<double>(Clock::now() - start).count()));
     print_reasons(status);
-    fmt::print("  table in {}/runs.csv\n", options.out);
+    fmt::print("  table in {0}/runs.csv{1}\n", options.out,
+               can_report() ? fmt::format("; to look at: {}/report.html", options.out) : "");
   }
   if (!interrupted()) return exit_done;
   fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");
@@ -157,7 +161,7 @@ int run(const StudyOptions& options) {
 // What a task of an array does.
 int work(const std::string& out, int task) {
   const ThreadCount one(1);
-  auto [directory, study] = StudyDirectory::open(out);
+  auto [directory, study] = StudyDirectory::open_to_run(out);
   catch_interruptions();
   run_study(study, directory, 1, runs_of_task(directory, task), {{}, interrupted});
   return interrupted() ? interrupted_status() : exit_done;
@@ -165,7 +169,7 @@ int work(const std::string& out, int task) {
 
 void gather(const std::string& out) {
   const ThreadCount one(1);
-  auto [directory, study] = StudyDirectory::open(out);
+  auto [directory, study] = StudyDirectory::open_to_run(out);
   if (was_submitted(directory))
     fmt::print("{}\n", gather_from_slurm(study, directory));
   else
@@ -175,7 +179,7 @@ void gather(const std::string& out) {
 void print_status(const std::string& out) {
   const auto [directory, study] = StudyDirectory::open(out);
   const StudyStatus status = status_of(directory, study);
-  fmt::print("{}: {}; {} of processor time so far\n", study.input().name, by_status(status), duration(status.run_s));
+  fmt::print("{}: {}; {} of running time so far\n", study.input().name, by_status(status), duration(status.run_s));
   print_reasons(status);
   if (was_submitted(directory)) fmt::print("  {}\n", jobs_on_slurm(directory));
 }

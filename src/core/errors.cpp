@@ -8,6 +8,7 @@ namespace {
 
 std::string joined(const std::vector<Diagnostic>& diagnostics) {
   std::vector<std::string> lines;
+  lines.reserve(diagnostics.size());
   for (const Diagnostic& diagnostic : diagnostics) lines.push_back(diagnostic.text());
   return fmt::format("{}", fmt::join(lines, "\n"));
 }

@@ -21,6 +21,7 @@ std::vector<std::string> names_of(const Rows& rows, Which which = every_row) {
 template <class Map>
 std::vector<std::string> keys_of(const Map& map) {
   std::vector<std::string> keys;
+  keys.reserve(map.size());
   for (const auto& [key, value] : map) keys.push_back(key);
   return keys;
 }

@@ -32,6 +32,7 @@ std::vector<std::pair<double, CellId>> ring_at(const Tissue& tissue, double x, c
     angles[facet.cell] = std::atan2(centre.y(), centre.dot(outward));
   }
   std::vector<std::pair<double, CellId>> ring;
+  ring.reserve(angles.size());
   for (const auto& [cell, angle] : angles) ring.emplace_back(angle, cell);
   std::ranges::stable_sort(ring, {}, &std::pair<double, CellId>::first);
   return ring;

@@ -35,6 +35,7 @@ std::string in_toml(bool value) { return value ? "true" : "false"; }
 template <std::ranges::range Items>
 std::string in_toml(const Items& items) {
   std::vector<std::string> texts;
+  texts.reserve(std::ranges::size(items));
   for (const auto& item : items) texts.push_back(in_toml(item));
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }

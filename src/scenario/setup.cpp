@@ -119,7 +119,7 @@ struct Origin {
 /// Of the model's cells.
 template <class Acting>
 CellPattern pattern_of(const Acting& input, const Origin& origin) {
-  const CellPattern of_whole = make_pattern(input, origin.whole);
+  CellPattern of_whole = make_pattern(input, origin.whole);
   if (!origin.mirror.is_used()) return of_whole;
   Division side;
   side.origin = origin.mirror.origins;

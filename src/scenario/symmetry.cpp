@@ -30,17 +30,18 @@ class SymmetryCheck {
   void check_acting(const std::string& table, const auto& input) {
     if (!check_region(table, input.region)) return;
     const CellPattern pattern = make_pattern(input, whole_);
-    for (const auto& [numbers, what] :
+    for (const auto& [of_cells, what] :
          {std::pair(&pattern.strengths, "acts with the factor {:.4g} in cell {} and {:.4g} in its image, cell {}"),
           {&pattern.delays_s, "starts {:.4g} s late in cell {} and {:.4g} s in its image, cell {}"}}) {
-      const double largest = std::abs(*std::ranges::max_element(*numbers, {}, [](double a) { return std::abs(a); }));
+      const std::vector<double>& numbers = *of_cells;
+      const double largest = std::abs(*std::ranges::max_element(numbers, {}, [](double a) { return std::abs(a); }));
       const auto differ = [&](std::size_t a, std::size_t b) {
-        return std::abs((*numbers)[a] - (*numbers)[b]) > 1e-9 * largest;
+        return std::abs(numbers[a] - numbers[b]) > 1e-9 * largest;
       };
       if (const auto cell = first_cell(differ))
         return refuse(table,
-                      fmt::format(fmt::runtime(what), (*numbers)[cell->index()], cell->number(),
-                                  (*numbers)[mirror_.own(*cell).index()], mirror_.own(*cell).number()),
+                      fmt::format(fmt::runtime(what), numbers[cell->index()], cell->number(),
+                                  numbers[mirror_.own(*cell).index()], mirror_.own(*cell).number()),
                       "let variation, delay and profile be symmetric, or remove embryo.mirror");
     }
   }

@@ -8,35 +8,16 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/base64.hpp"
-#include "core/errors.hpp"
-#include "core/markup.hpp"
 #include "core/version.hpp"
-#include "record/deflate.hpp"
 #include "scenario/differences.hpp"
 #include "show/looks.hpp"
+#include "show/report_page.hpp"
 #include "show/report_run.hpp"
 
 namespace plica {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr std::string_view title_place = "<!--plica:title-->", data_place = "<!--plica:data-->";
-
-// JSON that may stand in a script element: "</script>" and "<!--" cannot occur. Bytes that are no UTF-8 become U+FFFD.
-std::string in_script(const ordered_json& json) {
-  const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  std::string result;
-  result.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<')
-      result += "\\u003c";
-    else
-      result += c;
-  }
-  return result;
-}
 
 std::string hex(const Rgb& colour) {
   std::string text = "#";
@@ -146,12 +127,6 @@ void make_names_unique(const std::vector<std::filesystem::path>& directories, st
   }
 }
 
-std::string replaced(std::string_view text, std::string_view place, const std::string& by) {
-  const std::size_t at = text.find(place);
-  if (at == std::string_view::npos) throw std::logic_error("the page has no place for its data");
-  return fmt::format("{}{}{}", text.substr(0, at), by, text.substr(at + place.size()));
-}
-
 }  // namespace
 
 bool can_report() { return !report_template().empty(); }
@@ -166,8 +141,6 @@ std::string report_page_of(const std::vector<std::filesystem::path>& directories
 }
 
 std::string report_page(const std::vector<ReportRun>& runs) {
-  if (!can_report())
-    throw FileError("no report can be made: plica was built without its viewer (PLICA_WITH_VIEWER=OFF)");
   ordered_json page = {{"format", 1},
                        {"made_by", fmt::format("plica {} ({})", version(), commit())},
                        {"fields", fields_json(runs)},
@@ -176,17 +149,12 @@ std::string report_page(const std::vector<ReportRun>& runs) {
                        {"view_cut_um", view_cut_um},
                        {"varied", varied_json(runs)},
                        {"runs", ordered_json::array()}};
-  std::string frames;
+  std::vector<PageBytes> frames;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     page["runs"].push_back(runs[r].json);
-    std::string packed;
-    Deflater(Deflater::Effort::small).append(runs[r].frames.bytes(), packed);
-    frames += fmt::format("<script type=\"text/plain\" id=\"frames-{}\">{}</script>\n", r, base64(packed));
+    frames.push_back({fmt::format("frames-{}", r), runs[r].frames.bytes()});
   }
-  const std::string data =
-      fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n{}", in_script(page), frames);
-  // Data first: a title that holds the mark of another place does no harm.
-  return replaced(replaced(report_template(), data_place, data), title_place, xml_escaped(title_of(runs)));
+  return filled_page(report_template(), title_of(runs), page, frames);
 }
 
 }  // namespace plica

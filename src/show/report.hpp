@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "show/report_run.hpp"
@@ -25,8 +24,5 @@ std::string report_page_of(const std::vector<std::filesystem::path>& directories
 
 /// Whether this build has its viewer.
 bool can_report();
-
-/// The bundled page without data; empty when plica was built without its viewer.
-std::string_view report_template();
 
 }  // namespace plica

@@ -276,6 +276,10 @@ std::vector<std::string> overrides_of(const StudyInput& study, const StudyDesign
   return overrides;
 }
 
+std::string name_of_run(const StudyPoint& run, bool has_replicates) {
+  return has_replicates ? fmt::format("{:06}_{}", run.point, run.replicate) : fmt::format("{:06}", run.point);
+}
+
 std::string points_csv(const StudyDesign& design) {
   const auto& [keys, runs] = design;
   std::string text = "run,point,replicate";
@@ -293,8 +297,8 @@ StudyDesign points_of_csv(const std::string& text) {
   const auto rows = csv_fields(text);
   const auto refuse = [] { throw FileError("points.csv is no list of points; start the study anew"); };
   if (rows.empty() || rows.front().size() < 4) refuse();
-  const auto whole_number = [&](const std::string& text) {
-    const double number = number_in(text).value_or(0);
+  const auto whole_number = [&](const std::string& field) {
+    const double number = number_in(field).value_or(0);
     if (!(number >= 1 && number <= static_cast<double>(most_runs) && number == std::floor(number))) refuse();
     return static_cast<int>(number);
   };

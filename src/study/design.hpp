@@ -27,6 +27,9 @@ StudyDesign design_of(const StudyInput& study);
 /// What a run says otherwise than the study's scenario: [set], its values, and its seeds. As of --set.
 std::vector<std::string> overrides_of(const StudyInput& study, const StudyDesign& design, const StudyPoint& run);
 
+/// Names its files: "000012", or "000012_2" where points are run more than once.
+std::string name_of_run(const StudyPoint& run, bool has_replicates);
+
 /// As points.csv, and back. FileError where a text is no such thing.
 std::string points_csv(const StudyDesign& design);
 StudyDesign points_of_csv(const std::string& text);

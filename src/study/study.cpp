@@ -97,7 +97,8 @@ Study::Study(StudyInput input) : input_(std::move(input)) {
   }
 }
 
-Study::Study(StudyInput input, StudyDesign design) : input_(std::move(input)), design_(std::move(design)) { check(); }
+Study::Study(StudyInput input, StudyDesign design, std::vector<std::string> measures)
+    : input_(std::move(input)), design_(std::move(design)), measures_(std::move(measures)) {}
 
 // Measures are those of the first point that is a scenario.
 void Study::check() {
@@ -123,10 +124,7 @@ Scenario Study::scenario_of(std::size_t run) const {
   return load_scenario(input_.scenario, overrides_of(input_, design_, design_.runs[run]));
 }
 
-std::string Study::name_of(std::size_t run) const {
-  const auto& [point, replicate, values, seeds] = design_.runs[run];
-  return input_.replicates == 1 ? fmt::format("{:06}", point) : fmt::format("{:06}_{}", point, replicate);
-}
+std::string Study::name_of(std::size_t run) const { return name_of_run(design_.runs[run], input_.replicates > 1); }
 
 std::optional<RunRow> Study::run(std::size_t run, const fs::path& directory, const std::function<bool()>& stop) const {
   const auto start = std::chrono::steady_clock::now();

@@ -27,8 +27,8 @@ class Study {
   /// Makes the design, and one run at rest to see what there is to measure. ScenarioError, in the lines of the study's
   /// file, when no point is a valid scenario or a key or measure is not known.
   explicit Study(StudyInput input);
-  /// With a design that was made before.
-  Study(StudyInput input, StudyDesign design);
+  /// One that has been looked at before.
+  Study(StudyInput input, StudyDesign design, std::vector<std::string> measures);
 
   [[nodiscard]] const StudyInput& input() const { return input_; }
   [[nodiscard]] const StudyDesign& design() const { return design_; }

@@ -49,6 +49,12 @@ void require_same_plica(const fs::path& directory, const Json& begun) {
                     directory.string(), with, this_plica()));
 }
 
+void require_same_scenario(const fs::path& directory, const StudyInput& input) {
+  if (read_file(directory / "scenario.toml") != resolved_scenario(input))
+    throw UsageError(fmt::format("{}: the scenario {} has changed since the study was begun; it was {}",
+                                 directory.string(), input.scenario.file, (directory / "scenario.toml").string()));
+}
+
 // Whether there is what a study that was killed as it began does not leave.
 bool holds_something_else(const fs::path& directory) {
   constexpr std::array<std::string_view, 4> own = {"rows", "study.toml", "scenario.toml", "points.csv"};
@@ -88,9 +94,7 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
           fmt::format("{}: the study has changed since it was begun: {} is not {}; change it back, or "
                       "give another --out",
                       directory.string(), input.file, (directory / "study.toml").string()));
-    if (read_file(directory / "scenario.toml") != resolved_scenario(input))
-      throw UsageError(fmt::format("{}: the scenario {} has changed since the study was begun; it was {}",
-                                   directory.string(), input.scenario.file, (directory / "scenario.toml").string()));
+    require_same_scenario(directory, input);
     if (read_file(directory / "points.csv") != points_csv(study.design()))
       throw UsageError(fmt::format("{}: the points of the study have changed since it was begun", directory.string()));
     return result;
@@ -104,7 +108,7 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
   if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
   fs::remove(directory / "study.json", error);
   for (const char* name : {"rows", "points", "slurm"}) fs::remove_all(directory / name, error);
-  fs::remove(directory / "runs.csv", error);
+  for (const char* name : {"runs.csv", "report.html"}) fs::remove(directory / name, error);
   fs::create_directories(directory / "rows", error);
   write_file(directory / "study.toml", input.text);
   write_file(directory / "scenario.toml", resolved_scenario(input));
@@ -121,18 +125,27 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
   return result;
 }
 
-std::pair<StudyDirectory, Study> StudyDirectory::open(const fs::path& directory) {
+StudyDirectory StudyDirectory::look(const fs::path& directory) {
   std::error_code error;
   if (!fs::exists(directory / "study.json", error))
     throw FileError(directory.string() + ": holds no study; make one with plica study STUDY.toml --out DIR");
+  return StudyDirectory(directory);
+}
+
+std::pair<StudyDirectory, Study> StudyDirectory::open(const fs::path& directory) {
+  StudyDirectory result = look(directory);
   const Json begun = read_json(directory / "study.json");
-  require_same_plica(directory, begun);
   StudyInput input =
       parse_study(begun.value("name", "study"), begun.value("file", "study.toml"), read_file(directory / "study.toml"));
-  if (read_file(directory / "scenario.toml") != resolved_scenario(input))
-    throw UsageError(fmt::format("{}: the scenario {} has changed since the study was begun; it was {}",
-                                 directory.string(), input.scenario.file, (directory / "scenario.toml").string()));
-  return {StudyDirectory(directory), Study(std::move(input), points_of_csv(read_file(directory / "points.csv")))};
+  return {std::move(result), Study(std::move(input), points_of_csv(read_file(directory / "points.csv")),
+                                   begun.value("measures", std::vector<std::string>{}))};
+}
+
+std::pair<StudyDirectory, Study> StudyDirectory::open_to_run(const fs::path& directory) {
+  auto opened = open(directory);
+  require_same_plica(directory, read_json(directory / "study.json"));
+  require_same_scenario(directory, opened.second.input());
+  return opened;
 }
 
 StudyRows StudyDirectory::rows() const {

@@ -3,6 +3,7 @@
 //   study.toml     the study, as given          study.json  what it was begun with
 //   points.csv     the runs, in their order     rows/       a file of rows for each process that ran some
 //   runs.csv       a row a run, when it ended   points/     what is kept of each run, if anything
+//   report.html    all of it, to look at
 //
 // A row is written as soon as its run has ended, in one write: whatever is killed, other rows stay. Any number of
 // processes may work in a directory at once, also on several machines that share it.
@@ -30,8 +31,12 @@ class StudyDirectory {
   /// none to go on with, or it was begun by another plica; FileError when it cannot be written.
   static StudyDirectory begin(const std::filesystem::path& directory, const Study& study, Start start);
 
-  /// The study that a directory holds. FileError when it holds none.
+  /// The study that a directory holds; to look at, or to run, which only the plica does that began it, and while the
+  /// scenario is what it was. FileError when it holds none.
   static std::pair<StudyDirectory, Study> open(const std::filesystem::path& directory);
+  static std::pair<StudyDirectory, Study> open_to_run(const std::filesystem::path& directory);
+  /// The same without the study, to look at its rows, whichever plica began it.
+  static StudyDirectory look(const std::filesystem::path& directory);
 
   [[nodiscard]] const std::filesystem::path& path() const { return directory_; }
   [[nodiscard]] StudyRows rows() const;

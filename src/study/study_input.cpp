@@ -313,6 +313,10 @@ class Reader {
 
 }  // namespace
 
+const char* word_of(DesignKind kind) {
+  return std::ranges::find(kinds, kind, &decltype(kinds)::value_type::second)->first;
+}
+
 bool is_study(const std::string& text) {
   try {
     const toml::table document = toml::parse(text);

@@ -24,6 +24,9 @@ struct StudyKey {
 
 enum class DesignKind { grid, list, one_at_a_time, sobol, latin_hypercube, sobol_indices, file };
 
+/// As in the study's file: "one-at-a-time".
+const char* word_of(DesignKind kind);
+
 /// What each run leaves beside its row: nothing, its summary.json, or all that `plica run` leaves.
 enum class KeptOfRun { row, summary, full };
 

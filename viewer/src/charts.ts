@@ -2,6 +2,7 @@
 import uPlot from "uplot";
 import { lineColours } from "./colour";
 import { element, styleColour } from "./dom";
+import { plotFont } from "./fonts";
 import { fewRuns } from "./page_data";
 import type { Run } from "./run";
 import { type LineLook, type RunLooks, sampleOf } from "./run_looks";
@@ -12,7 +13,6 @@ const plotHeight = 190;
 const readingTime = 250; // ms
 const pointingReach = 30; // pixels from the hand to the curve that it points at
 const faded = 0.15; // of the curves that are not pointed at
-export const plotFont = "12px system-ui, sans-serif";
 const dashes: number[][] = [[], [7, 4], [2, 3], [9, 3, 2, 3]];
 
 interface Point {

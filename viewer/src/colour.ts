@@ -1,4 +1,5 @@
 // Values to colours, by the maps that plica put into the page.
+import { styleColour } from "./dom";
 import type { Field } from "./page_data";
 
 export type Rgb = [number, number, number]; // 0 to 255
@@ -27,3 +28,16 @@ export function css(rgb: Rgb): string {
 
 /** Lines in plots: Okabe and Ito's colours for any kind of colour vision, those that are seen on light and on dark. */
 export const lineColours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+
+// From the least value to the greatest, evenly in lightness, so that order shows with any kind of colour vision; darker
+// than what they stand on by day, lighter by night.
+const ramps = {
+  day: ["#2b1a6b", "#1d5a9a", "#0d8488", "#4f9636", "#c28a00"],
+  night: ["#6a6fd8", "#3f9fe0", "#2fc0b0", "#9ad25a", "#ffdd55"],
+};
+
+/** The colour of lines and points at `part` of the way from the least value to the greatest. */
+export function rampColour(part: number): string {
+  const [red, green, blue] = parseHex(styleColour("paper"));
+  return css(colourAt(red + green + blue > 380 ? ramps.day : ramps.night, part));
+}

@@ -7,23 +7,39 @@ const comparison = /^([^<>=]+)(<=|>=|=|<|>)(.+)$/;
 
 /** Whether the traits have all words of the text. A word without a comparison is part of a text or a whole number. */
 export function matches(traits: Traits, text: string): boolean {
-  const words = text.toLowerCase().split(/\s+/).filter((word) => word !== "");
-  return words.every((word) => hasWord(traits, word));
+  return wordsOf(text).every((word) => hasWord(traits, word));
+}
+
+/** What a text asks for, word by word. */
+export function wordsOf(text: string): string[] {
+  return text.toLowerCase().split(/\s+/).filter((word) => word !== "");
+}
+
+/** A comparison's quantity, sign and value; null for another word. */
+export function comparisonIn(word: string): { name: string; sign: string; value: string } | null {
+  const parts = comparison.exec(word);
+  return parts && { name: parts[1], sign: parts[2], value: parts[3] };
+}
+
+/** Whether a quantity may be meant: it has a word that begins so, as "young" in elasticity.young_modulus_Pa. */
+export function isNamed(quantity: string, name: string): boolean {
+  return `.${quantity.toLowerCase().replaceAll("_", ".")}`.includes(`.${name.replaceAll("_", ".")}`);
 }
 
 function hasWord(traits: Traits, word: string): boolean {
-  const parts = comparison.exec(word);
-  if (!parts) return [...traits.values()].some((value) => isPart(value.toLowerCase(), word));
-  // The first that has a word which begins like that: "young" is elasticity.young_modulus_Pa.
-  const named = [...traits].find(([name]) => `.${name.toLowerCase().replaceAll("_", ".")}`.includes(`.${parts[1].replaceAll("_", ".")}`));
-  return named !== undefined && compares(named[1].toLowerCase(), parts[2], parts[3]);
+  const asked = comparisonIn(word);
+  if (!asked) return [...traits.values()].some((value) => isPart(value.toLowerCase(), word));
+  const named = [...traits].find(([quantity]) => isNamed(quantity, asked.name));
+  return named !== undefined && compares(named[1].toLowerCase(), asked.sign, asked.value);
 }
 
-function isPart(value: string, word: string): boolean {
+/** Whether a word is part of a text, or is a whole number. */
+export function isPart(value: string, word: string): boolean {
   return Number.isNaN(Number(value)) ? value.includes(word) : value === word;
 }
 
-function compares(own: string, sign: string, wanted: string): boolean {
+/** Whether a value, "" where it is missing, is as the sign says to the wanted one. */
+export function compares(own: string, sign: string, wanted: string): boolean {
   const [a, b] = [Number(own), Number(wanted)];
   if (own === "" || Number.isNaN(a) || Number.isNaN(b)) return sign === "=" && own === wanted;
   if (sign === "=") return a === b;

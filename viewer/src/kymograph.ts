@@ -1,8 +1,9 @@
 // The midline over place and time: where invagination starts, and how it spreads.
 import uPlot from "uplot";
-import { goToClicks, plotFont, plotPadding, timeAxis, TimeLine, timeScale, valueAxis } from "./charts";
+import { goToClicks, plotPadding, timeAxis, TimeLine, timeScale, valueAxis } from "./charts";
 import { colourAt, css } from "./colour";
 import { element, styleColour, whenNear } from "./dom";
+import { plotFont } from "./fonts";
 import { fewRuns, type PageData } from "./page_data";
 import type { Run } from "./run";
 import { pointWith, type State } from "./state";

@@ -12,6 +12,7 @@ import { RunsTable } from "./runs_table";
 import { State } from "./state";
 import { showSections } from "./sections";
 import { showTables } from "./tables";
+import { followTheme } from "./theme";
 
 const usualPlaySeconds = 10; // for a whole run
 const mostCellsWithEdges = 5000; // at first: of more, edges would hide the colours
@@ -32,17 +33,6 @@ function firstState(page: PageData, runs: Run[]): State {
     shell: true, marks: runs.length <= fewRuns, picked: null,
     shown: new Set(runs.map((run) => run.number)), order: runs.map((run) => run.number), pointed: null, colourBy: RunLooks.firstKey(page),
   });
-}
-
-function followTheme(redraw: () => void): void {
-  const root = document.documentElement;
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  byId("theme").addEventListener("click", () => {
-    const isDark = root.dataset.theme ? root.dataset.theme === "dark" : dark.matches;
-    root.dataset.theme = isDark ? "light" : "dark";
-    redraw();
-  });
-  dark.addEventListener("change", redraw);
 }
 
 function startClock(state: State, end: number, draw: () => void): void {

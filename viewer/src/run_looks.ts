@@ -1,5 +1,5 @@
 // Which line is which run: its colour and its dashes, in plots, tables and beside pictures.
-import { colourAt, css, lineColours, parseHex } from "./colour";
+import { lineColours, rampColour } from "./colour";
 import { styleColour } from "./dom";
 import { fewRuns, type PageData, type Varied } from "./page_data";
 import type { Run } from "./run";
@@ -12,13 +12,6 @@ export interface LineLook {
 
 // With six colours: 36 runs.
 const dashes: number[][] = [[], [8, 4], [2, 3], [9, 3, 2, 3], [16, 4], [9, 3, 2, 3, 2, 3]];
-
-// From the least value to the greatest, evenly in lightness, so that order shows with any kind of colour vision; darker
-// than what they stand on by day, lighter by night.
-const ramps = {
-  day: ["#2b1a6b", "#1d5a9a", "#0d8488", "#4f9636", "#c28a00"],
-  night: ["#6a6fd8", "#3f9fe0", "#2fc0b0", "#9ad25a", "#ffdd55"],
-};
 
 /** Whether the runs that have the key all have numbers there. */
 export function isNumeric({ values }: Varied): boolean {
@@ -57,8 +50,7 @@ export class RunLooks {
 
   /** The ramp's colour at `part` of the way from its least value to its greatest. */
   ramp(part: number): string {
-    const [red, green, blue] = parseHex(styleColour("paper"));
-    return css(colourAt(red + green + blue > 380 ? ramps.day : ramps.night, part));
+    return rampColour(part);
   }
 }
 

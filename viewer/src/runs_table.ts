@@ -3,9 +3,10 @@ import { byId, element } from "./dom";
 import { matches, type Traits } from "./filter";
 import { fewRuns, isTable, type PageData } from "./page_data";
 import type { Run } from "./run";
+import { compareValues } from "./order";
 import { isNumeric, type RunLooks, sampleOf } from "./run_looks";
 import { pointWith, type State } from "./state";
-import { number, words } from "./text";
+import { lastOf, number, words } from "./text";
 
 const mostKeys = 6; // as columns; the others with "all measures and keys"
 
@@ -208,19 +209,6 @@ export class RunsTable {
   private showPointed(): void {
     this.rows.forEach((row, i) => row.classList.toggle("pointed", i === this.state.now.pointed));
   }
-}
-
-// What is missing comes last.
-function compareValues(a: string | number | null, b: string | number | null, down: boolean): number {
-  if (a === null || b === null) return Number(a === null) - Number(b === null);
-  const difference = typeof a === "number" && typeof b === "number" ? a - b : collator.compare(String(a), String(b));
-  return down ? -difference : difference;
-}
-
-const collator = new Intl.Collator("en", { numeric: true }); // run-2 before run-10
-
-function lastOf(key: string): string {
-  return key.slice(key.lastIndexOf(".") + 1);
 }
 
 function statusOf(run: Run): string {

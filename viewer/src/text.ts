@@ -58,3 +58,13 @@ export function words(key: string): [string, string] {
     .replace(/\byoung modulus\b/, "Young's modulus").replace(/\bpoisson ratio\b/, "Poisson's ratio");
   return [name, unit];
 }
+
+/** How many there are: "10 000". */
+export function count(many: number): string {
+  return String(many).replace(/\B(?=(\d{3})+$)/g, "\u202f");
+}
+
+/** The last part of a dotted key. */
+export function lastOf(key: string): string {
+  return key.slice(key.lastIndexOf(".") + 1);
+}

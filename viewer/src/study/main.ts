@@ -1,0 +1,91 @@
+// The page of a study begins here: reads its data, then shows its parts, which share one selection of runs.
+import { byId, element } from "../dom";
+import { count, time } from "../text";
+import { followTheme } from "../theme";
+import { FilterBar } from "./filter_bar";
+import { showFailures } from "./failures";
+import { Parallel } from "./parallel";
+import { Phase } from "./phase";
+import { RowsTable } from "./rows_table";
+import { RunPanel } from "./run_panel";
+import { makeScatter } from "./scatter";
+import { Selection } from "./selection";
+import { type Column, readStudy, type Study } from "./study_data";
+
+const mostAxes = 10; // of the parallel coordinates, at first
+
+function showHeadline(study: Study): void {
+  const { page } = study;
+  byId("title").textContent = page.name;
+  const status = study.the("status");
+  const counts = status.words!.map((_, value) => {
+    const many = status.values.reduce((sum, own) => sum + Number(own === value), 0);
+    return `${count(many)} ${status.textOf(value)}`;
+  });
+  const took = study.the("wall_s").values.reduce((sum, own) => sum + (own || 0), 0);
+  const parts = [
+    `${page.design === "" ? "Points" : `${page.design.charAt(0).toUpperCase()}${page.design.slice(1)}`} over ${study.of("key").length} ` +
+      `${study.of("key").length === 1 ? "key" : "keys"} of ${page.scenario}`,
+    `${count(study.runs)} ${study.runs === 1 ? "run" : "runs"}: ${counts.join(", ")}`,
+    `${took >= 7200 ? `${(took / 3600).toFixed(1)} h` : time(took)} of processor time`,
+  ];
+  byId("headline").textContent = parts.join("; ");
+  byId("made-by").textContent = `Made by ${page.made_by}; run by plica ${page.begun_by} on ${page.processor}.` +
+    (page.columns.some(({ numbers }) => numbers === "float") ? " Measures are kept to seven digits here; runs.csv has all." : "");
+  if (page.set.length > 0) byId("headline").append(`; in all: ${page.set.join(", ")}`);
+}
+
+// A measure that says most, or else how runs ended.
+function firstColour(study: Study): Column {
+  return study.mainMeasures(1).find(({ varies }) => varies) ?? study.the("status");
+}
+
+function firstWithResult(study: Study): number {
+  const measure = study.mainMeasures(1)[0];
+  return measure ? Math.max(0, measure.values.findIndex((value) => !Number.isNaN(value))) : 0;
+}
+
+function varying(study: Study): Column[] {
+  const keys = study.of("key").filter(({ varies }) => varies);
+  return keys.length > 0 ? keys : study.plottable;
+}
+
+async function start(): Promise<void> {
+  const study = await readStudy();
+  showHeadline(study);
+  const selection = new Selection(study, firstColour(study));
+  const keys = varying(study);
+  const measures = study.mainMeasures(6).filter(({ varies }) => varies);
+  const first = [...keys.slice(0, mostAxes - 2), ...measures].slice(0, mostAxes);
+  const axes = study.plottable.filter((column) => first.includes(column));
+  const parallel = new Parallel(byId("parallel"), selection, axes.length >= 2 ? axes : study.plottable.slice(0, 2));
+  const scatter = makeScatter(byId("scatter"), selection, keys[0], measures[0] ?? study.plottable.at(-1)!);
+  const phase = keys.length >= 2 && keys[0].role === "key" ? new Phase(byId("phase"), selection, keys[0], keys[1]) : null;
+  byId("phase").hidden = !phase;
+  showFailures(byId("failures"), selection);
+  const table = new RowsTable(byId("runs"), selection);
+  const bar = new FilterBar(selection, table);
+  const panel = new RunPanel(byId("run"), selection);
+  byId("texts").append(element("details", {}, element("summary", {}, "The study's file"), element("pre", {}, study.page.study)));
+  // Beside the rest there is room for a run from the start; on a phone it would hide the rest.
+  if (matchMedia("(min-width: 901px)").matches) selection.pick(firstWithResult(study));
+  followTheme(() => {
+    parallel.draw();
+    scatter.draw();
+    phase?.redraw();
+    table.rebuild();
+    bar.rebuild();
+    panel.show();
+  });
+  requestAnimationFrame(() => requestAnimationFrame(() => {
+    performance.mark("first-picture");
+    document.body.dataset.ready = "true";
+  }));
+}
+
+start().catch((error) => {
+  const notice = byId("problem");
+  notice.textContent = `The page cannot show its data: ${error instanceof Error ? error.message : error}`;
+  notice.hidden = false;
+  throw error;
+});

@@ -1,0 +1,187 @@
+// What plica put into the page of a study: src/study/study_report.cpp. Columns of values, a value a run.
+import { type ArrayEntry, inflate, PackedArrays } from "../packed";
+import { lastOf, number, words } from "../text";
+
+export type Role =
+  "point" | "key" | "replicate" | "status" | "measure" | "steps" | "wall_s" | "reason" | "seeds" | "kept";
+
+export interface ColumnEntry {
+  name: string;
+  role: Role;
+  numbers?: "double" | "float";
+  words?: string[];
+}
+
+export interface StudyPage {
+  format: number;
+  made_by: string;
+  begun_by: string;
+  processor: string;
+  name: string;
+  scenario: string;
+  scenario_argument: string; // of `plica run`
+  design: string; // its kind; "" where the study's scenario was not found
+  set: string[]; // KEY=VALUE in all runs
+  log_keys: string[];
+  runs: number;
+  points: string; // the directory of what was kept of runs, from the page's own
+  study: string; // TOML
+  columns: ColumnEntry[];
+  arrays: ArrayEntry[];
+}
+
+const mostSteps = 60; // values of a column that counts as one of steps
+
+/** Values of one kind, a number a run: of words their places in the list, from 0 on. NaN is missing. */
+export class Column {
+  readonly name: string;
+  readonly role: Role;
+  readonly words: string[] | null;
+  readonly low: number;
+  readonly high: number;
+  readonly missing: number; // how many runs have no value
+  readonly steps: number[] | null; // the values, where they are few
+  private usual: { low: number; high: number } | null = null;
+  label: string;
+  readonly unit: string;
+
+  constructor({ name, role, words: list }: Pick<ColumnEntry, "name" | "role" | "words">, readonly values: Float64Array,
+              readonly isLogarithmic = false) {
+    [this.name, this.role, this.words] = [name, role, list ?? null];
+    [this.label, this.unit] = role === "wall_s" ? ["processor time", "s"] : words(lastOf(name));
+    let [low, high, missing] = [Infinity, -Infinity, 0];
+    const different = new Set<number>();
+    for (const value of values) {
+      if (Number.isNaN(value)) {
+        ++missing;
+        continue;
+      }
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+      if (different.size <= mostSteps) different.add(value);
+    }
+    [this.low, this.high, this.missing] = [low, high, missing];
+    this.steps = different.size <= mostSteps ? [...different].sort((a, b) => a - b) : null;
+  }
+
+  get title(): string {
+    return this.unit === "" ? this.label : `${this.label}, ${this.unit}`;
+  }
+
+  /** From the least value to the greatest, or without a hundredth at each end where those lie far off. */
+  get usualRange(): { low: number; high: number } {
+    if (!this.usual) {
+      const sorted = this.values.filter((value) => !Number.isNaN(value)).sort();
+      const [low, high] = [0.01, 0.99].map((part) => sorted[Math.round(part * (sorted.length - 1))]);
+      const areFar = !this.words && high > low && this.high - this.low > 1.5 * (high - low);
+      this.usual = areFar ? { low, high } : { low: this.low, high: this.high };
+    }
+    return this.usual;
+  }
+
+  /** Whether it has more than one value. */
+  get varies(): boolean {
+    return this.high > this.low;
+  }
+
+  has(row: number): boolean {
+    return !Number.isNaN(this.values[row]);
+  }
+
+  /** A value as people read it. */
+  textOf(value: number): string {
+    if (Number.isNaN(value)) return "none";
+    return this.words ? plainWord(this.words[value], this.role) : number(value);
+  }
+
+  text(row: number): string {
+    return this.textOf(this.values[row]);
+  }
+
+  /** A value as plica reads it; "" where it is missing. */
+  exact(row: number): string {
+    if (!this.has(row)) return "";
+    return this.words ? this.words[this.values[row]] : String(this.values[row]);
+  }
+}
+
+// Words of keys are in TOML, with quotes; a status is one word there.
+function plainWord(word: string, role: Role): string {
+  if (role === "status") return word.replaceAll("_", " ");
+  return role === "key" && /^"[^"\\]*"$/.test(word) ? word.slice(1, -1) : word;
+}
+
+export class Study {
+  constructor(readonly page: StudyPage, readonly columns: Column[]) {
+    tellApart(columns.filter(({ role }) => role === "key"));
+  }
+
+  get runs(): number {
+    return this.page.runs;
+  }
+
+  of(role: Role): Column[] {
+    return this.columns.filter((column) => column.role === role);
+  }
+
+  the(role: Role): Column {
+    const found = this.columns.find((column) => column.role === role);
+    if (!found) throw new Error(`the study has no column of ${role}`);
+    return found;
+  }
+
+  /** What can be plotted: columns with at least one value, keys first. */
+  get plottable(): Column[] {
+    const order: Role[] = ["key", "measure", "status", "steps", "wall_s", "point", "replicate"];
+    return order.flatMap((role) => this.of(role))
+      .filter((column) => column.low <= column.high && (column.role !== "replicate" || column.varies));
+  }
+
+  /** The measures that are shown at first: all that a study names, else those that vary. */
+  mainMeasures(most: number): Column[] {
+    const measures = this.of("measure").filter(({ low, high }) => low <= high);
+    const place = (column: Column) => (usualMeasures.includes(column.name) ? usualMeasures.indexOf(column.name) : usualMeasures.length);
+    const rank = (column: Column) => Number(!column.varies) * 1000 + place(column);
+    return measures.length <= most ? measures : [...measures].sort((a, b) => rank(a) - rank(b)).slice(0, most);
+  }
+}
+
+const usualMeasures = [
+  "furrow_depth_um", "vml_apical_area_ratio", "lip_distance_um", "vml_height_um", "lips_closed_time_s", "equilibrium_time_s",
+  "max_volume_error", "self_intersections", "min_scaled_jacobian",
+];
+
+// Keys that end alike are called by what stands before, too.
+function tellApart(keys: Column[]): void {
+  for (let parts = 2; parts <= 4; ++parts) {
+    const titles = keys.map(({ title }) => title);
+    keys.forEach((key, i) => {
+      if (titles.indexOf(titles[i]) === titles.lastIndexOf(titles[i])) return;
+      const before = key.name.split(".").slice(0, -1).slice(1 - parts).join(" ").replaceAll("_", " ");
+      key.label = `${before} ${words(lastOf(key.name))[0]}`.trim();
+    });
+  }
+}
+
+export async function readStudy(): Promise<Study> {
+  const page = JSON.parse(document.getElementById("data")!.textContent!) as StudyPage;
+  if (page.format !== 1) throw new Error(`the data are of format ${page.format}; this page reads format 1`);
+  const packed = new PackedArrays(await inflate(document.getElementById("rows")!.textContent!), page.arrays);
+  const columns = page.columns.map((entry, place) =>
+    new Column(entry, unpacked(entry, String(place), packed), page.log_keys.includes(entry.name)));
+  return new Study(page, columns);
+}
+
+function unpacked(entry: ColumnEntry, place: string, packed: PackedArrays): Float64Array {
+  if (entry.words) return Float64Array.from(packed.get(`${place}/words`), (word) => (word === 0 ? NaN : word - 1));
+  if (entry.numbers === "float") return Float64Array.from(new Float32Array(packed.get(`${place}/float`).buffer));
+  const [high, low] = [packed.get(`${place}/high`), packed.get(`${place}/low`)];
+  const values = new Float64Array(high.length);
+  const bytes = new DataView(values.buffer);
+  const isLittle = new Uint8Array(new Uint16Array([1]).buffer)[0] === 1;
+  for (let i = 0; i < high.length; ++i) {
+    bytes.setUint32(8 * i, isLittle ? low[i] : high[i], isLittle);
+    bytes.setUint32(8 * i + 4, isLittle ? high[i] : low[i], isLittle);
+  }
+  return values;
+}
