@@ -6,7 +6,8 @@ import pytest
 
 import plica
 from plica.answers import _name_and_unit
-from plica.posteriors import population_monte_carlo
+from plica.emulator import Range
+from plica.posteriors import _proposed, population_monte_carlo
 
 YOUNG, POISSON = "elasticity.young_modulus_Pa", "elasticity.poisson_ratio"
 TENSION = "cortex.shortening.tension_mN_per_m"
@@ -295,6 +296,21 @@ def test_emulator_takes_logarithms():
     assert np.allclose(mean[DEPTH], np.log10([3.0, 100.0, 5000.0]), atol=0.01)
 
 
+def test_what_is_held_out_is_not_known():
+    """Nine points of a function with waves between them: it goes through them, and cannot guess one from the others."""
+    pytest.importorskip("sklearn")
+    study = filled(source({POISSON: between(POISSON, count=9)}), furrow_depth_um=lambda t: np.sin(8 * unit(t, POISSON)[:, 0]))
+    emulator = study.emulator(DEPTH, folds=9)
+    assert abs(emulator.predict(study.points)[0][DEPTH] - study.table[DEPTH]).max() < 0.1
+    assert emulator.errors.loc[DEPTH, "rmse"] > 0.1
+
+
+@pytest.mark.parametrize("one", [Range(3, 50, True), Range(-2, 5, False)])
+def test_ranges_there_and_back(one):
+    assert np.allclose(one.to_unit([one.low, one.high]), [0, 1])
+    assert np.allclose(one.from_unit(one.to_unit([3, 4, 5])), [3, 4, 5])
+
+
 def test_emulators_that_are_none():
     pytest.importorskip("sklearn")
     words = filled(source({"elasticity.model": {"values": ["corotational", "neo-hookean"]}, POISSON: between(POISSON, count=5)}),
@@ -371,6 +387,17 @@ def test_samples_around_two_peaks():
     first = places[:, 0] < 0.5
     assert abs(weights[first].sum() - 0.5) < 0.05 and 1 / (weights**2).sum() > 400
     assert np.allclose(weights[first] @ places[first] / weights[first].sum(), [0.2, 0.3], atol=0.003)
+
+
+def test_the_density_of_proposals_is_one():
+    """The mean of 1 over it, in a part of the cube, is the volume of that part; also where much that is drawn falls outside."""
+    random = np.random.default_rng(4)
+    places = random.random((4000, 2))
+    places[:12] *= 0.1  # twelve samples in a corner, and so wide distributions around them
+    drawn, log_density = _proposed(places, np.where(np.arange(4000) < 12, 1 / 12, 0), random)
+    corner = (drawn < 0.1).all(axis=1)
+    assert np.exp(-log_density).mean() == pytest.approx(1, rel=0.1)
+    assert (corner * np.exp(-log_density)).mean() == pytest.approx(0.01, rel=0.05)
 
 
 def test_posterior_at_the_edge_of_the_prior():
