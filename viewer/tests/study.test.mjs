@@ -109,12 +109,13 @@ test("text, ticks, reasons, ranges and drags leave runs out everywhere", async (
   assert.ok(!(await page.isVisible("#range-from")), "the menu has closed");
   await page.click("#chips .chip");
   await page.waitForFunction(() => document.querySelector("#shown-count").textContent.startsWith("16 "));
+  await page.evaluate(() => scrollTo(0, 0));
   // The upper half of an axis: 5 and 7 of -1 to 7.
   const before = await pixels(page, "#scatter .layers");
   const strip = await page.locator(`.handle[data-key="${stiffness}"]`).boundingBox();
   await page.mouse.move(strip.x + strip.width / 2, strip.y + 1);
   await page.mouse.down();
-  await page.mouse.move(strip.x + strip.width / 2, strip.y + strip.height / 2, { steps: 5 });
+  await page.mouse.move(strip.x + strip.width / 2, strip.y + 0.42 * strip.height, { steps: 5 });
   await page.mouse.up();
   await page.waitForFunction(() => document.querySelector("#shown-count").textContent.startsWith("8 "));
   assert.equal(await page.locator("#scatter .layers").getAttribute("data-points"), "8");
@@ -146,6 +147,7 @@ test("a picked run shows its values and the command that makes it again", async 
   await page.focus(".rows");
   await page.press(".rows", "ArrowDown");
   // A cell of the phase plot, lowest row, second column: stiffness 3, 800 Pa, two regions.
+  await page.locator("#phase").scrollIntoViewIfNeeded();
   const box = await page.locator("#phase .layers").first().boundingBox();
   const picked = async () => {
     await page.mouse.click(box.x + 0.15 * box.width + 0.85 * box.width * 0.4, box.y + box.height - 80);
