@@ -194,6 +194,7 @@ class Study:
             if directory is not None:
                 self._rows = dict(directory.rows)
                 directory.gather(self._core)
+                directory.report()
         return self.table
 
     def __len__(self) -> int:

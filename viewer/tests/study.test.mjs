@@ -143,9 +143,9 @@ test("a picked run shows its values and the command that makes it again", async 
   assert.equal(again.furrow_depth_um, Number(rows[5].furrow_depth_um), "the same to the bit");
   await page.click('.rows tr[data-row="0"] th');
   assert.match(await page.textContent("#run .notice"), /-1 is out of range/);
-  await page.click(".rows");
   await page.focus(".rows");
   await page.press(".rows", "ArrowDown");
+  assert.equal(await page.textContent("#run h2"), "Point 2");
   // A cell of the phase plot, lowest row, second column: stiffness 3, 800 Pa, two regions.
   await page.locator("#phase").scrollIntoViewIfNeeded();
   const box = await page.locator("#phase .layers").first().boundingBox();
