@@ -9,9 +9,11 @@
 #include <nanobind/stl/vector.h>
 
 #include "core/threads.hpp"
+#include "show/report.hpp"
 #include "signals.hpp"
 #include "simulation.hpp"
 #include "study/study_directory.hpp"
+#include "study/study_report.hpp"
 #include "thread_count.hpp"
 
 namespace plica::python {
@@ -79,7 +81,10 @@ void bind_study(nb::module_& module) {
       .def_static("open", &StudyDirectory::open, nb::arg("directory"))
       .def_prop_ro("rows", &StudyDirectory::rows)
       .def("add", &StudyDirectory::add, nb::arg("run"), nb::arg("row"))
-      .def("gather", &StudyDirectory::gather, nb::arg("study"));
+      .def("gather", &StudyDirectory::gather, nb::arg("study"))
+      .def("report", [](const StudyDirectory& directory) {
+        if (can_report()) write_study_report(directory.path());
+      });
 }
 
 }  // namespace plica::python

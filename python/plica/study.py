@@ -227,6 +227,7 @@ class Study:
             if directory is not None:
                 self._rows = dict(directory.rows)
                 directory.gather(self._core)
+                directory.report()
         return self.table
 
     curves = answers.curves

@@ -1,7 +1,12 @@
 """`plica report` from outside: what it writes, what it refuses. The page itself is tested in a browser (viewer/tests)."""
+import base64
+import csv
 import json
+import math
 import re
 import shutil
+import struct
+import zlib
 
 import support
 from support import BLOCK, CommandLine, plica
@@ -66,6 +71,122 @@ class Report(CommandLine):
         self.assertIn(frame.name, self.report(damaged, status=4).stderr)
         self.assertEqual((damaged / "report.html").read_bytes(), page)
         self.assert_messages(self.report(damaged, status=4))
+
+
+STUDY = """\
+format = 1
+scenario = "drosophila"
+[set]
+"time.end_min" = 0.05
+[vary]
+"contraction.apical.stiffness_nN_per_um" = { values = [-1, 3, 7] }
+"contraction.apical.region" = { values = ["furrow", "all"] }
+[design]
+kind = "grid"
+[keep]
+measures = ["furrow_depth_um", "lips_closed_time_s"]
+each = "summary"
+"""
+
+
+class StudyReport(CommandLine):
+    """The page of a study: its columns as they are packed."""
+
+    def setUp(self):
+        super().setUp()
+        self.out = self.folder / "out"
+        result = plica("study", self.write(STUDY), "--out", self.out, "--jobs", 1)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("out/report.html", result.stdout)
+
+    def report(self, *arguments, status=0):
+        result = plica("report", *arguments)
+        self.assertEqual(result.returncode, status, result.stdout + result.stderr)
+        return result
+
+    def columns(self, page=None):
+        text = (page or self.out / "report.html").read_text()
+        data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S)[1])
+        packed = zlib.decompress(base64.b64decode(re.search(r'id="rows">(.*?)</script>', text, re.S)[1]))
+        arrays = {}
+        for entry in data["arrays"]:
+            planes = [packed[entry["offset"] + b * entry["count"]:][:entry["count"]] for b in range(4)]
+            values, before = [], 0
+            for parts in zip(*planes):
+                before = (before + int.from_bytes(bytes(parts), "little")) % 2**32
+                values.append(before)
+            arrays[entry["name"]] = values
+        columns = {}
+        for place, column in enumerate(data["columns"]):
+            if "words" in column:
+                columns[column["name"]] = [column["words"][n - 1] if n else "" for n in arrays[f"{place}/words"]]
+            else:
+                doubles = [struct.unpack("<d", struct.pack("<II", low, high))[0]
+                           for high, low in zip(arrays[f"{place}/high"], arrays[f"{place}/low"])]
+                columns[column["name"]] = ["" if math.isnan(value) else value for value in doubles]
+        return data, columns
+
+    def rows(self):
+        with open(self.out / "runs.csv", newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def test_the_page_holds_the_rows(self):
+        data, columns = self.columns()
+        self.assertEqual((data["design"], data["scenario_argument"], data["set"], data["runs"]), ("grid", "drosophila", ["time.end_min=0.05"], 6))
+        rows, compared = self.rows(), 0
+        for name in rows[0]:
+            for row, value in zip(rows, columns[name]):
+                told = row[name]
+                if name == "contraction.apical.region":
+                    told = f'"{told}"'  # as in TOML
+                self.assertEqual(value, told if isinstance(value, str) else float(told), name)
+                compared += 1
+        self.assertEqual(compared, 6 * 10)
+        self.assertEqual(columns["status"], ["refused"] * 2 + ["end_time"] * 4)
+        self.assertEqual(columns["kept"], [""] * 2 + [f"{n:06}/summary.json" for n in range(3, 7)])
+        self.assertIn("default-src 'none'", (self.out / "report.html").read_text(), "nothing may be fetched")
+
+    def test_report_makes_it_anew_also_of_a_part(self):
+        page = self.out / "report.html"
+        first = page.read_bytes()
+        page.unlink()
+        self.report(self.out)
+        self.assertEqual(page.read_bytes(), first)
+        # Rows only, one of them half written; then the table only, in a directory that was moved.
+        (self.out / "runs.csv").rename(self.folder / "runs.csv")
+        rows = next((self.out / "rows").iterdir())
+        text = rows.read_text()
+        rows.write_text("".join(text.splitlines(keepends=True)[:3]) + "5,")
+        self.report(self.out)
+        statuses = self.columns()[1]["status"]
+        self.assertEqual((len(statuses), statuses.count("not_run")), (6, 3))
+        shutil.rmtree(self.out / "rows")
+        (self.folder / "runs.csv").rename(self.out / "runs.csv")
+        self.out.rename(self.folder / "moved")
+        self.report(self.folder / "moved")
+        self.assertEqual((self.folder / "moved/report.html").read_bytes(), first)
+
+    def test_another_version_and_a_lost_scenario_have_a_page(self):
+        begun = self.out / "study.json"
+        begun.write_text(begun.read_text().replace('"plica": "', '"plica": "9.'))
+        study = self.out / "study.toml"
+        study.write_text(study.read_text().replace('"drosophila"', '"lost.toml"'))
+        self.report(self.out)
+        data, columns = self.columns()
+        self.assertEqual((data["design"], data["scenario_argument"]), ("", str(self.out.resolve() / "scenario.toml")))
+        self.assertEqual(columns["status"].count("end_time"), 4)
+
+    def test_what_is_refused(self):
+        self.assertIn("page of its own", self.report(self.out, self.out, "--out", self.folder / "two.html", status=2).stderr)
+        elsewhere = self.folder / "elsewhere.html"
+        self.report(self.out, "--out", elsewhere)
+        self.assertEqual(self.columns(elsewhere)[0]["points"], "out/points")
+        self.assertIn("is there already", self.report(self.out, "--out", elsewhere, status=4).stderr)
+        page = (self.out / "report.html").read_bytes()
+        for file, content in (("points.csv", "run,point\n"), ("study.json", "{")):
+            (self.out / file).write_text(content)
+            self.assert_messages(self.report(self.out, status=4))
+        self.assertEqual((self.out / "report.html").read_bytes(), page)
 
 
 if __name__ == "__main__":

@@ -55,7 +55,7 @@ class Study(CommandLine):
 
     def test_the_table(self):
         result = self.study("--jobs", 1)
-        self.assertRegex(result.stdout, r"24 runs: 24 end_time in .*\n  table in .*runs\.csv; to look at: .*report\.html\n")
+        self.assertRegex(result.stdout, r"24 runs: 24 end_time in .*\n  table in .*runs\.csv(; to look at: .*report\.html)?\n")
         rows = self.table()
         self.assertEqual(list(rows[0]), ["point", "contraction.apical.stiffness_nN_per_um", "replicate", "status",
                                          "furrow_depth_um", "max_volume_error", "steps", "reason"])

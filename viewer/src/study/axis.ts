@@ -49,7 +49,7 @@ export class Axis {
     return this.isLogarithmic ? 10 ** inner : inner;
   }
 
-  /** At most about `most` ticks, at round values. */
+  /** About `most` ticks, at round values. */
   ticks(most: number): Tick[] {
     const { words } = this.column;
     if (words) {
@@ -75,11 +75,11 @@ export class Axis {
   }
 }
 
-/** Multiples of 1, 2 or 5 times a power of ten. */
+/** Multiples of 1, 2 or 5 times a power of ten: about `most` of them. */
 export function roundValues(low: number, high: number, most: number): number[] {
   const rough = (high - low) / Math.max(most, 1);
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= rough * 0.999)!;
+  const step = [1, 2, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= rough / 1.6)!;
   const values: number[] = [];
   for (let i = Math.ceil(low / step); i * step <= high + 1e-9 * step; ++i) values.push(Number((i * step).toPrecision(12)));
   return values;

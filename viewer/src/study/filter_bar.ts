@@ -92,8 +92,12 @@ export class FilterBar {
       if (document.activeElement !== low && document.activeElement !== high) bounds();
     });
     bounds();
-    return element("details", { class: "menu", id: "range" }, element("summary", {}, "Range"),
+    const menu = element("details", { class: "menu", id: "range" }, element("summary", {}, "Range"),
       element("div", { class: "group" }, select, low, "to", high));
+    document.addEventListener("pointerdown", (event) => {
+      if (!menu.contains(event.target as Node)) menu.open = false;
+    });
+    return menu;
   }
 
   private show(): void {
@@ -102,7 +106,7 @@ export class FilterBar {
     this.count.textContent = `${count(shownRows.length)} of ${count(study.runs)} shown`;
     if (this.text.value !== selection.text) this.text.value = selection.text;
     const chip = (column: Column, text: string, drop: () => void) => {
-      const made = element("button", { type: "button", class: "chip", title: "Take this back", "data-key": column.name }, `${text} ×`);
+      const made = element("button", { type: "button", class: "chip", title: "Take this back", "data-key": column.name }, `× ${text}`);
       made.addEventListener("click", drop);
       return made;
     };
@@ -118,10 +122,9 @@ export class FilterBar {
     if (ranges.size > 0 || ticks.size > 0 || selection.text !== "") {
       const clear = element("button", { type: "button", id: "show-all" }, "Show all");
       clear.addEventListener("click", () => selection.clear());
-      chips.push(clear);
+      chips.unshift(clear);
     }
     this.chips.replaceChildren(...chips);
-    this.chips.hidden = chips.length === 0;
   }
 }
 

@@ -13,6 +13,7 @@ const leastGap = 92; // pixels between axes; narrower places scroll
 const linesAtOnce = 700;
 const mostFaint = 1200; // lines of runs that are left out
 const reach = 8; // pixels from the hand to the line that it means
+const handleTop = 46; // pixels, below the titles
 const handle = 34; // pixels that take a drag, about an axis
 
 export class Parallel {
@@ -135,14 +136,14 @@ export class Parallel {
       base.stroke();
       base.textAlign = "center";
       base.textBaseline = "top";
-      const lines = wrapped(base, axis.column.title, gap - 8, 3);
+      const isLast = i === this.axes.length - 1;
+      const lines = wrapped(base, axis.column.title, i === 0 || isLast ? Math.min(gap, 2 * room.sides) - 6 : gap - 8, 3);
       base.fillStyle = styleColour("paper");
       base.fillRect(x - gap / 2, 0, gap, room.top - 5);
       base.fillStyle = styleColour("ink");
       lines.forEach((line, l) => base.fillText(line, x, 44 - 14 * (lines.length - l)));
       base.textAlign = "left";
       base.textBaseline = "middle";
-      const isLast = i === this.axes.length - 1;
       if (isLast) base.textAlign = "right";
       for (const tick of axis.ticks(5)) this.haloed(tick.text, isLast ? x - 5 : x + 5, tick.at, gap - 12);
       if (axis.hasLane) this.haloed("none", isLast ? x - 5 : x + 5, axis.lane, gap - 12);
@@ -183,6 +184,7 @@ export class Parallel {
     this.axes.forEach((axis, i) => {
       const strip = this.handles.children[i] as HTMLElement;
       const width = Math.min(handle, gap > 0 ? gap - 4 : handle);
+      strip.style.top = `${handleTop}px`;
       strip.style.left = `${this.places[i] - width / 2}px`;
       strip.style.width = `${width}px`;
       const mark = strip.firstElementChild as HTMLElement;
@@ -191,7 +193,7 @@ export class Parallel {
       if (!range) return;
       const clampY = (y: number) => Math.min(Math.max(y, room.top - 4), this.layers.height);
       const [top, bottom] = [clampY(axis.at(range.high)), clampY(axis.at(range.low))];
-      mark.style.top = `${top}px`;
+      mark.style.top = `${top - handleTop}px`;
       mark.style.height = `${Math.max(bottom - top, 2)}px`;
     });
   }

@@ -43,8 +43,8 @@ export class Phase {
     box.append(
       element("h2", {}, "Phase plot"),
       element("div", { class: "group choices" },
-        element("label", {}, "Up ", columnSelect("phase-y", keys, y, (column) => this.show(this.x, column))),
-        element("label", {}, "Across ", columnSelect("phase-x", keys, x, (column) => this.show(column, this.y)))),
+        element("span", { class: "choice" }, element("label", {}, "Up ", columnSelect("phase-y", keys, y, (column) => this.show(this.x, column)))),
+        element("span", { class: "choice" }, element("label", {}, "Across ", columnSelect("phase-x", keys, x, (column) => this.show(column, this.y))))),
       this.layers.box, this.points.layers.box, this.told,
     );
     this.followHand();

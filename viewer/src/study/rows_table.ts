@@ -123,6 +123,7 @@ export class RowsTable {
     const now = `${first} ${last}`;
     if (!anew && now === this.drawn) return;
     this.drawn = now;
+    this.selection.point(null); // no leaving is told of rows that go
     this.before.style.height = `${first * rowHeight}px`;
     this.after.style.height = `${(this.order.length - last) * rowHeight}px`;
     [this.before.hidden, this.after.hidden] = [first === 0, last === this.order.length];

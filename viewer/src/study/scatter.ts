@@ -30,7 +30,8 @@ export function makeScatter(box: HTMLElement, selection: Selection, x: Column, y
   box.append(
     element("h2", {}, "Scatter plot"),
     element("div", { class: "group choices" },
-      element("label", {}, "Up ", choice("y", y)), logY.label, element("label", {}, "Across ", choice("x", x)), logX.label),
+      element("span", { class: "choice" }, element("label", {}, "Up ", choice("y", y)), logY.label),
+      element("span", { class: "choice" }, element("label", {}, "Across ", choice("x", x)), logX.label)),
     points.layers.box,
   );
   return points;

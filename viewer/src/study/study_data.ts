@@ -139,10 +139,11 @@ export class Study {
 
   /** The measures that are shown at first: all that a study names, else those that vary. */
   mainMeasures(most: number): Column[] {
+    if (this.of("measure").length <= most) return this.of("measure");
     const measures = this.of("measure").filter(({ low, high }) => low <= high);
     const place = (column: Column) => (usualMeasures.includes(column.name) ? usualMeasures.indexOf(column.name) : usualMeasures.length);
     const rank = (column: Column) => Number(!column.varies) * 1000 + place(column);
-    return measures.length <= most ? measures : [...measures].sort((a, b) => rank(a) - rank(b)).slice(0, most);
+    return [...measures].sort((a, b) => rank(a) - rank(b)).slice(0, most);
   }
 }
 
