@@ -95,6 +95,9 @@ def test_a_process_that_is_killed_costs_its_run_only(table):
 def test_what_is_in_a_directory_goes_on(table, tmp_path):
     study = plica.Study(STUDY)
     study.run(out=tmp_path / "s", jobs=1)
+    # Its page, where this plica can make one.
+    told = subprocess.run([os.environ["PLICA"], "report", tmp_path / "s", "--out", tmp_path / "s.html"], capture_output=True, check=False)
+    assert (tmp_path / "s/report.html").exists() == (told.returncode == 0)
     with pytest.raises(ValueError, match="holds a study"):
         plica.Study(STUDY).run(out=tmp_path / "s")
     (rows,) = (tmp_path / "s/rows").iterdir()

@@ -60,7 +60,7 @@ async function start(): Promise<void> {
   const axes = study.plottable.filter((column) => first.includes(column));
   const parallel = new Parallel(byId("parallel"), selection, axes.length >= 2 ? axes : study.plottable.slice(0, 2));
   const scatter = makeScatter(byId("scatter"), selection, keys[0], measures[0] ?? study.plottable.at(-1)!);
-  const phase = keys.length >= 2 && keys[0].role === "key" ? new Phase(byId("phase"), selection, keys[0], keys[1]) : null;
+  const phase = keys.length >= 2 && keys[1].role === "key" ? new Phase(byId("phase"), selection, keys[0], keys[1]) : null;
   byId("phase").hidden = !phase;
   showFailures(byId("failures"), selection);
   const table = new RowsTable(byId("runs"), selection);
