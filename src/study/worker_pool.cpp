@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +15,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <deque>
 #include <map>
@@ -57,8 +61,23 @@ bool send_answer(int end, char kind, const std::string& text) {
   return write_all(end, &kind, 1) && write_all(end, &size, sizeof size) && write_all(end, text.data(), text.size());
 }
 
+// Long turns on a core, where there are more workers than cores: each turn fills the caches anew, and with the usual 3
+// ms four workers on two cores took 13 % more time than one, with these 6 %. Linux before 6.12 has no such choice.
+void ask_for_long_turns() {
+  struct {
+    std::uint32_t size = 48, policy = SCHED_OTHER;
+    std::uint64_t flags = 0;
+    std::int32_t nice = 0;
+    std::uint32_t priority = 0;
+    std::uint64_t runtime_ns = 100'000'000, deadline_ns = 0, period_ns = 0;
+  } attributes;
+  attributes.nice = ::getpriority(PRIO_PROCESS, 0);
+  ::syscall(SYS_sched_setattr, 0, &attributes, 0);
+}
+
 [[noreturn]] void run_worker(int end, const std::function<std::string(std::size_t)>& do_work) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ask_for_long_turns();
   std::signal(SIGINT, SIG_IGN);  // of the terminal: the parent says when to stop
   struct sigaction action = {};
   action.sa_handler = note_stop;  // without SA_RESTART: one that waits for work ends
