@@ -62,7 +62,7 @@ bool send_answer(int end, char kind, const std::string& text) {
 }
 
 // Long turns on a core, where there are more workers than cores: each turn fills the caches anew, and with the usual 3
-// ms four workers on two cores took 13 % more time than one, with these 6 %. Linux before 6.12 has no such choice.
+// ms four workers on two cores took 13 % more time than one, with these no more. Linux before 6.12 has no such choice.
 void ask_for_long_turns() {
   struct {
     std::uint32_t size = 48, policy = SCHED_OTHER;
