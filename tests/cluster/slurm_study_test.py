@@ -61,9 +61,9 @@ def wait_for(what, seconds, condition):
 
 def steps_of(job, task):
     """The slurmstepd of a task, by its title."""
-    number = run("squeue", "--noheader", "--format=%A", f"--jobs={job}_{task}").split()[0]
-    found = run("pgrep", "--full", rf"slurmstepd: \[{number}\.", check=False).split()
-    return number, [int(process) for process in found]
+    numbers = run("squeue", "--noheader", "--format=%A", f"--jobs={job}_{task}", check=False).split()
+    found = run("pgrep", "--full", rf"slurmstepd: \[{numbers[0]}\.", check=False).split() if numbers else []
+    return [int(process) for process in found]
 
 
 parser = argparse.ArgumentParser()
@@ -84,15 +84,29 @@ with tempfile.TemporaryDirectory(prefix="plica-slurm-") as temporary:
         said = run(program, "study", place / "study.toml", "--out", place / "there", "--engine", "slurm")
         job = said.split("submitted as job ")[1].split(";")[0]
         say(f"submitted as job {job}")
-        wait_for("two tasks run", 60, lambda: len(tasks("RUNNING", job)) == 2)
-        cancelled, killed = tasks("RUNNING", job)
+        running = []
+
+        def two_run():
+            running[:] = tasks("RUNNING", job)
+            return len(running) == 2
+
+        wait_for("two tasks run", 60, two_run)
+        cancelled = running[0]
         run("scancel", f"{job}_{cancelled}")
         say(f"task {cancelled} cancelled")
-        number, steps = steps_of(job, killed)
-        if not steps:
-            raise SystemExit(f"no slurmstepd of job {number}")
-        for process in steps:
-            os.kill(process, signal.SIGKILL)
+        killed = None
+
+        def one_is_killed():
+            global killed
+            for task in tasks("RUNNING", job):  # it may end meanwhile: then another
+                for process in steps_of(job, task):
+                    os.kill(process, signal.SIGKILL)
+                    killed = task
+                if killed:
+                    return True
+            return False
+
+        wait_for("a slurmstepd is there", 60, one_is_killed)
         say(f"slurmstepd of task {killed} killed")
         run("scontrol", "update", "nodename=here2", "state=drain", "reason=test")
         time.sleep(5)
