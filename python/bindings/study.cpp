@@ -65,6 +65,7 @@ void bind_study(nb::module_& module) {
       .def_prop_ro("header", &Study::header)
       .def_prop_ro("points_csv", [](const Study& s) { return points_csv(s.design()); })
       .def_prop_ro("keeps_files", [](const Study& s) { return s.input().each != KeptOfRun::row; })
+      .def("name_of", &Study::name_of, nb::arg("run"))
       .def("row", &row_of, nb::arg("run"), nb::arg("directory"))
       .def(
           "crashed",

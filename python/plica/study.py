@@ -115,9 +115,7 @@ class Study:
 
     def _run_directory(self, run: int) -> Path:
         """Where what is kept of a run lies, the runs counted from 0."""
-        row = self.points.iloc[run]
-        name = f"{int(row.point):06}" + (f"_{int(row.replicate)}" if self._given.get("design.replicates", 1) > 1 else "")
-        return Path(self._directory or ".") / "points" / name
+        return Path(self._directory or ".") / "points" / self._core.name_of(run)
 
     @property
     def keys(self) -> list[str]:

@@ -12,7 +12,6 @@
 #include "core/errors.hpp"
 #include "core/threads.hpp"
 #include "show/report.hpp"
-#include "study/csv_fields.hpp"
 #include "study/run_study.hpp"
 #include "study/slurm.hpp"
 #include "study/study_report.hpp"
@@ -32,23 +31,22 @@ struct StudyOptions {
 // How many runs have ended, and how long the rest will take: a live line on a terminal, a line now and then in a file.
 class StudyProgress {
  public:
-  StudyProgress(std::size_t done, std::size_t runs, bool quiet)
-      : done_(done), before_(done), runs_(runs), quiet_(quiet) {}
+  /// `before`: the runs that had ended when the study was begun or gone on with.
+  StudyProgress(std::size_t before, std::size_t runs, bool quiet) : before_(before), runs_(runs), quiet_(quiet) {}
 
-  void show(const std::string& row, const Study& study) {
-    ++done_;
-    const auto status = csv_status(row, study);
-    if (status == "failed" || status == "crashed" || status == "refused") ++failed_;
-    const auto now = Clock::now();
-    if (quiet_ || (now - last_ < std::chrono::milliseconds(on_terminal_ ? 100 : 10'000) && done_ < runs_)) return;
-    last_ = now;
-    const double elapsed_s = std::chrono::duration<double>(now - start_).count();
-    const double left_s = elapsed_s * static_cast<double>(runs_ - done_) / static_cast<double>(done_ - before_);
+  void show(const StudyStatus& now) {
+    const std::size_t done = now.ended();
+    const auto time = Clock::now();
+    const auto pause = std::chrono::milliseconds(on_terminal_ ? 100 : 10'000);
+    if (quiet_ || done <= before_ || (time - last_ < pause && done < runs_)) return;
+    last_ = time;
+    const double elapsed_s = std::chrono::duration<double>(time - start_).count();
+    const double left_s = elapsed_s * static_cast<double>(runs_ - done) / static_cast<double>(done - before_);
     constexpr std::size_t width = 24;
-    const std::size_t filled = width * done_ / runs_;
+    const std::size_t filled = width * done / runs_, lost = now.without_result();
     fmt::print(stderr, "{}[{}{}] {} of {} runs{}, {} left{}", on_terminal_ ? "\r" : "", std::string(filled, '#'),
-               std::string(width - filled, '.'), done_, runs_,
-               failed_ > 0 ? fmt::format(", {} without a result", failed_) : "", duration(left_s),
+               std::string(width - filled, '.'), done, runs_,
+               lost > 0 ? fmt::format(", {} without a result", lost) : "", duration(left_s),
                on_terminal_ ? "\033[K" : "\n");
     std::fflush(stderr);
   }
@@ -57,24 +55,15 @@ class StudyProgress {
   }
 
  private:
-  static std::string csv_status(const std::string& row, const Study& study) {
-    const auto fields = csv_fields(row);
-    return fields.empty() ? "" : fields.front()[study.design().keys.size() + 2];
-  }
-
-  std::size_t done_, before_, runs_, failed_ = 0;
+  std::size_t before_, runs_;
   bool quiet_, on_terminal_ = isatty(STDERR_FILENO) != 0;
   Clock::time_point start_ = Clock::now(), last_ = start_;
 };
 
 std::string by_status(const StudyStatus& status) {
   std::vector<std::string> texts;
-  std::size_t ended = 0;
-  for (const auto& [word, count] : status.by_status) {
-    texts.push_back(fmt::format("{} {}", count, word));
-    ended += count;
-  }
-  if (ended < status.runs) texts.push_back(fmt::format("{} not run", status.runs - ended));
+  for (const auto& [word, count] : status.by_status) texts.push_back(fmt::format("{} {}", count, word));
+  if (status.ended() < status.runs) texts.push_back(fmt::format("{} not run", status.runs - status.ended()));
   return fmt::format("{}: {}", plural(status.runs, "run"), fmt::join(texts, ", "));
 }
 
@@ -87,10 +76,15 @@ void print_reasons(const StudyStatus& status) {
   if (reasons.size() > 10) fmt::print("  and {} other reasons\n", reasons.size() - 10);
 }
 
+// What is to be read and looked at, of the rows that there are.
+void write_table(const Study& study, const StudyDirectory& directory) {
+  directory.gather(study);
+  if (can_report()) write_study_report(directory.path());
+}
+
 // Prints how it ended; the command's status.
 int ended(const Study& study, const StudyDirectory& directory, const StudyOptions& options, Clock::time_point start) {
-  directory.gather(study);
-  if (can_report()) write_study_report(options.out);
+  write_table(study, directory);
   if (!options.quiet) {
     const StudyStatus status = status_of(directory, study);
     fmt::print("{}: {} in {}\n", study.input().name, by_status(status),
@@ -107,9 +101,13 @@ int ended(const Study& study, const StudyDirectory& directory, const StudyOption
 int run_here(const Study& study, StudyDirectory& directory, const StudyOptions& options, Clock::time_point start) {
   const int jobs =
       options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  StudyProgress progress(directory.rows().size(), study.runs(), options.quiet);
-  run_study(study, directory, jobs, {},
-            {[&](std::size_t, const std::string& row) { progress.show(row, study); }, interrupted});
+  StudyStatus status = status_of(directory, study);
+  StudyProgress progress(status.ended(), study.runs(), options.quiet);
+  const auto on_row = [&](std::size_t, const std::string& row) {
+    status.add(row, study);
+    progress.show(status);
+  };
+  run_study(study, directory, jobs, {}, {on_row, interrupted});
   progress.finish();
   return ended(study, directory, options, start);
 }
@@ -126,14 +124,9 @@ int run_on_slurm(const Study& study, StudyDirectory& directory, const StudyOptio
         study.input().name, plural(plan.runs, "run"), plural(plan.tasks, "task"), plan.runs_a_task, plan.array,
         plan.gather, duration(plan.run_s), plan.limit_min, plan.memory_MB, options.out, options.out);
   if (!options.wait) return exit_done;
-  StudyProgress progress(0, study.runs(), options.quiet);
-  std::size_t seen = 0;
+  StudyProgress progress(status_of(directory, study).ended(), study.runs(), options.quiet);
   while (!slurm_has_ended(directory) && !interrupted()) {
-    const StudyRows rows = directory.rows();
-    for (auto row = rows.begin(); rows.size() > seen; ++row) {
-      progress.show(row->second, study);
-      ++seen;
-    }
+    progress.show(status_of(directory, study));
     std::this_thread::sleep_for(std::chrono::seconds(1));
   }
   progress.finish();
@@ -170,10 +163,8 @@ int work(const std::string& out, int task) {
 void gather(const std::string& out) {
   const ThreadCount one(1);
   auto [directory, study] = StudyDirectory::open_to_run(out);
-  if (was_submitted(directory))
-    fmt::print("{}\n", gather_from_slurm(study, directory));
-  else
-    directory.gather(study);
+  write_table(study, directory);
+  if (was_submitted(directory)) fmt::print("{}\n", go_on_on_slurm(study, directory));
 }
 
 void print_status(const std::string& out) {
@@ -217,7 +208,8 @@ void add_study_command(CLI::App& app, int& status) {
   of_status->callback([out = status_out] { print_status(*out); });
   const auto [of_cancel, cancel_out] = of_directory("cancel", "cancel its jobs on Slurm; rows that there are stay");
   of_cancel->callback([out = cancel_out] { cancel(*out); });
-  const auto [of_gather, gather_out] = of_directory("gather", "write runs.csv from the rows that there are");
+  const auto [of_gather, gather_out] =
+      of_directory("gather", "write runs.csv and report.html from the rows that there are");
   of_gather->callback([out = gather_out] { gather(*out); });
   const auto [of_work, work_out] = of_directory("work", "run what a task of an array is to run");
   auto task = std::make_shared<int>(0);

@@ -146,6 +146,14 @@ std::string read_file(const fs::path& path, std::uintmax_t most_bytes) {
   return content;
 }
 
+std::uintmax_t bytes_in(const fs::path& directory) {
+  std::uintmax_t bytes = 0;
+  std::error_code error;
+  for (const auto& entry : fs::recursive_directory_iterator(directory, error))
+    if (entry.is_regular_file(error)) bytes += entry.file_size(error);
+  return bytes;
+}
+
 void write_file(const fs::path& path, std::string_view content) {
   if (exists_and_is_no_regular_file(path)) {
     const int descriptor = open_file(path, O_WRONLY);

@@ -16,6 +16,9 @@ inline constexpr std::uintmax_t largest_file_read_bytes = std::uintmax_t{256} <<
 /// The content of a file. FileError when it cannot be read, is a directory, or is larger than `most_bytes`.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most_bytes = largest_file_read_bytes);
 
+/// Of all files in a directory and below; what cannot be seen counts nothing.
+std::uintmax_t bytes_in(const std::filesystem::path& directory);
+
 /// Writes a file whole or not at all: into a temporary file beside it, to the disk (fsync), then renamed. At any moment
 /// `path` holds its former content or the new one. What is not a regular file (a pipe, a device) is written in place.
 /// FileError when that fails; the temporary file is then removed.

@@ -99,6 +99,11 @@ std::string allowed_text(const Row& row) {
 
 }  // namespace
 
+std::string float_in_toml(double value) {
+  const std::string text = fmt::format("{}", value);
+  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;  // n: of inf and nan
+}
+
 std::string resolved_toml(const Scenario& scenario) {
   Scenario copy = scenario;  // the table hands out pointers to fields that may be written
   std::string text = fmt::format("# {}, every default filled in.\n", scenario.name);

@@ -21,12 +21,6 @@ namespace {
 
 constexpr double usual_percent = 0.5;
 
-// Whole numbers too are written as floating-point, so that a key that wants an integer says so at once.
-std::string in_toml(double value) {
-  const std::string text = fmt::format("{}", value);
-  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
-}
-
 // A value as it is run and written: to a millionth of the bounds' width, so that it can be read.
 double value_at(const VariedKey& key, double place) {
   const int decimals = 6 - static_cast<int>(std::floor(std::log10(key.high - key.low)));
@@ -117,7 +111,7 @@ Target parse_target(const std::string& text) {
 std::vector<std::string> trial_overrides(const CalibrationProblem& problem, const std::vector<double>& values) {
   std::vector<std::string> overrides = problem.overrides;
   for (std::size_t k = 0; k < values.size(); ++k)
-    overrides.push_back(fmt::format("{}={}", problem.keys[k].key, in_toml(values[k])));
+    overrides.push_back(fmt::format("{}={}", problem.keys[k].key, float_in_toml(values[k])));
   return overrides;
 }
 

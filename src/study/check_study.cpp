@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;
@@ -32,13 +33,6 @@ class TemporaryDirectory {
   fs::path path_;
 };
 
-double bytes_in(const fs::path& directory) {
-  double bytes = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(directory))
-    if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
-  return bytes;
-}
-
 }  // namespace
 
 StudyForecast forecast(const Study& study, const std::function<bool()>& stop) {
@@ -60,8 +54,8 @@ StudyForecast forecast(const Study& study, const std::function<bool()>& stop) {
   result.first_run = first.value();  // a study has one
   const TemporaryDirectory directory;
   if (const std::optional<RunRow> row = study.run(result.first_run, directory.path(), stop)) result.first = *row;
-  result.bytes_a_run =
-      bytes_in(directory.path()) + 2 * static_cast<double>(study.line_of(result.first_run, result.first).size());
+  result.bytes_a_run = static_cast<double>(bytes_in(directory.path())) +
+                       2 * static_cast<double>(study.line_of(result.first_run, result.first).size());
   return result;
 }
 

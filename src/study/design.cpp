@@ -10,7 +10,6 @@
 #include <cmath>
 #include <numeric>
 #include <random>
-#include <sstream>
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -83,17 +82,15 @@ Places for_sobol_indices(std::size_t count, std::size_t dimensions, std::uint64_
   return places;
 }
 
-std::string text_of(double value) {
-  const std::string text = fmt::format("{}", value);
-  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
-}
-
 // A key that takes whole numbers only has whole bounds and a whole step; its values are written without a point.
-std::string text_of(const StudyKey& key, double value) {
+std::string in_steps(const StudyKey& key, double step) {
+  const double value = key.low + *key.step * step;
   const auto is_whole = [](double number) { return number == std::floor(number); };
   if (key.step && is_whole(*key.step) && is_whole(key.low)) return fmt::format("{:.0f}", value);
-  return text_of(value);
+  return float_in_toml(value);
 }
+
+double steps_of(const StudyKey& key) { return std::floor((key.high - key.low) / *key.step * (1 + 1e-12)); }
 
 std::string value_at(const StudyKey& key, double place) {
   if (!key.values.empty()) {
@@ -105,23 +102,20 @@ std::string value_at(const StudyKey& key, double place) {
     const double from = std::isfinite(key.low) ? boost::math::cdf(normal, key.low) : 0;
     const double to = std::isfinite(key.high) ? boost::math::cdf(normal, key.high) : 1;
     const double part = std::clamp(from + place * (to - from), 1e-12, 1 - 1e-12);
-    return text_of(std::clamp(boost::math::quantile(normal, part), key.low, key.high));
+    return float_in_toml(std::clamp(boost::math::quantile(normal, part), key.low, key.high));
   }
-  if (key.step) {
-    const double steps = std::floor((key.high - key.low) / *key.step * (1 + 1e-12));
-    return text_of(key, key.low + *key.step * std::min(std::floor(place * (steps + 1)), steps));
-  }
+  if (key.step) return in_steps(key, std::min(std::floor(place * (steps_of(key) + 1)), steps_of(key)));
   const double value = key.is_log ? key.low * std::pow(key.high / key.low, place) : std::lerp(key.low, key.high, place);
-  return text_of(std::clamp(value, key.low, key.high));
+  return float_in_toml(std::clamp(value, key.low, key.high));
 }
 
 // Those of a grid.
 std::vector<std::string> values_of(const StudyKey& key) {
   if (!key.values.empty()) return key.values;
-  const double steps = key.step ? std::floor((key.high - key.low) / *key.step * (1 + 1e-12)) : *key.count - 1;
+  const double steps = key.step ? steps_of(key) : *key.count - 1;
   std::vector<std::string> values;
   for (double i = 0; i <= steps; ++i)
-    values.push_back(key.step ? text_of(key, key.low + *key.step * i) : value_at(key, steps > 0 ? i / steps : 0));
+    values.push_back(key.step ? in_steps(key, i) : value_at(key, steps > 0 ? i / steps : 0));
   return values;
 }
 
@@ -162,7 +156,7 @@ std::string own_value(const StudyInput& study, const toml::table& resolved, cons
   const toml::node_view<const toml::node> node = toml::at_path(resolved, key.key);
   if (const auto text = node.value<std::string>()) return in_toml(*text);
   if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
-  if (const auto* number = node.as_floating_point()) return text_of(number->get());
+  if (const auto* number = node.as_floating_point()) return float_in_toml(number->get());
   if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
   throw ScenarioError({{study.file, key.line, "vary." + key.key, "has no single value in the scenario to vary about",
                         "give it one by [set], or another kind of design"}});

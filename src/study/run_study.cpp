@@ -17,11 +17,8 @@ namespace {
 // By what the first run has left: before the disk is full, and not after hours.
 void require_room(const fs::path& directory, const std::string& run, std::size_t left) {
   std::error_code error;
-  double bytes = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(directory / "points" / run, error))
-    if (entry.is_regular_file(error)) bytes += static_cast<double>(entry.file_size(error));
   const auto free = static_cast<double>(fs::space(directory, error).available);
-  const double needed = bytes * static_cast<double>(left);
+  const double needed = static_cast<double>(bytes_in(directory / "points" / run)) * static_cast<double>(left);
   if (!error && needed > free)
     throw FileError(
         fmt::format("{}: the other {} runs will leave {:.1f} GB, and {:.1f} GB are free on the disk; keep less "

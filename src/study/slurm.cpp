@@ -8,7 +8,6 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <sstream>
 
 #include "core/command.hpp"
@@ -25,6 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double task_s = 600;            // what a task is to take: long beside what Slurm needs to start it
+constexpr std::size_t least_tasks = 8;    // of short runs, too: for as many machines
 constexpr std::size_t most_tasks = 1000;  // Slurm's usual largest array
 constexpr int most_restarts = 20;         // of a task that runs into its limit
 
@@ -103,11 +103,10 @@ void submit_open(const Study& study, const StudyDirectory& directory, const Slur
   const std::vector<std::size_t> open = open_runs(study, directory);
   const fs::path here = folder(directory);
   plan.runs = open.size();
-  const double a_task =
-      std::max({1.0, task_s / std::max(plan.run_s, 1e-3), std::ceil(static_cast<double>(open.size()) / most_tasks)});
-  plan.runs_a_task = static_cast<std::size_t>(std::min(a_task, std::ceil(static_cast<double>(open.size()) / 8)));
-  plan.runs_a_task = std::max(plan.runs_a_task, (open.size() + most_tasks - 1) / most_tasks);
-  plan.tasks = (open.size() + plan.runs_a_task - 1) / plan.runs_a_task;
+  const auto in_tasks = [&](std::size_t tasks) { return (open.size() + tasks - 1) / tasks; };  // runs of each
+  const auto fitting = static_cast<std::size_t>(std::max(1.0, task_s / std::max(plan.run_s, 1e-3)));
+  plan.runs_a_task = std::max(std::min(fitting, in_tasks(least_tasks)), in_tasks(most_tasks));
+  plan.tasks = in_tasks(plan.runs_a_task);
   plan.limit_min = 10 + static_cast<int>(std::ceil(3 * plan.run_s * static_cast<double>(plan.runs_a_task) / 60));
   write_file(here / "runs.txt", fmt::format("{}\n{}\n", plan.runs_a_task, fmt::join(open, "\n")));
   write_file(here / "task.sh", task_script(here, plan));
@@ -148,7 +147,6 @@ SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, c
   plan.memory_MB = 200 + static_cast<int>(1.5 * static_cast<double>(used.ru_maxrss) / 1024);
   if (stop && stop()) return plan;
   if (open.size() <= 1) {
-    directory.gather(study);
     write_file(folder(directory) / "ended", "");
     return plan;
   }
@@ -170,8 +168,7 @@ std::vector<std::size_t> runs_of_task(const StudyDirectory& directory, int task)
   return result;
 }
 
-std::string gather_from_slurm(const Study& study, StudyDirectory& directory) {
-  directory.gather(study);
+std::string go_on_on_slurm(const Study& study, const StudyDirectory& directory) {
   const std::size_t missing = open_runs(study, directory).size();
   const Json jobs = jobs_in(directory);
   const int attempt = jobs.value("attempt", 0);

@@ -36,9 +36,9 @@ SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, c
 /// The runs of a task of the array.
 std::vector<std::size_t> runs_of_task(const StudyDirectory& directory, int task);
 
-/// What the last job does: writes runs.csv, and submits runs without a row once more, `retries` times at most. What it
-/// did, in a sentence.
-std::string gather_from_slurm(const Study& study, StudyDirectory& directory);
+/// What the last job does when the table is written: submits runs without a row once more, `retries` times at most.
+/// What it did, in a sentence.
+std::string go_on_on_slurm(const Study& study, const StudyDirectory& directory);
 
 /// Whether a study has been submitted; whether that has come to its end.
 bool was_submitted(const StudyDirectory& directory);

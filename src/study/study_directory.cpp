@@ -182,18 +182,33 @@ void StudyDirectory::gather(const Study& study) const {
   write_file(directory_ / "runs.csv", text);
 }
 
+void StudyStatus::add(const std::string& row, const Study& study) {
+  const std::size_t status_at = study.design().keys.size() + 2;
+  const auto rows = csv_fields(row);
+  if (rows.size() != 1 || rows.front().size() < status_at + 4) return;
+  const auto& fields = rows.front();
+  ++by_status[fields[status_at]];
+  if (!fields.back().empty()) ++by_reason[fields.back()];
+  run_s += number_in(fields[fields.size() - 2]).value_or(0);
+}
+
+std::size_t StudyStatus::ended() const {
+  std::size_t sum = 0;
+  for (const auto& [word, count] : by_status) sum += count;
+  return sum;
+}
+
+std::size_t StudyStatus::without_result() const {
+  std::size_t sum = 0;
+  for (const char* word : {"refused", "failed", "crashed"})
+    if (const auto found = by_status.find(word); found != by_status.end()) sum += found->second;
+  return sum;
+}
+
 StudyStatus status_of(const StudyDirectory& directory, const Study& study) {
   StudyStatus status;
   status.runs = study.runs();
-  const std::size_t status_at = study.design().keys.size() + 2;
-  for (const auto& [run, text] : directory.rows()) {
-    const auto rows = csv_fields(text);
-    if (rows.size() != 1 || rows.front().size() < status_at + 4) continue;
-    const auto& row = rows.front();
-    ++status.by_status[row[status_at]];
-    if (!row.back().empty()) ++status.by_reason[row.back()];
-    status.run_s += number_in(row[row.size() - 2]).value_or(0);
-  }
+  for (const auto& [run, row] : directory.rows()) status.add(row, study);
   return status;
 }
 

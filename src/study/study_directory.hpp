@@ -58,6 +58,12 @@ struct StudyStatus {
   std::map<std::string, std::size_t> by_status;  // of runs that have ended
   std::map<std::string, std::size_t> by_reason;  // of those that were refused, failed or crashed
   double run_s = 0;                              // wall time of all runs together
+
+  /// A row of one more that has ended.
+  void add(const std::string& row, const Study& study);
+  [[nodiscard]] std::size_t ended() const;
+  /// Refused, failed or crashed.
+  [[nodiscard]] std::size_t without_result() const;
 };
 StudyStatus status_of(const StudyDirectory& directory, const Study& study);
 

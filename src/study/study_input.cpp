@@ -9,7 +9,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #include "core/errors.hpp"
@@ -39,10 +38,7 @@ constexpr Words<KeptOfRun, 3> kept = {
 
 // A value in TOML, on one line.
 std::string text_of(const toml::node& node) {
-  if (const auto* number = node.as_floating_point()) {
-    const std::string text = fmt::format("{}", number->get());
-    return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
-  }
+  if (const auto* number = node.as_floating_point()) return float_in_toml(number->get());
   if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
   if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
   if (const auto* text = node.as_string()) return in_toml(text->get());

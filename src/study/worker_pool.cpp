@@ -115,7 +115,10 @@ class Worker {
   }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
-  ~Worker() { (void)ended(); }
+  ~Worker() {
+    if (process_ > 0) stop();
+    (void)ended();
+  }
 
   void give(std::size_t piece) {
     piece_ = piece;
@@ -188,7 +191,7 @@ void work_in_processes(int workers, std::span<const std::size_t> pieces,
   };
   while (!open.empty() || under_way()) {
     if (hooks.stop_requested && hooks.stop_requested()) {
-      for (const auto& worker : pool) worker->stop();
+      for (const auto& worker : pool) worker->stop();  // all at once; then each is waited for
       return;
     }
     while (pool.size() < static_cast<std::size_t>(workers) && !open.empty()) {
