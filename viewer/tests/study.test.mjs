@@ -55,6 +55,13 @@ function runsOf(name) {
   return lines.map((line) => Object.fromEntries(first.map((column, i) => [column, line[i]])));
 }
 
+// Where a part of the page is for the mouse. A picture of another part may have scrolled it out of sight.
+async function inView(page, selector) {
+  const part = page.locator(selector).first();
+  await part.scrollIntoViewIfNeeded();
+  return part.boundingBox();
+}
+
 const shown = (page) => page.textContent("#shown-count").then((text) => Number(text.replace(/\D*of.*/, "").replace(/\D/g, "")));
 const points = (page) => page.locator(".rows tr[data-row] th").allTextContents().then((all) => all.map(Number));
 
@@ -88,6 +95,7 @@ test("the heading counts, the table holds what runs.csv holds, and sorts with wh
 
 test("text, ticks, reasons, ranges and drags leave runs out everywhere", async () => {
   const { page, done } = await open("grid/report.html");
+  const axis = `.handle[data-key="${stiffness}"]`;
   await page.fill("#filter", "young>=1000 furrow");
   assert.equal(await shown(page), 4);
   assert.deepEqual(await points(page), [3, 7, 11, 15]);
@@ -109,10 +117,9 @@ test("text, ticks, reasons, ranges and drags leave runs out everywhere", async (
   assert.ok(!(await page.isVisible("#range-from")), "the menu has closed");
   await page.click("#chips .chip");
   await page.waitForFunction(() => document.querySelector("#shown-count").textContent.startsWith("16 "));
-  await page.evaluate(() => scrollTo(0, 0));
   // The upper half of an axis: 5 and 7 of -1 to 7.
   const before = await pixels(page, "#scatter .layers");
-  const strip = await page.locator(`.handle[data-key="${stiffness}"]`).boundingBox();
+  let strip = await inView(page, axis);
   await page.mouse.move(strip.x + strip.width / 2, strip.y + 1);
   await page.mouse.down();
   await page.mouse.move(strip.x + strip.width / 2, strip.y + 0.42 * strip.height, { steps: 5 });
@@ -125,6 +132,7 @@ test("text, ticks, reasons, ranges and drags leave runs out everywhere", async (
   assert.equal(name, "grid.csv");
   const kept = readFileSync(join(folder, "grid/runs.csv"), "utf8").split("\n");
   assert.deepEqual(bytes.toString().split("\n").map((line) => line.split(",").slice(5, 8)), [0, 9, 10, 11, 12, 13, 14, 15, 16, 17].map((i) => kept[i].split(",").slice(5, 8)));
+  strip = await inView(page, axis);
   await page.mouse.click(strip.x + strip.width / 2, strip.y + strip.height / 2);
   await page.waitForFunction(() => document.querySelector("#shown-count").textContent.startsWith("16 "));
   await done();
@@ -147,8 +155,7 @@ test("a picked run shows its values and the command that makes it again", async 
   await page.press(".rows", "ArrowDown");
   assert.equal(await page.textContent("#run h2"), "Point 2");
   // A cell of the phase plot, lowest row, second column: stiffness 3, 800 Pa, two regions.
-  await page.locator("#phase").scrollIntoViewIfNeeded();
-  const box = await page.locator("#phase .layers").first().boundingBox();
+  const box = await inView(page, "#phase .layers");
   const picked = async () => {
     await page.mouse.click(box.x + 0.15 * box.width + 0.85 * box.width * 0.4, box.y + box.height - 80);
     return page.textContent("#run h2");
