@@ -3,6 +3,7 @@
 that none fails. By default 100 of furrow-slice, from one seed.
 
 Usage: furrow_draws.py PROGRAM [--scenario NAME] [--count N] [--seed S] [--spread 0.25] [--keep DIRECTORY]
+                       [--only NUMBER ...]
 """
 import argparse
 import json
@@ -44,7 +45,7 @@ def draw(base, generator, spread):
 def run(program, scenario, sets, out):
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     command = [program, "run", scenario, "--threads", "1", "--quiet", "--out", out, *sets]
-    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=1800)
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=3600)
     summary = out / "summary.json"
     return done, json.loads(summary.read_text(encoding="utf-8")) if summary.is_file() else None
 
@@ -56,21 +57,23 @@ parser.add_argument("--count", type=int, default=100)
 parser.add_argument("--seed", type=int, default=1)
 parser.add_argument("--spread", type=float, default=0.25)
 parser.add_argument("--keep", type=Path)
+parser.add_argument("--only", type=int, nargs="+", help="these of the draws")
 options = parser.parse_args()
 program = options.program.resolve()
 resolved = tomllib.loads(subprocess.run([program, "check", options.scenario], capture_output=True, text=True, check=True).stdout)
 base = [entry for table in TABLES for entry in numbers(resolved.get(table, {}), (table,))]
 generator = random.Random(options.seed)
 draws = [draw(base, generator, options.spread) for _ in range(options.count)]
+chosen = options.only or range(options.count)
 
 with tempfile.TemporaryDirectory() as temporary:
     place = options.keep or Path(temporary)
     place.mkdir(parents=True, exist_ok=True)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        ended = list(pool.map(lambda n: run(program, options.scenario, draws[n], place / f"draw_{n}"), range(options.count)))
+        ended = list(pool.map(lambda n: run(program, options.scenario, draws[n], place / f"draw_{n}"), chosen))
 
 closed, crossed, failed, worst_refused = 0, [], [], 0
-for number, (done, summary) in enumerate(ended):
+for number, (done, summary) in zip(chosen, ended):
     if done.returncode != 0 or summary is None:
         failed.append(f"draw {number} (status {done.returncode}): {done.stderr.strip().splitlines()[-1]}")
         continue
@@ -78,7 +81,7 @@ for number, (done, summary) in enumerate(ended):
     worst_refused = max(worst_refused, summary["refused_steps"] / summary["steps"])
     if summary["self_intersections"] > 0:
         crossed.append(number)
-print(f"{options.count} draws of {len(base)} parameters of {options.scenario}, each within {options.spread:.0%}: "
+print(f"{len(chosen)} draws of {len(base)} parameters of {options.scenario}, each within {options.spread:.0%}: "
       f"{closed} close, {len(failed)} fail, {len(crossed)} pass through themselves {crossed}; at most {worst_refused:.0%} "
       "of a run's steps were refused")
 print("\n".join(failed))
