@@ -1,8 +1,10 @@
 #include "study/quiet_run.hpp"
 
 #include <chrono>
+#include <optional>
 
 #include "record/summary.hpp"
+#include "study/unfinished_run.hpp"
 
 namespace plica {
 namespace {
@@ -16,16 +18,22 @@ RunSummary ended(const Scenario& scenario, const Simulation& simulation, std::ve
 
 RunSummary quiet_run(const Scenario& scenario, const QuietRunHooks& hooks) {
   const auto start = std::chrono::steady_clock::now();
-  const auto wall_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   const auto stop = [&] { return hooks.stop_requested && hooks.stop_requested(); };
   Simulation simulation(scenario);
   simulation.stop_when(stop);
   if (hooks.leave_out) simulation.leave_out(hooks.leave_out);
-  std::vector<Observation> rows = {simulation.measures()};
+  std::optional<UnfinishedRun> kept;
+  if (!hooks.keep_in.empty()) kept.emplace(hooks.keep_in, hooks.keep_every_s, scenario, simulation);
+  std::vector<Observation> rows = kept ? kept->begin() : std::vector{simulation.measures()};
+  const auto wall_s = [&, earlier_s = kept ? kept->earlier_s() : 0] {
+    return earlier_s + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
   while (!stop() && simulation.step()) {
     rows.push_back(simulation.measures());
     if (hooks.on_row) hooks.on_row(rows.back());
+    if (kept) kept->step_accepted(rows, wall_s());
   }
+  if (kept && simulation.status() != RunStatus::under_way) kept->end();
   return ended(scenario, simulation, std::move(rows), {wall_s(), simulation.computing_s()});
 }
 

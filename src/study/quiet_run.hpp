@@ -1,6 +1,7 @@
 // A scenario run in the program itself, without files or progress: what the studies over many runs are made of.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,10 +23,12 @@ struct QuietRunHooks {
   std::function<bool()> stop_requested = {};            // asked often; once true, the run ends as interrupted
   std::function<void(const Observation&)> on_row = {};  // after every accepted step
   std::function<bool(const Column&)> leave_out = {};    // what is not measured
+  std::filesystem::path keep_in = {};                   // where it keeps itself and goes on from (UnfinishedRun)
+  double keep_every_s = 30;
 };
 
 /// Runs to equilibrium or the end of time, to the same bits as `plica run`. Threads are as set (omp_set_num_threads).
-/// Throws ScenarioError for what only the tissue shows to be wrong.
+/// Throws ScenarioError for what only the tissue shows to be wrong, FileError where it cannot keep itself.
 RunSummary quiet_run(const Scenario& scenario, const QuietRunHooks& hooks = {});
 
 /// The summary of a run that has not begun: every key that one of this scenario will have.

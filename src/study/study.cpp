@@ -54,6 +54,7 @@ RunRow row_of(const Json& summary, const std::vector<std::string>& measures) {
   RunRow row;
   row.status = summary.at("status").get<std::string>();
   row.steps = summary.at("steps").get<int>();
+  row.wall_s = summary.at("wall_s").get<double>();  // of processes before this one, too
   if (summary.contains("failure") && summary.at("failure").is_string())
     row.reason = summary.at("failure").get<std::string>();
   for (const std::string& name : measures) {
@@ -135,10 +136,11 @@ std::optional<RunRow> Study::run(std::size_t run, const fs::path& directory, con
   RunRow row;
   try {
     const Scenario scenario = scenario_of(run);
-    const fs::path place = directory / "points" / name_of(run);
-    if (input_.each == KeptOfRun::full && is_taken(place)) return {};
-    const Json summary = input_.each == KeptOfRun::full ? recorded(scenario, input_.scenario, place, is_stopped)
-                                                        : quiet_run(scenario, {is_stopped, {}, not_kept}).summary;
+    const bool is_recorded = input_.each == KeptOfRun::full;
+    const fs::path place = directory / "points" / name_of(run), unfinished = directory / "unfinished" / name_of(run);
+    if (is_taken(is_recorded ? place : unfinished)) return {};
+    const Json summary = is_recorded ? recorded(scenario, input_.scenario, place, is_stopped)
+                                     : quiet_run(scenario, {is_stopped, {}, not_kept, unfinished}).summary;
     row = row_of(summary, measures_);
     if (row.status == "interrupted") return {};
     if (input_.each == KeptOfRun::summary) {
@@ -152,7 +154,7 @@ std::optional<RunRow> Study::run(std::size_t run, const fs::path& directory, con
     row = {"failed", {}, 0, 0, "out of memory"};
   }
   row.measures.resize(measures_.size());
-  row.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  row.wall_s = std::max(row.wall_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return row;
 }
 

@@ -40,8 +40,9 @@ class Study {
   /// Names its files.
   [[nodiscard]] std::string name_of(std::size_t run) const;
 
-  /// Runs it on one thread; nothing when `stop` became true on the way. What the study keeps of each run is written
-  /// into `directory`/points, where a run that was broken off goes on. FileError when that cannot be.
+  /// Runs it on one thread; nothing when `stop` became true on the way, or another process is at it. What the study
+  /// keeps of each run is written into `directory`/points; what takes longer than half a minute goes on where it was
+  /// broken off. FileError when that cannot be written.
   [[nodiscard]] std::optional<RunRow> run(std::size_t run, const std::filesystem::path& directory,
                                           const std::function<bool()>& stop = {}) const;
 

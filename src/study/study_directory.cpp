@@ -107,7 +107,7 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
   fs::create_directories(directory, error);
   if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
   fs::remove(directory / "study.json", error);
-  for (const char* name : {"rows", "points", "slurm"}) fs::remove_all(directory / name, error);
+  for (const char* name : {"rows", "points", "unfinished", "slurm"}) fs::remove_all(directory / name, error);
   for (const char* name : {"runs.csv", "report.html"}) fs::remove(directory / name, error);
   fs::create_directories(directory / "rows", error);
   write_file(directory / "study.toml", input.text);

@@ -3,7 +3,7 @@
 //   study.toml     the study, as given          study.json  what it was begun with
 //   points.csv     the runs, in their order     rows/       a file of rows for each process that ran some
 //   runs.csv       a row a run, when it ended   points/     what is kept of each run, if anything
-//   report.html    all of it, to look at
+//   report.html    all of it, to look at        unfinished/ runs that take long, from minute to minute
 //
 // A row is written as soon as its run has ended, in one write: whatever is killed, other rows stay. Any number of
 // processes may work in a directory at once, also on several machines that share it.

@@ -6,7 +6,9 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "core/directory_lock.hpp"
 #include "core/files.hpp"
+#include "record/archive.hpp"
 #include "record/results.hpp"
 #include "scenario/load.hpp"
 #include "support/block_scenario.hpp"
@@ -49,6 +51,64 @@ TEST(QuietRun, StopsWhenAsked) {
   const RunSummary run = quiet_run(scenario, {[&] { return rows >= 2; }, [&](const Observation&) { ++rows; }});
   EXPECT_EQ(run.summary.at("status"), "interrupted");
   EXPECT_EQ(rows, 2);
+}
+
+/// A run that is stopped after some steps, and then begun again.
+class KeptQuietRun : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!can_archive()) GTEST_SKIP() << "without HDF5";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  RunSummary run(int most_steps) {
+    steps_ = 0;
+    const auto leave_out = [](const Column& column) { return column.is_costly; };
+    return quiet_run(scenario_, {[=, this] { return steps_ >= most_steps; }, [&](const Observation&) { ++steps_; },
+                                 leave_out, place_, 0});
+  }
+  static std::string results_of(RunSummary run) {
+    for (const char* key : {"wall_s", "wall_solver_s", "peak_memory_MB"}) run.summary.erase(key);
+    return run.summary.dump();
+  }
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("plica_kept_" + std::to_string(::getpid()));
+  const std::filesystem::path place_ = folder_ / "unfinished" / "1";
+  const Scenario scenario_ = load_scenario(support::pulled_block());
+  int steps_ = 0;
+};
+
+TEST_F(KeptQuietRun, GoesOnToTheSameBits) {
+  const RunSummary whole = run(1000);
+  const int all_steps = steps_;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "unfinished"));
+  EXPECT_EQ(run(3).summary.at("status"), "interrupted");
+  EXPECT_TRUE(std::filesystem::exists(place_ / "checkpoint.h5"));
+  const RunSummary rest = run(1000);
+  EXPECT_EQ(steps_, all_steps - 3);
+  EXPECT_EQ(results_of(rest), results_of(whole));
+  EXPECT_EQ(rest.rows.size(), whole.rows.size());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "unfinished"));
+}
+
+TEST_F(KeptQuietRun, BeginsAnewWhereNothingKeptFits) {
+  const RunSummary whole = run(1000);
+  const int all_steps = steps_;
+  run(3);
+  for (const char* name : {"checkpoint.h5", "checkpoint.previous.h5"}) write_file(place_ / name, "damaged");
+  EXPECT_EQ(results_of(run(1000)), results_of(whole));
+  EXPECT_EQ(steps_, all_steps);
+  run(3);
+  RunSummary other =
+      quiet_run(load_scenario(support::pulled_block(), {"elasticity.young_modulus_Pa=900"}), {{}, {}, {}, place_, 0});
+  EXPECT_NE(results_of(other), results_of(whole));
+  EXPECT_FALSE(std::filesystem::exists(place_)) << "replaced, then removed";
+}
+
+TEST_F(KeptQuietRun, IsNotKeptTwice) {
+  std::filesystem::create_directories(place_);
+  const DirectoryLock lock(place_);
+  run(3);
+  EXPECT_FALSE(std::filesystem::exists(place_ / "checkpoint.h5"));
 }
 
 }  // namespace
