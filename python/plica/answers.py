@@ -1,6 +1,7 @@
 """What a study says, in pictures: curves over one key, phase diagrams over two; and in a word, what became of an embryo."""
 from __future__ import annotations
 
+import difflib
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -22,11 +23,17 @@ if TYPE_CHECKING:
 __all__ = ["verdict"]
 
 FINISHED = ("equilibrium", "end_time")  # the status of a run that has results
-VERDICT_COLUMNS = ("self_intersections", "lips_closed_time_s", "furrow_depth_below_lips_um")
-FURROWED_UM = 1.0  # docs/measures.md: below that, a belly is flattened
+VERDICT_COLUMNS = ("self_intersections", "lips_closed_time_s", "furrow_depth_below_lips_um", "furrow_depth_um")
+FURROWED_UM = 1.0  # below its lips (docs/measures.md)
+DEEP_UM = 15.0  # below where it was at rest: furrowed, too, for its lips have gone in as well
+NO_RESULT = ("failed", "refused", "not run", "no verdict")
+DRAWN_KINDS = ("sobol", "latin-hypercube", "sobol-indices", "one-at-a-time")  # none of them has a point for each pair of values
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 COLOURS = {"closed": "#009E73", "furrowed": "#0072B2", "flattened": "#F0E442", "passes through itself": "#D55E00",
-           "failed": "#555555", "refused": "#999999", "not run": "#E5E5E5", "replicates differ": "#FFFFFF"}
+           "failed": "#555555", "refused": "#999999", "no verdict": "#CCCCCC", "not run": "#E5E5E5", "replicates differ": "#D9D9D9"}
+VERDICTS = {"closed": "closed: its lips have met",
+            "furrowed": f"furrowed: floor {FURROWED_UM:g} µm or more below its lips,\nor {DEEP_UM:g} µm or more deep",
+            "flattened": "flattened: less", "passes through itself": "passes through itself"}
 OTHER_COLOURS = ("#56B4E9", "#E69F00", "#CC79A7", "#8C6D31", "#6A51A3", "#31A354", "#843C39", "#17BECF")
 UNITS = {"um": "µm", "um2": "µm²", "um3": "µm³", "m": "m", "m3": "m³", "s": "s", "min": "min", "nN": "nN", "mN": "mN", "Pa": "Pa",
          "kPa": "kPa", "deg": "°", "kg": "kg", "MB": "MB", "percent": "%"}
@@ -36,13 +43,14 @@ def verdict(row: Any) -> str:
     """What became of an embryo, in a word.
 
     The first that is true: "not run", "refused" (no valid scenario), "failed", "passes through itself"
-    (``self_intersections`` over 0), "closed" (``lips_closed_time_s`` has a value), "furrowed"
-    (``furrow_depth_below_lips_um`` of 1 µm or more), "flattened".
+    (``self_intersections`` over 0), "closed" (``lips_closed_time_s`` has a value), "no verdict" (neither depth has one),
+    "furrowed" (``furrow_depth_below_lips_um`` of 1 µm or more; or ``furrow_depth_um`` of 15 µm or more, where the lips have
+    gone in, too), "flattened".
 
     Parameters
     ----------
     row : pandas.Series or mapping
-        A row of `Study.table`, with these three measures.
+        A row of `Study.table`, with these four measures.
 
     Returns
     -------
@@ -57,7 +65,7 @@ def verdict(row: Any) -> str:
     --------
     >>> import plica
     >>> plica.verdict({"status": "end_time", "self_intersections": 0, "lips_closed_time_s": None,
-    ...                "furrow_depth_below_lips_um": 12.0})
+    ...                "furrow_depth_below_lips_um": 12.0, "furrow_depth_um": 40.0})
     'furrowed'
     """
     missing = [name for name in VERDICT_COLUMNS if name not in row]
@@ -67,12 +75,14 @@ def verdict(row: Any) -> str:
         return str(row["status"]).replace("_", " ")
     if row["status"] not in FINISHED:
         return "failed"
-    intersections, closed_s, depth_um = (_number(row[name]) for name in VERDICT_COLUMNS)
+    intersections, closed_s, below_lips_um, depth_um = (_number(row[name]) for name in VERDICT_COLUMNS)
     if intersections > 0:
         return "passes through itself"
     if np.isfinite(closed_s):
         return "closed"
-    return "furrowed" if depth_um >= FURROWED_UM else "flattened"
+    if np.isnan(below_lips_um) and np.isnan(depth_um):
+        return "no verdict"
+    return "furrowed" if below_lips_um >= FURROWED_UM or depth_um >= DEEP_UM else "flattened"
 
 
 def curves(study: Study, measure: str) -> Any:
@@ -128,7 +138,7 @@ def curves(study: Study, measure: str) -> Any:
             _set_log(ax.xaxis)
         if table.replicate.nunique() > 1:
             _mark_replicates(ax, table.loc[on_curve, key], results[on_curve])
-        ax.set_xlabel(_label(key))
+        ax.set_xlabel(_axis_label(study, key))
     for ax in axes[:, 0]:
         ax.set_ylabel(_label(measure))
     _legend_below(figure, axes.flat[: len(keys)])
@@ -229,13 +239,19 @@ def phase_diagram(
     above, below = figure.subfigures(2, 1, height_ratios=[max(high, 3.6), 1.9]) if shown else (figure, None)
     ax = above.subplots()
     if callable(measure) or measure == "verdict" or not _is_number(table.get(measure, table.status)):
-        _paint_words(ax, colors, _words(table, measure).groupby([table[y], table[x]]).agg(_common).unstack(), rows, columns)
+        words = _words(table, measure)
+        lost = int((words.isin(NO_RESULT) | ~table.status.isin(FINISHED)).sum())
+        cells = words.groupby([table[y], table[x]]).agg(_common).unstack()
+        _paint_words(ax, colors, cells, rows, columns, VERDICTS if measure == "verdict" else {})
     else:
-        _paint_numbers(ax, _results(table, measure).groupby([table[y], table[x]]).mean().unstack(), rows, columns, measure)
+        results = _results(table, measure)
+        lost = int(results.isna().sum())
+        _paint_numbers(ax, results.groupby([table[y], table[x]]).mean().unstack(), rows, columns, str(measure))
     for axis, names, key in ((ax.xaxis, columns, x), (ax.yaxis, rows, y)):
         places = range(0, len(names), -(-len(names) // 10))
         axis.set_ticks(list(places), [_shown(names[i]) for i in places])
-        axis.set_label_text(_label(key))
+        axis.set_label_text(_axis_label(study, key))
+    ax.set_title(_title(study, measure, len(table), lost), loc="left", fontsize="medium")
     if shown:
         _add_thumbnails(study, table, ax, below, shown, (x, columns), (y, rows), view)
     return figure
@@ -247,11 +263,14 @@ def _two_keys(study: Study, x: Optional[str], y: Optional[str]) -> tuple[str, st
     y = y or (free.pop(0) if free else "")
     for key in (x, y):
         if key not in study.keys:
-            raise ValueError(f"phase_diagram: needs two keys that vary in the study; there are {', '.join(study.keys)}")
+            told = f"{key!r} does not vary in the study{_did_you_mean(key, study.keys)}" if key else "needs two keys that vary"
+            raise ValueError(f"phase_diagram: {told}; there are {', '.join(study.keys)}")
     return x, y
 
 
 def _check_is_plane(study: Study, table: pandas.DataFrame, x: str, y: str) -> None:
+    if study.kind in DRAWN_KINDS:
+        raise ValueError(f'phase_diagram: the study is of kind "{study.kind}"; make a grid over the two keys')
     others = [key for key in study.keys if key not in (x, y) and table[key].nunique() > 1]
     if others:
         values = ", ".join(map(_shown, _in_order(table[others[0]])))
@@ -264,7 +283,7 @@ def _check_is_plane(study: Study, table: pandas.DataFrame, x: str, y: str) -> No
 
 def _words(table: pandas.DataFrame, measure: Union[str, Callable[[pandas.Series[Any]], str]]) -> pandas.Series[str]:
     if not callable(measure) and measure != "verdict" and measure not in table:
-        _results(table, measure)  # says what there is
+        _results(table, measure, ["verdict"])  # says what there is
     if not callable(measure) and measure in table:
         return table[measure].astype(str)
     judge = measure if callable(measure) else verdict
@@ -275,18 +294,30 @@ def _common(words: pandas.Series[str]) -> str:
     return str(words.iloc[0]) if words.nunique() == 1 else "replicates differ"
 
 
-def _paint_words(ax: Any, colors: Any, cells: pandas.DataFrame, rows: list[Any], columns: list[Any]) -> None:
+def _title(study: Study, measure: Union[str, Callable[[pandas.Series[Any]], str]], runs: int, lost: int) -> str:
+    scenario = _scenario_of(study)
+    own = not any(key.startswith("time.end_") for key in study.keys)
+    until = f" until {_shown(scenario['time.end_s'] / 60)} min" if scenario is not None and own else ""
+    what = "a word of its own" if callable(measure) else _label(measure)
+    return f"{study._spec.name}: {what} of {study._core.scenario_name}{until}\n{runs} runs, {lost or 'none'} without a value"
+
+
+def _paint_words(ax: Any, colors: Any, cells: pandas.DataFrame, rows: list[Any], columns: list[Any], asked: dict[str, str]) -> None:
     cells = cells.reindex(index=rows, columns=columns)
-    there = set(cells.to_numpy().ravel())
+    there = set(cells.to_numpy().ravel()) | set(asked)
     words = [word for word in COLOURS if word in there] + sorted(word for word in there if word not in COLOURS)
     others: Iterator[str] = iter(OTHER_COLOURS * (1 + len(words) // len(OTHER_COLOURS)))
     colours = [COLOURS.get(word) or next(others) for word in words]
     numbers = np.array([[words.index(word) for word in row] for row in cells.to_numpy()])
     ax.imshow(numbers, origin="lower", aspect="auto", cmap=colors.ListedColormap(colours), vmin=-0.5, vmax=len(words) - 0.5)
     _separate(ax, rows, columns)
-    for word, colour in zip(words, colours):
-        ax.plot([], [], "s", color=colour, markeredgecolor="0.3", markersize=10, label=word)
-    ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False, borderaxespad=0)
+    patches = needed("matplotlib.patches", "phase_diagram")
+    hatched = {"replicates differ": "////"}
+    for row, column in np.argwhere((cells == "replicates differ").to_numpy()):
+        ax.add_patch(patches.Rectangle((column - 0.5, row - 0.5), 1, 1, fill=False, hatch="////", edgecolor="0.3", linewidth=0))
+    entries = [patches.Patch(facecolor=colour, edgecolor="0.3", hatch=hatched.get(word), label=asked.get(word, word))
+               for word, colour in zip(words, colours)]
+    ax.legend(handles=entries, loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False, borderaxespad=0)
 
 
 def _paint_numbers(ax: Any, cells: pandas.DataFrame, rows: list[Any], columns: list[Any], measure: str) -> None:
@@ -298,7 +329,7 @@ def _paint_numbers(ax: Any, cells: pandas.DataFrame, rows: list[Any], columns: l
         ax.plot(column, row, "x", color="#D55E00", markersize=8, markeredgewidth=2)
     ax.figure.colorbar(image, ax=ax, label=_label(measure))
     if cells.isna().any(axis=None):
-        ax.set_title("× no result", color="#D55E00", fontsize="medium", loc="right")
+        ax.text(1, -0.02, "× no result", color="#D55E00", transform=ax.transAxes, ha="right", va="top", in_layout=False)
 
 
 def _separate(ax: Any, rows: list[Any], columns: list[Any]) -> None:
@@ -339,26 +370,39 @@ def _add_thumbnails(study: Study, table: pandas.DataFrame, ax: Any, below: Any, 
         picture.axis("off")
 
 
-def _results(table: pandas.DataFrame, measure: str) -> pandas.Series[float]:
+def _results(table: pandas.DataFrame, measure: str, others: Sequence[str] = ()) -> pandas.Series[float]:
     """The measure of the runs that ended well; NaN of the others, whose last good state is no result."""
     if measure not in table or not _is_number(table[measure]):
-        known = list(table.columns)[list(table.columns).index("status") + 1 : -2]
-        raise ValueError(f"the study has no measure {measure!r}; it has {', '.join(known)}")
+        known = [*others, *list(table.columns)[list(table.columns).index("status") + 1 : -2]]
+        raise ValueError(f"the study has no measure {measure!r}{_did_you_mean(measure, known)}; it has {', '.join(known)}")
     return table[measure].astype(float).where(table.status.isin(FINISHED))
 
 
-def _own_values(study: Study) -> dict[str, Any]:
-    """What the study's scenario says of its keys, as far as it can still be read."""
+def _did_you_mean(word: str, known: Sequence[str]) -> str:
+    near = [name for name in known if word in name] or difflib.get_close_matches(word, known)
+    return f" (did you mean {near[0]!r}?)" if near else ""
+
+
+def _scenario_of(study: Study) -> Optional[Scenario]:
+    """The study's scenario, as far as it can still be read."""
     given = tomllib.loads(study._spec.text)
     try:
         if study._directory is not None:
-            scenario = Scenario(study._directory / "scenario.toml")
-        else:
-            file = Path(study._spec.file).parent / given["scenario"]
-            scenario = Scenario(file if file.is_file() else given["scenario"])
-            scenario.update(dict(_items(given.get("set", {}))))
-        return {key: scenario[key] for key in study.keys}
+            return Scenario(study._directory / "scenario.toml")
+        file = Path(study._spec.file).parent / given["scenario"]
+        scenario = Scenario(file if file.is_file() else given["scenario"])
+        scenario.update(dict(_items(given.get("set", {}))))
+        return scenario
     except (PlicaError, KeyError):
+        return None
+
+
+def _own_values(study: Study) -> dict[str, Any]:
+    """What the study's scenario says of its keys."""
+    scenario = _scenario_of(study)
+    try:
+        return {} if scenario is None else {key: scenario[key] for key in study.keys}
+    except KeyError:
         return {}
 
 
@@ -394,12 +438,13 @@ def _name_and_unit(name: str) -> tuple[str, str]:
 
 def _label(name: str, with_unit: bool = True) -> str:
     text, unit = _name_and_unit(name)
-    if "." in text:  # a key, which stays as one would write it; a long one in two lines
-        front, dot, last = text.rpartition(".")
-        text = f"{front}.\n{last}" if len(text) > 30 else text
-    else:
+    if "." not in text:  # a key stays as one would write it
         text = text.replace("_", " ")
     return f"{text} ({unit})" if unit and with_unit else text
+
+
+def _axis_label(study: Study, key: str) -> str:
+    return _label(key) + (", log scale" if study._given.get(f"vary.{key}.scale") == "log" else "")
 
 
 def _set_log(axis: Any) -> None:

@@ -85,7 +85,7 @@ class MissingExtra(PlicaError, ImportError):
     """Something needs a package that plica itself does not."""
 
     def __init__(self, what: str, package: str, extra: str) -> None:
-        super().__init__(f"{what} needs {package}, which is not installed; to have it: pip install 'plica[{extra}]'")
+        super().__init__(f"{what} needs {package}, which is not installed; to have it, where plica was checked out: pip install '.[{extra}]'")
         self.what, self.package, self.extra = what, package, extra
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
@@ -100,6 +100,6 @@ def needed(package: str, what: str) -> Any:
     """A package that only this needs, imported now."""
     try:
         return importlib.import_module(package)
-    except ImportError as error:
+    except ImportError:
         name = package.split(".")[0]
-        raise MissingExtra(what, name, EXTRAS[name]) from error
+        raise MissingExtra(what, name, EXTRAS[name]) from None

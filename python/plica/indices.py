@@ -1,6 +1,7 @@
 """Sobol's indices: how much of the variance of a result each key of a study makes."""
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -25,17 +26,28 @@ class SobolIndices(NamedTuple):
     measure : str
     table : pandas.DataFrame
         A row a key. ``first``: the share of the variance that would go if this key were known; ``total``: the share that
-        would stay if all others were. Both from 0 to 1, but for the error of the estimate. ``*_low`` and ``*_high`` bound
-        their confidence intervals.
+        would stay if all others were. Both from 0 to 1, and ``first`` up to ``total``, but for the error of the estimate, which
+        is large with few base points. ``*_low`` and ``*_high`` bound their confidence intervals.
     base_points : int
         How many groups of runs they come from.
     confidence : float
+    dropped : int
+        How many more there were, of which a run had no result (``drop_missing=True``).
     """
 
     measure: str
     table: pandas.DataFrame
     base_points: int
     confidence: float
+    dropped: int = 0
+
+    def __str__(self) -> str:
+        wide = max(len(key) for key in ["key", *self.table.index])
+        lines = [f"{'key':{wide}}  {'first':18}total"]
+        for key, row in self.table.iterrows():
+            first, total = (f"{row[name]:.2f} ({row[name + '_low']:.2f} to {row[name + '_high']:.2f})" for name in ("first", "total"))
+            lines.append(f"{key!s:{wide}}  {first:18}{total}")
+        return "\n".join(lines)
 
     def plot(self, ax: Any = None) -> Any:
         """Draws both indices of each key as bars with their confidence intervals.
@@ -98,6 +110,11 @@ def sobol_indices(
     ValueError
         The study is of another kind, there is no such measure, it is the same in all runs, or runs have no value of it.
 
+    Warns
+    -----
+    UserWarning
+        Base points were left out.
+
     Examples
     --------
     >>> import plica
@@ -119,6 +136,10 @@ def sobol_indices(
     complete: NDArray[np.bool_] = np.asarray(np.isfinite(groups).all(axis=1))
     if not complete.all() and not drop_missing:
         raise ValueError(_what_is_missing(table, measure, int(complete.sum()), len(groups)))
+    dropped = int((~complete).sum())
+    if dropped > 0:
+        warnings.warn(f"sobol_indices: {dropped} of {len(groups)} base points are left out, of which runs have no {measure}; the "
+                      "indices say nothing about where these are", stacklevel=2)
     groups = groups[complete]
     if len(groups) < 2:
         raise ValueError(f"sobol_indices: {len(groups)} of {len(complete)} base points are complete; at least 2 are needed")
@@ -134,7 +155,7 @@ def sobol_indices(
         columns |= {name: found[short], f"{name}_low": found[short] - found[f"{short}_conf"],
                     f"{name}_high": found[short] + found[f"{short}_conf"]}
     pandas = needed("pandas", "sobol_indices")
-    return SobolIndices(measure, pandas.DataFrame(columns, index=pandas.Index(keys, name="key")), len(groups), confidence)
+    return SobolIndices(measure, pandas.DataFrame(columns, index=pandas.Index(keys, name="key")), len(groups), confidence, dropped)
 
 
 def _what_is_missing(table: pandas.DataFrame, measure: str, complete: int, of: int) -> str:

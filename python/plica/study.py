@@ -10,6 +10,7 @@ import queue
 import subprocess
 import sys
 import threading
+import time
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Executor, as_completed
@@ -203,7 +204,10 @@ class Study:
         directory = None
         if out is not None:
             start = "resumed" if resume else "over" if overwrite else "fresh"
-            directory = _core.StudyDirectory.begin(os.fspath(out), self._core, start)
+            try:
+                directory = _core.StudyDirectory.begin(os.fspath(out), self._core, start)
+            except (ValueError, FileError) as error:
+                raise type(error)(_in_python(str(error))) from None
             self._directory = Path(out)
             self._rows = dict(directory.rows)
         spec = self._spec._replace(directory="" if out is None else str(Path(out).resolve()))
@@ -239,6 +243,13 @@ class Study:
     def __repr__(self) -> str:
         runs = f"{len(self)} run{'s' if len(self) != 1 else ''}"
         return f"Study({self._spec.name!r} of {self._core.scenario_name}: {runs} of {', '.join(self.keys)})"
+
+
+def _in_python(message: str) -> str:
+    """A message of the command line, with what `Study.run` takes in the place of its options."""
+    for option, argument in (("--resume", "resume=True"), ("--overwrite", "overwrite=True"), ("--out", "out")):
+        message = message.replace(option, argument)
+    return message
 
 
 def _text_of(path: Path) -> str:
@@ -389,11 +400,13 @@ class _Line:
     """A line on the terminal, where tqdm is not installed."""
 
     def __init__(self, total: int, done: int) -> None:
-        self.total, self.done = total, done
+        self.total, self.done, self.before, self.start = total, done, done, time.monotonic()
 
     def update(self) -> None:
         self.done += 1
-        print(f"\r{self.done} of {self.total} runs", end="", file=sys.stderr, flush=True)
+        left_s = (time.monotonic() - self.start) * (self.total - self.done) / (self.done - self.before)
+        left = f"{left_s:.0f} s" if left_s < 100 else f"{left_s / 60:.0f} min"
+        print(f"\r{self.done} of {self.total} runs, {left} left ", end="", file=sys.stderr, flush=True)
 
     def close(self) -> None:
         print(file=sys.stderr)

@@ -1,4 +1,6 @@
 """What a study says, held against functions of which everything is known. No embryo is run, but where that is said."""
+import re
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
@@ -13,7 +15,7 @@ YOUNG, POISSON = "elasticity.young_modulus_Pa", "elasticity.poisson_ratio"
 TENSION = "cortex.shortening.tension_mN_per_m"
 DEPTH, HEIGHT = "furrow_depth_um", "vml_height_um"
 BOUNDS = {YOUNG: (400, 1200), POISSON: (0.2, 0.4)}
-VERDICTS = ["self_intersections", "lips_closed_time_s", "furrow_depth_below_lips_um"]
+VERDICTS = ["self_intersections", "lips_closed_time_s", "furrow_depth_below_lips_um", "furrow_depth_um"]
 
 
 @pytest.fixture(autouse=True)
@@ -110,7 +112,7 @@ def test_curves_that_are_none():
     with pytest.raises(ValueError, match="one-at-a-time"):
         study.curves(DEPTH)
     one = filled(source({YOUNG: {"values": [400, 500]}}), furrow_depth_um=1.0)
-    with pytest.raises(ValueError, match="no measure 'depth'; it has furrow_depth_um, vml_height_um, steps$"):
+    with pytest.raises(ValueError, match="no measure 'depth' .did you mean 'furrow_depth_um'.*; it has furrow_depth_um, vml_height_um, steps$"):
         one.curves("depth")
 
 
@@ -121,7 +123,12 @@ GRID = {YOUNG: {"values": [400, 600, 1200]}, POISSON: {"values": [0.2, 0.3]}}
 
 def phases(**columns):
     given = source(GRID, measures=VERDICTS)
-    return filled(given, self_intersections=0, lips_closed_time_s=np.nan, furrow_depth_below_lips_um=0.5, **columns)
+    own = {"self_intersections": 0, "lips_closed_time_s": np.nan, "furrow_depth_below_lips_um": 0.5, DEPTH: 3.0}
+    return filled(given, **{**own, **columns})
+
+
+def legend_of(figure):
+    return [text.get_text().split(":")[0] for text in figure.axes[0].get_legend().get_texts()]
 
 
 @pytest.mark.parametrize("change, word", [
@@ -129,9 +136,16 @@ def phases(**columns):
     ({"lips_closed_time_s": 900.0, "self_intersections": 2}, "passes through itself"), ({"status": "refused"}, "refused"),
     ({"status": "failed", "self_intersections": 2}, "failed"), ({"status": "not_run"}, "not run"), ({"status": "crashed"}, "failed"),
     ({"self_intersections": None, "furrow_depth_below_lips_um": None}, "flattened"),
+    # A tube whose lips have gone in, too.
+    ({"furrow_depth_below_lips_um": -4.2, "furrow_depth_um": 38.7}, "furrowed"),
+    ({"furrow_depth_below_lips_um": -4.2, "furrow_depth_um": 15.0}, "furrowed"),
+    ({"furrow_depth_below_lips_um": -4.2, "furrow_depth_um": 14.9}, "flattened"),
+    ({"furrow_depth_below_lips_um": None, "furrow_depth_um": 20.0}, "furrowed"),
+    ({"furrow_depth_below_lips_um": None, "furrow_depth_um": None}, "no verdict"),
 ])
 def test_verdicts(change, word):
-    row = {"status": "equilibrium", "self_intersections": 0, "lips_closed_time_s": None, "furrow_depth_below_lips_um": 0.0}
+    row = {"status": "equilibrium", "self_intersections": 0, "lips_closed_time_s": None, "furrow_depth_below_lips_um": 0.0,
+           "furrow_depth_um": 3.0}
     assert plica.verdict({**row, **change}) == plica.verdict(pd.Series({**row, **change}, dtype=object)) == word
 
 
@@ -143,15 +157,34 @@ def test_phase_diagram_of_verdicts():
     study = plica.Study._of_table(source(GRID, measures=VERDICTS), table)
     figure = study.phase_diagram()
     ax = figure.axes[0]
-    words = [text.get_text() for text in ax.get_legend().get_texts()]
-    assert words == ["furrowed", "flattened", "failed"]
+    words = legend_of(figure)
+    assert words == ["closed", "furrowed", "flattened", "passes through itself", "failed"]  # also what does not occur
+    assert any("1 µm or more below its lips" in text and "15 µm or more" in text for text in texts_of(figure))
+    assert any(re.fullmatch(r"study: verdict of furrow-slice until \d+ min\n6 runs, 1 without a value", text) for text in texts_of(figure))
     numbers = np.asarray(ax.images[0].get_array())
     assert [[words[n] for n in row] for row in numbers] == [["flattened", "flattened", "furrowed"], ["flattened", "flattened", "failed"]]
     assert [t.get_text() for t in ax.get_xticklabels()] == ["400", "600", "1200"] and "Pa" in ax.get_xlabel()
     turned = study.phase_diagram(POISSON, YOUNG, measure=lambda row: "deep" if row.furrow_depth_below_lips_um > 2 else "shallow")
-    assert [t.get_text() for t in turned.axes[0].get_legend().get_texts()] == ["deep", "shallow"]
+    assert legend_of(turned) == ["deep", "shallow"]
     assert np.asarray(turned.axes[0].images[0].get_array()).tolist() == [[1, 1], [1, 1], [0, 0]]
-    assert [t.get_text() for t in study.phase_diagram(measure="status").axes[0].get_legend().get_texts()] == ["failed", "end_time"]
+    assert legend_of(study.phase_diagram(measure="status")) == ["failed", "end_time"]
+
+
+def test_cells_whose_replicates_differ_are_hatched():
+    given = source(GRID, measures=VERDICTS, replicates=2)
+    given["set"] = {"cortex.apical.variation.spread": 0.1}
+    own = {"self_intersections": 0, "lips_closed_time_s": np.nan, "furrow_depth_below_lips_um": 0.5}
+    study = filled(given, **own, furrow_depth_um=lambda t: np.where((t.replicate == 2) & (t[YOUNG] == 600), 30.0, 3.0))
+    ax = study.phase_diagram().axes[0]
+    assert "replicates differ" in legend_of(ax.figure)
+    hatched = [patch for patch in ax.patches if patch.get_hatch()]
+    assert sorted(patch.get_xy() for patch in hatched) == [(0.5, -0.5), (0.5, 0.5)]
+
+
+def test_labels_say_that_an_axis_is_logarithmic_and_do_not_break():
+    given = source({"cortex.shortening.tension_mN_per_m": {"low": 0.1, "high": 10, "scale": "log", "count": 3}, POISSON: {"values": [0.2, 0.3]}})
+    ax = filled(given, furrow_depth_um=1.0).phase_diagram(measure=DEPTH).axes[0]
+    assert ax.get_xlabel() == "cortex.shortening.tension (mN/m), log scale" and "log" not in ax.get_ylabel()
 
 
 def test_phase_diagram_of_a_measure():
@@ -161,6 +194,7 @@ def test_phase_diagram_of_a_measure():
     cells = np.asarray(np.ma.filled(figure.axes[0].images[0].get_array(), np.nan))
     np.testing.assert_equal(cells, [[1, 3, np.nan], [2, 4, 6]])
     assert figure.axes[1].get_ylabel() == "furrow depth (µm)" and "× no result" in texts_of(figure)
+    assert any("furrow depth (µm) of furrow-slice" in text and "6 runs, 1 without a value" in text for text in texts_of(figure))
 
 
 def test_phase_diagrams_that_are_none():
@@ -168,8 +202,13 @@ def test_phase_diagrams_that_are_none():
         filled(source(GRID)).phase_diagram()
     with pytest.raises(ValueError, match="two keys"):
         filled(source({YOUNG: {"values": [400, 500]}})).phase_diagram(measure=DEPTH)
-    with pytest.raises(ValueError, match="give a grid"):
-        filled(source({YOUNG: between(YOUNG), POISSON: between(POISSON)}, "sobol", points=5)).phase_diagram(measure=DEPTH)
+    for kind in ("sobol", "sobol-indices"):
+        with pytest.raises(ValueError, match=f'is of kind "{kind}"; make a grid over the two keys$'):
+            filled(source({YOUNG: between(YOUNG), POISSON: between(POISSON), TENSION: {"low": 0, "high": 1}}, kind, points=5)).phase_diagram(measure=DEPTH)
+    with pytest.raises(ValueError, match="'poisson' does not vary in the study .did you mean 'elasticity.poisson_ratio'.*; there are elasticity.young"):
+        phases().phase_diagram("poisson")
+    with pytest.raises(ValueError, match="no measure 'verdct' .did you mean 'verdict'"):
+        phases().phase_diagram(measure="verdct")
     with pytest.raises(ValueError, match="keep.each"):
         phases().phase_diagram(thumbnails=2)
     three = filled(source({**GRID, TENSION: {"values": [0.5, 1]}}), furrow_depth_um=lambda t: t[TENSION])
@@ -233,7 +272,9 @@ def linear_indices(points=256, **design):
 def test_sobol_indices_of_a_linear_function():
     pytest.importorskip("SALib")
     study = filled(linear_indices(), furrow_depth_um=lambda t: unit(t, YOUNG, POISSON) @ [1, 2])
-    table = study.sobol_indices(DEPTH, resamples=100).table
+    indices = study.sobol_indices(DEPTH, resamples=100)
+    table, lines = indices.table, str(indices).splitlines()
+    assert len(lines) == 3 and max(map(len, lines)) <= 80 and f"{table.total_high.iloc[1]:.2f})" in lines[2]
     assert np.allclose(table["first"], [0.2, 0.8], atol=0.02) and np.allclose(table.total, [0.2, 0.8], atol=0.02)
 
 
@@ -246,8 +287,9 @@ def test_sobol_indices_with_missing_runs():
     study = plica.Study._of_table(given, table)
     with pytest.raises(ValueError, match=r"4 of 1024 runs have no furrow_depth_um \(3 failed, 1 end_time\).* 253 of 256 .*drop_missing"):
         study.sobol_indices(DEPTH)
-    found = study.sobol_indices(DEPTH, resamples=50, drop_missing=True)
-    assert found.base_points == 253 and np.allclose(found.table.total, [0.2, 0.8], atol=0.02)
+    with pytest.warns(UserWarning, match="3 of 256 base points are left out"):
+        found = study.sobol_indices(DEPTH, resamples=50, drop_missing=True)
+    assert found.base_points == 253 and found.dropped == 3 and np.allclose(found.table.total, [0.2, 0.8], atol=0.02)
     with pytest.raises(ValueError, match="same in all runs"):
         filled(given, furrow_depth_um=3.0).sobol_indices(DEPTH)
     with pytest.raises(ValueError, match='kind "grid"'):
@@ -435,5 +477,6 @@ def test_runs_that_are_no_prior():
 def test_a_missing_package_is_named(monkeypatch):
     import sys
     monkeypatch.setitem(sys.modules, "sklearn.gaussian_process", None)
-    with pytest.raises(plica.MissingExtra, match=r"emulator needs sklearn.* pip install 'plica\[study\]'"):
+    with pytest.raises(plica.MissingExtra, match=r"emulator needs sklearn.* pip install '\.\[study\]'") as told:
         linear(32).emulator(DEPTH)
+    assert told.value.__suppress_context__  # one traceback

@@ -98,16 +98,27 @@ def test_what_is_in_a_directory_goes_on(table, tmp_path):
     # Its page, where this plica can make one.
     told = subprocess.run([os.environ["PLICA"], "report", tmp_path / "s", "--out", tmp_path / "s.html"], capture_output=True, check=False)
     assert (tmp_path / "s/report.html").exists() == (told.returncode == 0)
-    with pytest.raises(ValueError, match="holds a study"):
+    with pytest.raises(ValueError, match="holds a study; go on with it by resume=True, replace it by overwrite=True, or give another out$"):
         plica.Study(STUDY).run(out=tmp_path / "s")
     (rows,) = (tmp_path / "s/rows").iterdir()
     text = rows.read_text()
     rows.write_text(text[: len(text) // 2])  # what a kill leaves: three rows and a half
     again = plica.Study(STUDY)
     assert same(again.run(out=tmp_path / "s", resume=True, progress=True), table)
+    plica.Study(STUDY + "# a word\n").run(out=tmp_path / "s", resume=True)
     assert len(list((tmp_path / "s/rows").iterdir())) == 2
-    with pytest.raises(ValueError, match="has changed"):
+    with pytest.raises(ValueError, match="has changed since it was begun: design.seed was 3, and is 4; .*overwrite=True"):
         plica.Study(STUDY.replace("seed = 3", "seed = 4")).run(out=tmp_path / "s", resume=True)
+
+
+def test_a_line_of_progress_says_what_is_left(capsys):
+    from plica.study import _Line
+
+    line = _Line(4, 1)
+    line.start -= 10
+    line.update()
+    line.close()
+    assert "2 of 4 runs, 20 s left" in capsys.readouterr().err
 
 
 def test_as_an_array(table):
