@@ -39,6 +39,7 @@ std::string bytes_text(double bytes) {
 void check_study(const StudyInput& input) {
   const ThreadCount one(1);
   const Study study(input);
+  for (const Diagnostic& note : study.notes()) fmt::print(stderr, "note: {}\n", note.text());
   fmt::print(stderr, "running the first point to see how long it takes (Ctrl-C: without)\n");
   catch_interruptions();
   const StudyForecast found = forecast(study, interrupted);
@@ -53,7 +54,7 @@ void check_study(const StudyInput& input) {
   if (found.first.status.empty()) return;
   const auto cores = std::max(1U, std::thread::hardware_concurrency());
   const auto runs = static_cast<double>(found.runs - found.refused.size() * found.runs / found.points);
-  fmt::print("point {}: {} after {} steps, in {}; all of them some {} on {}, and {} on the disk\n",
+  fmt::print("point {}: {} after {} steps, in {}; all of them some {} on {} if none takes longer, and {} on the disk\n",
              study.design().runs[found.first_run].point, found.first.status, found.first.steps,
              duration(found.first.wall_s), duration(found.first.wall_s * runs / cores), plural(cores, "core"),
              bytes_text(found.bytes_a_run * runs));

@@ -87,8 +87,8 @@ int ended(const Study& study, const StudyDirectory& directory, const StudyOption
   write_table(study, directory);
   if (!options.quiet) {
     const StudyStatus status = status_of(directory, study);
-    fmt::print("{}: {} in {}\n", study.input().name, by_status(status),
-               duration(std::chrono::duration<double>(Clock::now() - start).count()));
+    fmt::print("{}: {} in {}; {} of runs, one after the other\n", study.input().name, by_status(status),
+               duration(std::chrono::duration<double>(Clock::now() - start).count()), duration(status.run_s));
     print_reasons(status);
     fmt::print("  table in {0}/runs.csv{1}\n", options.out,
                can_report() ? fmt::format("; to look at: {}/report.html", options.out) : "");
@@ -141,12 +141,15 @@ int run(const StudyOptions& options) {
   const auto start = Clock::now();
   const ThreadCount one(1);
   const Study study(read_study(options.study));
+  if (!options.quiet)
+    for (const Diagnostic& note : study.notes()) fmt::print(stderr, "note: {}\n", note.text());
   using Start = StudyDirectory::Start;
   StudyDirectory directory = StudyDirectory::begin(options.out, study,
                                                    options.resume      ? Start::resumed
                                                    : options.overwrite ? Start::over
                                                                        : Start::fresh);
   catch_interruptions();
+  if (options.resume) write_table(study, directory);  // a study that was killed has left none
   return options.engine == "slurm" ? run_on_slurm(study, directory, options, start)
                                    : run_here(study, directory, options, start);
 }
@@ -170,9 +173,15 @@ void gather(const std::string& out) {
 void print_status(const std::string& out) {
   const auto [directory, study] = StudyDirectory::open(out);
   const StudyStatus status = status_of(directory, study);
-  fmt::print("{}: {}; {} of running time so far\n", study.input().name, by_status(status), duration(status.run_s));
+  fmt::print("{}: {}; {} of runs, one after the other, so far\n", study.input().name, by_status(status),
+             duration(status.run_s));
   print_reasons(status);
-  if (was_submitted(directory)) fmt::print("  {}\n", jobs_on_slurm(directory));
+  if (was_submitted(directory)) {
+    fmt::print("  {}\n", jobs_on_slurm(directory));
+  } else if (status.ended() < status.runs) {
+    fmt::print("  to go on, where it is not running: plica study {0} --out {1} --resume\n", study.input().file, out);
+    fmt::print("  a table of what has run: plica study gather {}\n", out);
+  }
 }
 
 void cancel(const std::string& out) { cancel_on_slurm(StudyDirectory::open(out).first); }

@@ -31,8 +31,9 @@ constexpr std::array<std::string_view, 3> program_keys = {"program.time_s", "pro
 /// How strongly and when each cell of the region acts.
 template <class Table>
 void add_pattern(std::vector<Row>& rows, const RowsIn<Table>& table) {
-  const auto profile = [&](std::string_view key, auto field, const Allowed& allowed, std::string_view meaning) {
-    rows.push_back(table(key, &Table::profile, field, allowed, meaning));
+  const auto profile = [&](std::string_view key, auto field, const Allowed& allowed, std::string_view meaning,
+                           const RowOptions& options = {}) {
+    rows.push_back(table(key, &Table::profile, field, allowed, meaning, options));
   };
   profile("profile.shape", &ProfileInput::shape, one_of(words::profile_shapes),
           "Factor on its strength by a cell's distance d from the region's middle, from `middle` there to `edge` far "
@@ -51,8 +52,8 @@ void add_pattern(std::vector<Row>& rows, const RowsIn<Table>& table) {
           "Linear: distance at which the factor is `edge`, as it is beyond (µm).");
   profile("profile.sigma_um", &ProfileInput::sigma_um, positive, "Gaussian: its standard deviation σ (µm).");
   profile("profile.sigma_cells", &ProfileInput::sigma_cells, positive,
-          "Gaussian, instead of `sigma_um`: σ in cells, by the mean width of the region's cells across the axis (along "
-          "it with axis along).");
+          "Gaussian: σ in cells, by the mean width of the region's cells across the axis (along it with axis along).",
+          {.instead_of = "profile.sigma_um"});
   profile("profile.full_cells", &ProfileInput::full_cells, positive,
           "Plateau: how many cells across (along, with that axis) have the factor of the middle, both sides together.");
   profile("profile.fade_cells", &ProfileInput::fade_cells, not_negative,

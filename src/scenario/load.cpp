@@ -12,6 +12,7 @@
 #include "scenario/nesting.hpp"
 #include "scenario/read_layer.hpp"
 #include "scenario/suggest.hpp"
+#include "scenario/syntax.hpp"
 #include "scenario/validate.hpp"
 
 namespace plica {
@@ -62,6 +63,12 @@ std::vector<Document> read_documents(const ScenarioSource& source, std::vector<D
     }
     try {
       chain.push_back({*next, toml::parse(next->text)});
+      if (const toml::table& table = chain.back().table; table.contains("vary") && table.contains("design")) {
+        diagnostics.push_back({next->file, 0, "", "is a study and no scenario",
+                               fmt::format("run it by plica study {} --out DIR", next->file)});
+        chain.clear();
+        break;
+      }
       next = find_base(chain.back(), chain, diagnostics);
       if (next && chain.size() == most_bases) {
         diagnostics.push_back({chain.back().source.file, 0, "base", "too many scenarios inherit from each other",
@@ -69,8 +76,7 @@ std::vector<Document> read_documents(const ScenarioSource& source, std::vector<D
         break;
       }
     } catch (const toml::parse_error& error) {
-      const int line = static_cast<int>(error.source().begin.line);
-      diagnostics.push_back({next->file, line, "", std::string(error.description()), "write it in TOML syntax"});
+      diagnostics.push_back(syntax_diagnostic(next->file, next->text, error));
       break;
     }
   }
@@ -130,6 +136,19 @@ void forget_expectations(Scenario& scenario, Input& input) {
   std::erase_if(input.places, [](const auto& place) { return place.first.starts_with("expect."); });
 }
 
+/// A built-in of a name like the path's, or a file beside it.
+std::string nearest_scenario(const fs::path& path, const fs::path& beside) {
+  std::vector<std::string> files;
+  const fs::path folder = (beside / path).parent_path();
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path().filename().string());
+  std::ranges::sort(files);
+  if (const auto nearest = nearest_name(path.filename().string(), files); nearest && path.extension() == ".toml")
+    return fmt::format("did you mean \"{}\"?", (path.parent_path() / *nearest).string());
+  return did_you_mean(path.stem().string(), names_of(builtin_scenarios()));
+}
+
 /// In the order of the sources, and of the lines in each.
 void sort_diagnostics(std::vector<Diagnostic>& diagnostics, const std::vector<Document>& documents) {
   const auto rank = [&](const Diagnostic& diagnostic) {
@@ -141,7 +160,7 @@ void sort_diagnostics(std::vector<Diagnostic>& diagnostics, const std::vector<Do
 
 }  // namespace
 
-ScenarioSource find_scenario(const std::string& name_or_path) {
+ScenarioSource find_scenario(const std::string& name_or_path, const fs::path& beside) {
   for (const BuiltinScenario& scenario : builtin_scenarios()) {
     if (scenario.name == name_or_path) return {name_or_path, name_or_path, std::string(scenario.toml)};
   }
@@ -149,9 +168,16 @@ ScenarioSource find_scenario(const std::string& name_or_path) {
   std::error_code error;
   if (!fs::exists(path, error)) {
     throw UsageError(fmt::format("\"{}\" is neither a built-in scenario nor a file; {}", name_or_path,
-                                 did_you_mean(path.stem().string(), names_of(builtin_scenarios()))));
+                                 nearest_scenario(path, beside)));
   }
   return {path.stem().string(), name_or_path, read_file(path, largest_scenario_bytes)};
+}
+
+std::vector<Diagnostic> problems_of_override(const std::string& override) {
+  Scenario scenario;
+  Input input;
+  read_overrides({override}, 0, scenario, input);
+  return input.diagnostics;
 }
 
 Scenario load_scenario(const ScenarioSource& source, const std::vector<std::string>& overrides) {

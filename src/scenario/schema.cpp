@@ -232,6 +232,24 @@ bool Allowed::contains(double value) const {
   return (low_included ? value >= low : value > low) && (high_included ? value <= high : value < high);
 }
 
+const Row* row_of_key(std::string_view dotted) {
+  // What is left of a key behind its first part.
+  const auto behind = [](std::string_view key) {
+    const std::size_t dot = key.find('.');
+    return dot == std::string_view::npos ? std::string_view() : key.substr(dot + 1);
+  };
+  for (const Row& row : schema()) {
+    const std::size_t star = row.table.find(".*");
+    const std::string_view stem = row.table.substr(0, star);
+    std::string_view key = dotted;
+    if (!stem.empty() && !key.starts_with(std::string(stem) + '.')) continue;
+    if (!stem.empty()) key = behind(key);
+    if (star != std::string_view::npos) key = behind(key);
+    if (key == row.key) return &row;
+  }
+  return nullptr;
+}
+
 std::string Allowed::text() const {
   if (!words.empty()) return fmt::format("{}", fmt::join(words, " | "));
   const double infinity = std::numeric_limits<double>::infinity();

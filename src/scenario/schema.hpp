@@ -68,6 +68,7 @@ struct TableInfo {
 std::span<const Row> schema();
 std::span<const TableInfo> schema_tables();               // in the order in which a scenario is written
 std::vector<const Row*> rows_of(std::string_view table);  // of one table, in order
+const Row* row_of_key(std::string_view dotted);           // "contraction.apical.region"; null where there is none
 std::span<const std::string_view> expectation_names();    // what [expect] may name
 
 /// Gives the row's field of `scenario` its default.

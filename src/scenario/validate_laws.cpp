@@ -43,15 +43,13 @@ void check_profile(const std::string& path, ProfileInput& profile, Input& input)
   };
   only("linear", ".half_width_um", profile.half_width_um);
   only("gaussian", ".sigma_um", profile.sigma_um);
-  only("gaussian", ".sigma_cells", profile.sigma_cells);
+  only("gaussian", ".sigma_um", profile.sigma_cells);  // stands in for it
   only("plateau", ".full_cells", profile.full_cells);
   only("plateau", ".fade_cells", profile.fade_cells);
   if (profile.shape == "linear")
     need(".half_width_um", profile.half_width_um, "give the distance at which the factor is edge, a number > 0");
   if (profile.shape == "gaussian" && !profile.sigma_cells)
     need(".sigma_um", profile.sigma_um, "give the width of the gaussian, a number > 0, or sigma_cells");
-  if (profile.shape == "gaussian" && profile.sigma_cells && profile.sigma_um)
-    input.report(path + ".sigma_cells", "stands beside sigma_um", "give one of the two");
   if (profile.shape == "plateau") {
     need(".full_cells", profile.full_cells, "give how many cells have the factor of the middle, a number > 0");
     need(".fade_cells", profile.fade_cells, "give over how many cells it fades, 0 for none");

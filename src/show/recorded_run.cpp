@@ -23,6 +23,13 @@ void refuse_to_replace_scenario(const std::string& scenario_file, const fs::path
       throw UsageError(scenario_file + ": the results would replace it; give another --out, or move the scenario");
 }
 
+// The files of a study are those of many runs.
+void refuse_to_replace_study(const fs::path& out) {
+  std::error_code error;
+  if (fs::exists(out / "study.json", error))
+    throw UsageError(out.string() + ": holds a study; give another --out");
+}
+
 // Nor would there be anything to measure against.
 void refuse_to_replace_reference(const std::vector<Monitor>& monitors, const fs::path& out) {
   std::error_code error;
@@ -38,6 +45,7 @@ RecordedRun::RecordedRun(fs::path out, const Scenario& scenario, const ScenarioS
                          Start start, Recorder::Clock::time_point since)
     : out_(std::move(out)), input_toml_(source.text), simulation_(simulation), report_(out_) {
   refuse_to_replace_scenario(source.file, out_);
+  refuse_to_replace_study(out_);
   refuse_to_replace_reference(simulation.observer().monitors(), out_);
   if (simulation.divisions() > 0)
     throw UsageError("cells have divided already; a record begins before the first division");

@@ -8,6 +8,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/random/sobol.hpp>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <random>
 
@@ -82,6 +83,13 @@ Places for_sobol_indices(std::size_t count, std::size_t dimensions, std::uint64_
   return places;
 }
 
+// Of a key that takes whole numbers, what is one but for rounding is written as one.
+std::string number_of(const StudyKey& key, double value) {
+  const double whole = std::round(value);
+  const bool is_whole = key.is_whole && std::abs(value - whole) <= 1e-9 * std::max(1.0, std::abs(value));
+  return is_whole ? fmt::format("{:.0f}", whole) : float_in_toml(value);
+}
+
 // A key that takes whole numbers only has whole bounds and a whole step; its values are written without a point.
 std::string in_steps(const StudyKey& key, double step) {
   const double value = key.low + *key.step * step;
@@ -106,7 +114,7 @@ std::string value_at(const StudyKey& key, double place) {
   }
   if (key.step) return in_steps(key, std::min(std::floor(place * (steps_of(key) + 1)), steps_of(key)));
   const double value = key.is_log ? key.low * std::pow(key.high / key.low, place) : std::lerp(key.low, key.high, place);
-  return float_in_toml(std::clamp(value, key.low, key.high));
+  return number_of(key, std::clamp(value, key.low, key.high));
 }
 
 // Those of a grid.
@@ -217,9 +225,19 @@ StudyDesign of_file(const StudyInput& study) {
   return design;
 }
 
+// Points of which nothing is random, since their values make every spread 0: their replicates are one run.
+std::size_t points_without_spread(const StudyDesign& design, std::map<std::string, double> spreads) {
+  return static_cast<std::size_t>(std::ranges::count_if(design.runs, [&](const StudyPoint& point) {
+    for (std::size_t k = 0; k < design.keys.size(); ++k)
+      if (design.keys[k].ends_with(".variation.spread")) spreads[design.keys[k]] = number_in(point.values[k]).value_or(0);
+    return std::ranges::none_of(spreads, [](const auto& spread) { return spread.second > 0; });
+  }));
+}
+
 // The keys of all seeds in the scenario, and their values.
-std::vector<std::pair<std::string, std::int64_t>> seeds_of(const StudyInput& study, const StudyDesign& design) {
+std::vector<std::pair<std::string, std::int64_t>> seeds_of(const StudyInput& study, StudyDesign& design) {
   std::vector<std::pair<std::string, std::int64_t>> seeds;
+  std::map<std::string, double> spreads;
   bool varies = std::ranges::any_of(design.keys, [](const auto& key) { return key.ends_with("variation.spread"); });
   const toml::table resolved = toml::parse(resolved_toml(load_scenario(study.scenario, study.overrides)));
   for (const char* group : {"contraction", "cortex"})
@@ -230,10 +248,17 @@ std::vector<std::pair<std::string, std::int64_t>> seeds_of(const StudyInput& stu
         if (!seed) continue;
         varies = varies || variation["spread"].value_or(0.0) > 0;
         seeds.emplace_back(fmt::format("{}.{}.variation.seed", group, name.str()), *seed);
+        spreads[fmt::format("{}.{}.variation.spread", group, name.str())] = variation["spread"].value_or(0.0);
       }
   if (!varies)
     throw ScenarioError({{study.file, 0, "design.replicates", "would all be the same: nothing is random here",
                           "give a contraction or cortex of the scenario a variation.spread, or remove replicates"}});
+  if (const std::size_t alike = points_without_spread(design, std::move(spreads)); alike > 0)
+    design.notes.push_back(
+        {study.file, 0, "design.replicates",
+         fmt::format("{} of {} points have a spread of 0, so their {} replicates are the same run", alike,
+                     design.runs.size(), study.replicates),
+         "a study of its own without replicates saves these runs"});
   return seeds;
 }
 
@@ -275,7 +300,8 @@ std::string name_of_run(const StudyPoint& run, bool has_replicates) {
 }
 
 std::string points_csv(const StudyDesign& design) {
-  const auto& [keys, runs] = design;
+  const std::vector<std::string>& keys = design.keys;
+  const std::vector<StudyPoint>& runs = design.runs;
   std::string text = "run,point,replicate";
   for (const std::string& key : keys) text += ',' + csv_field(key);
   text += ",seeds\n";

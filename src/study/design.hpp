@@ -18,7 +18,8 @@ struct StudyPoint {
 
 struct StudyDesign {
   std::vector<std::string> keys;
-  std::vector<StudyPoint> runs;  // point by point, and its replicates
+  std::vector<StudyPoint> runs;       // point by point, and its replicates
+  std::vector<Diagnostic> notes = {};  // what is allowed, and may not be meant
 };
 
 /// The same for the same study, on any machine. FileError or ScenarioError for a file of points that is none.

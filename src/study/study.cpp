@@ -15,6 +15,7 @@
 #include "show/recorded_run.hpp"
 #include "study/csv_fields.hpp"
 #include "study/quiet_run.hpp"
+#include "study/study_errors.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;
@@ -33,21 +34,6 @@ std::string one_line(std::string text) {
   while (text.ends_with('\n')) text.pop_back();
   for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at)) text.replace(at, 1, " | ");
   return printable(text);
-}
-
-// In the lines of the study's file: what is wrong with a key that varies, or that [set] has.
-ScenarioError in_study(const ScenarioError& error, const StudyInput& study) {
-  std::vector<Diagnostic> diagnostics = error.diagnostics();
-  for (Diagnostic& diagnostic : diagnostics) {
-    if (diagnostic.file != "--set") continue;
-    diagnostic.file = study.file;
-    const auto key = std::ranges::find(study.keys, diagnostic.key, &StudyKey::key);
-    diagnostic.line = key != study.keys.end() ? key->line : 0;
-    diagnostic.key = (key != study.keys.end() ? "vary." : "set.") + diagnostic.key;
-    if (diagnostic.problem.ends_with("is not an integer"))
-      diagnostic.remedy = "it takes whole numbers: give values, or low and high with step = 1";
-  }
-  return ScenarioError(std::move(diagnostics));
 }
 
 RunRow row_of(const Json& summary, const std::vector<std::string>& measures) {
@@ -92,7 +78,9 @@ Json recorded(const Scenario& scenario, const ScenarioSource& source, const fs::
 Study::Study(StudyInput input) : input_(std::move(input)) {
   try {
     design_ = design_of(input_);
+    require_values_of_keys(input_, design_);
     check();
+    require_usable_values(input_, design_);
   } catch (const ScenarioError& error) {
     throw in_study(error, input_);
   }
@@ -119,6 +107,12 @@ void Study::check() {
   if (!diagnostics.empty()) throw ScenarioError(std::move(diagnostics));
   measures_ = input_.measures.empty() ? known : input_.measures;
   std::erase(measures_, "steps");  // has a column of its own
+}
+
+std::vector<Diagnostic> Study::notes() const {
+  std::vector<Diagnostic> notes = input_.notes;
+  notes.insert(notes.end(), design_.notes.begin(), design_.notes.end());
+  return notes;
 }
 
 Scenario Study::scenario_of(std::size_t run) const {

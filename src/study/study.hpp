@@ -35,6 +35,9 @@ class Study {
   [[nodiscard]] std::size_t runs() const { return design_.runs.size(); }
   [[nodiscard]] const std::vector<std::string>& measures() const { return measures_; }
 
+  /// What is allowed, and may not be meant.
+  [[nodiscard]] std::vector<Diagnostic> notes() const;
+
   /// ScenarioError where its values do not make a scenario.
   [[nodiscard]] Scenario scenario_of(std::size_t run) const;
   /// Names its files.

@@ -13,6 +13,7 @@
 #include "core/numbers.hpp"
 #include "core/version.hpp"
 #include "record/summary.hpp"
+#include "scenario/differences.hpp"
 #include "scenario/print.hpp"
 #include "study/csv_fields.hpp"
 
@@ -49,10 +50,29 @@ void require_same_plica(const fs::path& directory, const Json& begun) {
                     directory.string(), with, this_plica()));
 }
 
+// The first key that differs, before and now; nothing where comments and blanks do.
+std::string difference(const std::string& before, const std::string& now) {
+  const std::vector<KeyDifference> all = scenario_differences(before, now);
+  if (all.empty()) return "";
+  const auto shown = [](const std::string& value) { return value.empty() ? "not there" : value; };
+  const std::string others = all.size() > 1 ? fmt::format(" (and {} more)", all.size() - 1) : "";
+  return fmt::format("{} was {}, and is {}{}", all.front().key, shown(all.front().a), shown(all.front().b), others);
+}
+
+constexpr const char* change_back = "change it back, start anew with --overwrite, or give another --out";
+
+void require_same_study(const fs::path& directory, const StudyInput& input) {
+  const std::string changed = difference(read_file(directory / "study.toml"), input.text);
+  if (!changed.empty())
+    throw UsageError(fmt::format("{}: the study {} has changed since it was begun: {}; {}", directory.string(),
+                                 input.file, changed, change_back));
+}
+
 void require_same_scenario(const fs::path& directory, const StudyInput& input) {
-  if (read_file(directory / "scenario.toml") != resolved_scenario(input))
-    throw UsageError(fmt::format("{}: the scenario {} has changed since the study was begun; it was {}",
-                                 directory.string(), input.scenario.file, (directory / "scenario.toml").string()));
+  const std::string changed = difference(read_file(directory / "scenario.toml"), resolved_scenario(input));
+  if (!changed.empty())
+    throw UsageError(fmt::format("{}: the scenario {} has changed since the study was begun: {}; {}",
+                                 directory.string(), input.scenario.file, changed, change_back));
 }
 
 // Whether there is what a study that was killed as it began does not leave.
@@ -89,14 +109,11 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
   if (holds_one && start == Start::resumed) {
     const Json begun = read_json(directory / "study.json");
     require_same_plica(directory, begun);
-    if (read_file(directory / "study.toml") != input.text)
-      throw UsageError(
-          fmt::format("{}: the study has changed since it was begun: {} is not {}; change it back, or "
-                      "give another --out",
-                      directory.string(), input.file, (directory / "study.toml").string()));
+    require_same_study(directory, input);
     require_same_scenario(directory, input);
     if (read_file(directory / "points.csv") != points_csv(study.design()))
-      throw UsageError(fmt::format("{}: the points of the study have changed since it was begun", directory.string()));
+      throw UsageError(fmt::format("{}: the points of the study have changed since it was begun, or their order; {}",
+                                   directory.string(), change_back));
     return result;
   }
   if (holds_one && start == Start::fresh)

@@ -8,14 +8,20 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/names.hpp"
+#include "scenario/builtin.hpp"
 #include "scenario/nesting.hpp"
 #include "scenario/print.hpp"
+#include "scenario/schema.hpp"
 #include "scenario/suggest.hpp"
+#include "scenario/syntax.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;
@@ -55,12 +61,22 @@ std::string text_of(const toml::node& node) {
   return "";  // dates: no key of a scenario has one
 }
 
+// The keys of each table; those of [set] and [vary] are the scenario's.
+const std::map<std::string, std::vector<std::string>, std::less<>> known_keys = {
+    {"", {"format", "scenario", "set", "vary", "design", "keep"}},
+    {"design", {"kind", "points", "seed", "replicates", "file"}},
+    {"keep", {"measures", "each"}}};
+
 class Reader {
  public:
   Reader(StudyInput& study, const toml::table& document) : study_(study), document_(document) {}
 
   void read() {
-    refuse_unknown(document_, "", {"format", "scenario", "set", "vary", "design", "keep"});
+    if (std::ranges::none_of(std::array{"scenario", "vary", "design"}, [&](auto name) { return document_.contains(name); }) &&
+        !document_.empty())
+      throw ScenarioError({{study_.file, 0, "", "is a scenario and no study",
+                            fmt::format("run it by plica run {} --out DIR, or name it in a study", study_.file)}});
+    refuse_unknown(document_, "");
     if (const toml::node* format = document_.get("format"); format && format->value<int>() != 1)
       report(*format, "format", "is not one that this plica reads", "write format = 1");
     read_scenario();
@@ -80,11 +96,23 @@ class Reader {
     report_at(static_cast<int>(node.source().begin.line), std::move(key), std::move(problem), std::move(remedy));
   }
 
-  void refuse_unknown(const toml::table& table, const std::string& before, const std::vector<std::string>& known) {
+  void refuse_unknown(const toml::table& table, const std::string& before, const std::vector<std::string>& known,
+                      const std::function<std::string(std::string_view)>& remedy_of) {
     for (const auto& [key, node] : table)
       if (std::ranges::count(known, key.str()) == 0)
         report_at(static_cast<int>(key.source().begin.line), before + std::string(key.str()), "unknown key",
-                  did_you_mean(key.str(), known));
+                  remedy_of(key.str()));
+  }
+
+  // Of a table of the document. A key that another table has is most likely in the wrong place.
+  void refuse_unknown(const toml::table& table, const std::string& name) {
+    const std::vector<std::string>& known = known_keys.at(name);
+    refuse_unknown(table, name.empty() ? "" : name + ".", known, [&](std::string_view key) {
+      for (const auto& [other, keys] : known_keys)
+        if (std::ranges::count(keys, key) > 0)
+          return other.empty() ? std::string("it belongs above all tables") : fmt::format("it belongs in [{}]", other);
+      return did_you_mean(key, known);
+    });
   }
 
   // A table of the document; nothing where it is not there.
@@ -141,7 +169,7 @@ class Reader {
       const fs::path folder = fs::path(study_.file).parent_path();
       std::error_code unknown;
       const bool is_file = fs::is_regular_file(folder / *name, unknown);
-      study_.scenario = find_scenario(is_file ? (folder / *name).string() : *name);
+      study_.scenario = find_scenario(is_file ? (folder / *name).string() : *name, folder);
     } catch (const std::runtime_error& error) {
       report(node, "scenario", error.what(), "name a built-in scenario, or a file, relative to this one");
     }
@@ -154,7 +182,8 @@ class Reader {
       if (is_nested)
         read_overrides(*node.as_table(), path + ".");
       else
-        study_.overrides.push_back(path + "=" + text_of(node));
+        study_.overrides.push_back(path + "=" + text_of(node)),
+            study_.override_lines.push_back(static_cast<int>(key.source().begin.line));
     }
   }
 
@@ -179,13 +208,17 @@ class Reader {
     const std::string place = "vary." + path;
     StudyKey key;
     key.key = path, key.line = static_cast<int>(node.source().begin.line);
+    const Row* row = row_of_key(path);
+    key.is_whole = row != nullptr && row->type() == "integer";
     const toml::table* given = node.as_table();
     if (given == nullptr)
       return report(node, place, "does not say how it varies", "give { low = 1, high = 2 } or { values = [1, 2] }");
-    refuse_unknown(*given, place + ".", {"values", "low", "high", "scale", "step", "count", "mean", "sd"});
+    const std::vector<std::string> known = {"values", "low", "high", "scale", "step", "count", "mean", "sd"};
+    refuse_unknown(*given, place + ".", known, [&](std::string_view word) { return did_you_mean(word, known); });
     if (const toml::node* values = given->get("values")) {
       const toml::array* list = values->as_array();
-      if (list == nullptr || list->empty()) return report(*values, place + ".values", "is no list", "give [1, 2, 3]");
+      if (list == nullptr || list->empty())
+        return report(*values, place + ".values", list == nullptr ? "is no list" : "is empty", "give [1, 2, 3]");
       if (given->size() > 1)
         return report(node, place, "has values and more", "give either values, or low and high, or mean and sd");
       for (const toml::node& value : *list) key.values.push_back(text_of(value));
@@ -218,6 +251,11 @@ class Reader {
       return report(node, place + ".step", "does not fit between low and high", "give a step over 0, up to their gap");
     if (key.step && (key.is_log || key.count))
       return report(node, place, "has a step and more", "give step, or count, or scale = \"log\"");
+    if (key.count == 1)
+      return report(node, place + ".count", "is 1, which leaves one value of a range", "give 2 or more, or one value in [set]");
+    if (const double rest = key.step ? std::remainder(key.high - key.low, *key.step) : 0; std::abs(rest) > 1e-9 * key.high)
+      study_.notes.push_back({study_.file, key.line, place + ".step", fmt::format("does not come to {:g}", key.high),
+                              fmt::format("the last value is {:g}", key.low + *key.step * std::floor((key.high - key.low) / *key.step))});
     study_.keys.push_back(std::move(key));
   }
 
@@ -227,7 +265,7 @@ class Reader {
       if (!document_.contains("design")) report_at(0, "design", "is missing", "write [design] and kind = \"grid\"");
       return;
     }
-    refuse_unknown(*design, "design.", {"kind", "points", "seed", "replicates", "file"});
+    refuse_unknown(*design, "design");
     if (!design->contains("kind"))
       report(*design, "design.kind", "is missing", "give grid, list, one-at-a-time, sobol, latin-hypercube or file");
     study_.kind = word(*design, "kind", "design.", kinds, DesignKind::grid);
@@ -243,7 +281,7 @@ class Reader {
   void read_kept() {
     const toml::table* keep = table("keep");
     if (keep == nullptr) return;
-    refuse_unknown(*keep, "keep.", {"measures", "each"});
+    refuse_unknown(*keep, "keep");
     study_.each = word(*keep, "each", "keep.", kept, KeptOfRun::row);
     const toml::node* measures = keep->get("measures");
     if (measures == nullptr) return;
@@ -331,13 +369,14 @@ StudyInput parse_study(const std::string& name, const std::string& file, const s
     const toml::table document = toml::parse(text);
     Reader(study, document).read();
   } catch (const toml::parse_error& error) {
-    const int line = static_cast<int>(error.source().begin.line);
-    throw ScenarioError({{file, line, "", std::string(error.description()), "write it in TOML syntax"}});
+    throw ScenarioError({syntax_diagnostic(file, text, error)});
   }
   return study;
 }
 
 StudyInput read_study(const std::string& file) {
+  if (std::error_code error; !fs::exists(file, error) && std::ranges::count(names_of(builtin_scenarios()), file) > 0)
+    throw UsageError(fmt::format("{0} is a scenario and no study; run it by plica run {0} --out DIR", file));
   return parse_study(fs::path(file).stem().string(), file, read_file(file));
 }
 

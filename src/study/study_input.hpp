@@ -17,6 +17,7 @@ struct StudyKey {
   std::vector<std::string> values;  // in TOML; empty: from low to high
   double low = 0, high = 0;         // inf where a normal distribution has no bound
   bool is_log = false;              // evenly in the logarithm
+  bool is_whole = false;            // takes whole numbers only
   std::optional<double> step;       // whole steps from low only
   std::optional<int> count;         // how many values a grid takes from low to high
   std::optional<double> mean, sd;   // normal
@@ -34,6 +35,7 @@ struct StudyInput {
   std::string name, file, text;  // of the study's own file
   ScenarioSource scenario;
   std::vector<std::string> overrides;  // [set], as of --set
+  std::vector<int> override_lines;     // of the study's file
   std::vector<StudyKey> keys;
   DesignKind kind = DesignKind::grid;
   int points = 0;  // of designs that do not follow from the keys
@@ -42,6 +44,7 @@ struct StudyInput {
   std::string points_file;            // kind = "file"
   std::vector<std::string> measures;  // of summary.json; empty: all numbers
   KeptOfRun each = KeptOfRun::row;
+  std::vector<Diagnostic> notes;  // what is allowed, and may not be meant
 };
 
 /// Whether a TOML text is a study's, not a scenario's.

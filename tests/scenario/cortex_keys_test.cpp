@@ -49,7 +49,7 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
       {"[cortex.a]\nregion = \"mesoderm\"\ntension_mN_per_m = 1",
        "test.toml:2: cortex.a.region: there is no region \"mesoderm\"; known are: all"},
       {cortex + "tension_mN_per_m = 1\nprofile = { shape = \"gaussian\", sigma_um = 3, sigma_cells = 2 }",
-       "test.toml:4: cortex.a.profile.sigma_cells: stands beside sigma_um; give one of the two"},
+       "test.toml:4: cortex.a.profile.sigma_um: cortex.a.profile.sigma_cells is given as well; give one of the two"},
       {cortex + "tension_mN_per_m = 1\nprofile = { edge = 0.5 }",
        "test.toml:4: cortex.a.profile.edge: has no meaning where nothing fades; remove it, or choose another shape, or "
        "a taper"},

@@ -1,0 +1,75 @@
+#include "scenario/syntax.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+#include <vector>
+
+namespace plica {
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string trimmed(const std::string& text) {
+  constexpr const char* blanks = " \t\r";
+  const std::size_t begin = text.find_first_not_of(blanks);
+  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+bool is_table(const std::string& line) { return line.starts_with('['); }
+
+// What a line names: the key before "=", or the table in its brackets.
+std::string named_in(const std::string& line) {
+  if (is_table(line)) return trimmed(line.substr(0, line.find(']'))) + "]";
+  return line.find('=') == std::string::npos ? "" : trimmed(line.substr(0, line.find('=')));
+}
+
+// The line, from 1, that has named the same before `last` in the same table; 0 where it is not seen.
+int first_line_of(const std::string& name, const std::vector<std::string>& lines, int last) {
+  for (int line = last - 1; line > 0; --line) {
+    const std::string text = trimmed(lines[static_cast<std::size_t>(line - 1)]);
+    if (named_in(text) == name) return line;
+    if (is_table(text) && !is_table(name)) return 0;
+  }
+  return 0;
+}
+
+// The word after "=", where it is one that lacks its quotes.
+std::string bare_word_in(const std::string& line) {
+  const std::size_t equals = line.find('=');
+  if (equals == std::string::npos) return "";
+  const std::string value = trimmed(line.substr(equals + 1, line.find('#', equals) - equals - 1));
+  const auto in_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.'; };
+  const bool is_word = !value.empty() && std::isalpha(static_cast<unsigned char>(value.front())) != 0 &&
+                       std::ranges::all_of(value, in_word);
+  return is_word ? value : "";
+}
+
+}  // namespace
+
+Diagnostic syntax_diagnostic(const std::string& file, const std::string& text, const toml::parse_error& error) {
+  const std::string problem(error.description());
+  const int line = static_cast<int>(error.source().begin.line);
+  const std::vector<std::string> lines = lines_of(text);
+  if (line < 1 || static_cast<std::size_t>(line) > lines.size())
+    return {file, line, "", problem, "write it in TOML syntax"};
+  const std::string written = trimmed(lines[static_cast<std::size_t>(line - 1)]), name = named_in(written);
+  if (problem.find("redefine") != std::string::npos && !name.empty()) {
+    const int first = first_line_of(name, lines, line);
+    const std::string where = first > 0 ? fmt::format("; first in line {}", first) : "";
+    return {file, line, name, "is given twice" + where, "keep one of the two"};
+  }
+  if (const std::string word = bare_word_in(written); !word.empty())
+    return {file, line, name, fmt::format("{} is no value", word),
+            fmt::format("a text is in quotes: {} = \"{}\"", name, word)};
+  return {file, line, "", problem, "write it in TOML syntax"};
+}
+
+}  // namespace plica
