@@ -26,8 +26,7 @@ void refuse_to_replace_scenario(const std::string& scenario_file, const fs::path
 // The files of a study are those of many runs.
 void refuse_to_replace_study(const fs::path& out) {
   std::error_code error;
-  if (fs::exists(out / "study.json", error))
-    throw UsageError(out.string() + ": holds a study; give another --out");
+  if (fs::exists(out / "study.json", error)) throw UsageError(out.string() + ": holds a study; give another --out");
 }
 
 // Nor would there be anything to measure against.

@@ -229,7 +229,8 @@ StudyDesign of_file(const StudyInput& study) {
 std::size_t points_without_spread(const StudyDesign& design, std::map<std::string, double> spreads) {
   return static_cast<std::size_t>(std::ranges::count_if(design.runs, [&](const StudyPoint& point) {
     for (std::size_t k = 0; k < design.keys.size(); ++k)
-      if (design.keys[k].ends_with(".variation.spread")) spreads[design.keys[k]] = number_in(point.values[k]).value_or(0);
+      if (design.keys[k].ends_with(".variation.spread"))
+        spreads[design.keys[k]] = number_in(point.values[k]).value_or(0);
     return std::ranges::none_of(spreads, [](const auto& spread) { return spread.second > 0; });
   }));
 }
@@ -254,11 +255,10 @@ std::vector<std::pair<std::string, std::int64_t>> seeds_of(const StudyInput& stu
     throw ScenarioError({{study.file, 0, "design.replicates", "would all be the same: nothing is random here",
                           "give a contraction or cortex of the scenario a variation.spread, or remove replicates"}});
   if (const std::size_t alike = points_without_spread(design, std::move(spreads)); alike > 0)
-    design.notes.push_back(
-        {study.file, 0, "design.replicates",
-         fmt::format("{} of {} points have a spread of 0, so their {} replicates are the same run", alike,
-                     design.runs.size(), study.replicates),
-         "a study of its own without replicates saves these runs"});
+    design.notes.push_back({study.file, 0, "design.replicates",
+                            fmt::format("{} of {} points have a spread of 0, so their {} replicates are the same run",
+                                        alike, design.runs.size(), study.replicates),
+                            "a study of its own without replicates saves these runs"});
   return seeds;
 }
 

@@ -18,7 +18,7 @@ struct StudyPoint {
 
 struct StudyDesign {
   std::vector<std::string> keys;
-  std::vector<StudyPoint> runs;       // point by point, and its replicates
+  std::vector<StudyPoint> runs;        // point by point, and its replicates
   std::vector<Diagnostic> notes = {};  // what is allowed, and may not be meant
 };
 

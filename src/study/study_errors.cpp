@@ -45,7 +45,8 @@ const GivenKey* source_of(const Diagnostic& diagnostic, const std::vector<GivenK
     return found == given.end() ? nullptr : &*found;
   };
   if (const auto* same = find([&](const auto& one) { return one.key == diagnostic.key; })) return same;
-  if (const auto* inner = find([&](const auto& one) { return one.key.starts_with(diagnostic.key + "."); })) return inner;
+  if (const auto* inner = find([&](const auto& one) { return one.key.starts_with(diagnostic.key + "."); }))
+    return inner;
   return find([&](const auto& one) { return table_of(one.key) == table_of(diagnostic.key); });
 }
 
@@ -78,8 +79,10 @@ Diagnostic in_study(Diagnostic diagnostic, const StudyInput& study, const std::v
   const GivenKey* source = source_of(diagnostic, given);
   if (source == nullptr) return diagnostic;
   if (diagnostic.key != source->key && !is_own) {
-    const std::string place = diagnostic.line > 0 ? fmt::format("{}:{}", diagnostic.file, diagnostic.line) : diagnostic.file;
-    diagnostic.problem = fmt::format("does not go with {} of the scenario ({}), which {}", diagnostic.key, place, diagnostic.problem);
+    const std::string place =
+        diagnostic.line > 0 ? fmt::format("{}:{}", diagnostic.file, diagnostic.line) : diagnostic.file;
+    diagnostic.problem =
+        fmt::format("does not go with {} of the scenario ({}), which {}", diagnostic.key, place, diagnostic.problem);
   } else if (is_own && alone && diagnostic.problem == "is missing") {
     tell_of_new_table(diagnostic, source->key, *alone);
   }

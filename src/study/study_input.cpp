@@ -72,7 +72,8 @@ class Reader {
   Reader(StudyInput& study, const toml::table& document) : study_(study), document_(document) {}
 
   void read() {
-    if (std::ranges::none_of(std::array{"scenario", "vary", "design"}, [&](auto name) { return document_.contains(name); }) &&
+    if (std::ranges::none_of(std::array{"scenario", "vary", "design"},
+                             [&](auto name) { return document_.contains(name); }) &&
         !document_.empty())
       throw ScenarioError({{study_.file, 0, "", "is a scenario and no study",
                             fmt::format("run it by plica run {} --out DIR, or name it in a study", study_.file)}});
@@ -171,7 +172,7 @@ class Reader {
       const bool is_file = fs::is_regular_file(folder / *name, unknown);
       study_.scenario = find_scenario(is_file ? (folder / *name).string() : *name, folder);
     } catch (const std::runtime_error& error) {
-      report(node, "scenario", error.what(), "name a built-in scenario, or a file, relative to this one");
+      report(node, "scenario", error.what(), "files are relative to this one");
     }
   }
 
@@ -252,10 +253,13 @@ class Reader {
     if (key.step && (key.is_log || key.count))
       return report(node, place, "has a step and more", "give step, or count, or scale = \"log\"");
     if (key.count == 1)
-      return report(node, place + ".count", "is 1, which leaves one value of a range", "give 2 or more, or one value in [set]");
-    if (const double rest = key.step ? std::remainder(key.high - key.low, *key.step) : 0; std::abs(rest) > 1e-9 * key.high)
-      study_.notes.push_back({study_.file, key.line, place + ".step", fmt::format("does not come to {:g}", key.high),
-                              fmt::format("the last value is {:g}", key.low + *key.step * std::floor((key.high - key.low) / *key.step))});
+      return report(node, place + ".count", "is 1, which leaves one value of a range",
+                    "give 2 or more, or one value in [set]");
+    if (const double rest = key.step ? std::remainder(key.high - key.low, *key.step) : 0;
+        std::abs(rest) > 1e-9 * key.high)
+      study_.notes.push_back(
+          {study_.file, key.line, place + ".step", fmt::format("does not come to {:g}", key.high),
+           fmt::format("the last value is {:g}", key.low + *key.step * std::floor((key.high - key.low) / *key.step))});
     study_.keys.push_back(std::move(key));
   }
 

@@ -50,12 +50,19 @@ class Study(CommandLine):
         with open((out or self.out) / "runs.csv", newline="", encoding="utf-8") as file:
             return [{key: value for key, value in row.items() if key != "wall_s"} for row in csv.DictReader(file)]
 
+    def wait_for(self, file):
+        for _ in range(1000):
+            if file.exists():
+                return
+            time.sleep(0.01)
+        self.fail(f"{file} does not come")
+
     def rows_written(self):
         return sum(len(file.read_text().splitlines()) for file in (self.out / "rows").iterdir())
 
     def test_the_table(self):
         result = self.study("--jobs", 1)
-        self.assertRegex(result.stdout, r"24 runs: 24 end_time in .*\n  table in .*runs\.csv(; to look at: .*report\.html)?\n")
+        self.assertRegex(result.stdout, r"24 runs: 24 end_time in .*; .* s of runs, one after the other\n  table in .*runs\.csv(; to look at: .*report\.html)?\n")
         rows = self.table()
         self.assertEqual(list(rows[0]), ["point", "contraction.apical.stiffness_nN_per_um", "replicate", "status",
                                          "furrow_depth_um", "max_volume_error", "steps", "reason"])
@@ -98,7 +105,8 @@ class Study(CommandLine):
         self.assertEqual(self.rows_written(), len(truth))  # none was run again that had a row
 
     def test_an_interruption_leaves_a_table(self):
-        process = start("study", self.write(STUDY), "--out", self.out, "--jobs", 1)
+        self.file = self.write(STUDY)
+        process = start("study", self.file, "--out", self.out, "--jobs", 1)
         while not list(self.out.glob("rows/*")):
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
@@ -109,20 +117,30 @@ class Study(CommandLine):
         self.assertEqual(statuses, {"end_time", "not_run"})
         told = plica("study", "status", self.out)
         self.assertRegex(told.stdout, r"24 runs: \d+ end_time, \d+ not run")
+        self.assertIn(f"plica study {self.file} --out {self.out} --resume", told.stdout)
+        self.assertIn(f"plica study gather {self.out}", told.stdout)
+        # As after a kill, which leaves no table: it is there as soon as the study goes on.
+        (self.out / "runs.csv").unlink()
+        going_on = start("study", self.file, "--out", self.out, "--resume", "--jobs", 1, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.wait_for(self.out / "runs.csv")
+        going_on.kill()
+        going_on.wait()
+        self.assertEqual(len(self.table()), 24)
         self.assertEqual(plica("study", "status", self.folder).returncode, 4)
 
     def test_a_failed_point_is_a_row(self):
-        text = STUDY.replace("{ low = 3, high = 7 }", "{ values = [3, -3, 1e9] }").replace('"latin-hypercube"\npoints = 24', '"grid"')
+        # Each of these steps is one, but not every pair.
+        text = STUDY.replace("{ low = 3, high = 7 }", '{ values = [3, 1e9] }\n"time.first_step_s" = { values = [2, 5] }\n'
+                             '"time.max_step_s" = { values = [4, 10] }').replace('"latin-hypercube"\npoints = 24', '"grid"')
         result = self.study(text=text)
         rows = self.table()
-        self.assertEqual(rows[0]["status"], "end_time")
-        self.assertEqual(rows[1]["status"], "refused")
-        self.assertIn("stiffness_nN_per_um", rows[1]["reason"])
-        self.assertIn("1 x ", result.stdout)
-        self.assertEqual(rows[2]["status"], "failed")
+        self.assertEqual([row["status"] for row in rows], ["end_time", "end_time", "refused", "end_time", "failed", "failed", "refused", "failed"])
+        self.assertIn("5 is above max_step_s, 4", rows[2]["reason"])
+        self.assertIn("2 x ", result.stdout)
         checked = plica("check", self.file)
         self.assertEqual(checked.returncode, 0, checked.stderr)
-        self.assertIn("1 point is no valid scenario", checked.stdout)
+        self.assertIn("2 points are no valid scenario", checked.stdout)
+        self.assertIn("if none takes longer", checked.stdout)
 
     def test_what_each_run_leaves(self):
         text = STUDY.replace("points = 24", "points = 3")
@@ -142,7 +160,21 @@ class Study(CommandLine):
         few = STUDY.replace("points = 24", "points = 2")
         self.study(text=few)
         self.assertIn("--resume", self.study(text=few, status=2).stderr)
-        self.assertIn("has changed", self.study("--resume", text=few + "\n# a word\n", status=2).stderr)
+        self.study("--resume", text=few + "\n# a word\n")
+        self.assertIn("has changed since it was begun: vary.contraction.apical.stiffness_nN_per_um.high was 7, and is 8; change it back",
+                      self.study("--resume", text=few.replace("high = 7", "high = 8"), status=2).stderr)
+        own = self.folder / "own.toml"
+        own.write_text('base = "drosophila"\ntime.end_min = 0.2\n')
+        of_own = few.replace('"drosophila"', '"own.toml"').replace('"time.end_min" = 0.2\n', "")
+        self.study("--overwrite", text=of_own)
+        own.write_text('base = "drosophila"\ntime.end_min = 0.3\n')
+        self.assertRegex(self.study("--resume", text=of_own, status=2).stderr,
+                         r"own\.toml has changed since .* time\.end_s was 12.*, and is 18.*--overwrite")
+        self.study("--overwrite", text=few)
+        for flags in ([], ["--overwrite"], ["--resume"]):
+            refused = plica("run", "drosophila", "--set", "time.end_min=0.1", "--out", self.out, *flags)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn("holds a study; give another --out", refused.stderr)
         before = (self.out / "runs.csv").read_bytes()
         begun = self.out / "study.json"
         begun.write_text(begun.read_text().replace('"plica": "', '"plica": "9.'))
@@ -158,6 +190,15 @@ class Study(CommandLine):
         for flags in ([], ["--resume"], ["--overwrite"]):
             refused = plica("study", self.file, "--out", foreign, *flags)
             self.assertEqual((refused.returncode, sorted(p.name for p in foreign.iterdir())), (2, ["points", "thesis.txt"]))
+        (self.folder / "own.toml").write_text('base = "drosophila"\n')
+        (self.folder / "owl.toml").write_text(STUDY.replace('"drosophila"', '"onw.toml"'))
+        for arguments, told in [(["study", self.folder / "own.toml", "--out", "x"], "is a scenario and no study; run it by plica run"),
+                                (["study", "drosophila", "--out", "x"], "is a scenario and no study; run it by plica run"),
+                                (["run", self.file, "--out", "x"], "is a study and no scenario; run it by plica study"),
+                                (["study", self.folder / "owl.toml", "--out", "x"], 'did you mean "own.toml"?')]:
+            result = plica(*arguments)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(told, result.stderr)
         for arguments, told in [([], "which study"), ([self.file], "--out"), (["none.toml", "--out", "x"], "none.toml")]:
             result = plica("study", *arguments)
             self.assertIn(result.returncode, (2, 4))

@@ -56,6 +56,14 @@ TEST(Design, WholeStepsAreWrittenAsWholeNumbers) {
   EXPECT_EQ(design.runs[5].values, (std::vector<std::string>{"[6, 6, 1]", "30"}));
 }
 
+TEST(Design, KeysOfWholeNumbersTakeThemFromARange) {
+  const StudyDesign design =
+      design_of(input_of("\"region.furrow.cells_across\" = { low = 8, high = 14, count = 4 }", "kind = \"grid\""));
+  std::vector<std::string> values;
+  for (const StudyPoint& run : design.runs) values.push_back(run.values[0]);
+  EXPECT_EQ(values, (std::vector<std::string>{"8", "10", "12", "14"}));
+}
+
 TEST(Design, ListTakesValuesSideBySide) {
   EXPECT_EQ(numbers("\"" + young + "\" = { values = [1, 2] }\n\"" + ratio + "\" = { values = [0.3, 0.4] }",
                     "kind = \"list\""),
@@ -164,6 +172,34 @@ std::string refusal(const std::string& text) {
   return "";
 }
 
+TEST(StudyInput, WhatMayNotBeMeantIsNoted) {
+  const auto notes = [](const std::string& scenario, const std::string& vary, const std::string& design) {
+    const Study study(
+        parse_study("test", "test.toml", "scenario = \"" + scenario + "\"\n[vary]\n" + vary + "\n[design]\n" + design));
+    std::string text;
+    for (const Diagnostic& note : study.notes()) text += note.text() + '\n';
+    return text;
+  };
+  EXPECT_EQ(notes("division-demo", "\"" + young + "\" = { low = 300, high = 900, step = 200 }", "kind = \"grid\""), "");
+  EXPECT_EQ(notes("division-demo", "\"" + young + "\" = { low = 300, high = 800, step = 200 }", "kind = \"grid\""),
+            "test.toml:3: vary." + young + ".step: does not come to 800; the last value is 700\n");
+  const std::string spread = notes("drosophila", "\"contraction.apical.variation.spread\" = { values = [0, 0.3] }",
+                                   "kind = \"grid\"\nreplicates = 3");
+  EXPECT_NE(spread.find("1 of 2 points have a spread of 0, so their 3 replicates are the same run"), std::string::npos)
+      << spread;
+}
+
+// sigma_um takes the place of the sigma_cells that the scenario has, as end_min does of end_s.
+TEST(StudyInput, AKeyThatStandsInForAnotherMayVary) {
+  const Study study(
+      parse_study("test", "test.toml",
+                  "scenario = \"drosophila-living\"\n[vary]\n"
+                  "\"cortex.apical.profile.sigma_um\" = { values = [20, 30] }\n[design]\nkind = \"grid\"\n"));
+  const ProfileInput profile = study.scenario_of(1).cortices.at("apical").profile;
+  EXPECT_EQ(profile.sigma_um, 30);
+  EXPECT_FALSE(profile.sigma_cells);
+}
+
 TEST(StudyInput, WhatIsNoStudySaysWhere) {
   const std::string head = "scenario = \"division-demo\"\n", vary = "[vary]\n\"" + young + "\" = ";
   const std::string good = "{ values = [400, 500] }\n", grid = "[design]\nkind = \"grid\"\n";
@@ -191,7 +227,9 @@ TEST(StudyInput, WhatIsNoStudySaysWhere) {
       {head + "[design]\nkind = \"file\"\n", "design.file: is missing"},
       {head + grid, "vary: is empty"},
       {head + vary + "3\n" + grid, "does not say how it varies"},
-      {head + vary + "{ values = [] }\n" + grid, "is no list"},
+      {head + vary + "{ values = [] }\n" + grid, "values: is empty"},
+      {head + vary + "{ values = 3 }\n" + grid, "is no list"},
+      {head + vary + "{ low = 1, high = 2, count = 1 }\n" + grid, "count: is 1, which leaves one value"},
       {head + vary + "{ values = [1], low = 2 }\n" + grid, "has values and more"},
       {head + vary + "{ low = 1 }\n" + grid, "has no bounds"},
       {head + vary + "{ low = 2, high = 1 }\n" + grid, "is an empty range"},
@@ -209,6 +247,29 @@ TEST(StudyInput, WhatIsNoStudySaysWhere) {
       {head + vary + good + "\"" + ratio + "\" = { values = [0.3] }\n[design]\nkind = \"list\"\n",
        "as many of every key"},
       {head + "[set]\n\"" + young + "\" = 3\n" + vary + good + grid, "is fixed by [set]"},
+      {head + "replicates = 2\n" + vary + good + grid, "test.toml:2: replicates: unknown key; it belongs in [design]"},
+      {head + vary + good + vary.substr(7) + good + grid,
+       "test.toml:4: \"" + young + "\": is given twice; first in line 3"},
+      {head + vary + good + "[design]\nkind = grid\n",
+       "test.toml:5: kind: grid is no value; a text is in quotes: kind = \"grid\""},
+      {"embryo.cells = [4, 4, 1]\n", "test.toml: is a scenario and no study; run it by plica run test.toml --out DIR"},
+      {head + vary + "{ values = [\"5 Pa\", 500] }\n" + grid,
+       "test.toml:3: vary." + young + ": \"5 Pa\" is of the wrong type; give a number > 0"},
+      {head + vary + "{ values = [-5, 500] }\n" + grid, "test.toml:3: vary." + young + ": -5 is out of range"},
+      {head + vary + "{ low = -5, high = 500 }\n[design]\nkind = \"sobol\"\npoints = 2\n",
+       "test.toml:3: vary." + young + ": -5 is out of range"},
+      {"scenario = \"drosophila\"\n[vary]\n\"contraction.apical.region\" = { values = [\"furow\", \"furrow\"] }\n" +
+           grid,
+       "test.toml:3: vary.contraction.apical.region: there is no region \"furow\"; did you mean \"furrow\"?"},
+      {"scenario = \"drosophila\"\n[vary]\n\"contraction.apicl.stiffness_nN_per_um\" = { values = [3] }\n" + grid,
+       "test.toml:3: vary.contraction.apicl.stiffness_nN_per_um: the scenario has no contraction.apicl; did you mean "
+       "\"apical\"?"},
+      {"scenario = \"drosophila\"\n[set]\n\"contraction.apicl.stiffness_nN_per_um\" = 3\n" + vary + good + grid,
+       "test.toml:3: set.contraction.apicl.stiffness_nN_per_um: the scenario has no contraction.apicl"},
+      {"scenario = \"drosophila\"\n[vary]\n\"region.furrow.cells_across\" = { low = 8, high = 13, count = 4 }\n" + grid,
+       "9.666666666666666 is not an integer"},
+      {"scenario = \"drosophila-living\"\n[vary]\n\"cortex.apical.profile.half_width_um\" = { values = [3] }\n" + grid,
+       "test.toml:3: vary.cortex.apical.profile.half_width_um"},
       {head + vary + good + grid + "[keep]\nmeasures = 3\n", "is no list of names"},
       {head + vary + good + grid + "[keep]\nmeasures = [\"max_volume_eror\"]\n", "did you mean \"max_volume_error\"?"},
       {head + vary + good + grid + "[keep]\neach = \"rows\"\n", "did you mean \"row\"?"},
