@@ -1,7 +1,7 @@
 // The report of a study: one with failures, one that keeps the runs' own reports, and one of 10 000 runs.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { after, before, test } from "node:test";
 import { begin, changed, end, folder, near, numberOf, open, pixels, saved } from "./browser.mjs";
@@ -15,19 +15,51 @@ function study(name, text) {
   execFileSync(plica, ["study", join(folder, `${name}.toml`), "--out", join(folder, name), "--quiet", "--jobs", "2"]);
 }
 
+// As if the first points made no scenario.
+function refuse(name, count) {
+  const out = join(folder, name);
+  const lines = readFileSync(join(out, "runs.csv"), "utf8").trim().split("\n");
+  const refused = lines.slice(1, count + 1).map((line) => {
+    const fields = line.split(",");
+    return [...fields.slice(0, 5), "refused", "", "", "", "0", "0.001", `${stiffness}: 1 does not go with the others`].join(",");
+  });
+  writeFileSync(join(out, "runs.csv"), `${[lines[0], ...refused, ...lines.slice(count + 1)].join("\n")}\n`);
+  rmSync(join(out, "rows"), { recursive: true });
+  execFileSync(plica, ["report", out]);
+}
+
 const head = (scenario) => `format = 1\nscenario = "${scenario}"\n[set]\n"time.end_min" = 0.05\n`;
 
 before(async () => {
-  study("grid", `${head("drosophila")}[vary]\n"${stiffness}" = { values = [-1, 3, 5, 7] }\n"${young}" = { values = [800, 1200] }
+  study("grid", `${head("drosophila")}[vary]\n"${stiffness}" = { values = [1, 3, 5, 7] }\n"${young}" = { values = [800, 1200] }
 "contraction.apical.region" = { values = ["furrow", "all"] }\n[design]\nkind = "grid"
 [keep]\nmeasures = ["furrow_depth_um", "vml_apical_area_ratio", "lips_closed_time_s"]\n`);
+  refuse("grid", 4);
   study("kept", `${head("drosophila")}[vary]\n"${stiffness}" = { low = 3, high = 30, scale = "log" }\n"${young}" = { low = 800, high = 1200 }
 [design]\nkind = "latin-hypercube"\npoints = 3\n[keep]\neach = "full"\n`);
+  closing();
   large(10_000);
   await begin();
 });
 
 after(end);
+
+// A grid of three by two, of made-up values that have each verdict.
+function closing() {
+  const out = join(folder, "closing");
+  mkdirSync(out);
+  const measures = ["furrow_depth_um", "furrow_depth_below_lips_um", "lips_closed_time_s", "self_intersections"];
+  const results = [[55, 40, 900, 0], [38.7, -4.2, "", 0], [3, 1.5, "", 0], [3, -2, "", 0], [60, 40, 900, 3], ["", "", "", ""]];
+  const pairs = results.map((_, i) => [[400, 600, 800][i % 3], i < 3 ? 1 : 2]);
+  const points = results.map((_, i) => `${i},${i + 1},1,${pairs[i]},`);
+  const runs = results.map((row, i) => `${i + 1},${pairs[i]},1,${i < 5 ? "end_time" : "failed"},${row},10,1.5,`);
+  const text = `format = 1\nscenario = "drosophila"\n[vary]\n"${young}" = { values = [400, 600, 800] }\n"${stiffness}" = { values = [1, 2] }\n[design]\nkind = "grid"\n`;
+  const begun = { format: 1, plica: "another", processor: "none", name: "closing", file: join(out, "study.toml"), runs: 6, keys: [young, stiffness], measures };
+  for (const [file, content] of [["points.csv", [`run,point,replicate,${young},${stiffness},seeds`, ...points, ""].join("\n")],
+    ["runs.csv", [`point,${young},${stiffness},replicate,status,${measures},steps,wall_s,reason`, ...runs, ""].join("\n")],
+    ["study.toml", text], ["study.json", JSON.stringify(begun)]]) writeFileSync(join(out, file), content);
+  execFileSync(plica, ["report", out]);
+}
 
 // A study as plica leaves it, of made-up values.
 function large(count) {
@@ -69,7 +101,7 @@ test("the heading counts, the table holds what runs.csv holds, and sorts with wh
   const { page, done } = await open("grid/report.html");
   assert.equal(await page.title(), "grid");
   const headline = await page.textContent("#headline");
-  for (const part of ["Grid over 3 keys of drosophila", "16 runs: 4 refused, 12 end time", "of processor time", "time.end_min=0.05"])
+  for (const part of ["Grid over 3 keys of drosophila", "16 runs: 4 refused, 12 end time", "of runs, one after the other", "time.end_min=0.05"])
     assert.ok(headline.includes(part), `${part} in ${headline}`);
   const rows = runsOf("grid");
   const cell = (row, key) => page.textContent(`.rows tr[data-row="${row}"] [data-key="${key}"]`);
@@ -117,7 +149,7 @@ test("text, ticks, reasons, ranges and drags leave runs out everywhere", async (
   assert.ok(!(await page.isVisible("#range-from")), "the menu has closed");
   await page.click("#chips .chip");
   await page.waitForFunction(() => document.querySelector("#shown-count").textContent.startsWith("16 "));
-  // The upper half of an axis: 5 and 7 of -1 to 7.
+  // The upper half of an axis: 5 and 7 of 1 to 7.
   const before = await pixels(page, "#scatter .layers");
   let strip = await inView(page, axis);
   await page.mouse.move(strip.x + strip.width / 2, strip.y + 1);
@@ -150,7 +182,7 @@ test("a picked run shows its values and the command that makes it again", async 
   const again = JSON.parse(readFileSync(join(folder, "again/summary.json"), "utf8"));
   assert.equal(again.furrow_depth_um, Number(rows[5].furrow_depth_um), "the same to the bit");
   await page.click('.rows tr[data-row="0"] th');
-  assert.match(await page.textContent("#run .notice"), /-1 is out of range/);
+  assert.match(await page.textContent("#run .notice"), /1 does not go with the others/);
   await page.focus(".rows");
   await page.press(".rows", "ArrowDown");
   assert.equal(await page.textContent("#run h2"), "Point 2");
@@ -162,6 +194,30 @@ test("a picked run shows its values and the command that makes it again", async 
   };
   assert.deepEqual([await picked(), await picked(), await picked()], ["Point 5", "Point 6", "Point 5"]);
   assert.match(await page.textContent(".told"), /Young's modulus 800, stiffness 3: 2 runs, furrow depth mean/);
+  await done();
+});
+
+test("verdicts colour the plots where the study has what they need", async () => {
+  const { page, done } = await open("closing/report.html");
+  assert.equal(await page.inputValue("#colour-by"), "verdict");
+  const verdicts = await page.locator('.rows td[data-key="verdict"]').allTextContents();
+  assert.deepEqual(verdicts, ["closed", "furrowed", "furrowed", "flattened", "passes through itself", "–"]);
+  assert.match(await page.textContent(".told"), /15 µm or more deep; flattened: less/);
+  const legend = await page.textContent("#runs-bar .ramp");
+  for (const word of ["closed", "furrowed", "flattened", "passes through itself"]) assert.ok(legend.includes(word), `${word} in ${legend}`);
+  assert.ok(!(await saved(page, "#save-table")).bytes.toString().includes("verdict"), "it is no column of runs.csv");
+  await done();
+});
+
+test("a table has the width of the page until a run is picked", async () => {
+  const { page, done } = await open("grid/report.html", { width: 1400, height: 900 });
+  assert.ok(!(await page.isVisible("#run")));
+  const wide = (await page.locator(".rows").boundingBox()).width;
+  assert.ok(wide > 1300, `${wide}`);
+  await page.click('.rows tr[data-row="5"] th');
+  assert.ok((await page.locator(".rows").boundingBox()).width < wide - 300);
+  await page.click("#run .close");
+  assert.equal((await page.locator(".rows").boundingBox()).width, wide);
   await done();
 });
 

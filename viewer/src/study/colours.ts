@@ -3,6 +3,7 @@ import { lineColours, rampColour } from "../colour";
 import { element, styleColour } from "../dom";
 import { number } from "../text";
 import type { Column } from "./study_data";
+import { verdictColours } from "./verdict";
 
 const rampSteps = 48;
 const statusColours: Record<string, string> = {
@@ -70,6 +71,7 @@ export function colourOfStatus(status: string): string {
 }
 
 function colourOfWord(column: Column, word: string, i: number, faint: string): string {
+  if (column.role === "verdict") return verdictColours[word];
   return column.role === "status" ? (statusColours[word] ?? faint) : lineColours[i % lineColours.length];
 }
 

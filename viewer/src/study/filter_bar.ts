@@ -149,7 +149,7 @@ export function rangeText(column: Column, low: number, high: number): string {
 
 /** The shown runs with all their values, as runs.csv has them. */
 export function tableText(selection: Selection, rows: readonly number[]): string {
-  const columns = selection.study.columns.filter(({ role }) => role !== "seeds" && role !== "kept");
+  const columns = selection.study.columns.filter(({ role }) => role !== "seeds" && role !== "kept" && role !== "verdict");
   const value = (column: Column, row: number) => {
     const exact = column.exact(row);
     return csvText(column.role === "key" && /^"[^"\\]*"$/.test(exact) ? exact.slice(1, -1) : exact);

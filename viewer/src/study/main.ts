@@ -27,7 +27,7 @@ function showHeadline(study: Study): void {
     `${page.design === "" ? "Points" : `${page.design.charAt(0).toUpperCase()}${page.design.slice(1)}`} over ${study.of("key").length} ` +
       `${study.of("key").length === 1 ? "key" : "keys"} of ${page.scenario}`,
     `${count(study.runs)} ${study.runs === 1 ? "run" : "runs"}: ${counts.join(", ")}`,
-    `${took >= 7200 ? `${(took / 3600).toFixed(1)} h` : time(took)} of processor time`,
+    `${took >= 7200 ? `${(took / 3600).toFixed(1)} h` : time(took)} of runs, one after the other`,
   ];
   byId("headline").textContent = parts.join("; ");
   byId("made-by").textContent = `Made by ${page.made_by}; run by plica ${page.begun_by} on ${page.processor}.` +
@@ -35,14 +35,9 @@ function showHeadline(study: Study): void {
   if (page.set.length > 0) byId("headline").append(`; in all: ${page.set.join(", ")}`);
 }
 
-// A measure that says most, or else how runs ended.
+// What became of the embryos, or a measure that says most, or else how runs ended.
 function firstColour(study: Study): Column {
-  return study.mainMeasures(1).find(({ varies }) => varies) ?? study.the("status");
-}
-
-function firstWithResult(study: Study): number {
-  const measure = study.mainMeasures(1)[0];
-  return measure ? Math.max(0, measure.values.findIndex((value) => !Number.isNaN(value))) : 0;
+  return study.of("verdict")[0] ?? study.mainMeasures(1).find(({ varies }) => varies) ?? study.the("status");
 }
 
 function varying(study: Study): Column[] {
@@ -67,8 +62,6 @@ async function start(): Promise<void> {
   const bar = new FilterBar(selection, table);
   const panel = new RunPanel(byId("run"), selection);
   byId("texts").append(element("details", {}, element("summary", {}, "The study's file"), element("pre", {}, study.page.study)));
-  // Beside the rest there is room for a run from the start; on a phone it would hide the rest.
-  if (matchMedia("(min-width: 901px)").matches) selection.pick(firstWithResult(study));
   followTheme(() => {
     parallel.draw();
     scatter.draw();

@@ -137,28 +137,38 @@ export class Parallel {
       base.textAlign = "center";
       base.textBaseline = "top";
       const isLast = i === this.axes.length - 1;
-      const lines = wrapped(base, axis.column.title, i === 0 || isLast ? Math.min(gap, 2 * room.sides) - 6 : gap - 8, 3);
+      const lines = wrapped(base, axis.column.heading, i === 0 || isLast ? Math.min(gap, 2 * room.sides) - 6 : gap - 8, 3);
       base.fillStyle = styleColour("paper");
       base.fillRect(x - gap / 2, 0, gap, room.top - 5);
       base.fillStyle = styleColour("ink");
       lines.forEach((line, l) => base.fillText(line, x, 44 - 14 * (lines.length - l)));
-      base.textAlign = "left";
-      base.textBaseline = "middle";
-      if (isLast) base.textAlign = "right";
-      for (const tick of axis.ticks(5)) this.haloed(tick.text, isLast ? x - 5 : x + 5, tick.at, gap - 12);
-      if (axis.hasLane) this.haloed("none", isLast ? x - 5 : x + 5, axis.lane, gap - 12);
+    });
+  }
+
+  // Numbers along the axes, over all lines.
+  private drawNumbers(): void {
+    const { over } = this.layers;
+    const gap = this.places.length > 1 ? this.places[1] - this.places[0] : 2 * room.sides;
+    over.font = plotFont;
+    over.textBaseline = "middle";
+    this.axes.forEach((axis, i) => {
+      const isLast = i === this.axes.length - 1;
+      const x = this.places[i] + (isLast ? -5 : 5);
+      over.textAlign = isLast ? "right" : "left";
+      for (const tick of axis.ticks(5)) this.haloed(tick.text, x, tick.at, gap - 12);
+      if (axis.hasLane) this.haloed("none", x, axis.lane, gap - 12);
     });
   }
 
   private haloed(text: string, x: number, y: number, width: number): void {
-    const { base } = this.layers;
-    base.lineWidth = 3;
-    base.lineJoin = "round";
-    base.strokeStyle = styleColour("paper");
-    base.fillStyle = styleColour("ink");
-    const fitted = text.length > 8 ? [...wrapped(base, text.replaceAll(" ", "\u00a0"), width, 1)][0] : text;
-    base.strokeText(fitted, x, y);
-    base.fillText(fitted, x, y);
+    const { over } = this.layers;
+    over.lineWidth = 5;
+    over.lineJoin = "round";
+    over.strokeStyle = styleColour("paper");
+    over.fillStyle = styleColour("ink");
+    const fitted = text.length > 8 ? [...wrapped(over, text.replaceAll(" ", "\u00a0"), width, 1)][0] : text;
+    over.strokeText(fitted, x, y);
+    over.fillText(fitted, x, y);
   }
 
   private drawOver(): void {
@@ -173,6 +183,7 @@ export class Parallel {
       this.path(over, row);
       over.stroke();
     }
+    this.drawNumbers();
   }
 
   // Each axis has a strip that takes drags, so that a finger elsewhere still moves the page.

@@ -8,6 +8,7 @@ import { Layers } from "./layers";
 import { Points } from "./points";
 import type { Selection } from "./selection";
 import type { Column } from "./study_data";
+import { verdictRule } from "./verdict";
 
 interface Cell {
   rows: number[];
@@ -98,7 +99,8 @@ export class Phase {
     const most = Math.max(0, ...cells.map(({ rows }) => rows.length));
     const several = most < 2 ? "" : `Up to ${most} runs a cell, which has the colour${colour.words ? "s of all" : " of their mean"}. `;
     const isEmpty = cells.some(({ rows }) => rows.every((row) => !colour.has(row)));
-    return several + (isEmpty ? "Hatched: no run has a value." : "");
+    const rule = colour.role === "verdict" ? `${verdictRule} ` : "";
+    return several + rule + (isEmpty ? "Hatched: no run has a value." : "");
   }
 
   private get size(): { width: number; height: number } {

@@ -58,7 +58,7 @@ export class RowsTable {
     const { study } = this.selection;
     const [replicate, reason] = [study.the("replicate"), study.the("reason")];
     return [
-      study.the("point"), ...(replicate.varies ? [replicate] : []), study.the("status"), ...study.of("key"),
+      study.the("point"), ...(replicate.varies ? [replicate] : []), study.the("status"), ...study.of("verdict"), ...study.of("key"),
       ...study.mainMeasures(mostMeasures), study.the("wall_s"), ...(reason.low <= reason.high ? [reason] : []),
     ];
   }
@@ -76,7 +76,7 @@ export class RowsTable {
     const group = element("colgroup", {}, ...this.columns.map((column, i) => {
       const col = element("col");
       const section = column.role === "key" ? sectionOf(column).length * 0.9 : 0;
-      col.style.width = `${Math.max(widths[i], Math.min(Math.max(longestWord(column.title), section), 26)) * 7.6 + 38}px`;
+      col.style.width = `${Math.max(widths[i], Math.min(Math.max(longestWord(column.heading), section), 26)) * 7.6 + 38}px`;
       return col;
     }));
     this.table.querySelector("colgroup")?.remove();
@@ -87,7 +87,7 @@ export class RowsTable {
 
   private headOf(column: Column): HTMLElement {
     const section = column.role === "key" ? sectionOf(column) : "";
-    const title = element("span", { title: column.name }, ...(section ? [element("small", {}, section)] : []), column.title);
+    const title = element("span", { title: column.name }, ...(section ? [element("small", {}, section)] : []), column.heading);
     const button = element("button", { type: "button", class: "sort" }, title);
     const { column: sorted, down } = this.sortedBy;
     const head = element("th", { scope: "col", "data-key": column.name, class: column.words ? "" : "number",

@@ -31,11 +31,7 @@ export class RunPanel {
   show(): void {
     const { picked, study } = this.selection;
     document.body.classList.toggle("with-run", picked !== null);
-    if (picked === null) {
-      this.box.replaceChildren(element("p", { class: "note" },
-        "A click on a line, point, cell or row shows that run here: its values, and the command that makes it again."));
-      return;
-    }
+    if (picked === null) return this.box.replaceChildren();
     const close = element("button", { type: "button", class: "close", "aria-label": "Close" }, "×");
     close.addEventListener("click", () => this.selection.pick(null));
     const replicate = study.the("replicate");
@@ -49,7 +45,7 @@ export class RunPanel {
       this.values(study.of("key"), picked),
       ...this.command(picked),
       element("h3", {}, "Results"),
-      this.values([...study.of("measure"), study.the("steps"), study.the("wall_s")], picked),
+      this.values([...study.of("verdict"), ...study.of("measure"), study.the("steps"), study.the("wall_s")], picked),
     );
   }
 

@@ -1,9 +1,10 @@
 // What plica put into the page of a study: src/study/study_report.cpp. Columns of values, a value a run.
 import { type ArrayEntry, inflate, PackedArrays } from "../packed";
 import { lastOf, number, words } from "../text";
+import { withVerdict } from "./verdict";
 
 export type Role =
-  "point" | "key" | "replicate" | "status" | "measure" | "steps" | "wall_s" | "reason" | "seeds" | "kept";
+  "point" | "key" | "replicate" | "status" | "verdict" | "measure" | "steps" | "wall_s" | "reason" | "seeds" | "kept";
 
 export interface ColumnEntry {
   name: string;
@@ -48,7 +49,7 @@ export class Column {
   constructor({ name, role, words: list }: Pick<ColumnEntry, "name" | "role" | "words">, readonly values: Float64Array,
               readonly isLogarithmic = false) {
     [this.name, this.role, this.words] = [name, role, list ?? null];
-    [this.label, this.unit] = role === "wall_s" ? ["processor time", "s"] : words(lastOf(name));
+    [this.label, this.unit] = role === "wall_s" ? ["time taken", "s"] : words(lastOf(name));
     let [low, high, missing] = [Infinity, -Infinity, 0];
     const different = new Set<number>();
     for (const value of values) {
@@ -66,6 +67,11 @@ export class Column {
 
   get title(): string {
     return this.unit === "" ? this.label : `${this.label}, ${this.unit}`;
+  }
+
+  /** The title, whose unit stays with the word before it where lines break. */
+  get heading(): string {
+    return this.unit === "" ? this.label : `${this.label},\u00a0${this.unit.replaceAll(" ", "\u00a0")}`;
   }
 
   /** From the least value to the greatest, or without a hundredth at each end where those lie far off. */
@@ -132,7 +138,7 @@ export class Study {
 
   /** What can be plotted: columns with at least one value, keys first. */
   get plottable(): Column[] {
-    const order: Role[] = ["key", "measure", "status", "steps", "wall_s", "point", "replicate"];
+    const order: Role[] = ["key", "measure", "verdict", "status", "steps", "wall_s", "point", "replicate"];
     return order.flatMap((role) => this.of(role))
       .filter((column) => column.low <= column.high && (column.role !== "replicate" || column.varies));
   }
@@ -170,7 +176,7 @@ export async function readStudy(): Promise<Study> {
   const packed = new PackedArrays(await inflate(document.getElementById("rows")!.textContent!), page.arrays);
   const columns = page.columns.map((entry, place) =>
     new Column(entry, unpacked(entry, String(place), packed), page.log_keys.includes(entry.name)));
-  return new Study(page, columns);
+  return new Study(page, withVerdict(columns));
 }
 
 function unpacked(entry: ColumnEntry, place: string, packed: PackedArrays): Float64Array {

@@ -1,0 +1,34 @@
+// What became of an embryo, in a word: the rules of plica.verdict (docs/answers.md).
+import { Column } from "./study_data";
+
+const furrowed_um = 1; // below its lips
+const deep_um = 15; // below where it was at rest, where the lips have gone in, too
+
+export const verdictRule = `Furrowed: floor ${furrowed_um} µm or more below its lips, or ${deep_um} µm or more deep; flattened: less.`;
+const verdicts = ["closed", "furrowed", "flattened", "passes through itself"];
+export const verdictColours: Record<string, string> = {
+  closed: "#009e73", furrowed: "#0072b2", flattened: "#f0e442", "passes through itself": "#d55e00",
+};
+
+/** A column of verdicts, where the study has the measures that they need. A run without a result has none. */
+export function verdictColumn(columns: Column[]): Column | null {
+  const named = (name: string) => columns.find((column) => column.name === name);
+  const [closed, belowLips, depth] = ["lips_closed_time_s", "furrow_depth_below_lips_um", "furrow_depth_um"].map(named);
+  const [status, crossings] = [columns.find(({ role }) => role === "status"), named("self_intersections")];
+  if (!closed || !belowLips || !depth || !status) return null;
+  const values = Float64Array.from(status.values, (_, row) => {
+    if (!["equilibrium", "end_time"].includes(status.exact(row))) return NaN;
+    if (crossings && crossings.values[row] > 0) return verdicts.indexOf("passes through itself");
+    if (closed.has(row)) return verdicts.indexOf("closed");
+    if (!belowLips.has(row) && !depth.has(row)) return NaN;
+    const isFurrow = belowLips.values[row] >= furrowed_um || depth.values[row] >= deep_um;
+    return verdicts.indexOf(isFurrow ? "furrowed" : "flattened");
+  });
+  return new Column({ name: "verdict", role: "verdict", words: verdicts }, values);
+}
+
+/** The columns with that of verdicts, where it can be made, behind the status. */
+export function withVerdict(columns: Column[]): Column[] {
+  const verdict = verdictColumn(columns);
+  return verdict ? columns.flatMap((column) => (column.role === "status" ? [column, verdict] : [column])) : columns;
+}
