@@ -235,10 +235,11 @@ def phase_diagram(
         raise ValueError('thumbnails: the study has not kept its runs; run it with keep.each = "full" and out')
 
     wide, high = 3.2 + 0.55 * len(columns), 1.6 + 0.5 * len(rows)
-    figure = plt.figure(figsize=(max(wide, 5.5), max(high, 3.6) + (1.9 if shown else 0)), layout="constrained")
+    is_words = callable(measure) or measure == "verdict" or not _is_number(table.get(measure, table.status))
+    figure = plt.figure(figsize=(max(wide, 5.5) + (2.5 if is_words else 0), max(high, 3.6) + (1.9 if shown else 0)), layout="constrained")
     above, below = figure.subfigures(2, 1, height_ratios=[max(high, 3.6), 1.9]) if shown else (figure, None)
     ax = above.subplots()
-    if callable(measure) or measure == "verdict" or not _is_number(table.get(measure, table.status)):
+    if is_words:
         words = _words(table, measure)
         lost = int((words.isin(NO_RESULT) | ~table.status.isin(FINISHED)).sum())
         cells = words.groupby([table[y], table[x]]).agg(_common).unstack()
@@ -251,7 +252,8 @@ def phase_diagram(
         places = range(0, len(names), -(-len(names) // 10))
         axis.set_ticks(list(places), [_shown(names[i]) for i in places])
         axis.set_label_text(_axis_label(study, key))
-    ax.set_title(_title(study, measure, len(table), lost), loc="left", fontsize="medium")
+    cross = " (×)" if lost and not is_words else ""
+    ax.set_title(_title(study, measure, len(table), lost) + cross, loc="left", fontsize="medium")
     if shown:
         _add_thumbnails(study, table, ax, below, shown, (x, columns), (y, rows), view)
     return figure
@@ -328,8 +330,6 @@ def _paint_numbers(ax: Any, cells: pandas.DataFrame, rows: list[Any], columns: l
     for row, column in np.argwhere(cells.isna().to_numpy()):
         ax.plot(column, row, "x", color="#D55E00", markersize=8, markeredgewidth=2)
     ax.figure.colorbar(image, ax=ax, label=_label(measure))
-    if cells.isna().any(axis=None):
-        ax.text(1, -0.02, "× no result", color="#D55E00", transform=ax.transAxes, ha="right", va="top", in_layout=False)
 
 
 def _separate(ax: Any, rows: list[Any], columns: list[Any]) -> None:
