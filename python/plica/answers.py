@@ -300,7 +300,8 @@ def _title(study: Study, measure: Union[str, Callable[[pandas.Series[Any]], str]
     scenario = _scenario_of(study)
     own = not any(key.startswith("time.end_") for key in study.keys)
     until = f" until {_shown(scenario['time.end_s'] / 60)} min" if scenario is not None and own else ""
-    what = "a word of its own" if callable(measure) else _label(measure)
+    name = getattr(measure, "__name__", str(measure))
+    what = "a function of the row" if name == "<lambda>" else _label(name)
     return f"{study._spec.name}: {what} of {study._core.scenario_name}{until}\n{runs} runs, {lost or 'none'} without a value"
 
 

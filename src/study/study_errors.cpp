@@ -38,16 +38,18 @@ std::string table_of(const std::string& key) {
   return key.substr(0, is_named && first != std::string::npos ? key.find('.', first + 1) : first);
 }
 
-// The key that an error comes from: itself, one within it, or one of the same table.
+// The key that an error comes from: itself, or the one of the same table that is most like it.
 const GivenKey* source_of(const Diagnostic& diagnostic, const std::vector<GivenKey>& given) {
-  const auto find = [&](const auto& fits) {
-    const auto found = std::ranges::find_if(given, fits);
-    return found == given.end() ? nullptr : &*found;
+  const auto likeness = [&](const GivenKey& one) {
+    return std::ranges::mismatch(one.key, diagnostic.key).in1 - one.key.begin();
   };
-  if (const auto* same = find([&](const auto& one) { return one.key == diagnostic.key; })) return same;
-  if (const auto* inner = find([&](const auto& one) { return one.key.starts_with(diagnostic.key + "."); }))
-    return inner;
-  return find([&](const auto& one) { return table_of(one.key) == table_of(diagnostic.key); });
+  const GivenKey* best = nullptr;
+  for (const GivenKey& one : given) {
+    if (one.key == diagnostic.key) return &one;
+    const bool is_near = table_of(one.key) == table_of(diagnostic.key) || one.key.starts_with(diagnostic.key + ".");
+    if (is_near && (best == nullptr || likeness(one) > likeness(*best))) best = &one;
+  }
+  return best;
 }
 
 // The scenario as it is without the study; nothing where it is wrong by itself.
@@ -78,14 +80,17 @@ Diagnostic in_study(Diagnostic diagnostic, const StudyInput& study, const std::v
   if (!is_own && (diagnostic.file == study.file || !alone)) return diagnostic;
   const GivenKey* source = source_of(diagnostic, given);
   if (source == nullptr) return diagnostic;
-  if (diagnostic.key != source->key && !is_own) {
+  const std::string problem = diagnostic.problem;
+  if (!is_own) {
     const std::string place =
         diagnostic.line > 0 ? fmt::format("{}:{}", diagnostic.file, diagnostic.line) : diagnostic.file;
     diagnostic.problem =
-        fmt::format("does not go with {} of the scenario ({}), which {}", diagnostic.key, place, diagnostic.problem);
-  } else if (is_own && alone && diagnostic.problem == "is missing") {
+        fmt::format("does not go with {} of the scenario ({}), which {}", diagnostic.key, place, problem);
+  } else if (alone && problem == "is missing") {
     tell_of_new_table(diagnostic, source->key, *alone);
   }
+  const bool is_told = diagnostic.problem != problem || source->key.starts_with(diagnostic.key);
+  if (!is_told) diagnostic.problem = fmt::format("then {} {}", diagnostic.key, problem);
   if (diagnostic.problem.ends_with("is not an integer"))
     diagnostic.remedy = "it takes whole numbers: give values, or low and high with step = 1";
   return {study.file, source->line, source->table + "." + source->key, diagnostic.problem, diagnostic.remedy};

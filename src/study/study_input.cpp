@@ -101,8 +101,8 @@ class Reader {
                       const std::function<std::string(std::string_view)>& remedy_of) {
     for (const auto& [key, node] : table)
       if (std::ranges::count(known, key.str()) == 0)
-        report_at(static_cast<int>(key.source().begin.line), before + std::string(key.str()), "unknown key",
-                  remedy_of(key.str()));
+        report_at(static_cast<int>(key.source().begin.line), before + std::string(key.str()),
+                  node.is_table() ? "unknown table" : "unknown key", remedy_of(key.str()));
   }
 
   // Of a table of the document. A key that another table has is most likely in the wrong place.

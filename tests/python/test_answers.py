@@ -166,6 +166,7 @@ def test_phase_diagram_of_verdicts():
     assert [t.get_text() for t in ax.get_xticklabels()] == ["400", "600", "1200"] and "Pa" in ax.get_xlabel()
     turned = study.phase_diagram(POISSON, YOUNG, measure=lambda row: "deep" if row.furrow_depth_below_lips_um > 2 else "shallow")
     assert legend_of(turned) == ["deep", "shallow"]
+    assert any(text.startswith("study: a function of the row of") for text in texts_of(turned))
     assert np.asarray(turned.axes[0].images[0].get_array()).tolist() == [[1, 1], [1, 1], [0, 0]]
     assert legend_of(study.phase_diagram(measure="status")) == ["failed", "end_time"]
 
