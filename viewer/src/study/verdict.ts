@@ -7,7 +7,7 @@ const deep_um = 15; // below where it was at rest, where the lips have gone in, 
 export const verdictRule = `Furrowed: floor ${furrowed_um} µm or more below its lips, or ${deep_um} µm or more deep; flattened: less.`;
 const verdicts = ["closed", "furrowed", "flattened", "passes through itself"];
 export const verdictColours: Record<string, string> = {
-  closed: "#009e73", furrowed: "#0072b2", flattened: "#f0e442", "passes through itself": "#d55e00",
+  closed: "#009e73", furrowed: "#0072b2", flattened: "#e69f00", "passes through itself": "#d55e00",
 };
 
 /** A column of verdicts, where the study has the measures that they need. A run without a result has none. */
