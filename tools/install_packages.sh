@@ -9,7 +9,8 @@ declare -A packages=(
   [build]="cmake ninja-build g++"
   # OpenBLAS in its serial variant: one thread, so that results are the same to the bit.
   [libraries]="libeigen3-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
-               libmumps-seq-dev libmetis-dev libopenblas-serial-dev libdeflate-dev libhdf5-dev libvtk9-dev libx11-dev libnlopt-cxx-dev libboost-dev"
+               libmumps-seq-dev libmetis-dev libopenblas-serial-dev libdeflate-dev libhdf5-dev libvtk9-dev libx11-dev libnlopt-cxx-dev libboost-dev
+               libqhull-dev"
   # To bundle the report's page. Node 18 or newer from elsewhere does as well.
   [viewer]="nodejs npm"
   # To test that page.

@@ -1,0 +1,111 @@
+#include "tissue/shapes/extrusion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tissue/hexahedral_mesh.hpp"
+
+namespace plica {
+namespace {
+
+// `height` where it is well below `bound`, and never more than that: smooth to the second derivative.
+double bounded_height(double height, double bound) {
+  constexpr double free_share = 0.7;
+  const double share = height / bound;
+  if (share <= free_share) return height;
+  return bound * (free_share + (1 - free_share) * std::tanh((share - free_share) / (1 - free_share)));
+}
+
+// The largest inward curvature's radius, or infinity where the surface is flat or hollow.
+double least_radius(const SurfaceBend& bend) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const double radius : bend.radii)
+    if (radius > 0) least = std::min(least, radius);
+  return least;
+}
+
+void check_heights(const PolygonSurface& polygons, std::span<const double> heights_um) {
+  if (heights_um.size() != 1 && heights_um.size() != polygons.polygons.size())
+    throw MeshError(fmt::format("{} heights for {} cells; there should be one, or one a cell", heights_um.size(),
+                                polygons.polygons.size()));
+  for (std::size_t i = 0; i < heights_um.size(); ++i)
+    if (!(heights_um[i] > 0) || !std::isfinite(heights_um[i]))
+      throw MeshError(fmt::format("the height of row {} is {:.4g} um; it should be positive", i, heights_um[i]));
+}
+
+}  // namespace
+
+ExtrudedSheet extrude(const PolygonSurface& polygons, const StarSurface& surface, std::span<const double> heights_um) {
+  check_heights(polygons, heights_um);
+  const auto height_of = [&](std::size_t cell) { return heights_um[heights_um.size() == 1 ? 0 : cell]; };
+  ExtrudedSheet sheet{{polygons.vertices, polygons.vertices, polygons.polygons}};
+
+  // What the cells at a vertex ask for, on average.
+  std::vector<double> asked(sheet.apical.size(), 0.0), cell_count(sheet.apical.size(), 0.0);
+  for (std::size_t cell = 0; cell < sheet.cells.size(); ++cell)
+    for (const std::size_t vertex : sheet.cells[cell]) {
+      asked[vertex] += height_of(cell);
+      cell_count[vertex] += 1;
+    }
+  for (std::size_t v = 0; v < sheet.apical.size(); ++v) {
+    if (cell_count[v] == 0) continue;
+    const SurfaceBend bend = surface.bend(sheet.apical[v]);
+    sheet.basal[v] -= bounded_height(asked[v] / cell_count[v], largest_height_share * least_radius(bend)) * bend.normal;
+  }
+
+  const std::vector<double> heights = prism_heights(sheet);
+  for (std::size_t cell = 0; cell < sheet.cells.size(); ++cell) {
+    double wanted = 0;
+    for (const std::size_t vertex : sheet.cells[cell]) wanted += asked[vertex] / cell_count[vertex];
+    wanted /= static_cast<double>(sheet.cells[cell].size());
+    if (heights[cell] < 0.99 * wanted) ++sheet.lower_cells;
+    if (heights[cell] < heights[sheet.lowest_cell]) sheet.lowest_cell = cell;
+    if (!(area_vector(sheet.basal, sheet.cells[cell]).dot(area_vector(sheet.apical, sheet.cells[cell])) > 0))
+      throw MeshError(fmt::format("the basal face of row {} is turned over; its height of {:.3g} um should be less",
+                                  cell, height_of(cell)));
+  }
+  if (!heights.empty()) sheet.lowest_um = heights[sheet.lowest_cell];
+  return sheet;
+}
+
+std::vector<double> prism_heights(const PrismSheet& sheet) {
+  std::vector<double> heights;
+  heights.reserve(sheet.cells.size());
+  for (const auto& cell : sheet.cells) {
+    double sum = 0;
+    for (const std::size_t vertex : cell) sum += (sheet.apical[vertex] - sheet.basal[vertex]).norm();
+    heights.push_back(sum / static_cast<double>(cell.size()));
+  }
+  return heights;
+}
+
+std::vector<double> prism_volumes(const PrismSheet& sheet) {
+  std::vector<double> volumes;
+  volumes.reserve(sheet.cells.size());
+  for (const auto& cell : sheet.cells) {
+    Vec3 apical_middle = Vec3::Zero(), basal_middle = Vec3::Zero();
+    for (const std::size_t vertex : cell) {
+      apical_middle += sheet.apical[vertex] / static_cast<double>(cell.size());
+      basal_middle += sheet.basal[vertex] / static_cast<double>(cell.size());
+    }
+    // By the divergence theorem, from the basal middle, so that the basal face adds nothing.
+    const auto six_volume = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
+      return (p - basal_middle).dot((q - basal_middle).cross(r - basal_middle));
+    };
+    double six_volumes = 0;
+    for (std::size_t k = 0; k < cell.size(); ++k) {
+      const std::size_t next = cell[(k + 1) % cell.size()];
+      const Vec3 &a = sheet.apical[cell[k]], &b = sheet.apical[next], &c = sheet.basal[next], &d = sheet.basal[cell[k]];
+      six_volumes += six_volume(apical_middle, a, b);
+      // A ruled face encloses the mean of what its two pairs of triangles do.
+      six_volumes += 0.5 * (six_volume(a, d, c) + six_volume(a, c, b) + six_volume(a, d, b) + six_volume(d, c, b));
+    }
+    volumes.push_back(six_volumes / 6);
+  }
+  return volumes;
+}
+
+}  // namespace plica

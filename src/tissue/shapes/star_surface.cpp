@@ -1,0 +1,250 @@
+#include "tissue/shapes/star_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tissue/hexahedral_mesh.hpp"
+#include "tissue/shapes/solid_harmonics.hpp"
+
+namespace plica {
+namespace {
+
+constexpr std::size_t sample_count = 500;
+
+// Two unit vectors at right angles to a unit vector and each other; e1 x e2 = direction.
+std::array<Vec3, 2> tangents_of(const Vec3& direction) {
+  int least = 0;
+  direction.cwiseAbs().minCoeff(&least);
+  const Vec3 first = direction.cross(Vec3::Unit(least)).normalized();
+  return {first, direction.cross(first)};
+}
+
+double sum_of(const std::vector<double>& coefficients, const HarmonicValues& values, int degree) {
+  double sum = 0;
+  for (std::size_t i = 0; i < harmonic_count(degree); ++i) sum += coefficients[i] * values[i];
+  return sum;
+}
+
+}  // namespace
+
+// X(a, b) = S rho(n) n with n = d + a e1 + b e2, made a unit vector, at a = b = 0.
+struct StarSurface::Chart {
+  std::array<Vec3, 2> tangents;  // e1, e2
+  Vec3 X;
+  std::array<Vec3, 2> first;
+  std::array<Vec3, 3> second;  // aa, ab, bb
+
+  [[nodiscard]] Vec3 normal() const { return first[0].cross(first[1]).normalized(); }
+};
+
+StarSurface::StarSurface(const Mat3& axes, const Vec3& half_axes_um, const std::vector<double>& coefficients)
+    : half_axes_(half_axes_um),
+      to_real_(axes * half_axes_um.asDiagonal()),
+      to_scaled_(half_axes_um.cwiseInverse().asDiagonal() * axes.transpose()),
+      degree_(static_cast<int>(std::lround(std::sqrt(static_cast<double>(coefficients.size())))) - 1),
+      radius_(coefficients) {
+  const std::vector<double> norms = harmonic_norms(degree_);
+  for (std::size_t i = 0; i < radius_.size(); ++i) radius_[i] *= norms[i];
+  for (int axis = 0; axis < 3; ++axis) gradient_[axis] = harmonic_derivative(radius_, degree_, axis);
+  constexpr std::array<std::array<int, 2>, 6> pairs = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+  for (int i = 0; i < 6; ++i) hessian_[i] = harmonic_derivative(gradient_[pairs[i][0]], degree_, pairs[i][1]);
+
+  sample_directions_ = even_directions(sample_count);
+  least_radius_ = std::numeric_limits<double>::infinity();
+  for (const Vec3& direction : sample_directions_) {
+    const double radius = scaled_radius(direction);
+    samples_.push_back(to_real_ * (radius * direction));
+    if (!(radius > 0))
+      throw MeshError(
+          fmt::format("the surface passes through the origin in the direction ({:.3g}, {:.3g}, {:.3g}); "
+                      "the origin should be well inside",
+                      samples_.back().x(), samples_.back().y(), samples_.back().z()));
+    for (const double bend_radius : bend(samples_.back()).radii)
+      if (bend_radius > 0) least_radius_ = std::min(least_radius_, bend_radius);
+  }
+}
+
+double StarSurface::scaled_radius(const Vec3& direction) const {
+  HarmonicValues values;
+  evaluate_harmonics(direction, degree_, values);
+  return sum_of(radius_, values, degree_);
+}
+
+StarSurface::Chart StarSurface::chart(const Vec3& direction) const {
+  HarmonicValues values;
+  evaluate_harmonics(direction, degree_, values);
+  const double rho = sum_of(radius_, values, degree_);
+  Vec3 gradient = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+    if (degree_ > 0) gradient[axis] = sum_of(gradient_[axis], values, degree_ - 1);
+  Mat3 hessian = Mat3::Zero();
+  if (degree_ > 1) {
+    std::array<double, 6> h{};
+    for (int i = 0; i < 6; ++i) h[i] = sum_of(hessian_[i], values, degree_ - 2);
+    hessian << h[0], h[3], h[4], h[3], h[1], h[5], h[4], h[5], h[2];
+  }
+
+  Chart c;
+  c.tangents = tangents_of(direction);
+  c.X = to_real_ * (rho * direction);
+  const double slope = gradient.dot(direction);
+  std::array<double, 2> rho_1{};
+  for (int i = 0; i < 2; ++i) {
+    rho_1[i] = gradient.dot(c.tangents[i]);
+    c.first[i] = to_real_ * (rho_1[i] * direction + rho * c.tangents[i]);
+  }
+  for (int i = 0, place = 0; i < 2; ++i)
+    for (int j = i; j < 2; ++j) {
+      // n_ij = -delta_ij d, so rho_ij = e_i H e_j - delta_ij grad . d.
+      const double delta = i == j ? 1 : 0;
+      const double rho_2 = c.tangents[i].dot(hessian * c.tangents[j]) - delta * slope;
+      c.second[place++] =
+          to_real_ * ((rho_2 - delta * rho) * direction + rho_1[i] * c.tangents[j] + rho_1[j] * c.tangents[i]);
+    }
+  return c;
+}
+
+Vec3 StarSurface::along_ray(const Vec3& point) const { return in_direction(scaled_direction(point)); }
+
+Vec3 StarSurface::put_on(const Vec3& point) const {
+  Vec3 x = point;
+  for (int step = 0; step < 2; ++step) {
+    // One Newton step of the function |u| - rho(u / |u|) along its gradient.
+    const Vec3 u = to_scaled_ * x;
+    const double length = u.norm();
+    const Vec3 d = u / length;
+    HarmonicValues values;
+    evaluate_harmonics(d, degree_, values);
+    Vec3 slope = Vec3::Zero();
+    for (int axis = 0; axis < 3; ++axis)
+      if (degree_ > 0) slope[axis] = sum_of(gradient_[axis], values, degree_ - 1);
+    const Vec3 gradient = to_scaled_.transpose() * (d - (slope - slope.dot(d) * d) / length);
+    x -= (length - sum_of(radius_, values, degree_)) / gradient.squaredNorm() * gradient;
+  }
+  return along_ray(x);
+}
+
+Vec3 StarSurface::nearest_direction(const Vec3& point, Vec3 direction) const {
+  // Newton's method for the squared distance over the unit sphere, damped until the distance falls.
+  double damping = 0;
+  Chart c = chart(direction);
+  double distance = (c.X - point).squaredNorm();
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const Vec3 gap = c.X - point;
+    const Eigen::Vector2d gradient(gap.dot(c.first[0]), gap.dot(c.first[1]));
+    Eigen::Matrix2d metric, hessian;
+    metric << c.first[0].dot(c.first[0]), c.first[0].dot(c.first[1]), c.first[0].dot(c.first[1]),
+        c.first[1].dot(c.first[1]);
+    hessian << gap.dot(c.second[0]), gap.dot(c.second[1]), gap.dot(c.second[1]), gap.dot(c.second[2]);
+    hessian += metric;
+    // Far inside, the Hessian is indefinite: enough of the metric makes it definite.
+    const double least =
+        Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d>(hessian, metric, Eigen::EigenvaluesOnly)
+            .eigenvalues()[0];
+    const double shift = damping + (least < 1e-3 ? 1e-3 - least + 0.1 * std::abs(least) : 0);
+    const Eigen::Vector2d step = -(hessian + shift * metric).ldlt().solve(gradient);
+    const double step_um = std::sqrt(step.dot(metric * step));
+    const Vec3 next = (direction + step[0] * c.tangents[0] + step[1] * c.tangents[1]).normalized();
+    const Chart next_chart = chart(next);
+    const double next_distance = (next_chart.X - point).squaredNorm();
+    if (step_um < 1e-10 * half_axes_.minCoeff()) return next_distance <= distance ? next : direction;
+    if (next_distance <= distance * (1 + 1e-14)) {
+      direction = next;
+      c = next_chart;
+      distance = next_distance;
+      damping = damping > 0.01 ? damping / 10 : 0;
+    } else {
+      damping = std::max(0.1, 4 * damping);
+    }
+  }
+  return direction;
+}
+
+ClosestOnSurface StarSurface::closest(const Vec3& point) const {
+  // Near the surface the ray's place is a good start, else a few samples that are near and apart from each other.
+  std::vector<Vec3> starts;
+  const bool at_origin = point.norm() < 1e-9 * half_axes_.minCoeff();
+  if (!at_origin) starts.push_back(scaled_direction(point));
+  if (at_origin || (along_ray(point) - point).norm() > 0.2 * least_radius_) {
+    std::vector<std::pair<double, std::size_t>> near;
+    for (std::size_t i = 0; i < samples_.size(); ++i) near.emplace_back((samples_[i] - point).squaredNorm(), i);
+    std::ranges::sort(near);
+    const std::size_t before = starts.size();
+    for (const auto& [squared_distance, i] : near) {
+      if (starts.size() == before + 4) break;
+      const Vec3& candidate = sample_directions_[i];
+      if (std::ranges::all_of(std::span(starts).subspan(before),
+                              [&](const Vec3& start) { return start.dot(candidate) < 0.95; }))
+        starts.push_back(candidate);
+    }
+  }
+  double best = std::numeric_limits<double>::infinity();
+  Vec3 direction = Vec3::UnitX();
+  for (const Vec3& start : starts) {
+    const Vec3 found = nearest_direction(point, start);
+    const double squared_distance = (in_direction(found) - point).squaredNorm();
+    if (squared_distance >= best) continue;
+    best = squared_distance;
+    direction = found;
+  }
+  const Chart c = chart(direction);
+  const Vec3 normal = c.normal();
+  return {c.X, normal, std::copysign((point - c.X).norm(), (point - c.X).dot(normal))};
+}
+
+SurfaceBend StarSurface::bend(const Vec3& point) const {
+  const Chart c = chart(scaled_direction(point));
+  SurfaceBend bend;
+  bend.normal = c.normal();
+  Eigen::Matrix2d metric, second;
+  metric << c.first[0].dot(c.first[0]), c.first[0].dot(c.first[1]), c.first[0].dot(c.first[1]),
+      c.first[1].dot(c.first[1]);
+  second << c.second[0].dot(bend.normal), c.second[1].dot(bend.normal), c.second[1].dot(bend.normal),
+      c.second[2].dot(bend.normal);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> solver(-second, metric);
+  for (int i = 0; i < 2; ++i) {
+    const int from = 1 - i;  // the larger curvature first
+    bend.radii[i] = 1 / solver.eigenvalues()[from];
+    bend.tangents[i] =
+        (solver.eigenvectors()(0, from) * c.first[0] + solver.eigenvectors()(1, from) * c.first[1]).normalized();
+  }
+  return bend;
+}
+
+double StarSurface::volume() const {
+  // det(S) times the volume of the scaled surface, the mean of rho^3 over directions times 4 pi / 3.
+  const Vectors directions = even_directions(20'000);
+  double sum = 0;
+  for (const Vec3& direction : directions) sum += std::pow(scaled_radius(direction), 3);
+  return 4 * std::numbers::pi / 3 * half_axes_.prod() * sum / static_cast<double>(directions.size());
+}
+
+double StarSurface::area_over(const Vec3& scaled) const {
+  const Chart c = chart(scaled);
+  return c.first[0].cross(c.first[1]).norm();
+}
+
+double StarSurface::area() const {
+  const Vectors directions = even_directions(20'000);
+  double sum = 0;
+  for (const Vec3& direction : directions) sum += area_over(direction);
+  return 4 * std::numbers::pi * sum / static_cast<double>(directions.size());
+}
+
+Vectors even_directions(std::size_t count) {
+  Vectors directions;
+  directions.reserve(count);
+  const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
+  for (std::size_t i = 0; i < count; ++i) {
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(count);
+    const double r = std::sqrt(1 - z * z), angle = golden_angle * static_cast<double>(i);
+    directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+  }
+  return directions;
+}
+
+}  // namespace plica

@@ -1,0 +1,77 @@
+#include "tissue/shapes/surface_polygons.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tissue/hexahedral_mesh.hpp"
+#include "tissue/shapes/polygon_mending.hpp"
+
+namespace plica {
+namespace {
+
+// The circumcentre of three points in their plane. That of a flat triangle is far away; it is brought back to within
+// the longest side of the triangle's middle, where it still lies on the right side of its neighbours'.
+Vec3 bounded_circumcentre(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, normal = ab.cross(ac), middle = (a + b + c) / 3;
+  const Vec3 centre =
+      a + (ab.squaredNorm() * ac.cross(normal) + ac.squaredNorm() * normal.cross(ab)) / (2 * normal.squaredNorm());
+  const double longest = std::max({ab.norm(), ac.norm(), (c - b).norm()});
+  const Vec3 away = centre - middle;
+  if (!centre.allFinite()) return middle;
+  return away.norm() > longest ? Vec3(middle + away * (longest / away.norm())) : centre;
+}
+
+Vectors points_on(const Vectors& points, const StarSurface& surface, double furthest_share) {
+  Vectors on;
+  on.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const ClosestOnSurface closest = surface.closest(points[i]);
+    if (std::abs(closest.signed_distance_um) > furthest_share * closest.point.norm())
+      throw MeshError(fmt::format(
+          "row {} at ({:.4g}, {:.4g}, {:.4g}) um is {:.3g} um from the surface; points should "
+          "lie within {:.0f} % of its radius",
+          i, points[i].x(), points[i].y(), points[i].z(), closest.signed_distance_um, 100 * furthest_share));
+    on.push_back(closest.point);
+  }
+  return on;
+}
+
+}  // namespace
+
+PolygonSurface dual_polygons(const Vectors& points, const SurfaceTriangulation& triangulation,
+                             const StarSurface& surface) {
+  constexpr std::size_t unnumbered = static_cast<std::size_t>(-1);
+  PolygonSurface dual;
+  dual.polygons = triangles_about(points.size(), triangulation);
+  // Vertices are numbered as the polygons come, whatever order the triangles have.
+  std::vector<std::size_t> number(triangulation.triangles.size(), unnumbered);
+  for (auto& polygon : dual.polygons)
+    for (std::size_t& vertex : polygon) {
+      const std::size_t triangle = vertex;
+      if (number[triangle] == unnumbered) {
+        number[triangle] = dual.vertices.size();
+        const auto& [a, b, c] = triangulation.triangles[triangle];
+        dual.vertices.push_back(surface.put_on(bounded_circumcentre(points[a], points[b], points[c])));
+      }
+      vertex = number[triangle];
+    }
+  return dual;
+}
+
+CellPolygons polygons_of_points(const Vectors& points, const StarSurface& surface, const PolygonOptions& options) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!points[i].allFinite())
+      throw MeshError(fmt::format("row {} is no point; every row should be three finite lengths in um", i));
+  const Vectors on = points_on(points, surface, options.furthest_share);
+  SurfaceTriangulation triangulation = hull_triangulation(on, surface);
+  CellPolygons cells;
+  cells.flipped_edges = flip_to_delaunay(on, triangulation);
+  cells.surface = dual_polygons(on, triangulation, surface);
+  mend_polygons(on, surface, options, cells);
+  check_polygons(on, surface, cells.surface);
+  return cells;
+}
+
+}  // namespace plica
