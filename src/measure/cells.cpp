@@ -10,9 +10,11 @@
 namespace plica {
 
 double cell_height(const Cell& cell, std::span<const Vec3> positions) {
+  const std::size_t sides = cell.sides();
   double sum = 0;
-  for (int i = 0; i < 4; ++i)
-    sum += (positions[cell.corners[i + 4].index()] - positions[cell.corners[i].index()]).norm() / 4;
+  for (std::size_t i = 0; i < sides; ++i)
+    sum += (positions[cell.corners[i + sides].index()] - positions[cell.corners[i].index()]).norm() /
+           static_cast<double>(sides);
   return sum;
 }
 
@@ -25,8 +27,9 @@ double mean_speed(const Tissue& tissue, const MonitoredCells& cells, const Vecto
 double mean_node_displacement(const Tissue& tissue, const MonitoredCells& cells, const Vectors& positions) {
   double sum = 0;
   for (const CellId id : cells)
-    for (const NodeId node : tissue.cells[id.index()].corners)
-      sum += (positions[node.index()] - tissue.rest_positions[node.index()]).norm() / 8;
+    for (const std::vector<NodeId>& corners = tissue.cells[id.index()].corners; const NodeId node : corners)
+      sum +=
+          (positions[node.index()] - tissue.rest_positions[node.index()]).norm() / static_cast<double>(corners.size());
   return sum / static_cast<double>(cells.size());
 }
 
@@ -177,7 +180,7 @@ std::vector<Vec3> rest_apical_normals(const Tissue& tissue, std::span<const Cell
 
 Vec3 mean_apical(const Cell& cell, const Vectors& vectors) {
   Vec3 sum = Vec3::Zero();
-  for (int i = 4; i < 8; ++i) sum += vectors[cell.corners[i].index()] / 4;
+  for (const NodeId corner : cell.apical_corners()) sum += vectors[corner.index()] / static_cast<double>(cell.sides());
   return sum;
 }
 

@@ -88,8 +88,7 @@ std::optional<double> fluid_under_shell_um3(const Model& model, std::span<const 
   if (!inside) return std::nullopt;
   for (const auto& obstacle : model.obstacles)
     if (const auto* vitelline = dynamic_cast<const Vitelline*>(obstacle.get())) {
-      const auto [half_axis, radius] = vitelline->shell();
-      return std::numbers::pi * radius * radius * (2 * half_axis + 4 * radius / 3) - *inside;
+      return vitelline->shell().volume() - *inside;
     }
   return std::nullopt;
 }
@@ -153,14 +152,17 @@ std::optional<double> flank_volume(const Tissue& tissue, std::span<const Vec3> p
   double sum = 0;
   for (const Cell& cell : tissue.cells) {
     if (std::abs(cell_centre(cell, tissue.rest_positions).x() - middle) > quarter) continue;
-    // From the belly: of the middles of the four edges from base to apex, the two least and the two largest.
-    std::array<double, 4> angles;
-    for (int i = 0; i < 4; ++i) {
-      const Vec3 edge = positions[cell.corners[i].index()] + positions[cell.corners[i + 4].index()];
-      angles[i] = std::atan2(std::abs(edge.y()), -edge.z());
+    // From the belly: of the middles of the edges from base to apex, the lower and the upper half.
+    const std::size_t sides = cell.sides(), half = sides / 2;
+    std::vector<double> angles;
+    for (std::size_t i = 0; i < sides; ++i) {
+      const Vec3 edge = positions[cell.corners[i].index()] + positions[cell.corners[i + sides].index()];
+      angles.push_back(std::atan2(std::abs(edge.y()), -edge.z()));
     }
     std::ranges::sort(angles);
-    const double low = 0.5 * (angles[0] + angles[1]), high = 0.5 * (angles[2] + angles[3]);
+    double low = 0, high = 0;
+    for (std::size_t i = 0; i < half; ++i)
+      low += angles[i] / static_cast<double>(half), high += angles[sides - 1 - i] / static_cast<double>(half);
     const double part = (std::min(high, to) - std::max(low, from)) / (high - low);
     if (part > 0) sum += part * cell_volume(tissue, cell, positions);
   }

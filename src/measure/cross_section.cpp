@@ -6,16 +6,12 @@
 #include <map>
 #include <numbers>
 
+#include "measure/cells.hpp"
+
 namespace plica {
 namespace {
 
 constexpr double nothing_um = 1e-6;  // shorter than that is rounding
-
-Vec3 apical_centre_at_rest(const Tissue& tissue, CellId cell) {
-  Vec3 centre = Vec3::Zero();
-  for (int i = 4; i < 8; ++i) centre += tissue.rest_positions[tissue.cells[cell.index()].corners[i].index()] / 4;
-  return centre;
-}
 
 // Cells whose apical faces the plane at x meets at rest, by their angles from the midline, left to right.
 std::vector<std::pair<double, CellId>> ring_at(const Tissue& tissue, double x, const Vec3& outward) {
@@ -27,7 +23,7 @@ std::vector<std::pair<double, CellId>> ring_at(const Tissue& tissue, double x, c
       high = std::max(high, tissue.rest_positions[node.index()].x());
     }
     if (low > x || high <= x) continue;
-    Vec3 centre = apical_centre_at_rest(tissue, facet.cell);
+    Vec3 centre = mean_apical(tissue.cells[facet.cell.index()], tissue.rest_positions);
     if (std::abs(centre.y()) < nothing_um) centre.y() = 0;  // one opposite to the midline counts as right
     angles[facet.cell] = std::atan2(centre.y(), centre.dot(outward));
   }

@@ -52,7 +52,7 @@ double depth_of(const Tissue& tissue, const MaterialPoint& point, const Vec3& ou
                 std::span<const Vec3> positions) {
   const Vec3 now = point.at(positions), rest = point.at(tissue.rest_positions);
   if (!tissue.outer_shape) return (rest - now).dot(outward);
-  return depth_inside(*tissue.outer_shape, now, outward) - depth_inside(*tissue.outer_shape, rest, outward);
+  return tissue.outer_shape->depth(now, outward) - tissue.outer_shape->depth(rest, outward);
 }
 
 // Cells with an apical facet that meets y = 0 at rest.

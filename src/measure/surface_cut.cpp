@@ -42,18 +42,4 @@ std::vector<SurfacePoint> cut_apical_surface(const Tissue& tissue, std::span<con
   return points;
 }
 
-double depth_inside(const Capsule& shell, const Vec3& point, const Vec3& outward) {
-  // The shell's section is all circles of its radius R with centres on its axis. Of the line's ways out of each, the
-  // longest is where its distance w from the centre is R times the axial part of `outward`.
-  const double R = shell.radius_um, along = outward.x(), across = outward.z();
-  const auto distance = [&](double centre) { return (centre - point.x()) * across + point.z() * along; };
-  double centre = std::copysign(shell.half_axis_um, along);
-  if (across != 0) {
-    const double w = R * along * std::copysign(1.0, across);
-    centre = std::clamp(point.x() + (w - point.z() * along) / across, -shell.half_axis_um, shell.half_axis_um);
-  }
-  const double w = distance(centre);
-  return (centre - point.x()) * along - point.z() * across + std::sqrt(std::max(0.0, R * R - w * w));
-}
-
 }  // namespace plica

@@ -27,8 +27,4 @@ struct SurfacePoint : MaterialPoint {
 std::vector<SurfacePoint> cut_apical_surface(const Tissue& tissue, std::span<const Vec3> positions, int axis,
                                              const std::vector<bool>& wanted);
 
-/// How far a point on y = 0 lies inside the shell against `outward`, a direction in that plane, um: the way to where
-/// the line along it leaves the shell; negative outside. Where the line misses the shell, to its height at the end.
-double depth_inside(const Capsule& shell, const Vec3& point, const Vec3& outward);
-
 }  // namespace plica

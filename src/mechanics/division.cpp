@@ -17,7 +17,7 @@ struct Destiny {
 Destiny destiny(const Model& model, CellId cell) {
   for (const Growth& growth : model.growths)
     if (growth.cell == cell) return {growth.rest_to, growth.target_to};
-  return {model.tissue.cells[cell.index()].rest_shape, model.volumes().targets()[cell.index()]};
+  return {hexahedron(model.tissue.cells[cell.index()].rest_shape), model.volumes().targets()[cell.index()]};
 }
 
 std::array<Growth, 2> growths_of(const PlannedDivision& plan, const std::array<CellId, 2>& daughters,
@@ -28,7 +28,7 @@ std::array<Growth, 2> growths_of(const PlannedDivision& plan, const std::array<C
     Growth& growth = growths[i];
     const Cell& daughter = tissue.cells[daughters[i].index()];
     growth.cell = daughters[i];
-    growth.rest_from = daughter.rest_shape;
+    growth.rest_from = hexahedron(daughter.rest_shape);
     // The part of the mother's final shape that is `volume_ratio` wide, on the daughter's side.
     growth.rest_to = i == 0 ? hex_part(mother.rest_to, Vec3::Zero(), Vec3::Ones() - (1 - plan.volume_ratio) * across)
                             : hex_part(mother.rest_to, (1 - plan.volume_ratio) * across, Vec3::Ones());
@@ -168,8 +168,8 @@ void grow(Model& model, double time_s) {
     const double target = between(growth.target_from, growth.target_to, part);
     targets_changed = targets_changed || target != model.volumes().targets()[growth.cell.index()];
     model.volumes().set_target(growth.cell, target);
-    if (rest == cell.rest_shape) continue;
-    cell.rest_shape = rest;
+    if (rest == hexahedron(cell.rest_shape)) continue;
+    cell.rest_shape.assign(rest.begin(), rest.end());
     set_element_rest_shapes(model.tissue, growth.cell);
     for (int e = 0; e < cell.element_count; ++e) changed.emplace_back(cell.first_element.index() + e);
   }

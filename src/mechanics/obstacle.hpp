@@ -9,6 +9,7 @@
 #include "core/ids.hpp"
 #include "core/vector.hpp"
 #include "mechanics/law.hpp"
+#include "tissue/outer_shape.hpp"
 
 namespace plica {
 
@@ -19,11 +20,7 @@ struct Model;
 class Obstacle {
  public:
   /// A node's gap (positive where it may be, um), its gradient (of length 1) and Hessian (1/um).
-  struct Gap {
-    double value;
-    Vec3 inward;
-    Mat3 hessian;
-  };
+  using Gap = OuterShape::Gap;
 
   virtual ~Obstacle() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;

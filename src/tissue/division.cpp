@@ -82,9 +82,11 @@ class Cutter {
     claim(b, low_side);
 
     const Vec3 across = Vec3::Unit(first);
-    const HexPoints mother = low.rest_shape;
-    low.rest_shape = hex_part(mother, Vec3::Zero(), Vec3::Ones() - middle * across);
-    high.rest_shape = hex_part(mother, middle * across, Vec3::Ones());
+    const HexPoints mother = hexahedron(low.rest_shape),
+                    low_part = hex_part(mother, Vec3::Zero(), Vec3::Ones() - middle * across),
+                    high_part = hex_part(mother, middle * across, Vec3::Ones());
+    low.rest_shape.assign(low_part.begin(), low_part.end());
+    high.rest_shape.assign(high_part.begin(), high_part.end());
     const Lineage of_mother = low.lineage;
     for (Cell* daughter : {&low, &high})
       daughter->lineage = {tissue_.next_cell_id++, of_mother.id, of_mother.generation + 1, time_s};
@@ -228,16 +230,18 @@ class Mesher {
 void set_element_rest_shapes(Tissue& tissue, CellId id) {
   const Cell& cell = tissue.cells[id.index()];
   const std::vector<double> us = lines_across(cell, 0), vs = lines_across(cell, 1);
+  const HexPoints shape = hexahedron(cell.rest_shape);
   std::size_t element = cell.first_element.index();
   for (std::size_t v = 1; v < vs.size(); ++v)
     for (std::size_t u = 1; u < us.size(); ++u)
-      tissue.element_rest_shape[element++] =
-          hex_part(cell.rest_shape, Vec3(us[u - 1], vs[v - 1], 0), Vec3(us[u], vs[v], 1));
+      tissue.element_rest_shape[element++] = hex_part(shape, Vec3(us[u - 1], vs[v - 1], 0), Vec3(us[u], vs[v], 1));
 }
 
 std::optional<std::string> why_indivisible(const Tissue& tissue) {
-  for (const Cell& cell : tissue.cells)
+  for (const Cell& cell : tissue.cells) {
+    if (!cell.is_of_grid) return "its cells are polygons, and only cells of a grid divide so far";
     if (cell.walls[0].empty()) return "its cells have several elements each";
+  }
   if (cell_between_layers(tissue)) return "it has more than one layer of cells";
   return std::nullopt;
 }
@@ -256,8 +260,8 @@ Division divide(Tissue& tissue, std::span<const CellCut> cuts, double time_s) {
   for (std::size_t i = 0; i < cuts.size(); ++i) cutter.cut(cuts[i], lines[i], time_s);
   Mesher(tissue).mesh();
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) set_element_rest_shapes(tissue, CellId(c));
-  for (auto* sets : {&tissue.regions, &tissue.cell_arrays})
-    for (auto& [name, cells] : *sets) cells = inherited(division, cells);
+  for (auto& [name, cells] : tissue.regions) cells = inherited(division, cells);
+  for (auto& [name, values] : tissue.cell_arrays) values = inherited(division, values);
   return division;
 }
 

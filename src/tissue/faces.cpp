@@ -71,10 +71,41 @@ std::vector<Face> faces_between_stops(const Tissue& tissue) {
   return faces;
 }
 
+// Where nodes hang on the edges of polygons, elements on the two sides do not match either; the lateral edges do.
+std::vector<Face> faces_between_edges(const Tissue& tissue) {
+  std::vector<Face> faces;
+  std::map<std::pair<NodeId, NodeId>, std::size_t> place;  // in faces, by two opposite nodes
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+    const Cell& cell = tissue.cells[c];
+    const std::size_t sides = cell.sides();
+    const std::span<const CellEdge> lateral = std::span(cell.edges).last(sides);
+    for (std::size_t i = 0; i < sides; ++i) {
+      const auto &from = lateral[i].nodes, &to = lateral[(i + 1) % sides].nodes;
+      for (std::size_t level = 1; level < from.size(); ++level) {
+        // The neighbour has the same face from the other side.
+        const auto beyond = place.find({to[level - 1], from[level]});
+        if (beyond != place.end()) {
+          faces[beyond->second].beyond = CellId(c);
+          continue;
+        }
+        place.emplace(std::pair(from[level - 1], to[level]), faces.size());
+        faces.push_back({{from[level - 1], to[level - 1], to[level], from[level]}, CellId(c), {}});
+      }
+    }
+  }
+  for (Face& face : faces) face.share = share_of(tissue, face);
+  return faces;
+}
+
+std::vector<Face> all_lateral_faces(const Tissue& tissue) {
+  if (tissue.hanging.empty()) return lateral_faces(tissue);
+  return tissue.cells.front().is_of_grid ? faces_between_stops(tissue) : faces_between_edges(tissue);
+}
+
 }  // namespace
 
 std::vector<Face> faces_of(const Tissue& tissue, CellSide side) {
-  if (side == CellSide::lateral) return tissue.hanging.empty() ? lateral_faces(tissue) : faces_between_stops(tissue);
+  if (side == CellSide::lateral) return all_lateral_faces(tissue);
   std::vector<Face> faces;
   for (const Facet& facet : side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets)
     faces.push_back({facet.nodes, facet.cell, {}});

@@ -35,9 +35,9 @@ void check_arrays(const HexahedralMesh& mesh) {
     throw MeshError(fmt::format("{} apical faces are given for {} cells", mesh.apical_faces.size(), count));
   for (const int face : mesh.apical_faces)
     if (face < 0 || face > 5) throw MeshError(fmt::format("an apical face is {}; faces are 0 to 5", face));
-  for (const auto& [name, set] : mesh.arrays)
-    if (set.size() != count)
-      throw MeshError(fmt::format("the cell array \"{}\" has {} values for {} cells", name, set.size(), count));
+  for (const auto& [name, values] : mesh.arrays)
+    if (values.size() != count)
+      throw MeshError(fmt::format("the cell array \"{}\" has {} values for {} cells", name, values.size(), count));
 }
 
 void check_cell_nodes(const HexahedralMesh& mesh, std::size_t cell) {

@@ -22,7 +22,7 @@ struct HexahedralMesh {
   Vectors points;                            // um; those that no cell uses are dropped
   std::vector<std::array<NodeId, 8>> cells;  // VTK's order, any face may be the apical one
   std::vector<int> apical_faces;             // cells; 0-5 in the order of hex_faces. Empty: find the outer surface
-  std::map<std::string, CellSet> arrays;     // named sets of cells
+  std::map<std::string, CellArray> arrays;   // named; a number a cell
 };
 
 /// Largest number of elements of a mesh.

@@ -23,6 +23,9 @@ std::vector<NodeId> edge_chain(const CellLattice& lattice, const std::array<int,
 }
 
 void set_corners_and_edges(const CellLattice& lattice, const Vectors& rest_positions, Cell& cell) {
+  cell.is_of_grid = true;
+  cell.corners.resize(8);
+  cell.edges.resize(12);
   for (int i = 0; i < 8; ++i) {
     const Vec3& r = hex_reference_nodes[i];
     cell.corners[i] = lattice.node(r.x() > 0 ? lattice.elements[0] : 0, r.y() > 0 ? lattice.elements[1] : 0,
@@ -44,6 +47,7 @@ void set_corners_and_edges(const CellLattice& lattice, const Vectors& rest_posit
     } else {
       edge.direction = (e < 4) == u_is_along ? EdgeDirection::along : EdgeDirection::across;
       edge.side = e % 4 < 2 ? CellSide::basal : CellSide::apical;
+      edge.along = edge.direction == EdgeDirection::along ? 1 : 0;
     }
   }
 }
@@ -56,10 +60,12 @@ void set_lines(const CellLattice& lattice, Cell& cell) {
       const int segments = lattice.elements[axis], lines = lattice.elements[1 - axis];
       for (int across = 0; across <= lines; ++across) {
         CellLine line;
+        const CellEdge& like = cell.edges[axis == 0 ? 0 : 4];
         for (int along = 0; along <= segments; ++along)
           line.chain.nodes.push_back(axis == 0 ? lattice.node(along, across, w) : lattice.node(across, along, w));
         line.chain.side = side;
-        line.chain.direction = cell.edges[axis == 0 ? 0 : 4].direction;
+        line.chain.direction = like.direction;
+        line.chain.along = like.along;
         line.share = (across == 0 || across == lines ? 1.0 : 2.0) / lines;
         cell.lines.push_back(std::move(line));
       }
@@ -69,7 +75,7 @@ void set_lines(const CellLattice& lattice, Cell& cell) {
 }
 
 void set_walls(const Vectors& rest_positions, Cell& cell) {
-  cell.rest_shape = gather(rest_positions, cell.corners);
+  for (const NodeId corner : cell.corners) cell.rest_shape.push_back(rest_positions[corner.index()]);
   if (cell.element_count > 1) return;
   constexpr std::array<std::array<int, 2>, 4> ends = {{{0, 1}, {1, 2}, {3, 2}, {0, 3}}};  // local basal nodes
   for (int wall = 0; wall < 4; ++wall)

@@ -1,7 +1,5 @@
 #include "tissue/part.hpp"
 
-#include <stdexcept>
-
 namespace plica {
 
 Division keep_only(Tissue& tissue, const CellSet& cells) {
@@ -35,24 +33,30 @@ Division keep_only(Tissue& tissue, const CellSet& cells) {
       facet.element = element[facet.element.index()];
     }
   }
-  for (auto* sets : {&part.regions, &part.cell_arrays})
-    for (auto& [name, set] : *sets) set = inherited(division, set);
+  for (auto& [name, set] : part.regions) set = inherited(division, set);
+  for (auto& [name, values] : part.cell_arrays) values = inherited(division, values);
   tissue = std::move(part);
   return division;
 }
 
 std::vector<NodeId> drop_unused_nodes(Tissue& tissue) {
-  if (!tissue.hanging.empty()) throw std::logic_error("nodes of a tissue whose cells have divided stay");
   std::vector<NodeId> now(tissue.node_count()), before;
   for (const auto& nodes : tissue.elements)
     for (const NodeId node : nodes) now[node.index()] = node;
   Vectors positions;
+  std::vector<NodeMean> hanging;
+  const std::size_t free_nodes = tissue.free_node_count();
   for (NodeId& node : now) {
     if (!node.valid()) continue;
     before.push_back(node);
+    if (node.index() >= free_nodes) hanging.push_back(tissue.hanging[node.index() - free_nodes]);
     node = NodeId(positions.size());
     positions.push_back(tissue.rest_positions[before.back().index()]);
   }
+  // What a cell's nodes hang on is its own.
+  for (NodeMean& mean : hanging)
+    for (auto& [node, weight] : mean) node = now[node.index()];
+  tissue.hanging = std::move(hanging);
   const auto renumber = [&](auto& nodes) {
     for (NodeId& node : nodes) node = now[node.index()];
   };

@@ -25,10 +25,16 @@ void Tissue::carry_hanging(std::span<Vec3> forces) const {
   }
 }
 
+HexPoints hexahedron(std::span<const Vec3> corners) {
+  HexPoints points;
+  std::ranges::copy(corners.first(points.size()), points.begin());
+  return points;
+}
+
 Vec3 cell_centre(const Cell& cell, const Vectors& positions) {
   Vec3 sum = Vec3::Zero();
   for (const NodeId node : cell.corners) sum += positions[node.index()];
-  return sum / 8;
+  return sum / static_cast<double>(cell.corners.size());
 }
 
 double cell_volume(const Tissue& tissue, const Cell& cell, std::span<const Vec3> positions) {

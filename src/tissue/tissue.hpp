@@ -1,5 +1,6 @@
-// What exists: nodes, elements, cells, faces, edges and regions of one layer of hexahedral cells, at rest. Topology and
-// rest geometry never change during a run (only division makes a new tissue); where the nodes are now is the State's.
+// What exists: nodes, elements, cells, faces, edges and regions of one layer of cells, at rest. A cell is a prism over
+// a polygon, made of hexahedra. Topology and rest geometry never change during a run (only division makes a new
+// tissue); where the nodes are now is the State's.
 #pragma once
 
 #include <array>
@@ -13,6 +14,7 @@
 #include "core/ids.hpp"
 #include "core/vector.hpp"
 #include "tissue/hexahedron.hpp"
+#include "tissue/outer_shape.hpp"
 
 namespace plica {
 
@@ -29,16 +31,17 @@ enum class EdgeDirection { along, across, lateral };
 /// The side of the cell on which an edge lies. Lateral edges run from one to the other.
 enum class CellSide { basal, apical, lateral };
 
-/// One of a cell's twelve edges, as the chain of nodes of its elements' edges (two nodes with one element a cell).
+/// One of a cell's edges, as the chain of nodes of its elements' edges (two nodes with one element a cell).
 struct CellEdge {
   std::vector<NodeId> nodes;
-  EdgeDirection direction;
+  EdgeDirection direction;  // of a polygon's edges, the nearer of along and across
   CellSide side;
+  double along = 0;  // how far it runs along: the squared cosine, 1 or 0 on a grid
 };
 
-/// A line along which a cell may contract: one of its edges or, in a cell of several elements, a line of element edges
-/// across its apical or basal face that runs beside them. `share` is the part of an edge's tension that the line
-/// carries: per face and direction the shares add up to 2, those of the two edges of an undivided cell.
+/// A line along which a cell may contract: one of its edges or, in a grid's cell of several elements, a line of element
+/// edges across its apical or basal face that runs beside them. `share` is the part of an edge's tension that the line
+/// carries: on a grid, per face and direction the shares add up to 2, those of the two edges of an undivided cell.
 struct CellLine {
   CellEdge chain;
   double share = 1;
@@ -69,26 +72,30 @@ struct Lineage {
 
 struct Cell {
   ElementId first_element;
-  int element_count = 1;                // its elements are contiguous
-  std::array<NodeId, 8> corners;        // VTK's order: 0-3 basal, 4-7 apical
-  std::array<CellEdge, 12> edges;       // in the order of hex_edges
-  std::vector<CellLine> lines;          // what can contract; the edges themselves in a cell of one element
+  int element_count = 1;        // its elements are contiguous
+  bool is_of_grid = false;      // four walls, whose edges run along and across
+  std::vector<NodeId> corners;  // of its polygons: the basal one's, then the apical one's above them (see below)
+  std::vector<CellEdge> edges;  // of a grid, in the order of hex_edges; else basal, apical, lateral
+  std::vector<CellLine> lines;  // what can contract; the edges themselves but in grid cells of several elements
   std::optional<GridPlace> grid_place;  // of a built embryo
   // What division needs (division.hpp). The walls, each a chain of stops: along u at v = 0 and v = 1 (walls 0 and 2),
   // along v at u = 1 and u = 0 (walls 1 and 3). Empty in a cell that begins with several elements.
   std::array<std::vector<WallStop>, 4> walls;
-  HexPoints rest_shape;  // um
+  std::vector<Vec3> rest_shape;  // um; corners
   Lineage lineage;
-};
 
-/// A capsule (a cylinder between two half balls, axis on x), or a ball when half_axis is 0: the shape of built embryos.
-struct Capsule {
-  double half_axis_um = 0;  // half the length of the cylinder
-  double radius_um = 0;
+  // Corners of both polygons go counter-clockwise seen from outside the tissue, above the apex. Of four, they are in
+  // VTK's order of a hexahedron.
+  [[nodiscard]] std::size_t sides() const { return corners.size() / 2; }
+  [[nodiscard]] std::span<const NodeId> basal_corners() const { return std::span(corners).first(sides()); }
+  [[nodiscard]] std::span<const NodeId> apical_corners() const { return std::span(corners).last(sides()); }
 };
 
 /// A set of cells: one flag a cell.
 using CellSet = std::vector<bool>;
+
+/// A number a cell.
+using CellArray = std::vector<double>;
 
 /// A node without freedom of its own: where it is, is a weighted mean of free nodes. Weights add up to 1.
 using NodeMean = std::vector<std::pair<NodeId, double>>;
@@ -109,10 +116,11 @@ struct Tissue {
   std::vector<Cell> cells;
   std::vector<Facet> apical_facets;  // of elements; those of a cell are contiguous
   std::vector<Facet> basal_facets;
-  std::optional<Capsule> outer_shape;          // of the apical surface at rest, or the shell around a file's mesh
-  std::map<std::string, CellSet> cell_arrays;  // of a mesh file: cells where the array is not 0
-  std::map<std::string, CellSet> regions;      // named; "all" is always there
-  int next_cell_id = 0;                        // for Lineage
+  std::optional<OuterShape> outer_shape;         // of the apical surface at rest, or the shell around a file's mesh
+  std::map<std::string, CellArray> cell_arrays;  // of a file: what was measured in each cell
+  std::map<std::string, CellSet> regions;        // named; "all" is always there
+  std::vector<std::string> remarks;              // what had to be mended to build it
+  int next_cell_id = 0;                          // for Lineage
   // Axes across whose planes through the origin this is one side of a symmetric tissue (mirror.hpp). Nodes on a plane
   // are at 0 there.
   std::array<bool, 3> is_mirrored = {false, false, false};
@@ -145,7 +153,10 @@ inline HexPoints gather(std::span<const Vec3> positions, const std::array<NodeId
   return points;
 }
 
-/// Mean of the cell's eight corners: its barycentre as monitored.
+/// Where a grid cell's corners are, or its rest shape, as those of a hexahedron.
+HexPoints hexahedron(std::span<const Vec3> corners);
+
+/// Mean of the cell's corners: its barycentre as monitored.
 Vec3 cell_centre(const Cell& cell, const Vectors& positions);
 
 /// The corners of a facet.

@@ -96,9 +96,7 @@ TEST(ShortEdges, AreThoseShorterThanATenthOfTheirLengthAtRest) {
 TEST(ShellFluid, IsTheShellLessWhatIsInside) {
   Model model(build_shell({.length_um = 300, .diameter_um = 200, .cells = {12, 9, 8}}));
   EXPECT_FALSE(fluid_under_shell_um3(model, model.tissue.rest_positions));
-  Capsule shell = *model.tissue.outer_shape;
-  shell.radius_um += 10;
-  model.obstacles.push_back(std::make_unique<Vitelline>(model.tissue, shell));
+  model.obstacles.push_back(std::make_unique<Vitelline>(model.tissue, model.tissue.outer_shape->moved_out(10)));
   const double whole = std::numbers::pi * 110 * 110 * (100 + 4 * 110 / 3.0);
   Vectors shrunk = model.tissue.rest_positions;
   for (Vec3& x : shrunk) x *= 0.5;

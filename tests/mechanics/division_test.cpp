@@ -109,7 +109,7 @@ TEST(Grow, TakesDaughtersFromHalvesToTheirMothersShapeAndVolume) {
   add_elasticity(model);
   State state = rest_state(model);
   state.time_s = 10;
-  const HexPoints mother = model.tissue.cells[1].rest_shape;
+  const HexPoints mother = hexahedron(model.tissue.cells[1].rest_shape);
   const double mothers_volume = model.volumes().targets()[1];
   divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 0}, 100, 1}});
   const auto sum = [&] { return model.volumes().targets()[1] + model.volumes().targets()[3]; };
@@ -170,7 +170,8 @@ TEST(Grow, BulkModulusIsAgainstTheVolumesThatCellsAreHeldAt) {
     for (std::size_t e = 0; e < model.tissue.elements.size(); ++e) {
       const std::size_t c = model.tissue.element_cell[e].index();
       const double rest = hex_volume(model.tissue.element_rest_shape[e]),
-                   held = rest * model.volumes().targets()[c] / hex_volume(model.tissue.cells[c].rest_shape),
+                   held =
+                       rest * model.volumes().targets()[c] / hex_volume(hexahedron(model.tissue.cells[c].rest_shape)),
                    now = hex_volume(gather(state.positions, model.tissue.elements[e]));
       expected += 3.0 / 2 * held * std::pow(now / held - 1, 2);
       by_rest_shapes += 3.0 / 2 * rest * std::pow(now / rest - 1, 2);

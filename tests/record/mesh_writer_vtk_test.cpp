@@ -51,7 +51,7 @@ TEST_F(MeshWriterTest, WritesEachElementWithTheValuesOfItsCell) {
   ASSERT_EQ(read.cells.size(), 12U);
   EXPECT_EQ(read.rest_positions, block.rest_positions);
   EXPECT_EQ(read.elements, block.elements);
-  const CellSet expected = {false, false, false, false, true, true, true, true, false, false, false, false};
+  const CellArray expected = {0, 0, 0, 0, 1.5, 1.5, 1.5, 1.5, 0, 0, 0, 0};
   EXPECT_EQ(read.cell_arrays.at("pressure_Pa"), expected);
 }
 

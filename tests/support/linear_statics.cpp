@@ -11,13 +11,23 @@ namespace plica::support {
 namespace {
 
 struct Triplets final : TangentSink {
-  void add_block(NodeId row, NodeId column, const Mat3& block) override {
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        entries.emplace_back(3 * row.number() + i, 3 * column.number() + j, block(i, j));
-        if (row != column) entries.emplace_back(3 * column.number() + j, 3 * row.number() + i, block(i, j));
-      }
+  explicit Triplets(const Tissue& tissue) : tissue(tissue) {
+    for (std::size_t n = tissue.free_node_count(); n < tissue.node_count(); ++n)  // which have none of their own
+      for (int i = 0; i < 3; ++i) entries.emplace_back(3 * n + i, 3 * n + i, 1);
   }
+  void add_block(NodeId row, NodeId column, const Mat3& block) override {
+    tissue.for_free_nodes(row, [&](NodeId a, double of_row) {
+      tissue.for_free_nodes(column, [&](NodeId b, double of_column) {
+        const Mat3 part = of_row * of_column * block;
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) {
+            entries.emplace_back(3 * a.number() + i, 3 * b.number() + j, part(i, j));
+            if (row != column) entries.emplace_back(3 * b.number() + j, 3 * a.number() + i, part(i, j));
+          }
+      });
+    });
+  }
+  const Tissue& tissue;
   std::vector<Eigen::Triplet<double>> entries;
 };
 
@@ -38,10 +48,13 @@ struct LinearStatics::Stiffness {
 };
 
 LinearStatics::LinearStatics(const Tissue& tissue)
-    : size_(3 * static_cast<int>(tissue.node_count())), prescribed_(size_), loads_(Eigen::VectorXd::Zero(size_)) {}
+    : tissue_(tissue),
+      size_(3 * static_cast<int>(tissue.node_count())),
+      prescribed_(size_),
+      loads_(Eigen::VectorXd::Zero(size_)) {}
 
 LinearStatics::LinearStatics(const Tissue& tissue, const ElasticModuli& moduli) : LinearStatics(tissue) {
-  Triplets triplets;
+  Triplets triplets(tissue);
   const Motion rest = at_rest(tissue);
   Corotational(tissue, moduli, 0).add_tangent(rest.step(), triplets);
   Dilatation(tissue, moduli.bulk_modulus()).add_tangent(rest.step(), triplets);
@@ -53,7 +66,7 @@ LinearStatics::LinearStatics(LinearStatics&& other) noexcept = default;
 
 LinearStatics LinearStatics::of_elements(const Tissue& tissue, const ElasticModuli& moduli) {
   LinearStatics statics(tissue);
-  Triplets triplets;
+  Triplets triplets(tissue);
   for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
     const Mat24 K = incompatible_stiffness(tissue.element_rest_shape[e], moduli);
     for (int i = 0; i < 8; ++i)
@@ -96,7 +109,9 @@ Vectors LinearStatics::solve() const {
   for (int i = 0; i < size_; ++i)
     if (!prescribed_[i]) residual = std::max(residual, std::abs(left[i]));
   EXPECT_LE(residual, 1e-9 * (K.cwiseAbs() * u.cwiseAbs()).maxCoeff());
-  return unflat(u);
+  Vectors displacements = unflat(u);
+  tissue_.place_hanging(displacements);
+  return displacements;
 }
 
 Vectors LinearStatics::reactions(const Vectors& displacements) const {

@@ -12,7 +12,8 @@ namespace plica::support {
 
 class LinearStatics {
  public:
-  /// Elasticity alone, volumes not held: the mean volumetric part is Dilatation's.
+  /// Elasticity alone, volumes not held: the mean volumetric part is Dilatation's. The tissue outlives it; what is
+  /// prescribed and loaded are its free nodes.
   LinearStatics(const Tissue& tissue, const ElasticModuli& moduli);
   ~LinearStatics();
   LinearStatics(LinearStatics&& other) noexcept;
@@ -29,7 +30,7 @@ class LinearStatics {
     for (std::size_t n = 0; n < forces.size(); ++n) add_load(n, forces[n]);
   }
 
-  /// Displacements; prescribed ones as prescribed.
+  /// Displacements; prescribed ones as prescribed, hanging ones as the free ones say.
   [[nodiscard]] Vectors solve() const;
 
   /// K u - f: zero at free nodes, the supports' forces at the others.
@@ -39,6 +40,7 @@ class LinearStatics {
   explicit LinearStatics(const Tissue& tissue);
 
   struct Stiffness;  // a sparse matrix: its header is large
+  const Tissue& tissue_;
   int size_;
   std::vector<std::optional<double>> prescribed_;
   Eigen::VectorXd loads_;

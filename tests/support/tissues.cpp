@@ -15,7 +15,9 @@ Tissue with_rest_positions(Tissue tissue, Vectors positions) {
   tissue.rest_positions = std::move(positions);
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
     tissue.element_rest_shape[e] = gather(tissue.rest_positions, tissue.elements[e]);
-  for (Cell& cell : tissue.cells) cell.rest_shape = gather(tissue.rest_positions, cell.corners);
+  for (Cell& cell : tissue.cells)
+    for (std::size_t i = 0; i < cell.corners.size(); ++i)
+      cell.rest_shape[i] = tissue.rest_positions[cell.corners[i].index()];
   return tissue;
 }
 

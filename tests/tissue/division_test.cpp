@@ -175,10 +175,10 @@ TEST(Division, OfNeighboursAtOnceDoesNotDependOnTheirOrder) {
 
 TEST(Division, RestShapesOfDaughtersAreTheHalvesOfTheirMothers) {
   Tissue tissue = distorted_block(three_cells, 3, 4);
-  const HexPoints mother = tissue.cells[1].rest_shape;
+  const HexPoints mother = hexahedron(tissue.cells[1].rest_shape);
   const Division division = divide(tissue, std::vector<CellCut>{{CellId(1), 0}}, 0);
-  const HexPoints& low = tissue.cells[division.daughters[0][0].index()].rest_shape;
-  const HexPoints& high = tissue.cells[division.daughters[0][1].index()].rest_shape;
+  const HexPoints low = hexahedron(tissue.cells[division.daughters[0][0].index()].rest_shape);
+  const HexPoints high = hexahedron(tissue.cells[division.daughters[0][1].index()].rest_shape);
   for (const int i : {0, 3, 4, 7}) EXPECT_LE((low[i] - mother[i]).norm(), 1e-13);
   for (const int i : {1, 2, 5, 6}) EXPECT_LE((high[i] - mother[i]).norm(), 1e-13);
   for (const auto& [a, b] : {std::pair{1, 0}, {2, 3}, {5, 4}, {6, 7}}) {

@@ -67,7 +67,7 @@ TEST(TissueFromMesh, FindsTheOutsideHoweverTheCellsAreTurned) {
   EXPECT_EQ(tissue.node_count(), expected.node_count());
   EXPECT_NEAR(total_volume(tissue), total_volume(small_shell()), 1e-12 * total_volume(small_shell()));
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
-    const auto sorted = [](const std::array<NodeId, 8>& nodes, int from) {
+    const auto sorted = [](const std::vector<NodeId>& nodes, int from) {
       std::array<NodeId, 4> four{nodes[from], nodes[from + 1], nodes[from + 2], nodes[from + 3]};
       std::sort(four.begin(), four.end());
       return four;
@@ -110,7 +110,7 @@ TEST(TissueFromMesh, RefusesWhatDoesNotFit) {
   expect_error("cell 7 uses node -1", [](auto& m) { m.cells[7][2] = NodeId(-1); });
   expect_error("apical faces are given", [](auto& m) { m.apical_faces = {5}; });
   expect_error("faces are 0 to 5", [](auto& m) { m.apical_faces.assign(m.cells.size(), 6); });
-  expect_error("has 1 values for", [](auto& m) { m.arrays["short"] = {true}; });
+  expect_error("has 1 values for", [](auto& m) { m.arrays["short"] = {1}; });
   // A missing cell opens the shell: its surface is one.
   expect_error("a single surface", [](auto& m) { m.cells.erase(m.cells.begin() + 5); });
   // One cell with nodes of its own, at the same places.
@@ -126,9 +126,9 @@ TEST(TissueFromMesh, RefusesWhatDoesNotFit) {
 TEST(MeshBytes, ComeBackAsTheMesh) {
   HexahedralMesh mesh = mesh_of(small_shell());
   mesh.apical_faces.assign(mesh.cells.size(), 5);
-  mesh.arrays["a"] = CellSet(mesh.cells.size(), true);
-  mesh.arrays["b"] = CellSet(mesh.cells.size(), false);
-  mesh.arrays["b"][3] = true;
+  mesh.arrays["a"] = CellArray(mesh.cells.size(), 1);
+  mesh.arrays["b"] = CellArray(mesh.cells.size(), 0);
+  mesh.arrays["b"][3] = 0.25;
   const std::string bytes = mesh_to_bytes(mesh);
   const HexahedralMesh back = mesh_from_bytes(bytes);
   EXPECT_EQ(back.points, mesh.points);

@@ -32,12 +32,12 @@ std::vector<double> rest_face_areas(const Tissue& tissue, CellSide side) {
   std::vector<double> areas(tissue.cells.size(), 0.0);
   if (side == CellSide::lateral) {
     for (std::size_t c = 0; c < areas.size(); ++c)
-      for (int i = 0; i < 4; ++i) {
-        const auto& corners = tissue.cells[c].corners;
-        std::array<Vec3, 4> wall;
-        for (const auto& [k, corner] : {std::pair(0, i), {1, (i + 1) % 4}, {2, 4 + (i + 1) % 4}, {3, 4 + i}})
-          wall[k] = tissue.rest_positions[corners[corner].index()];
-        areas[c] += facet_area(wall);
+      for (std::size_t i = 0, sides = tissue.cells[c].sides(); i < sides; ++i) {
+        const auto at = [&](std::size_t corner) {
+          return tissue.rest_positions[tissue.cells[c].corners[corner].index()];
+        };
+        const std::size_t next = (i + 1) % sides;
+        areas[c] += facet_area({at(i), at(next), at(sides + next), at(sides + i)});
       }
     return areas;
   }
@@ -46,15 +46,18 @@ std::vector<double> rest_face_areas(const Tissue& tissue, CellSide side) {
   return areas;
 }
 
-// How many shares the cell's lines of that side and direction have together, and how long they are, in the mean.
-std::pair<double, double> lines_of(const Tissue& tissue, const Cell& cell, const CellEdge& like) {
+// The width that a line of the cell's stands for, for each of its shares: the face's area over the lengths of all lines
+// of that side and direction. A polygon's lines run every way: pulling alike they carry the same tension both along and
+// across, to which each contributes, so it is twice the area over the lengths of all.
+double width_of(const Tissue& tissue, const Cell& cell, const CellEdge& like, double area) {
   double shares = 0, length = 0;
   for (const auto& [line, share] : cell.lines) {
-    if (line.side != like.side || line.direction != like.direction) continue;
+    if (line.side != like.side || (cell.is_of_grid && line.direction != like.direction)) continue;
     shares += share;
     length += share * chain_length(line.nodes, tissue.rest_positions);
   }
-  return {shares, length / shares};
+  if (!cell.is_of_grid && like.side != CellSide::lateral) return 2 * area / length;
+  return area / (length / shares) / shares;
 }
 
 }  // namespace
@@ -85,14 +88,13 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
     delay = pattern.delays_s[c];
     for (const auto& [line, share] : cell.lines) {
       if (line.side != rule.side) continue;
-      const double ratio = line.direction == EdgeDirection::along    ? rule.along_ratio
-                           : line.direction == EdgeDirection::across ? rule.across_ratio
-                                                                     : 1;
-      // Of the tension times the width, area over length, each line its share.
-      const auto [shares, length] = lines_of(tissue, cell, line);
-      add(c, line.nodes, ratio, share, rule.tension * areas[c] / length / shares);
+      const double ratio =
+          line.side == CellSide::lateral ? 1 : line.along * rule.along_ratio + (1 - line.along) * rule.across_ratio;
+      // Of the tension times the width, each line its share.
+      const double tension = rule.tension > 0 ? rule.tension * width_of(tissue, cell, line, areas[c]) : 0;
+      add(c, line.nodes, ratio, share, tension);
     }
-    if (rule.diagonals && rule.side != CellSide::lateral) {
+    if (rule.diagonals && rule.side != CellSide::lateral && cell.sides() == 4) {
       const int first = rule.side == CellSide::apical ? 4 : 0;
       for (const int i : {0, 1})
         add(c, {cell.corners[first + i], cell.corners[first + i + 2]}, 0.5 * (rule.along_ratio + rule.across_ratio), 1);

@@ -7,12 +7,19 @@
 namespace plica {
 namespace {
 
-/// Scalar products of the mean edges of a face, along and across.
-Eigen::Matrix2d metric(const std::array<Vec3, 4>& corners) {
-  Eigen::Matrix<double, 3, 2> edges;
-  edges.col(0) = 0.5 * (corners[1] - corners[0] + corners[2] - corners[3]);
-  edges.col(1) = 0.5 * (corners[3] - corners[0] + corners[2] - corners[1]);
-  return edges.transpose() * edges;
+/// The mean over a polygon of the gradient of a field that its corners carry is the sum of their values times these
+/// (by Gauss' theorem; in the plane that the polygon lies closest to).
+std::vector<Eigen::RowVector2d> mean_gradient(std::span<const Vec3> polygon) {
+  const std::size_t n = polygon.size();
+  Vec3 twice_area = Vec3::Zero();
+  for (std::size_t i = 0; i < n; ++i) twice_area += (polygon[i] - polygon[0]).cross(polygon[(i + 1) % n] - polygon[0]);
+  const Vec3 normal = twice_area.normalized(), u = normal.unitOrthogonal(), v = normal.cross(u);
+  std::vector<Eigen::RowVector2d> weights;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 across = polygon[(i + 1) % n] - polygon[(i + n - 1) % n];
+    weights.emplace_back(Eigen::RowVector2d(across.dot(v), -across.dot(u)) / twice_area.norm());
+  }
+  return weights;
 }
 
 }  // namespace
@@ -23,17 +30,18 @@ OwnState::OwnState(const Tissue& tissue, const OwnStateRule& rule) : rule_(rule)
     for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
       const Cell& cell = tissue.cells[c];
       auto& edges = edges_.emplace_back();
-      for (int i = 0; i < 4; ++i) {
-        edges[i] = {cell.corners[i], cell.corners[i + 4]};
-        at_rest_[c] += 0.25 * (cell.rest_shape[i + 4] - cell.rest_shape[i]).norm();
+      const std::size_t sides = cell.sides();
+      for (std::size_t i = 0; i < sides; ++i) {
+        edges.push_back({cell.corners[i], cell.corners[i + sides]});
+        at_rest_[c] += (cell.rest_shape[i + sides] - cell.rest_shape[i]).norm() / static_cast<double>(sides);
       }
     }
     return;
   }
   if (rule.measure == OwnMeasure::apical_stretch) {
     for (const Cell& cell : tissue.cells) {
-      apices_.push_back({cell.corners[4], cell.corners[5], cell.corners[6], cell.corners[7]});
-      rest_metrics_.push_back(metric({cell.rest_shape[4], cell.rest_shape[5], cell.rest_shape[6], cell.rest_shape[7]}));
+      apices_.emplace_back(cell.apical_corners().begin(), cell.apical_corners().end());
+      gradients_.push_back(mean_gradient(std::span(cell.rest_shape).last(cell.sides())));
     }
     std::ranges::fill(at_rest_, 1.0);
     return;
@@ -46,13 +54,12 @@ std::vector<double> OwnState::sizes(std::span<const Vec3> x) const {
   std::vector<double> sizes(at_rest_.size(), 0.0);
   for (const Facet& facet : facets_) sizes[facet.cell.index()] += facet_area(gather(x, facet));
   for (std::size_t c = 0; c < edges_.size(); ++c)
-    for (const auto& [base, apex] : edges_[c]) sizes[c] += 0.25 * (x[apex.index()] - x[base.index()]).norm();
-  // The largest root of det(now - stretch^2 rest) = 0.
+    for (const auto& [base, apex] : edges_[c])
+      sizes[c] += (x[apex.index()] - x[base.index()]).norm() / static_cast<double>(edges_[c].size());
   for (std::size_t c = 0; c < apices_.size(); ++c) {
-    const auto& [a, b, d, e] = apices_[c];
-    const Eigen::Matrix2d now = metric({x[a.index()], x[b.index()], x[d.index()], x[e.index()]});
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> squares(now, rest_metrics_[c],
-                                                                            Eigen::EigenvaluesOnly);
+    Eigen::Matrix<double, 3, 2> stretch = Eigen::Matrix<double, 3, 2>::Zero();
+    for (std::size_t i = 0; i < apices_[c].size(); ++i) stretch += x[apices_[c][i].index()] * gradients_[c][i];
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> squares(stretch.transpose() * stretch, Eigen::EigenvaluesOnly);
     sizes[c] = std::sqrt(squares.eigenvalues()[1]);
   }
   return sizes;

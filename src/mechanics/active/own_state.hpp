@@ -44,11 +44,11 @@ class OwnState {
   [[nodiscard]] std::vector<double> sizes(std::span<const Vec3> positions) const;
 
   OwnStateRule rule_;
-  std::vector<Facet> facets_;                                // areas: those of the measure's side
-  std::vector<std::array<std::array<NodeId, 2>, 4>> edges_;  // heights: of each cell, from base to apex
-  std::vector<std::array<NodeId, 4>> apices_;                // stretches: corners of each cell's apex
-  std::vector<double> at_rest_;                              // cells; of stretches, 1
-  std::vector<Eigen::Matrix2d> rest_metrics_;                // stretches: of each apex; um^2
+  std::vector<Facet> facets_;                               // areas: those of the measure's side
+  std::vector<std::vector<std::array<NodeId, 2>>> edges_;   // heights: of each cell, from base to apex
+  std::vector<std::vector<NodeId>> apices_;                 // stretches: corners of each cell's apex
+  std::vector<std::vector<Eigen::RowVector2d>> gradients_;  // stretches: weights of these, for the mean gradient
+  std::vector<double> at_rest_;                             // cells; of stretches, 1
 };
 
 }  // namespace plica

@@ -63,13 +63,16 @@ void Corotational::fit(const Tissue& tissue, std::size_t place) {
     put_vector(X, lane, batch.hourglass[a]);
   }
   const double volume = hex_volume(rest);
+  // Cells of a grid keep the gradients that their scenarios were calibrated with.
+  const ModeGradients modes =
+      tissue.cells[tissue.element_cell[e].index()].is_of_grid ? ModeGradients::by_centre : ModeGradients::by_points;
   const ElasticModuli moduli = factors_[tissue.element_cell[e].index()] * moduli_;
   batch.shear[lane] = 2 * moduli.shear_modulus * volume;
-  put_stiffness(hourglass_stiffness(rest, moduli), lane, batch.stiffness);
+  put_stiffness(hourglass_stiffness(rest, moduli, modes), lane, batch.stiffness);
   if (viscous_batches_.empty()) return;
   ViscousBatch& viscous = viscous_batches_[place / batch_size];
   viscous.shear[lane] = 2 * shear_viscosity_ * volume;
-  put_stiffness(hourglass_stiffness(rest, viscous_moduli(shear_viscosity_)), lane, viscous.stiffness);
+  put_stiffness(hourglass_stiffness(rest, viscous_moduli(shear_viscosity_), modes), lane, viscous.stiffness);
 }
 
 void Corotational::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {

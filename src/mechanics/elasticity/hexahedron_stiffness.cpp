@@ -20,11 +20,27 @@ const std::array<Vec3, 8>& gauss_points() {
 // f_a = sum_i weights(i, a) N_i; the amplitudes of the incompatible modes follow those of the v_a without force.
 template <int n>
 Eigen::Matrix<double, 3 * n, 3 * n> condensed_stiffness(const HexPoints& rest, const ElasticModuli& moduli,
+                                                        ModeGradients modes,
                                                         const Eigen::Matrix<double, 8, n>& weights) {
   constexpr int all = n + 3;  // the last three: 1 - xi^2, 1 - eta^2, 1 - zeta^2
+  // Gradients of the modes, which vanish in the mean over the volume: so a constant strain is exact.
   const Mat3 centre_jacobian = hex_jacobian(rest, Vec3::Zero());
   const Mat3 centre_inverse = centre_jacobian.inverse();
   const double centre_determinant = centre_jacobian.determinant();
+  const auto modes_at = [](const Vec3& point, const Mat3& jacobian) -> Mat3 {
+    return -2 * jacobian.inverse().transpose() * Mat3(point.asDiagonal());
+  };
+  Mat3 mean_of_modes = Mat3::Zero();
+  if (modes == ModeGradients::by_points) {
+    double volume = 0;
+    for (const Vec3& point : gauss_points()) {
+      const Mat3 jacobian = hex_jacobian(rest, point);
+      const double weight = jacobian.determinant();
+      volume += weight;
+      mean_of_modes += weight * modes_at(point, jacobian);
+    }
+    mean_of_modes /= volume;
+  }
   const double lambda = moduli.lame_lambda, mu = moduli.shear_modulus;
 
   Eigen::Matrix<double, 3 * all, 3 * all> K = Eigen::Matrix<double, 3 * all, 3 * all>::Zero();
@@ -36,9 +52,11 @@ Eigen::Matrix<double, 3 * n, 3 * n> condensed_stiffness(const HexPoints& rest, c
     for (int i = 0; i < 8; ++i) by_reference.col(i) = shape_gradients[i];
     Eigen::Matrix<double, 3, all> g;
     g.template leftCols<n>() = jacobian.inverse().transpose() * (by_reference * weights);
-    // Gradients of the incompatible modes with the centre's Jacobian, so that they vanish in the mean.
-    g.template rightCols<3>() =
-        -2 * centre_determinant / weight * centre_inverse.transpose() * Mat3(point.asDiagonal());
+    if (modes == ModeGradients::by_points)
+      g.template rightCols<3>() = modes_at(point, jacobian) - mean_of_modes;
+    else
+      g.template rightCols<3>() =
+          -2 * centre_determinant / weight * centre_inverse.transpose() * Mat3(point.asDiagonal());
     // Isotropic: the block of functions a and b is lambda g_a g_b^T + mu (g_b g_a^T + g_a . g_b I).
     for (int b = 0; b < all; ++b)
       for (int a = b; a < all; ++a) {
@@ -50,9 +68,9 @@ Eigen::Matrix<double, 3 * n, 3 * n> condensed_stiffness(const HexPoints& rest, c
   for (int b = 0; b < all; ++b)
     for (int a = 0; a < b; ++a) K.template block<3, 3>(3 * a, 3 * b) = K.template block<3, 3>(3 * b, 3 * a).transpose();
   const Eigen::Matrix<double, 9, 3 * n> mixed = K.template bottomLeftCorner<9, 3 * n>();
-  const Eigen::Matrix<double, 9, 9> modes = K.template bottomRightCorner<9, 9>();
+  const Eigen::Matrix<double, 9, 9> of_modes = K.template bottomRightCorner<9, 9>();
   const Eigen::Matrix<double, 3 * n, 3 * n> stiffness =
-      K.template topLeftCorner<3 * n, 3 * n>() - mixed.transpose() * modes.ldlt().solve(mixed);
+      K.template topLeftCorner<3 * n, 3 * n>() - mixed.transpose() * of_modes.ldlt().solve(mixed);
   return 0.5 * (stiffness + stiffness.transpose());
 }
 
@@ -72,8 +90,8 @@ std::array<Vec3, 8> mean_gradients(const HexPoints& rest) {
   return gradients;
 }
 
-Mat24 incompatible_stiffness(const HexPoints& rest, const ElasticModuli& moduli) {
-  return condensed_stiffness<8>(rest, moduli, Mat8::Identity());
+Mat24 incompatible_stiffness(const HexPoints& rest, const ElasticModuli& moduli, ModeGradients modes) {
+  return condensed_stiffness<8>(rest, moduli, modes, Mat8::Identity());
 }
 
 const std::array<std::array<double, 8>, 7> hex_modes = {{{-1, 1, 1, -1, -1, 1, 1, -1},
@@ -84,7 +102,7 @@ const std::array<std::array<double, 8>, 7> hex_modes = {{{-1, 1, 1, -1, -1, 1, 1
                                                          {1, -1, -1, 1, -1, 1, 1, -1},
                                                          {-1, 1, -1, 1, 1, -1, 1, -1}}};
 
-Mat12 hourglass_stiffness(const HexPoints& rest, const ElasticModuli& moduli) {
+Mat12 hourglass_stiffness(const HexPoints& rest, const ElasticModuli& moduli, ModeGradients modes) {
   // Displacements with one hourglass amplitude of 1 and no other, no mean and no mean gradient: the last columns of the
   // inverse of what measures these.
   const std::array<Vec3, 8> b = mean_gradients(rest);
@@ -98,7 +116,7 @@ Mat12 hourglass_stiffness(const HexPoints& rest, const ElasticModuli& moduli) {
     for (int i = 0; i < 8; ++i) X += hex_modes[3 + a][i] * rest[i];
     for (int i = 0; i < 8; ++i) measures(4 + a, i) = hex_modes[3 + a][i] - b[i].dot(X);
   }
-  return condensed_stiffness<4>(rest, moduli, measures.inverse().rightCols<4>());
+  return condensed_stiffness<4>(rest, moduli, modes, measures.inverse().rightCols<4>());
 }
 
 }  // namespace plica

@@ -30,10 +30,16 @@ ElasticModuli viscous_moduli(double shear_viscosity);
 /// Mean gradients b_i of the shape functions over the rest volume, 1/um: mean deformation gradient F = sum x_i b_i^T.
 std::array<Vec3, 8> mean_gradients(const HexPoints& rest);
 
+/// What the gradients of the incompatible modes are taken with: the Jacobian of the element's centre, or that of each
+/// point, less the mean. They differ where elements are no parallelepipeds: a sheet of polygons is 6 to 10 % too stiff
+/// in bending by the first at a Poisson's ratio of 0.45, and right by the second (polygons_test.cpp).
+enum class ModeGradients { by_centre, by_points };
+
 /// The stiffness of one rest shape: 24 x 24, node by node, nN/um; nine incompatible modes condensed. Kept is the mean
 /// volumetric part. Exactly zero on rigid translations and small rotations; exact on constant strain (patch test).
 /// Source: Taylor, Beresford, Wilson 1976 for the correction of the modes.
-Mat24 incompatible_stiffness(const HexPoints& rest, const ElasticModuli& moduli);
+Mat24 incompatible_stiffness(const HexPoints& rest, const ElasticModuli& moduli,
+                             ModeGradients modes = ModeGradients::by_centre);
 
 /// Signs at the nodes of the seven modes of a trilinear hexahedron: xi, eta, zeta, and the four hourglasses xi eta, eta
 /// zeta, zeta xi, xi eta zeta; [mode][node]. Together with the constant they are orthogonal.
@@ -42,6 +48,7 @@ extern const std::array<std::array<double, 8>, 7> hex_modes;
 /// The part of that stiffness that no linear displacement feels, H: 12 x 12, hourglass by hourglass, nN/um. With
 /// h_a = sum_i (h_ai - b_i . X_a) u_i, h_ai the signs and X_a = sum_i h_ai X_i, the energy of a displacement u is that
 /// of its mean strain and h^T H h / 2.
-Mat12 hourglass_stiffness(const HexPoints& rest, const ElasticModuli& moduli);
+Mat12 hourglass_stiffness(const HexPoints& rest, const ElasticModuli& moduli,
+                          ModeGradients modes = ModeGradients::by_centre);
 
 }  // namespace plica

@@ -4,7 +4,7 @@
 
 namespace plica {
 
-ShellDrag::ShellDrag(const Tissue& tissue, const Capsule& shell, double drag) : shell_(tissue, shell), drag_(drag) {
+ShellDrag::ShellDrag(const Tissue& tissue, const OuterShape& shell, double drag) : shell_(tissue, shell), drag_(drag) {
   take_areas(tissue);
 }
 

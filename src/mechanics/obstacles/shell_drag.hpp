@@ -15,7 +15,7 @@ class ShellDrag final : public Law {
   static constexpr double film_um = 0.1;
 
   /// `drag` in nN s/um^3 (1 Pa s/um is 1e-3), of the area at rest.
-  ShellDrag(const Tissue& tissue, const Capsule& shell, double drag);
+  ShellDrag(const Tissue& tissue, const OuterShape& shell, double drag);
 
   [[nodiscard]] std::string_view name() const override { return "shell-drag"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<ShellDrag>(*this); }

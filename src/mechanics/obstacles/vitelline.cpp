@@ -17,22 +17,11 @@ Capsule enclosing_capsule(const Vectors& positions) {
   return capsule;
 }
 
-Vitelline::Vitelline(const Tissue& tissue, const Capsule& shell) : shell_(shell) {
+Vitelline::Vitelline(const Tissue& tissue, const OuterShape& shell) : shell_(shell) {
   for (const Facet& facet : tissue.apical_facets) nodes_.insert(nodes_.end(), facet.nodes.begin(), facet.nodes.end());
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
   std::erase_if(nodes_, [&](NodeId node) { return node.index() >= tissue.free_node_count(); });
-}
-
-Obstacle::Gap Vitelline::gap(const Vec3& position) const {
-  // Distance to the axis segment; on the cylinder it does not change along x.
-  const double foot_x = std::clamp(position.x(), -shell_.half_axis_um, shell_.half_axis_um);
-  const Vec3 from_axis(position.x() - foot_x, position.y(), position.z());
-  const double distance = from_axis.norm();
-  const Vec3 outward = distance > 0 ? Vec3(from_axis / distance) : Vec3(Vec3::UnitZ());
-  Mat3 across = Mat3::Identity() - outward * outward.transpose();
-  if (foot_x == position.x()) across -= Vec3::UnitX() * Vec3::UnitX().transpose();
-  return {shell_.radius_um - distance, -outward, -across / std::max(distance, 1e-12 * shell_.radius_um)};
 }
 
 }  // namespace plica

@@ -16,21 +16,21 @@ Capsule enclosing_capsule(const Vectors& positions);
 
 class Vitelline final : public Obstacle {
  public:
-  /// A capsule or ball; the nodes are those of the tissue's apical surface.
-  Vitelline(const Tissue& tissue, const Capsule& shell);
+  /// The nodes are those of the tissue's apical surface.
+  Vitelline(const Tissue& tissue, const OuterShape& shell);
 
   [[nodiscard]] std::string_view name() const override { return "vitelline"; }
   [[nodiscard]] std::unique_ptr<Obstacle> clone() const override { return std::make_unique<Vitelline>(*this); }
   [[nodiscard]] std::span<const NodeId> nodes() const override { return nodes_; }
-  [[nodiscard]] Gap gap(const Vec3& position) const override;
+  [[nodiscard]] Gap gap(const Vec3& position) const override { return shell_.gap(position); }
   [[nodiscard]] std::unique_ptr<Obstacle> after_division(const Tissue& tissue, const Division&) const override {
     return std::make_unique<Vitelline>(tissue, shell_);
   }
 
-  [[nodiscard]] const Capsule& shell() const { return shell_; }
+  [[nodiscard]] const OuterShape& shell() const { return shell_; }
 
  private:
-  Capsule shell_;
+  OuterShape shell_;
   std::vector<NodeId> nodes_;
 };
 

@@ -9,9 +9,9 @@ std::string mesh_to_bytes(const HexahedralMesh& mesh) {
   put(mesh.points, bytes);
   put(mesh.cells, bytes);
   put(mesh.apical_faces, bytes);
-  for (const auto& [name, set] : mesh.arrays) {
+  for (const auto& [name, values] : mesh.arrays) {
     put(name, bytes);
-    put(std::string(set.begin(), set.end()), bytes);
+    put(values, bytes);
   }
   return bytes;
 }
@@ -22,8 +22,8 @@ HexahedralMesh mesh_from_bytes(std::string_view bytes) try {
   mesh.cells = take<std::vector<std::array<NodeId, 8>>>(bytes);
   mesh.apical_faces = take<std::vector<int>>(bytes);
   while (!bytes.empty()) {
-    const auto name = take<std::string>(bytes), flags = take<std::string>(bytes);
-    mesh.arrays[name] = CellSet(flags.begin(), flags.end());
+    const auto name = take<std::string>(bytes);
+    mesh.arrays[name] = take<CellArray>(bytes);
   }
   return mesh;
 } catch (const BytesEndEarly&) {

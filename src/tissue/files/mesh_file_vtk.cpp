@@ -27,7 +27,7 @@ std::vector<int> apical_faces(vtkDataArray& array) {
   return faces;
 }
 
-/// Arrays of one number a cell: as sets where it is neither 0 nor NaN, or as the faces that are apical.
+/// Arrays of one number a cell: 0 where it is not finite, or as the faces that are apical.
 void copy_arrays(vtkUnstructuredGrid& grid, const std::string& apical_array, HexahedralMesh& mesh) {
   std::string names;
   for (int a = 0; a < grid.GetCellData()->GetNumberOfArrays(); ++a) {
@@ -42,11 +42,10 @@ void copy_arrays(vtkUnstructuredGrid& grid, const std::string& apical_array, Hex
       mesh.apical_faces = apical_faces(*array);
       continue;
     }
-    CellSet& set = mesh.arrays[name];
-    set.resize(mesh.cells.size());
-    for (std::size_t cell = 0; cell < set.size(); ++cell) {
+    CellArray& values = mesh.arrays[name];
+    for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell) {
       const double value = array->GetComponent(static_cast<vtkIdType>(cell), 0);
-      set[cell] = value != 0 && !std::isnan(value);
+      values.push_back(std::isfinite(value) ? value : 0);
     }
   }
   if (!apical_array.empty() && mesh.apical_faces.empty())

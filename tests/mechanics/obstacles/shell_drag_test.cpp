@@ -22,7 +22,7 @@ Tissue block() {
   return with_rest_positions(std::move(tissue), std::move(positions));
 }
 
-ShellDrag drag_at(const Tissue& tissue, double gap) { return {tissue, {50, 100 + gap}, 0.3}; }
+ShellDrag drag_at(const Tissue& tissue, double gap) { return {tissue, Capsule{50, 100 + gap}, 0.3}; }
 
 TEST(ShellDrag, DerivativesAgreeWithFiniteDifferences) {
   check_derivatives(drag_at(block(), 60), block(), 1);  // nodes move about: some are inside, some outside

@@ -153,7 +153,7 @@ TEST_F(MeshFileTest, ACellIsTurnedForEachOfItsFaces) {
     std::array<int, 4> apical{};
     for (int i = 0; i < 4; ++i) apical[i] = read.cells[0].corners[4 + i].number();
     EXPECT_EQ(apical, hex_faces[face]);
-    EXPECT_NEAR(hex_scaled_jacobian(gather(read.rest_positions, read.cells[0].corners)), 1, 1e-12);
+    EXPECT_NEAR(hex_scaled_jacobian(hexahedron(read.cells[0].rest_shape)), 1, 1e-12);
     EXPECT_EQ(read.apical_facets.size(), 4U);
     EXPECT_EQ(read.basal_facets.size(), 4U);
     EXPECT_TRUE(read.cell_arrays.empty());
@@ -184,7 +184,7 @@ TEST_F(MeshFileTest, ArraysOfOneComponentAreSetsOfCellsAndUnusedNodesGo) {
   const Tissue read = read_mesh_file(file, "apical", {1, 1, 1});
   EXPECT_EQ(read.node_count(), 8U);
   EXPECT_EQ(read.rest_positions[0], Vec3::Zero());
-  EXPECT_EQ(read.cell_arrays, (std::map<std::string, CellSet>{{"furrow", {true}}, {"rest", {false}}}));
+  EXPECT_EQ(read.cell_arrays, (std::map<std::string, CellArray>{{"furrow", {0.5}}, {"rest", {0}}}));
 }
 
 TEST_F(MeshFileTest, WhatIsNoMeshIsAFileErrorInOneLine) {

@@ -206,8 +206,8 @@ TEST(Embryo, NodesLieOnTheSurfacesOfTheirLayers) {
     const Tissue tissue = build_shell(shape);
     ASSERT_TRUE(tissue.outer_shape.has_value());
     const double half_axis = (shape.length_um - shape.diameter_um) / 2;
-    EXPECT_EQ(tissue.outer_shape->half_axis_um, half_axis);
-    EXPECT_EQ(tissue.outer_shape->radius_um, 140);
+    EXPECT_EQ(tissue.outer_shape->capsule()->half_axis_um, half_axis);
+    EXPECT_EQ(tissue.outer_shape->capsule()->radius_um, 140);
     const int layers = shape.elements_per_cell[2];
     std::map<long, int> counts;
     for (const Vec3& x : tissue.rest_positions) {

@@ -1,0 +1,28 @@
+// From polygons to a tissue: each cell is a prism over a polygon, made of hexahedra over quadrilaterals that the
+// polygon is split into. Nothing outside of this folder knows how.
+#pragma once
+
+#include <vector>
+
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// A layer of prisms side by side: walls between neighbours are bilinear.
+struct PrismSheet {
+  Vectors apical, basal;                        // vertices, one below the other; um
+  std::vector<std::vector<std::size_t>> cells;  // vertices of each polygon, counter-clockwise seen from outside
+};
+
+enum class PolygonSplit {
+  /// By diagonals. An odd polygon gets a node in the middle of an edge, which hangs on the edge's ends: so what the
+  /// neighbour is made of does not matter. A triangle is split as by kites, with nodes that hang on all its edges.
+  diagonals,
+  /// A kite a corner: from there to the middles of its edges and that of the polygon. All nodes are free.
+  kites
+};
+
+/// Each prism cut into so many layers. Polygons are split in the way that makes the best elements. Region "all" is set.
+Tissue tissue_from_prisms(const PrismSheet& sheet, PolygonSplit split, int layers);
+
+}  // namespace plica

@@ -1,0 +1,31 @@
+// Embryos of polygonal cells on a smooth surface: an egg, or cells about points that were measured.
+#pragma once
+
+#include <cstdint>
+
+#include "tissue/prisms.hpp"
+#include "tissue/shapes/egg_surface.hpp"
+
+namespace plica {
+
+struct PolygonCells {
+  double height_um = 35;
+  PolygonSplit split = PolygonSplit::diagonals;
+  int layers = 1;                 // of elements, from basal to apical
+  double least_edge_ratio = 0.3;  // to the mean edge: shorter ones are lengthened
+};
+
+/// An egg with as many cells, evenly spread; other seeds spread them otherwise. MeshError as egg_surface and
+/// polygons_of_points.
+Tissue build_egg(const EggShape& shape, std::size_t count, std::uint64_t seed, const PolygonCells& cells);
+
+struct MeasuredPoints {
+  Vectors points;          // um; one a cell, on a closed surface around the origin
+  double depth_um = 0;     // how far they lie below the apical surface
+  Vec3 scale = {1, 1, 1};  // after that, along x, y, z
+};
+
+/// A cell about each point, in their order; the apical surface is a smooth one through them. MeshError names rows.
+Tissue build_about_points(const MeasuredPoints& measured, const PolygonCells& cells);
+
+}  // namespace plica

@@ -1,0 +1,115 @@
+// Every law on cells that are polygons: a sheet of irregular ones, bent over a hill.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "mechanics/active/contraction.hpp"
+#include "mechanics/active/cortex.hpp"
+#include "mechanics/active/own_state.hpp"
+#include "mechanics/constraints/cell_volume.hpp"
+#include "mechanics/contact/self_contact.hpp"
+#include "mechanics/elasticity/corner_barrier.hpp"
+#include "mechanics/elasticity/corotational.hpp"
+#include "mechanics/elasticity/neo_hookean.hpp"
+#include "mechanics/elasticity/shape_memory.hpp"
+#include "mechanics/surroundings.hpp"
+#include "support/constraint_law.hpp"
+#include "support/law_checks.hpp"
+#include "support/prisms.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+class LawsOnPolygons : public testing::TestWithParam<PolygonSplit> {
+ protected:
+  const Tissue tissue =
+      tissue_from_prisms(bent(irregular_polygons(4, 4, 8, 20, 0.1, 3),
+                              [](const Vec3& x) {
+                                const double radius = 80 + x.z(), angle = x.x() / 80;
+                                return Vec3(radius * std::sin(angle), x.y(), radius * std::cos(angle));
+                              }),
+                         GetParam(), 1);
+  const CellSet all = CellSet(tissue.cells.size(), true);
+};
+
+INSTANTIATE_TEST_SUITE_P(Splits, LawsOnPolygons, testing::Values(PolygonSplit::diagonals, PolygonSplit::kites),
+                         [](const auto& info) { return info.param == PolygonSplit::kites ? "kites" : "diagonals"; });
+
+TEST_P(LawsOnPolygons, DerivativesAgreeWithFiniteDifferences) {
+  const double size_um = 0.3;
+  check_derivatives(Corotational(tissue, ElasticModuli::from_young(1, 0.45), 2), tissue, size_um, 1);
+  check_derivatives(NeoHookean(tissue, std::vector(tissue.cells.size(), 0.4)), tissue, size_um, 1);
+  check_derivatives(ShapeMemory(tissue, {.stiffness = 8}, 0), tissue, size_um, 1);
+  check_derivatives(CornerBarrier(tissue, 0.4, 3), tissue, size_um / 2, 1);
+  check_derivatives(Dilatation(tissue, 3), tissue, size_um, 1);
+  std::vector<double> pressures;
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) pressures.push_back(c % 3 == 0 ? 0.7 : -0.4);
+  check_derivatives(ConstraintLaw(CellVolumes(tissue), pressures), tissue, size_um, 1);
+  for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
+    check_derivatives(Cortex(tissue, all, {.side = side, .tension = 1.4, .saturation = 0.16, .stiffness = 0.7}), tissue,
+                      size_um, 1);
+    check_derivatives(
+        Contraction(contraction_springs(
+                        tissue, all, {.side = side, .stiffness = 2, .across_ratio = 0.4, .preload = 1, .damping = 0.5}),
+                    {}),
+        tissue, size_um, 1);
+  }
+  check_derivatives(SurfaceDrag(tissue, 0.14), tissue, size_um, 1);
+}
+
+/// What springs carry per width of a sheet's cells, from the sum over them of force times length times direction twice.
+Mat3 stress_of(const std::vector<Spring>& springs, const Tissue& tissue, double area) {
+  Mat3 sum = Mat3::Zero();
+  for (const Spring& spring : springs) {
+    const Vec3 way =
+        tissue.rest_positions[spring.nodes.back().index()] - tissue.rest_positions[spring.nodes.front().index()];
+    sum += spring.preload / way.norm() * way * way.transpose();
+  }
+  return sum / area;
+}
+
+TEST_P(LawsOnPolygons, ATensionIsThatOfTheSheet) {
+  const Tissue flat = tissue_from_prisms(honeycomb(4, 4, 8, 20), GetParam(), 1);
+  const std::vector<double> areas = apical_areas(flat, flat.rest_positions);
+  const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
+  const auto of = [&](double across_ratio) {
+    return stress_of(
+        contraction_springs(flat, CellSet(flat.cells.size(), true), {.across_ratio = across_ratio, .tension = 1.5}),
+        flat, area);
+  };
+  const Mat3 even = of(1);
+  EXPECT_NEAR(even(0, 0), 1.5, 1e-12);
+  EXPECT_NEAR(even(1, 1), 1.5, 1e-12);
+  EXPECT_NEAR(even(0, 1), 0, 1e-12);
+  // Where both ratios differ, hexagons cannot part them wholly: an edge at 30 degrees pulls both ways.
+  const Mat3 along = of(0);
+  EXPECT_NEAR(along(0, 0), 0.75 * 1.5, 1e-12);
+  EXPECT_NEAR(along(1, 1), 0.25 * 1.5, 1e-12);
+}
+
+TEST_P(LawsOnPolygons, OwnStateIsThatOfTheWholeCell) {
+  const Mat3 stretch = Vec3(1.3, 0.8, 1.1).asDiagonal();
+  const Tissue flat = tissue_from_prisms(irregular_polygons(4, 4, 8, 20, 0.1, 3), GetParam(), 1);
+  Vectors x = flat.rest_positions;
+  for (Vec3& one : x) one = stretch * one;
+  const auto expect_all = [&](OwnMeasure measure, double expected) {
+    const OwnState state(flat, {.kind = OwnStateRule::Kind::starts_below, .measure = measure, .threshold = 1});
+    for (const double ratio : state.ratios(x)) EXPECT_NEAR(ratio, expected, 1e-12);
+  };
+  expect_all(OwnMeasure::apical_stretch, 1.3);
+  expect_all(OwnMeasure::apical_area_ratio, 1.3 * 0.8);
+  expect_all(OwnMeasure::height_ratio, 1.1);
+}
+
+TEST_P(LawsOnPolygons, ContactKnowsThem) {
+  const SelfContact contact(tissue, {});
+  double area = 0;
+  for (const SelfContact::Point& point : contact.points()) area += point.area;
+  const std::vector<double> areas = apical_areas(tissue, tissue.rest_positions);
+  EXPECT_NEAR(area, std::accumulate(areas.begin(), areas.end(), 0.0), 1e-9 * area);
+}
+
+}  // namespace
+}  // namespace plica

@@ -1,0 +1,29 @@
+// Sheets of polygonal cells that tests share.
+#pragma once
+
+#include "support/tissues.hpp"
+#include "tissue/prisms.hpp"
+
+namespace plica::support {
+
+/// Hexagons with edges of `edge_um`, in rows along x that lie beside each other, flat at z = 0 with their basal faces
+/// `height_um` below; the middle of the sheet is at 0.
+PrismSheet honeycomb(int columns, int rows, double edge_um, double height_um);
+
+/// Turns the wall between two cells that share one away from the rim, so that the two beside it meet: the two lose a
+/// corner each, those gain one.
+void exchange_neighbours(PrismSheet& sheet, std::size_t cell, std::size_t other);
+
+/// A honeycomb whose cells have four to eight corners, in an irregular order: vertices are displaced by up to `size` of
+/// an edge, alike at the apex and the base, and every seventh wall is turned.
+PrismSheet irregular_polygons(int columns, int rows, double edge_um, double height_um, double size, unsigned seed);
+
+/// The same, bent: from a place at height z = 0 or -height to where it lies.
+template <class Place>
+PrismSheet bent(PrismSheet sheet, const Place& place) {
+  for (Vectors* vertices : {&sheet.apical, &sheet.basal})
+    for (Vec3& x : *vertices) x = place(Vec3(x));
+  return sheet;
+}
+
+}  // namespace plica::support

@@ -1,0 +1,40 @@
+#include "tissue/files/points_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/errors.hpp"
+#include "tissue/hexahedral_mesh.hpp"
+
+namespace plica {
+namespace {
+
+TEST(PointsFile, HasItsColumnsByName) {
+  const PointTable table =
+      points_in_csv("\xef\xbb\xbf# measured\ncell,\"z_um\",x_um, y_um ,sna\r\n7,3,1,2,0.5\r\n\n8,-3,-1,-2e0,0");
+  ASSERT_EQ(table.points.size(), 2U);
+  EXPECT_EQ(table.points[0], Vec3(1, 2, 3));
+  EXPECT_EQ(table.points[1], Vec3(-1, -2, -3));
+  EXPECT_EQ(table.arrays, (std::map<std::string, std::vector<double>>{{"cell", {7, 8}}, {"sna", {0.5, 0}}}));
+}
+
+TEST(PointsFile, SaysInWhichLineWhatIsWrong) {
+  const auto expect = [](const char* text, const char* said) {
+    try {
+      points_in_csv(text);
+      FAIL() << text;
+    } catch (const MeshError& error) {
+      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+    }
+  };
+  expect("", "is empty; its first line names the columns, x_um, y_um and z_um among them");
+  expect("x,y,z\n1,2,3\n",
+         "line 1: should name the columns, x_um, y_um and z_um once each among them; it names x, y, z");
+  expect("x_um,y_um,z_um,z_um\n", "line 1: should name");
+  expect("x_um,y_um,z_um\n1,2,3\n1,2\n", "line 3: has 2 fields, and the first line has 3");
+  expect("x_um,y_um,z_um\n1,2,three\n", "line 2: \"three\" of column z_um is no number");
+  expect("x_um,y_um,z_um\n1,nan,3\n", "line 2: \"nan\" of column y_um is no number");
+  EXPECT_THROW(read_points_file("/nowhere/points.csv"), FileError);
+}
+
+}  // namespace
+}  // namespace plica
