@@ -101,21 +101,21 @@ def items(form, values):
 def mesh(points, cells, faces, arrays=()):
     """As tissue/files/mesh_bytes.cpp writes it."""
     data = items("3d", points) + items("8i", cells) + items("i", [(face,) for face in faces])
-    for name, flags in arrays:
-        data += struct.pack("<Q", len(name)) + name + struct.pack("<Q", len(flags)) + flags
+    for name, values in arrays:
+        data += struct.pack("<Q", len(name)) + name + items("d", [(value,) for value in values])
     return data
 
 
 def meshes():
     corners = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
-    one = mesh([tuple(10.0 * c for c in corner) for corner in corners], [tuple(range(8))], [5], [(b"marked", b"\1")])
+    one = mesh([tuple(10.0 * c for c in corner) for corner in corners], [tuple(range(8))], [5], [(b"marked", [1])])
     write("mesh", "one_cell", b"\0" + one)
     write("mesh", "one_cell_of_eight_elements", b"\5" + one)
     grid = [(10.0 * x, 10.0 * y, 20.0 * z) for z, y, x in itertools.product((0, 1), (0, 1, 2), (0, 1, 2))]
     index = lambda x, y, z: x + 3 * y + 9 * z
     four = [tuple(index(x + a, y + b, z) for z in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)))
             for x, y in itertools.product((0, 1), (0, 1))]
-    write("mesh", "four_cells", b"\0" + mesh(grid, four, [5] * 4, [(b"left", b"\1\1\0\0")]))
+    write("mesh", "four_cells", b"\0" + mesh(grid, four, [5] * 4, [(b"left", [1, 0.5, 0, 0])]))
     # A cube with a hollow cube in it: six cells around, and what is outside is found.
     shell = [tuple(size * (2 * c - 1.0) for c in corner) for size in (10, 20) for corner in corners]
     sides = ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0))

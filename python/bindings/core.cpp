@@ -36,7 +36,7 @@ using Whole = nb::ndarray<const int, nb::c_contig, nb::device::cpu>;
 /// Cells as a program has them: arrays whose shapes and numbers have been looked at.
 std::shared_ptr<const HexahedralMesh> mesh_of(const Numbers& points, const Whole& hexahedra,
                                               const std::vector<int>& apical_faces,
-                                              const std::map<std::string, std::vector<bool>>& arrays) {
+                                              const std::map<std::string, std::vector<double>>& arrays) {
   auto mesh = std::make_shared<HexahedralMesh>();
   for (std::size_t n = 0; n < points.shape(0); ++n)
     mesh->points.emplace_back(points.data()[3 * n], points.data()[3 * n + 1], points.data()[3 * n + 2]);
@@ -45,7 +45,7 @@ std::shared_ptr<const HexahedralMesh> mesh_of(const Numbers& points, const Whole
     for (std::size_t i = 0; i < 8; ++i) cell[i] = NodeId(hexahedra.data()[8 * c + i]);
   }
   mesh->apical_faces = apical_faces;
-  for (const auto& [name, cells] : arrays) mesh->arrays[name] = cells;
+  for (const auto& [name, values] : arrays) mesh->arrays[name] = values;
   return mesh;
 }
 

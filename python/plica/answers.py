@@ -245,7 +245,7 @@ def phase_diagram(
         cells = words.groupby([table[y], table[x]]).agg(_common).unstack()
         _paint_words(ax, colors, cells, rows, columns, VERDICTS if measure == "verdict" else {})
     else:
-        results = _results(table, measure)
+        results = _results(table, str(measure))
         lost = int(results.isna().sum())
         _paint_numbers(ax, results.groupby([table[y], table[x]]).mean().unstack(), rows, columns, str(measure))
     for axis, names, key in ((ax.xaxis, columns, x), (ax.yaxis, rows, y)):

@@ -131,7 +131,7 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
     note(fmt::format("the embryo starts {} um away from its shell", scenario.vitelline.gap_um));
 
   if (scenario.vitelline.enabled && shape_of(scenario.embryo) == EmbryoShape::file) {
-    const Capsule& mesh = *model.tissue.outer_shape;
+    const Capsule& mesh = *model.tissue.outer_shape->capsule();
     const double radius_um = mesh.radius_um + scenario.vitelline.gap_um;
     note(fmt::format("the shell is the capsule along x around the mesh, {:.4g} um long and {:.4g} um across",
                      2 * (mesh.half_axis_um + radius_um), 2 * radius_um));
@@ -142,6 +142,7 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
           axis == 1 ? "y" : "z"));
   }
 
+  for (const std::string& remark : model.tissue.remarks) note(remark);
   const std::vector<std::string> regions = contracting_regions(scenario, model.tissue);
   const std::string& measured = scenario.furrow.region;
   if (measured.empty() && regions.size() > 1)

@@ -53,8 +53,19 @@ void check_faces(const Scenario& scenario, const Tissue& tissue, std::vector<Dia
           fmt::format("no cell of this region has {} {} face", side_meant == CellSide::apical ? "an" : "a", side),
           fmt::format("name a region on that side, or give other {}", key)));
   };
-  for (const auto& [name, it] : scenario.contractions)
-    check("contraction." + name, "edges", it.edges, tissue.regions.at(it.region));
+  for (const auto& [name, it] : scenario.contractions) {
+    const CellSet& region = tissue.regions.at(it.region);
+    check("contraction." + name, "edges", it.edges, region);
+    if (!it.diagonals) continue;
+    for (std::size_t c = 0; c < region.size(); ++c)
+      if (region[c] && tissue.cells[c].sides() != 4) {
+        errors.push_back(diagnostic_at(scenario, "contraction." + name + ".diagonals",
+                                       fmt::format("cell {} has {} corners; which diagonals contract is told for four",
+                                                   c, tissue.cells[c].sides()),
+                                       "give false"));
+        break;
+      }
+  }
   for (const auto& [name, it] : scenario.cortices)
     check("cortex." + name, "faces", it.faces, tissue.regions.at(it.region));
   for (const auto& [name, it] : scenario.pressures)
@@ -104,7 +115,8 @@ void check_holds(const Scenario& scenario, const Tissue& tissue, std::vector<Dia
 void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
     if (!(hex_scaled_jacobian(tissue.element_rest_shape[e]) > 0)) {
-      errors.push_back(diagnostic_at(scenario, "embryo.cells",
+      const bool has_grid = is_of_grid(shape_of(scenario.embryo));
+      errors.push_back(diagnostic_at(scenario, has_grid ? "embryo.cells" : "embryo.cell_height_um",
                                      fmt::format("the mesh would be inverted: cell {} is inside out or flat at rest",
                                                  tissue.element_cell[e].number()),
                                      "take more cells, or flatter ones"));

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "scenario/builtin.hpp"
 #include "scenario/suggest.hpp"
 
 namespace plica {
@@ -327,6 +328,7 @@ class Reader {
     } else if (row.options.is_path) {
       // On the command line a path is relative to where the command runs, as everywhere in a shell.
       std::string& file = *std::get<std::string*>(slot);
+      if (is_builtin_table(file)) return;
       const std::filesystem::path folder = layer_.has_lines ? std::filesystem::path(layer_.file).parent_path() : "";
       file = std::filesystem::absolute(folder / file).lexically_normal().string();
     }

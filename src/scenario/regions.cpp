@@ -4,7 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
+#include <numbers>
 
 #include "core/names.hpp"
 #include "scenario/words.hpp"
@@ -21,7 +24,9 @@ bool in_strip(int place, int count, const std::optional<int>& wanted) {
   return !wanted || std::abs(2 * place - (count - 1)) < *wanted;
 }
 
-bool selected(const RegionInput& region, std::size_t id, const Cell& cell, const Tissue& tissue) {
+// `low` and `high`: where the tissue begins and ends along x.
+bool selected(const RegionInput& region, std::size_t id, const Cell& cell, const Tissue& tissue, double low,
+              double high) {
   if (!region.face.empty()) {
     const auto& place = cell.grid_place;
     if (!place || place->face != meaning_of(words::sides, region.face) ||
@@ -31,7 +36,16 @@ bool selected(const RegionInput& region, std::size_t id, const Cell& cell, const
   }
   if (!region.ids.empty() && std::ranges::find(region.ids, static_cast<int>(id)) == region.ids.end()) return false;
   const Vec3 centre = cell_centre(cell, tissue.rest_positions);
+  if (!inside(region.angle_deg, std::atan2(centre.y(), -centre.z()) * 180 / std::numbers::pi)) return false;
+  if (!inside(region.length_percent, 100 * (centre.x() - low) / (high - low))) return false;
   return inside(region.x_um, centre.x()) && inside(region.y_um, centre.y()) && inside(region.z_um, centre.z());
+}
+
+// Where the tissue begins and ends along x.
+std::pair<double, double> extent_along(const Tissue& tissue) {
+  std::pair extent(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
+  for (const Vec3& x : tissue.rest_positions) extent = {std::min(extent.first, x.x()), std::max(extent.second, x.x())};
+  return extent;
 }
 
 }  // namespace
@@ -50,25 +64,30 @@ Diagnostic diagnostic_at(const Scenario& scenario, const std::string& key, std::
 
 void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnostic>& errors) {
   const std::size_t cells = tissue.cells.size();
+  const auto [low, high] = extent_along(tissue);
   const std::function<const CellSet&(const std::string&)> resolve = [&](const std::string& name) -> const CellSet& {
     if (const auto known = tissue.regions.find(name); known != tissue.regions.end()) return known->second;
     const RegionInput& region = scenario.regions.at(name);
     CellSet set(cells, false);
-    for (std::size_t c = 0; c < cells; ++c) set[c] = selected(region, c, tissue.cells[c], tissue);
+    for (std::size_t c = 0; c < cells; ++c) set[c] = selected(region, c, tissue.cells[c], tissue, low, high);
     if (!region.array.empty()) {
       const auto array = tissue.cell_arrays.find(region.array);
       if (array == tissue.cell_arrays.end()) {
         const std::vector<std::string> names = keys_of(tissue.cell_arrays);
         errors.push_back(diagnostic_at(
-            scenario, "region." + name + ".array", fmt::format("the mesh has no cell array \"{}\"", region.array),
+            scenario, "region." + name + ".array", fmt::format("the file has no array \"{}\"", region.array),
             names.empty() ? "it has none" : fmt::format("it has {}", fmt::join(names, ", "))));
       } else {
-        for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] && array->second[c];
+        const auto is_wanted = [&](double value) {
+          if (!region.above && !region.below) return value != 0;
+          return (!region.above || value > *region.above) && (!region.below || value < *region.below);
+        };
+        for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] && is_wanted(array->second[c]);
       }
     }
     // A region of named others only starts from nothing, one with selectors from what they select.
     const bool only_others = region.face.empty() && region.ids.empty() && region.array.empty() && !region.x_um &&
-                             !region.y_um && !region.z_um;
+                             !region.y_um && !region.z_um && !region.angle_deg && !region.length_percent;
     if (only_others && !region.unite.empty()) set.assign(cells, false);
     const auto combine = [&](const CellSet& other, auto operation) {
       std::transform(set.begin(), set.end(), other.begin(), set.begin(), operation);

@@ -27,23 +27,34 @@ struct RegionInput {
   std::optional<int> cells_along;  // centred strip of the face
   std::optional<int> cells_across;
   std::vector<int> ids;
-  std::string array;                                  // cell array of the mesh file; cells where it is not 0
+  std::string array;                                  // cell array of the file; cells where it is not 0, or
+  std::optional<double> above, below;                 // where it is above, and below
+  std::optional<Range> angle_deg;                     // of the cell's centre about x, from the belly towards +y
+  std::optional<Range> length_percent;                // of the embryo's length, from the anterior end
   std::optional<Range> x_um, y_um, z_um;              // of the cell's centre at rest
   std::vector<std::string> unite, intersect, except;  // TOML keys: union, intersect, except
 };
 
-enum class EmbryoShape { pill, sphere, slice, block, file };
+enum class EmbryoShape { pill, sphere, slice, block, egg, points, file };
 
 struct EmbryoInput {
-  std::string shape = "pill";  // pill | sphere | slice | block | file
-  double length_um = 460;      // pill, slice, block: along x
-  double diameter_um = 280;    // pill, sphere, slice
+  std::string shape = "pill";  // pill | sphere | slice | block | egg | points | file
+  double length_um = 460;      // pill, slice, block, egg: along x
+  double diameter_um = 280;    // pill, sphere, slice, egg
   double width_um = 20;        // block: along y
   double cell_height_um = 40;
   std::array<int, 3> cells = {18, 9, 8};
   std::array<int, 3> elements_per_cell = {1, 1, 1};
-  std::vector<std::string> mirror;  // x, y: planes through the middle, of which one side is solved
-  std::string file;                 // shape = "file": a hexahedral mesh that VTK reads
+  std::vector<std::string> mirror;                  // x, y: planes through the middle, of which one side is solved
+  int cell_count = 6000;                            // egg
+  int seed = 1;                                     // egg: how its cells are spread
+  std::optional<double> belly_sag_um, back_sag_um;  // egg: how much its outline bulges
+  std::string elements = "diagonals";               // egg, points: diagonals | kites
+  double least_edge_ratio = 0.3;                    // egg, points: to the mean; shorter edges are lengthened
+  int layers = 1;                                   // egg, points: elements from basal to apical
+  std::vector<double> scale = {1, 1, 1};            // points
+  double points_depth_um = 0;                       // points: below the apical surface, before they are scaled
+  std::string file;                                 // "file": a hexahedral mesh that VTK reads; "points": a table
   std::string apical_array;  // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;
                              // empty: the outer surface
   std::shared_ptr<const HexahedralMesh> mesh;  // in place of what the file holds: from a program, not from TOML

@@ -22,7 +22,9 @@ std::vector<std::string_view> quantity_names() {
 }
 
 constexpr double max_count = 100000;
-const std::vector<std::string_view> built = {"pill", "sphere", "slice", "block"};  // shapes that plica makes
+const std::vector<std::string_view> of_grid = {"pill", "sphere", "slice", "block"};  // shapes whose cells lie on a grid
+const std::vector<std::string_view> of_polygons = {"egg", "points"};
+const std::vector<std::string_view> built = {"pill", "sphere", "slice", "block", "egg", "points"};  // that plica makes
 
 using S = Scenario;
 
@@ -60,9 +62,12 @@ std::vector<Row> make_rows() {
 
       embryo("shape", &E::shape, one_of(words::embryo_shapes),
              "Closed sheets (pill, sphere); a ring of cells from the middle of an endless embryo (slice: plane strain, "
-             "nodes move across the axis only); a block of cells; or a mesh file."),
-      embryo("length_um", &E::length_um, positive, "Length along x (µm).", {.shapes = {"pill", "slice", "block"}}),
-      embryo("diameter_um", &E::diameter_um, positive, "Outer diameter (µm).", {.shapes = {"pill", "sphere", "slice"}}),
+             "nodes move across the axis only); a block of cells; an egg of polygonal cells; polygonal cells about "
+             "measured points; or a mesh file."),
+      embryo("length_um", &E::length_um, positive, "Length along x (µm).",
+             {.shapes = {"pill", "slice", "block", "egg"}}),
+      embryo("diameter_um", &E::diameter_um, positive, "Outer diameter (µm).",
+             {.shapes = {"pill", "sphere", "slice", "egg"}}),
       embryo("width_um", &E::width_um, positive, "Width along y (µm).", {.shapes = {"block"}}),
       embryo("cell_height_um", &E::cell_height_um, positive, "Height of a cell from basal to apical (µm).",
              {.shapes = built}),
@@ -70,16 +75,40 @@ std::vector<Row> make_rows() {
           "cells", &E::cells, between(1, max_count),
           "Number of cells along the axis (x), across the belly (y), belly to back (z). A ring of a slice has those of "
           "belly, back and both sides: `[1, 20, 20]` is 80 cells.",
-          {.shapes = built}),
+          {.shapes = of_grid}),
       embryo("elements_per_cell", &E::elements_per_cell, between(1, 16),
              "Elements of a cell along, across, basal to apical: refines the elements, not the cells.",
-             {.shapes = built}),
+             {.shapes = {"pill", "sphere", "slice", "block", "file"}}),
+      embryo("cell_count", &E::cell_count, between(12, max_count), "Number of cells.", {.shapes = {"egg"}}),
+      embryo("seed", &E::seed, between(0, 1e9), "How the cells are spread: another number, other cells.",
+             {.shapes = {"egg"}}),
+      embryo("belly_sag_um", &E::belly_sag_um, positive,
+             "How far the belly's outline bulges beyond its chord from 20 to 80 % of the length (µm); goes with "
+             "`back_sag_um`. Without both, an ellipsoid.",
+             {.shapes = {"egg"}}),
+      embryo("back_sag_um", &E::back_sag_um, positive, "The same of the back (µm).", {.shapes = {"egg"}}),
+      embryo(
+          "elements", &E::elements, one_of(words::polygon_splits),
+          "How the prism over a polygon is made of hexahedra: by diagonals of the polygon, or a kite a corner, which "
+          "takes three times as many.",
+          {.shapes = of_polygons}),
+      embryo("least_edge_ratio", &E::least_edge_ratio, between(0, 0.5),
+             "Apical edges that are shorter, over the mean of all, are lengthened: their cells would bear little. 0: "
+             "none.",
+             {.shapes = of_polygons}),
+      embryo("layers", &E::layers, between(1, 16), "Elements from basal to apical.", {.shapes = of_polygons}),
+      embryo("points_depth_um", &E::points_depth_um, not_negative,
+             "How far below the apical surface the points lie (µm, as measured).", {.shapes = {"points"}}),
+      embryo("scale", &E::scale, positive, "Factors along x, y, z on what was measured: fixed embryos have shrunk.",
+             {.shapes = {"points"}}),
       embryo("mirror", &E::mirror, one_of(words::mirror_planes),
              "The embryo is symmetric about these planes through its middle, `\"x\"` across the axis and `\"y\"` along "
              "the midline: one side is solved, at less cost, and the whole shown and measured. `[]`: no planes.",
              {.may_be_empty = true}),
-      embryo("file", &E::file, anything, "Hexahedral mesh, path relative to the scenario's file.",
-             {.is_path = true, .shapes = {"file"}}),
+      embryo("file", &E::file, anything,
+             "Path relative to the scenario's file: a hexahedral mesh; or, of shape points, a table in CSV whose first "
+             "line names its columns, `x_um`, `y_um` and `z_um` and any others, which become arrays.",
+             {.is_path = true, .shapes = {"file", "points"}}),
       embryo("apical_array", &E::apical_array, anything,
              "Cell array of the file with the apical face (0 to 5, VTK's order) of each cell; without it the outer "
              "surface is apical.",
@@ -91,7 +120,16 @@ std::vector<Row> make_rows() {
       region("cells_across", &R::cells_across, between(1, max_count),
              "Only a centred strip of the face, this many cells across (y; z on the side and end faces)."),
       region("ids", &R::ids, not_negative, "Cells by number, from 0."),
-      region("array", &R::array, anything, "Cell array of the mesh file: cells where it is not 0."),
+      region("array", &R::array, anything,
+             "Array of the file: cells where it is not 0, or as `above` and `below` say."),
+      region("above", &R::above, anything, "Where the array is above this."),
+      region("below", &R::below, anything, "Where the array is below this."),
+      region(
+          "angle_deg", &R::angle_deg, anything,
+          "Cells whose centre at rest lies at these angles about the axis, from -180 to 180: 0 at the belly, 90 on the "
+          "right."),
+      region("length_percent", &R::length_percent, between(0, 100),
+             "Cells whose centre at rest lies in this part of the length, from the anterior end."),
       region("x_um", &R::x_um, anything,
              "Cells whose centre at rest lies in this range of x (µm); 0 is the middle of a built embryo, in y and z "
              "too."),

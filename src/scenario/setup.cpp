@@ -1,11 +1,13 @@
 #include "scenario/setup.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <functional>
 #include <set>
 
+#include "core/errors.hpp"
 #include "core/units.hpp"
 #include "measure/cells.hpp"
 #include "mechanics/active/contraction.hpp"
@@ -21,12 +23,15 @@
 #include "mechanics/obstacles/vitelline.hpp"
 #include "mechanics/surroundings.hpp"
 #include "scenario/acting.hpp"
+#include "scenario/builtin.hpp"
 #include "scenario/check_tissue.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/symmetry.hpp"
 #include "scenario/words.hpp"
 #include "tissue/files/mesh_file.hpp"
+#include "tissue/files/points_file.hpp"
 #include "tissue/shapes/embryo.hpp"
+#include "tissue/shapes/polygon_embryo.hpp"
 
 namespace plica {
 namespace {
@@ -45,6 +50,34 @@ Tissue read_tissue(const Scenario& scenario) {
   }
 }
 
+PointTable table_of(const std::string& file) {
+  if (!is_builtin_table(file)) return read_points_file(file);
+  std::vector<std::string> names;
+  for (const BuiltinTable& table : builtin_tables()) {
+    names.push_back(fmt::format("{}{}", builtin_table_mark, table.name));
+    if (names.back() == file) return points_in_csv(table.csv);
+  }
+  throw MeshError(fmt::format("there is no table {}; there is {}", file, fmt::join(names, ", ")));
+}
+
+Tissue polygonal_tissue(const Scenario& scenario) {
+  const EmbryoInput& e = scenario.embryo;
+  const PolygonCells cells{e.cell_height_um, split_of(e), e.layers, e.least_edge_ratio};
+  try {
+    if (shape_of(e) == EmbryoShape::egg)
+      return build_egg({e.length_um, e.diameter_um, e.diameter_um, e.belly_sag_um, e.back_sag_um}, e.cell_count, e.seed,
+                       cells);
+    const PointTable table = table_of(e.file);
+    Tissue tissue =
+        build_about_points({table.points, e.points_depth_um, Vec3(e.scale[0], e.scale[1], e.scale[2])}, cells);
+    tissue.cell_arrays = table.arrays;
+    return tissue;
+  } catch (const FileError& error) {
+    throw ScenarioError(
+        {diagnostic_at(scenario, shape_of(e) == EmbryoShape::egg ? "embryo" : "embryo.file", error.what(), "")});
+  }
+}
+
 Tissue build_tissue(const Scenario& scenario) {
   const EmbryoInput& e = scenario.embryo;
   switch (shape_of(e)) {
@@ -56,6 +89,9 @@ Tissue build_tissue(const Scenario& scenario) {
       return build_slice({e.length_um, e.diameter_um, e.cell_height_um, e.cells, e.elements_per_cell});
     case EmbryoShape::block:
       return build_block({e.length_um, e.width_um, e.cell_height_um, e.cells, e.elements_per_cell});
+    case EmbryoShape::egg:
+    case EmbryoShape::points:
+      return polygonal_tissue(scenario);
     case EmbryoShape::file:
       break;
   }
@@ -277,8 +313,7 @@ void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model)
   if (shape_of(scenario.embryo) == EmbryoShape::slice) make_endless(scenario, model);
   add_holds(scenario, model);
   if (scenario.vitelline.enabled) {
-    Capsule shell = *tissue.outer_shape;
-    shell.radius_um += scenario.vitelline.gap_um;
+    const OuterShape shell = tissue.outer_shape->moved_out(scenario.vitelline.gap_um);
     model.obstacles.push_back(std::make_unique<Vitelline>(tissue, shell));
     if (scenario.vitelline.drag_Pa_s_per_um > 0)
       model.laws.push_back(std::make_unique<ShellDrag>(

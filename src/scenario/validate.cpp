@@ -54,14 +54,20 @@ void check_embryo(Scenario& scenario, Input& input) {
   check_unused_keys(scenario, input);
   const EmbryoInput& embryo = scenario.embryo;
   const auto sound = [&](std::string_view key) { return input.sound(fmt::format("embryo.{}", key)); };
-  if (shape_of(embryo) == EmbryoShape::file) {
-    if (embryo.file.empty() && sound("file")) {
-      input.report("embryo.file", "is missing", "name the mesh file for shape \"file\"");
-    }
+  if (shape_of(embryo) == EmbryoShape::file || shape_of(embryo) == EmbryoShape::points) {
+    if (embryo.file.empty() && sound("file"))
+      input.report("embryo.file", "is missing",
+                   shape_of(embryo) == EmbryoShape::file ? "name the mesh file for shape \"file\""
+                                                         : "name the table of points for shape \"points\"");
+    if (embryo.scale.size() != 3 && sound("scale"))
+      input.report("embryo.scale", fmt::format("has {} numbers", embryo.scale.size()), "give three, along x, y and z");
     return;
   }
-  if (shape_of(embryo) == EmbryoShape::pill && sound("length_um") && sound("diameter_um") &&
-      embryo.length_um < embryo.diameter_um) {
+  if (embryo.belly_sag_um.has_value() != embryo.back_sag_um.has_value())
+    input.report(embryo.belly_sag_um ? "embryo.belly_sag_um" : "embryo.back_sag_um", "stands alone",
+                 fmt::format("give {}, too, or neither", embryo.belly_sag_um ? "back_sag_um" : "belly_sag_um"));
+  if ((shape_of(embryo) == EmbryoShape::pill || shape_of(embryo) == EmbryoShape::egg) && sound("length_um") &&
+      sound("diameter_um") && embryo.length_um < embryo.diameter_um) {
     input.report("embryo.length_um",
                  fmt::format("{} is less than the diameter, {}", embryo.length_um, embryo.diameter_um),
                  "give a length of at least diameter_um");
@@ -71,7 +77,7 @@ void check_embryo(Scenario& scenario, Input& input) {
     input.report("embryo.cell_height_um", fmt::format("{} leaves no room inside the embryo", embryo.cell_height_um),
                  fmt::format("give less than half of diameter_um, {}", embryo.diameter_um / 2));
   }
-  if (sound("cells") && sound("elements_per_cell")) check_element_count(embryo, input);
+  if (is_of_grid(shape_of(embryo)) && sound("cells") && sound("elements_per_cell")) check_element_count(embryo, input);
 }
 
 void check_shell_drag(const Scenario& scenario, Input& input) {
@@ -262,22 +268,28 @@ class RegionCheck {
     const std::string path = "region." + name;
     const bool has_selector = !region.face.empty() || region.cells_along || region.cells_across ||
                               !region.ids.empty() || !region.array.empty() || region.x_um || region.y_um ||
-                              region.z_um || !region.unite.empty() || !region.intersect.empty() ||
-                              !region.except.empty();
+                              region.z_um || region.angle_deg || region.length_percent || !region.unite.empty() ||
+                              !region.intersect.empty() || !region.except.empty();
     const bool has_doubt = std::ranges::any_of(
         input_.doubtful, [&](const std::string& it) { return it == path || it.starts_with(path + "."); });
     if (!has_selector && !has_doubt) {
-      input_.report(path, "selects nothing", "give face, ids, array, x_um, y_um, z_um, union, intersect or except");
+      input_.report(path, "selects nothing",
+                    "give face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, union, intersect or except");
     }
     if (!input_.sound("embryo.shape")) return;
-    const bool is_file = shape_of(scenario_.embryo) == EmbryoShape::file;
-    if (!region.array.empty() && !is_file) {
-      input_.report(path + ".array", "a built embryo has no arrays", "use it with shape \"file\" only");
+    const EmbryoShape shape = shape_of(scenario_.embryo);
+    const bool has_arrays = shape == EmbryoShape::file || shape == EmbryoShape::points;
+    if (!region.array.empty() && !has_arrays) {
+      input_.report(path + ".array", "a built embryo has no arrays", "use it with shape \"file\" or \"points\" only");
     }
-    if (!region.face.empty() && is_file) {
-      input_.report(path + ".face", "a mesh from a file has no named sides", "use ids, array, x_um, y_um or z_um");
+    for (const auto& [key, value] : {std::pair("above", region.above), {"below", region.below}})
+      if (value && region.array.empty() && input_.sound(path + ".array"))
+        input_.report(fmt::format("{}.{}", path, key), "needs an array", "give array, too");
+    if (!region.face.empty() && !is_of_grid(shape)) {
+      input_.report(path + ".face", "cells that are no grid have no named sides",
+                    "use angle_deg, length_percent, ids, array, x_um, y_um or z_um");
     }
-    if (!is_file && input_.sound("embryo.cells")) check_cell_numbers(path, region);
+    if (is_of_grid(shape) && input_.sound("embryo.cells")) check_cell_numbers(path, region);
   }
 
   /// Reports every circle of regions once, at its first member in the order of names.

@@ -14,6 +14,7 @@
 #include "mechanics/active/own_state.hpp"
 #include "scenario/scenario.hpp"
 #include "solver/make_stepper.hpp"
+#include "tissue/prisms.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -66,7 +67,12 @@ inline constexpr auto embryo_shapes = std::to_array<Word<EmbryoShape>>({{"pill",
                                                                         {"sphere", EmbryoShape::sphere},
                                                                         {"slice", EmbryoShape::slice},
                                                                         {"block", EmbryoShape::block},
+                                                                        {"egg", EmbryoShape::egg},
+                                                                        {"points", EmbryoShape::points},
                                                                         {"file", EmbryoShape::file}});
+
+inline constexpr auto polygon_splits =
+    std::to_array<Word<PolygonSplit>>({{"diagonals", PolygonSplit::diagonals}, {"kites", PolygonSplit::kites}});
 
 inline constexpr auto elastic_models =
     std::to_array<Word<ElasticModel>>({{"corotational", ElasticModel::corotational},
@@ -155,6 +161,11 @@ inline constexpr auto reference_times = std::to_array<Word<Monitor::ReferenceAt>
 
 }  // namespace words
 
+inline PolygonSplit split_of(const EmbryoInput& embryo) { return meaning_of(words::polygon_splits, embryo.elements); }
+/// Whether its cells lie on a grid, so that they have sides and numbers along and across.
+inline bool is_of_grid(EmbryoShape shape) {
+  return shape != EmbryoShape::file && shape != EmbryoShape::egg && shape != EmbryoShape::points;
+}
 inline EmbryoShape shape_of(const EmbryoInput& embryo) { return meaning_of(words::embryo_shapes, embryo.shape); }
 inline ElasticModel model_of(const ElasticityInput& input) { return meaning_of(words::elastic_models, input.model); }
 inline VolumeMethod method_of(const VolumeInput& volume) { return meaning_of(words::volume_methods, volume.method); }

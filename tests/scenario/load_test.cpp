@@ -164,7 +164,8 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {"[elasticity]\npoisson_ratio = 0.5",
        "test.toml:2: elasticity.poisson_ratio: 0.5 is out of range; give a number > -1 and < 0.5"},
       {"[embryo]\nshape = \"pil\"",
-       "test.toml:2: embryo.shape: \"pil\" is not known; give one of: pill | sphere | slice | block | file (did you "
+       "test.toml:2: embryo.shape: \"pil\" is not known; give one of: pill | sphere | slice | block | egg | points | "
+       "file (did you "
        "mean \"pill\"?)"},
       {"[elasticity]\nattractor_stiffness_nN_per_um = 0",
        "test.toml:2: elasticity.attractor_stiffness_nN_per_um: 0 is out of range; give a number > 0 or \"derived\""},
@@ -196,7 +197,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "140"},
       {"[embryo]\nshape = \"sphere\"\nlength_um = 460",
        "test.toml:3: embryo.length_um: has no meaning with shape \"sphere\"; remove it, or choose shape pill or slice "
-       "or block"},
+       "or block or egg"},
       {"[embryo]\nwidth_um = 1",
        "test.toml:2: embryo.width_um: has no meaning with shape \"pill\"; remove it, or choose shape block"},
       {"[embryo]\nshape = \"file\"", "test.toml:1: embryo.file: is missing; name the mesh file for shape \"file\""},
@@ -287,7 +288,8 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {"[region.a]\nunion = [\"b\"]\n[region.b]\nexcept = [\"a\"]",
        "test.toml:1: region.a: is defined by itself: a > b > a; remove one of these references"},
       {"[region.a]",
-       "test.toml:1: region.a: selects nothing; give face, ids, array, x_um, y_um, z_um, union, intersect or except"},
+       "test.toml:1: region.a: selects nothing; give face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, "
+       "union, intersect or except"},
       {"[region.a]\nids = [1]\ncells_across = 3",
        "test.toml:3: region.a.cells_across: needs a face to lie on; give face, too"},
       {"[region.a]\nface = \"ventral\"\ncells_along = 13",
@@ -299,7 +301,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:3: region.a.cells_along: 18 cells on a face that has 9 that way; give at most 9"},
       {"[region.a]\nids = [756]", "test.toml:2: region.a.ids: there is no cell 756; give numbers from 0 to 755"},
       {"[region.a]\narray = \"x\"",
-       "test.toml:2: region.a.array: a built embryo has no arrays; use it with shape \"file\" only"},
+       "test.toml:2: region.a.array: a built embryo has no arrays; use it with shape \"file\" or \"points\" only"},
       // Expectations.
       {"[expect]\nfurrow_depth_um = 28.89",
        "test.toml:2: expect.furrow_depth_um: 28.89 has no tolerance; give { value = ..., within_percent = ... } or { "
@@ -332,14 +334,15 @@ TEST(LoadScenario, ReportsSyntaxErrorsWithTheirLine) {
 
 TEST(LoadScenario, ReportsAllErrorsAtOnceInOrderOfLines) {
   const std::string errors =
-      errors_of("[time]\nend_s = -1\n[contraction.a]\nregion = \"nowhere\"\n[embryo]\nlength_um = true\nspeed = 1\n",
+      errors_of("[time]\nend_s = -1\n[contraction.a]\nregion = \"nowhere\"\n[embryo]\nlength_um = true\nhue = 1\n",
                 {"time.max_step_s=0"});
   EXPECT_EQ(errors,
             "test.toml:2: time.end_s: -1 is out of range; give a number > 0\n"
             "test.toml:4: contraction.a.region: there is no region \"nowhere\"; known are: all\n"
             "test.toml:6: embryo.length_um: true is of the wrong type; give a number > 0\n"
-            "test.toml:7: embryo.speed: unknown key; known are: shape, length_um, diameter_um, width_um, "
-            "cell_height_um, cells, elements_per_cell, mirror, file, apical_array\n"
+            "test.toml:7: embryo.hue: unknown key; known are: shape, length_um, diameter_um, width_um, "
+            "cell_height_um, cells, elements_per_cell, cell_count, seed, belly_sag_um, back_sag_um, elements, "
+            "least_edge_ratio, layers, points_depth_um, scale, mirror, file, apical_array\n"
             "--set: time.max_step_s: 0 is out of range; give a number > 0");
 }
 

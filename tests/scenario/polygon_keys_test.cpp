@@ -1,0 +1,103 @@
+// Embryos of polygons from a scenario: their regions, and what is wrong with what is given.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "core/files.hpp"
+#include "scenario/load.hpp"
+#include "scenario/setup.hpp"
+
+namespace plica {
+namespace {
+
+const std::string egg =
+    "format = 1\n[embryo]\nshape = \"egg\"\nlength_um = 250\ndiameter_um = 120\ncell_count = 300\ncell_height_um = "
+    "20\n";
+
+std::string errors_of(const std::string& text) {
+  try {
+    make_model(load_scenario({"test", "test.toml", text}));
+    return "";
+  } catch (const ScenarioError& error) {
+    return error.what();
+  }
+}
+
+TEST(PolygonKeys, RegionsByAngleAndLength) {
+  const Scenario scenario = load_scenario({"test", "test.toml",
+                                           egg + "[region.belly]\nangle_deg = [-40, 60]\nlength_percent = [25, 80]\n"
+                                                 "[region.rest]\nunion = [\"all\"]\nexcept = [\"belly\"]\n"});
+  const Tissue tissue = make_tissue(scenario);
+  int inside = 0;
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+    const Vec3 centre = cell_centre(tissue.cells[c], tissue.rest_positions);
+    const double angle = std::atan2(centre.y(), -centre.z()) * 180 / std::numbers::pi;
+    // The egg is 250 long, so that 25 % are 62.5 from its end.
+    const bool is_in = angle >= -40 && angle <= 60 && centre.x() >= -62.5 && centre.x() <= 75;
+    if (std::abs(centre.x() + 62.5) > 1 && std::abs(centre.x() - 75) > 1)
+      EXPECT_EQ(tissue.regions.at("belly")[c], is_in) << c;
+    EXPECT_NE(tissue.regions.at("belly")[c], tissue.regions.at("rest")[c]);
+    inside += is_in;
+  }
+  EXPECT_GT(inside, 20);
+}
+
+TEST(PolygonKeys, RegionsOfMeasuredArrays) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("plica_points_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  std::string table = "x_um,y_um,z_um,gene\n";
+  for (int i = 0; i < 200; ++i) {
+    const double z = 1 - (2 * i + 1) / 200.0, r = std::sqrt(1 - z * z), turn = 2.4 * i;
+    table += std::to_string(120 * z) + ',' + std::to_string(60 * r * std::sin(turn)) + ',' +
+             std::to_string(60 * r * std::cos(turn)) + ',' + std::to_string(i) + '\n';
+  }
+  write_file(folder / "points.csv", table);
+  const std::string points = "format = 1\n[embryo]\nshape = \"points\"\nfile = \"points.csv\"\ncell_height_um = 15\n";
+  const auto tissue_of = [&](const std::string& regions) {
+    return make_tissue(load_scenario({"test", (folder / "test.toml").string(), points + regions}));
+  };
+  const Tissue tissue = tissue_of(
+      "[region.some]\narray = \"gene\"\nabove = 50\nbelow = 60\n[region.any]\narray = \"gene\"\n[region.low]\narray = "
+      "\"gene\"\nbelow = 3\n");
+  for (std::size_t c = 0; c < 200; ++c) {
+    EXPECT_EQ(tissue.regions.at("some")[c], c > 50 && c < 60);
+    EXPECT_EQ(tissue.regions.at("any")[c], c != 0);
+    EXPECT_EQ(tissue.regions.at("low")[c], c < 3);
+  }
+  EXPECT_THROW(tissue_of("[region.r]\narray = \"other\"\n"), ScenarioError);
+  write_file(folder / "points.csv", table + "0,0,61,1\n0,0,61,1\n");
+  EXPECT_THROW(tissue_of(""), ScenarioError);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
+  const auto expect = [](const std::string& text, const std::string& said) {
+    EXPECT_NE(errors_of(text).find(said), std::string::npos) << errors_of(text);
+  };
+  expect("format = 1\n[embryo]\nshape = \"points\"\n", "embryo.file: is missing; name the table of points");
+  expect("format = 1\n[embryo]\nshape = \"points\"\nfile = \"nowhere.csv\"\n", "embryo.file: ");
+  expect("format = 1\n[embryo]\nshape = \"points\"\nfile = \"builtin:mouse\"\n",
+         "there is no table builtin:mouse; there is builtin:drosophila_atlas");
+  expect("format = 1\n[embryo]\nshape = \"points\"\nfile = \"a.csv\"\nscale = [1, 2]\n",
+         "embryo.scale: has 2 numbers; give three");
+  expect(egg + "belly_sag_um = 9\n", "embryo.belly_sag_um: stands alone; give back_sag_um, too");
+  expect(egg + "belly_sag_um = 60\nback_sag_um = 2\n", "embryo: ");
+  expect(egg + "cells = [3, 3, 3]\n", "embryo.cells: has no meaning with shape \"egg\"");
+  expect(egg + "elements = \"triangles\"\n", "embryo.elements: ");
+  expect(egg + "least_edge_ratio = 0.9\n", "embryo.least_edge_ratio: ");
+  expect(egg + "[region.r]\nface = \"ventral\"\n", "region.r.face: cells that are no grid have no named sides");
+  expect(egg + "[region.r]\narray = \"sna\"\n", "region.r.array: a built embryo has no arrays");
+  expect(egg + "[region.r]\nx_um = [-10, 10]\nabove = 2\n", "region.r.above: needs an array");
+  expect(egg + "[region.r]\nangle_deg = [170, 175]\nlength_percent = [0, 0.1]\n",
+         "region.r: no cell of the embryo lies in it");
+  expect(egg + "[contraction.c]\nregion = \"all\"\nedges = \"apical\"\nstiffness_nN_per_um = 1\ndiagonals = true\n",
+         "contraction.c.diagonals: cell ");
+  expect(egg + "[division.d]\nregion = \"all\"\nat_s = 10\n", "only cells of a grid divide so far");
+}
+
+}  // namespace
+}  // namespace plica
