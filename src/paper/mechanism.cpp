@@ -39,9 +39,9 @@ Curve inward_force(const std::string& name, const std::string& scenario_name,
   for (const CellId id : make_furrow_sites(scenario, tissue).midline) {
     const Cell& cell = tissue.cells[id.index()];
     double pressure = 0;
-    for (int i = 4; i < 8; ++i) {
-      const Vec3& normal = normals[cell.corners[i].index()];
-      pressure -= forces[cell.corners[i].index()].dot(normal) / normal.squaredNorm() / 4;
+    for (const NodeId corner : cell.apical_corners()) {
+      const Vec3& normal = normals[corner.index()];
+      pressure -= forces[corner.index()].dot(normal) / normal.squaredNorm() / static_cast<double>(cell.sides());
     }
     curve.x.push_back(cell_centre(cell, rest).x());
     curve.y.push_back(pressure / units::pascal);

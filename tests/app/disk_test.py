@@ -151,11 +151,14 @@ class Memory(Resuming):
         for mebibytes in range(140, 500, 20):
             support.count_case()
             shutil.rmtree(self.out, ignore_errors=True)
-            limited = ["bash", "-c", f'ulimit -v {mebibytes * 1024}; exec "$0" "$@"', support.PROGRAM, "run", sphere[0], "--quiet",
-                       "--threads", "1", "--out", self.out]
-            result = subprocess.run([str(word) for word in limited], capture_output=True, text=True, timeout=60)
-            if result.returncode == 127:
-                continue  # not enough to load the program
+
+            def limited(*words):
+                shell = ["bash", "-c", f'ulimit -v {mebibytes * 1024}; exec "$0" "$@"', support.PROGRAM, *words]
+                return subprocess.run([str(word) for word in shell], capture_output=True, text=True, timeout=60)
+
+            if limited("--version").returncode != 0:
+                continue  # not enough to load the program and what its libraries make before it begins
+            result = limited("run", sphere[0], "--quiet", "--threads", "1", "--out", self.out)
             with self.subTest(mebibytes):
                 ends[result.returncode] = ends.get(result.returncode, 0) + 1
                 self.assertIn(result.returncode, (0, 3), result.stderr)

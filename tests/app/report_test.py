@@ -79,7 +79,8 @@ scenario = "drosophila"
 [set]
 "time.end_min" = 0.05
 [vary]
-"contraction.apical.stiffness_nN_per_um" = { values = [-1, 3, 7] }
+"time.first_step_s" = { values = [5, 2] }
+"time.max_step_s" = { values = [4, 10] }
 "contraction.apical.region" = { values = ["furrow", "all"] }
 [design]
 kind = "grid"
@@ -132,7 +133,7 @@ class StudyReport(CommandLine):
 
     def test_the_page_holds_the_rows(self):
         data, columns = self.columns()
-        self.assertEqual((data["design"], data["scenario_argument"], data["set"], data["runs"]), ("grid", "drosophila", ["time.end_min=0.05"], 6))
+        self.assertEqual((data["design"], data["scenario_argument"], data["set"], data["runs"]), ("grid", "drosophila", ["time.end_min=0.05"], 8))
         rows, compared = self.rows(), 0
         for name in rows[0]:
             for row, value in zip(rows, columns[name]):
@@ -141,9 +142,9 @@ class StudyReport(CommandLine):
                     told = f'"{told}"'  # as in TOML
                 self.assertEqual(value, told if isinstance(value, str) else float(told), name)
                 compared += 1
-        self.assertEqual(compared, 6 * 10)
-        self.assertEqual(columns["status"], ["refused"] * 2 + ["end_time"] * 4)
-        self.assertEqual(columns["kept"], [""] * 2 + [f"{n:06}/summary.json" for n in range(3, 7)])
+        self.assertEqual(compared, 8 * 11)
+        self.assertEqual(columns["status"], ["refused"] * 2 + ["end_time"] * 6, "a first step longer than the longest")
+        self.assertEqual(columns["kept"], [""] * 2 + [f"{n:06}/summary.json" for n in range(3, 9)])
         self.assertIn("default-src 'none'", (self.out / "report.html").read_text(), "nothing may be fetched")
 
     def test_report_makes_it_anew_also_of_a_part(self):
@@ -159,7 +160,7 @@ class StudyReport(CommandLine):
         rows.write_text("".join(text.splitlines(keepends=True)[:3]) + "5,")
         self.report(self.out)
         statuses = self.columns()[1]["status"]
-        self.assertEqual((len(statuses), statuses.count("not_run")), (6, 3))
+        self.assertEqual((len(statuses), statuses.count("not_run")), (8, 5))
         shutil.rmtree(self.out / "rows")
         (self.folder / "runs.csv").rename(self.out / "runs.csv")
         self.out.rename(self.folder / "moved")
@@ -174,7 +175,7 @@ class StudyReport(CommandLine):
         self.report(self.out)
         data, columns = self.columns()
         self.assertEqual((data["design"], data["scenario_argument"]), ("", str(self.out.resolve() / "scenario.toml")))
-        self.assertEqual(columns["status"].count("end_time"), 4)
+        self.assertEqual(columns["status"].count("end_time"), 6)
 
     def test_what_is_refused(self):
         self.assertIn("page of its own", self.report(self.out, self.out, "--out", self.folder / "two.html", status=2).stderr)
