@@ -4,12 +4,14 @@
 #include <map>
 #include <stdexcept>
 
+#include "tissue/polygon_cell.hpp"
+
 namespace plica {
 namespace {
 
 // How each daughter will grow; cells by their place before the cut, where the mother is still there.
 struct Destiny {
-  HexPoints rest_to;
+  std::vector<Vec3> rest_to;
   double target_to;
 };
 
@@ -17,21 +19,52 @@ struct Destiny {
 Destiny destiny(const Model& model, CellId cell) {
   for (const Growth& growth : model.growths)
     if (growth.cell == cell) return {growth.rest_to, growth.target_to};
-  return {hexahedron(model.tissue.cells[cell.index()].rest_shape), model.volumes().targets()[cell.index()]};
+  return {model.tissue.cells[cell.index()].rest_shape, model.volumes().targets()[cell.index()]};
+}
+
+double prism_volume(const PrismCorners& corners) {
+  double volume = 0;
+  for (const OutlineQuad& kite : split_into_kites(corners_of_polygon(corners.apical.size())))
+    volume += hex_volume(part_over(corners, kite));
+  return volume;
+}
+
+// Of a grid's mother, the part of her final shape that is `ratio` wide, on the daughter's side.
+std::vector<Vec3> part_of_hexahedron(int first_wall, bool is_low, const std::vector<Vec3>& mother, double ratio) {
+  const Vec3 across = Vec3::Unit(first_wall);
+  const HexPoints whole = hexahedron(mother);
+  const HexPoints part = is_low ? hex_part(whole, Vec3::Zero(), Vec3::Ones() - (1 - ratio) * across)
+                                : hex_part(whole, (1 - ratio) * across, Vec3::Ones());
+  return {part.begin(), part.end()};
+}
+
+// Of any other, the half of it, stretched away from the cut until it has `ratio` of its volume.
+std::vector<Vec3> stretched_half(const CellCut& cut, bool is_low, const std::vector<Vec3>& mother, double ratio) {
+  auto [low, high] = halves_of_prism(cut, mother);
+  std::vector<Vec3> half = is_low ? std::move(low) : std::move(high);
+  const auto middle_of = [&](std::span<const Vec3> polygon, int wall) { return place_in(polygon, {wall, 0.5}); };
+  const PrismCorners whole = prism_of(mother);
+  const Vec3 basal = middle_of(whole.basal, cut.first_wall), apical = middle_of(whole.apical, cut.first_wall),
+             along =
+                 middle_of(whole.basal, cut.second_wall) - basal + middle_of(whole.apical, cut.second_wall) - apical;
+  const Vec3 up = place_in(whole.apical, {}) - place_in(whole.basal, {});
+  const Vec3 across = along.cross(up).normalized(), origin = 0.5 * (basal + apical);
+  const double stretch = ratio * prism_volume(whole) / prism_volume(prism_of(half));
+  for (Vec3& corner : half) corner += (stretch - 1) * across.dot(corner - origin) * across;
+  return half;
 }
 
 std::array<Growth, 2> growths_of(const PlannedDivision& plan, const std::array<CellId, 2>& daughters,
                                  const Destiny& mother, const Tissue& tissue, const Vectors& positions, double time_s) {
   std::array<Growth, 2> growths;
-  const Vec3 across = Vec3::Unit(plan.cut.first_wall);
+  const bool is_hexahedron = mother.rest_to.size() == 8 && plan.cut.second_wall == plan.cut.first_wall + 2;
   for (const int i : {0, 1}) {
     Growth& growth = growths[i];
     const Cell& daughter = tissue.cells[daughters[i].index()];
     growth.cell = daughters[i];
-    growth.rest_from = hexahedron(daughter.rest_shape);
-    // The part of the mother's final shape that is `volume_ratio` wide, on the daughter's side.
-    growth.rest_to = i == 0 ? hex_part(mother.rest_to, Vec3::Zero(), Vec3::Ones() - (1 - plan.volume_ratio) * across)
-                            : hex_part(mother.rest_to, (1 - plan.volume_ratio) * across, Vec3::Ones());
+    growth.rest_from = daughter.rest_shape;
+    growth.rest_to = is_hexahedron ? part_of_hexahedron(plan.cut.first_wall, i == 0, mother.rest_to, plan.volume_ratio)
+                                   : stretched_half(plan.cut, i == 0, mother.rest_to, plan.volume_ratio);
     growth.target_from = cell_volume(tissue, daughter, positions);
     growth.target_to = plan.volume_ratio * mother.target_to;
     growth.start_s = time_s;
@@ -132,7 +165,7 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
     std::erase_if(model.growths, [&](const Growth& growth) { return growth.cell == plan.cut.cell; });
   }
 
-  Division division = divide(model.tissue, cuts, state.time_s);
+  Division division = divide(model.tissue, cuts, state.time_s, state.positions);
   state.positions = with_new_nodes(model.tissue, division, state.positions);
   state.velocities = with_new_nodes(model.tissue, division, state.velocities);
   state.trend = {};
@@ -160,16 +193,16 @@ void grow(Model& model, double time_s) {
   bool targets_changed = false;
   for (const Growth& growth : model.growths) {
     const double part = growth.part(time_s);
-    HexPoints rest;
-    for (int i = 0; i < 8; ++i)
+    std::vector<Vec3> rest(growth.rest_from.size());
+    for (std::size_t i = 0; i < rest.size(); ++i)
       for (int axis = 0; axis < 3; ++axis)
         rest[i][axis] = between(growth.rest_from[i][axis], growth.rest_to[i][axis], part);
     Cell& cell = model.tissue.cells[growth.cell.index()];
     const double target = between(growth.target_from, growth.target_to, part);
     targets_changed = targets_changed || target != model.volumes().targets()[growth.cell.index()];
     model.volumes().set_target(growth.cell, target);
-    if (rest == hexahedron(cell.rest_shape)) continue;
-    cell.rest_shape.assign(rest.begin(), rest.end());
+    if (rest == cell.rest_shape) continue;
+    cell.rest_shape = std::move(rest);
     set_element_rest_shapes(model.tissue, growth.cell);
     for (int e = 0; e < cell.element_count; ++e) changed.emplace_back(cell.first_element.index() + e);
   }

@@ -16,9 +16,10 @@ struct PlannedDivision {
   double volume_ratio = 1;  // a daughter's final volume over her mother's: 1 as large, 0.5 a half
 };
 
-/// Cuts the cells at the state's time. Positions, total volume, momentum and contraction's tension do not change;
-/// pressures and velocities are handed on. Each daughter's target volume starts at what her half has, her rest shape at
-/// the half of her mother's; both then grow (`grow`). std::logic_error when the tissue is indivisible.
+/// Cuts the cells at the state's time. Positions, momentum and contraction's tension do not change; pressures and
+/// velocities are handed on. Each daughter's
+/// target volume starts at what her half has, her rest shape at the half of her mother's; both then grow (`grow`).
+/// std::logic_error when the tissue is indivisible.
 Division divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned);
 
 /// Gives growing daughters the rest shape and target volume of `time_s`. Depends on the time only, so that a step can

@@ -18,7 +18,7 @@ namespace plica {
 /// A daughter on her way from a half of her mother to her final size: linear in time.
 struct Growth {
   CellId cell;
-  HexPoints rest_from, rest_to;           // um
+  std::vector<Vec3> rest_from, rest_to;   // um; corners, as Cell::rest_shape
   double target_from = 0, target_to = 0;  // volume, um^3
   double start_s = 0, end_s = 0;
 

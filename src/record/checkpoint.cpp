@@ -16,7 +16,7 @@
 namespace plica {
 namespace {
 
-constexpr int format = 5;
+constexpr int format = 6;
 constexpr std::size_t trailer_bytes = 64;
 
 std::uint32_t checksum(std::string_view bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }
@@ -254,14 +254,15 @@ void save_divisions(ArchiveWriter& archive, const std::vector<std::shared_ptr<co
   save("divisions/count", static_cast<int>(past.size()));
   for (std::size_t d = 0; d < past.size(); ++d) {
     const std::string at = fmt::format("divisions/{}/", d);
-    std::vector<int> cells, walls;
+    std::vector<int> cells, first_walls, second_walls;
     std::vector<double> growth_s, volume_ratios;
     for (const PlannedDivision& one : past[d]->planned) {
-      cells.push_back(one.cut.cell.number()), walls.push_back(one.cut.first_wall);
+      cells.push_back(one.cut.cell.number());
+      first_walls.push_back(one.cut.first_wall), second_walls.push_back(one.cut.second_wall);
       growth_s.push_back(one.growth_s), volume_ratios.push_back(one.volume_ratio);
     }
     save(at + "time_s", past[d]->time_s), save(at + "positions", past[d]->positions);
-    save(at + "cells", cells), save(at + "first_walls", walls);
+    save(at + "cells", cells), save(at + "first_walls", first_walls), save(at + "second_walls", second_walls);
     save(at + "growth_s", growth_s), save(at + "volume_ratios", volume_ratios);
   }
 }
@@ -274,15 +275,16 @@ std::vector<std::shared_ptr<const PastDivision>> load_divisions(const ArchiveRea
   for (int d = 0; d < count; ++d) {
     const std::string at = fmt::format("divisions/{}/", d);
     PastDivision one;
-    std::vector<int> cells, walls;
+    std::vector<int> cells, first_walls, second_walls;
     std::vector<double> growth_s, volume_ratios;
     load(at + "time_s", one.time_s), load(at + "positions", one.positions);
-    load(at + "cells", cells), load(at + "first_walls", walls);
+    load(at + "cells", cells), load(at + "first_walls", first_walls), load(at + "second_walls", second_walls);
     load(at + "growth_s", growth_s), load(at + "volume_ratios", volume_ratios);
-    if (walls.size() != cells.size() || growth_s.size() != cells.size() || volume_ratios.size() != cells.size())
+    if (first_walls.size() != cells.size() || second_walls.size() != cells.size() || growth_s.size() != cells.size() ||
+        volume_ratios.size() != cells.size())
       Loading::refuse(at + "cells");
     for (std::size_t i = 0; i < cells.size(); ++i)
-      one.planned.push_back({{CellId(cells[i]), walls[i]}, growth_s[i], volume_ratios[i]});
+      one.planned.push_back({{CellId(cells[i]), first_walls[i], second_walls[i]}, growth_s[i], volume_ratios[i]});
     past.push_back(std::make_shared<const PastDivision>(std::move(one)));
   }
   return past;

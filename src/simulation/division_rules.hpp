@@ -20,7 +20,8 @@ struct DivisionRule {
   int max_generation = 1;  // a division after which daughters would be of a later generation is not made
 };
 
-/// Where a plane cuts the cell: across the side that lies nearest to the plane's normal, at current positions.
+/// Where a plane cuts the cell, at current positions: of a grid, across the side that lies nearest to the plane's
+/// normal; a polygon, between the walls whose middles lie best for that and for two halves.
 CellCut cut_by(DivisionPlane plane, const Tissue& tissue, CellId cell, const Vectors& positions);
 
 /// The divisions due at the state's time. Rules at a time that has come since `State::divided_until_s` apply to every

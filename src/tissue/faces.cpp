@@ -55,19 +55,16 @@ std::vector<Face> faces_between_stops(const Tissue& tissue) {
   std::vector<Face> faces;
   std::map<std::pair<NodeId, NodeId>, std::size_t> place;  // in faces, by the apical nodes
   for (std::size_t c = 0; c < tissue.cells.size(); ++c)
-    for (int wall = 0; wall < 4; ++wall) {
-      const auto& stops = tissue.cells[c].walls[wall];
+    for (const auto& stops : tissue.cells[c].walls)
       for (std::size_t i = 1; i < stops.size(); ++i) {
-        WallStop from = stops[i - 1], to = stops[i];
+        const WallStop &from = stops[i - 1], &to = stops[i];
         const auto [found, is_new] = place.emplace(std::minmax(from.apical, to.apical), faces.size());
         if (!is_new) {
           faces[found->second].beyond = CellId(c);
           continue;
         }
-        if (wall >= 2) std::swap(from, to);  // counter-clockwise seen from outside
         faces.push_back({{from.basal, to.basal, to.apical, from.apical}, CellId(c), {}});
       }
-    }
   return faces;
 }
 
@@ -93,13 +90,15 @@ std::vector<Face> faces_between_edges(const Tissue& tissue) {
       }
     }
   }
-  for (Face& face : faces) face.share = share_of(tissue, face);
   return faces;
 }
 
 std::vector<Face> all_lateral_faces(const Tissue& tissue) {
   if (tissue.hanging.empty()) return lateral_faces(tissue);
-  return tissue.cells.front().is_of_grid ? faces_between_stops(tissue) : faces_between_edges(tissue);
+  std::vector<Face> faces =
+      tissue.cells.front().walls.empty() ? faces_between_edges(tissue) : faces_between_stops(tissue);
+  for (Face& face : faces) face.share = share_of(tissue, face);
+  return faces;
 }
 
 }  // namespace

@@ -23,7 +23,6 @@ std::vector<NodeId> edge_chain(const CellLattice& lattice, const std::array<int,
 }
 
 void set_corners_and_edges(const CellLattice& lattice, const Vectors& rest_positions, Cell& cell) {
-  cell.is_of_grid = true;
   cell.corners.resize(8);
   cell.edges.resize(12);
   for (int i = 0; i < 8; ++i) {
@@ -54,6 +53,7 @@ void set_corners_and_edges(const CellLattice& lattice, const Vectors& rest_posit
 
 // The lines of element edges on the apical and basal faces, those of the rim with half a share, and the lateral edges.
 void set_lines(const CellLattice& lattice, Cell& cell) {
+  cell.lines.clear();
   for (const CellSide side : {CellSide::basal, CellSide::apical}) {
     const int w = side == CellSide::apical ? lattice.elements[2] : 0;
     for (const int axis : {0, 1}) {  // the axis along which the line runs
@@ -77,12 +77,12 @@ void set_lines(const CellLattice& lattice, Cell& cell) {
 void set_walls(const Vectors& rest_positions, Cell& cell) {
   for (const NodeId corner : cell.corners) cell.rest_shape.push_back(rest_positions[corner.index()]);
   if (cell.element_count > 1) return;
-  constexpr std::array<std::array<int, 2>, 4> ends = {{{0, 1}, {1, 2}, {3, 2}, {0, 3}}};  // local basal nodes
-  for (int wall = 0; wall < 4; ++wall)
-    for (const int end : {0, 1}) {
-      const int corner = ends[wall][end];
-      cell.walls[wall].push_back({static_cast<double>(end), cell.corners[corner], cell.corners[corner + 4]});
-    }
+  cell.quadrilaterals = {{{{0, 0}, {1, 0}, {2, 0}, {3, 0}}}};
+  for (int wall = 0; wall < 4; ++wall) {
+    const int from = wall, to = (wall + 1) % 4;
+    cell.walls.push_back(
+        {{0, cell.corners[from], cell.corners[from + 4]}, {1, cell.corners[to], cell.corners[to + 4]}});
+  }
 }
 
 // Calls take(nodes of the element, w) for each element of the cell, u fastest.
@@ -101,6 +101,13 @@ void for_elements(const CellLattice& lattice, const Take& take) {
       }
 }
 
+}  // namespace
+
+void set_corners_and_lines(const CellLattice& lattice, const Vectors& rest_positions, Cell& cell) {
+  set_corners_and_edges(lattice, rest_positions, cell);
+  set_lines(lattice, cell);
+}
+
 void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue) {
   for_elements(lattice, [&](const std::array<NodeId, 8>& element, int w) {
     tissue.elements.push_back(element);
@@ -113,8 +120,6 @@ void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tiss
       tissue.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id, element_id});
   });
 }
-
-}  // namespace
 
 void number_as_elements_come(std::vector<CellLattice>& cells, Vectors& rest_positions) {
   std::vector<NodeId> number(rest_positions.size());
@@ -144,8 +149,8 @@ Tissue tissue_from_lattices(const std::vector<CellLattice>& cells, Vectors rest_
     cell.first_element = ElementId(tissue.elements.size());
     cell.element_count = lattice.elements[0] * lattice.elements[1] * lattice.elements[2];
     cell.grid_place = lattice.grid_place;
-    set_corners_and_edges(lattice, tissue.rest_positions, cell);
-    set_lines(lattice, cell);
+    cell.is_of_grid = true;
+    set_corners_and_lines(lattice, tissue.rest_positions, cell);
     set_walls(tissue.rest_positions, cell);
     cell.lineage.id = tissue.next_cell_id++;
     add_elements_and_facets(lattice, CellId(tissue.cells.size()), tissue);

@@ -28,6 +28,12 @@ struct CellLattice {
 /// one of a cell's.
 void number_as_elements_come(std::vector<CellLattice>& cells, Vectors& rest_positions);
 
+/// Appends the cell's elements and facets to the tissue's, with rest shapes from its rest positions, u fastest.
+void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue);
+
+/// Sets corners, edges and lines of a grid's cell.
+void set_corners_and_lines(const CellLattice& lattice, const Vectors& rest_positions, Cell& cell);
+
 /// Builds the tissue of the given cells. Of the directions u and v, a cell's edges along the one that lies closer to x
 /// at rest are `along`, the others `across`. Region "all" is set. Takes time in proportion to the elements.
 Tissue tissue_from_lattices(const std::vector<CellLattice>& cells, Vectors rest_positions);

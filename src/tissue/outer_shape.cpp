@@ -29,10 +29,11 @@ OuterShape::Gap gap_of(const StarSurface& surface, const Vec3& point) {
     return {(above - point).dot(outward), -outward, Mat3::Zero()};
   }
   const ClosestOnSurface closest = surface.closest(point);
-  const SurfaceBend bend = surface.bend(closest.point);
   Mat3 hessian = Mat3::Zero();
-  for (const int i : {0, 1})
-    hessian -= bend.tangents[i] * bend.tangents[i].transpose() / (bend.radii[i] + closest.signed_distance_um);
+  for (const int i : {0, 1}) {
+    const Vec3& tangent = closest.bend.tangents[i];
+    hessian -= tangent * tangent.transpose() / (closest.bend.radii[i] + closest.signed_distance_um);
+  }
   return {-closest.signed_distance_um, -closest.normal, hessian};
 }
 

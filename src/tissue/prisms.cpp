@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <compare>
-#include <limits>
 #include <map>
+
+#include "tissue/polygon_cell.hpp"
 
 namespace plica {
 namespace {
@@ -17,27 +18,8 @@ struct Place {
   friend auto operator<=>(const Place&, const Place&) = default;
 };
 
-using Quadrilateral = std::array<Place, 4>;
-
 Place vertex(std::size_t v) { return {Place::Kind::vertex, v}; }
 Place middle_of_edge(std::size_t a, std::size_t b) { return {Place::Kind::edge, std::min(a, b), std::max(a, b)}; }
-
-std::vector<Quadrilateral> kites(const std::vector<std::size_t>& polygon, std::size_t cell) {
-  const std::size_t n = polygon.size();
-  std::vector<Quadrilateral> result;
-  for (std::size_t i = 0; i < n; ++i)
-    result.push_back({vertex(polygon[i]), middle_of_edge(polygon[i], polygon[(i + 1) % n]),
-                      Place{Place::Kind::middle, cell}, middle_of_edge(polygon[(i + n - 1) % n], polygon[i])});
-  return result;
-}
-
-// By diagonals from the first of an even number of places.
-std::vector<Quadrilateral> fan(const std::vector<Place>& places) {
-  std::vector<Quadrilateral> result;
-  for (std::size_t i = 1; i + 2 < places.size(); i += 2)
-    result.push_back({places[0], places[i], places[i + 1], places[i + 2]});
-  return result;
-}
 
 class Builder {
  public:
@@ -73,35 +55,20 @@ class Builder {
     return sum / static_cast<double>(sheet_.cells[place.first].size());
   }
 
-  [[nodiscard]] double worst(const std::vector<Quadrilateral>& split) const {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Quadrilateral& one : split) {
-      HexPoints points;
-      for (int i = 0; i < 8; ++i) points[i] = at(one[i % 4], i / 4);
-      least = std::min(least, hex_scaled_jacobian(points));
-    }
-    return least;
+  [[nodiscard]] std::vector<OutlineQuad> split_of(const std::vector<std::size_t>& polygon) const {
+    if (!hangs_) return split_into_kites(corners_of_polygon(polygon.size()));
+    Vectors basal, apical;
+    for (const std::size_t v : polygon) basal.push_back(sheet_.basal[v]), apical.push_back(sheet_.apical[v]);
+    const PrismCorners prism{basal, apical};
+    return best_split(corners_of_polygon(polygon.size()), [&](const auto& split) { return worst_part(prism, split); });
   }
 
-  [[nodiscard]] std::vector<Quadrilateral> split_of(std::size_t cell) const {
+  [[nodiscard]] Place place_of(const OutlinePlace& place, std::size_t cell) const {
+    if (place.is_middle()) return {Place::Kind::middle, cell};
     const std::vector<std::size_t>& polygon = sheet_.cells[cell];
-    const std::size_t n = polygon.size();
-    if (!hangs_ || n == 3) return kites(polygon, cell);
-    std::vector<Quadrilateral> best;
-    double best_worst = -std::numeric_limits<double>::infinity();
-    // From each vertex of an even polygon, from the middle of each edge of an odd one. Ways that differ by rounding
-    // only are alike: the first is taken.
-    for (std::size_t i = 0; i < n; ++i) {
-      std::vector<Place> places;
-      for (std::size_t k = 0; k < n; ++k) places.push_back(vertex(polygon[(i + k) % n]));
-      if (n % 2 == 1) places.insert(places.begin(), middle_of_edge(polygon[i], polygon[(i + n - 1) % n]));
-      std::vector<Quadrilateral> split = fan(places);
-      const double worst_of_it = worst(split);
-      if (worst_of_it <= best_worst + 1e-9) continue;
-      best_worst = worst_of_it;
-      best = std::move(split);
-    }
-    return best;
+    const std::size_t from = polygon[place.wall], to = polygon[(place.wall + 1) % polygon.size()];
+    if (place.at == 0) return {Place::Kind::vertex, from};
+    return middle_of_edge(from, to);
   }
 
   NodeId node(const Place& place, int level) {
@@ -109,11 +76,13 @@ class Builder {
     if (is_new) {
       tissue_.rest_positions.push_back(at(place, static_cast<double>(level) / layers_));
       hanging_.emplace_back();
-      if (hangs_ && place.kind == Place::Kind::edge) {
+      if (hangs_ && place.kind != Place::Kind::vertex) {
         const NodeId self = known->second;
-        for (const std::size_t end : {place.first, place.second}) {
-          const NodeId on = node(vertex(end), level);
-          hanging_[self.index()].emplace_back(on, 0.5);
+        const std::vector<std::size_t> on =
+            place.kind == Place::Kind::edge ? std::vector{place.first, place.second} : sheet_.cells[place.first];
+        for (const std::size_t end : on) {
+          const NodeId corner = node(vertex(end), level);
+          hanging_[self.index()].emplace_back(corner, 1.0 / static_cast<double>(on.size()));
         }
         return self;
       }
@@ -122,16 +91,17 @@ class Builder {
   }
 
   void add_cell(std::size_t c) {
-    const std::vector<Quadrilateral> split = split_of(c);
     Cell cell;
+    const std::vector<OutlineQuad> split = split_of(sheet_.cells[c]);
+    if (divides()) cell.quadrilaterals = split;
     const CellId id(tissue_.cells.size());
     cell.first_element = ElementId(tissue_.elements.size());
     cell.element_count = static_cast<int>(split.size()) * layers_;
     cell.lineage.id = tissue_.next_cell_id++;
     for (int level = 0; level < layers_; ++level)
-      for (const Quadrilateral& one : split) {
+      for (const OutlineQuad& one : split) {
         std::array<NodeId, 8> element;
-        for (int i = 0; i < 8; ++i) element[i] = node(one[i % 4], level + i / 4);
+        for (int i = 0; i < 8; ++i) element[i] = node(place_of(one[i % 4], c), level + i / 4);
         const ElementId element_id(tissue_.elements.size());
         tissue_.elements.push_back(element);
         tissue_.element_cell.push_back(id);
@@ -167,38 +137,33 @@ class Builder {
     tissue_.rest_positions = std::move(positions);
   }
 
-  // Corners, edges and lines.
+  // What division needs: nodes where they are put by it, and no others.
+  [[nodiscard]] bool divides() const { return hangs_ && layers_ == 1; }
+
+  // Corners, edges, lines and walls.
   void set_polygons(Cell& cell) {
     const std::vector<std::size_t>& polygon = sheet_.cells[static_cast<std::size_t>(cell.lineage.id)];
     const std::size_t n = polygon.size();
+    PolygonChains chains;
     for (const int level : {0, layers_})
-      for (const std::size_t v : polygon) cell.corners.push_back(node(vertex(v), level));
-    Vec3 outward = Vec3::Zero();
-    for (std::size_t i = 0; i < n; ++i) outward += sheet_.apical[polygon[i]].cross(sheet_.apical[polygon[(i + 1) % n]]);
-    outward.normalize();
-    const Vec3 axis = Vec3::UnitX() - outward.x() * outward;
-    for (const CellSide side : {CellSide::basal, CellSide::apical})
       for (std::size_t i = 0; i < n; ++i) {
         const std::size_t from = polygon[i], to = polygon[(i + 1) % n];
-        const int level = side == CellSide::apical ? layers_ : 0;
-        CellEdge edge{{node(vertex(from), level)}, EdgeDirection::along, side};
-        if (!hangs_) edge.nodes.push_back(node(middle_of_edge(from, to), level));
-        edge.nodes.push_back(node(vertex(to), level));
-        const Vec3 way =
-            tissue_.rest_positions[edge.nodes.back().index()] - tissue_.rest_positions[edge.nodes[0].index()];
-        // At a pole, nothing is along more than across.
-        edge.along = axis.norm() < 1e-6
-                         ? 0.5
-                         : std::min(1.0, way.dot(axis) * way.dot(axis) / (way.squaredNorm() * axis.squaredNorm()));
-        if (edge.along < 0.5) edge.direction = EdgeDirection::across;
-        cell.edges.push_back(std::move(edge));
+        std::vector<NodeId> chain = {node(vertex(from), level)};
+        cell.corners.push_back(chain.front());
+        if (!hangs_) chain.push_back(node(middle_of_edge(from, to), level));
+        chain.push_back(node(vertex(to), level));
+        (level == layers_ ? chains.apical : chains.basal).push_back(std::move(chain));
       }
     for (const std::size_t v : polygon) {
-      CellEdge edge{{}, EdgeDirection::lateral, CellSide::lateral};
-      for (int level = 0; level <= layers_; ++level) edge.nodes.push_back(node(vertex(v), level));
-      cell.edges.push_back(std::move(edge));
+      std::vector<NodeId> chain;
+      for (int level = 0; level <= layers_; ++level) chain.push_back(node(vertex(v), level));
+      chains.lateral.push_back(std::move(chain));
     }
-    for (const CellEdge& edge : cell.edges) cell.lines.push_back({edge, 1});
+    set_polygon_edges(chains, tissue_.rest_positions, cell);
+    if (!divides()) return;
+    for (std::size_t i = 0; i < n; ++i)
+      cell.walls.push_back({{0, chains.basal[i].front(), chains.apical[i].front()},
+                            {1, chains.basal[i].back(), chains.apical[i].back()}});
   }
 
   const PrismSheet& sheet_;

@@ -16,7 +16,7 @@ struct PrismSheet {
 
 enum class PolygonSplit {
   /// By diagonals. An odd polygon gets a node in the middle of an edge, which hangs on the edge's ends: so what the
-  /// neighbour is made of does not matter. A triangle is split as by kites, with nodes that hang on all its edges.
+  /// neighbour is made of does not matter. A triangle is split as by kites, whose nodes hang on its corners.
   diagonals,
   /// A kite a corner: from there to the middles of its edges and that of the polygon. All nodes are free.
   kites

@@ -62,6 +62,18 @@ struct WallStop {
   NodeId basal, apical;
 };
 
+/// A place on the outline of a cell's polygon: on a wall, from its first corner (0) to the next (1); or not on it, in
+/// the middle of the corners.
+struct OutlinePlace {
+  int wall = -1;  // -1: the middle
+  double at = 0;
+
+  [[nodiscard]] bool is_middle() const { return wall < 0; }
+};
+
+/// A quadrilateral that a polygon is split into: its corners, counter-clockwise seen from outside.
+using OutlineQuad = std::array<OutlinePlace, 4>;
+
 /// Where a cell comes from. Ids are given once and never again, whatever a cell's place in `Tissue::cells`.
 struct Lineage {
   int id = -1;
@@ -78,9 +90,11 @@ struct Cell {
   std::vector<CellEdge> edges;  // of a grid, in the order of hex_edges; else basal, apical, lateral
   std::vector<CellLine> lines;  // what can contract; the edges themselves but in grid cells of several elements
   std::optional<GridPlace> grid_place;  // of a built embryo
-  // What division needs (division.hpp). The walls, each a chain of stops: along u at v = 0 and v = 1 (walls 0 and 2),
-  // along v at u = 1 and u = 0 (walls 1 and 3). Empty in a cell that begins with several elements.
-  std::array<std::vector<WallStop>, 4> walls;
+  // What division needs (division.hpp): the walls, each a chain of stops from a corner to the next, and what the
+  // polygon is split into. Empty in a cell that begins with lines of its own: several elements of a grid, kites,
+  // layers.
+  std::vector<std::vector<WallStop>> walls;
+  std::vector<OutlineQuad> quadrilaterals;
   std::vector<Vec3> rest_shape;  // um; corners
   Lineage lineage;
 

@@ -103,6 +103,61 @@ growth_s = 10
                             '[volume]\nmethod = "projection"\n' + CUT, "volume.method")
 
 
+EGG = """\
+format = 1
+[embryo]
+shape = "egg"
+length_um = 300
+diameter_um = 160
+cell_count = 150
+cell_height_um = 20
+[elasticity]
+corner_barrier_Pa = 100
+[region.belly]
+angle_deg = [-60, 60]
+[time]
+end_s = 80
+[stop]
+at_equilibrium = false
+[output]
+frame_every_s = 20
+"""
+ROUND = """\
+[division.at_{0}]
+region = "belly"
+at_s = {0}
+plane = "longest-axis"
+daughter_volume_ratio = 0.5
+growth_s = 10
+max_generation = 3
+"""
+
+
+class Polygons(CommandLine):
+    """150 polygons on an egg, of which 50 divide three times: 350 divisions."""
+    TEXT = EGG + "".join(ROUND.format(at) for at in (10, 30, 50))
+
+    def test_three_generations_keep_volumes_and_resume_to_the_same_bits(self):
+        self.run_scenario(self.TEXT)
+        summary = self.summary()
+        self.assertGreater(summary["divisions"], 200)
+        self.assertLessEqual(summary["max_volume_error"], 1e-9)
+        self.assertEqual(summary["self_intersections"], 0)
+        self.assertEqual({row["generation"] for row in table(self.out / "lineage.csv")}, {"1", "2", "3"})
+        rows = table(self.out / "cells.csv")
+        volume_at = lambda time: sum(float(row["volume_um3"]) for row in rows if float(row["time_s"]) == time)
+        self.assertAlmostEqual(volume_at(80) / volume_at(0), 1, delta=1e-9)  # halves have grown to halves
+        self.assert_whole(self.out)
+
+        part, other = self.folder / "part", self.folder / "other"
+        self.run_scenario(self.TEXT.replace("end_s = 80", "end_s = 40"), out=part)
+        self.run_scenario(self.TEXT, "--resume", out=part)
+        self.run_scenario(self.TEXT, "--threads", "2", out=other)
+        for name in ("series.csv", "cells.csv", "lineage.csv"):
+            for run in (part, other):
+                self.assertEqual((self.out / name).read_bytes(), (run / name).read_bytes(), f"{run.name}/{name}")
+
+
 class BuiltIn(CommandLine):
     def test_division_demo_ends_with_four_equal_cells(self):
         done = plica("run", "division-demo", "--out", self.out, "--quiet")

@@ -312,13 +312,14 @@ TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
   unfit([](RunMemory& m) { m.factor.ahead = 0.5; });
   unfit([](RunMemory& m) { m.factor.changed_contacts.push_back(0); });
   EXPECT_EQ(cases, 18);
-  for (const int part : {0, 1, 2, 3, 4, 5}) {
+  for (const int part : {0, 1, 2, 3, 4, 5, 6}) {
     PastDivision bad = *run.last().run.past_divisions.front();
     PlannedDivision& one = bad.planned.front();
     if (part == 0) bad.positions.pop_back();
     if (part == 1) one.cut.cell = CellId(1000000);
     if (part == 2) one.cut.cell = CellId(-1);
     if (part == 3) one.cut.first_wall = 2;
+    if (part == 6) one.cut.second_wall = 4;
     if (part == 4) one.growth_s = -1;
     if (part == 5) one.volume_ratio = 0;
     EXPECT_TRUE(why_unfit(bad, *run.at_rest)) << part;

@@ -16,8 +16,9 @@ void add(std::vector<double>& to, const std::optional<double>& value) {
 
 void add(std::vector<double>& to, const PlannedDivision& planned) {
   const auto& [cut, growth_s, volume_ratio] = planned;
-  const auto& [cell, first_wall] = cut;
-  to.insert(to.end(), {static_cast<double>(cell.number()), static_cast<double>(first_wall), growth_s, volume_ratio});
+  const auto& [cell, first_wall, second_wall] = cut;
+  to.insert(to.end(), {static_cast<double>(cell.number()), static_cast<double>(first_wall),
+                       static_cast<double>(second_wall), growth_s, volume_ratio});
 }
 
 // A list: how long it is, and what is in it.

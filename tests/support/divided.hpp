@@ -26,10 +26,9 @@ inline double volume_inside_boundary(const Tissue& tissue, const Vectors& positi
     for (const Facet& facet : *facets) volume += cone(facet.nodes, positions);
   std::map<std::pair<NodeId, NodeId>, std::array<NodeId, 4>> outer;  // facets of walls, by their apical edge
   for (const Cell& cell : tissue.cells)
-    for (int wall = 0; wall < 4; ++wall)
-      for (std::size_t i = 1; i < cell.walls[wall].size(); ++i) {
-        WallStop from = cell.walls[wall][i - 1], to = cell.walls[wall][i];
-        if (wall >= 2) std::swap(from, to);  // counter-clockwise seen from outside the cell
+    for (const auto& stops : cell.walls)
+      for (std::size_t i = 1; i < stops.size(); ++i) {
+        const WallStop &from = stops[i - 1], &to = stops[i];
         const auto edge = std::minmax(from.apical, to.apical);
         const std::array<NodeId, 4> facet = {from.basal, to.basal, to.apical, from.apical};
         if (!outer.emplace(edge, facet).second) outer.erase(edge);

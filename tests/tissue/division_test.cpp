@@ -113,9 +113,10 @@ TEST(Division, GivesAboutFourFreeNodesACut) {
     const auto cuts = cuts_of(random_divisions(tissue, 0.5, random));
     std::size_t lines = 0;
     for (const CellCut& cut : cuts) {
-      std::set<double> places;
+      std::set<double> places;  // along u or v: walls 2 and 3 run against them
       for (const int wall : {1 - cut.first_wall, 3 - cut.first_wall})
-        for (const WallStop& stop : tissue.cells[cut.cell.index()].walls[wall]) places.insert(stop.at);
+        for (const WallStop& stop : tissue.cells[cut.cell.index()].walls[wall])
+          places.insert(wall < 2 ? stop.at : 1 - stop.at);
       lines += places.size() - 2;
     }
     const Division division = divide(tissue, cuts, round);

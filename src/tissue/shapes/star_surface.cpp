@@ -29,6 +29,14 @@ double sum_of(const std::vector<double>& coefficients, const HarmonicValues& val
   return sum;
 }
 
+// The least k for which det(hessian - k metric) is 0: a quadratic.
+double least_eigenvalue(const Eigen::Matrix2d& hessian, const Eigen::Matrix2d& metric) {
+  const double det = metric.determinant();
+  const double half_sum =
+      0.5 * (hessian(0, 0) * metric(1, 1) + hessian(1, 1) * metric(0, 0) - 2 * hessian(0, 1) * metric(0, 1)) / det;
+  return half_sum - std::sqrt(std::max(0.0, half_sum * half_sum - hessian.determinant() / det));
+}
+
 }  // namespace
 
 // X(a, b) = S rho(n) n with n = d + a e1 + b e2, made a unit vector, at a = b = 0.
@@ -39,6 +47,21 @@ struct StarSurface::Chart {
   std::array<Vec3, 3> second;  // aa, ab, bb
 
   [[nodiscard]] Vec3 normal() const { return first[0].cross(first[1]).normalized(); }
+  [[nodiscard]] Eigen::Matrix2d metric() const {
+    return symmetric(first[0].squaredNorm(), first[0].dot(first[1]), first[1].squaredNorm());
+  }
+  /// Of each second derivative, its part along a vector.
+  [[nodiscard]] Eigen::Matrix2d second_along(const Vec3& way) const {
+    return symmetric(way.dot(second[0]), way.dot(second[1]), way.dot(second[2]));
+  }
+  [[nodiscard]] SurfaceBend bend() const;
+
+ private:
+  static Eigen::Matrix2d symmetric(double aa, double ab, double bb) {
+    Eigen::Matrix2d matrix;
+    matrix << aa, ab, ab, bb;
+    return matrix;
+  }
 };
 
 StarSurface::StarSurface(const Mat3& axes, const Vec3& half_axes_um, const std::vector<double>& coefficients)
@@ -128,7 +151,7 @@ Vec3 StarSurface::put_on(const Vec3& point) const {
   return along_ray(x);
 }
 
-Vec3 StarSurface::nearest_direction(const Vec3& point, Vec3 direction) const {
+StarSurface::Chart StarSurface::nearest(const Vec3& point, Vec3 direction) const {
   // Newton's method for the squared distance over the unit sphere, damped until the distance falls.
   double damping = 0;
   Chart c = chart(direction);
@@ -136,22 +159,16 @@ Vec3 StarSurface::nearest_direction(const Vec3& point, Vec3 direction) const {
   for (int iteration = 0; iteration < 100; ++iteration) {
     const Vec3 gap = c.X - point;
     const Eigen::Vector2d gradient(gap.dot(c.first[0]), gap.dot(c.first[1]));
-    Eigen::Matrix2d metric, hessian;
-    metric << c.first[0].dot(c.first[0]), c.first[0].dot(c.first[1]), c.first[0].dot(c.first[1]),
-        c.first[1].dot(c.first[1]);
-    hessian << gap.dot(c.second[0]), gap.dot(c.second[1]), gap.dot(c.second[1]), gap.dot(c.second[2]);
-    hessian += metric;
+    const Eigen::Matrix2d metric = c.metric(), hessian = metric + c.second_along(gap);
     // Far inside, the Hessian is indefinite: enough of the metric makes it definite.
-    const double least =
-        Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d>(hessian, metric, Eigen::EigenvaluesOnly)
-            .eigenvalues()[0];
+    const double least = least_eigenvalue(hessian, metric);
     const double shift = damping + (least < 1e-3 ? 1e-3 - least + 0.1 * std::abs(least) : 0);
     const Eigen::Vector2d step = -(hessian + shift * metric).ldlt().solve(gradient);
     const double step_um = std::sqrt(step.dot(metric * step));
     const Vec3 next = (direction + step[0] * c.tangents[0] + step[1] * c.tangents[1]).normalized();
     const Chart next_chart = chart(next);
     const double next_distance = (next_chart.X - point).squaredNorm();
-    if (step_um < 1e-10 * half_axes_.minCoeff()) return next_distance <= distance ? next : direction;
+    if (step_um < 1e-10 * half_axes_.minCoeff()) return next_distance <= distance ? next_chart : c;
     if (next_distance <= distance * (1 + 1e-14)) {
       direction = next;
       c = next_chart;
@@ -161,7 +178,7 @@ Vec3 StarSurface::nearest_direction(const Vec3& point, Vec3 direction) const {
       damping = std::max(0.1, 4 * damping);
     }
   }
-  return direction;
+  return c;
 }
 
 ClosestOnSurface StarSurface::closest(const Vec3& point) const {
@@ -183,34 +200,29 @@ ClosestOnSurface StarSurface::closest(const Vec3& point) const {
     }
   }
   double best = std::numeric_limits<double>::infinity();
-  Vec3 direction = Vec3::UnitX();
+  Chart c;
   for (const Vec3& start : starts) {
-    const Vec3 found = nearest_direction(point, start);
-    const double squared_distance = (in_direction(found) - point).squaredNorm();
+    const Chart found = nearest(point, start);
+    const double squared_distance = (found.X - point).squaredNorm();
     if (squared_distance >= best) continue;
     best = squared_distance;
-    direction = found;
+    c = found;
   }
-  const Chart c = chart(direction);
-  const Vec3 normal = c.normal();
-  return {c.X, normal, std::copysign((point - c.X).norm(), (point - c.X).dot(normal))};
+  const SurfaceBend bend = c.bend();
+  return {c.X, bend.normal, std::copysign((point - c.X).norm(), (point - c.X).dot(bend.normal)), bend};
 }
 
-SurfaceBend StarSurface::bend(const Vec3& point) const {
-  const Chart c = chart(scaled_direction(point));
+SurfaceBend StarSurface::bend(const Vec3& point) const { return chart(scaled_direction(point)).bend(); }
+
+SurfaceBend StarSurface::Chart::bend() const {
   SurfaceBend bend;
-  bend.normal = c.normal();
-  Eigen::Matrix2d metric, second;
-  metric << c.first[0].dot(c.first[0]), c.first[0].dot(c.first[1]), c.first[0].dot(c.first[1]),
-      c.first[1].dot(c.first[1]);
-  second << c.second[0].dot(bend.normal), c.second[1].dot(bend.normal), c.second[1].dot(bend.normal),
-      c.second[2].dot(bend.normal);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> solver(-second, metric);
+  bend.normal = normal();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> solver(-second_along(bend.normal), metric());
   for (int i = 0; i < 2; ++i) {
     const int from = 1 - i;  // the larger curvature first
     bend.radii[i] = 1 / solver.eigenvalues()[from];
     bend.tangents[i] =
-        (solver.eigenvectors()(0, from) * c.first[0] + solver.eigenvectors()(1, from) * c.first[1]).normalized();
+        (solver.eigenvectors()(0, from) * first[0] + solver.eigenvectors()(1, from) * first[1]).normalized();
   }
   return bend;
 }

@@ -12,19 +12,20 @@
 
 namespace plica {
 
-/// The place of a surface nearest to a point.
-struct ClosestOnSurface {
-  Vec3 point;                 // um
-  Vec3 normal;                // unit, outward
-  double signed_distance_um;  // of what was asked for: negative inside
-};
-
 /// How a surface lies and bends at one of its points.
 struct SurfaceBend {
   Vec3 normal;                   // unit, outward
   std::array<double, 2> radii;   // um; principal radii of curvature, the smaller first where both are positive.
                                  // Positive: the surface bends inward, as a ball's does
   std::array<Vec3, 2> tangents;  // unit, the directions of these radii
+};
+
+/// The place of a surface nearest to a point.
+struct ClosestOnSurface {
+  Vec3 point;                 // um
+  Vec3 normal;                // unit, outward
+  double signed_distance_um;  // of what was asked for: negative inside
+  SurfaceBend bend;           // there
 };
 
 class StarSurface {
@@ -69,7 +70,7 @@ class StarSurface {
 
   [[nodiscard]] double scaled_radius(const Vec3& direction) const;
   [[nodiscard]] Chart chart(const Vec3& direction) const;
-  [[nodiscard]] Vec3 nearest_direction(const Vec3& point, Vec3 direction) const;
+  [[nodiscard]] Chart nearest(const Vec3& point, Vec3 direction) const;
 
   Vec3 half_axes_;
   Mat3 to_real_, to_scaled_;
