@@ -96,7 +96,8 @@ TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
          "region.r: no cell of the embryo lies in it");
   expect(egg + "[contraction.c]\nregion = \"all\"\nedges = \"apical\"\nstiffness_nN_per_um = 1\ndiagonals = true\n",
          "contraction.c.diagonals: cell ");
-  expect(egg + "elements = \"kites\"\n[division.d]\nregion = \"all\"\nat_s = 10\n", "made of kites, or of several layers");
+  expect(egg + "elements = \"kites\"\n[division.d]\nregion = \"all\"\nat_s = 10\n",
+         "made of kites, or of several layers");
 }
 
 }  // namespace
