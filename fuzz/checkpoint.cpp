@@ -17,7 +17,7 @@ void require(bool holds) {
 
 /// The HDF5 file with the end of a checkpoint behind it: docs/reliability.md.
 std::string with_checksum(std::string_view image) {
-  std::string end = fmt::format("\nplica checkpoint 5 bytes {} crc32 {:08x}", image.size(),
+  std::string end = fmt::format("\nplica checkpoint {} bytes {} crc32 {:08x}", checkpoint_format, image.size(),
                                 libdeflate_crc32(0, image.data(), image.size()));
   end.resize(63, ' ');
   return std::string(image) + end + "\n";

@@ -16,14 +16,14 @@
 namespace plica {
 namespace {
 
-constexpr int format = 6;
 constexpr std::size_t trailer_bytes = 64;
 
 std::uint32_t checksum(std::string_view bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }
 
 // After the HDF5 file, which readers of HDF5 do not mind.
 std::string trailer(std::string_view image) {
-  std::string text = fmt::format("\nplica checkpoint {} bytes {} crc32 {:08x}", format, image.size(), checksum(image));
+  std::string text =
+      fmt::format("\nplica checkpoint {} bytes {} crc32 {:08x}", checkpoint_format, image.size(), checksum(image));
   text.resize(trailer_bytes - 1, ' ');
   return text + "\n";
 }
@@ -333,7 +333,7 @@ std::string CheckpointBytes::operator()(const Checkpoint& checkpoint) {
   constexpr std::size_t most_kept_bytes = std::size_t{32} << 20;
   auto archive = archive_ ? std::move(archive_) : std::make_unique<ArchiveWriter>();  // none is kept after errors
   Saving save(*archive);
-  save("format", format);
+  save("format", checkpoint_format);
   visit(save, checkpoint);
   save_divisions(*archive, checkpoint.run.past_divisions);
   save_rows(*archive, checkpoint.record.rows);
@@ -349,8 +349,9 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
   const std::string_view image = bytes.substr(0, bytes.size() - trailer_bytes), end = bytes.substr(image.size());
   constexpr std::string_view start = "\nplica checkpoint ";
   if (!end.starts_with(start)) throw FileError("it is no checkpoint, or cut off");
-  if (end.substr(start.size(), 2) != fmt::format("{} ", format))
-    throw FileError(fmt::format("another version of plica wrote it, in a format that is not this one's ({})", format));
+  if (end.substr(start.size(), 2) != fmt::format("{} ", checkpoint_format))
+    throw FileError(
+        fmt::format("another version of plica wrote it, in a format that is not this one's ({})", checkpoint_format));
   if (end != trailer(image)) throw FileError("it is damaged: its checksum is not that of its bytes");
   const auto read = [&] {
     const ArchiveReader archive(image);

@@ -16,6 +16,9 @@
 
 namespace plica {
 
+/// Grows when what is in a checkpoint changes; those of another format are refused.
+inline constexpr int checkpoint_format = 6;
+
 /// What had been written when the checkpoint was: files are cut back to it.
 struct RecordMemory {
   std::vector<Observation> rows;  // of series.csv

@@ -93,7 +93,7 @@ bool is_refused(std::string_view bytes) { return !unless_refused(bytes); }
 std::string made_right(std::string bytes) {
   const std::size_t size = bytes.size() - trailer_bytes;
   const auto sum = crc32(0, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<uInt>(size));
-  std::string end = fmt::format("\nplica checkpoint 5 bytes {} crc32 {:08x}", size, sum);
+  std::string end = fmt::format("\nplica checkpoint {} bytes {} crc32 {:08x}", checkpoint_format, size, sum);
   end.resize(trailer_bytes - 1, ' ');
   return bytes.replace(size, trailer_bytes, end + "\n");
 }
@@ -215,7 +215,7 @@ TEST_F(CheckpointTest, DamageUnderARightChecksumIsRefusedOrHarmless) {
 
 TEST_F(CheckpointTest, AnotherFormatIsNamed) {
   std::string bytes = checkpoint_bytes(block_run().last());
-  const std::string mark = "\nplica checkpoint 5 ";
+  const std::string mark = fmt::format("\nplica checkpoint {} ", checkpoint_format);
   for (const char* format : {"1 ", "20", "0 "}) {
     std::string other = bytes;
     other.replace(bytes.size() - trailer_bytes + mark.size() - 2, 2, format);
