@@ -45,12 +45,19 @@ std::set<std::string> used_regions(const Scenario& scenario) {
   take_all(scenario.pressures);
   take_all(scenario.divisions);
   take_all(scenario.monitors);
-  for (const auto& [name, cortex] : scenario.cortices) used.insert(cortex.profile.about);
-  for (const auto& [name, contraction] : scenario.contractions) used.insert(contraction.profile.about);
+  const auto take_middles = [&](const auto& tables) {
+    for (const auto& [name, table] : tables) used.insert(table.profile.about);
+  };
+  take_middles(scenario.region_elasticities);
+  take_middles(scenario.contractions);
+  take_middles(scenario.cortices);
+  take_middles(scenario.pressures);
   for (const auto& [name, monitor] : scenario.monitors) used.insert(monitor.from);
-  for (const auto& [name, region] : scenario.regions)
+  for (const auto& [name, region] : scenario.regions) {
+    used.insert(region.neighbours_of);
     for (const auto* others : {&region.unite, &region.intersect, &region.except})
       used.insert(others->begin(), others->end());
+  }
   return used;
 }
 
