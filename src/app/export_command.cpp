@@ -29,8 +29,7 @@ std::size_t place_of(const std::string& text, const std::vector<double>& times_s
   if (!wanted_s) return times_s.size() - 1;
   const double last_gap = times_s.size() > 1 ? times_s.back() - times_s[times_s.size() - 2] : 0;
   if (*wanted_s < times_s.front() - 1e-6 || *wanted_s > times_s.back() + last_gap / 2 + 1e-6)
-    throw UsageError(
-        fmt::format("--time {}: the frames go from {} s to {} s", text, times_s.front(), times_s.back()));
+    throw UsageError(fmt::format("--time {}: the frames go from {} s to {} s", text, times_s.front(), times_s.back()));
   return static_cast<std::size_t>(
       std::ranges::min_element(times_s, {}, [&](double time_s) { return std::abs(time_s - *wanted_s); }) -
       times_s.begin());
@@ -50,8 +49,8 @@ void write_tables(const PolygonSurface& surface, const ExportCommand& command) {
 void export_frame(const ExportCommand& command) {
   const bool as_surface = command.out.ends_with(".vtp");
   if (const fs::path file = command.out; !as_surface && file.has_extension())
-    throw UsageError(fmt::format("--out {}: give FILE.vtp for a surface, or the name of a directory for tables",
-                                 command.out));
+    throw UsageError(
+        fmt::format("--out {}: give FILE.vtp for a surface, or the name of a directory for tables", command.out));
   if (as_surface) require_free(command.out, command.overwrite);
   const ReferenceRun run(command.directory);
   const std::vector<double> times_s = run.times_s();

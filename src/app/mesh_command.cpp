@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/named.hpp"
 #include "app/output_file.hpp"
 #include "app/scenario_options.hpp"
-#include "app/named.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/names.hpp"
@@ -87,8 +87,9 @@ void mesh(const MeshCommand& command) {
 
 void add_mesh_command(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
-      "mesh", "write the mesh at rest with its regions, arrays, strengths and moduli, or a picture of them; print how "
-              "even its cells are");
+      "mesh",
+      "write the mesh at rest with its regions, arrays, strengths and moduli, or a picture of them; print how "
+      "even its cells are");
   auto options = std::make_shared<MeshCommand>();
   options->scenario.add_to(*command);
   command->add_option("--out,--output,-o", options->out, "FILE.vtu to write, or FILE.png")->required();

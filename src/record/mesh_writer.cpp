@@ -141,8 +141,10 @@ void put_field_data(const CellPolygons* polygons, std::optional<double> time_s, 
   vtk.line(2, "<FieldData>");
   vtk.time(time_s);
   if (polygons != nullptr)
-    for (const auto& [name, values] : {std::pair("ends", &polygons->ends), {"apical", &polygons->apical},
-                                       {"basal", &polygons->basal}, {"elements", &polygons->elements}})
+    for (const auto& [name, values] : {std::pair("ends", &polygons->ends),
+                                       {"apical", &polygons->apical},
+                                       {"basal", &polygons->basal},
+                                       {"elements", &polygons->elements}})
       vtk.array(3, std::string("polygon_") + name, std::span<const std::int32_t>(*values),
                 fmt::format(R"( NumberOfTuples="{}")", values->size()));
   vtk.line(2, "</FieldData>");
@@ -201,8 +203,8 @@ void write_polygons(const std::filesystem::path& file, const PolygonSurface& sur
   VtkText vtp;
   vtp.line(1, "<PolyData>");
   put_field_data(nullptr, surface.time_s, vtp);
-  vtp.line(2, fmt::format(R"(<Piece NumberOfPoints="{}" NumberOfPolys="{}">)", surface.points.size(),
-                          surface.ends.size()));
+  vtp.line(
+      2, fmt::format(R"(<Piece NumberOfPoints="{}" NumberOfPolys="{}">)", surface.points.size(), surface.ends.size()));
   vtp.line(3, "<PointData>");
   for (const auto& [name, values] : surface.vectors) vtp.vectors(4, name, values);
   vtp.line(3, "</PointData>");

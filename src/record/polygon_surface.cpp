@@ -36,8 +36,8 @@ void check(const Frame& frame) {
 PolygonSurface surface_of(const Frame& frame, bool apical) {
   check(frame);
   const std::vector<int>& nodes = apical ? frame.polygons.apical : frame.polygons.basal;
-  PolygonSurface surface{.points = {}, .ends = frame.polygons.ends, .corners = {}, .scalars = {}, .vectors = {},
-                         .time_s = frame.time_s};
+  PolygonSurface surface{
+      .points = {}, .ends = frame.polygons.ends, .corners = {}, .scalars = {}, .vectors = {}, .time_s = frame.time_s};
   std::vector<int> point(frame.positions.size(), -1), used;  // points by node, nodes by point
   for (const int node : nodes) {
     if (point[node] < 0) {
@@ -87,9 +87,9 @@ PolygonTables tables_of(const PolygonSurface& surface) {
     const Vec3 along = surface.points[to] - surface.points[from];
     const auto opposite = number.find({to, from});
     perimeters[face] += along.norm();
-    add(edges, {static_cast<double>(edge++), static_cast<double>(from), static_cast<double>(to),
-                static_cast<double>(face), opposite == number.end() ? -1.0 : opposite->second, along.x(), along.y(),
-                along.z(), along.norm()});
+    add(edges,
+        {static_cast<double>(edge++), static_cast<double>(from), static_cast<double>(to), static_cast<double>(face),
+         opposite == number.end() ? -1.0 : opposite->second, along.x(), along.y(), along.z(), along.norm()});
   });
   int first = 0;
   for (std::size_t f = 0; f < surface.ends.size(); ++f) {

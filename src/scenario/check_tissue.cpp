@@ -125,10 +125,10 @@ void check_arrays(const Scenario& scenario, const Tissue& tissue, std::vector<Di
       const auto array = tissue.cell_arrays.find(input.profile.array);
       if (array == tissue.cell_arrays.end()) {
         const std::vector<std::string> names = keys_of(tissue.cell_arrays);
-        errors.push_back(diagnostic_at(
-            scenario, key, fmt::format("the embryo has no array \"{}\"", input.profile.array),
-            names.empty() ? "it has none: arrays come with cells about points, or from a mesh file"
-                          : fmt::format("it has {}", fmt::join(names, ", "))));
+        errors.push_back(
+            diagnostic_at(scenario, key, fmt::format("the embryo has no array \"{}\"", input.profile.array),
+                          names.empty() ? "it has none: arrays come with cells about points, or from a mesh file"
+                                        : fmt::format("it has {}", fmt::join(names, ", "))));
         continue;
       }
       const CellSet& cells = tissue.regions.at(input.region);

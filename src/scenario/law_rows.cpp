@@ -73,9 +73,9 @@ std::vector<Row> law_rows() {
       of_region("young_modulus_Pa", &R::young_modulus_Pa, positive,
                 "Young's modulus of its cells (Pa), times the factor of `profile` and `variation`; without it that of "
                 "all."),
-      of_region(
-          "poisson_ratio", &R::poisson_ratio, {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
-          "Poisson's ratio of its cells; without it that of all."),
+      of_region("poisson_ratio", &R::poisson_ratio,
+                {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
+                "Poisson's ratio of its cells; without it that of all."),
       of_region("relaxation_s", &R::relaxation_s, positive,
                 "Model neo-hookean: time in which their rest shapes follow their shapes (s); without it that of all."),
       of_region("relaxation_min", &R::relaxation_s, positive, "The same in minutes.",

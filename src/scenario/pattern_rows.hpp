@@ -85,14 +85,12 @@ void add_pattern(std::vector<Row>& rows, const RowsIn<Table>& table) {
       table("delay.from", &Table::delay, &DelayInput::from, one_of(words::delay_starts),
             "Where the region's wave starts at time 0; without it in the middle. Low is the anterior end, or "
             "the left side."));
-  rows.push_back(table("pulse.period_s", &Table::pulse, &PulseInput::period_s,
-                       {.low = 0, .low_included = false, .word_for_none = "none"},
+  rows.push_back(table("pulse.period_s", &Table::pulse, &PulseInput::period_s, {.low = 1, .word_for_none = "none"},
                        "Activity swells and ebbs as a sine with this period (s): times 1 + `amplitude` "
                        "sin(2π(t/period + phase)). Adaptive steps are a twelfth of it at most, and the run does not "
                        "end at rest."));
-  rows.push_back(table("pulse.period_min", &Table::pulse, &PulseInput::period_s,
-                       {.low = 0, .low_included = false, .word_for_none = "none"}, "The same in minutes.",
-                       {.instead_of = "pulse.period_s", .scale = 60}));
+  rows.push_back(table("pulse.period_min", &Table::pulse, &PulseInput::period_s, {.low = 0.02, .word_for_none = "none"},
+                       "The same in minutes.", {.instead_of = "pulse.period_s", .scale = 60}));
   rows.push_back(table("pulse.amplitude", &Table::pulse, &PulseInput::amplitude, between(0, 1),
                        "How far it goes, over the mean: with 1, from nothing to twice as much."));
   rows.push_back(table("pulse.phase", &Table::pulse, &PulseInput::phase, one_of(words::pulse_phases),

@@ -77,8 +77,7 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
     };
     if (region.rows) {
       if (from_midline.empty()) from_midline = half_cells_from_midline(tissue);
-      for (std::size_t c = 0; c < cells; ++c)
-        set[c] = set[c] && from_midline[c] >= 0 && from_midline[c] < *region.rows;
+      for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] && from_midline[c] >= 0 && from_midline[c] < *region.rows;
     }
     if (!region.neighbours_of.empty())
       combine(cells_around(tissue, resolve(region.neighbours_of), region.rings.value_or(1)), std::logical_and());

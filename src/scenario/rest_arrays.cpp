@@ -38,8 +38,7 @@ void add_materials(const Scenario& scenario, const Tissue& tissue, NamedArrays& 
   const ElasticityInput& common = scenario.elasticity;
   std::vector<ElasticMaterial> materials(tissue.elements.size(), {1, common.poisson_ratio, 0});
   for (const auto& [name, input] : scenario.region_elasticities)
-    if (is_possible(input.profile, tissue))
-      put_material(input, common, make_pattern(input, tissue), tissue, materials);
+    if (is_possible(input.profile, tissue)) put_material(input, common, make_pattern(input, tissue), tissue, materials);
   std::vector<double> moduli, ratios;
   for (const auto& [factor, poisson_ratio, relaxation_s] : materials) {
     moduli.push_back(factor * common.young_modulus_Pa);

@@ -13,7 +13,7 @@ namespace plica {
 using NamedArrays = std::vector<std::pair<std::string, std::vector<double>>>;
 
 struct RestArrays {
-  NamedArrays cells;     // the tissue's arrays; strength_TABLE.NAME; where they matter delay_s_ and pulse_phase_TABLE.NAME
+  NamedArrays cells;  // the tissue's arrays; strength_TABLE.NAME; where they matter delay_s_ and pulse_phase_TABLE.NAME
   NamedArrays elements;  // young_modulus_Pa and poisson_ratio, where a table [elasticity.NAME] changes them
 };
 

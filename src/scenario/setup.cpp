@@ -155,8 +155,7 @@ void add_elasticity(const Scenario& scenario, const Origin& origin, Model& model
   else
     model.laws.push_back(std::make_unique<Corotational>(model.tissue, std::move(moduli), viscosity));
   if (std::ranges::max(bulk_moduli) > 0)
-    model.laws.push_back(
-        std::make_unique<Dilatation>(model.tissue, std::move(bulk_moduli), model.volumes().is_held()));
+    model.laws.push_back(std::make_unique<Dilatation>(model.tissue, std::move(bulk_moduli), model.volumes().is_held()));
 }
 
 void add_contractions(const Scenario& scenario, const Origin& origin, Model& model) {
@@ -241,9 +240,9 @@ void add_contact(const Scenario& scenario, const Origin& origin, Model& model) {
 
 void add_pressures(const Scenario& scenario, const Origin& origin, Model& model) {
   for (const auto& [name, input] : scenario.pressures) {
-    model.laws.push_back(std::make_unique<FacePressure>(
-        model.tissue, meaning_of(words::pressure_faces, input.face), pattern_of(input, origin),
-        input.pressure_Pa * units::pascal, make_program(input.program)));
+    model.laws.push_back(std::make_unique<FacePressure>(model.tissue, meaning_of(words::pressure_faces, input.face),
+                                                        pattern_of(input, origin), input.pressure_Pa * units::pascal,
+                                                        make_program(input.program)));
     model.laws.back()->set_label("pressure." + name);
   }
 }

@@ -59,8 +59,8 @@ class ProfileCheck {
     for (const auto& one : number_keys) drop_unused(one);
     for (const auto& one : list_keys) drop_unused(one);
     if (profile_.shape != "array")
-      drop(path_ + ".array", profile_.array, {}, path_ + ".shape", with_shape(),
-           "remove it, or choose shape \"array\"", input_);
+      drop(path_ + ".array", profile_.array, {}, path_ + ".shape", with_shape(), "remove it, or choose shape \"array\"",
+           input_);
     if (profile_.axis != "angle")
       drop(path_ + ".centre_deg", profile_.centre_deg, {}, path_ + ".axis", "goes with axis \"angle\"",
            "remove it, or choose that axis", input_);
@@ -100,7 +100,8 @@ class ProfileCheck {
     bool some = !profile_.axis.empty() || !profile_.array.empty() || profile_.centre_deg.has_value();
     for (const auto& one : number_keys) some |= (profile_.*one.field).has_value();
     for (const auto& one : list_keys) some |= !(profile_.*one.field).empty();
-    if (some) report(".shape", "is missing", fmt::format("give one of: {}", fmt::join(words_of(words::profile_shapes), " | ")));
+    if (some)
+      report(".shape", "is missing", fmt::format("give one of: {}", fmt::join(words_of(words::profile_shapes), " | ")));
   }
 
   template <class Field>
@@ -108,8 +109,8 @@ class ProfileCheck {
     const std::string key = path_ + "." + one.key;
     Field& field = profile_.*one.field;
     if (profile_.shape != one.shape)
-      drop(key, field, {}, path_ + ".shape", with_shape(),
-           fmt::format("remove it, or choose shape \"{}\"", one.shape), input_);
+      drop(key, field, {}, path_ + ".shape", with_shape(), fmt::format("remove it, or choose shape \"{}\"", one.shape),
+           input_);
     else if (one.places != any && (one.places == angles) != has_angles())
       drop(key, field, {}, path_ + ".axis", fmt::format("has no meaning with axis \"{}\"", profile_.axis),
            has_angles() ? "give degrees, or another axis" : "give lengths, or axis \"angle\"", input_);
@@ -131,7 +132,8 @@ class ProfileCheck {
     if (p.shape == "linear" && has_angles())
       need(".half_width_deg", p.half_width_deg.has_value(), "give the angle at which the factor is edge, a number > 0");
     else if (p.shape == "linear")
-      need(".half_width_um", p.half_width_um.has_value(), "give the distance at which the factor is edge, a number > 0");
+      need(".half_width_um", p.half_width_um.has_value(),
+           "give the distance at which the factor is edge, a number > 0");
     if (p.shape == "gaussian" && has_angles())
       need(".sigma_deg", p.sigma_deg.has_value(), "give the width of the gaussian in degrees, a number > 0");
     else if (p.shape == "gaussian")
@@ -140,8 +142,7 @@ class ProfileCheck {
       need(".full_deg", p.full_deg.has_value(), "give on how many degrees the factor is that of the middle");
       need(".fade_deg", p.fade_deg.has_value(), "give over how many degrees it fades, 0 for none");
     } else if (p.shape == "plateau") {
-      need(".full_cells", p.full_cells.has_value(),
-           "give how many cells have the factor of the middle, a number > 0");
+      need(".full_cells", p.full_cells.has_value(), "give how many cells have the factor of the middle, a number > 0");
       need(".fade_cells", p.fade_cells.has_value(), "give over how many cells it fades, 0 for none");
     }
     if (p.shape == "array") check_array();
@@ -158,10 +159,11 @@ class ProfileCheck {
 
   void check_table() {
     const std::string key = has_angles() ? ".at_deg" : ".at_um";
-    const std::vector<double>& at = has_angles()                ? profile_.at_deg
+    const std::vector<double>& at = has_angles()              ? profile_.at_deg
                                     : !profile_.at_um.empty() ? profile_.at_um
                                                               : profile_.at_cells;
-    need(key, !at.empty(), has_angles() ? "give the angles of the points" : "give the places of the points, or at_cells");
+    need(key, !at.empty(),
+         has_angles() ? "give the angles of the points" : "give the places of the points, or at_cells");
     need(".factor", !profile_.factor.empty(), "give a factor for each of the places");
     if (at.empty() || profile_.factor.empty() || !input_.sound(path_ + key)) return;
     if (at.size() != profile_.factor.size())
@@ -204,7 +206,7 @@ void check_pulse(const std::string& table, PulseInput& pulse, const TimeInput& t
     const bool is_given = std::ranges::any_of(std::to_array({".amplitude", ".phase", ".spread", ".seed"}),
                                               [&](const char* key) { return input.place(path + key) != nullptr; });
     if (is_given && input.place(period) == nullptr)
-      input.report(period, "is missing", "give how long a pulse takes, a number > 0, or \"none\"");
+      input.report(period, "is missing", "give how long a pulse takes, a number >= 1, or \"none\"");
     pulse = {};
     return;
   }

@@ -64,7 +64,8 @@ TEST(InteriorKeys, ModuliByRegionSayWhatWouldBeRight) {
       {soft + "young_modulus_Pa = 5\nheight_percent = [80, 10]",
        "test.toml:4: elasticity.soft.height_percent: low is above high; give [low, high], 0 to 100"},
       {soft + "profile = { shape = \"linear\", half_width_um = 20 }",
-       "test.toml:3: elasticity.soft.profile: the modulus of cell 0 would be 0; give profile.edge, or factors, above 0"},
+       "test.toml:3: elasticity.soft.profile: the modulus of cell 0 would be 0; give profile.edge, or factors, above "
+       "0"},
       {soft + "young_modulus_Pa = 5\nheight_percent = [0, 50]\n[division.d]\nregion = \"all\"\nat_s = 9",
        "test.toml:4: elasticity.soft.height_percent: cells with layers do not divide; remove it, or [division]"},
       {"[elasticity.soft]\nregion = \"belly\"\nyoung_modulus_Pa = 5",

@@ -8,6 +8,7 @@
 
 #include "core/files.hpp"
 #include "scenario/acting.hpp"
+#include "scenario/advice.hpp"
 #include "scenario/load.hpp"
 #include "scenario/print.hpp"
 #include "scenario/setup.hpp"
@@ -103,6 +104,14 @@ TEST(PatternKeys, ProfilesByAnArray) {
   const auto model = make_model(scenario);
   const CellPattern found = make_pattern(scenario.contractions.at("a"), model->tissue);
   for (int c = 0; c < 200; ++c) EXPECT_NEAR(found.strengths[c], 2 * std::clamp((c - 20) / 100.0, 0.0, 1.0), 1e-12);
+  const auto lines_of = [&](const std::string& profile) {
+    const Scenario other = load(profile);
+    return advice(other, *make_model(other));
+  };
+  const std::string nothing =
+      "warning: contraction.a: its profile is 0 in every cell of region all; there twi goes from 0 to 199";
+  EXPECT_EQ(std::ranges::count(lines_of("{ shape = \"array\", array = \"twi\", from = 300, to = 400 }"), nothing), 1);
+  EXPECT_EQ(std::ranges::count(lines_of("{ shape = \"array\", array = \"twi\", from = 100, to = 400 }"), nothing), 0);
   try {
     make_model(load("{ shape = \"array\", array = \"sna\", from = 0, to = 1 }"));
     FAIL();
@@ -125,19 +134,23 @@ TEST(PatternKeys, WhatIsWrongIsSaidWithItsKey) {
   const auto act = [](const std::string& more) {
     return "[contraction.a]\nregion = \"all\"\nstiffness_nN_per_um = 1\n" + more + "\n";
   };
-  expect("[region.r]\nneighbours_of = \"belly\"\n", "test.toml:8: region.r.neighbours_of: there is no region \"belly\"");
-  expect("[region.r]\nneighbours_of = \"r\"\n", "region.r: is defined by itself: r > r; remove one of these references");
-  expect("[region.a]\nneighbours_of = \"b\"\n[region.b]\nunion = [\"a\"]\n", "region.a: is defined by itself: a > b > a");
+  expect("[region.r]\nneighbours_of = \"belly\"\n",
+         "test.toml:9: region.r.neighbours_of: there is no region \"belly\"");
+  expect("[region.r]\nneighbours_of = \"r\"\n",
+         "region.r: is defined by itself: r > r; remove one of these references");
+  expect("[region.a]\nneighbours_of = \"b\"\n[region.b]\nunion = [\"a\"]\n",
+         "region.a: is defined by itself: a > b > a");
   expect("[region.r]\nneighbours_of = \"all\"\n", "region.r: no cell of the embryo lies in it");
-  expect("[region.r]\nrows = 3\nrings = 2\n", "test.toml:9: region.r.rings: needs neighbours_of; name the region");
-  expect("[region.r]\nrows = 0\n", "test.toml:8: region.r.rows: 0 is out of range; give an integer, 1 to 100000");
+  expect("[region.r]\nrows = 3\nrings = 2\n", "test.toml:10: region.r.rings: needs neighbours_of; name the region");
+  expect("[region.r]\nrows = 0\n", "test.toml:9: region.r.rows: 0 is out of range; give an integer, 1 to 100000");
   expect("[region.r]\nrows = 2.5\n", "region.r.rows: 2.5 is not an integer");
   expect("[region.r]\nneighbours_of = [\"a\"]\n", "region.r.neighbours_of: a list is of the wrong type; give text");
   expect(act("profile = { shape = \"array\", from = 0, to = 1 }"),
-         "test.toml:10: contraction.a.profile.array: is missing; name an array");
+         "test.toml:11: contraction.a.profile.array: is missing; name an array");
   expect(act("profile = { shape = \"array\", array = \"twi\", from = 0, to = 1 }"),
          "contraction.a.profile.array: the embryo has no array \"twi\"; it has none: arrays come with");
-  expect(act("profile = { shape = \"array\", array = \"twi\", to = 1 }"), "contraction.a.profile.from: is missing; give");
+  expect(act("profile = { shape = \"array\", array = \"twi\", to = 1 }"),
+         "contraction.a.profile.from: is missing; give");
   expect(act("profile = { shape = \"array\", array = \"twi\", from = 1, to = 1 }"),
          "contraction.a.profile.to: is where the factor is edge, too; give another value than from");
   expect(act("profile = { shape = \"gaussian\", sigma_um = 9, array = \"twi\" }"),
@@ -149,7 +162,8 @@ TEST(PatternKeys, WhatIsWrongIsSaidWithItsKey) {
   expect(act("profile = { shape = \"gaussian\", axis = \"angle\" }"),
          "contraction.a.profile.sigma_deg: is missing; give the width of the gaussian in degrees");
   expect(act("profile = { shape = \"plateau\", sigma_deg = 4, full_cells = 3, fade_cells = 1 }"),
-         "contraction.a.profile.sigma_deg: has no meaning with shape \"plateau\"; remove it, or choose shape \"gaussian\"");
+         "contraction.a.profile.sigma_deg: has no meaning with shape \"plateau\"; remove it, or choose shape "
+         "\"gaussian\"");
   expect(act("profile = { shape = \"linear\", half_width_deg = 4, half_width_um = 3 }"),
          "contraction.a.profile.half_width_deg: has no meaning with axis \"across\"; give lengths, or axis \"angle\"");
   expect(act("profile = { shape = \"linear\", half_width_um = 3, centre_deg = 4 }"),
@@ -157,8 +171,10 @@ TEST(PatternKeys, WhatIsWrongIsSaidWithItsKey) {
   expect(act("profile = { shape = \"linear\", axis = \"angle\", half_width_deg = 3, about = \"all\" }"),
          "contraction.a.profile.about: has no meaning with axis \"angle\"; remove it; centre_deg says");
   expect(act("profile = { sigma_deg = 4 }"), "contraction.a.profile.shape: is missing; give one of: constant | linear");
-  expect(act("profile = { shape = \"table\", factor = [1, 0] }"), "contraction.a.profile.at_um: is missing; give the places");
-  expect(act("profile = { shape = \"table\", at_um = [1, 2] }"), "contraction.a.profile.factor: is missing; give a factor");
+  expect(act("profile = { shape = \"table\", factor = [1, 0] }"),
+         "contraction.a.profile.at_um: is missing; give the places");
+  expect(act("profile = { shape = \"table\", at_um = [1, 2] }"),
+         "contraction.a.profile.factor: is missing; give a factor");
   expect(act("profile = { shape = \"table\", at_um = [0, 20, 10], factor = [1, 0, 0] }"),
          "contraction.a.profile.at_um: the places do not increase; give each place farther than the one before");
   expect(act("profile = { shape = \"table\", at_um = [0, 20, 30], factor = [1, 0] }"),
@@ -166,11 +182,12 @@ TEST(PatternKeys, WhatIsWrongIsSaidWithItsKey) {
   expect(act("profile = { shape = \"table\", at_um = [0, 20], factor = [1, -1] }"),
          "contraction.a.profile.factor: -1 is out of range; give a list of numbers >= 0");
   expect(act("profile = { shape = \"table\", at_um = [0, 20], at_cells = [0, 2], factor = [1, 0] }"),
-         "contraction.a.profile.at_cells: contraction.a.profile.at_um is given as well; give one of the two");
+         "profile.at_um: contraction.a.profile.at_cells is given as well; give one of the two");
   expect(act("profile = { shape = \"table\", at_um = [0, 20], factor = [1, 0], middle = 2 }"),
          "contraction.a.profile.middle: has no meaning beside the factors of a table; remove it");
-  expect(act("pulse = { amplitude = 0.5 }"), "test.toml:10: contraction.a.pulse.period_s: is missing; give how long");
-  expect(act("pulse = { period_s = 0 }"), "contraction.a.pulse.period_s: 0 is out of range; give a number > 0 or \"none\"");
+  expect(act("pulse = { amplitude = 0.5 }"), "test.toml:11: contraction.a.pulse.period_s: is missing; give how long");
+  expect(act("pulse = { period_s = 0 }"),
+         "contraction.a.pulse.period_s: 0 is out of range; give a number >= 1 or \"none\"");
   expect(act("pulse = { period_s = 60, amplitude = 1.5 }"), "contraction.a.pulse.amplitude: 1.5 is out of range");
   expect(act("pulse = { period_s = 60, phase = \"odd\" }"),
          "contraction.a.pulse.phase: \"odd\" is not known; give one of: random | together");

@@ -25,7 +25,7 @@ cells_across = 4
 surface_drag_Pa_s_per_um = 20
 [cortex.apical]
 region = "belly"
-tension_mN_per_m = 20
+tension_mN_per_m = 2
 pulse = { period_s = 40, amplitude = 0.8, seed = 3 }
 [contraction.walls]
 region = "belly"

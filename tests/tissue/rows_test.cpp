@@ -33,7 +33,8 @@ TEST(Rows, OfAPillAreThoseOfItsBelly) {
   int belly = 0;
   for (std::size_t c = 0; c < pill.cells.size(); ++c) {
     const GridPlace& place = *pill.cells[c].grid_place;
-    if (place.face == GridPlace::Face::dorsal) EXPECT_GE(found[c], 2 * 8);
+    // Half-way between the poles; nearer to them the shortest way leads over the end.
+    if (place.face == GridPlace::Face::dorsal && place.place[0] == 9) EXPECT_GE(found[c], 2 * 12);
     if (place.face != GridPlace::Face::ventral) continue;
     EXPECT_EQ(found[c], std::abs(2 * place.place[1] - 8));
     ++belly;
@@ -85,11 +86,16 @@ TEST(Rows, NeighboursOfAHexagonAreSix) {
   const Tissue sheet = tissue_from_prisms(honeycomb(5, 5, 4, 12), PolygonSplit::diagonals, 1);
   const auto neighbours = wall_neighbours(sheet);
   EXPECT_EQ(neighbours[12].size(), 6u);
-  EXPECT_EQ(std::ranges::count(cells_around(sheet, [] {
-              CellSet one(25, false);
-              one[12] = true;
-              return one;
-            }(), 1), true), 6);
+  EXPECT_EQ(std::ranges::count(cells_around(
+                                   sheet,
+                                   [] {
+                                     CellSet one(25, false);
+                                     one[12] = true;
+                                     return one;
+                                   }(),
+                                   1),
+                               true),
+            6);
 }
 
 }  // namespace

@@ -79,12 +79,10 @@ PolygonSize size_half_way_up(const Tissue& tissue, const Cell& cell) {
     points.push_back(0.5 * (tissue.rest_positions[cell.basal_corners()[i].index()] +
                             tissue.rest_positions[cell.apical_corners()[i].index()]));
   Vec3 twice_area = Vec3::Zero();
-  for (std::size_t i = 1; i + 1 < sides; ++i)
-    twice_area += (points[i] - points[0]).cross(points[i + 1] - points[0]);
+  for (std::size_t i = 1; i + 1 < sides; ++i) twice_area += (points[i] - points[0]).cross(points[i + 1] - points[0]);
   const auto reach = [&](const Vec3& direction) {
-    const auto [low, high] = std::ranges::minmax(points | std::views::transform([&](const Vec3& x) {
-                                                   return direction.dot(x);
-                                                 }));
+    const auto [low, high] =
+        std::ranges::minmax(points | std::views::transform([&](const Vec3& x) { return direction.dot(x); }));
     return high - low;
   };
   const Vec3 normal = twice_area.normalized(), along = Vec3::UnitX() - normal.x() * normal;
@@ -250,8 +248,8 @@ CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const Patte
   const Extent ways = extent_of(way, cells);
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (!cells[c]) continue;
-    const double of_profile =
-        profile.shape == StrengthProfile::Shape::array ? profile.of_array(profile.array[c]) : profile.nearness(place[c]);
+    const double of_profile = profile.shape == StrengthProfile::Shape::array ? profile.of_array(profile.array[c])
+                                                                             : profile.nearness(place[c]);
     const double nearness = of_profile * pattern.taper.nearness(std::abs(along[c]));
     const std::uint64_t chance =
         pattern.by_place ? place_number(cell_centre(tissue.cells[c], tissue.rest_positions)) : c;

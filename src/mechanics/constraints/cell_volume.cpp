@@ -222,7 +222,8 @@ NodeGroups Dilatation::node_groups(std::span<const double> /*internal*/) const {
 
 std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Division& division,
                                                 std::span<const Vec3>) const {
-  return std::make_unique<Dilatation>(tissue, bulk_moduli_.after_division(tissue, division), cells_are_exact_, kernels_);
+  return std::make_unique<Dilatation>(tissue, bulk_moduli_.after_division(tissue, division), cells_are_exact_,
+                                      kernels_);
 }
 
 void Dilatation::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {

@@ -196,7 +196,8 @@ TEST(PatternRule, AnglesAreAboutTheBelly) {
   PatternRule pattern;
   int checked = 0;
   for (const double centre : {0.0, 40.0, -170.0}) {
-    pattern.profile = {.shape = Shape::plateau, .axis = PatternAxis::angle, .centre = centre, .half_width = 30, .fade = 25};
+    pattern.profile = {
+        .shape = Shape::plateau, .axis = PatternAxis::angle, .centre = centre, .half_width = 30, .fade = 25};
     const CellPattern found = cell_pattern(ring, CellSet(80, true), pattern);
     for (int c = 0; c < 80; ++c, ++checked) {
       const Vec3 x = cell_centre(ring.cells[c], ring.rest_positions);
@@ -307,7 +308,8 @@ TEST(PatternRule, PulsesSwellAndEbbAboutOne) {
 
 // Laws with pulses: forces and tangents belong to their energy, and all scale with the pulse.
 TEST(PatternRule, LawsPulse) {
-  const Tissue tissue = distorted_block({.length_um = 40, .width_um = 20, .cell_height_um = 20, .cells = {2, 1, 1}}, 2, 3);
+  const Tissue tissue =
+      distorted_block({.length_um = 40, .width_um = 20, .cell_height_um = 20, .cells = {2, 1, 1}}, 2, 3);
   PatternRule rule;
   rule.pulse = {.period_s = 3, .amplitude = 0.9, .seed = 4};
   const CellPattern pattern = cell_pattern(tissue, CellSet(2, true), rule);

@@ -37,8 +37,8 @@ Vec3 force_on(const Tissue& tissue, const Vectors& forces, const Chosen& chosen)
 // Layers of a cell: an affine motion has the energy density of each layer's own modulus, and forces are those of the
 // layers together.
 TEST(Corotational, ElementsOfACellMayDiffer) {
-  const Tissue tissue =
-      build_block({.length_um = 20, .width_um = 15, .cell_height_um = 12, .cells = {2, 1, 1}, .elements_per_cell = {1, 1, 3}});
+  const Tissue tissue = build_block(
+      {.length_um = 20, .width_um = 15, .cell_height_um = 12, .cells = {2, 1, 1}, .elements_per_cell = {1, 1, 3}});
   const ElasticModuli base = ElasticModuli::from_young(young, poisson);
   std::vector<ElasticModuli> moduli;
   std::vector<double> bulk;
@@ -58,8 +58,7 @@ TEST(Corotational, ElementsOfACellMayDiffer) {
   EXPECT_NEAR(law.energy(motion.step()), expected, 1e-9 * expected);
   check_derivatives(law, tissue, 2);
   check_derivatives(Dilatation(tissue, bulk, false), tissue, 2);
-  check_derivatives(NeoHookean(tissue, std::vector<NeoHookeanMaterial>{{1}, {2}, {3}, {4}, {5}, {6}}),
-                    tissue, 2);
+  check_derivatives(NeoHookean(tissue, std::vector<NeoHookeanMaterial>{{1}, {2}, {3}, {4}, {5}, {6}}), tissue, 2);
 }
 
 TEST(Corotational, DerivativesAgreeWithFiniteDifferences) {
