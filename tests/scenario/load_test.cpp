@@ -289,7 +289,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:1: region.a: is defined by itself: a > b > a; remove one of these references"},
       {"[region.a]",
        "test.toml:1: region.a: selects nothing; give face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, "
-       "union, intersect or except"},
+       "rows, neighbours_of, union, intersect or except"},
       {"[region.a]\nids = [1]\ncells_across = 3",
        "test.toml:3: region.a.cells_across: needs a face to lie on; give face, too"},
       {"[region.a]\nface = \"ventral\"\ncells_along = 13",
