@@ -80,11 +80,10 @@ def test_tables():
 
 
 def test_files(run, tmp_path):
-    meshio = pytest.importorskip("meshio")
     polygons = run.frames[-1].polygons()
     polygons.write(tmp_path / "cells.obj")
     lines = (tmp_path / "cells.obj").read_text().splitlines()
-    assert sum(line.startswith("f ") for line in lines) == 150 and meshio is not None
+    assert sum(line.startswith("f ") for line in lines) == 150
     vertices = np.array([line.split()[1:] for line in lines if line.startswith("v ")], dtype=float)
     assert (vertices == polygons.points).all()
     assert [int(i) - 1 for i in lines[-1].split()[1:]] == list(polygons.faces[-1])
