@@ -89,11 +89,17 @@ class Frame:
         """
         if side not in ("apical", "basal"):
             raise ValueError(f'side: {side!r}; give "apical" or "basal"')
-        if "polygon_ends" not in self.field_data:
+        count = len(self.hexahedra)
+        if "polygon_ends" in self.field_data:
+            nodes, ends = self.field_data[f"polygon_{side}"], self.field_data["polygon_ends"]
+            elements = self.field_data["polygon_elements"]
+        elif len(np.unique(self.cell_data["cell_id"])) == count:  # every cell is one element
+            nodes, ends = self.hexahedra[:, 4:] if side == "apical" else self.hexahedra[:, :4], 4 * np.arange(1, count + 1)
+            elements = np.arange(count)
+        else:
             raise FileError(f"{self.path}: has no polygons of cells: an older version of plica wrote it; run it again")
-        nodes, ends = self.field_data[f"polygon_{side}"], self.field_data["polygon_ends"]
-        used, corners = np.unique(nodes, return_inverse=True)
-        values = {name: array[self.field_data["polygon_elements"]] for name, array in self.cell_data.items()}
+        used, corners = np.unique(nodes.ravel(), return_inverse=True)
+        values = {name: array[elements] for name, array in self.cell_data.items()}
         return Polygons(self.points[used], np.split(corners, ends[:-1]), values)
 
     def to_meshio(self) -> Any:

@@ -45,7 +45,8 @@ MeshElements FrameRecord::mesh() const { return {cells->elements, cells->element
 
 MeshArrays FrameRecord::arrays() const {
   MeshArrays arrays{{vectors.begin(), vectors.end()}, scalars, integers};
-  arrays.polygons = &cells->polygons;
+  // Of cells of one element each they are its faces.
+  if (cells->elements.size() > cells->cells) arrays.polygons = &cells->polygons;
   arrays.cell_integers.insert(arrays.cell_integers.end(), cells->regions.begin(), cells->regions.end());
   return arrays;
 }

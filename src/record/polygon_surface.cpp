@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -13,10 +14,26 @@
 namespace plica {
 namespace {
 
-void check(const Frame& frame) {
-  const CellPolygons& polygons = frame.polygons;
-  if (polygons.empty())
+/// Those that the frame holds, or the faces of its elements, where every cell is one.
+CellPolygons polygons_of(const Frame& frame) {
+  if (!frame.polygons.empty()) return frame.polygons;
+  const auto ids = frame.element_scalars.find("cell_id");
+  if (ids == frame.element_scalars.end() ||
+      std::set(ids->second.begin(), ids->second.end()).size() < frame.elements.size())
     throw FileError("the frame has no polygons of cells: an older version of plica wrote it; run it again");
+  CellPolygons polygons;
+  for (std::size_t e = 0; e < frame.elements.size(); ++e) {
+    for (int i = 0; i < 4; ++i) {
+      polygons.basal.push_back(frame.elements[e][i].number());
+      polygons.apical.push_back(frame.elements[e][i + 4].number());
+    }
+    polygons.ends.push_back(static_cast<int>(polygons.apical.size()));
+    polygons.elements.push_back(static_cast<int>(e));
+  }
+  return polygons;
+}
+
+void check(const CellPolygons& polygons, const Frame& frame) {
   const auto below = [](const std::vector<int>& values, std::size_t count) {
     return std::ranges::all_of(values,
                                [&](int value) { return value >= 0 && static_cast<std::size_t>(value) < count; });
@@ -34,10 +51,11 @@ void check(const Frame& frame) {
 }  // namespace
 
 PolygonSurface surface_of(const Frame& frame, bool apical) {
-  check(frame);
-  const std::vector<int>& nodes = apical ? frame.polygons.apical : frame.polygons.basal;
+  const CellPolygons polygons = polygons_of(frame);
+  check(polygons, frame);
+  const std::vector<int>& nodes = apical ? polygons.apical : polygons.basal;
   PolygonSurface surface{
-      .points = {}, .ends = frame.polygons.ends, .corners = {}, .scalars = {}, .vectors = {}, .time_s = frame.time_s};
+      .points = {}, .ends = polygons.ends, .corners = {}, .scalars = {}, .vectors = {}, .time_s = frame.time_s};
   std::vector<int> point(frame.positions.size(), -1), used;  // points by node, nodes by point
   for (const int node : nodes) {
     if (point[node] < 0) {
@@ -55,7 +73,7 @@ PolygonSurface surface_of(const Frame& frame, bool apical) {
   for (const auto& [name, vectors] : frame.node_vectors) surface.vectors.emplace_back(name, of_points(vectors));
   for (const auto& [name, values] : frame.element_scalars) {
     std::vector<double> of_cells;
-    for (const int element : frame.polygons.elements) of_cells.push_back(values[element]);
+    for (const int element : polygons.elements) of_cells.push_back(values[element]);
     surface.scalars.emplace_back(name, std::move(of_cells));
   }
   return surface;

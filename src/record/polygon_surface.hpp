@@ -9,7 +9,7 @@
 namespace plica {
 
 /// The apical or the basal polygons of a frame's cells, with their numbers. Points are those that polygons use.
-/// FileError when the frame has no polygons (older versions wrote none) or damaged ones.
+/// FileError when the frame has no polygons of cells of several elements (older versions wrote none), or damaged ones.
 PolygonSurface surface_of(const Frame& frame, bool apical);
 
 /// The surface as CSV texts: vertices, half-edges and faces, each by its number in the first column; columns have the

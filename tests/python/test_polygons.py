@@ -60,6 +60,16 @@ def test_strengths_are_the_profile(run):
     assert (rest.cell_data["strength"][~inside] == 0).all()
 
 
+def test_cells_of_one_element_are_their_faces(tmp_path):
+    text = SMALL.replace('"egg"', '"pill"').replace("cell_count = 150\n", "cells = [6, 4, 4]\n")
+    frame = plica.Simulation(plica.Scenario(text)).run(out=tmp_path / "run").frames[0]
+    assert set(frame.field_data) == {"TimeValue"}  # nothing besides
+    for side in ("apical", "basal"):
+        polygons = frame.polygons(side)
+        assert len(polygons) == 128 and euler(polygons) == 2
+        assert polygons.areas.sum() == pytest.approx({"apical": 1, "basal": 0.64**2}[side] * np.pi * 100 * 200, rel=0.1)
+
+
 def test_older_frames_have_none(run):
     frame = run.frames[0]
     del frame.field_data["polygon_ends"]

@@ -72,6 +72,23 @@ TEST(PolygonSurface, TablesNameVerticesEdgesAndFaces) {
   EXPECT_EQ(of_faces[2].substr(of_faces[2].size() - 12), ",4,400,80,10");
 }
 
+TEST(PolygonSurface, OfCellsOfOneElementIsThatOfTheirFaces) {
+  const Tissue pill = build_shell({.length_um = 300, .diameter_um = 160, .cell_height_um = 30, .cells = {6, 4, 4}});
+  const Frame with = frame_of_tissue(pill);
+  Frame without = with;
+  without.polygons = {};
+  for (std::size_t e = 0; e < pill.elements.size(); ++e)
+    without.element_scalars["cell_id"].push_back(static_cast<double>(e));
+  for (const bool apical : {true, false}) {
+    const PolygonSurface a = surface_of(with, apical), b = surface_of(without, apical);
+    EXPECT_EQ(a.points, b.points);
+    EXPECT_EQ(a.ends, b.ends);
+    EXPECT_EQ(a.corners, b.corners);
+  }
+  without.element_scalars["cell_id"].back() = 0;
+  EXPECT_THROW(surface_of(without, true), FileError);
+}
+
 TEST(PolygonSurface, WhatIsDamagedIsRefused) {
   const Tissue block = build_block({.length_um = 40, .width_um = 20, .cell_height_um = 20, .cells = {2, 1, 1}});
   const Frame good = frame_of_tissue(block);

@@ -31,7 +31,7 @@ struct Frame {
   std::map<std::string, Vectors> node_vectors;                 // nodes, by name
   std::map<std::string, std::vector<double>> element_scalars;  // elements, by name
   std::optional<double> time_s;
-  CellPolygons polygons = {};  // none in frames of older versions
+  CellPolygons polygons = {};  // none where every cell is one element, and in frames of older versions
 };
 
 /// A surface as flat triangles.
