@@ -40,9 +40,9 @@ CellPolygons polygons_of(const Tissue& tissue);
 
 /// A surface of polygons with numbers for each.
 struct PolygonSurface {
-  Vectors points;               // um
-  std::vector<int> ends;        // polygons: where its corners end among all
-  std::vector<int> corners;     // points
+  Vectors points;                                                    // um
+  std::vector<int> ends;                                             // polygons: where its corners end among all
+  std::vector<int> corners;                                          // points
   std::vector<std::pair<std::string, std::vector<double>>> scalars;  // polygons
   std::vector<std::pair<std::string, Vectors>> vectors;              // points
   std::optional<double> time_s;

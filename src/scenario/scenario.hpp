@@ -106,11 +106,11 @@ struct ProfileInput {
   std::vector<double> factor;                                           // table
   std::string array;                                                    // array: of the tissue's cells
   std::optional<double> from, to;                                       // array: where the factor is edge, and middle
-  std::optional<double> half_width_um;            // linear
-  std::optional<double> sigma_um, sigma_cells;    // gaussian: one of them
-  std::optional<double> full_cells, fade_cells;   // plateau
-  std::optional<double> full_length_um, fade_um;  // both or none
-  std::optional<double> middle, edge;             // empty: 1, 0
+  std::optional<double> half_width_um;                                  // linear
+  std::optional<double> sigma_um, sigma_cells;                          // gaussian: one of them
+  std::optional<double> full_cells, fade_cells;                         // plateau
+  std::optional<double> full_length_um, fade_um;                        // both or none
+  std::optional<double> middle, edge;                                   // empty: 1, 0
 };
 
 struct DelayInput {

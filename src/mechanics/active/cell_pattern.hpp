@@ -29,8 +29,8 @@ struct StrengthProfile {
   // Table: linear between these points, as at the ends beyond them. Places are distances, on both sides alike, where
   // none is negative.
   std::vector<double> places, values;
-  bool in_cells = false;         // these lengths are in mean widths of the cells, along that axis
-  CellArray array = {};          // array: of all cells
+  bool in_cells = false;            // these lengths are in mean widths of the cells, along that axis
+  CellArray array = {};             // array: of all cells
   double array_0 = 0, array_1 = 1;  // its values for 0 and for 1; beyond them as there
 
   [[nodiscard]] double nearness(double place) const;
@@ -55,10 +55,10 @@ struct StartDelay {
 
 /// Activity that swells and ebbs as a sine, with a period and a phase for each cell.
 struct PulseRule {
-  double period_s = 0;   // mean of the cells' periods; 0: no pulses
-  double amplitude = 1;  // the factor goes from 1 - amplitude to 1 + amplitude
-  bool together = false; // all in phase
-  double spread = 0;     // relative standard deviation of the periods
+  double period_s = 0;    // mean of the cells' periods; 0: no pulses
+  double amplitude = 1;   // the factor goes from 1 - amplitude to 1 + amplitude
+  bool together = false;  // all in phase
+  double spread = 0;      // relative standard deviation of the periods
   std::uint64_t seed = 1;
 };
 

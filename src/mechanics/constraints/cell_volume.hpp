@@ -31,6 +31,7 @@ class VolumeElements {
   [[nodiscard]] double rest_volume(std::size_t element) const {
     return batches_[element / 8].rest_volumes[element % 8];
   }
+
  private:
   void fit(const Tissue& tissue, std::size_t element);
 

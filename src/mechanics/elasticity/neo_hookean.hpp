@@ -30,8 +30,8 @@ class NeoHookean final : public Law {
   /// inverted.
   NeoHookean(const Tissue& tissue, std::vector<NeoHookeanMaterial> materials, Kernels kernels = chosen_kernels());
   /// `shear_moduli` of the cells; `relaxation_s` of the cells, none at all when no cell flows.
-  NeoHookean(const Tissue& tissue, const std::vector<double>& shear_moduli, const std::vector<double>& relaxation_s = {},
-             Kernels kernels = chosen_kernels());
+  NeoHookean(const Tissue& tissue, const std::vector<double>& shear_moduli,
+             const std::vector<double>& relaxation_s = {}, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<NeoHookean>(*this); }
