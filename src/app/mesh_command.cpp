@@ -1,13 +1,22 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/named.hpp"
 #include "app/output_file.hpp"
 #include "app/scenario_options.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/names.hpp"
 #include "record/mesh_writer.hpp"
+#include "scenario/rest_arrays.hpp"
 #include "scenario/setup.hpp"
+#include "scenario/suggest.hpp"
+#include "scenario/words.hpp"
+#include "show/rest_picture.hpp"
 #include "tissue/mesh_quality.hpp"
 
 namespace plica {
@@ -28,31 +37,77 @@ void print_quality(const Tissue& tissue) {
   fmt::print("{:<24}{:>10.3f}\n", "worst scaled Jacobian", quality.min_scaled_jacobian);
 }
 
+struct MeshCommand {
+  ScenarioOptions scenario;
+  std::string out, colour = "region";
+  std::vector<std::string> views;
+  bool overwrite = false;
+};
+
+void draw(const MeshCommand& command, Frame frame, bool is_embryo) {
+  const std::vector<std::string> colours = colours_of_mesh(frame);
+  if (std::ranges::find(colours, command.colour) == colours.end()) {
+    const auto nearest = nearest_name(command.colour, colours);
+    throw UsageError(fmt::format("--colour {}: the mesh has no such array; {}there are: {}", command.colour,
+                                 nearest ? fmt::format("did you mean {}? ", *nearest) : "", fmt::join(colours, ", ")));
+  }
+  std::vector<View> wanted;
+  for (const std::string& name : command.views) wanted.push_back(named("--view", name, views()));
+  if (wanted.empty()) wanted.push_back(views().front());
+  Painter painter;
+  write_file(command.out, painter.png(rest_picture(std::move(frame), command.colour, wanted, is_embryo)));
+}
+
+void mesh(const MeshCommand& command) {
+  const bool as_picture = command.out.ends_with(".png");
+  if (!as_picture && !command.out.ends_with(".vtu"))
+    throw UsageError("--out " + command.out + ": the file's name must end in .vtu, or in .png for a picture");
+  require_free(command.out, command.overwrite);
+  const Scenario scenario = command.scenario.load();
+  const Tissue tissue = make_tissue(scenario);
+  const RestArrays at_rest = rest_arrays(scenario, tissue);
+  const CellPolygons polygons = polygons_of(tissue);
+  MeshArrays arrays;
+  std::vector<int> ids;
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) ids.push_back(static_cast<int>(c));
+  arrays.cell_integers.emplace_back("cell_id", ids);
+  for (const auto& [name, cells] : tissue.regions)
+    arrays.cell_integers.emplace_back("region_" + name, std::vector<int>(cells.begin(), cells.end()));
+  arrays.cell_scalars = at_rest.cells;
+  arrays.element_scalars = at_rest.elements;
+  arrays.polygons = &polygons;
+  if (as_picture)
+    draw(command, frame_of(tissue, tissue.rest_positions, arrays), shape_of(scenario.embryo) != EmbryoShape::block);
+  else
+    write_mesh(command.out, tissue, tissue.rest_positions, arrays);
+  print_quality(tissue);
+}
+
 }  // namespace
 
 void add_mesh_command(CLI::App& app, int&) {
-  CLI::App* command =
-      app.add_subcommand("mesh", "write the mesh at rest with its regions; print how even its cells are");
-  auto options = std::make_shared<ScenarioOptions>();
-  auto out = std::make_shared<std::string>();
-  auto overwrite = std::make_shared<bool>(false);
-  options->add_to(*command);
-  command->add_option("--out,--output,-o", *out, "FILE.vtu to write")->required();
-  command->add_flag("--overwrite", *overwrite, "replace FILE.vtu where it is there");
-  command->footer("Example: plica mesh drosophila --out rest.vtu");
-  command->callback([options, out, overwrite] {
-    if (!out->ends_with(".vtu")) throw UsageError("--out " + *out + ": the file's name must end in .vtu");
-    require_free(*out, *overwrite);
-    const Tissue tissue = make_tissue(options->load());
-    MeshArrays arrays;
-    std::vector<int> ids;
-    for (std::size_t c = 0; c < tissue.cells.size(); ++c) ids.push_back(static_cast<int>(c));
-    arrays.cell_integers.emplace_back("cell_id", ids);
-    for (const auto& [name, cells] : tissue.regions)
-      arrays.cell_integers.emplace_back("region_" + name, std::vector<int>(cells.begin(), cells.end()));
-    write_mesh(*out, tissue, tissue.rest_positions, arrays);
-    print_quality(tissue);
-  });
+  CLI::App* command = app.add_subcommand(
+      "mesh",
+      "write the mesh at rest with its regions, arrays, strengths and moduli, or a picture of them; print how "
+      "even its cells are");
+  auto options = std::make_shared<MeshCommand>();
+  options->scenario.add_to(*command);
+  command->add_option("--out,--output,-o", options->out, "FILE.vtu to write, or FILE.png")->required();
+  command
+      ->add_option("--colour,--color", options->colour,
+                   "array that colours the picture: region, strength_contraction.NAME, young_modulus_Pa, ...")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command
+      ->add_option("--view", options->views,
+                   fmt::format("from where: {}; several, a row each", fmt::join(names_of(views()), ", ")))
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  command->add_flag("--overwrite", options->overwrite, "replace the file where it is there");
+  command->footer(
+      "Examples: plica mesh drosophila --out rest.vtu\n"
+      "          plica mesh drosophila-atlas --out sna.png --colour sna --view ventral");
+  command->callback([options] { mesh(*options); });
 }
 
 }  // namespace plica

@@ -32,6 +32,9 @@ struct RegionInput {
   std::optional<Range> angle_deg;                     // of the cell's centre about x, from the belly towards +y
   std::optional<Range> length_percent;                // of the embryo's length, from the anterior end
   std::optional<Range> x_um, y_um, z_um;              // of the cell's centre at rest
+  std::optional<int> rows;                            // about the midline of the belly, both sides together
+  std::string neighbours_of;                          // a region: cells beside it, that are not in it
+  std::optional<int> rings;                           // up to how many walls away from it; empty: 1
   std::vector<std::string> unite, intersect, except;  // TOML keys: union, intersect, except
 };
 
@@ -73,13 +76,6 @@ struct ElasticityInput {
   std::optional<double> relaxation_s;  // neo-hookean; TOML: relaxation_s or relaxation_min; empty: "none"
 };
 
-/// What cells of a region have instead.
-struct RegionElasticityInput {
-  std::string region;
-  std::optional<double> young_modulus_Pa;
-  std::optional<double> relaxation_s;
-};
-
 enum class VolumeMethod { coupled, projection, none };
 
 struct VolumeInput {
@@ -101,14 +97,20 @@ struct DynamicsInput {
 };
 
 struct ProfileInput {
-  std::string shape;                              // constant | linear | gaussian | plateau; empty: constant
-  std::string axis;                               // across | along; empty: across
-  std::string about;                              // a region; empty: the one that acts
-  std::optional<double> half_width_um;            // linear
-  std::optional<double> sigma_um, sigma_cells;    // gaussian: one of them
-  std::optional<double> full_cells, fade_cells;   // plateau
-  std::optional<double> full_length_um, fade_um;  // both or none
-  std::optional<double> middle, edge;             // empty: 1, 0
+  std::string shape;                 // constant | linear | gaussian | plateau | table | array; empty: constant
+  std::string axis;                  // across | along | angle; empty: across
+  std::string about;                 // a region; empty: the one that acts
+  std::optional<double> centre_deg;  // axis = "angle": about which angle; empty: 0
+  std::optional<double> half_width_deg, sigma_deg, full_deg, fade_deg;  // axis = "angle": linear, gaussian, plateau
+  std::vector<double> at_um, at_cells, at_deg;                          // table: one of them
+  std::vector<double> factor;                                           // table
+  std::string array;                                                    // array: of the tissue's cells
+  std::optional<double> from, to;                                       // array: where the factor is edge, and middle
+  std::optional<double> half_width_um;                                  // linear
+  std::optional<double> sigma_um, sigma_cells;                          // gaussian: one of them
+  std::optional<double> full_cells, fade_cells;                         // plateau
+  std::optional<double> full_length_um, fade_um;                        // both or none
+  std::optional<double> middle, edge;                                   // empty: 1, 0
 };
 
 struct DelayInput {
@@ -120,6 +122,27 @@ struct DelayInput {
 struct VariationInput {
   double spread = 0;
   int seed = 1;
+  std::string by;  // number | place: what a cell's factor goes with; empty: number
+};
+
+/// Activity that goes up and down in each cell.
+struct PulseInput {
+  std::optional<double> period_s;  // TOML: period_s or period_min; empty: no pulses
+  double amplitude = 1;
+  std::string phase;  // random | together; empty: random
+  double spread = 0;  // of the cells' periods
+  int seed = 1;
+};
+
+/// What cells of a region have instead, or the elements of a layer of them.
+struct RegionElasticityInput {
+  std::string region;
+  std::optional<Range> height_percent;  // elements whose middle lies here, from base to apex; empty: all
+  std::optional<double> young_modulus_Pa;
+  std::optional<double> poisson_ratio;
+  std::optional<double> relaxation_s;
+  ProfileInput profile;  // of the modulus
+  VariationInput variation;
 };
 
 struct ContractionInput {
@@ -137,6 +160,7 @@ struct ContractionInput {
   ProfileInput profile;
   DelayInput delay;
   VariationInput variation;
+  PulseInput pulse;
 };
 
 /// A cell's own state starts its programs, or scales its tension.
@@ -165,6 +189,7 @@ struct CortexInput {
   ProfileInput profile;
   DelayInput delay;
   VariationInput variation;
+  PulseInput pulse;
 };
 
 enum class EnclosedState { held, compliant, free };
@@ -261,6 +286,8 @@ struct PressureInput {
   std::string face = "apical";  // apical | basal
   double pressure_Pa = 0;       // pushes into the cell; a dead load on the rest face
   ProgramInput program;
+  ProfileInput profile;
+  VariationInput variation;
 };
 
 struct ExpectInput {

@@ -25,6 +25,7 @@
 #include "scenario/acting.hpp"
 #include "scenario/builtin.hpp"
 #include "scenario/check_tissue.hpp"
+#include "scenario/materials.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/symmetry.hpp"
 #include "scenario/words.hpp"
@@ -98,54 +99,6 @@ Tissue build_tissue(const Scenario& scenario) {
   return read_tissue(scenario);
 }
 
-/// A number a cell: what a table says of its region, or else `common`.
-std::vector<double> by_region(const Scenario& scenario, const Tissue& tissue,
-                              std::optional<double> RegionElasticityInput::*key, double common) {
-  std::vector<double> values(tissue.cells.size(), common);
-  for (const auto& [name, input] : scenario.region_elasticities) {
-    const CellSet& cells = tissue.regions.at(input.region);
-    for (std::size_t c = 0; c < cells.size(); ++c)
-      if (cells[c]) values[c] = (input.*key).value_or(common);
-  }
-  return values;
-}
-
-void add_elasticity(const Scenario& scenario, Model& model) {
-  const ElasticityInput& input = scenario.elasticity;
-  const double young_modulus = input.young_modulus_Pa * units::pascal;
-  const double viscosity = scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second;
-  const ElasticModuli moduli = ElasticModuli::from_young(young_modulus, input.poisson_ratio);
-  model.stiffness_scale = young_modulus;
-  if (model_of(input) == ElasticModel::shape_memory) {
-    const AttractorSprings springs{input.attractor_stiffness_nN_per_um.value_or(0), moduli.shear_modulus,
-                                   input.attractor_preload_nN, input.attractor_preload_length_um};
-    auto law = std::make_unique<ShapeMemory>(model.tissue, springs, viscosity);
-    // The modulus that a given stiffness amounts to.
-    const double shear = attractor_moduli(model.tissue.element_rest_shape[0], law->stiffness()[0]).mean_shear();
-    model.stiffness_scale = 2 * (1 + input.poisson_ratio) * shear;
-    model.laws.push_back(std::move(law));
-    return;
-  }
-  std::vector<double> factors =
-      by_region(scenario, model.tissue, &RegionElasticityInput::young_modulus_Pa, input.young_modulus_Pa);
-  for (double& factor : factors) factor /= input.young_modulus_Pa;
-  model.stiffness_scale *= std::ranges::max(factors);
-  double bulk_modulus = moduli.bulk_modulus();
-  if (model_of(input) == ElasticModel::neo_hookean) {
-    bulk_modulus = moduli.lame_lambda;
-    std::vector<double> shear_moduli = factors;
-    for (double& modulus : shear_moduli) modulus *= moduli.shear_modulus;
-    std::vector<double> relaxation_s =
-        by_region(scenario, model.tissue, &RegionElasticityInput::relaxation_s, input.relaxation_s.value_or(0));
-    if (std::ranges::max(relaxation_s) == 0) relaxation_s.clear();
-    model.laws.push_back(std::make_unique<NeoHookean>(model.tissue, std::move(shear_moduli), std::move(relaxation_s)));
-  } else {
-    model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, viscosity, factors));
-  }
-  if (bulk_modulus > 0)
-    model.laws.push_back(std::make_unique<Dilatation>(model.tissue, bulk_modulus, model.volumes().is_held(), factors));
-}
-
 /// The tissue in which cells are counted from a midline, and which part of it the model is.
 struct Origin {
   const Tissue& whole;
@@ -160,6 +113,49 @@ CellPattern pattern_of(const Acting& input, const Origin& origin) {
   Division side;
   side.origin = origin.mirror.origins;
   return of_whole.after_division(side);
+}
+
+void add_elasticity(const Scenario& scenario, const Origin& origin, Model& model) {
+  const ElasticityInput& input = scenario.elasticity;
+  const double young_modulus = input.young_modulus_Pa * units::pascal;
+  const double viscosity = scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second;
+  model.stiffness_scale = young_modulus;
+  if (model_of(input) == ElasticModel::shape_memory) {
+    const ElasticModuli moduli = ElasticModuli::from_young(young_modulus, input.poisson_ratio);
+    const AttractorSprings springs{input.attractor_stiffness_nN_per_um.value_or(0), moduli.shear_modulus,
+                                   input.attractor_preload_nN, input.attractor_preload_length_um};
+    auto law = std::make_unique<ShapeMemory>(model.tissue, springs, viscosity);
+    // The modulus that a given stiffness amounts to.
+    const double shear = attractor_moduli(model.tissue.element_rest_shape[0], law->stiffness()[0]).mean_shear();
+    model.stiffness_scale = 2 * (1 + input.poisson_ratio) * shear;
+    model.laws.push_back(std::move(law));
+    return;
+  }
+  std::vector<ElasticMaterial> materials(model.tissue.elements.size(),
+                                         {1, input.poisson_ratio, input.relaxation_s.value_or(0)});
+  for (const auto& [name, of_region] : scenario.region_elasticities)
+    put_material(of_region, input, pattern_of(of_region, origin), model.tissue, materials);
+  const bool is_soft = model_of(input) == ElasticModel::neo_hookean;
+  std::vector<ElasticModuli> moduli;
+  std::vector<NeoHookeanMaterial> soft;
+  std::vector<double> bulk_moduli;
+  double largest_factor = 0;
+  for (const auto& [factor, poisson_ratio, relaxation_s] : materials) {
+    const ElasticModuli unit = ElasticModuli::from_young(young_modulus, poisson_ratio);
+    largest_factor = std::max(largest_factor, factor);
+    bulk_moduli.push_back(factor * (is_soft ? unit.lame_lambda : unit.bulk_modulus()));
+    if (is_soft)
+      soft.push_back({factor * unit.shear_modulus, relaxation_s});
+    else
+      moduli.push_back(factor * unit);
+  }
+  model.stiffness_scale *= largest_factor;
+  if (is_soft)
+    model.laws.push_back(std::make_unique<NeoHookean>(model.tissue, std::move(soft)));
+  else
+    model.laws.push_back(std::make_unique<Corotational>(model.tissue, std::move(moduli), viscosity));
+  if (std::ranges::max(bulk_moduli) > 0)
+    model.laws.push_back(std::make_unique<Dilatation>(model.tissue, std::move(bulk_moduli), model.volumes().is_held()));
 }
 
 void add_contractions(const Scenario& scenario, const Origin& origin, Model& model) {
@@ -242,11 +238,11 @@ void add_contact(const Scenario& scenario, const Origin& origin, Model& model) {
     }
 }
 
-void add_pressures(const Scenario& scenario, Model& model) {
+void add_pressures(const Scenario& scenario, const Origin& origin, Model& model) {
   for (const auto& [name, input] : scenario.pressures) {
-    model.laws.push_back(std::make_unique<FacePressure>(
-        model.tissue, meaning_of(words::pressure_faces, input.face), model.tissue.regions.at(input.region),
-        input.pressure_Pa * units::pascal, make_program(input.program)));
+    model.laws.push_back(std::make_unique<FacePressure>(model.tissue, meaning_of(words::pressure_faces, input.face),
+                                                        pattern_of(input, origin), input.pressure_Pa * units::pascal,
+                                                        make_program(input.program)));
     model.laws.back()->set_label("pressure." + name);
   }
 }
@@ -294,7 +290,7 @@ void check_forces_at_rest(const Scenario& scenario, const Model& model) {
 void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model) {
   const Tissue& tissue = model.tissue;
   model.volumes().hold(method_of(scenario.volume) == VolumeMethod::coupled);
-  add_elasticity(scenario, model);
+  add_elasticity(scenario, origin, model);
   if (scenario.elasticity.corner_barrier_Pa > 0)
     model.laws.push_back(
         std::make_unique<CornerBarrier>(tissue, scenario.elasticity.corner_barrier_Pa * units::pascal));
@@ -302,7 +298,7 @@ void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model)
   add_cortices(scenario, origin, model);
   add_enclosed(scenario, model);
   add_contact(scenario, origin, model);
-  add_pressures(scenario, model);
+  add_pressures(scenario, origin, model);
   if (scenario.dynamics.surface_drag_Pa_s_per_um > 0)
     model.laws.push_back(std::make_unique<SurfaceDrag>(
         tissue, scenario.dynamics.surface_drag_Pa_s_per_um * units::pascal_second_per_um));

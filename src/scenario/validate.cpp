@@ -247,10 +247,9 @@ class RegionCheck {
     };
     for (const auto& [name, it] : scenario_.contractions) check_acting("contraction." + name, it);
     for (const auto& [name, it] : scenario_.cortices) check_acting("cortex." + name, it);
-    for (const auto& [name, it] : scenario_.region_elasticities)
-      check_reference("elasticity." + name + ".region", it.region);
+    for (const auto& [name, it] : scenario_.region_elasticities) check_acting("elasticity." + name, it);
     for (const auto& [name, it] : scenario_.holds) check_reference("hold." + name + ".region", it.region);
-    for (const auto& [name, it] : scenario_.pressures) check_reference("pressure." + name + ".region", it.region);
+    for (const auto& [name, it] : scenario_.pressures) check_acting("pressure." + name, it);
     for (const auto& [name, it] : scenario_.divisions) check_reference("division." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.monitors) {
       check_reference("monitor." + name + ".region", it.region);
@@ -258,6 +257,7 @@ class RegionCheck {
     }
     check_reference("furrow.region", scenario_.furrow.region);
     for (const auto& [name, region] : scenario_.regions) {
+      check_reference("region." + name + ".neighbours_of", region.neighbours_of);
       for (const std::string& other : region.unite) check_reference("region." + name + ".union", other);
       for (const std::string& other : region.intersect) check_reference("region." + name + ".intersect", other);
       for (const std::string& other : region.except) check_reference("region." + name + ".except", other);
@@ -268,14 +268,18 @@ class RegionCheck {
     const std::string path = "region." + name;
     const bool has_selector = !region.face.empty() || region.cells_along || region.cells_across ||
                               !region.ids.empty() || !region.array.empty() || region.x_um || region.y_um ||
-                              region.z_um || region.angle_deg || region.length_percent || !region.unite.empty() ||
+                              region.z_um || region.angle_deg || region.length_percent || region.rows ||
+                              !region.neighbours_of.empty() || region.rings || !region.unite.empty() ||
                               !region.intersect.empty() || !region.except.empty();
     const bool has_doubt = std::ranges::any_of(
         input_.doubtful, [&](const std::string& it) { return it == path || it.starts_with(path + "."); });
     if (!has_selector && !has_doubt) {
       input_.report(path, "selects nothing",
-                    "give face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, union, intersect or except");
+                    "give face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, rows, neighbours_of, union, "
+                    "intersect or except");
     }
+    if (region.rings && region.neighbours_of.empty() && input_.sound(path + ".neighbours_of"))
+      input_.report(path + ".rings", "needs neighbours_of", "name the region around which the rings lie");
     if (!input_.sound("embryo.shape")) return;
     const EmbryoShape shape = shape_of(scenario_.embryo);
     const bool has_arrays = shape == EmbryoShape::file || shape == EmbryoShape::points;
@@ -347,6 +351,7 @@ class RegionCheck {
     }
     if (done.contains(name)) return;
     path.push_back(name);
+    if (!region->second.neighbours_of.empty()) follow(region->second.neighbours_of, path, done);
     for (const auto* others : {&region->second.unite, &region->second.intersect, &region->second.except}) {
       for (const std::string& other : *others) follow(other, path, done);
     }
@@ -377,8 +382,11 @@ void validate(Scenario& scenario, Input& input) {
   check_expectations(scenario, input);
   check_monitors(scenario, input);
   for (auto& [name, it] : scenario.contractions) {
-    check_program("contraction." + name, it.program, input);
-    check_pattern("contraction." + name, it.profile, it.delay, input);
+    const std::string table = "contraction." + name;
+    check_program(table, it.program, input);
+    check_profile(table, it.profile, input);
+    check_delay(table, it.delay, input);
+    check_pulse(table, it.pulse, scenario.time, input);
   }
   check_enclosed(scenario, input);
   check_contact(scenario, input);
@@ -386,11 +394,16 @@ void validate(Scenario& scenario, Input& input) {
     const std::string table = "cortex." + name;
     check_program(table, it.program, input);
     check_program(table, it.stiffness_program, input, "stiffness_program");
-    check_pattern(table, it.profile, it.delay, input);
+    check_profile(table, it.profile, input);
+    check_delay(table, it.delay, input);
+    check_pulse(table, it.pulse, scenario.time, input);
     check_cortex(table, it, input);
     check_own_state(table, it, input);
   }
-  for (const auto& [name, it] : scenario.pressures) check_program("pressure." + name, it.program, input);
+  for (auto& [name, it] : scenario.pressures) {
+    check_program("pressure." + name, it.program, input);
+    check_profile("pressure." + name, it.profile, input);
+  }
   for (const auto& [name, it] : scenario.divisions) check_division("division." + name, it, input);
   if (!scenario.divisions.empty() && input.sound("embryo.shape") && shape_of(scenario.embryo) == EmbryoShape::slice)
     input.report("embryo.shape", "the cells of a slice do not divide: its planes would no longer be alike",

@@ -96,9 +96,14 @@ inline constexpr auto profile_shapes =
     std::to_array<Word<StrengthProfile::Shape>>({{"constant", StrengthProfile::Shape::constant},
                                                  {"linear", StrengthProfile::Shape::linear},
                                                  {"gaussian", StrengthProfile::Shape::gaussian},
-                                                 {"plateau", StrengthProfile::Shape::plateau}});
-inline constexpr auto profile_axes =
-    std::to_array<Word<PatternAxis>>({{"across", PatternAxis::across}, {"along", PatternAxis::along}});
+                                                 {"plateau", StrengthProfile::Shape::plateau},
+                                                 {"table", StrengthProfile::Shape::table},
+                                                 {"array", StrengthProfile::Shape::array}});
+inline constexpr auto profile_axes = std::to_array<Word<PatternAxis>>(
+    {{"across", PatternAxis::across}, {"along", PatternAxis::along}, {"angle", PatternAxis::angle}});
+// Whether factors go with the place, and whether phases are those of all cells.
+inline constexpr auto variation_bys = std::to_array<Word<bool>>({{"number", false}, {"place", true}});
+inline constexpr auto pulse_phases = std::to_array<Word<bool>>({{"random", false}, {"together", true}});
 inline constexpr auto delay_axes =
     std::to_array<Word<PatternAxis>>({{"along", PatternAxis::along}, {"across", PatternAxis::across}});
 inline constexpr auto delay_starts = std::to_array<Word<StartDelay::From>>({{"middle", StartDelay::From::middle},

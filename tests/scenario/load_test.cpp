@@ -241,7 +241,8 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:3: contraction.a.program.activity: -1 is out of range; give a list of numbers >= 0"},
       // Patterns of a contraction.
       {program + "profile = { sigma_um = 30 }",
-       "test.toml:3: contraction.a.profile.shape: is missing; give one of: constant | linear | gaussian | plateau"},
+       "test.toml:3: contraction.a.profile.shape: is missing; give one of: constant | linear | gaussian | plateau | "
+       "table | array"},
       {program + "profile = { shape = \"gaussian\" }",
        "test.toml:3: contraction.a.profile.sigma_um: is missing; give the width of the gaussian, a number > 0, or "
        "sigma_cells"},
@@ -250,13 +251,13 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "number > 0"},
       {program + "profile = { shape = \"linear\", half_width_um = 50, sigma_um = 3 }",
        "test.toml:3: contraction.a.profile.sigma_um: has no meaning with shape \"linear\"; remove it, or choose shape "
-       "gaussian"},
+       "\"gaussian\""},
       {program + "profile = { shape = \"constant\", edge = 0.5 }",
        "test.toml:3: contraction.a.profile.edge: has no meaning where nothing fades; remove it, or choose another "
        "shape, or a taper"},
       {program + "profile = { shape = \"gausian\", sigma_um = 30 }",
        "test.toml:3: contraction.a.profile.shape: \"gausian\" is not known; give one of: constant | linear | gaussian "
-       "| plateau (did you mean \"gaussian\"?)"},
+       "| plateau | table | array (did you mean \"gaussian\"?)"},
       {program + "profile = { shape = \"gaussian\", sigma_um = 0 }",
        "test.toml:3: contraction.a.profile.sigma_um: 0 is out of range; give a number > 0"},
       {program + "profile = \"gaussian\"",
@@ -289,7 +290,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:1: region.a: is defined by itself: a > b > a; remove one of these references"},
       {"[region.a]",
        "test.toml:1: region.a: selects nothing; give face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, "
-       "union, intersect or except"},
+       "rows, neighbours_of, union, intersect or except"},
       {"[region.a]\nids = [1]\ncells_across = 3",
        "test.toml:3: region.a.cells_across: needs a face to lie on; give face, too"},
       {"[region.a]\nface = \"ventral\"\ncells_along = 13",
