@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "tissue/hexahedral_mesh.hpp"
 
@@ -19,14 +18,6 @@ double bounded_height(double height, double bound) {
   return bound * (free_share + (1 - free_share) * std::tanh((share - free_share) / (1 - free_share)));
 }
 
-// The largest inward curvature's radius, or infinity where the surface is flat or hollow.
-double least_radius(const SurfaceBend& bend) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const double radius : bend.radii)
-    if (radius > 0) least = std::min(least, radius);
-  return least;
-}
-
 void check_heights(const PolygonSurface& polygons, std::span<const double> heights_um) {
   if (heights_um.size() != 1 && heights_um.size() != polygons.polygons.size())
     throw MeshError(fmt::format("{} heights for {} cells; there should be one, or one a cell", heights_um.size(),
@@ -38,10 +29,11 @@ void check_heights(const PolygonSurface& polygons, std::span<const double> heigh
 
 }  // namespace
 
-ExtrudedSheet extrude(const PolygonSurface& polygons, const StarSurface& surface, std::span<const double> heights_um) {
+ExtrudedSheet extrude(const PolygonSurface& polygons, std::span<const VertexBend> bends,
+                      std::span<const double> heights_um) {
   check_heights(polygons, heights_um);
   const auto height_of = [&](std::size_t cell) { return heights_um[heights_um.size() == 1 ? 0 : cell]; };
-  ExtrudedSheet sheet{{polygons.vertices, polygons.vertices, polygons.polygons}};
+  ExtrudedSheet sheet{{polygons.vertices, polygons.vertices, polygons.polygons}, "", 0, 0, 0};
 
   // What the cells at a vertex ask for, on average.
   std::vector<double> asked(sheet.apical.size(), 0.0), cell_count(sheet.apical.size(), 0.0);
@@ -52,8 +44,8 @@ ExtrudedSheet extrude(const PolygonSurface& polygons, const StarSurface& surface
     }
   for (std::size_t v = 0; v < sheet.apical.size(); ++v) {
     if (cell_count[v] == 0) continue;
-    const SurfaceBend bend = surface.bend(sheet.apical[v]);
-    sheet.basal[v] -= bounded_height(asked[v] / cell_count[v], largest_height_share * least_radius(bend)) * bend.normal;
+    const double bound = largest_height_share * bends[v].least_radius_um;
+    sheet.basal[v] -= bounded_height(asked[v] / cell_count[v], bound) * bends[v].normal;
   }
 
   const std::vector<double> heights = prism_heights(sheet);
@@ -68,7 +60,15 @@ ExtrudedSheet extrude(const PolygonSurface& polygons, const StarSurface& surface
                                   cell, height_of(cell)));
   }
   if (!heights.empty()) sheet.lowest_um = heights[sheet.lowest_cell];
+  sheet.asked_um = heights_um.size() == 1 ? fmt::format("{:.3g} um", heights_um[0]) : "asked for";
   return sheet;
+}
+
+void note_lower_cells(const ExtrudedSheet& sheet, std::vector<std::string>& remarks) {
+  if (sheet.lower_cells > 0)
+    remarks.push_back(
+        fmt::format("{} cells are lower than {}, the lowest, cell {}, {:.3g} um: the surface bends too sharply there",
+                    sheet.lower_cells, sheet.asked_um, sheet.lowest_cell, sheet.lowest_um));
 }
 
 std::vector<double> prism_heights(const PrismSheet& sheet) {
