@@ -8,6 +8,7 @@
 #include "core/errors.hpp"
 #include "record/mesh_writer.hpp"
 #include "scenario/setup.hpp"
+#include "tissue/hexahedral_mesh.hpp"
 #include "tissue/mesh_quality.hpp"
 
 namespace plica {
@@ -48,6 +49,14 @@ void add_mesh_command(CLI::App& app, int&) {
     std::vector<int> ids;
     for (std::size_t c = 0; c < tissue.cells.size(); ++c) ids.push_back(static_cast<int>(c));
     arrays.cell_integers.emplace_back("cell_id", ids);
+    const CellGroups groups = groups_of(tissue);
+    for (const auto& [name, list] : {std::pair("elements_per_cell", groups.elements_per_cell),
+                                     {"cell_corner_counts", groups.corner_counts},
+                                     {"cell_corners", groups.corners},
+                                     {"hanging_nodes", groups.hanging}})
+      if (!list.empty()) arrays.lists.emplace_back(name, list);
+    for (const auto& [name, values] : tissue.cell_arrays)
+      if (name != "cell_id") arrays.cell_scalars.emplace_back(name, values);
     for (const auto& [name, cells] : tissue.regions)
       arrays.cell_integers.emplace_back("region_" + name, std::vector<int>(cells.begin(), cells.end()));
     write_mesh(*out, tissue, tissue.rest_positions, arrays);

@@ -149,9 +149,12 @@ void write_mesh(const std::filesystem::path& file, const MeshElements& mesh, std
   check(mesh, positions, arrays, time_s);
   VtuText vtu;
   vtu.line(1, "<UnstructuredGrid>");
-  if (time_s) {
+  if (time_s || !arrays.lists.empty()) {
     vtu.line(2, "<FieldData>");
-    vtu.array(3, "TimeValue", std::span<const double>(&*time_s, 1), R"( NumberOfTuples="1")");
+    if (time_s) vtu.array(3, "TimeValue", std::span<const double>(&*time_s, 1), R"( NumberOfTuples="1")");
+    for (const auto& [name, numbers] : arrays.lists)
+      vtu.array(3, name, std::span<const std::int32_t>(numbers),
+                fmt::format(R"( NumberOfTuples="{}")", numbers.size()));
     vtu.line(2, "</FieldData>");
   }
   vtu.line(2, fmt::format(R"(<Piece NumberOfPoints="{}" NumberOfCells="{}">)", positions.size(), mesh.elements.size()));

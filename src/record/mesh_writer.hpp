@@ -32,6 +32,7 @@ struct MeshArrays {
   std::vector<std::pair<std::string, std::vector<double>>> cell_scalars;       // cells
   std::vector<std::pair<std::string, std::vector<int>>> cell_integers;         // cells
   std::vector<std::pair<std::string, std::vector<double>>> node_scalars = {};  // nodes
+  std::vector<std::pair<std::string, std::vector<int>>> lists = {};            // of the whole: field data
 };
 
 /// Writes the elements as VTK hexahedra at `positions` (nodes; um) to a `.vtu` file: VTK's XML format, appended raw

@@ -5,6 +5,9 @@
 #include <compare>
 #include <limits>
 #include <map>
+#include <span>
+
+#include "tissue/polygon_cell.hpp"
 
 namespace plica {
 namespace {
@@ -47,9 +50,14 @@ class Builder {
   Tissue tissue() {
     for (std::size_t c = 0; c < sheet_.cells.size(); ++c) add_cell(c);
     number_free_nodes_first();
+    // Each cell has as many facets on either side: its elements, over the layers.
+    std::size_t first = 0;
     for (Cell& cell : tissue_.cells) {
-      set_polygons(cell);
-      for (const NodeId corner : cell.corners) cell.rest_shape.push_back(tissue_.rest_positions[corner.index()]);
+      set_corners(cell);
+      const auto count = static_cast<std::size_t>(cell.element_count / layers_);
+      complete_polygon(tissue_, std::span(tissue_.basal_facets).subspan(first, count),
+                       std::span(tissue_.apical_facets).subspan(first, count), cell);
+      first += count;
     }
     tissue_.regions["all"] = CellSet(tissue_.cells.size(), true);
     return std::move(tissue_);
@@ -167,38 +175,10 @@ class Builder {
     tissue_.rest_positions = std::move(positions);
   }
 
-  // Corners, edges and lines.
-  void set_polygons(Cell& cell) {
-    const std::vector<std::size_t>& polygon = sheet_.cells[static_cast<std::size_t>(cell.lineage.id)];
-    const std::size_t n = polygon.size();
+  void set_corners(Cell& cell) {
     for (const int level : {0, layers_})
-      for (const std::size_t v : polygon) cell.corners.push_back(node(vertex(v), level));
-    Vec3 outward = Vec3::Zero();
-    for (std::size_t i = 0; i < n; ++i) outward += sheet_.apical[polygon[i]].cross(sheet_.apical[polygon[(i + 1) % n]]);
-    outward.normalize();
-    const Vec3 axis = Vec3::UnitX() - outward.x() * outward;
-    for (const CellSide side : {CellSide::basal, CellSide::apical})
-      for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t from = polygon[i], to = polygon[(i + 1) % n];
-        const int level = side == CellSide::apical ? layers_ : 0;
-        CellEdge edge{{node(vertex(from), level)}, EdgeDirection::along, side};
-        if (!hangs_) edge.nodes.push_back(node(middle_of_edge(from, to), level));
-        edge.nodes.push_back(node(vertex(to), level));
-        const Vec3 way =
-            tissue_.rest_positions[edge.nodes.back().index()] - tissue_.rest_positions[edge.nodes[0].index()];
-        // At a pole, nothing is along more than across.
-        edge.along = axis.norm() < 1e-6
-                         ? 0.5
-                         : std::min(1.0, way.dot(axis) * way.dot(axis) / (way.squaredNorm() * axis.squaredNorm()));
-        if (edge.along < 0.5) edge.direction = EdgeDirection::across;
-        cell.edges.push_back(std::move(edge));
-      }
-    for (const std::size_t v : polygon) {
-      CellEdge edge{{}, EdgeDirection::lateral, CellSide::lateral};
-      for (int level = 0; level <= layers_; ++level) edge.nodes.push_back(node(vertex(v), level));
-      cell.edges.push_back(std::move(edge));
-    }
-    for (const CellEdge& edge : cell.edges) cell.lines.push_back({edge, 1});
+      for (const std::size_t v : sheet_.cells[static_cast<std::size_t>(cell.lineage.id)])
+        cell.corners.push_back(node(vertex(v), level));
   }
 
   const PrismSheet& sheet_;

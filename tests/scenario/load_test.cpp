@@ -301,7 +301,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:3: region.a.cells_along: 18 cells on a face that has 9 that way; give at most 9"},
       {"[region.a]\nids = [756]", "test.toml:2: region.a.ids: there is no cell 756; give numbers from 0 to 755"},
       {"[region.a]\narray = \"x\"",
-       "test.toml:2: region.a.array: a built embryo has no arrays; use it with shape \"file\" or \"points\" only"},
+       "test.toml:2: region.a.array: a built embryo has no arrays; use it with shape \"file\", \"points\" or \"surface\" only"},
       // Expectations.
       {"[expect]\nfurrow_depth_um = 28.89",
        "test.toml:2: expect.furrow_depth_um: 28.89 has no tolerance; give { value = ..., within_percent = ... } or { "

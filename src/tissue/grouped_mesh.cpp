@@ -1,0 +1,214 @@
+// Cells of several hexahedra out of a file: lattices on a grid, or prisms over polygons with nodes that may hang.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "tissue/hexahedral_mesh.hpp"
+#include "tissue/lattice.hpp"
+#include "tissue/mesh_faces.hpp"
+#include "tissue/mesh_orientation.hpp"
+#include "tissue/polygon_cell.hpp"
+
+namespace plica {
+namespace {
+
+constexpr double hanging_tolerance = 1e-6;  // of the distance of the two nodes, that a node may be from between them
+
+/// The hexahedra cell by cell, each the right way up, and where each cell's begin; the end of the last behind them.
+struct SortedHexahedra {
+  std::vector<std::size_t> order;               // place in the file
+  std::vector<std::array<NodeId, 8>> elements;  // in that order
+  std::vector<std::size_t> first;               // cells
+};
+
+SortedHexahedra sorted_hexahedra(const HexahedralMesh& mesh) {
+  const std::vector<int>& cell_of = mesh.groups.cell_of;
+  if (cell_of.size() != mesh.cells.size())
+    throw MeshError(fmt::format("cell_id has {} values for {} hexahedra", cell_of.size(), mesh.cells.size()));
+  SortedHexahedra sorted;
+  sorted.order.resize(mesh.cells.size());
+  std::iota(sorted.order.begin(), sorted.order.end(), std::size_t{0});
+  std::ranges::stable_sort(sorted.order, {}, [&](std::size_t e) { return cell_of[e]; });
+  for (std::size_t i = 0; i < sorted.order.size(); ++i) {
+    const std::size_t e = sorted.order[i];
+    if (i == 0 || cell_of[e] != cell_of[sorted.order[i - 1]]) sorted.first.push_back(i);
+    sorted.elements.push_back(mesh.apical_faces.empty() ? mesh.cells[e]
+                                                        : turned_cell(mesh.cells[e], mesh.apical_faces[e]));
+  }
+  sorted.first.push_back(sorted.order.size());
+  return sorted;
+}
+
+Tissue from_grid(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces) {
+  const std::vector<int>& counts = mesh.groups.elements_per_cell;
+  if (counts.size() != 3 || std::ranges::any_of(counts, [](int n) { return n < 1 || n > 1000; }))
+    throw MeshError("elements_per_cell should be three numbers from 1 to 1000");
+  CellLattice empty;
+  std::ranges::copy(counts, empty.elements.begin());
+  empty.nodes.resize(static_cast<std::size_t>(counts[0] + 1) * static_cast<std::size_t>(counts[1] + 1) *
+                     static_cast<std::size_t>(counts[2] + 1));
+  const auto count =
+      static_cast<std::size_t>(counts[0]) * static_cast<std::size_t>(counts[1]) * static_cast<std::size_t>(counts[2]);
+  std::vector<CellLattice> lattices;
+  for (std::size_t c = 0; c + 1 < sorted.first.size(); ++c) {
+    CellLattice& lattice = lattices.emplace_back(empty);
+    const std::size_t begin = sorted.first[c], end = sorted.first[c + 1];
+    if (end - begin != count)
+      throw MeshError(fmt::format("cell {} has {} hexahedra, and elements_per_cell says {}", c, end - begin, count));
+    for (std::size_t e = begin; e < end; ++e) {
+      const auto in_cell = static_cast<int>(e - begin);
+      const int u = in_cell % counts[0], v = in_cell / counts[0] % counts[1], w = in_cell / (counts[0] * counts[1]);
+      for (int i = 0; i < 8; ++i) {
+        const Vec3& r = hex_reference_nodes[i];
+        const int at = (u + (r.x() > 0)) + (counts[0] + 1) * ((v + (r.y() > 0)) + (counts[1] + 1) * (w + (r.z() > 0)));
+        NodeId& node = lattice.nodes[static_cast<std::size_t>(at)];
+        if (node.valid() && node != sorted.elements[e][i])
+          throw MeshError(
+              fmt::format("the hexahedra of cell {} are no grid of {} x {} x {} in order, the first direction "
+                          "fastest",
+                          c, counts[0], counts[1], counts[2]));
+        node = sorted.elements[e][i];
+      }
+    }
+    lattice.has_basal = faces.on_surface({begin, 4});
+    lattice.has_apical = faces.on_surface({end - 1, 5});
+  }
+  return tissue_from_lattices(lattices, mesh.points);
+}
+
+void set_hanging(const HexahedralMesh& mesh, Tissue& tissue) {
+  const std::vector<int>& hanging = mesh.groups.hanging;
+  if (hanging.size() % 2 != 0 || hanging.size() / 2 > mesh.points.size())
+    throw MeshError("hanging_nodes should be two nodes for each of the last nodes of the mesh");
+  const std::size_t free = mesh.points.size() - hanging.size() / 2;
+  for (std::size_t h = 0; h < hanging.size(); h += 2) {
+    NodeMean mean;
+    for (const std::size_t end : {h, h + 1}) {
+      if (hanging[end] < 0 || static_cast<std::size_t>(hanging[end]) >= free)
+        throw MeshError(fmt::format("node {} hangs on node {}, which is no free one", free + h / 2, hanging[end]));
+      mean.emplace_back(NodeId(hanging[end]), 0.5);
+    }
+    const Vec3 way = mesh.points[mean[1].first.index()] - mesh.points[mean[0].first.index()];
+    if (!((mean_of(mean, mesh.points) - mesh.points[free + h / 2]).norm() <= hanging_tolerance * way.norm()))
+      throw MeshError(fmt::format("node {} hangs on nodes {} and {}, and does not lie in the middle between them",
+                                  free + h / 2, hanging[h], hanging[h + 1]));
+    tissue.hanging.push_back(std::move(mean));
+  }
+}
+
+void set_corners(const HexahedralMesh& mesh, std::size_t c, std::size_t& next, std::size_t free, Cell& cell) {
+  const int count = mesh.groups.corner_counts[c];
+  if (count < 6 || count % 2 != 0 || static_cast<std::size_t>(count) > mesh.groups.corners.size() - next)
+    throw MeshError(
+        fmt::format("cell {} has {} corners; they are 6 or more, as many at its base as at its apex", c, count));
+  for (int k = 0; k < count; ++k) {
+    const int corner = mesh.groups.corners[next++];
+    if (corner < 0 || static_cast<std::size_t>(corner) >= free)
+      throw MeshError(fmt::format("a corner of cell {} is node {}, which is no free one", c, corner));
+    cell.corners.emplace_back(corner);
+  }
+}
+
+void add_cell(const SortedHexahedra& sorted, const MeshFaces& faces, std::size_t c, Cell cell, Tissue& tissue) {
+  const CellId id(c);
+  const std::size_t begin = sorted.first[c], end = sorted.first[c + 1], basal = tissue.basal_facets.size(),
+                    apical = tissue.apical_facets.size();
+  cell.first_element = ElementId(begin);
+  cell.element_count = static_cast<int>(end - begin);
+  cell.lineage.id = tissue.next_cell_id++;
+  for (std::size_t e = begin; e < end; ++e) {
+    const auto& element = sorted.elements[e];
+    tissue.elements.push_back(element);
+    tissue.element_cell.push_back(id);
+    tissue.element_rest_shape.push_back(gather(tissue.rest_positions, element));
+    const ElementId element_id(e);
+    if (faces.on_surface({e, 4}))
+      tissue.basal_facets.push_back({{element[0], element[3], element[2], element[1]}, id, element_id});
+    if (faces.on_surface({e, 5}))
+      tissue.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id, element_id});
+  }
+  if (!complete_polygon(tissue, std::span(tissue.basal_facets).subspan(basal),
+                        std::span(tissue.apical_facets).subspan(apical), cell))
+    throw MeshError(fmt::format(
+        "the corners of cell {} do not fit its hexahedra: in cell_corners stand those of its basal face, "
+        "counter-clockwise seen from the apex, then the apical ones above them; the first four nodes of each "
+        "hexahedron are basal",
+        c));
+  tissue.cells.push_back(std::move(cell));
+}
+
+Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces) {
+  const std::size_t count = sorted.first.size() - 1;
+  if (mesh.groups.corner_counts.size() != count)
+    throw MeshError(
+        fmt::format("cell_corner_counts has {} values for {} cells", mesh.groups.corner_counts.size(), count));
+  Tissue tissue;
+  tissue.rest_positions = mesh.points;
+  set_hanging(mesh, tissue);
+  std::size_t next = 0;
+  for (std::size_t c = 0; c < count; ++c) {
+    Cell cell;
+    set_corners(mesh, c, next, tissue.free_node_count(), cell);
+    add_cell(sorted, faces, c, std::move(cell), tissue);
+  }
+  if (next != mesh.groups.corners.size())
+    throw MeshError(fmt::format("cell_corners has {} nodes, and cell_corner_counts adds up to {}",
+                                mesh.groups.corners.size(), next));
+  tissue.regions["all"] = CellSet(count, true);
+  return tissue;
+}
+
+// The number that all of a cell's hexahedra have, or else their mean.
+CellArray of_cells(const CellArray& of_hexahedra, const SortedHexahedra& sorted) {
+  CellArray values;
+  for (std::size_t c = 0; c + 1 < sorted.first.size(); ++c) {
+    const double first = of_hexahedra[sorted.order[sorted.first[c]]];
+    double sum = 0;
+    bool is_one = true;
+    for (std::size_t i = sorted.first[c]; i < sorted.first[c + 1]; ++i) {
+      sum += of_hexahedra[sorted.order[i]];
+      is_one &= of_hexahedra[sorted.order[i]] == first;
+    }
+    values.push_back(is_one ? first : sum / static_cast<double>(sorted.first[c + 1] - sorted.first[c]));
+  }
+  return values;
+}
+
+}  // namespace
+
+CellGroups groups_of(const Tissue& tissue) {
+  CellGroups groups;
+  const bool is_grid = std::ranges::all_of(tissue.cells, &Cell::is_of_grid);
+  if (is_grid && tissue.elements.size() == tissue.cells.size()) return groups;
+  for (const CellId cell : tissue.element_cell) groups.cell_of.push_back(cell.number());
+  if (is_grid) {
+    // As many as the edges' chains have: along hex_edges 0, 4 and 8.
+    for (const std::size_t edge : {0, 4, 8})
+      groups.elements_per_cell.push_back(static_cast<int>(tissue.cells.front().edges[edge].nodes.size()) - 1);
+    return groups;
+  }
+  for (const Cell& cell : tissue.cells) {
+    groups.corner_counts.push_back(static_cast<int>(cell.corners.size()));
+    for (const NodeId corner : cell.corners) groups.corners.push_back(corner.number());
+  }
+  for (const NodeMean& mean : tissue.hanging)
+    for (const auto& [node, weight] : mean) groups.hanging.push_back(node.number());
+  return groups;
+}
+
+Tissue tissue_from_groups(const HexahedralMesh& mesh) {
+  std::vector<char> is_used(mesh.points.size(), 0);
+  for (const auto& cell : mesh.cells)
+    for (const NodeId node : cell) is_used[node.index()] = 1;
+  if (const auto unused = std::ranges::find(is_used, 0); unused != is_used.end())
+    throw MeshError(fmt::format("node {} belongs to no hexahedron; remove it", unused - is_used.begin()));
+  const SortedHexahedra sorted = sorted_hexahedra(mesh);
+  const MeshFaces faces(sorted.elements);
+  Tissue tissue =
+      mesh.groups.elements_per_cell.empty() ? from_polygons(mesh, sorted, faces) : from_grid(mesh, sorted, faces);
+  for (const auto& [name, values] : mesh.arrays) tissue.cell_arrays[name] = of_cells(values, sorted);
+  return tissue;
+}
+
+}  // namespace plica
