@@ -114,11 +114,13 @@ std::vector<Row> make_rows() {
              {.shapes = {"points", "surface"}}),
       embryo("centre", &E::centre, anything, "Moves the middle of the surface to the origin, after `scale`.",
              {.shapes = {"surface"}}),
-      embryo("mend", &E::mend, anything,
-             "Mends what can be mended safely: vertices that are given twice, faces that wind the other way, vertices "
-             "that no face uses, edges under `least_edge_ratio`, angles over 165°. `plica check` tells how many. "
-             "`false`: such a surface is refused, and short edges stay.",
-             {.shapes = {"surface"}}),
+      embryo(
+          "mend", &E::mend, anything,
+          "Mends what can be mended safely: vertices that are given twice, faces that wind the other way, vertices "
+          "along a wall between two cells, edges under `least_edge_ratio`, angles over 165°. `plica check` tells how "
+          "many. "
+          "`false`: such a surface is refused, and short edges stay.",
+          {.shapes = {"surface"}}),
       embryo("cell_height_array", &E::cell_height_array, anything,
              "Array of the file with each cell's height (µm), in place of `cell_height_um`.", {.shapes = {"surface"}}),
       embryo("mirror", &E::mirror, one_of(words::mirror_planes),

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <numeric>
 #include <queue>
+#include <set>
+#include <utility>
 
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/shapes/vertex_bends.hpp"
@@ -16,7 +18,9 @@ namespace plica {
 namespace {
 
 constexpr double largest_coordinate_um = 1e9;
-constexpr double same_place = 1e-6;  // of the mean edge
+constexpr double same_place = 1e-6;            // of the mean edge
+constexpr double sharpest_fold_cosine = -0.9;  // of the angle between two neighbours' normals
+constexpr double farthest_move = 1;            // of the mean edge, by which mending may move a vertex
 
 std::string text_of(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) um", p.x(), p.y(), p.z()); }
 
@@ -248,6 +252,49 @@ void check_areas(const PolygonSurface& surface) {
       throw MeshError(face_at(surface, face) + " has no area");
 }
 
+// Vertices along a wall between two cells, which cannot be convex on both sides, and along a straight rim. A face keeps
+// three corners.
+std::size_t drop_wall_vertices(PolygonSurface& surface, double largest_angle_deg) {
+  std::vector<std::set<std::size_t>> neighbours(surface.vertices.size());
+  std::vector<std::size_t> face_count(surface.vertices.size(), 0);
+  std::vector<double> angle_deg(surface.vertices.size(), 0.0);  // of one face there
+  for (const auto& polygon : surface.polygons) {
+    const std::vector<double> angles =
+        polygon_angles_deg(surface.vertices, polygon, area_vector(surface.vertices, polygon).normalized());
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const std::size_t next = polygon[(k + 1) % polygon.size()];
+      neighbours[polygon[k]].insert(next);
+      neighbours[next].insert(polygon[k]);
+      ++face_count[polygon[k]];
+      angle_deg[polygon[k]] = angles[k];
+    }
+  }
+  std::vector<char> goes(surface.vertices.size(), 0);
+  for (std::size_t v = 0; v < goes.size(); ++v)
+    goes[v] = neighbours[v].size() == 2 && (face_count[v] == 2 || angle_deg[v] > largest_angle_deg);
+  for (const auto& polygon : surface.polygons)
+    for (std::size_t k = 0, left = polygon.size() - static_cast<std::size_t>(std::ranges::count_if(
+                                                        polygon, [&](std::size_t v) { return goes[v] != 0; }));
+         left < 3 && k < polygon.size(); ++k)
+      if (std::exchange(goes[polygon[k]], 0) != 0) ++left;
+  for (auto& polygon : surface.polygons) std::erase_if(polygon, [&](std::size_t v) { return goes[v] != 0; });
+  return drop_unused(surface, 0);
+}
+
+// Neighbours face nearly the same way, or at least not against each other.
+void check_folds(const PolygonSurface& surface) {
+  Vectors normals;
+  for (const auto& polygon : surface.polygons) normals.push_back(area_vector(surface.vertices, polygon).normalized());
+  for (const PolygonEdge& edge : polygon_edges(surface)) {
+    if (edge.right == no_polygon || normals[edge.left].dot(normals[edge.right]) > sharpest_fold_cosine) continue;
+    throw MeshError(fmt::format(
+        "{} and its neighbour, face {}, are folded onto each other at the edge from {} to {}; if the sheet is "
+        "periodic, leave out the faces that reach across",
+        face_at(surface, edge.left), edge.right, text_of(surface.vertices[edge.vertices[0]]),
+        text_of(surface.vertices[edge.vertices[1]])));
+  }
+}
+
 double warp_deg(const PolygonSurface& surface, std::size_t face) {
   const auto& polygon = surface.polygons[face];
   const Vec3 middle = middle_of(surface, face), normal = area_vector(surface.vertices, polygon).normalized();
@@ -293,7 +340,16 @@ MendedPolygons mend_shapes(PolygonSurface& surface, const PolygonOptions& option
     const Vec3& normal = bends[vertex].normal;
     return Vec3(to - (to - start[vertex]).dot(normal) * normal);
   };
-  return mend_polygons(ground, options, surface);
+  const double limit_um = farthest_move * mean_side(surface);
+  const MendedPolygons mended = mend_polygons(ground, options, surface);
+  for (std::size_t v = 0; v < start.size(); ++v)
+    if (!((surface.vertices[v] - start[v]).norm() <= limit_um))
+      throw MeshError(
+          fmt::format("its short edges and wide angles cannot be mended: vertex {} at {} would move farther "
+                      "than a mean edge, {:.3g} um; take out vertices of walls with many edges, or give "
+                      "mend = false",
+                      v, text_of(start[v]), limit_um));
+  return mended;
 }
 
 }  // namespace
@@ -311,7 +367,11 @@ MendedSurface check_and_mend(PolygonSurface& surface, bool mend, const PolygonOp
   remark(turn_faces(surface, mend, result.is_closed), "faces wound the other way and were turned");
   check_fans(surface);
   check_areas(surface);
+  check_folds(surface);
   if (mend) {
+    remark(drop_wall_vertices(surface, options.largest_angle_deg),
+           "vertices lay along a wall or the rim, where no third cell meets, and were dropped");
+    check_areas(surface);
     const std::vector<std::string> shapes = remarks_on(mend_shapes(surface, options));
     result.remarks.insert(result.remarks.end(), shapes.begin(), shapes.end());
   }

@@ -109,10 +109,23 @@ TEST(GivenSurface, ShortEdgesAndWideAnglesAreMended) {
   const double mean = (4 * 2 + 4 * std::sqrt(1 + 0.975 * 0.975) + 0.05) / 9;
   EXPECT_NEAR((surface.vertices[5] - surface.vertices[4]).norm(), 0.3 * mean, 0.02 * mean);
 
-  surface = squares(2, 1);
-  surface.vertices[1].y() = -1e-3;  // the corner of two squares at the rim, 180 degrees together
-  surface.polygons = {{0, 1, 2, 5, 4, 3}};
-  EXPECT_NE(all(check_and_mend(surface, true)).find("2 angles too wide"), std::string::npos);
+  // Three squares as one and a half: the vertex in the middle of a long side is sharpened.
+  surface = squares(2, 2);
+  surface.polygons = {{0, 1, 2, 5, 4, 3}, {3, 4, 7, 6}, {4, 5, 8, 7}};
+  surface.vertices[1].y() = -0.5;
+  EXPECT_NE(all(check_and_mend(surface, true)).find("1 angles too wide"), std::string::npos);
+  EXPECT_GT(surface.vertices[4].y(), 1.05);
+}
+
+TEST(GivenSurface, VerticesAlongAWallAreDropped) {
+  // Two squares whose common wall has two vertices more, and whose rim one that is straight and one that is not.
+  PolygonSurface surface = squares(2, 1);
+  for (const Vec3& more : {Vec3(1.1, 0.3, 0), Vec3(0.9, 0.7, 0), Vec3(0.5, 0, 0), Vec3(1.5, -0.5, 0)})
+    surface.vertices.push_back(more);
+  surface.polygons = {{0, 8, 1, 6, 7, 4, 3}, {1, 9, 2, 5, 4, 7, 6}};
+  EXPECT_EQ(all(check_and_mend(surface, true)),
+            "3 vertices lay along a wall or the rim, where no third cell meets, and were dropped\n");
+  EXPECT_EQ(surface.polygons, (std::vector<Face>{{0, 1, 4, 3}, {1, 6, 2, 5, 4}}));
 }
 
 // The smallest surfaces that are wrong each in one way.
@@ -171,6 +184,9 @@ TEST(GivenSurface, SaysWhatIsWrongAndWhere) {
   for (int i = 0; i < 5; ++i) star.vertices.emplace_back(std::cos(0.8 * M_PI * i), std::sin(0.8 * M_PI * i), 0);
   star.polygons = {{0, 1, 2, 3, 4}};
   expect(star, "crosses itself");
+  PolygonSurface folded = squares(2, 1);
+  for (const int v : {2, 5}) folded.vertices[v].x() = 0.1;
+  expect(folded, "are folded onto each other at the edge from (1, 0, 0) um to (1, 1, 0) um");
   PolygonSurface saddle;
   saddle.vertices = {{-1, -1, 1}, {1, -1, -1}, {1, 1, 1}, {-1, 1, -1}};
   saddle.polygons = {{0, 1, 2, 3}};
