@@ -40,39 +40,46 @@ SortedHexahedra sorted_hexahedra(const HexahedralMesh& mesh) {
   return sorted;
 }
 
+// Reads a cell's lattice off its hexahedra, the first direction fastest.
+CellLattice lattice_of(const SortedHexahedra& sorted, std::size_t c, const std::array<int, 3>& elements) {
+  CellLattice lattice;
+  lattice.elements = elements;
+  const auto [nu, nv, nw] = elements;
+  const std::size_t begin = sorted.first[c], count = sorted.first[c + 1] - begin;
+  if (std::ranges::any_of(elements, [](int n) { return n < 1 || n > 1000; }) ||
+      static_cast<std::size_t>(nu) * static_cast<std::size_t>(nv) * static_cast<std::size_t>(nw) != count)
+    throw MeshError(
+        fmt::format("cell {} has {} hexahedra, and elements_per_cell says {} x {} x {}", c, count, nu, nv, nw));
+  lattice.nodes.resize(static_cast<std::size_t>(nu + 1) * static_cast<std::size_t>(nv + 1) *
+                       static_cast<std::size_t>(nw + 1));
+  for (std::size_t e = 0; e < count; ++e) {
+    const int in_cell = static_cast<int>(e), u = in_cell % nu, v = in_cell / nu % nv, w = in_cell / (nu * nv);
+    for (int i = 0; i < 8; ++i) {
+      const Vec3& r = hex_reference_nodes[i];
+      const int place = (u + (r.x() > 0)) + (nu + 1) * ((v + (r.y() > 0)) + (nv + 1) * (w + (r.z() > 0)));
+      NodeId& node = lattice.nodes[static_cast<std::size_t>(place)];
+      if (node.valid() && node != sorted.elements[begin + e][i])
+        throw MeshError(
+            fmt::format("the hexahedra of cell {} are no grid of {} x {} x {} in order, the first direction "
+                        "fastest",
+                        c, nu, nv, nw));
+      node = sorted.elements[begin + e][i];
+    }
+  }
+  return lattice;
+}
+
 Tissue from_grid(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces) {
   const std::vector<int>& counts = mesh.groups.elements_per_cell;
-  if (counts.size() != 3 || std::ranges::any_of(counts, [](int n) { return n < 1 || n > 1000; }))
-    throw MeshError("elements_per_cell should be three numbers from 1 to 1000");
-  CellLattice empty;
-  std::ranges::copy(counts, empty.elements.begin());
-  empty.nodes.resize(static_cast<std::size_t>(counts[0] + 1) * static_cast<std::size_t>(counts[1] + 1) *
-                     static_cast<std::size_t>(counts[2] + 1));
-  const auto count =
-      static_cast<std::size_t>(counts[0]) * static_cast<std::size_t>(counts[1]) * static_cast<std::size_t>(counts[2]);
+  const std::size_t cell_count = sorted.first.size() - 1;
+  if (counts.size() != 3 * cell_count)
+    throw MeshError(
+        fmt::format("elements_per_cell has {} numbers for {} cells; they are three a cell", counts.size(), cell_count));
   std::vector<CellLattice> lattices;
-  for (std::size_t c = 0; c + 1 < sorted.first.size(); ++c) {
-    CellLattice& lattice = lattices.emplace_back(empty);
-    const std::size_t begin = sorted.first[c], end = sorted.first[c + 1];
-    if (end - begin != count)
-      throw MeshError(fmt::format("cell {} has {} hexahedra, and elements_per_cell says {}", c, end - begin, count));
-    for (std::size_t e = begin; e < end; ++e) {
-      const auto in_cell = static_cast<int>(e - begin);
-      const int u = in_cell % counts[0], v = in_cell / counts[0] % counts[1], w = in_cell / (counts[0] * counts[1]);
-      for (int i = 0; i < 8; ++i) {
-        const Vec3& r = hex_reference_nodes[i];
-        const int at = (u + (r.x() > 0)) + (counts[0] + 1) * ((v + (r.y() > 0)) + (counts[1] + 1) * (w + (r.z() > 0)));
-        NodeId& node = lattice.nodes[static_cast<std::size_t>(at)];
-        if (node.valid() && node != sorted.elements[e][i])
-          throw MeshError(
-              fmt::format("the hexahedra of cell {} are no grid of {} x {} x {} in order, the first direction "
-                          "fastest",
-                          c, counts[0], counts[1], counts[2]));
-        node = sorted.elements[e][i];
-      }
-    }
-    lattice.has_basal = faces.on_surface({begin, 4});
-    lattice.has_apical = faces.on_surface({end - 1, 5});
+  for (std::size_t c = 0; c < cell_count; ++c) {
+    lattices.push_back(lattice_of(sorted, c, {counts[3 * c], counts[3 * c + 1], counts[3 * c + 2]}));
+    lattices.back().has_basal = faces.on_surface({sorted.first[c], 4});
+    lattices.back().has_apical = faces.on_surface({sorted.first[c + 1] - 1, 5});
   }
   return tissue_from_lattices(lattices, mesh.points);
 }
@@ -184,8 +191,9 @@ CellGroups groups_of(const Tissue& tissue) {
   for (const CellId cell : tissue.element_cell) groups.cell_of.push_back(cell.number());
   if (is_grid) {
     // As many as the edges' chains have: along hex_edges 0, 4 and 8.
-    for (const std::size_t edge : {0, 4, 8})
-      groups.elements_per_cell.push_back(static_cast<int>(tissue.cells.front().edges[edge].nodes.size()) - 1);
+    for (const Cell& cell : tissue.cells)
+      for (const std::size_t edge : {0, 4, 8})
+        groups.elements_per_cell.push_back(static_cast<int>(cell.edges[edge].nodes.size()) - 1);
     return groups;
   }
   for (const Cell& cell : tissue.cells) {

@@ -21,11 +21,12 @@ class MeshError : public FileError {
 /// Cells of several hexahedra, as `plica mesh` writes them. A cell's hexahedra go from basal to apical: nodes 4-7 of
 /// each lie above its nodes 0-3, unless `apical_faces` say otherwise.
 struct CellGroups {
-  std::vector<int> cell_of;            // hexahedra: the number of the cell that each belongs to
-  std::vector<int> elements_per_cell;  // along, across, basal to apical, where all cells lie on a grid; else empty, and
-  std::vector<int> corner_counts;      // cells, by number: corners of both polygons
-  std::vector<int> corners;            // points: of each cell those of the basal polygon, then those above them
-  std::vector<int> hanging;            // two points for each of the last points, which lies between them
+  std::vector<int> cell_of;  // hexahedra: the number of the cell that each belongs to
+  std::vector<int>
+      elements_per_cell;           // three a cell, the last basal to apical, where all lie on a grid; else empty, and
+  std::vector<int> corner_counts;  // cells, by number: corners of both polygons
+  std::vector<int> corners;        // points: of each cell those of the basal polygon, then those above them
+  std::vector<int> hanging;        // two points for each of the last points, which lies between them
 
   [[nodiscard]] bool is_empty() const { return cell_of.empty(); }
 };

@@ -21,7 +21,7 @@ HexahedralMesh mesh_of(const Tissue& tissue) {
 }
 
 Tissue polygons(PolygonSplit split, int layers = 1) {
-  return tissue_from_prisms(support::irregular_polygons(5, 4, 4, 10, 0.15, 1), split, layers);
+  return tissue_from_prisms(support::irregular_polygons(8, 7, 4, 10, 0.15, 1), split, layers);
 }
 
 TEST(GroupedMesh, ComesBackTheSame) {
@@ -81,9 +81,9 @@ TEST(GroupedMesh, SaysWhatIsWrong) {
   };
   expect([](auto& m) { m.groups.cell_of.pop_back(); }, "cell_id has ");
   expect([](auto& m) { m.points.emplace_back(0, 0, 0); }, "belongs to no hexahedron; remove it");
-  expect([](auto& m) { m.groups.corner_counts.pop_back(); }, "cell_corner_counts has 19 values for 20 cells");
+  expect([](auto& m) { m.groups.corner_counts.pop_back(); }, "cell_corner_counts has 55 values for 56 cells");
   expect([](auto& m) { m.groups.corner_counts[0] = 5; }, "cell 0 has 5 corners; they are 6 or more");
-  expect([](auto& m) { m.groups.corner_counts[19] += 2; }, "cell 19 has ");
+  expect([](auto& m) { m.groups.corner_counts[55] += 2; }, "cell 55 has ");
   expect([](auto& m) { m.groups.corners.push_back(0); }, "cell_corner_counts adds up to");
   expect([](auto& m) { m.groups.corners[0] = -1; }, "a corner of cell 0 is node -1, which is no free one");
   expect([](auto& m) { m.groups.corners[0] = static_cast<int>(m.points.size()) - 1; }, "which is no free one");
@@ -91,7 +91,7 @@ TEST(GroupedMesh, SaysWhatIsWrong) {
   expect([](auto& m) { m.groups.hanging.pop_back(); }, "hanging_nodes should be two nodes");
   expect([](auto& m) { m.groups.hanging[0] = 1 << 20; }, "which is no free one");
   expect([](auto& m) { m.groups.hanging[0] = m.groups.hanging[2]; }, "does not lie in the middle between them");
-  expect([](auto& m) { m.groups.elements_per_cell = {2, 2}; }, "elements_per_cell should be three numbers");
+  expect([](auto& m) { m.groups.elements_per_cell = {2, 2}; }, "elements_per_cell has 2 numbers for 56 cells");
   expect([](auto& m) { m.groups.elements_per_cell = {3, 1, 1}; }, "hexahedra, and elements_per_cell says 3");
   expect_mesh_error([&] { tissue_from_mesh(good, {2, 2, 1}); }, "those of this file have several already");
   HexahedralMesh grid = mesh_of(build_block({60, 40, 20, {3, 2, 1}, {2, 2, 1}}));
