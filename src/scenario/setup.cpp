@@ -99,17 +99,24 @@ std::vector<double> heights_of(const Scenario& scenario, const PolygonFile& file
 
 Tissue surface_tissue(const Scenario& scenario) {
   const EmbryoInput& e = scenario.embryo;
+  const auto complain = [&](const std::string& what) {
+    throw ScenarioError({diagnostic_at(scenario, "embryo.file", what, "")});
+  };
+  PolygonFile file;
+  try {
+    file = read_polygon_file(e.file);
+  } catch (const FileError& error) {
+    complain(error.what());
+  }
   SurfaceTissue result;
   try {
-    PolygonFile file = read_polygon_file(e.file);
-    std::vector<double> heights_um = heights_of(scenario, file);
     result = build_under_surface(
-        {std::move(file.surface), std::move(heights_um), Vec3(e.scale[0], e.scale[1], e.scale[2]), e.centre, e.mend},
+        {file.surface, heights_of(scenario, file), Vec3(e.scale[0], e.scale[1], e.scale[2]), e.centre, e.mend},
         cells_of(e));
-    result.tissue.cell_arrays = std::move(file.arrays);
-  } catch (const FileError& error) {
-    throw ScenarioError({diagnostic_at(scenario, "embryo.file", error.what(), "")});
+  } catch (const MeshError& error) {
+    complain(fmt::format("{}: {}", e.file, error.what()));
   }
+  result.tissue.cell_arrays = std::move(file.arrays);
   if (scenario.vitelline.enabled && !result.tissue.outer_shape)
     throw ScenarioError(
         {diagnostic_at(scenario, "vitelline.enabled", "no shell fits: " + result.why_no_shape, "give false")});
