@@ -92,7 +92,8 @@ TEST(GroupedMesh, SaysWhatIsWrong) {
   expect([](auto& m) { m.groups.hanging[0] = 1 << 20; }, "which is no free one");
   expect([](auto& m) { m.groups.hanging[0] = m.groups.hanging[2]; }, "does not lie in the middle between them");
   expect([](auto& m) { m.groups.elements_per_cell = {2, 2}; }, "elements_per_cell has 2 numbers for 56 cells");
-  expect([](auto& m) { m.groups.elements_per_cell = {3, 1, 1}; }, "hexahedra, and elements_per_cell says 3");
+  expect([](auto& m) { m.groups.elements_per_cell.assign(3 * 56, 1); },
+         "hexahedra, and elements_per_cell says 1 x 1 x 1");
   expect_mesh_error([&] { tissue_from_mesh(good, {2, 2, 1}); }, "those of this file have several already");
   HexahedralMesh grid = mesh_of(build_block({60, 40, 20, {3, 2, 1}, {2, 2, 1}}));
   std::swap(grid.cells[0], grid.cells[1]);

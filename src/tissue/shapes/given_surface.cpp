@@ -20,7 +20,7 @@ namespace {
 constexpr double largest_coordinate_um = 1e9;
 constexpr double same_place = 1e-6;            // of the mean edge
 constexpr double sharpest_fold_cosine = -0.9;  // of the angle between two neighbours' normals
-constexpr double farthest_move = 1;            // of the mean edge, by which mending may move a vertex
+constexpr double farthest_move = 0.4;          // of the mean edge, by which mending may move a vertex
 
 std::string text_of(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) um", p.x(), p.y(), p.z()); }
 
@@ -271,7 +271,8 @@ std::size_t drop_wall_vertices(PolygonSurface& surface, double largest_angle_deg
   }
   std::vector<char> goes(surface.vertices.size(), 0);
   for (std::size_t v = 0; v < goes.size(); ++v)
-    goes[v] = neighbours[v].size() == 2 && (face_count[v] == 2 || angle_deg[v] > largest_angle_deg);
+    goes[v] =
+        neighbours[v].size() == 2 && (face_count[v] == 2 || std::abs(180 - angle_deg[v]) < 180 - largest_angle_deg);
   for (const auto& polygon : surface.polygons)
     for (std::size_t k = 0, left = polygon.size() - static_cast<std::size_t>(std::ranges::count_if(
                                                         polygon, [&](std::size_t v) { return goes[v] != 0; }));
@@ -342,13 +343,15 @@ MendedPolygons mend_shapes(PolygonSurface& surface, const PolygonOptions& option
   };
   const double limit_um = farthest_move * mean_side(surface);
   const MendedPolygons mended = mend_polygons(ground, options, surface);
-  for (std::size_t v = 0; v < start.size(); ++v)
-    if (!((surface.vertices[v] - start[v]).norm() <= limit_um))
-      throw MeshError(
-          fmt::format("its short edges and wide angles cannot be mended: vertex {} at {} would move farther "
-                      "than a mean edge, {:.3g} um; take out vertices of walls with many edges, or give "
-                      "mend = false",
-                      v, text_of(start[v]), limit_um));
+  for (std::size_t v = 0; v < start.size(); ++v) {
+    if ((surface.vertices[v] - start[v]).norm() <= limit_um) continue;
+    surface.vertices = start;
+    check_faces(surface, true);  // a face is wrong, as a rule
+    throw MeshError(fmt::format(
+        "its short edges and wide angles cannot be mended: vertex {} at {} would move farther than {:.3g} um; "
+        "give mend = false, or a smaller least_edge_ratio",
+        v, text_of(start[v]), limit_um));
+  }
   return mended;
 }
 

@@ -81,7 +81,11 @@ class Squares {
       // Whatever is in this ring lies (ring - 1) squares away or more.
       if ((ring - 1) * side_ > 2 * farthest) break;
       for (const std::size_t other : in_ring(column, row, ring, points_[own]))
-        if (other != own) cut_by(points_[own], points_[other], static_cast<int>(other), cut);
+        if (other != own) {
+          if (points_[own] == points_[other])
+            throw MeshError(fmt::format("points {} and {} are in one place", own, other));
+          cut_by(points_[own], points_[other], static_cast<int>(other), cut);
+        }
     }
     return cut;
   }
@@ -247,9 +251,7 @@ PolygonSurface rectangle_polygons(const Vectors& points, double length_um, doubl
     if (vertex.second != std::ranges::count_if(name, [](int cell) { return cell >= 0; })) {
       const Vec3& at = surface.vertices[vertex.first];
       throw MeshError(
-          fmt::format("cells cannot be told apart at ({:.4g}, {:.4g}) um: points lie too regularly, or two "
-                      "in one place",
-                      at.x(), at.y()));
+          fmt::format("cells cannot be told apart at ({:.4g}, {:.4g}) um: points lie too regularly", at.x(), at.y()));
     }
   return surface;
 }

@@ -115,7 +115,7 @@ PolygonSurface truncated_icosahedron() {
   PolygonSurface surface;
   surface.vertices = orbit({{0, 1, 3 * golden}, {1, 2 + golden, 2 * golden}, {golden, 2, 2 * golden + 1}});
   Vectors outward = orbit({{0, 1, golden}});
-  const Vectors of_hexagons = orbit({{1, 1, 1}, {0, 1 / golden, golden}});
+  const Vectors of_hexagons = orbit({{1, 1, 1}, {0, golden, 1 / golden}});
   outward.insert(outward.end(), of_hexagons.begin(), of_hexagons.end());
   for (const Vec3& direction : outward) {
     double farthest = 0;

@@ -85,7 +85,7 @@ TEST(PolygonSheet, SaysWhatIsWrong) {
         build_sheet({100, 200, {0.01, 0.013}}, 50, 1, cells);
       },
       "times as long at its sides as in its middle");
-  expect_mesh_error([] { rectangle_polygons({{0, 0, 0}, {0, 0, 0}}, 10, 10); }, "cells cannot be told apart");
+  expect_mesh_error([] { rectangle_polygons({{0, 0, 0}, {0, 0, 0}}, 10, 10); }, "points 0 and 1 are in one place");
 }
 
 TEST(RectanglePolygons, OfTwoPointsAreHalves) {
