@@ -165,8 +165,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:2: elasticity.poisson_ratio: 0.5 is out of range; give a number > -1 and < 0.5"},
       {"[embryo]\nshape = \"pil\"",
        "test.toml:2: embryo.shape: \"pil\" is not known; give one of: pill | sphere | slice | block | egg | points | "
-       "file (did you "
-       "mean \"pill\"?)"},
+       "sheet | surface | file (did you mean \"pill\"?)"},
       {"[elasticity]\nattractor_stiffness_nN_per_um = 0",
        "test.toml:2: elasticity.attractor_stiffness_nN_per_um: 0 is out of range; give a number > 0 or \"derived\""},
       {"[elasticity]\nattractor_preload_nN = 1",
@@ -197,7 +196,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "140"},
       {"[embryo]\nshape = \"sphere\"\nlength_um = 460",
        "test.toml:3: embryo.length_um: has no meaning with shape \"sphere\"; remove it, or choose shape pill or slice "
-       "or block or egg"},
+       "or block or egg or sheet"},
       {"[embryo]\nwidth_um = 1",
        "test.toml:2: embryo.width_um: has no meaning with shape \"pill\"; remove it, or choose shape block or sheet"},
       {"[embryo]\nshape = \"file\"", "test.toml:1: embryo.file: is missing; name the mesh file for shape \"file\""},
@@ -337,16 +336,15 @@ TEST(LoadScenario, ReportsAllErrorsAtOnceInOrderOfLines) {
   const std::string errors =
       errors_of("[time]\nend_s = -1\n[contraction.a]\nregion = \"nowhere\"\n[embryo]\nlength_um = true\nhue = 1\n",
                 {"time.max_step_s=0"});
-  EXPECT_EQ(
-      errors,
-      "test.toml:2: time.end_s: -1 is out of range; give a number > 0\n"
-      "test.toml:4: contraction.a.region: there is no region \"nowhere\"; known are: all\n"
-      "test.toml:6: embryo.length_um: true is of the wrong type; give a number > 0\n"
-      "test.toml:7: embryo.hue: unknown key; known are: shape, length_um, diameter_um, width_um, "
-      "cell_height_um, cells, elements_per_cell, cell_count, seed, curvature_per_um, rim, belly_sag_um, back_sag_um, "
-      "elements, "
-      "least_edge_ratio, layers, points_depth_um, scale, centre, mend, cell_height_array, mirror, file, apical_array\n"
-      "--set: time.max_step_s: 0 is out of range; give a number > 0");
+  EXPECT_EQ(errors,
+            "test.toml:2: time.end_s: -1 is out of range; give a number > 0\n"
+            "test.toml:4: contraction.a.region: there is no region \"nowhere\"; known are: all\n"
+            "test.toml:6: embryo.length_um: true is of the wrong type; give a number > 0\n"
+            "test.toml:7: embryo.hue: unknown key; known are: shape, length_um, diameter_um, width_um, "
+            "cell_height_um, cells, elements_per_cell, cell_count, seed, curvature_per_um, rim, belly_sag_um, "
+            "back_sag_um, elements, least_edge_ratio, layers, points_depth_um, scale, centre, mend, "
+            "cell_height_array, mirror, file, apical_array\n"
+            "--set: time.max_step_s: 0 is out of range; give a number > 0");
 }
 
 TEST(LoadScenario, OneMistakeIsOneError) {
