@@ -27,6 +27,39 @@ void check_heights(const PolygonSurface& polygons, std::span<const double> heigh
       throw MeshError(fmt::format("the height of row {} is {:.4g} um; it should be positive", i, heights_um[i]));
 }
 
+// Whether a part of the basal face, about its middle, is turned over or nearly so, seen along the apical normal.
+bool is_folded(const PrismSheet& sheet, const std::vector<std::size_t>& cell) {
+  constexpr double least_share = 0.05;  // of the apical part above
+  const Vec3 normal = area_vector(sheet.apical, cell).normalized();
+  Vec3 apical_middle = Vec3::Zero(), basal_middle = Vec3::Zero();
+  for (const std::size_t vertex : cell) {
+    apical_middle += sheet.apical[vertex] / static_cast<double>(cell.size());
+    basal_middle += sheet.basal[vertex] / static_cast<double>(cell.size());
+  }
+  for (std::size_t k = 0; k < cell.size(); ++k) {
+    const std::size_t a = cell[k], b = cell[(k + 1) % cell.size()];
+    const double above = (sheet.apical[a] - apical_middle).cross(sheet.apical[b] - apical_middle).dot(normal);
+    const double below = (sheet.basal[a] - basal_middle).cross(sheet.basal[b] - basal_middle).dot(normal);
+    if (!(below > least_share * above)) return true;
+  }
+  return false;
+}
+
+// On a rough surface neighbouring normals cross before the bound says so. There, vertices come up until they do not.
+void unfold(PrismSheet& sheet) {
+  constexpr int most_passes = 30;
+  constexpr double left = 0.9;  // of a height, after a pass
+  for (int pass = 0; pass < most_passes; ++pass) {
+    std::vector<char> comes_up(sheet.apical.size(), 0);
+    for (const auto& cell : sheet.cells)
+      if (is_folded(sheet, cell))
+        for (const std::size_t vertex : cell) comes_up[vertex] = 1;
+    if (std::ranges::none_of(comes_up, [](char up) { return up != 0; })) return;
+    for (std::size_t v = 0; v < comes_up.size(); ++v)
+      if (comes_up[v] != 0) sheet.basal[v] = sheet.apical[v] + left * (sheet.basal[v] - sheet.apical[v]);
+  }
+}
+
 }  // namespace
 
 ExtrudedSheet extrude(const PolygonSurface& polygons, std::span<const VertexBend> bends,
@@ -48,6 +81,7 @@ ExtrudedSheet extrude(const PolygonSurface& polygons, std::span<const VertexBend
     sheet.basal[v] -= bounded_height(asked[v] / cell_count[v], bound) * bends[v].normal;
   }
 
+  unfold(sheet);
   const std::vector<double> heights = prism_heights(sheet);
   for (std::size_t cell = 0; cell < sheet.cells.size(); ++cell) {
     double wanted = 0;

@@ -24,9 +24,9 @@ inline constexpr double largest_height_share = 0.65;
 
 /// Extrudes each cell inward, along the surface's normals at its vertices, by its height: one number, or one a cell. A
 /// vertex takes the mean of its cells' heights. Where that is more than 0.7 of the bound, `largest_height_share` times
-/// the surface's least radius there, it is lowered, smoothly, and never passes that bound. `bends` are the surface's at
-/// its vertices. MeshError when a height is not positive, there are not as many as cells, or a basal face is turned
-/// over, with the cell's row.
+/// the surface's least radius there, it is lowered, smoothly, and never passes that bound. Where basal faces would fold
+/// all the same, on a rough surface, it is lowered further. `bends` are the surface's at its vertices. MeshError when a
+/// height is not positive, there are not as many as cells, or a basal face is turned over, with the cell's row.
 ExtrudedSheet extrude(const PolygonSurface& polygons, std::span<const VertexBend> bends,
                       std::span<const double> heights_um);
 

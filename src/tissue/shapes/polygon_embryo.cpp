@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/shapes/even_points.hpp"
@@ -28,7 +29,7 @@ Tissue build_on(const StarSurface& surface, const Vectors& points, const Polygon
 
 constexpr double largest_roughness = 0.02;  // of the least half-axis, that a vertex may be from a smooth surface
 
-OuterShape smooth_shape(const PolygonSurface& surface) {
+StarSurface smooth_surface(const PolygonSurface& surface) {
   const StarFit fit = fit_star_surface(surface.vertices);
   const double allowed = largest_roughness * fit.surface.half_axes().minCoeff();
   if (fit.largest_um > allowed)
@@ -36,10 +37,14 @@ OuterShape smooth_shape(const PolygonSurface& surface) {
         fmt::format("vertex {} lies {:.2g} um from the smooth surface that is nearest to all, and {:.2g} um "
                     "are allowed",
                     fit.largest_row, fit.largest_um, allowed));
-  double outside = 0;  // no apex lies beyond the shape
-  for (const Vec3& vertex : surface.vertices)
-    outside = std::max(outside, fit.surface.closest(vertex).signed_distance_um);
-  return OuterShape(std::make_shared<const StarSurface>(fit.surface)).moved_out(outside);
+  return fit.surface;
+}
+
+// No vertex lies beyond it.
+OuterShape shape_around(const StarSurface& smooth, const Vectors& vertices) {
+  double outside = 0;
+  for (const Vec3& vertex : vertices) outside = std::max(outside, smooth.closest(vertex).signed_distance_um);
+  return OuterShape(std::make_shared<const StarSurface>(smooth)).moved_out(outside);
 }
 
 void move_to_origin(PolygonSurface& surface) {
@@ -62,17 +67,21 @@ SurfaceTissue build_under_surface(GivenSurface given, const PolygonCells& cells)
   for (Vec3& vertex : surface.vertices) vertex = vertex.cwiseProduct(given.scale);
   const MendedSurface mended = check_and_mend(surface, given.mend, {.least_edge = cells.least_edge_ratio});
   if (given.centre) move_to_origin(surface);
-  const std::vector<double> heights_um = given.heights_um.empty() ? std::vector{cells.height_um} : given.heights_um;
-  const ExtrudedSheet sheet = extrude(surface, vertex_bends(surface), heights_um);
-  SurfaceTissue result{tissue_from_prisms(sheet, cells.split, cells.layers), ""};
-  result.tissue.remarks = mended.remarks;
-  note_lower_cells(sheet, result.tissue.remarks);
+  SurfaceTissue result;
+  std::optional<StarSurface> smooth;
   try {
     if (!mended.is_closed) throw MeshError("the surface has a rim, and a shell is closed");
-    result.tissue.outer_shape = smooth_shape(surface);
+    smooth = smooth_surface(surface);
   } catch (const MeshError& error) {
     result.why_no_shape = error.what();
   }
+  const std::vector<double> heights_um = given.heights_um.empty() ? std::vector{cells.height_um} : given.heights_um;
+  const ExtrudedSheet sheet =
+      extrude(surface, smooth ? vertex_bends(surface, *smooth) : vertex_bends(surface), heights_um);
+  result.tissue = tissue_from_prisms(sheet, cells.split, cells.layers);
+  result.tissue.remarks = mended.remarks;
+  note_lower_cells(sheet, result.tissue.remarks);
+  if (smooth) result.tissue.outer_shape = shape_around(*smooth, surface.vertices);
   return result;
 }
 

@@ -46,7 +46,8 @@ struct SurfaceTissue {
   std::string why_no_shape;
 };
 
-/// A cell under each face, in their order. MeshError as check_and_mend and extrude.
+/// A cell under each face, in their order: inward along the normals of that smooth surface, or where there is none, the
+/// mean normals of the faces. MeshError as check_and_mend and extrude.
 SurfaceTissue build_under_surface(GivenSurface given, const PolygonCells& cells);
 
 }  // namespace plica
