@@ -35,7 +35,7 @@ std::size_t place_of(const std::string& text, const std::vector<double>& times_s
       times_s.begin());
 }
 
-void write_tables(const PolygonSurface& surface, const ExportCommand& command) {
+void write_tables(const SurfaceMesh& surface, const ExportCommand& command) {
   const fs::path directory = command.out;
   const auto [vertices, edges, faces] = tables_of(surface);
   const auto files = {std::pair("vert.csv", &vertices), {"edge.csv", &edges}, {"face.csv", &faces}};
@@ -55,7 +55,7 @@ void export_frame(const ExportCommand& command) {
   const ReferenceRun run(command.directory);
   const std::vector<double> times_s = run.times_s();
   const std::size_t place = place_of(command.time, times_s);
-  PolygonSurface surface = surface_of(run.frame(place), command.side == "apical");
+  SurfaceMesh surface = surface_of(run.frame(place), command.side == "apical");
   surface.time_s = times_s[place];
   as_surface ? write_polygons(command.out, surface) : write_tables(surface, command);
   if (!command.quiet)

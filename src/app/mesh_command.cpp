@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 
 #include "app/commands.hpp"
 #include "app/named.hpp"
@@ -17,24 +18,49 @@
 #include "scenario/suggest.hpp"
 #include "scenario/words.hpp"
 #include "show/rest_picture.hpp"
+#include "tissue/hexahedral_mesh.hpp"
 #include "tissue/mesh_quality.hpp"
 
 namespace plica {
 namespace {
 
+// How many cells have how many, as a line: "corners   5: 26 %  6: 49 %".
+void print_shares(const char* name, const std::vector<std::size_t>& counts) {
+  fmt::print("{:<24}", name);
+  const double all = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
+  for (std::size_t n = 0; n < counts.size(); ++n)
+    if (counts[n] > 0) fmt::print("  {}: {:.1f} %", n, 100 * static_cast<double>(counts[n]) / all);
+  fmt::print("\n");
+}
+
 void print_quality(const Tissue& tissue) {
   const MeshQuality quality = mesh_quality(tissue, tissue.rest_positions);
+  const bool has_polygons = !std::ranges::all_of(tissue.cells, &Cell::is_of_grid);
   fmt::print("{} cells, {} elements, {} nodes\n{:<24}{:>10}{:>10}{:>10}\n", tissue.cells.size(), tissue.elements.size(),
              tissue.node_count(), "", "min", "mean", "max");
   const auto row = [](const char* name, const Spread& s) {
-    fmt::print("{:<24}{:>10.1f}{:>10.1f}{:>10.1f}\n", name, s.min, s.mean, s.max);
+    const int digits = s.mean >= 10 ? 1 : 3;
+    fmt::print("{:<24}{:>10.{}f}{:>10.{}f}{:>10.{}f}\n", name, s.min, digits, s.mean, digits, s.max, digits);
   };
   row("cell volume, um3", quality.volume_um3);
   row("apical area, um2", quality.apical_area_um2);
-  row("edge along, um", quality.along_um);
-  row("edge across, um", quality.across_um);
+  if (!has_polygons) {
+    row("edge along, um", quality.along_um);
+    row("edge across, um", quality.across_um);
+    row("cell height, um", quality.height_um);
+    fmt::print("{:<24}{:>10.3f}\n", "worst scaled Jacobian", quality.min_scaled_jacobian);
+    return;
+  }
+  const PolygonQuality polygons = polygon_quality(tissue, tissue.rest_positions);
+  row("basal area, um2", polygons.basal_area_um2);
+  row("apical edge, um", polygons.apical_edge_um);
   row("cell height, um", quality.height_um);
-  fmt::print("{:<24}{:>10.3f}\n", "worst scaled Jacobian", quality.min_scaled_jacobian);
+  fmt::print("{:<24}{:>10.3f}   in cell {}\n", "worst scaled Jacobian", quality.min_scaled_jacobian,
+             quality.worst_cell.number());
+  print_shares("corners", polygons.corner_counts);
+  print_shares("neighbours", polygons.neighbours);
+  if (polygons.rim_cells > 0) fmt::print("{:<24}{:>10}\n", "cells at the rim", polygons.rim_cells);
+  for (const std::string& remark : tissue.remarks) fmt::print("{}\n", remark);
 }
 
 struct MeshCommand {
@@ -66,7 +92,7 @@ void mesh(const MeshCommand& command) {
   const Scenario scenario = command.scenario.load();
   const Tissue tissue = make_tissue(scenario);
   const RestArrays at_rest = rest_arrays(scenario, tissue);
-  const CellPolygons polygons = polygons_of(tissue);
+  const FramePolygons polygons = polygons_of(tissue);
   MeshArrays arrays;
   std::vector<int> ids;
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) ids.push_back(static_cast<int>(c));
@@ -76,6 +102,12 @@ void mesh(const MeshCommand& command) {
   arrays.cell_scalars = at_rest.cells;
   arrays.element_scalars = at_rest.elements;
   arrays.polygons = &polygons;
+  const CellGroups groups = groups_of(tissue);
+  for (const auto& [name, list] : {std::pair("elements_per_cell", groups.elements_per_cell),
+                                   {"cell_corner_counts", groups.corner_counts},
+                                   {"cell_corners", groups.corners},
+                                   {"hanging_nodes", groups.hanging}})
+    if (!list.empty()) arrays.lists.emplace_back(name, list);
   if (as_picture)
     draw(command, frame_of(tissue, tissue.rest_positions, arrays), shape_of(scenario.embryo) != EmbryoShape::block);
   else

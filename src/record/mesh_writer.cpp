@@ -136,17 +136,22 @@ void put_elements(const MeshElements& mesh, VtkText& vtu) {
 }
 
 /// Of the file as a whole.
-void put_field_data(const CellPolygons* polygons, std::optional<double> time_s, VtkText& vtk) {
-  if (!time_s && polygons == nullptr) return;
+void put_field_data(const FramePolygons* polygons,
+                    const std::vector<std::pair<std::string, std::vector<int>>>& lists, std::optional<double> time_s,
+                    VtkText& vtk) {
+  if (!time_s && polygons == nullptr && lists.empty()) return;
   vtk.line(2, "<FieldData>");
   vtk.time(time_s);
-  if (polygons != nullptr)
-    for (const auto& [name, values] : {std::pair("ends", &polygons->ends),
-                                       {"apical", &polygons->apical},
-                                       {"basal", &polygons->basal},
-                                       {"elements", &polygons->elements}})
-      vtk.array(3, std::string("polygon_") + name, std::span<const std::int32_t>(*values),
-                fmt::format(R"( NumberOfTuples="{}")", values->size()));
+  const auto put = [&](const std::string& name, const std::vector<int>& values) {
+    vtk.array(3, name, std::span<const std::int32_t>(values), fmt::format(R"( NumberOfTuples="{}")", values.size()));
+  };
+  if (polygons != nullptr) {
+    put("polygon_ends", polygons->ends);
+    put("polygon_apical", polygons->apical);
+    put("polygon_basal", polygons->basal);
+    put("polygon_elements", polygons->elements);
+  }
+  for (const auto& [name, values] : lists) put(name, values);
   vtk.line(2, "</FieldData>");
 }
 
@@ -171,7 +176,7 @@ void write_mesh(const std::filesystem::path& file, const MeshElements& mesh, std
   check(mesh, positions, arrays, time_s);
   VtkText vtu;
   vtu.line(1, "<UnstructuredGrid>");
-  put_field_data(arrays.polygons, time_s, vtu);
+  put_field_data(arrays.polygons, arrays.lists, time_s, vtu);
   vtu.line(2, fmt::format(R"(<Piece NumberOfPoints="{}" NumberOfCells="{}">)", positions.size(), mesh.elements.size()));
   put_data(mesh, arrays, vtu);
   vtu.line(3, "<Points>");
@@ -183,8 +188,8 @@ void write_mesh(const std::filesystem::path& file, const MeshElements& mesh, std
   write_file(file, vtu.text("UnstructuredGrid"));
 }
 
-CellPolygons polygons_of(const Tissue& tissue) {
-  CellPolygons polygons;
+FramePolygons polygons_of(const Tissue& tissue) {
+  FramePolygons polygons;
   for (const Cell& cell : tissue.cells) {
     for (const NodeId node : cell.basal_corners()) polygons.basal.push_back(node.number());
     for (const NodeId node : cell.apical_corners()) polygons.apical.push_back(node.number());
@@ -194,7 +199,7 @@ CellPolygons polygons_of(const Tissue& tissue) {
   return polygons;
 }
 
-void write_polygons(const std::filesystem::path& file, const PolygonSurface& surface) {
+void write_polygons(const std::filesystem::path& file, const SurfaceMesh& surface) {
   check_values("points", surface.points, surface.points.size(), "");
   for (const auto& [name, values] : surface.vectors)
     check_values(name, values, surface.points.size(), "has not one value a point");
@@ -202,7 +207,7 @@ void write_polygons(const std::filesystem::path& file, const PolygonSurface& sur
     check_values(name, values, surface.ends.size(), "has not one value a polygon");
   VtkText vtp;
   vtp.line(1, "<PolyData>");
-  put_field_data(nullptr, surface.time_s, vtp);
+  put_field_data(nullptr, {}, surface.time_s, vtp);
   vtp.line(
       2, fmt::format(R"(<Piece NumberOfPoints="{}" NumberOfPolys="{}">)", surface.points.size(), surface.ends.size()));
   vtp.line(3, "<PointData>");

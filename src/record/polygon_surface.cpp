@@ -15,13 +15,13 @@ namespace plica {
 namespace {
 
 /// Those that the frame holds, or the faces of its elements, where every cell is one.
-CellPolygons polygons_of(const Frame& frame) {
+FramePolygons polygons_of(const Frame& frame) {
   if (!frame.polygons.empty()) return frame.polygons;
   const auto ids = frame.element_scalars.find("cell_id");
   if (ids == frame.element_scalars.end() ||
       std::set(ids->second.begin(), ids->second.end()).size() < frame.elements.size())
     throw FileError("the frame has no polygons of cells: an older version of plica wrote it; run it again");
-  CellPolygons polygons;
+  FramePolygons polygons;
   for (std::size_t e = 0; e < frame.elements.size(); ++e) {
     for (int i = 0; i < 4; ++i) {
       polygons.basal.push_back(frame.elements[e][i].number());
@@ -33,7 +33,7 @@ CellPolygons polygons_of(const Frame& frame) {
   return polygons;
 }
 
-void check(const CellPolygons& polygons, const Frame& frame) {
+void check(const FramePolygons& polygons, const Frame& frame) {
   const auto below = [](const std::vector<int>& values, std::size_t count) {
     return std::ranges::all_of(values,
                                [&](int value) { return value >= 0 && static_cast<std::size_t>(value) < count; });
@@ -50,11 +50,11 @@ void check(const CellPolygons& polygons, const Frame& frame) {
 
 }  // namespace
 
-PolygonSurface surface_of(const Frame& frame, bool apical) {
-  const CellPolygons polygons = polygons_of(frame);
+SurfaceMesh surface_of(const Frame& frame, bool apical) {
+  const FramePolygons polygons = polygons_of(frame);
   check(polygons, frame);
   const std::vector<int>& nodes = apical ? polygons.apical : polygons.basal;
-  PolygonSurface surface{
+  SurfaceMesh surface{
       .points = {}, .ends = polygons.ends, .corners = {}, .scalars = {}, .vectors = {}, .time_s = frame.time_s};
   std::vector<int> point(frame.positions.size(), -1), used;  // points by node, nodes by point
   for (const int node : nodes) {
@@ -79,7 +79,7 @@ PolygonSurface surface_of(const Frame& frame, bool apical) {
   return surface;
 }
 
-PolygonTables tables_of(const PolygonSurface& surface) {
+PolygonTables tables_of(const SurfaceMesh& surface) {
   std::vector<double> vertices, edges, faces;
   const auto add = [](std::vector<double>& rows, std::initializer_list<double> values) {
     rows.insert(rows.end(), values);

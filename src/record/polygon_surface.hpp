@@ -10,7 +10,7 @@ namespace plica {
 
 /// The apical or the basal polygons of a frame's cells, with their numbers. Points are those that polygons use.
 /// FileError when the frame has no polygons of cells of several elements (older versions wrote none), or damaged ones.
-PolygonSurface surface_of(const Frame& frame, bool apical);
+SurfaceMesh surface_of(const Frame& frame, bool apical);
 
 /// The surface as CSV texts: vertices, half-edges and faces, each by its number in the first column; columns have the
 /// names that tyssue gives them.
@@ -20,6 +20,6 @@ struct PolygonTables {
   std::string faces;     // face, x, y, z, num_sides, area, perimeter, then the polygons' numbers
 };
 
-PolygonTables tables_of(const PolygonSurface& surface);
+PolygonTables tables_of(const SurfaceMesh& surface);
 
 }  // namespace plica

@@ -38,26 +38,31 @@ struct RegionInput {
   std::vector<std::string> unite, intersect, except;  // TOML keys: union, intersect, except
 };
 
-enum class EmbryoShape { pill, sphere, slice, block, egg, points, file };
+enum class EmbryoShape { pill, sphere, slice, block, egg, points, sheet, surface, file };
 
 struct EmbryoInput {
-  std::string shape = "pill";  // pill | sphere | slice | block | egg | points | file
-  double length_um = 460;      // pill, slice, block, egg: along x
+  std::string shape = "pill";  // pill | sphere | slice | block | egg | points | sheet | surface | file
+  double length_um = 460;      // pill, slice, block, egg, sheet: along x
   double diameter_um = 280;    // pill, sphere, slice, egg
-  double width_um = 20;        // block: along y
+  double width_um = 20;        // block, sheet: along y
   double cell_height_um = 40;
   std::array<int, 3> cells = {18, 9, 8};
   std::array<int, 3> elements_per_cell = {1, 1, 1};
   std::vector<std::string> mirror;                  // x, y: planes through the middle, of which one side is solved
-  int cell_count = 6000;                            // egg
-  int seed = 1;                                     // egg: how its cells are spread
+  int cell_count = 6000;                            // egg, sheet
+  int seed = 1;                                     // egg, sheet: how the cells are spread
   std::optional<double> belly_sag_um, back_sag_um;  // egg: how much its outline bulges
-  std::string elements = "diagonals";               // egg, points: diagonals | kites
-  double least_edge_ratio = 0.3;                    // egg, points: to the mean; shorter edges are lengthened
-  int layers = 1;                                   // egg, points: elements from basal to apical
-  std::vector<double> scale = {1, 1, 1};            // points
+  std::string elements = "diagonals";               // of polygons: diagonals | kites
+  double least_edge_ratio = 0.3;                    // of polygons: to the mean; shorter edges are lengthened
+  int layers = 1;                                   // of polygons: elements from basal to apical
+  std::vector<double> curvature_per_um = {0, 0};    // sheet: along and across; positive as an embryo's
+  std::string rim = "free";                         // sheet, surface: free | held
+  std::string cell_height_array;                    // surface: array of heights; empty: cell_height_um
+  bool mend = true;                                 // surface: whether what is safe to mend is mended
+  bool centre = false;                              // surface: whether its middle is moved to the origin
+  std::vector<double> scale = {1, 1, 1};            // points, surface
   double points_depth_um = 0;                       // points: below the apical surface, before they are scaled
-  std::string file;                                 // "file": a hexahedral mesh that VTK reads; "points": a table
+  std::string file;          // "file": a hexahedral mesh that VTK reads; "points": a table; "surface": polygons
   std::string apical_array;  // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;
                              // empty: the outer surface
   std::shared_ptr<const HexahedralMesh> mesh;  // in place of what the file holds: from a program, not from TOML

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/errors.hpp"
+#include "core/names.hpp"
 #include "core/units.hpp"
 #include "measure/cells.hpp"
 #include "mechanics/active/contraction.hpp"
@@ -29,10 +30,13 @@
 #include "scenario/regions.hpp"
 #include "scenario/symmetry.hpp"
 #include "scenario/words.hpp"
+#include "tissue/faces.hpp"
 #include "tissue/files/mesh_file.hpp"
 #include "tissue/files/points_file.hpp"
+#include "tissue/files/polygon_file.hpp"
 #include "tissue/shapes/embryo.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
+#include "tissue/shapes/polygon_sheet.hpp"
 
 namespace plica {
 namespace {
@@ -61,13 +65,18 @@ PointTable table_of(const std::string& file) {
   throw MeshError(fmt::format("there is no table {}; there is {}", file, fmt::join(names, ", ")));
 }
 
+PolygonCells cells_of(const EmbryoInput& e) { return {e.cell_height_um, split_of(e), e.layers, e.least_edge_ratio}; }
+
 Tissue polygonal_tissue(const Scenario& scenario) {
   const EmbryoInput& e = scenario.embryo;
-  const PolygonCells cells{e.cell_height_um, split_of(e), e.layers, e.least_edge_ratio};
+  const PolygonCells cells = cells_of(e);
   try {
     if (shape_of(e) == EmbryoShape::egg)
       return build_egg({e.length_um, e.diameter_um, e.diameter_um, e.belly_sag_um, e.back_sag_um}, e.cell_count, e.seed,
                        cells);
+    if (shape_of(e) == EmbryoShape::sheet)
+      return build_sheet({e.length_um, e.width_um, {e.curvature_per_um[0], e.curvature_per_um[1]}}, e.cell_count,
+                         e.seed, cells);
     const PointTable table = table_of(e.file);
     Tissue tissue =
         build_about_points({table.points, e.points_depth_um, Vec3(e.scale[0], e.scale[1], e.scale[2])}, cells);
@@ -75,8 +84,44 @@ Tissue polygonal_tissue(const Scenario& scenario) {
     return tissue;
   } catch (const FileError& error) {
     throw ScenarioError(
-        {diagnostic_at(scenario, shape_of(e) == EmbryoShape::egg ? "embryo" : "embryo.file", error.what(), "")});
+        {diagnostic_at(scenario, is_from_file(shape_of(e)) ? "embryo.file" : "embryo", error.what(), "")});
   }
+}
+
+std::vector<double> heights_of(const Scenario& scenario, const PolygonFile& file) {
+  const std::string& name = scenario.embryo.cell_height_array;
+  if (name.empty()) return {};
+  if (const auto found = file.arrays.find(name); found != file.arrays.end()) return found->second;
+  const std::string others = file.arrays.empty() ? "none" : fmt::format("{}", fmt::join(keys_of(file.arrays), ", "));
+  throw ScenarioError(
+      {diagnostic_at(scenario, "embryo.cell_height_array", fmt::format("the file has no array \"{}\"", name),
+                     fmt::format("there are: {}", others))});
+}
+
+Tissue surface_tissue(const Scenario& scenario) {
+  const EmbryoInput& e = scenario.embryo;
+  const auto complain = [&](const std::string& what) {
+    throw ScenarioError({diagnostic_at(scenario, "embryo.file", what, "")});
+  };
+  PolygonFile file;
+  try {
+    file = read_polygon_file(e.file);
+  } catch (const FileError& error) {
+    complain(error.what());
+  }
+  SurfaceTissue result;
+  try {
+    result = build_under_surface(
+        {file.surface, heights_of(scenario, file), Vec3(e.scale[0], e.scale[1], e.scale[2]), e.centre, e.mend},
+        cells_of(e));
+  } catch (const MeshError& error) {
+    complain(fmt::format("{}: {}", e.file, error.what()));
+  }
+  result.tissue.cell_arrays = std::move(file.arrays);
+  if (scenario.vitelline.enabled && !result.tissue.outer_shape)
+    throw ScenarioError(
+        {diagnostic_at(scenario, "vitelline.enabled", "no shell fits: " + result.why_no_shape, "give false")});
+  return std::move(result.tissue);
 }
 
 Tissue build_tissue(const Scenario& scenario) {
@@ -92,7 +137,10 @@ Tissue build_tissue(const Scenario& scenario) {
       return build_block({e.length_um, e.width_um, e.cell_height_um, e.cells, e.elements_per_cell});
     case EmbryoShape::egg:
     case EmbryoShape::points:
+    case EmbryoShape::sheet:
       return polygonal_tissue(scenario);
+    case EmbryoShape::surface:
+      return surface_tissue(scenario);
     case EmbryoShape::file:
       break;
   }
@@ -263,6 +311,13 @@ void add_holds(const Scenario& scenario, Model& model) {
   }
 }
 
+/// Nodes of the walls that no neighbour shares, nor an image of one.
+void hold_rim(Model& model) {
+  for (const Face& face : faces_of(model.tissue, CellSide::lateral))
+    if (!face.beyond && face.share == 1)
+      for (const NodeId node : face.nodes) model.held[node.index()] = {true, true, true};
+}
+
 /// Nodes on a mirror plane stay on it.
 void hold_mirror_planes(Model& model) {
   for (std::size_t n = 0; n < model.held.size(); ++n)
@@ -308,6 +363,7 @@ void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model)
 
   if (shape_of(scenario.embryo) == EmbryoShape::slice) make_endless(scenario, model);
   add_holds(scenario, model);
+  if (meaning_of(words::rims, scenario.embryo.rim)) hold_rim(model);
   if (scenario.vitelline.enabled) {
     const OuterShape shell = tissue.outer_shape->moved_out(scenario.vitelline.gap_um);
     model.obstacles.push_back(std::make_unique<Vitelline>(tissue, shell));

@@ -54,15 +54,19 @@ void check_embryo(Scenario& scenario, Input& input) {
   check_unused_keys(scenario, input);
   const EmbryoInput& embryo = scenario.embryo;
   const auto sound = [&](std::string_view key) { return input.sound(fmt::format("embryo.{}", key)); };
-  if (shape_of(embryo) == EmbryoShape::file || shape_of(embryo) == EmbryoShape::points) {
+  if (is_from_file(shape_of(embryo))) {
     if (embryo.file.empty() && sound("file"))
       input.report("embryo.file", "is missing",
-                   shape_of(embryo) == EmbryoShape::file ? "name the mesh file for shape \"file\""
-                                                         : "name the table of points for shape \"points\"");
+                   shape_of(embryo) == EmbryoShape::file     ? "name the mesh file for shape \"file\""
+                   : shape_of(embryo) == EmbryoShape::points ? "name the table of points for shape \"points\""
+                                                             : "name the file of polygons for shape \"surface\"");
     if (embryo.scale.size() != 3 && sound("scale"))
       input.report("embryo.scale", fmt::format("has {} numbers", embryo.scale.size()), "give three, along x, y and z");
     return;
   }
+  if (embryo.curvature_per_um.size() != 2 && sound("curvature_per_um"))
+    input.report("embryo.curvature_per_um", fmt::format("has {} numbers", embryo.curvature_per_um.size()),
+                 "give two, along and across");
   if (embryo.belly_sag_um.has_value() != embryo.back_sag_um.has_value())
     input.report(embryo.belly_sag_um ? "embryo.belly_sag_um" : "embryo.back_sag_um", "stands alone",
                  fmt::format("give {}, too, or neither", embryo.belly_sag_um ? "back_sag_um" : "belly_sag_um"));
@@ -72,7 +76,7 @@ void check_embryo(Scenario& scenario, Input& input) {
                  fmt::format("{} is less than the diameter, {}", embryo.length_um, embryo.diameter_um),
                  "give a length of at least diameter_um");
   }
-  if (shape_of(embryo) != EmbryoShape::block && sound("cell_height_um") && sound("diameter_um") &&
+  if (!is_patch(shape_of(embryo)) && sound("cell_height_um") && sound("diameter_um") &&
       embryo.cell_height_um >= embryo.diameter_um / 2) {
     input.report("embryo.cell_height_um", fmt::format("{} leaves no room inside the embryo", embryo.cell_height_um),
                  fmt::format("give less than half of diameter_um, {}", embryo.diameter_um / 2));
@@ -85,7 +89,7 @@ void check_shell_drag(const Scenario& scenario, Input& input) {
   if (scenario.vitelline.drag_Pa_s_per_um == 0 || !input.sound(key) || !input.sound("vitelline.enabled")) return;
   if (!scenario.vitelline.enabled)
     input.report(key, "has no meaning without a shell",
-                 shape_of(scenario.embryo) == EmbryoShape::block ? "remove it" : "remove it, or give enabled = true");
+                 is_patch(shape_of(scenario.embryo)) ? "remove it" : "remove it, or give enabled = true");
   else if (method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton")
     input.report(key, "drag of the shell goes with time.scheme \"newton\" and volumes that are not projected",
                  "remove it, or choose another scheme or volume.method");
@@ -105,10 +109,13 @@ void check_mirror(const Scenario& scenario, Input& input) {
 }
 
 void check_vitelline(Scenario& scenario, Input& input) {
-  if (shape_of(scenario.embryo) != EmbryoShape::block || !input.sound("vitelline.enabled")) return;
+  const EmbryoShape shape = shape_of(scenario.embryo);
+  if ((!is_patch(shape) && shape != EmbryoShape::surface) || !input.sound("vitelline.enabled")) return;
+  // Whether a surface is closed, its file tells.
   if (input.place("vitelline.enabled") == nullptr) scenario.vitelline.enabled = false;
-  if (scenario.vitelline.enabled) {
-    input.report("vitelline.enabled", "a shell needs a closed embryo, and a block is none", "give false");
+  if (scenario.vitelline.enabled && is_patch(shape)) {
+    input.report("vitelline.enabled",
+                 fmt::format("a shell needs a closed embryo, and a {} is none", scenario.embryo.shape), "give false");
   }
 }
 
@@ -142,9 +149,10 @@ void check_scheme(const Scenario& scenario, Input& input) {
     input.report(method_of(scenario.volume) == VolumeMethod::projection ? "volume.method" : "time.scheme",
                  "cells cannot divide under the paper's algorithm",
                  "give method = \"coupled\" or \"none\" and scheme = \"newton\", or no [division]");
-  if (scenario.volume.projection_surface == "embryo" && shape_of(scenario.embryo) == EmbryoShape::block &&
+  if (scenario.volume.projection_surface == "embryo" && is_patch(shape_of(scenario.embryo)) &&
       input.sound("volume.projection_surface"))
-    input.report("volume.projection_surface", "the apical surface of a block encloses nothing",
+    input.report("volume.projection_surface",
+                 fmt::format("the apical surface of a {} encloses nothing", scenario.embryo.shape),
                  "give \"cells\" or \"tissue\"");
 }
 
@@ -282,9 +290,9 @@ class RegionCheck {
       input_.report(path + ".rings", "needs neighbours_of", "name the region around which the rings lie");
     if (!input_.sound("embryo.shape")) return;
     const EmbryoShape shape = shape_of(scenario_.embryo);
-    const bool has_arrays = shape == EmbryoShape::file || shape == EmbryoShape::points;
-    if (!region.array.empty() && !has_arrays) {
-      input_.report(path + ".array", "a built embryo has no arrays", "use it with shape \"file\" or \"points\" only");
+    if (!region.array.empty() && !is_from_file(shape)) {
+      input_.report(path + ".array", "a built embryo has no arrays",
+                    "use it with shape \"file\", \"points\" or \"surface\" only");
     }
     for (const auto& [key, value] : {std::pair("above", region.above), {"below", region.below}})
       if (value && region.array.empty() && input_.sound(path + ".array"))

@@ -151,8 +151,9 @@ void check_enclosed(Scenario& scenario, Input& input) {
     const std::string table = "enclosed." + name, key = table + ".bulk_modulus_Pa";
     if (!input.sound(table) || !input.sound(table + ".volume") || !input.sound("embryo.shape")) continue;
     const EnclosedState state = meaning_of(words::enclosed_states, it.volume);
-    if (scenario.embryo.shape == "block")
-      input.report(table, "a block encloses nothing", "remove it, or choose shape \"pill\" or \"sphere\"");
+    if (is_patch(shape_of(scenario.embryo)))
+      input.report(table, fmt::format("a {} encloses nothing", scenario.embryo.shape),
+                   "remove it, or choose shape \"pill\" or \"sphere\"");
     if (state == EnclosedState::compliant && !it.bulk_modulus_Pa && input.sound(key))
       input.report(key, "is missing", "give how compliant the volume is, a number > 0");
     if (state != EnclosedState::compliant)

@@ -13,7 +13,7 @@ namespace {
 using namespace support;
 
 Frame frame_of_tissue(const Tissue& tissue) {
-  const CellPolygons polygons = polygons_of(tissue);
+  const FramePolygons polygons = polygons_of(tissue);
   MeshArrays arrays;
   std::vector<double> numbers;
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) numbers.push_back(10.0 * static_cast<double>(c));
@@ -30,14 +30,14 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 // Whatever elements a cell is made of, its polygon has its corners; nodes within edges are no vertices.
-TEST(PolygonSurface, IsThatOfTheCells) {
+TEST(SurfaceMesh, IsThatOfTheCells) {
   int cases = 0;
   for (const PolygonSplit split : {PolygonSplit::diagonals, PolygonSplit::kites})
     for (const int layers : {1, 2}) {
       const PrismSheet sheet = irregular_polygons(6, 5, 4, 12, 0.1, 3);
       const Tissue tissue = tissue_from_prisms(sheet, split, layers);
       for (const bool apical : {true, false}) {
-        const PolygonSurface surface = surface_of(frame_of_tissue(tissue), apical);
+        const SurfaceMesh surface = surface_of(frame_of_tissue(tissue), apical);
         EXPECT_EQ(surface.points.size(), sheet.apical.size());
         ASSERT_EQ(surface.ends.size(), sheet.cells.size());
         std::size_t corner = 0;
@@ -53,7 +53,7 @@ TEST(PolygonSurface, IsThatOfTheCells) {
   EXPECT_EQ(cases, 8);
 }
 
-TEST(PolygonSurface, TablesNameVerticesEdgesAndFaces) {
+TEST(SurfaceMesh, TablesNameVerticesEdgesAndFaces) {
   // Two squares of 20 x 20 beside each other.
   const Tissue block = build_block(
       {.length_um = 40, .width_um = 20, .cell_height_um = 20, .cells = {2, 1, 1}, .elements_per_cell = {2, 2, 2}});
@@ -72,7 +72,7 @@ TEST(PolygonSurface, TablesNameVerticesEdgesAndFaces) {
   EXPECT_EQ(of_faces[2].substr(of_faces[2].size() - 12), ",4,400,80,10");
 }
 
-TEST(PolygonSurface, OfCellsOfOneElementIsThatOfTheirFaces) {
+TEST(SurfaceMesh, OfCellsOfOneElementIsThatOfTheirFaces) {
   const Tissue pill = build_shell({.length_um = 300, .diameter_um = 160, .cell_height_um = 30, .cells = {6, 4, 4}});
   const Frame with = frame_of_tissue(pill);
   Frame without = with;
@@ -80,7 +80,7 @@ TEST(PolygonSurface, OfCellsOfOneElementIsThatOfTheirFaces) {
   for (std::size_t e = 0; e < pill.elements.size(); ++e)
     without.element_scalars["cell_id"].push_back(static_cast<double>(e));
   for (const bool apical : {true, false}) {
-    const PolygonSurface a = surface_of(with, apical), b = surface_of(without, apical);
+    const SurfaceMesh a = surface_of(with, apical), b = surface_of(without, apical);
     EXPECT_EQ(a.points, b.points);
     EXPECT_EQ(a.ends, b.ends);
     EXPECT_EQ(a.corners, b.corners);
@@ -89,7 +89,7 @@ TEST(PolygonSurface, OfCellsOfOneElementIsThatOfTheirFaces) {
   EXPECT_THROW(surface_of(without, true), FileError);
 }
 
-TEST(PolygonSurface, WhatIsDamagedIsRefused) {
+TEST(SurfaceMesh, WhatIsDamagedIsRefused) {
   const Tissue block = build_block({.length_um = 40, .width_um = 20, .cell_height_um = 20, .cells = {2, 1, 1}});
   const Frame good = frame_of_tissue(block);
   EXPECT_NO_THROW(surface_of(good, true));
@@ -99,14 +99,14 @@ TEST(PolygonSurface, WhatIsDamagedIsRefused) {
     damage(bad.polygons);
     EXPECT_THROW(surface_of(bad, true), FileError) << ++cases;
   };
-  refuse([](CellPolygons& p) { p = {}; });
-  refuse([](CellPolygons& p) { p.apical[3] = 999; });
-  refuse([](CellPolygons& p) { p.apical[3] = -1; });
-  refuse([](CellPolygons& p) { p.basal.pop_back(); });
-  refuse([](CellPolygons& p) { p.ends[0] = 99; });
-  refuse([](CellPolygons& p) { p.ends[0] = 1; });
-  refuse([](CellPolygons& p) { p.ends.pop_back(); });
-  refuse([](CellPolygons& p) { p.elements[1] = 2; });
+  refuse([](FramePolygons& p) { p = {}; });
+  refuse([](FramePolygons& p) { p.apical[3] = 999; });
+  refuse([](FramePolygons& p) { p.apical[3] = -1; });
+  refuse([](FramePolygons& p) { p.basal.pop_back(); });
+  refuse([](FramePolygons& p) { p.ends[0] = 99; });
+  refuse([](FramePolygons& p) { p.ends[0] = 1; });
+  refuse([](FramePolygons& p) { p.ends.pop_back(); });
+  refuse([](FramePolygons& p) { p.elements[1] = 2; });
 }
 
 }  // namespace
