@@ -98,9 +98,11 @@ def items(form, values):
     return struct.pack("<Q", len(values)) + b"".join(struct.pack("<" + form, *value) for value in values)
 
 
-def mesh(points, cells, faces, arrays=()):
+def mesh(points, cells, faces, arrays=(), groups=((), (), (), (), ())):
     """As tissue/files/mesh_bytes.cpp writes it."""
-    data = items("3d", points) + items("8i", cells) + items("i", [(face,) for face in faces])
+    data = items("3d", points) + items("8i", cells)
+    for numbers in (faces, *groups):
+        data += items("i", [(number,) for number in numbers])
     for name, values in arrays:
         data += struct.pack("<Q", len(name)) + name + items("d", [(value,) for value in values])
     return data
@@ -116,11 +118,32 @@ def meshes():
     four = [tuple(index(x + a, y + b, z) for z in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)))
             for x, y in itertools.product((0, 1), (0, 1))]
     write("mesh", "four_cells", b"\0" + mesh(grid, four, [5] * 4, [(b"left", [1, 0.5, 0, 0])]))
+    pairs = ([0, 0, 1, 1], [], [12, 12], [*(index(x, y, 0) for x, y in ((0, 0), (1, 0), (1, 1), (1, 2), (0, 2), (0, 1))),
+                                         *(index(x, y, 1) for x, y in ((0, 0), (1, 0), (1, 1), (1, 2), (0, 2), (0, 1))),
+                                         *(index(x, y, 0) for x, y in ((1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (1, 1))),
+                                         *(index(x, y, 1) for x, y in ((1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (1, 1)))], [])
+    write("mesh", "two_cells_of_two", b"\0" + mesh(grid, four, [], [(b"left", [1, 1, 0, 0])], pairs))
+    write("mesh", "one_grid_cell_of_four", b"\0" + mesh(grid, [four[i] for i in (0, 2, 1, 3)], [], [],
+                                                       ([0] * 4, [2, 2, 1], [], [], [])))
     # A cube with a hollow cube in it: six cells around, and what is outside is found.
     shell = [tuple(size * (2 * c - 1.0) for c in corner) for size in (10, 20) for corner in corners]
     sides = ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0))
     hollow = [tuple(reversed(side)) + tuple(8 + corner for corner in reversed(side)) for side in sides]
     write("mesh", "hollow_cube", b"\0" + mesh(shell, hollow, []))
+
+
+def polygons():
+    corners = [(x, y, z) for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    faces = ((3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+    lines = lambda rows: "".join(" ".join(map(str, row)) + "\n" for row in rows)
+    write("polygons", "cube.obj", ("o" + lines(("v", *c) for c in corners) + lines(("f", *(v + 1 for v in f)) for f in faces)).encode())
+    write("polygons", "soup.obj", ("o" + "".join(lines(("v", *corners[v]) for v in f) + "f -4 -3 -2 -1\n" for f in faces)).encode())
+    write("polygons", "patch.off", b"fOFF 6 2 0\n0 0 0\n1 0 0\n2 0 0.1\n0 1 0\n1 1 0\n2 1 0\n4 0 1 4 3\n4 1 4 5 2 9 9 9\n")
+    head = "ply\nformat %s 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nelement face 6\n" \
+           "property list uchar int vertex_indices\nproperty short height\nend_header\n"
+    write("polygons", "cube.ply", ("p" + head % "ascii" + lines(corners) + lines((4, *f, 2) for f in faces)).encode())
+    write("polygons", "cube_of_bytes.ply", ("p" + head % "binary_little_endian").encode()
+          + b"".join(struct.pack("<3f", *c) for c in corners) + b"".join(struct.pack("<B4ih", 4, *f, 2) for f in faces))
 
 
 def checkpoints():
@@ -137,5 +160,6 @@ def checkpoints():
 scenarios()
 studies()
 meshes()
+polygons()
 checkpoints()
 print(f"{sum(f.stat().st_size for f in (root / 'corpus').rglob('*') if f.is_file())} bytes in {root / 'corpus'}")

@@ -14,6 +14,10 @@ bool fuzz_scenario(std::string_view bytes);
 /// over (tissue/files/mesh_bytes.hpp).
 bool fuzz_mesh(std::string_view bytes);
 
+/// Polygons: the first byte says in which format, OBJ ('o'), OFF ('f') or PLY, the rest is the file. What it holds is
+/// mended and made a tissue.
+bool fuzz_polygons(std::string_view bytes);
+
 /// A checkpoint. The first byte says whether what follows is a whole file ('f'), or the HDF5 file in it ('h'), to which
 /// the right checksum is added, so that damage gets beyond it.
 bool fuzz_checkpoint(std::string_view bytes);

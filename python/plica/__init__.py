@@ -13,6 +13,7 @@ from .answers import verdict
 from .emulator import Emulator
 from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaError, ScenarioError
 from .indices import SobolIndices
+from .polygons import Polygons, polygons_of_labels
 from .posteriors import Posterior, posterior
 from .results import Frame, Frames, Run
 from .results import open_run as open
@@ -32,6 +33,7 @@ __all__ = [
     "MissingExtra",
     "NumericsError",
     "PlicaError",
+    "Polygons",
     "Posterior",
     "Run",
     "Scenario",
@@ -48,6 +50,7 @@ __all__ = [
     "compare",
     "load",
     "open",
+    "polygons_of_labels",
     "posterior",
     "render",
     "verdict",

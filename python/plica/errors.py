@@ -93,7 +93,8 @@ class MissingExtra(PlicaError, ImportError):
 
 
 EXTRAS = {"pandas": "plot", "matplotlib": "plot", "pyvista": "plot", "meshio": "plot", "IPython": "notebook",
-          "xarray": "study", "SALib": "study", "sklearn": "study", "threadpoolctl": "study"}
+          "xarray": "study", "SALib": "study", "sklearn": "study", "threadpoolctl": "study",
+          "skimage": "image", "scipy": "image"}
 
 
 def needed(package: str, what: str) -> Any:

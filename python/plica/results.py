@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import FileError, needed
+from .polygons import Polygons
 from .scenario import Scenario
 
 if TYPE_CHECKING:
@@ -50,8 +51,8 @@ class Frame:
         Where the nodes are, µm.
     hexahedra : ndarray of int, shape (elements, 8)
         Nodes of the elements, in VTK's order, the last four on the apical side.
-    point_data, cell_data : dict of str to ndarray
-        Arrays by node and by element, units in the names.
+    point_data, cell_data, field_data : dict of str to ndarray
+        Arrays by node and by element, units in the names; and of the file as a whole.
     """
 
     def __init__(self, path: Path, time_s: float) -> None:
@@ -62,6 +63,7 @@ class Frame:
         self.hexahedra: NDArray[np.int64] = cells["connectivity"].reshape(-1, 8)
         self.point_data: dict[str, NDArray[Any]] = arrays["PointData"]
         self.cell_data: dict[str, NDArray[Any]] = arrays["CellData"]
+        self.field_data: dict[str, NDArray[Any]] = arrays["FieldData"]
 
     @property
     def time_min(self) -> float:
@@ -71,6 +73,34 @@ class Frame:
     def to_pyvista(self) -> Any:
         """The frame as a ``pyvista.UnstructuredGrid``."""
         return _grid(self.points, self.hexahedra, self.point_data, self.cell_data)
+
+    def polygons(self, side: str = "apical") -> Polygons:
+        """The cells as polygons, with the cells' arrays.
+
+        Parameters
+        ----------
+        side : str
+            "apical" or "basal".
+
+        Returns
+        -------
+        Polygons
+            What goes on to PyVista, to tables, or into a file.
+        """
+        if side not in ("apical", "basal"):
+            raise ValueError(f'side: {side!r}; give "apical" or "basal"')
+        count = len(self.hexahedra)
+        if "polygon_ends" in self.field_data:
+            nodes, ends = self.field_data[f"polygon_{side}"], self.field_data["polygon_ends"]
+            elements = self.field_data["polygon_elements"]
+        elif len(np.unique(self.cell_data["cell_id"])) == count:  # every cell is one element
+            nodes, ends = self.hexahedra[:, 4:] if side == "apical" else self.hexahedra[:, :4], 4 * np.arange(1, count + 1)
+            elements = np.arange(count)
+        else:
+            raise FileError(f"{self.path}: has no polygons of cells: an older version of plica wrote it; run it again")
+        used, corners = np.unique(nodes.ravel(), return_inverse=True)
+        values = {name: array[elements] for name, array in self.cell_data.items()}
+        return Polygons(self.points[used], np.split(corners, ends[:-1]), values)
 
     def to_meshio(self) -> Any:
         """The frame as a ``meshio.Mesh``."""
@@ -314,9 +344,10 @@ def _read_vtu(path: Path) -> dict[str, dict[str, NDArray[Any]]]:
         appended = rest[rest.index(b"_") + 1 :]
         root = xml.fromstring(head + b"</VTKFile>")
         found: dict[str, dict[str, NDArray[Any]]] = {}
-        for group in ("Points", "Cells", "PointData", "CellData"):
+        for group in ("Points", "Cells", "PointData", "CellData", "FieldData"):
             found[group] = {}
-            for one in root.findall(f"./UnstructuredGrid/Piece/{group}/DataArray"):
+            where = "FieldData" if group == "FieldData" else f"Piece/{group}"
+            for one in root.findall(f"./UnstructuredGrid/{where}/DataArray"):
                 values = np.frombuffer(b"".join(_blocks(appended, int(one.attrib["offset"]))), TYPES[one.attrib["type"]])
                 width = int(one.attrib.get("NumberOfComponents", "1"))
                 found[group][one.attrib.get("Name", group)] = values.reshape(-1, width) if width > 1 else values

@@ -133,8 +133,8 @@ def render(
     path : str or path, optional
         A PNG file to write.
     color : str
-        What colours it: displacement, speed, area-ratio, pressure, volume-error, volume, contraction, generation, region or
-        self-intersections. Of a simulation, what ``Simulation.cell_data`` has.
+        What colours it: displacement, speed, area-ratio, pressure, volume-error, volume, contraction, strength, generation,
+        region or self-intersections. Of a simulation, what ``Simulation.cell_data`` has.
     view : str
         ventral, antero-ventral, side, cross-section or sagittal-section.
     time_min : float, optional

@@ -24,6 +24,7 @@ void add_study_command(CLI::App& app, int& status);
 void add_reproduce_command(CLI::App& app, int& status);
 void add_report_command(CLI::App& app, int& status);
 void add_render_command(CLI::App& app, int& status);
+void add_export_command(CLI::App& app, int& status);
 void add_check_command(CLI::App& app, int& status);
 void add_mesh_command(CLI::App& app, int& status);
 void add_scenarios_command(CLI::App& app, int& status);

@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   add_reproduce_command(app, status);
   add_report_command(app, status);
   add_render_command(app, status);
+  add_export_command(app, status);
   add_check_command(app, status);
   add_mesh_command(app, status);
   add_scenarios_command(app, status);

@@ -6,12 +6,13 @@
 
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
+#include "app/named.hpp"
 #include "app/output_file.hpp"
+#include "app/times.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/names.hpp"
 #include "core/numbers.hpp"
-#include "scenario/suggest.hpp"
 #include "show/run_pictures.hpp"
 
 namespace plica {
@@ -25,27 +26,6 @@ struct RenderCommand {
   bool strip = false, sections = false, movie = false, no_edges = false, shell = false, overwrite = false,
        quiet = false;
 };
-
-/// The view or quantity of that name.
-template <class Thing>
-const Thing& named(const char* option, const std::string& name, const std::vector<Thing>& things) {
-  const auto found = std::ranges::find(things, name, &Thing::name);
-  if (found != things.end()) return *found;
-  const std::vector<std::string> names = names_of(things);
-  const auto nearest = nearest_name(name, names);
-  throw UsageError(fmt::format("{} {}: there is none of that name; {}there are: {}", option, name,
-                               nearest ? fmt::format("did you mean {}? ", *nearest) : "", fmt::join(names, ", ")));
-}
-
-/// "5min", "300s" or "300" in seconds; nothing for "last".
-std::optional<double> seconds_in(const std::string& text) {
-  if (text == "last") return {};
-  const double unit_s = text.ends_with("min") ? 60 : 1;
-  const std::size_t unit_letters = text.ends_with("min") ? 3 : text.ends_with('s') ? 1 : 0;
-  const auto value = number_in(std::string_view(text).substr(0, text.size() - unit_letters));
-  if (!value) throw UsageError(fmt::format("--time {}: is no time; give 5min, 300s, 300 (seconds) or last", text));
-  return *value * unit_s;
-}
 
 double place_in(const std::string& text) {
   const auto place = number_in(text);

@@ -106,6 +106,9 @@ std::span<const CellColumn> cell_columns() {
        "Of the cell's program, delay included, in the first contraction by name that it belongs to; 0 outside. Profile "
        "and variation are no part of it.",
        [](const C& c) { return activities(c.model, c.state); }},
+      {"strength", no_csv, numbers,
+       "Factor that profile and variation put on the cell in the same contraction; 0 outside.",
+       [](const C& c) { return strengths(c.model); }},
       {"self_intersecting", csv, integers,
        "1 where an apical or a basal facet of the cell passes through another of the same surface.", crossing}};
   return table;

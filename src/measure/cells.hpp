@@ -12,6 +12,8 @@
 
 namespace plica {
 
+struct CellPattern;
+
 /// Mean length of the four apico-basal edges, um.
 double cell_height(const Cell& cell, std::span<const Vec3> positions);
 
@@ -33,6 +35,12 @@ std::size_t short_edges(const Tissue& tissue, std::span<const Vec3> positions);
 /// Activity of each cell: that of its program, delay included, in the first law by which it acts; 0 outside.
 /// Profile and variation are no part of it.
 std::vector<double> activities(const Model& model, const State& state);
+
+/// The factor that profile and variation put on each cell, of the same law; 0 outside.
+std::vector<double> strengths(const Model& model);
+
+/// Who acts by a law, and how strongly; null for one by which no cell acts. Applied pressures count.
+const CellPattern* pattern_of(const Law& law);
 
 /// Volume enclosed by the basal surface, um^3; empty when that surface is not closed.
 std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> positions);

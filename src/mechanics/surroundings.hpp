@@ -67,6 +67,7 @@ class FacePressure final : public Law {
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step&, std::span<const Vec3>, std::span<Vec3>) const override {}  // constant force
   void add_tangent(const Step&, TangentSink&) const override {}
+  [[nodiscard]] const CellPattern& pattern() const { return pattern_; }
   [[nodiscard]] std::vector<double> program_points_s() const override { return program_.times_s(); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.jumps_s(); }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,

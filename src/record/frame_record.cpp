@@ -35,7 +35,8 @@ FrameCells::FrameCells(const Tissue& tissue)
     : elements(tissue.elements),
       element_cell(tissue.element_cell),
       cells(tissue.cells.size()),
-      nodes(tissue.node_count()) {
+      nodes(tissue.node_count()),
+      polygons(polygons_of(tissue)) {
   for (const auto& [name, set] : tissue.regions)
     regions.emplace_back("region_" + name, std::vector<int>(set.begin(), set.end()));
 }
@@ -44,6 +45,8 @@ MeshElements FrameRecord::mesh() const { return {cells->elements, cells->element
 
 MeshArrays FrameRecord::arrays() const {
   MeshArrays arrays{{vectors.begin(), vectors.end()}, scalars, integers};
+  // Of cells of one element each they are its faces.
+  if (cells->elements.size() > cells->cells) arrays.polygons = &cells->polygons;
   arrays.cell_integers.insert(arrays.cell_integers.end(), cells->regions.begin(), cells->regions.end());
   return arrays;
 }

@@ -1,5 +1,5 @@
 // VTK's own writer takes three times as long for a frame as this one, and plica needs little of the format: one piece,
-// hexahedra, a few kinds of numbers, appended raw. VTK reads the files back in the tests, as ParaView does.
+// hexahedra or polygons, a few kinds of numbers, appended raw. VTK reads the files back in the tests, as ParaView does.
 #include "record/mesh_writer.hpp"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ constexpr const char* type_name() {
 }
 
 /// The file as it grows: the XML that names every array, and the compressed numbers that it points to.
-class VtuText {
+class VtkText {
  public:
   void line(int depth, std::string_view text) { xml_ += fmt::format("{:{}}{}\n", "", 2 * depth, text); }
 
@@ -50,16 +50,20 @@ class VtuText {
           R"( NumberOfComponents="3")");
   }
 
-  [[nodiscard]] std::string text() const {
+  void time(std::optional<double> time_s) {
+    if (time_s) array(3, "TimeValue", std::span<const double>(&*time_s, 1), R"( NumberOfTuples="1")");
+  }
+
+  [[nodiscard]] std::string text(const char* kind) const {
     constexpr bool little = std::endian::native == std::endian::little;
     return fmt::format(R"(<?xml version="1.0"?>
-<VTKFile type="UnstructuredGrid" version="1.0" byte_order="{}" header_type="UInt64" compressor="vtkZLibDataCompressor">
+<VTKFile type="{}" version="1.0" byte_order="{}" header_type="UInt64" compressor="vtkZLibDataCompressor">
 {}  <AppendedData encoding="raw">
    _{}
   </AppendedData>
 </VTKFile>
 )",
-                       little ? "LittleEndian" : "BigEndian", xml_, data_);
+                       kind, little ? "LittleEndian" : "BigEndian", xml_, data_);
   }
 
  private:
@@ -111,10 +115,12 @@ void check(const MeshElements& mesh, std::span<const Vec3> positions, const Mesh
   for (const auto& [name, values] : arrays.node_scalars) of_nodes(name, values);
   for (const auto& [name, values] : arrays.cell_scalars) of_cells(name, values);
   for (const auto& [name, values] : arrays.cell_integers) of_cells(name, values);
+  for (const auto& [name, values] : arrays.element_scalars)
+    check_values(name, values, mesh.elements.size(), "has not one value an element");
   require(!time_s || std::isfinite(*time_s), "the time", "is not finite");
 }
 
-void put_elements(const MeshElements& mesh, VtuText& vtu) {
+void put_elements(const MeshElements& mesh, VtkText& vtu) {
   std::vector<std::int64_t> nodes, ends;
   nodes.reserve(8 * mesh.elements.size());
   for (const auto& element : mesh.elements) {
@@ -129,7 +135,27 @@ void put_elements(const MeshElements& mesh, VtuText& vtu) {
   vtu.line(3, "</Cells>");
 }
 
-void put_data(const MeshElements& mesh, const MeshArrays& arrays, VtuText& vtu) {
+/// Of the file as a whole.
+void put_field_data(const FramePolygons* polygons,
+                    const std::vector<std::pair<std::string, std::vector<int>>>& lists, std::optional<double> time_s,
+                    VtkText& vtk) {
+  if (!time_s && polygons == nullptr && lists.empty()) return;
+  vtk.line(2, "<FieldData>");
+  vtk.time(time_s);
+  const auto put = [&](const std::string& name, const std::vector<int>& values) {
+    vtk.array(3, name, std::span<const std::int32_t>(values), fmt::format(R"( NumberOfTuples="{}")", values.size()));
+  };
+  if (polygons != nullptr) {
+    put("polygon_ends", polygons->ends);
+    put("polygon_apical", polygons->apical);
+    put("polygon_basal", polygons->basal);
+    put("polygon_elements", polygons->elements);
+  }
+  for (const auto& [name, values] : lists) put(name, values);
+  vtk.line(2, "</FieldData>");
+}
+
+void put_data(const MeshElements& mesh, const MeshArrays& arrays, VtkText& vtu) {
   vtu.line(3, "<PointData>");
   for (const auto& [name, values] : arrays.node_vectors) vtu.vectors(4, name, values);
   for (const auto& [name, values] : arrays.node_scalars) vtu.array(4, name, std::span<const double>(values));
@@ -139,6 +165,7 @@ void put_data(const MeshElements& mesh, const MeshArrays& arrays, VtuText& vtu) 
     vtu.array(4, name, std::span<const double>(of_elements<double>(mesh, values)));
   for (const auto& [name, values] : arrays.cell_integers)
     vtu.array(4, name, std::span<const std::int32_t>(of_elements<std::int32_t>(mesh, values)));
+  for (const auto& [name, values] : arrays.element_scalars) vtu.array(4, name, std::span<const double>(values));
   vtu.line(3, "</CellData>");
 }
 
@@ -147,13 +174,9 @@ void put_data(const MeshElements& mesh, const MeshArrays& arrays, VtuText& vtu) 
 void write_mesh(const std::filesystem::path& file, const MeshElements& mesh, std::span<const Vec3> positions,
                 const MeshArrays& arrays, std::optional<double> time_s) {
   check(mesh, positions, arrays, time_s);
-  VtuText vtu;
+  VtkText vtu;
   vtu.line(1, "<UnstructuredGrid>");
-  if (time_s) {
-    vtu.line(2, "<FieldData>");
-    vtu.array(3, "TimeValue", std::span<const double>(&*time_s, 1), R"( NumberOfTuples="1")");
-    vtu.line(2, "</FieldData>");
-  }
+  put_field_data(arrays.polygons, arrays.lists, time_s, vtu);
   vtu.line(2, fmt::format(R"(<Piece NumberOfPoints="{}" NumberOfCells="{}">)", positions.size(), mesh.elements.size()));
   put_data(mesh, arrays, vtu);
   vtu.line(3, "<Points>");
@@ -162,7 +185,49 @@ void write_mesh(const std::filesystem::path& file, const MeshElements& mesh, std
   put_elements(mesh, vtu);
   vtu.line(2, "</Piece>");
   vtu.line(1, "</UnstructuredGrid>");
-  write_file(file, vtu.text());
+  write_file(file, vtu.text("UnstructuredGrid"));
+}
+
+FramePolygons polygons_of(const Tissue& tissue) {
+  FramePolygons polygons;
+  for (const Cell& cell : tissue.cells) {
+    for (const NodeId node : cell.basal_corners()) polygons.basal.push_back(node.number());
+    for (const NodeId node : cell.apical_corners()) polygons.apical.push_back(node.number());
+    polygons.ends.push_back(static_cast<int>(polygons.apical.size()));
+    polygons.elements.push_back(cell.first_element.number());
+  }
+  return polygons;
+}
+
+void write_polygons(const std::filesystem::path& file, const SurfaceMesh& surface) {
+  check_values("points", surface.points, surface.points.size(), "");
+  for (const auto& [name, values] : surface.vectors)
+    check_values(name, values, surface.points.size(), "has not one value a point");
+  for (const auto& [name, values] : surface.scalars)
+    check_values(name, values, surface.ends.size(), "has not one value a polygon");
+  VtkText vtp;
+  vtp.line(1, "<PolyData>");
+  put_field_data(nullptr, {}, surface.time_s, vtp);
+  vtp.line(
+      2, fmt::format(R"(<Piece NumberOfPoints="{}" NumberOfPolys="{}">)", surface.points.size(), surface.ends.size()));
+  vtp.line(3, "<PointData>");
+  for (const auto& [name, values] : surface.vectors) vtp.vectors(4, name, values);
+  vtp.line(3, "</PointData>");
+  vtp.line(3, "<CellData>");
+  for (const auto& [name, values] : surface.scalars) vtp.array(4, name, std::span<const double>(values));
+  vtp.line(3, "</CellData>");
+  vtp.line(3, "<Points>");
+  vtp.vectors(4, "positions", surface.points);
+  vtp.line(3, "</Points>");
+  const std::vector<std::int64_t> corners(surface.corners.begin(), surface.corners.end()),
+      ends(surface.ends.begin(), surface.ends.end());
+  vtp.line(3, "<Polys>");
+  vtp.array(4, "connectivity", std::span<const std::int64_t>(corners));
+  vtp.array(4, "offsets", std::span<const std::int64_t>(ends));
+  vtp.line(3, "</Polys>");
+  vtp.line(2, "</Piece>");
+  vtp.line(1, "</PolyData>");
+  write_file(file, vtp.text("PolyData"));
 }
 
 Frame frame_of(const MeshElements& mesh, std::span<const Vec3> positions, const MeshArrays& arrays) {
@@ -175,6 +240,8 @@ Frame frame_of(const MeshElements& mesh, std::span<const Vec3> positions, const 
     frame.element_scalars[name] = of_elements<double>(mesh, values);
   for (const auto& [name, values] : arrays.cell_integers)
     frame.element_scalars[name] = of_elements<double>(mesh, values);
+  for (const auto& [name, values] : arrays.element_scalars) frame.element_scalars[name] = values;
+  if (arrays.polygons != nullptr) frame.polygons = *arrays.polygons;
   return frame;
 }
 

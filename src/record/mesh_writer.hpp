@@ -32,6 +32,21 @@ struct MeshArrays {
   std::vector<std::pair<std::string, std::vector<double>>> cell_scalars;       // cells
   std::vector<std::pair<std::string, std::vector<int>>> cell_integers;         // cells
   std::vector<std::pair<std::string, std::vector<double>>> node_scalars = {};  // nodes
+  std::vector<std::pair<std::string, std::vector<double>>> element_scalars = {};
+  const FramePolygons* polygons = nullptr;  // that the file is to hold besides
+  std::vector<std::pair<std::string, std::vector<int>>> lists = {};            // of the whole: field data
+};
+
+FramePolygons polygons_of(const Tissue& tissue);
+
+/// A surface of polygons with numbers for each.
+struct SurfaceMesh {
+  Vectors points;                                                    // um
+  std::vector<int> ends;                                             // polygons: where its corners end among all
+  std::vector<int> corners;                                          // points
+  std::vector<std::pair<std::string, std::vector<double>>> scalars;  // polygons
+  std::vector<std::pair<std::string, Vectors>> vectors;              // points
+  std::optional<double> time_s;
 };
 
 /// Writes the elements as VTK hexahedra at `positions` (nodes; um) to a `.vtu` file: VTK's XML format, appended raw
@@ -40,6 +55,9 @@ struct MeshArrays {
 /// finite: a NaN never reaches a file.
 void write_mesh(const std::filesystem::path& file, const MeshElements& mesh, std::span<const Vec3> positions,
                 const MeshArrays& arrays, std::optional<double> time_s = {});
+
+/// Writes a surface to a `.vtp` file; whole or not at all, and with the same errors.
+void write_polygons(const std::filesystem::path& file, const SurfaceMesh& surface);
 
 /// What read_frame gives back of the mesh that write_mesh writes, but for its time.
 Frame frame_of(const MeshElements& mesh, std::span<const Vec3> positions, const MeshArrays& arrays);

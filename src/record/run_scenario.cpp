@@ -22,8 +22,8 @@ std::optional<Scenario> scenario_of_run(const std::filesystem::path& directory) 
 std::optional<Capsule> shell_of_run(const Scenario& scenario, const Vectors& rest_positions) {
   const EmbryoInput& embryo = scenario.embryo;
   const EmbryoShape shape = shape_of(embryo);
-  if (!scenario.vitelline.enabled || shape == EmbryoShape::block) return {};
-  if (shape == EmbryoShape::egg || shape == EmbryoShape::points) return {};  // lies on the apices
+  if (!scenario.vitelline.enabled || is_patch(shape)) return {};
+  if (!is_of_grid(shape) && shape != EmbryoShape::file) return {};  // lies on the apices
   const double radius = embryo.diameter_um / 2,
                half_axis = shape_of(embryo) == EmbryoShape::pill    ? embryo.length_um / 2 - radius
                            : shape_of(embryo) == EmbryoShape::slice ? embryo.length_um / 2

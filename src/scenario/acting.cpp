@@ -5,25 +5,53 @@
 namespace plica {
 namespace {
 
+StrengthProfile profile_of(const ProfileInput& input, const Tissue& tissue) {
+  StrengthProfile profile;
+  profile.shape = meaning_of(words::profile_shapes, input.shape, profile.shape);
+  profile.axis = meaning_of(words::profile_axes, input.axis, profile.axis);
+  profile.in_cells = input.sigma_cells || input.full_cells || !input.at_cells.empty();
+  profile.centre = input.centre_deg.value_or(0);
+  const std::optional<double> full = profile.axis == PatternAxis::angle ? input.full_deg : input.full_cells;
+  profile.half_width = full ? 0.5 * *full : input.half_width_deg.value_or(input.half_width_um.value_or(1));
+  profile.sigma = input.sigma_cells.value_or(input.sigma_deg.value_or(input.sigma_um.value_or(1)));
+  profile.fade = input.fade_cells.value_or(input.fade_deg.value_or(0));
+  for (const auto* places : {&input.at_um, &input.at_cells, &input.at_deg})
+    if (!places->empty()) profile.places = *places;
+  profile.values = input.factor;
+  if (profile.shape == StrengthProfile::Shape::array) profile.array = tissue.cell_arrays.at(input.array);
+  profile.array_0 = input.from.value_or(0);
+  profile.array_1 = input.to.value_or(1);
+  return profile;
+}
+
+template <class Acting>
+PatternRule strength_rule(const Acting& input, const Tissue& tissue) {
+  PatternRule pattern;
+  pattern.profile = profile_of(input.profile, tissue);
+  pattern.middle = input.profile.middle.value_or(1);
+  pattern.edge = input.profile.edge.value_or(0);
+  if (!input.profile.about.empty()) pattern.about = tissue.regions.at(input.profile.about);
+  pattern.taper = {input.profile.full_length_um.value_or(0), input.profile.fade_um.value_or(0)};
+  pattern.spread = input.variation.spread;
+  pattern.seed = static_cast<std::uint64_t>(input.variation.seed);
+  pattern.by_place = meaning_of(words::variation_bys, input.variation.by, false);
+  return pattern;
+}
+
+template <class Acting>
+CellPattern strengths_of(const Acting& input, const Tissue& tissue) {
+  return cell_pattern(tissue, tissue.regions.at(input.region), strength_rule(input, tissue));
+}
+
 template <class Acting>
 CellPattern pattern_of(const Acting& input, const Tissue& tissue) {
-  PatternRule pattern;
-  const ProfileInput& profile = input.profile;
-  pattern.profile.shape = meaning_of(words::profile_shapes, profile.shape, pattern.profile.shape);
-  pattern.profile.axis = meaning_of(words::profile_axes, profile.axis, pattern.profile.axis);
-  pattern.profile.in_cells = profile.sigma_cells || profile.full_cells;
-  pattern.profile.half_width = profile.full_cells ? 0.5 * *profile.full_cells : profile.half_width_um.value_or(1);
-  pattern.profile.sigma = profile.sigma_cells.value_or(profile.sigma_um.value_or(1));
-  pattern.profile.fade = profile.fade_cells.value_or(0);
-  pattern.middle = profile.middle.value_or(1);
-  pattern.edge = profile.edge.value_or(0);
-  if (!profile.about.empty()) pattern.about = tissue.regions.at(profile.about);
-  pattern.taper = {profile.full_length_um.value_or(0), profile.fade_um.value_or(0)};
+  PatternRule pattern = strength_rule(input, tissue);
   pattern.delay.speed = input.delay.speed_um_per_s.value_or(0);
   pattern.delay.axis = meaning_of(words::delay_axes, input.delay.axis, pattern.delay.axis);
   pattern.delay.from = meaning_of(words::delay_starts, input.delay.from, pattern.delay.from);
-  pattern.spread = input.variation.spread;
-  pattern.seed = static_cast<std::uint64_t>(input.variation.seed);
+  pattern.pulse = {input.pulse.period_s.value_or(0), input.pulse.amplitude,
+                   meaning_of(words::pulse_phases, input.pulse.phase, false), input.pulse.spread,
+                   static_cast<std::uint64_t>(input.pulse.seed)};
   return cell_pattern(tissue, tissue.regions.at(input.region), pattern);
 }
 
@@ -31,6 +59,10 @@ CellPattern pattern_of(const Acting& input, const Tissue& tissue) {
 
 CellPattern make_pattern(const ContractionInput& input, const Tissue& tissue) { return pattern_of(input, tissue); }
 CellPattern make_pattern(const CortexInput& input, const Tissue& tissue) { return pattern_of(input, tissue); }
+CellPattern make_pattern(const PressureInput& input, const Tissue& tissue) { return strengths_of(input, tissue); }
+CellPattern make_pattern(const RegionElasticityInput& input, const Tissue& tissue) {
+  return strengths_of(input, tissue);
+}
 
 std::vector<bool> held_nodes(const HoldInput& input, const Tissue& tissue) {
   const auto inside = [](const std::optional<Range>& range, double value) {

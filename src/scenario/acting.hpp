@@ -8,9 +8,14 @@
 
 namespace plica {
 
-/// Who acts, how strongly and how late.
+/// Who acts, how strongly and how late; or of which cells something else is told, with a factor on it.
 CellPattern make_pattern(const ContractionInput& input, const Tissue& tissue);
 CellPattern make_pattern(const CortexInput& input, const Tissue& tissue);
+CellPattern make_pattern(const PressureInput& input, const Tissue& tissue);
+CellPattern make_pattern(const RegionElasticityInput& input, const Tissue& tissue);
+
+/// The longest step that sees pulses, s.
+inline double longest_step_of_pulses_s(const PulseInput& pulse) { return *pulse.period_s / (12 * (1 + pulse.spread)); }
 
 /// The nodes of a hold.
 std::vector<bool> held_nodes(const HoldInput& input, const Tissue& tissue);

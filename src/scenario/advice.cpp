@@ -9,6 +9,7 @@
 #include <string>
 
 #include "mechanics/elasticity/shape_memory.hpp"
+#include "scenario/acting.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/words.hpp"
 #include "tissue/mesh_quality.hpp"
@@ -45,13 +46,42 @@ std::set<std::string> used_regions(const Scenario& scenario) {
   take_all(scenario.pressures);
   take_all(scenario.divisions);
   take_all(scenario.monitors);
-  for (const auto& [name, cortex] : scenario.cortices) used.insert(cortex.profile.about);
-  for (const auto& [name, contraction] : scenario.contractions) used.insert(contraction.profile.about);
+  const auto take_middles = [&](const auto& tables) {
+    for (const auto& [name, table] : tables) used.insert(table.profile.about);
+  };
+  take_middles(scenario.region_elasticities);
+  take_middles(scenario.contractions);
+  take_middles(scenario.cortices);
+  take_middles(scenario.pressures);
   for (const auto& [name, monitor] : scenario.monitors) used.insert(monitor.from);
-  for (const auto& [name, region] : scenario.regions)
+  for (const auto& [name, region] : scenario.regions) {
+    used.insert(region.neighbours_of);
     for (const auto* others : {&region.unite, &region.intersect, &region.except})
       used.insert(others->begin(), others->end());
+  }
   return used;
+}
+
+// What a profile takes to nothing, most likely because the values of its array are others than was thought.
+void advise_on_profiles(const Scenario& scenario, const Tissue& tissue, const Say& warn) {
+  const auto look = [&](const std::string& tables, const auto& inputs) {
+    for (const auto& [name, input] : inputs) {
+      const CellPattern pattern = make_pattern(input, tissue);
+      if (input.profile.shape.empty() || std::ranges::max(pattern.strengths) > 0) continue;
+      std::string range;
+      if (input.profile.shape == "array") {
+        std::vector<double> values;
+        for (std::size_t c = 0; c < tissue.cells.size(); ++c)
+          if (pattern.cells[c]) values.push_back(tissue.cell_arrays.at(input.profile.array)[c]);
+        const auto [least, most] = std::ranges::minmax(values);
+        range = fmt::format("; there {} goes from {:.4g} to {:.4g}", input.profile.array, least, most);
+      }
+      warn(fmt::format("{}.{}: its profile is 0 in every cell of region {}{}", tables, name, input.region, range));
+    }
+  };
+  look("contraction", scenario.contractions);
+  look("cortex", scenario.cortices);
+  look("pressure", scenario.pressures);
 }
 
 int longest_axis(const Vectors& positions) {
@@ -107,6 +137,7 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
         warn(fmt::format("cortex.{}: its program goes on after the run's end at {} s", name, scenario.time.end_s));
   if (scenario.time.step_s && *scenario.time.step_s > scenario.time.end_s)
     warn("time.step_s is longer than the whole run");
+  advise_on_profiles(scenario, model.tissue, warn);
   advise_on_shape_memory(scenario, model, note, warn);
   if (method_of(scenario.volume) == VolumeMethod::coupled &&
       model_of(scenario.elasticity) != ElasticModel::shape_memory)

@@ -1,12 +1,16 @@
 #include "scenario/check_tissue.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "core/names.hpp"
 #include "measure/self_intersections.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "scenario/acting.hpp"
+#include "scenario/materials.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/words.hpp"
 #include "solver/projection/closed_surface.hpp"
@@ -86,19 +90,74 @@ void check_contact_at_rest(const Scenario& scenario, const Tissue& tissue, std::
 
 // Where two tables speak of one cell, nobody knows which is meant.
 void check_elasticities_apart(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
-  std::vector<const std::string*> spoken_of(tissue.cells.size(), nullptr);
+  std::vector<const std::string*> spoken_of(tissue.elements.size(), nullptr);
   for (const auto& [name, input] : scenario.region_elasticities) {
-    const CellSet& cells = tissue.regions.at(input.region);
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      if (!cells[c]) continue;
-      if (spoken_of[c]) {
-        errors.push_back(diagnostic_at(scenario, "elasticity." + name,
-                                       fmt::format("elasticity.{} speaks of cell {}, too", *spoken_of[c], c),
-                                       "give them regions without common cells, by `except` for instance"));
+    const std::vector<bool> chosen = elements_of(input, tissue.regions.at(input.region), tissue);
+    if (std::ranges::find(chosen, true) == chosen.end())
+      errors.push_back(diagnostic_at(scenario, "elasticity." + name + ".height_percent",
+                                     "no element of the region has its middle in this part of the height",
+                                     is_of_grid(shape_of(scenario.embryo))
+                                         ? "widen it, or give embryo.elements_per_cell more elements through the height"
+                                         : "widen it, or give more embryo.layers"));
+    for (std::size_t e = 0; e < chosen.size(); ++e) {
+      if (!chosen[e]) continue;
+      if (spoken_of[e]) {
+        const bool has_layers = input.height_percent.has_value();
+        errors.push_back(
+            diagnostic_at(scenario, "elasticity." + name,
+                          fmt::format("elasticity.{} speaks of {}cell {}, too", *spoken_of[e],
+                                      has_layers ? "the same layer of " : "", tissue.element_cell[e].number()),
+                          has_layers ? "give them parts of the height without common elements, or other regions"
+                                     : "give them regions without common cells, by `except` for instance"));
         break;
       }
-      spoken_of[c] = &name;
+      spoken_of[e] = &name;
     }
+  }
+}
+
+// Profiles by an array: of the tissue, with numbers in every cell that acts.
+void check_arrays(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
+  const auto check = [&](const std::string& tables, const auto& inputs) {
+    for (const auto& [name, input] : inputs) {
+      if (input.profile.shape != "array") continue;
+      const std::string key = fmt::format("{}.{}.profile.array", tables, name);
+      const auto array = tissue.cell_arrays.find(input.profile.array);
+      if (array == tissue.cell_arrays.end()) {
+        const std::vector<std::string> names = keys_of(tissue.cell_arrays);
+        errors.push_back(
+            diagnostic_at(scenario, key, fmt::format("the embryo has no array \"{}\"", input.profile.array),
+                          names.empty() ? "it has none: arrays come with cells about points, or from a mesh file"
+                                        : fmt::format("it has {}", fmt::join(names, ", "))));
+        continue;
+      }
+      const CellSet& cells = tissue.regions.at(input.region);
+      for (std::size_t c = 0; c < cells.size(); ++c)
+        if (cells[c] && !std::isfinite(array->second[c])) {
+          errors.push_back(diagnostic_at(scenario, key,
+                                         fmt::format("array \"{}\" has no number in cell {}", input.profile.array, c),
+                                         "give every cell of the region one"));
+          break;
+        }
+    }
+  };
+  check("contraction", scenario.contractions);
+  check("cortex", scenario.cortices);
+  check("pressure", scenario.pressures);
+  check("elasticity", scenario.region_elasticities);
+}
+
+// A modulus that a profile takes to 0 leaves cells without any.
+void check_moduli(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
+  for (const auto& [name, input] : scenario.region_elasticities) {
+    const CellPattern pattern = make_pattern(input, tissue);
+    for (std::size_t c = 0; c < tissue.cells.size(); ++c)
+      if (pattern.cells[c] && !(pattern.strengths[c] > 1e-6)) {
+        errors.push_back(diagnostic_at(scenario, "elasticity." + name + ".profile",
+                                       fmt::format("the modulus of cell {} would be 0", c),
+                                       "give profile.edge, or factors, above 0"));
+        break;
+      }
   }
 }
 
@@ -129,6 +188,8 @@ void check_tissue(const Scenario& scenario, const Tissue& tissue) {
   check_faces(scenario, tissue, errors);
   check_contact_at_rest(scenario, tissue, errors);
   check_elasticities_apart(scenario, tissue, errors);
+  check_arrays(scenario, tissue, errors);
+  if (errors.empty()) check_moduli(scenario, tissue, errors);
   check_holds(scenario, tissue, errors);
   if (const auto why = why_indivisible(tissue); why && !scenario.divisions.empty())
     errors.push_back(diagnostic_at(scenario, "division." + scenario.divisions.begin()->first,

@@ -1,5 +1,5 @@
 // Rows of the tables by which cells act and resist.
-#include "scenario/rows_in.hpp"
+#include "scenario/pattern_rows.hpp"
 
 namespace plica {
 namespace {
@@ -27,56 +27,6 @@ void add_program(std::vector<Row>& rows, const RowsIn<Table>& table, ProgramInpu
 }
 
 constexpr std::array<std::string_view, 3> program_keys = {"program.time_s", "program.time_min", "program.activity"};
-
-/// How strongly and when each cell of the region acts.
-template <class Table>
-void add_pattern(std::vector<Row>& rows, const RowsIn<Table>& table) {
-  const auto profile = [&](std::string_view key, auto field, const Allowed& allowed, std::string_view meaning,
-                           const RowOptions& options = {}) {
-    rows.push_back(table(key, &Table::profile, field, allowed, meaning, options));
-  };
-  profile("profile.shape", &ProfileInput::shape, one_of(words::profile_shapes),
-          "Factor on its strength by a cell's distance d from the region's middle, from `middle` there to `edge` far "
-          "away. Linear: `edge` from `half_width_um` on; gaussian: by exp(−d²/2σ²); plateau: `middle` on `full_cells`, "
-          "then a cosine over `fade_cells` on either side.");
-  profile(
-      "profile.axis", &ProfileInput::axis, one_of(words::profile_axes),
-      "Distance across the axis (the arc about it through the cell's centre; y in a block) or along it (x); without "
-      "it across.");
-  profile("profile.about", &ProfileInput::about, anything,
-          "Region whose middle that is, and whose cells lengths in cells are measured in; without it the one that "
-          "acts.");
-  profile("profile.middle", &ProfileInput::middle, not_negative, "Factor in the middle; without it 1.");
-  profile("profile.edge", &ProfileInput::edge, not_negative, "Factor far from it; without it 0.");
-  profile("profile.half_width_um", &ProfileInput::half_width_um, positive,
-          "Linear: distance at which the factor is `edge`, as it is beyond (µm).");
-  profile("profile.sigma_um", &ProfileInput::sigma_um, positive, "Gaussian: its standard deviation σ (µm).");
-  profile("profile.sigma_cells", &ProfileInput::sigma_cells, positive,
-          "Gaussian: σ in cells, by the mean width of the region's cells across the axis (along it with axis along).",
-          {.instead_of = "profile.sigma_um"});
-  profile("profile.full_cells", &ProfileInput::full_cells, positive,
-          "Plateau: how many cells across (along, with that axis) have the factor of the middle, both sides together.");
-  profile("profile.fade_cells", &ProfileInput::fade_cells, not_negative,
-          "Plateau: over how many cells it fades from there, on either side; 0: none between.");
-  profile("profile.full_length_um", &ProfileInput::full_length_um, positive,
-          "Taper along the axis: all of the strength on this length about the region's middle (µm).");
-  profile("profile.fade_um", &ProfileInput::fade_um, positive,
-          "Taper: from there it falls to `edge` on this length, as a cosine (µm).");
-  rows.push_back(
-      table("delay.speed_um_per_s", &Table::delay, &DelayInput::speed_um_per_s,
-            {.low = 0, .low_included = false, .word_for_none = "none"},
-            "Speed of a wave (µm/s): a cell's program starts when it arrives, and the cell is slack before."));
-  rows.push_back(table("delay.axis", &Table::delay, &DelayInput::axis, one_of(words::delay_axes),
-                       "Direction of the wave, as in `profile.axis`; without it along."));
-  rows.push_back(
-      table("delay.from", &Table::delay, &DelayInput::from, one_of(words::delay_starts),
-            "Where the region's wave starts at time 0; without it in the middle. Low is the anterior end, or "
-            "the left side."));
-  rows.push_back(table("variation.spread", &Table::variation, &VariationInput::spread, between(0, 100),
-                       "Relative standard deviation of a log-normal factor with mean 1 on each cell's strength."));
-  rows.push_back(table("variation.seed", &Table::variation, &VariationInput::seed, not_negative,
-                       "Another seed gives other factors; a cell's factor depends on seed and cell number only."));
-}
 
 }  // namespace
 
@@ -117,13 +67,23 @@ std::vector<Row> law_rows() {
                  "Pushes corners of elements back that have under 0.15 of their Jacobian at rest, before they turn "
                  "inside out (Pa); 0: nothing does. For tight folds of soft cells, about the elastic modulus."),
       of_region("region", &R::region, anything, "Region whose cells have other values.", {.required = true}),
+      of_region("height_percent", &R::height_percent, between(0, 100),
+                "Only elements whose middle lies in this part of the cell's height, 0 at the base and 100 at the apex: "
+                "a layer. Cells need several elements through their height."),
       of_region("young_modulus_Pa", &R::young_modulus_Pa, positive,
-                "Young's modulus of its cells (Pa); Poisson's ratio is that of all."),
+                "Young's modulus of its cells (Pa), times the factor of `profile` and `variation`; without it that of "
+                "all."),
+      of_region("poisson_ratio", &R::poisson_ratio,
+                {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
+                "Poisson's ratio of its cells; without it that of all."),
       of_region("relaxation_s", &R::relaxation_s, positive,
                 "Model neo-hookean: time in which their rest shapes follow their shapes (s); without it that of all."),
       of_region("relaxation_min", &R::relaxation_s, positive, "The same in minutes.",
                 {.instead_of = "relaxation_s", .scale = 60}),
+  };
+  add_strengths(rows, of_region);
 
+  const std::vector<Row> of_contraction = {
       contraction("region", &C::region, anything, "Region whose cells contract.", {.required = true}),
       contraction("edges", &C::edges, one_of(words::edges), "Edges of the cells that contract."),
       contraction("stiffness_nN_per_um", &C::stiffness_nN_per_um, not_negative, "Stiffness of a spring (nN/µm)."),
@@ -139,6 +99,7 @@ std::vector<Row> law_rows() {
                   "cells: what stiffness and preload do, they do on every edge, so smaller cells pull harder."),
       contraction("damping_nN_s_per_um", &C::damping_nN_s_per_um, not_negative, "Damping of a spring (nN s/µm)."),
   };
+  rows.insert(rows.end(), of_contraction.begin(), of_contraction.end());
   add_program(rows, contraction, &C::program, program_keys,
               "Activity at these times: a factor on the tension, linear between them.");
   add_pattern(rows, contraction);
@@ -222,6 +183,7 @@ std::vector<Row> law_rows() {
   rows.insert(rows.end(), of_pressure.begin(), of_pressure.end());
   add_program(rows, pressure, &P::program, program_keys,
               "Activity at these times: a factor on the pressure, linear between them.");
+  add_strengths(rows, pressure);
   return rows;
 }
 

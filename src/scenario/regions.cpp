@@ -11,6 +11,7 @@
 
 #include "core/names.hpp"
 #include "scenario/words.hpp"
+#include "tissue/rows.hpp"
 
 namespace plica {
 namespace {
@@ -65,11 +66,21 @@ Diagnostic diagnostic_at(const Scenario& scenario, const std::string& key, std::
 void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnostic>& errors) {
   const std::size_t cells = tissue.cells.size();
   const auto [low, high] = extent_along(tissue);
+  std::vector<int> from_midline;  // counted when a region asks for it
   const std::function<const CellSet&(const std::string&)> resolve = [&](const std::string& name) -> const CellSet& {
     if (const auto known = tissue.regions.find(name); known != tissue.regions.end()) return known->second;
     const RegionInput& region = scenario.regions.at(name);
     CellSet set(cells, false);
     for (std::size_t c = 0; c < cells; ++c) set[c] = selected(region, c, tissue.cells[c], tissue, low, high);
+    const auto combine = [&](const CellSet& other, auto operation) {
+      std::transform(set.begin(), set.end(), other.begin(), set.begin(), operation);
+    };
+    if (region.rows) {
+      if (from_midline.empty()) from_midline = half_cells_from_midline(tissue);
+      for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] && from_midline[c] >= 0 && from_midline[c] < *region.rows;
+    }
+    if (!region.neighbours_of.empty())
+      combine(cells_around(tissue, resolve(region.neighbours_of), region.rings.value_or(1)), std::logical_and());
     if (!region.array.empty()) {
       const auto array = tissue.cell_arrays.find(region.array);
       if (array == tissue.cell_arrays.end()) {
@@ -87,11 +98,9 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
     }
     // A region of named others only starts from nothing, one with selectors from what they select.
     const bool only_others = region.face.empty() && region.ids.empty() && region.array.empty() && !region.x_um &&
-                             !region.y_um && !region.z_um && !region.angle_deg && !region.length_percent;
+                             !region.y_um && !region.z_um && !region.angle_deg && !region.length_percent &&
+                             !region.rows && region.neighbours_of.empty();
     if (only_others && !region.unite.empty()) set.assign(cells, false);
-    const auto combine = [&](const CellSet& other, auto operation) {
-      std::transform(set.begin(), set.end(), other.begin(), set.begin(), operation);
-    };
     for (const std::string& other : region.unite) combine(resolve(other), std::logical_or());
     for (const std::string& other : region.intersect) combine(resolve(other), std::logical_and());
     for (const std::string& other : region.except)

@@ -32,29 +32,37 @@ struct RegionInput {
   std::optional<Range> angle_deg;                     // of the cell's centre about x, from the belly towards +y
   std::optional<Range> length_percent;                // of the embryo's length, from the anterior end
   std::optional<Range> x_um, y_um, z_um;              // of the cell's centre at rest
+  std::optional<int> rows;                            // about the midline of the belly, both sides together
+  std::string neighbours_of;                          // a region: cells beside it, that are not in it
+  std::optional<int> rings;                           // up to how many walls away from it; empty: 1
   std::vector<std::string> unite, intersect, except;  // TOML keys: union, intersect, except
 };
 
-enum class EmbryoShape { pill, sphere, slice, block, egg, points, file };
+enum class EmbryoShape { pill, sphere, slice, block, egg, points, sheet, surface, file };
 
 struct EmbryoInput {
-  std::string shape = "pill";  // pill | sphere | slice | block | egg | points | file
-  double length_um = 460;      // pill, slice, block, egg: along x
+  std::string shape = "pill";  // pill | sphere | slice | block | egg | points | sheet | surface | file
+  double length_um = 460;      // pill, slice, block, egg, sheet: along x
   double diameter_um = 280;    // pill, sphere, slice, egg
-  double width_um = 20;        // block: along y
+  double width_um = 20;        // block, sheet: along y
   double cell_height_um = 40;
   std::array<int, 3> cells = {18, 9, 8};
   std::array<int, 3> elements_per_cell = {1, 1, 1};
   std::vector<std::string> mirror;                  // x, y: planes through the middle, of which one side is solved
-  int cell_count = 6000;                            // egg
-  int seed = 1;                                     // egg: how its cells are spread
+  int cell_count = 6000;                            // egg, sheet
+  int seed = 1;                                     // egg, sheet: how the cells are spread
   std::optional<double> belly_sag_um, back_sag_um;  // egg: how much its outline bulges
-  std::string elements = "diagonals";               // egg, points: diagonals | kites
-  double least_edge_ratio = 0.3;                    // egg, points: to the mean; shorter edges are lengthened
-  int layers = 1;                                   // egg, points: elements from basal to apical
-  std::vector<double> scale = {1, 1, 1};            // points
+  std::string elements = "diagonals";               // of polygons: diagonals | kites
+  double least_edge_ratio = 0.3;                    // of polygons: to the mean; shorter edges are lengthened
+  int layers = 1;                                   // of polygons: elements from basal to apical
+  std::vector<double> curvature_per_um = {0, 0};    // sheet: along and across; positive as an embryo's
+  std::string rim = "free";                         // sheet, surface: free | held
+  std::string cell_height_array;                    // surface: array of heights; empty: cell_height_um
+  bool mend = true;                                 // surface: whether what is safe to mend is mended
+  bool centre = false;                              // surface: whether its middle is moved to the origin
+  std::vector<double> scale = {1, 1, 1};            // points, surface
   double points_depth_um = 0;                       // points: below the apical surface, before they are scaled
-  std::string file;                                 // "file": a hexahedral mesh that VTK reads; "points": a table
+  std::string file;          // "file": a hexahedral mesh that VTK reads; "points": a table; "surface": polygons
   std::string apical_array;  // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;
                              // empty: the outer surface
   std::shared_ptr<const HexahedralMesh> mesh;  // in place of what the file holds: from a program, not from TOML
@@ -71,13 +79,6 @@ struct ElasticityInput {
   double attractor_preload_length_um = 0.5;             // shape-memory: the preload acts in full farther off than this
   double corner_barrier_Pa = 0;
   std::optional<double> relaxation_s;  // neo-hookean; TOML: relaxation_s or relaxation_min; empty: "none"
-};
-
-/// What cells of a region have instead.
-struct RegionElasticityInput {
-  std::string region;
-  std::optional<double> young_modulus_Pa;
-  std::optional<double> relaxation_s;
 };
 
 enum class VolumeMethod { coupled, projection, none };
@@ -101,14 +102,20 @@ struct DynamicsInput {
 };
 
 struct ProfileInput {
-  std::string shape;                              // constant | linear | gaussian | plateau; empty: constant
-  std::string axis;                               // across | along; empty: across
-  std::string about;                              // a region; empty: the one that acts
-  std::optional<double> half_width_um;            // linear
-  std::optional<double> sigma_um, sigma_cells;    // gaussian: one of them
-  std::optional<double> full_cells, fade_cells;   // plateau
-  std::optional<double> full_length_um, fade_um;  // both or none
-  std::optional<double> middle, edge;             // empty: 1, 0
+  std::string shape;                 // constant | linear | gaussian | plateau | table | array; empty: constant
+  std::string axis;                  // across | along | angle; empty: across
+  std::string about;                 // a region; empty: the one that acts
+  std::optional<double> centre_deg;  // axis = "angle": about which angle; empty: 0
+  std::optional<double> half_width_deg, sigma_deg, full_deg, fade_deg;  // axis = "angle": linear, gaussian, plateau
+  std::vector<double> at_um, at_cells, at_deg;                          // table: one of them
+  std::vector<double> factor;                                           // table
+  std::string array;                                                    // array: of the tissue's cells
+  std::optional<double> from, to;                                       // array: where the factor is edge, and middle
+  std::optional<double> half_width_um;                                  // linear
+  std::optional<double> sigma_um, sigma_cells;                          // gaussian: one of them
+  std::optional<double> full_cells, fade_cells;                         // plateau
+  std::optional<double> full_length_um, fade_um;                        // both or none
+  std::optional<double> middle, edge;                                   // empty: 1, 0
 };
 
 struct DelayInput {
@@ -120,6 +127,27 @@ struct DelayInput {
 struct VariationInput {
   double spread = 0;
   int seed = 1;
+  std::string by;  // number | place: what a cell's factor goes with; empty: number
+};
+
+/// Activity that goes up and down in each cell.
+struct PulseInput {
+  std::optional<double> period_s;  // TOML: period_s or period_min; empty: no pulses
+  double amplitude = 1;
+  std::string phase;  // random | together; empty: random
+  double spread = 0;  // of the cells' periods
+  int seed = 1;
+};
+
+/// What cells of a region have instead, or the elements of a layer of them.
+struct RegionElasticityInput {
+  std::string region;
+  std::optional<Range> height_percent;  // elements whose middle lies here, from base to apex; empty: all
+  std::optional<double> young_modulus_Pa;
+  std::optional<double> poisson_ratio;
+  std::optional<double> relaxation_s;
+  ProfileInput profile;  // of the modulus
+  VariationInput variation;
 };
 
 struct ContractionInput {
@@ -137,6 +165,7 @@ struct ContractionInput {
   ProfileInput profile;
   DelayInput delay;
   VariationInput variation;
+  PulseInput pulse;
 };
 
 /// A cell's own state starts its programs, or scales its tension.
@@ -165,6 +194,7 @@ struct CortexInput {
   ProfileInput profile;
   DelayInput delay;
   VariationInput variation;
+  PulseInput pulse;
 };
 
 enum class EnclosedState { held, compliant, free };
@@ -261,6 +291,8 @@ struct PressureInput {
   std::string face = "apical";  // apical | basal
   double pressure_Pa = 0;       // pushes into the cell; a dead load on the rest face
   ProgramInput program;
+  ProfileInput profile;
+  VariationInput variation;
 };
 
 struct ExpectInput {

@@ -23,8 +23,9 @@ std::vector<std::string_view> quantity_names() {
 
 constexpr double max_count = 100000;
 const std::vector<std::string_view> of_grid = {"pill", "sphere", "slice", "block"};  // shapes whose cells lie on a grid
-const std::vector<std::string_view> of_polygons = {"egg", "points"};
-const std::vector<std::string_view> built = {"pill", "sphere", "slice", "block", "egg", "points"};  // that plica makes
+const std::vector<std::string_view> of_polygons = {"egg", "points", "sheet", "surface"};
+const std::vector<std::string_view> built = {"pill", "sphere", "slice", "block",  // that plica makes
+                                             "egg",  "points", "sheet", "surface"};
 
 using S = Scenario;
 
@@ -63,12 +64,13 @@ std::vector<Row> make_rows() {
       embryo("shape", &E::shape, one_of(words::embryo_shapes),
              "Closed sheets (pill, sphere); a ring of cells from the middle of an endless embryo (slice: plane strain, "
              "nodes move across the axis only); a block of cells; an egg of polygonal cells; polygonal cells about "
-             "measured points; or a mesh file."),
+             "measured points, of a sheet, or from a file with a polygon a cell (surface); or a mesh of hexahedra "
+             "(file)."),
       embryo("length_um", &E::length_um, positive, "Length along x (µm).",
-             {.shapes = {"pill", "slice", "block", "egg"}}),
+             {.shapes = {"pill", "slice", "block", "egg", "sheet"}}),
       embryo("diameter_um", &E::diameter_um, positive, "Outer diameter (µm).",
              {.shapes = {"pill", "sphere", "slice", "egg"}}),
-      embryo("width_um", &E::width_um, positive, "Width along y (µm).", {.shapes = {"block"}}),
+      embryo("width_um", &E::width_um, positive, "Width along y (µm).", {.shapes = {"block", "sheet"}}),
       embryo("cell_height_um", &E::cell_height_um, positive, "Height of a cell from basal to apical (µm).",
              {.shapes = built}),
       embryo(
@@ -79,9 +81,17 @@ std::vector<Row> make_rows() {
       embryo("elements_per_cell", &E::elements_per_cell, between(1, 16),
              "Elements of a cell along, across, basal to apical: refines the elements, not the cells.",
              {.shapes = {"pill", "sphere", "slice", "block", "file"}}),
-      embryo("cell_count", &E::cell_count, between(12, max_count), "Number of cells.", {.shapes = {"egg"}}),
+      embryo("cell_count", &E::cell_count, between(12, max_count), "Number of cells.", {.shapes = {"egg", "sheet"}}),
       embryo("seed", &E::seed, between(0, 1e9), "How the cells are spread: another number, other cells.",
-             {.shapes = {"egg"}}),
+             {.shapes = {"egg", "sheet"}}),
+      embryo(
+          "curvature_per_um", &E::curvature_per_um, anything,
+          "How a sheet is bent along x and y (1/µm): one over the radius, positive where the apical side is outside, "
+          "as on an embryo. `[0.005, 0]` is part of a cylinder, `[0.005, 0.005]` a dome, `[0.005, -0.005]` a "
+          "saddle.",
+          {.shapes = {"sheet"}}),
+      embryo("rim", &E::rim, one_of(words::rims), "Whether the outer walls of the cells at the rim are held in place.",
+             {.shapes = {"sheet", "surface"}}),
       embryo("belly_sag_um", &E::belly_sag_um, positive,
              "How far the belly's outline bulges beyond its chord from 20 to 80 % of the length (µm); goes with "
              "`back_sag_um`. Without both, an ellipsoid.",
@@ -99,16 +109,30 @@ std::vector<Row> make_rows() {
       embryo("layers", &E::layers, between(1, 16), "Elements from basal to apical.", {.shapes = of_polygons}),
       embryo("points_depth_um", &E::points_depth_um, not_negative,
              "How far below the apical surface the points lie (µm, as measured).", {.shapes = {"points"}}),
-      embryo("scale", &E::scale, positive, "Factors along x, y, z on what was measured: fixed embryos have shrunk.",
-             {.shapes = {"points"}}),
+      embryo("scale", &E::scale, positive,
+             "Factors along x, y, z on what was measured: fixed embryos have shrunk, files are in other units.",
+             {.shapes = {"points", "surface"}}),
+      embryo("centre", &E::centre, anything, "Moves the middle of the surface to the origin, after `scale`.",
+             {.shapes = {"surface"}}),
+      embryo(
+          "mend", &E::mend, anything,
+          "Mends what can be mended safely: vertices that are given twice, faces that wind the other way, vertices "
+          "along a wall between two cells, edges under `least_edge_ratio`, angles over 165°. `plica check` tells how "
+          "many. "
+          "`false`: such a surface is refused, and short edges stay.",
+          {.shapes = {"surface"}}),
+      embryo("cell_height_array", &E::cell_height_array, anything,
+             "Array of the file with each cell's height (µm), in place of `cell_height_um`.", {.shapes = {"surface"}}),
       embryo("mirror", &E::mirror, one_of(words::mirror_planes),
              "The embryo is symmetric about these planes through its middle, `\"x\"` across the axis and `\"y\"` along "
              "the midline: one side is solved, at less cost, and the whole shown and measured. `[]`: no planes.",
              {.may_be_empty = true}),
-      embryo("file", &E::file, anything,
-             "Path relative to the scenario's file: a hexahedral mesh; or, of shape points, a table in CSV whose first "
-             "line names its columns, `x_um`, `y_um` and `z_um` and any others, which become arrays.",
-             {.is_path = true, .shapes = {"file", "points"}}),
+      embryo(
+          "file", &E::file, anything,
+          "Path relative to the scenario's file: a hexahedral mesh; of shape points, a table in CSV whose first line "
+          "names its columns, `x_um`, `y_um` and `z_um` and any others, which become arrays; of shape surface, "
+          "polygons in OBJ, OFF, PLY, VTP, VTK or tyssue's HDF5.",
+          {.is_path = true, .shapes = {"file", "points", "surface"}}),
       embryo("apical_array", &E::apical_array, anything,
              "Cell array of the file with the apical face (0 to 5, VTK's order) of each cell; without it the outer "
              "surface is apical.",
@@ -135,6 +159,12 @@ std::vector<Row> make_rows() {
              "too."),
       region("y_um", &R::y_um, anything, "The same in y (µm)."),
       region("z_um", &R::z_um, anything, "The same in z (µm)."),
+      region("rows", &R::rows, between(1, max_count),
+             "Cells of the rows about the midline of the belly, at most so many, both sides together. A cell's row is "
+             "how many cells one passes from the midline to it, from wall to wall."),
+      region("neighbours_of", &R::neighbours_of, anything,
+             "Cells that share a wall with a cell of this region and are not in it."),
+      region("rings", &R::rings, between(1, 1000), "With `neighbours_of`: up to how many walls away; without it 1."),
       region("union", &R::unite, anything, "Cells of any of these regions."),
       region("intersect", &R::intersect, anything, "Only cells of each of these regions."),
       region("except", &R::except, anything, "No cells of these regions."),
@@ -150,7 +180,7 @@ std::vector<Row> make_rows() {
              "its drag and mass let it, which is where the coupled solve goes as steps get short."),
 
       vitelline("enabled", &VitellineInput::enabled, anything,
-                "A rigid shell around a closed embryo; false by default for a block."),
+                "A rigid shell around a closed embryo; false by default for a block, a sheet and a surface."),
       vitelline("gap_um", &VitellineInput::gap_um, not_negative,
                 "Gap between the apical nodes at rest and the shell (µm)."),
       vitelline("drag_Pa_s_per_um", &VitellineInput::drag_Pa_s_per_um, not_negative,
@@ -347,7 +377,8 @@ std::span<const TableInfo> schema_tables() {
        "A named set of cells. Selectors that are given are intersected; `all` always exists and is every cell.",
        names_in(&S::regions)},
       {"elasticity", "The elastic law of the cells.", {}},
-      {"elasticity.*", "What cells of a region have instead; no cell is in the regions of two such tables.",
+      {"elasticity.*",
+       "What cells of a region, or a layer of them, have instead; no two such tables are about the same.",
        names_in(&S::region_elasticities)},
       {"volume", "How cells keep their volume.", {}},
       {"vitelline", "The shell around the embryo.", {}},

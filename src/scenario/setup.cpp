@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/errors.hpp"
+#include "core/names.hpp"
 #include "core/units.hpp"
 #include "measure/cells.hpp"
 #include "mechanics/active/contraction.hpp"
@@ -25,13 +26,17 @@
 #include "scenario/acting.hpp"
 #include "scenario/builtin.hpp"
 #include "scenario/check_tissue.hpp"
+#include "scenario/materials.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/symmetry.hpp"
 #include "scenario/words.hpp"
+#include "tissue/faces.hpp"
 #include "tissue/files/mesh_file.hpp"
 #include "tissue/files/points_file.hpp"
+#include "tissue/files/polygon_file.hpp"
 #include "tissue/shapes/embryo.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
+#include "tissue/shapes/polygon_sheet.hpp"
 
 namespace plica {
 namespace {
@@ -60,13 +65,18 @@ PointTable table_of(const std::string& file) {
   throw MeshError(fmt::format("there is no table {}; there is {}", file, fmt::join(names, ", ")));
 }
 
+PolygonCells cells_of(const EmbryoInput& e) { return {e.cell_height_um, split_of(e), e.layers, e.least_edge_ratio}; }
+
 Tissue polygonal_tissue(const Scenario& scenario) {
   const EmbryoInput& e = scenario.embryo;
-  const PolygonCells cells{e.cell_height_um, split_of(e), e.layers, e.least_edge_ratio};
+  const PolygonCells cells = cells_of(e);
   try {
     if (shape_of(e) == EmbryoShape::egg)
       return build_egg({e.length_um, e.diameter_um, e.diameter_um, e.belly_sag_um, e.back_sag_um}, e.cell_count, e.seed,
                        cells);
+    if (shape_of(e) == EmbryoShape::sheet)
+      return build_sheet({e.length_um, e.width_um, {e.curvature_per_um[0], e.curvature_per_um[1]}}, e.cell_count,
+                         e.seed, cells);
     const PointTable table = table_of(e.file);
     Tissue tissue =
         build_about_points({table.points, e.points_depth_um, Vec3(e.scale[0], e.scale[1], e.scale[2])}, cells);
@@ -74,8 +84,44 @@ Tissue polygonal_tissue(const Scenario& scenario) {
     return tissue;
   } catch (const FileError& error) {
     throw ScenarioError(
-        {diagnostic_at(scenario, shape_of(e) == EmbryoShape::egg ? "embryo" : "embryo.file", error.what(), "")});
+        {diagnostic_at(scenario, is_from_file(shape_of(e)) ? "embryo.file" : "embryo", error.what(), "")});
   }
+}
+
+std::vector<double> heights_of(const Scenario& scenario, const PolygonFile& file) {
+  const std::string& name = scenario.embryo.cell_height_array;
+  if (name.empty()) return {};
+  if (const auto found = file.arrays.find(name); found != file.arrays.end()) return found->second;
+  const std::string others = file.arrays.empty() ? "none" : fmt::format("{}", fmt::join(keys_of(file.arrays), ", "));
+  throw ScenarioError(
+      {diagnostic_at(scenario, "embryo.cell_height_array", fmt::format("the file has no array \"{}\"", name),
+                     fmt::format("there are: {}", others))});
+}
+
+Tissue surface_tissue(const Scenario& scenario) {
+  const EmbryoInput& e = scenario.embryo;
+  const auto complain = [&](const std::string& what) {
+    throw ScenarioError({diagnostic_at(scenario, "embryo.file", what, "")});
+  };
+  PolygonFile file;
+  try {
+    file = read_polygon_file(e.file);
+  } catch (const FileError& error) {
+    complain(error.what());
+  }
+  SurfaceTissue result;
+  try {
+    result = build_under_surface(
+        {file.surface, heights_of(scenario, file), Vec3(e.scale[0], e.scale[1], e.scale[2]), e.centre, e.mend},
+        cells_of(e));
+  } catch (const MeshError& error) {
+    complain(fmt::format("{}: {}", e.file, error.what()));
+  }
+  result.tissue.cell_arrays = std::move(file.arrays);
+  if (scenario.vitelline.enabled && !result.tissue.outer_shape)
+    throw ScenarioError(
+        {diagnostic_at(scenario, "vitelline.enabled", "no shell fits: " + result.why_no_shape, "give false")});
+  return std::move(result.tissue);
 }
 
 Tissue build_tissue(const Scenario& scenario) {
@@ -91,59 +137,14 @@ Tissue build_tissue(const Scenario& scenario) {
       return build_block({e.length_um, e.width_um, e.cell_height_um, e.cells, e.elements_per_cell});
     case EmbryoShape::egg:
     case EmbryoShape::points:
+    case EmbryoShape::sheet:
       return polygonal_tissue(scenario);
+    case EmbryoShape::surface:
+      return surface_tissue(scenario);
     case EmbryoShape::file:
       break;
   }
   return read_tissue(scenario);
-}
-
-/// A number a cell: what a table says of its region, or else `common`.
-std::vector<double> by_region(const Scenario& scenario, const Tissue& tissue,
-                              std::optional<double> RegionElasticityInput::*key, double common) {
-  std::vector<double> values(tissue.cells.size(), common);
-  for (const auto& [name, input] : scenario.region_elasticities) {
-    const CellSet& cells = tissue.regions.at(input.region);
-    for (std::size_t c = 0; c < cells.size(); ++c)
-      if (cells[c]) values[c] = (input.*key).value_or(common);
-  }
-  return values;
-}
-
-void add_elasticity(const Scenario& scenario, Model& model) {
-  const ElasticityInput& input = scenario.elasticity;
-  const double young_modulus = input.young_modulus_Pa * units::pascal;
-  const double viscosity = scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second;
-  const ElasticModuli moduli = ElasticModuli::from_young(young_modulus, input.poisson_ratio);
-  model.stiffness_scale = young_modulus;
-  if (model_of(input) == ElasticModel::shape_memory) {
-    const AttractorSprings springs{input.attractor_stiffness_nN_per_um.value_or(0), moduli.shear_modulus,
-                                   input.attractor_preload_nN, input.attractor_preload_length_um};
-    auto law = std::make_unique<ShapeMemory>(model.tissue, springs, viscosity);
-    // The modulus that a given stiffness amounts to.
-    const double shear = attractor_moduli(model.tissue.element_rest_shape[0], law->stiffness()[0]).mean_shear();
-    model.stiffness_scale = 2 * (1 + input.poisson_ratio) * shear;
-    model.laws.push_back(std::move(law));
-    return;
-  }
-  std::vector<double> factors =
-      by_region(scenario, model.tissue, &RegionElasticityInput::young_modulus_Pa, input.young_modulus_Pa);
-  for (double& factor : factors) factor /= input.young_modulus_Pa;
-  model.stiffness_scale *= std::ranges::max(factors);
-  double bulk_modulus = moduli.bulk_modulus();
-  if (model_of(input) == ElasticModel::neo_hookean) {
-    bulk_modulus = moduli.lame_lambda;
-    std::vector<double> shear_moduli = factors;
-    for (double& modulus : shear_moduli) modulus *= moduli.shear_modulus;
-    std::vector<double> relaxation_s =
-        by_region(scenario, model.tissue, &RegionElasticityInput::relaxation_s, input.relaxation_s.value_or(0));
-    if (std::ranges::max(relaxation_s) == 0) relaxation_s.clear();
-    model.laws.push_back(std::make_unique<NeoHookean>(model.tissue, std::move(shear_moduli), std::move(relaxation_s)));
-  } else {
-    model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, viscosity, factors));
-  }
-  if (bulk_modulus > 0)
-    model.laws.push_back(std::make_unique<Dilatation>(model.tissue, bulk_modulus, model.volumes().is_held(), factors));
 }
 
 /// The tissue in which cells are counted from a midline, and which part of it the model is.
@@ -160,6 +161,49 @@ CellPattern pattern_of(const Acting& input, const Origin& origin) {
   Division side;
   side.origin = origin.mirror.origins;
   return of_whole.after_division(side);
+}
+
+void add_elasticity(const Scenario& scenario, const Origin& origin, Model& model) {
+  const ElasticityInput& input = scenario.elasticity;
+  const double young_modulus = input.young_modulus_Pa * units::pascal;
+  const double viscosity = scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second;
+  model.stiffness_scale = young_modulus;
+  if (model_of(input) == ElasticModel::shape_memory) {
+    const ElasticModuli moduli = ElasticModuli::from_young(young_modulus, input.poisson_ratio);
+    const AttractorSprings springs{input.attractor_stiffness_nN_per_um.value_or(0), moduli.shear_modulus,
+                                   input.attractor_preload_nN, input.attractor_preload_length_um};
+    auto law = std::make_unique<ShapeMemory>(model.tissue, springs, viscosity);
+    // The modulus that a given stiffness amounts to.
+    const double shear = attractor_moduli(model.tissue.element_rest_shape[0], law->stiffness()[0]).mean_shear();
+    model.stiffness_scale = 2 * (1 + input.poisson_ratio) * shear;
+    model.laws.push_back(std::move(law));
+    return;
+  }
+  std::vector<ElasticMaterial> materials(model.tissue.elements.size(),
+                                         {1, input.poisson_ratio, input.relaxation_s.value_or(0)});
+  for (const auto& [name, of_region] : scenario.region_elasticities)
+    put_material(of_region, input, pattern_of(of_region, origin), model.tissue, materials);
+  const bool is_soft = model_of(input) == ElasticModel::neo_hookean;
+  std::vector<ElasticModuli> moduli;
+  std::vector<NeoHookeanMaterial> soft;
+  std::vector<double> bulk_moduli;
+  double largest_factor = 0;
+  for (const auto& [factor, poisson_ratio, relaxation_s] : materials) {
+    const ElasticModuli unit = ElasticModuli::from_young(young_modulus, poisson_ratio);
+    largest_factor = std::max(largest_factor, factor);
+    bulk_moduli.push_back(factor * (is_soft ? unit.lame_lambda : unit.bulk_modulus()));
+    if (is_soft)
+      soft.push_back({factor * unit.shear_modulus, relaxation_s});
+    else
+      moduli.push_back(factor * unit);
+  }
+  model.stiffness_scale *= largest_factor;
+  if (is_soft)
+    model.laws.push_back(std::make_unique<NeoHookean>(model.tissue, std::move(soft)));
+  else
+    model.laws.push_back(std::make_unique<Corotational>(model.tissue, std::move(moduli), viscosity));
+  if (std::ranges::max(bulk_moduli) > 0)
+    model.laws.push_back(std::make_unique<Dilatation>(model.tissue, std::move(bulk_moduli), model.volumes().is_held()));
 }
 
 void add_contractions(const Scenario& scenario, const Origin& origin, Model& model) {
@@ -242,11 +286,11 @@ void add_contact(const Scenario& scenario, const Origin& origin, Model& model) {
     }
 }
 
-void add_pressures(const Scenario& scenario, Model& model) {
+void add_pressures(const Scenario& scenario, const Origin& origin, Model& model) {
   for (const auto& [name, input] : scenario.pressures) {
-    model.laws.push_back(std::make_unique<FacePressure>(
-        model.tissue, meaning_of(words::pressure_faces, input.face), model.tissue.regions.at(input.region),
-        input.pressure_Pa * units::pascal, make_program(input.program)));
+    model.laws.push_back(std::make_unique<FacePressure>(model.tissue, meaning_of(words::pressure_faces, input.face),
+                                                        pattern_of(input, origin), input.pressure_Pa * units::pascal,
+                                                        make_program(input.program)));
     model.laws.back()->set_label("pressure." + name);
   }
 }
@@ -265,6 +309,13 @@ void add_holds(const Scenario& scenario, Model& model) {
       for (const std::string& direction : input.directions)
         if (nodes[n]) model.held[n][meaning_of(words::axes, direction)] = true;
   }
+}
+
+/// Nodes of the walls that no neighbour shares, nor an image of one.
+void hold_rim(Model& model) {
+  for (const Face& face : faces_of(model.tissue, CellSide::lateral))
+    if (!face.beyond && face.share == 1)
+      for (const NodeId node : face.nodes) model.held[node.index()] = {true, true, true};
 }
 
 /// Nodes on a mirror plane stay on it.
@@ -294,7 +345,7 @@ void check_forces_at_rest(const Scenario& scenario, const Model& model) {
 void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model) {
   const Tissue& tissue = model.tissue;
   model.volumes().hold(method_of(scenario.volume) == VolumeMethod::coupled);
-  add_elasticity(scenario, model);
+  add_elasticity(scenario, origin, model);
   if (scenario.elasticity.corner_barrier_Pa > 0)
     model.laws.push_back(
         std::make_unique<CornerBarrier>(tissue, scenario.elasticity.corner_barrier_Pa * units::pascal));
@@ -302,7 +353,7 @@ void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model)
   add_cortices(scenario, origin, model);
   add_enclosed(scenario, model);
   add_contact(scenario, origin, model);
-  add_pressures(scenario, model);
+  add_pressures(scenario, origin, model);
   if (scenario.dynamics.surface_drag_Pa_s_per_um > 0)
     model.laws.push_back(std::make_unique<SurfaceDrag>(
         tissue, scenario.dynamics.surface_drag_Pa_s_per_um * units::pascal_second_per_um));
@@ -312,6 +363,7 @@ void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model)
 
   if (shape_of(scenario.embryo) == EmbryoShape::slice) make_endless(scenario, model);
   add_holds(scenario, model);
+  if (meaning_of(words::rims, scenario.embryo.rim)) hold_rim(model);
   if (scenario.vitelline.enabled) {
     const OuterShape shell = tissue.outer_shape->moved_out(scenario.vitelline.gap_um);
     model.obstacles.push_back(std::make_unique<Vitelline>(tissue, shell));

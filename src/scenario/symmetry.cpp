@@ -32,8 +32,11 @@ class SymmetryCheck {
     const CellPattern pattern = make_pattern(input, whole_);
     for (const auto& [of_cells, what] :
          {std::pair(&pattern.strengths, "acts with the factor {:.4g} in cell {} and {:.4g} in its image, cell {}"),
-          {&pattern.delays_s, "starts {:.4g} s late in cell {} and {:.4g} s in its image, cell {}"}}) {
+          {&pattern.delays_s, "starts {:.4g} s late in cell {} and {:.4g} s in its image, cell {}"},
+          {&pattern.pulse_phases, "pulses with the phase {:.4g} in cell {} and {:.4g} in its image, cell {}"},
+          {&pattern.pulse_periods_s, "pulses every {:.4g} s in cell {} and {:.4g} s in its image, cell {}"}}) {
       const std::vector<double>& numbers = *of_cells;
+      if (numbers.empty()) continue;
       const double largest = std::abs(*std::ranges::max_element(numbers, {}, [](double a) { return std::abs(a); }));
       const auto differ = [&](std::size_t a, std::size_t b) {
         return std::abs(numbers[a] - numbers[b]) > 1e-9 * largest;
@@ -42,7 +45,7 @@ class SymmetryCheck {
         return refuse(table,
                       fmt::format(fmt::runtime(what), numbers[cell->index()], cell->number(),
                                   numbers[mirror_.own(*cell).index()], mirror_.own(*cell).number()),
-                      "let variation, delay and profile be symmetric, or remove embryo.mirror");
+                      "let variation, delay, pulse and profile be symmetric, or remove embryo.mirror");
     }
   }
 
@@ -103,8 +106,8 @@ MirroredSide mirrored_side(const Scenario& scenario, const Tissue& whole) {
   SymmetryCheck check(scenario, whole, side.mirror);
   for (const auto& [name, input] : scenario.contractions) check.check_acting("contraction." + name, input);
   for (const auto& [name, input] : scenario.cortices) check.check_acting("cortex." + name, input);
-  for (const auto& [name, input] : scenario.pressures) check.check_region("pressure." + name, input.region);
-  for (const auto& [name, input] : scenario.region_elasticities) check.check_region("elasticity." + name, input.region);
+  for (const auto& [name, input] : scenario.pressures) check.check_acting("pressure." + name, input);
+  for (const auto& [name, input] : scenario.region_elasticities) check.check_acting("elasticity." + name, input);
   for (const auto& [name, input] : scenario.holds) check.check_hold("hold." + name, input);
   check.finish();
   return side;

@@ -54,15 +54,19 @@ void check_embryo(Scenario& scenario, Input& input) {
   check_unused_keys(scenario, input);
   const EmbryoInput& embryo = scenario.embryo;
   const auto sound = [&](std::string_view key) { return input.sound(fmt::format("embryo.{}", key)); };
-  if (shape_of(embryo) == EmbryoShape::file || shape_of(embryo) == EmbryoShape::points) {
+  if (is_from_file(shape_of(embryo))) {
     if (embryo.file.empty() && sound("file"))
       input.report("embryo.file", "is missing",
-                   shape_of(embryo) == EmbryoShape::file ? "name the mesh file for shape \"file\""
-                                                         : "name the table of points for shape \"points\"");
+                   shape_of(embryo) == EmbryoShape::file     ? "name the mesh file for shape \"file\""
+                   : shape_of(embryo) == EmbryoShape::points ? "name the table of points for shape \"points\""
+                                                             : "name the file of polygons for shape \"surface\"");
     if (embryo.scale.size() != 3 && sound("scale"))
       input.report("embryo.scale", fmt::format("has {} numbers", embryo.scale.size()), "give three, along x, y and z");
     return;
   }
+  if (embryo.curvature_per_um.size() != 2 && sound("curvature_per_um"))
+    input.report("embryo.curvature_per_um", fmt::format("has {} numbers", embryo.curvature_per_um.size()),
+                 "give two, along and across");
   if (embryo.belly_sag_um.has_value() != embryo.back_sag_um.has_value())
     input.report(embryo.belly_sag_um ? "embryo.belly_sag_um" : "embryo.back_sag_um", "stands alone",
                  fmt::format("give {}, too, or neither", embryo.belly_sag_um ? "back_sag_um" : "belly_sag_um"));
@@ -72,7 +76,7 @@ void check_embryo(Scenario& scenario, Input& input) {
                  fmt::format("{} is less than the diameter, {}", embryo.length_um, embryo.diameter_um),
                  "give a length of at least diameter_um");
   }
-  if (shape_of(embryo) != EmbryoShape::block && sound("cell_height_um") && sound("diameter_um") &&
+  if (!is_patch(shape_of(embryo)) && sound("cell_height_um") && sound("diameter_um") &&
       embryo.cell_height_um >= embryo.diameter_um / 2) {
     input.report("embryo.cell_height_um", fmt::format("{} leaves no room inside the embryo", embryo.cell_height_um),
                  fmt::format("give less than half of diameter_um, {}", embryo.diameter_um / 2));
@@ -85,7 +89,7 @@ void check_shell_drag(const Scenario& scenario, Input& input) {
   if (scenario.vitelline.drag_Pa_s_per_um == 0 || !input.sound(key) || !input.sound("vitelline.enabled")) return;
   if (!scenario.vitelline.enabled)
     input.report(key, "has no meaning without a shell",
-                 shape_of(scenario.embryo) == EmbryoShape::block ? "remove it" : "remove it, or give enabled = true");
+                 is_patch(shape_of(scenario.embryo)) ? "remove it" : "remove it, or give enabled = true");
   else if (method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton")
     input.report(key, "drag of the shell goes with time.scheme \"newton\" and volumes that are not projected",
                  "remove it, or choose another scheme or volume.method");
@@ -105,10 +109,13 @@ void check_mirror(const Scenario& scenario, Input& input) {
 }
 
 void check_vitelline(Scenario& scenario, Input& input) {
-  if (shape_of(scenario.embryo) != EmbryoShape::block || !input.sound("vitelline.enabled")) return;
+  const EmbryoShape shape = shape_of(scenario.embryo);
+  if ((!is_patch(shape) && shape != EmbryoShape::surface) || !input.sound("vitelline.enabled")) return;
+  // Whether a surface is closed, its file tells.
   if (input.place("vitelline.enabled") == nullptr) scenario.vitelline.enabled = false;
-  if (scenario.vitelline.enabled) {
-    input.report("vitelline.enabled", "a shell needs a closed embryo, and a block is none", "give false");
+  if (scenario.vitelline.enabled && is_patch(shape)) {
+    input.report("vitelline.enabled",
+                 fmt::format("a shell needs a closed embryo, and a {} is none", scenario.embryo.shape), "give false");
   }
 }
 
@@ -142,9 +149,10 @@ void check_scheme(const Scenario& scenario, Input& input) {
     input.report(method_of(scenario.volume) == VolumeMethod::projection ? "volume.method" : "time.scheme",
                  "cells cannot divide under the paper's algorithm",
                  "give method = \"coupled\" or \"none\" and scheme = \"newton\", or no [division]");
-  if (scenario.volume.projection_surface == "embryo" && shape_of(scenario.embryo) == EmbryoShape::block &&
+  if (scenario.volume.projection_surface == "embryo" && is_patch(shape_of(scenario.embryo)) &&
       input.sound("volume.projection_surface"))
-    input.report("volume.projection_surface", "the apical surface of a block encloses nothing",
+    input.report("volume.projection_surface",
+                 fmt::format("the apical surface of a {} encloses nothing", scenario.embryo.shape),
                  "give \"cells\" or \"tissue\"");
 }
 
@@ -247,10 +255,9 @@ class RegionCheck {
     };
     for (const auto& [name, it] : scenario_.contractions) check_acting("contraction." + name, it);
     for (const auto& [name, it] : scenario_.cortices) check_acting("cortex." + name, it);
-    for (const auto& [name, it] : scenario_.region_elasticities)
-      check_reference("elasticity." + name + ".region", it.region);
+    for (const auto& [name, it] : scenario_.region_elasticities) check_acting("elasticity." + name, it);
     for (const auto& [name, it] : scenario_.holds) check_reference("hold." + name + ".region", it.region);
-    for (const auto& [name, it] : scenario_.pressures) check_reference("pressure." + name + ".region", it.region);
+    for (const auto& [name, it] : scenario_.pressures) check_acting("pressure." + name, it);
     for (const auto& [name, it] : scenario_.divisions) check_reference("division." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.monitors) {
       check_reference("monitor." + name + ".region", it.region);
@@ -258,6 +265,7 @@ class RegionCheck {
     }
     check_reference("furrow.region", scenario_.furrow.region);
     for (const auto& [name, region] : scenario_.regions) {
+      check_reference("region." + name + ".neighbours_of", region.neighbours_of);
       for (const std::string& other : region.unite) check_reference("region." + name + ".union", other);
       for (const std::string& other : region.intersect) check_reference("region." + name + ".intersect", other);
       for (const std::string& other : region.except) check_reference("region." + name + ".except", other);
@@ -268,19 +276,23 @@ class RegionCheck {
     const std::string path = "region." + name;
     const bool has_selector = !region.face.empty() || region.cells_along || region.cells_across ||
                               !region.ids.empty() || !region.array.empty() || region.x_um || region.y_um ||
-                              region.z_um || region.angle_deg || region.length_percent || !region.unite.empty() ||
+                              region.z_um || region.angle_deg || region.length_percent || region.rows ||
+                              !region.neighbours_of.empty() || region.rings || !region.unite.empty() ||
                               !region.intersect.empty() || !region.except.empty();
     const bool has_doubt = std::ranges::any_of(
         input_.doubtful, [&](const std::string& it) { return it == path || it.starts_with(path + "."); });
     if (!has_selector && !has_doubt) {
       input_.report(path, "selects nothing",
-                    "give face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, union, intersect or except");
+                    "give face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, rows, neighbours_of, union, "
+                    "intersect or except");
     }
+    if (region.rings && region.neighbours_of.empty() && input_.sound(path + ".neighbours_of"))
+      input_.report(path + ".rings", "needs neighbours_of", "name the region around which the rings lie");
     if (!input_.sound("embryo.shape")) return;
     const EmbryoShape shape = shape_of(scenario_.embryo);
-    const bool has_arrays = shape == EmbryoShape::file || shape == EmbryoShape::points;
-    if (!region.array.empty() && !has_arrays) {
-      input_.report(path + ".array", "a built embryo has no arrays", "use it with shape \"file\" or \"points\" only");
+    if (!region.array.empty() && !is_from_file(shape)) {
+      input_.report(path + ".array", "a built embryo has no arrays",
+                    "use it with shape \"file\", \"points\" or \"surface\" only");
     }
     for (const auto& [key, value] : {std::pair("above", region.above), {"below", region.below}})
       if (value && region.array.empty() && input_.sound(path + ".array"))
@@ -347,6 +359,7 @@ class RegionCheck {
     }
     if (done.contains(name)) return;
     path.push_back(name);
+    if (!region->second.neighbours_of.empty()) follow(region->second.neighbours_of, path, done);
     for (const auto* others : {&region->second.unite, &region->second.intersect, &region->second.except}) {
       for (const std::string& other : *others) follow(other, path, done);
     }
@@ -377,8 +390,11 @@ void validate(Scenario& scenario, Input& input) {
   check_expectations(scenario, input);
   check_monitors(scenario, input);
   for (auto& [name, it] : scenario.contractions) {
-    check_program("contraction." + name, it.program, input);
-    check_pattern("contraction." + name, it.profile, it.delay, input);
+    const std::string table = "contraction." + name;
+    check_program(table, it.program, input);
+    check_profile(table, it.profile, input);
+    check_delay(table, it.delay, input);
+    check_pulse(table, it.pulse, scenario.time, input);
   }
   check_enclosed(scenario, input);
   check_contact(scenario, input);
@@ -386,11 +402,16 @@ void validate(Scenario& scenario, Input& input) {
     const std::string table = "cortex." + name;
     check_program(table, it.program, input);
     check_program(table, it.stiffness_program, input, "stiffness_program");
-    check_pattern(table, it.profile, it.delay, input);
+    check_profile(table, it.profile, input);
+    check_delay(table, it.delay, input);
+    check_pulse(table, it.pulse, scenario.time, input);
     check_cortex(table, it, input);
     check_own_state(table, it, input);
   }
-  for (const auto& [name, it] : scenario.pressures) check_program("pressure." + name, it.program, input);
+  for (auto& [name, it] : scenario.pressures) {
+    check_program("pressure." + name, it.program, input);
+    check_profile("pressure." + name, it.profile, input);
+  }
   for (const auto& [name, it] : scenario.divisions) check_division("division." + name, it, input);
   if (!scenario.divisions.empty() && input.sound("embryo.shape") && shape_of(scenario.embryo) == EmbryoShape::slice)
     input.report("embryo.shape", "the cells of a slice do not divide: its planes would no longer be alike",

@@ -12,6 +12,14 @@ void validate(Scenario& scenario, Input& input);
 
 // Parts of it.
 
+/// Gives `field` its default; an error where it was given another value along with a choice that does not use it.
+template <class T>
+void drop(const std::string& address, T& field, const T& default_value, const std::string& chooser,
+          const std::string& problem, const std::string& remedy, Input& input) {
+  if (field != default_value && input.given_with(address, chooser)) input.report(address, problem, remedy);
+  field = default_value;
+}
+
 /// Reports monitors whose keys do not fit their quantity, criteria that bound nothing or what is not there, and
 /// expectations of monitors that are not there.
 void check_monitors(const Scenario& scenario, Input& input);
@@ -22,14 +30,16 @@ void check_monitors(const Scenario& scenario, Input& input);
 void check_elasticity(Scenario& scenario, Input& input);
 
 /// Other values in a region: which, and of which model.
-void check_region_elasticities(const Scenario& scenario, Input& input);
+void check_region_elasticities(Scenario& scenario, Input& input);
 
 /// The same of the projection's keys, and of those of the conjugate gradients.
 void check_volume_and_time(VolumeInput& volume, TimeInput& time, Input& input);
 
-/// Profile and delay of what acts at `table` ("contraction.NAME"): what their shape needs and what has no meaning with
-/// it, as above; settles their axis and where a wave starts.
-void check_pattern(const std::string& table, ProfileInput& profile, DelayInput& delay, Input& input);
+/// Profile, delay and pulses of what acts at `table` ("contraction.NAME"): what their shape needs and what has no
+/// meaning with it, as above; settles their axis, where a wave starts, and the phase.
+void check_profile(const std::string& table, ProfileInput& profile, Input& input);
+void check_delay(const std::string& table, DelayInput& delay, Input& input);
+void check_pulse(const std::string& table, PulseInput& pulse, const TimeInput& time, Input& input);
 
 /// Self-contact: with what it goes.
 void check_contact(const Scenario& scenario, Input& input);

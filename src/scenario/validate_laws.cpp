@@ -8,77 +8,6 @@
 #include "scenario/words.hpp"
 
 namespace plica {
-namespace {
-
-/// Gives `field` its default; an error where it was given another value along with a choice that does not use it.
-template <class T>
-void drop(const std::string& address, T& field, const T& default_value, const std::string& chooser,
-          const std::string& problem, const std::string& remedy, Input& input) {
-  if (field != default_value && input.given_with(address, chooser)) input.report(address, problem, remedy);
-  field = default_value;
-}
-
-void check_profile(const std::string& path, ProfileInput& profile, Input& input) {
-  const std::string chooser = path + ".shape";
-  if (!input.sound(path) || !input.sound(chooser)) return;
-  if ((profile.shape.empty() || profile.shape == "constant") && !profile.full_length_um)
-    for (const auto& [key, value] : {std::pair(".middle", &profile.middle), {".edge", &profile.edge}})
-      drop(path + key, *value, {}, input.place(chooser) == nullptr ? path + key : chooser,
-           "has no meaning where nothing fades", "remove it, or choose another shape, or a taper", input);
-  if (profile.shape.empty()) {
-    if (!profile.axis.empty() || profile.sigma_um || profile.sigma_cells || profile.half_width_um ||
-        profile.full_cells || profile.fade_cells)
-      input.report(chooser, "is missing",
-                   fmt::format("give one of: {}", fmt::join(words_of(words::profile_shapes), " | ")));
-    return;
-  }
-  if (profile.axis.empty()) profile.axis = "across";
-  const auto need = [&](const std::string& key, const std::optional<double>& value, const std::string& remedy) {
-    if (!value && input.sound(path + key)) input.report(path + key, "is missing", remedy);
-  };
-  const auto only = [&](const std::string& shape, const std::string& key, std::optional<double>& value) {
-    if (profile.shape != shape)
-      drop(path + key, value, {}, chooser, fmt::format("has no meaning with shape \"{}\"", profile.shape),
-           fmt::format("remove it, or choose shape {}", shape), input);
-  };
-  only("linear", ".half_width_um", profile.half_width_um);
-  only("gaussian", ".sigma_um", profile.sigma_um);
-  only("gaussian", ".sigma_um", profile.sigma_cells);  // stands in for it
-  only("plateau", ".full_cells", profile.full_cells);
-  only("plateau", ".fade_cells", profile.fade_cells);
-  if (profile.shape == "linear")
-    need(".half_width_um", profile.half_width_um, "give the distance at which the factor is edge, a number > 0");
-  if (profile.shape == "gaussian" && !profile.sigma_cells)
-    need(".sigma_um", profile.sigma_um, "give the width of the gaussian, a number > 0, or sigma_cells");
-  if (profile.shape == "plateau") {
-    need(".full_cells", profile.full_cells, "give how many cells have the factor of the middle, a number > 0");
-    need(".fade_cells", profile.fade_cells, "give over how many cells it fades, 0 for none");
-  }
-}
-
-void check_taper(const std::string& path, const ProfileInput& profile, Input& input) {
-  if (!input.sound(path) || profile.full_length_um.has_value() == profile.fade_um.has_value()) return;
-  const std::string key = profile.full_length_um ? ".fade_um" : ".full_length_um";
-  if (input.sound(path + key)) input.report(path + key, "is missing", "a taper along the axis has both lengths");
-}
-
-void check_delay(const std::string& path, DelayInput& delay, Input& input) {
-  const std::string chooser = path + ".speed_um_per_s";
-  if (!input.sound(path) || !input.sound(chooser)) return;
-  if (delay.speed_um_per_s) {
-    if (delay.axis.empty()) delay.axis = "along";
-    if (delay.from.empty()) delay.from = "middle";
-  } else if (input.place(chooser) == nullptr && (!delay.axis.empty() || !delay.from.empty())) {
-    input.report(chooser, "is missing", "give the speed of the wave, a number > 0, or \"none\"");
-  } else {
-    const std::string problem = "has no meaning with speed \"none\"", remedy = "remove it, or give a speed";
-    drop(path + ".axis", delay.axis, {}, chooser, problem, remedy, input);
-    drop(path + ".from", delay.from, {}, chooser, problem, remedy, input);
-  }
-}
-
-}  // namespace
-
 void check_elasticity(Scenario& scenario, Input& input) {
   if (!input.sound("elasticity.model")) return;
   ElasticityInput& elasticity = scenario.elasticity;
@@ -103,20 +32,29 @@ void check_elasticity(Scenario& scenario, Input& input) {
                  "give 0, and elasticity.relaxation_min for cells that flow, or choose model \"corotational\"");
 }
 
-void check_region_elasticities(const Scenario& scenario, Input& input) {
+void check_region_elasticities(Scenario& scenario, Input& input) {
   const ElasticModel model = model_of(scenario.elasticity);
-  for (const auto& [name, it] : scenario.region_elasticities) {
+  for (auto& [name, it] : scenario.region_elasticities) {
     const std::string table = "elasticity." + name;
     if (!input.sound(table) || !input.sound("elasticity.model")) continue;
     const auto sound = [&](const std::string& key) { return input.sound(table + key); };
+    check_profile(table, it.profile, input);
     if (model == ElasticModel::shape_memory)
       input.report(table, "model \"shape-memory\" is the same in all cells",
                    "remove it, or choose model \"corotational\" or \"neo-hookean\"");
-    else if (!it.young_modulus_Pa && !it.relaxation_s && sound(".young_modulus_Pa") && sound(".relaxation_s"))
-      input.report(table, "does nothing", "give young_modulus_Pa or relaxation_min");
+    else if (!it.young_modulus_Pa && !it.poisson_ratio && !it.relaxation_s && it.profile.shape.empty() &&
+             it.variation.spread == 0 && sound(".young_modulus_Pa") && sound(".poisson_ratio") &&
+             sound(".relaxation_s") && sound(".profile") && sound(".profile.shape") && sound(".variation.spread"))
+      input.report(table, "does nothing", "give young_modulus_Pa, poisson_ratio, relaxation_min, profile or variation");
     else if (it.relaxation_s && model != ElasticModel::neo_hookean)
       input.report(table + ".relaxation_s", fmt::format("has no meaning with model \"{}\"", scenario.elasticity.model),
                    "remove it, or choose model \"neo-hookean\"");
+    if (it.poisson_ratio && *it.poisson_ratio < 0 && model == ElasticModel::neo_hookean && sound(".poisson_ratio"))
+      input.report(table + ".poisson_ratio",
+                   fmt::format("{} is below 0, which model \"neo-hookean\" cannot have", *it.poisson_ratio),
+                   "give a number >= 0, or choose model \"corotational\"");
+    if (it.height_percent && !scenario.divisions.empty() && sound(".height_percent"))
+      input.report(table + ".height_percent", "cells with layers do not divide", "remove it, or [division]");
   }
 }
 
@@ -138,13 +76,6 @@ void check_volume_and_time(VolumeInput& volume, TimeInput& time, Input& input) {
     check(time, &TimeInput::cg_tolerance, "time.cg_tolerance", chooser, choice);
     check(time, &TimeInput::cg_max_iterations, "time.cg_max_iterations", chooser, choice);
   }
-}
-
-void check_pattern(const std::string& table, ProfileInput& profile, DelayInput& delay, Input& input) {
-  if (!input.sound(table)) return;
-  check_taper(table + ".profile", profile, input);
-  check_profile(table + ".profile", profile, input);
-  check_delay(table + ".delay", delay, input);
 }
 
 void check_cortex(const std::string& table, const CortexInput& cortex, Input& input) {
@@ -220,8 +151,9 @@ void check_enclosed(Scenario& scenario, Input& input) {
     const std::string table = "enclosed." + name, key = table + ".bulk_modulus_Pa";
     if (!input.sound(table) || !input.sound(table + ".volume") || !input.sound("embryo.shape")) continue;
     const EnclosedState state = meaning_of(words::enclosed_states, it.volume);
-    if (scenario.embryo.shape == "block")
-      input.report(table, "a block encloses nothing", "remove it, or choose shape \"pill\" or \"sphere\"");
+    if (is_patch(shape_of(scenario.embryo)))
+      input.report(table, fmt::format("a {} encloses nothing", scenario.embryo.shape),
+                   "remove it, or choose shape \"pill\" or \"sphere\"");
     if (state == EnclosedState::compliant && !it.bulk_modulus_Pa && input.sound(key))
       input.report(key, "is missing", "give how compliant the volume is, a number > 0");
     if (state != EnclosedState::compliant)

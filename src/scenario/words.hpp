@@ -69,10 +69,14 @@ inline constexpr auto embryo_shapes = std::to_array<Word<EmbryoShape>>({{"pill",
                                                                         {"block", EmbryoShape::block},
                                                                         {"egg", EmbryoShape::egg},
                                                                         {"points", EmbryoShape::points},
+                                                                        {"sheet", EmbryoShape::sheet},
+                                                                        {"surface", EmbryoShape::surface},
                                                                         {"file", EmbryoShape::file}});
 
 inline constexpr auto polygon_splits =
     std::to_array<Word<PolygonSplit>>({{"diagonals", PolygonSplit::diagonals}, {"kites", PolygonSplit::kites}});
+
+inline constexpr auto rims = std::to_array<Word<bool>>({{"free", false}, {"held", true}});  // whether it is held
 
 inline constexpr auto elastic_models =
     std::to_array<Word<ElasticModel>>({{"corotational", ElasticModel::corotational},
@@ -96,9 +100,14 @@ inline constexpr auto profile_shapes =
     std::to_array<Word<StrengthProfile::Shape>>({{"constant", StrengthProfile::Shape::constant},
                                                  {"linear", StrengthProfile::Shape::linear},
                                                  {"gaussian", StrengthProfile::Shape::gaussian},
-                                                 {"plateau", StrengthProfile::Shape::plateau}});
-inline constexpr auto profile_axes =
-    std::to_array<Word<PatternAxis>>({{"across", PatternAxis::across}, {"along", PatternAxis::along}});
+                                                 {"plateau", StrengthProfile::Shape::plateau},
+                                                 {"table", StrengthProfile::Shape::table},
+                                                 {"array", StrengthProfile::Shape::array}});
+inline constexpr auto profile_axes = std::to_array<Word<PatternAxis>>(
+    {{"across", PatternAxis::across}, {"along", PatternAxis::along}, {"angle", PatternAxis::angle}});
+// Whether factors go with the place, and whether phases are those of all cells.
+inline constexpr auto variation_bys = std::to_array<Word<bool>>({{"number", false}, {"place", true}});
+inline constexpr auto pulse_phases = std::to_array<Word<bool>>({{"random", false}, {"together", true}});
 inline constexpr auto delay_axes =
     std::to_array<Word<PatternAxis>>({{"along", PatternAxis::along}, {"across", PatternAxis::across}});
 inline constexpr auto delay_starts = std::to_array<Word<StartDelay::From>>({{"middle", StartDelay::From::middle},
@@ -164,8 +173,15 @@ inline constexpr auto reference_times = std::to_array<Word<Monitor::ReferenceAt>
 inline PolygonSplit split_of(const EmbryoInput& embryo) { return meaning_of(words::polygon_splits, embryo.elements); }
 /// Whether its cells lie on a grid, so that they have sides and numbers along and across.
 inline bool is_of_grid(EmbryoShape shape) {
-  return shape != EmbryoShape::file && shape != EmbryoShape::egg && shape != EmbryoShape::points;
+  return shape == EmbryoShape::pill || shape == EmbryoShape::sphere || shape == EmbryoShape::slice ||
+         shape == EmbryoShape::block;
 }
+/// Whether a file says where its cells are; it may have arrays.
+inline bool is_from_file(EmbryoShape shape) {
+  return shape == EmbryoShape::file || shape == EmbryoShape::points || shape == EmbryoShape::surface;
+}
+/// Whether it has a rim, whatever its numbers: it encloses nothing.
+inline bool is_patch(EmbryoShape shape) { return shape == EmbryoShape::block || shape == EmbryoShape::sheet; }
 inline EmbryoShape shape_of(const EmbryoInput& embryo) { return meaning_of(words::embryo_shapes, embryo.shape); }
 inline ElasticModel model_of(const ElasticityInput& input) { return meaning_of(words::elastic_models, input.model); }
 inline VolumeMethod method_of(const VolumeInput& volume) { return meaning_of(words::volume_methods, volume.method); }

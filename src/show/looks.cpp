@@ -116,6 +116,7 @@ const std::vector<ColourField>& colour_fields() {
       {"volume-error", "volume error", "", "volume_error", false, ScaleKind::about, 0},
       {"volume", "volume", "µm³", "volume_um3"},
       {"contraction", "contraction's activity", "", "activity"},
+      {"strength", "contraction's strength", "", "strength"},
       {"generation", "generation", "", "generation", false, ScaleKind::steps},
       {"region", "region", "", "region", false, ScaleKind::steps},
       {"self-intersections", "passes through itself", "", "self_intersecting", false, ScaleKind::steps}};
@@ -141,7 +142,7 @@ std::vector<std::string> coloured_regions(const Frame& frame) {
 std::vector<double> field_values(const Frame& frame, const ColourField& field) {
   if (field.array == "region") return region_numbers(frame);
   // Frames of older versions have no such array, and nobody knows.
-  if (field.array == "self_intersecting" && !frame.element_scalars.contains(field.array))
+  if ((field.array == "self_intersecting" || field.array == "strength") && !frame.element_scalars.contains(field.array))
     return std::vector<double>(frame.elements.size(), 0.0);
   if (!field.on_nodes) return required(frame.element_scalars, field.array);
   const Vectors& vectors = required(frame.node_vectors, field.array);

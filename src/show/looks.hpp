@@ -43,8 +43,8 @@ struct ColourField {
   [[nodiscard]] std::string title() const;  // "pressure, Pa"
 };
 
-/// displacement, speed, area-ratio, pressure, volume-error, volume, contraction, generation, region,
-/// self-intersections.
+/// displacement, speed, area-ratio, pressure, volume-error, volume, contraction, strength, generation,
+/// region, self-intersections.
 const std::vector<ColourField>& colour_fields();
 
 /// Of a frame's arrays: 1 in the cells of the region whose name follows.

@@ -45,7 +45,7 @@ RunPictures::RunPictures(std::filesystem::path directory, PictureOptions options
   for (const View& view : options_.views) rows_.push_back({view, {0, 0}});
   look_through();
   const std::optional<Scenario> scenario = scenario_of_run(run_.directory());
-  is_embryo_ = !scenario || shape_of(scenario->embryo) != EmbryoShape::block;
+  is_embryo_ = !scenario || !is_patch(shape_of(scenario->embryo));
   if (!options_.shell) return;
   if (!scenario)
     throw FileError(run_.directory().string() + ": holds no scenario.toml that says what the vitelline shell is");

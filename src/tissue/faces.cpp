@@ -111,6 +111,20 @@ std::vector<Face> faces_of(const Tissue& tissue, CellSide side) {
   return faces;
 }
 
+std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue) {
+  std::vector<std::vector<CellId>> neighbours(tissue.cells.size());
+  for (const Face& face : all_lateral_faces(tissue))
+    if (face.beyond) {
+      neighbours[face.cell.index()].push_back(*face.beyond);
+      neighbours[face.beyond->index()].push_back(face.cell);
+    }
+  for (std::vector<CellId>& of_cell : neighbours) {
+    std::ranges::sort(of_cell);
+    of_cell.erase(std::unique(of_cell.begin(), of_cell.end()), of_cell.end());
+  }
+  return neighbours;
+}
+
 std::optional<CellId> cell_between_layers(const Tissue& tissue) {
   CellSet apical(tissue.cells.size(), false), basal = apical;
   for (const Facet& facet : tissue.apical_facets) apical[facet.cell.index()] = true;

@@ -22,6 +22,9 @@ struct Face {
 /// that each face has one cell on either side.
 std::vector<Face> faces_of(const Tissue& tissue, CellSide side);
 
+/// The cells that share a wall with each cell, in the order of their numbers.
+std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue);
+
 /// The first cell that lacks an apical or a basal face: there is more than one layer of cells.
 std::optional<CellId> cell_between_layers(const Tissue& tissue);
 

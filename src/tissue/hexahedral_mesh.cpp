@@ -187,6 +187,11 @@ Tissue tissue_from_mesh(const HexahedralMesh& mesh, const std::array<int, 3>& el
   check_size(mesh, elements_per_cell);
   check_arrays(mesh);
   check_cells(mesh);
+  if (!mesh.groups.is_empty()) {
+    if (elements_per_cell != std::array{1, 1, 1})
+      throw MeshError("elements_per_cell divides cells of one hexahedron; those of this file have several already");
+    return tissue_from_groups(mesh);
+  }
   const MeshFaces faces(mesh.cells);
   check_welded(mesh, faces);
   const std::vector<int> apical = mesh.apical_faces.empty() ? outer_faces(mesh, faces) : mesh.apical_faces;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
+
+#include "tissue/faces.hpp"
 
 namespace plica {
 namespace {
@@ -33,8 +36,44 @@ MeshQuality mesh_quality(const Tissue& tissue, const Vectors& positions) {
   }
   std::vector<double> areas = apical_areas(tissue, positions);
   std::erase(areas, 0.0);  // of cells without an apical face
-  return {spread(volumes), spread(areas),   spread(along),
-          spread(across),  spread(heights), min_scaled_jacobian(tissue, positions)};
+  MeshQuality quality{spread(volumes), spread(areas), spread(along), spread(across), spread(heights), 1, CellId(0)};
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
+    const double jacobian = hex_scaled_jacobian(gather(positions, tissue.elements[e]));
+    if (jacobian >= quality.min_scaled_jacobian) continue;
+    quality.min_scaled_jacobian = jacobian;
+    quality.worst_cell = tissue.element_cell[e];
+  }
+  return quality;
+}
+
+PolygonQuality polygon_quality(const Tissue& tissue, const Vectors& positions) {
+  PolygonQuality quality;
+  const auto count = [](std::vector<std::size_t>& counts, std::size_t number) {
+    if (counts.size() <= number) counts.resize(number + 1, 0);
+    ++counts[number];
+  };
+  std::vector<double> edges;
+  for (const Cell& cell : tissue.cells) {
+    count(quality.corner_counts, cell.sides());
+    for (const CellEdge& edge : cell.edges)
+      if (edge.side == CellSide::apical)
+        edges.push_back((positions[edge.nodes.back().index()] - positions[edge.nodes.front().index()]).norm());
+  }
+  std::vector<std::set<CellId>> beyond(tissue.cells.size());
+  CellSet at_rim(tissue.cells.size(), false);
+  for (const Face& face : faces_of(tissue, CellSide::lateral)) {
+    if (!face.beyond) {
+      at_rim[face.cell.index()] = true;
+      continue;
+    }
+    beyond[face.cell.index()].insert(*face.beyond);
+    beyond[face.beyond->index()].insert(face.cell);
+  }
+  for (const auto& cells : beyond) count(quality.neighbours, cells.size());
+  quality.rim_cells = static_cast<std::size_t>(std::ranges::count(at_rim, true));
+  quality.apical_edge_um = spread(edges);
+  quality.basal_area_um2 = spread(basal_areas(tissue, positions));
+  return quality;
 }
 
 double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions) {

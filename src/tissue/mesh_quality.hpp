@@ -16,9 +16,21 @@ struct MeshQuality {
   Spread across_um;
   Spread height_um;                // lateral edges
   double min_scaled_jacobian = 1;  // of elements
+  CellId worst_cell;               // whose element that is
+};
+
+/// What is to be told of polygons beside that.
+struct PolygonQuality {
+  Spread basal_area_um2;                   // of cells
+  Spread apical_edge_um;                   // edges of apical polygons, each cell's own
+  std::vector<std::size_t> corner_counts;  // how many cells have 0, 1, 2, 3, ... corners
+  std::vector<std::size_t> neighbours;     // and how many have 0, 1, 2, ... cells beyond their walls
+  std::size_t rim_cells = 0;               // cells with a wall that nobody shares
 };
 
 MeshQuality mesh_quality(const Tissue& tissue, const Vectors& positions);
+
+PolygonQuality polygon_quality(const Tissue& tissue, const Vectors& positions);
 
 /// Worst corner of an element: 1 is a brick, 0 is flat.
 double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions);

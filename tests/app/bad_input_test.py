@@ -214,5 +214,51 @@ class BadMesh(CommandLine):
                             "cell 0", line=9, key="self_contact.surface")
 
 
+class BadSurface(CommandLine):
+    """Surfaces of polygons that cannot become cells: status 2, and a line with the scenario's line, its key, the file and the place in it."""
+
+    SCENARIO = 'format = 1\n[embryo]\nshape = "surface"\nfile = "NAME"\ncell_height_um = 0.3\nleast_edge_ratio = 0\n'
+
+    def test_one_thing_wrong(self):
+        corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
+        cases = [
+            ("a.obj", "", "there is no face"),
+            ("a.obj", "v 0 0\n", "line 1: a vertex should have three coordinates"),
+            ("a.obj", corners + "f 1 2 3 9\n", "face 0 uses vertex 8, and there are 6"),
+            ("a.obj", corners + "f 1 2\n", "face 0 has 2 corners"),
+            ("a.obj", corners + "f 1 2 3 2\n", "has vertex 1 twice, at (1, 0, 0) um"),
+            ("a.obj", corners + "f 1 3 2 4\n", "face 0 at (0.5, 0.5, 0) um"),
+            ("a.obj", corners + "f 1 2 5\n", "face 0 at (1, 0, 0) um has no area"),
+            ("a.obj", corners + "f 1 2 3 4\nf 1 2 5\nf 2 1 6\n", "belongs to 3 faces, 0, 1 and 2"),
+            ("a.obj", corners + "v 9 9 9\nv 9 8 9\nv 8 8 9\nf 1 2 3 4\nf 7 8 9\n", "not one piece"),
+            ("a.obj", corners + "v .1 .1 0\nf 1 2 7 4\nf 2 5 6 3 7\nf 7 3 4\n", "is not convex"),
+            ("a.obj", corners.replace("v 1 1 0", "v 1 1 nan") + "f 1 2 3 4\n", "coordinates are finite"),
+            ("a.obj", corners.replace("v 1 1 0", "v 1 1 1").replace("v 0 0 0", "v 0 0 1") + "f 1 2 3 4\n", "is far from flat"),
+            ("a.off", "OFF\n3 1 0\n0 0 0\n", "the file ends after 1 of 3 vertices"),
+            ("a.ply", "ply\nformat ascii 1.0\nelement face 1\nend_header\n", "faces should have a list"),
+            ("a.png", "no surface", '".png" is no ending of a file of polygons'),
+        ]
+        for name, text, part in cases:
+            with self.subTest(part):
+                (self.folder / name).write_text(text)
+                self.assert_refused(self.SCENARIO.replace("NAME", name), "embryo.file: ", name, part, line=4)
+        self.assert_refused(self.SCENARIO.replace("NAME", "missing.obj"), "missing.obj", line=4)
+
+    def test_keys(self):
+        (self.folder / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        scenario = self.SCENARIO.replace("NAME", "a.obj")
+        self.assert_refused(scenario + 'cell_height_array = "height"\n', "there are: none", line=7, key="embryo.cell_height_array")
+        self.assert_refused(scenario + "[vitelline]\nenabled = true\n", "the surface has a rim", line=8, key="vitelline.enabled")
+        self.assert_refused(scenario + "scale = [1, 2]\n", "has 2 numbers", line=7, key="embryo.scale")
+        self.assert_refused(scenario + 'rim = "loose"\n', "free | held", line=7, key="embryo.rim")
+        self.assert_refused(scenario + "length_um = 3\n", "has no meaning", line=7, key="embryo.length_um")
+        sheet = 'format = 1\n[embryo]\nshape = "sheet"\nlength_um = 50\nwidth_um = 50\ncell_count = 20\ncell_height_um = 9\n'
+        self.assert_refused(sheet + "curvature_per_um = [0.1]\n", "give two", line=8, key="embryo.curvature_per_um")
+        self.assert_refused(sheet + "curvature_per_um = [0.3, 0]\n", "close upon itself", line=2)
+        self.assert_refused(sheet + "mend = false\n", "has no meaning", line=8, key="embryo.mend")
+        self.assert_refused(sheet + "[vitelline]\nenabled = true\n", "a sheet is none", line=9, key="vitelline.enabled")
+        self.assert_refused(sheet + '[enclosed.yolk]\nsurface = "basal"\n', "a sheet encloses nothing", line=8)
+
+
 if __name__ == "__main__":
     support.main()

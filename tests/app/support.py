@@ -95,7 +95,7 @@ SUMMARY = (
 POINT_DATA = {"displacement_um", "velocity_um_per_s", "force_nN"}
 CELL_DATA = {
     "cell_id", "mother_id", "generation", "volume_um3", "volume_error", "apical_area_ratio", "pressure_Pa", "activity",
-    "self_intersecting",
+    "strength", "self_intersecting",
 }
 RESULTS = {
     "summary.json", "series.csv", "cells.csv", "midline.csv", "cross_section.csv", "frames", "frames.pvd", "scenario.toml",

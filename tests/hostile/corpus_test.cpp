@@ -59,6 +59,11 @@ TEST(FuzzCorpus, Meshes) {
   EXPECT_GE(counts.taken, 4);
 }
 
+TEST(FuzzCorpus, Polygons) {
+  const Counts counts = replay("polygons", fuzz_polygons, 1000);
+  EXPECT_GE(counts.taken, 4);
+}
+
 TEST(FuzzCorpus, Checkpoints) {
   if (!can_archive()) GTEST_SKIP() << "built without HDF5";
   const Counts counts = replay("checkpoint", fuzz_checkpoint, 50);

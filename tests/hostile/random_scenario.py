@@ -108,7 +108,7 @@ class Drawer:
             return [r.randrange(40) for _ in range(r.randint(1, 8))]
         if kind == "list of numbers":
             numbers = [self.number(key) for _ in range(3)]
-            return sorted(map(abs, numbers)) if "time" in key.name else numbers
+            return sorted(map(abs, numbers)) if "time" in key.name or ".at_" in key.name else numbers
         if kind == "list of texts":
             return [self.word_of(path, key) for _ in range(r.randint(1, 2))]
         raise ValueError(f"{path}.{key.name}: the type \"{kind}\" is new here: say how to draw it")
@@ -118,7 +118,7 @@ class Drawer:
         r, stem = self.random, path.split(".")[0]
         if f"{stem}.{key.name}" in self.files:
             return r.choice(self.files[f"{stem}.{key.name}"])
-        if key.name in ("region", "from", "union", "intersect", "except"):
+        if key.name in ("region", "from", "neighbours_of", "union", "intersect", "except"):
             return r.choice(["all", *self.names["region"]])
         if key.name in self.names and self.names[key.name]:
             return r.choice(self.names[key.name])
@@ -182,6 +182,9 @@ class Drawer:
         for key, least in (("time.tolerance_um", 1e-3), ("time.max_step_s", draft.get("time.end_s") / MOST_STEPS)):
             if draft.get(key) is not None:
                 draft.put("time", key.split(".")[1], max(draft.get(key), least))
+        for address in [a for a in draft.values if a.endswith(".pulse.period_s") and draft.get(a) != "none"]:
+            table, _, value = draft.values[address]  # steps are a small part of it
+            draft.put(table, "pulse.period_s", max(value, 10.0))
         for address in [a for a in draft.values if a.startswith("division.") and a.endswith(".region")]:
             table = address.removesuffix(".region")
             draft.put(table, "max_generation", min(draft.get(f"{table}.max_generation", 1), 2))

@@ -42,12 +42,32 @@ TEST(InteriorKeys, ModuliByRegionSayWhatWouldBeRight) {
       "[elasticity.soft]\nregion = \"left\"\nyoung_modulus_Pa = 5\n[elasticity.stiff]\nregion = \"belly\"\n"
       "young_modulus_Pa = 50\n";
   expect_complaints({
-      {soft, "test.toml:1: elasticity.soft: does nothing; give young_modulus_Pa or relaxation_min"},
+      {soft,
+       "test.toml:1: elasticity.soft: does nothing; give young_modulus_Pa, poisson_ratio, relaxation_min, profile or "
+       "variation"},
       {"[elasticity.soft]\nyoung_modulus_Pa = 5", "test.toml:1: elasticity.soft.region: is missing; give text"},
       {soft + "young_modulus_Pa = 0",
        "test.toml:3: elasticity.soft.young_modulus_Pa: 0 is out of range; give a number > 0"},
-      {soft + "young_modulus_Pa = 5\npoisson_ratio = 0.3",
-       "test.toml:4: elasticity.soft.poisson_ratio: unknown key; it belongs in [elasticity]"},
+      {soft + "young_modulus_Pa = 5\npoisson_ratio = 0.5",
+       "test.toml:4: elasticity.soft.poisson_ratio: 0.5 is out of range; give a number > -1 and < 0.5"},
+      {"[elasticity]\nmodel = \"neo-hookean\"\n" + soft + "poisson_ratio = -0.2",
+       "test.toml:5: elasticity.soft.poisson_ratio: -0.2 is below 0, which model \"neo-hookean\" cannot have; give a "
+       "number >= 0, or choose model \"corotational\""},
+      {soft + "young_modulus_Pa = 5\nheight_percent = [80, 100]",
+       "test.toml:4: elasticity.soft.height_percent: no element of the region has its middle in this part of the "
+       "height; widen it, or give embryo.elements_per_cell more elements through the height"},
+      {"[embryo]\nelements_per_cell = [1, 1, 3]\n[region.belly]\nface = \"ventral\"\n" + soft +
+           "young_modulus_Pa = 5\nheight_percent = [60, 100]\n[elasticity.apex]\nregion = \"belly\"\n"
+           "height_percent = [80, 100]\npoisson_ratio = 0.3",
+       "test.toml:5: elasticity.soft: elasticity.apex speaks of the same layer of cell 0, too; give them parts of the "
+       "height without common elements, or other regions"},
+      {soft + "young_modulus_Pa = 5\nheight_percent = [80, 10]",
+       "test.toml:4: elasticity.soft.height_percent: low is above high; give [low, high], 0 to 100"},
+      {soft + "profile = { shape = \"linear\", half_width_um = 20 }",
+       "test.toml:3: elasticity.soft.profile: the modulus of cell 0 would be 0; give profile.edge, or factors, above "
+       "0"},
+      {soft + "young_modulus_Pa = 5\nheight_percent = [0, 50]\n[division.d]\nregion = \"all\"\nat_s = 9",
+       "test.toml:4: elasticity.soft.height_percent: cells with layers do not divide; remove it, or [division]"},
       {"[elasticity.soft]\nregion = \"belly\"\nyoung_modulus_Pa = 5",
        "test.toml:2: elasticity.soft.region: there is no region \"belly\"; known are: all"},
       {"[elasticity]\nmodel = \"shape-memory\"\n" + soft + "young_modulus_Pa = 5",

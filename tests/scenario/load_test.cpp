@@ -165,8 +165,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:2: elasticity.poisson_ratio: 0.5 is out of range; give a number > -1 and < 0.5"},
       {"[embryo]\nshape = \"pil\"",
        "test.toml:2: embryo.shape: \"pil\" is not known; give one of: pill | sphere | slice | block | egg | points | "
-       "file (did you "
-       "mean \"pill\"?)"},
+       "sheet | surface | file (did you mean \"pill\"?)"},
       {"[elasticity]\nattractor_stiffness_nN_per_um = 0",
        "test.toml:2: elasticity.attractor_stiffness_nN_per_um: 0 is out of range; give a number > 0 or \"derived\""},
       {"[elasticity]\nattractor_preload_nN = 1",
@@ -197,9 +196,9 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "140"},
       {"[embryo]\nshape = \"sphere\"\nlength_um = 460",
        "test.toml:3: embryo.length_um: has no meaning with shape \"sphere\"; remove it, or choose shape pill or slice "
-       "or block or egg"},
+       "or block or egg or sheet"},
       {"[embryo]\nwidth_um = 1",
-       "test.toml:2: embryo.width_um: has no meaning with shape \"pill\"; remove it, or choose shape block"},
+       "test.toml:2: embryo.width_um: has no meaning with shape \"pill\"; remove it, or choose shape block or sheet"},
       {"[embryo]\nshape = \"file\"", "test.toml:1: embryo.file: is missing; name the mesh file for shape \"file\""},
       {block + "cells = [100000, 100000, 100000]\nelements_per_cell = [8, 8, 8]",
        "test.toml:3: embryo.cells: asks for 512000000000000000 elements; the limit is 20000000; give fewer cells, or "
@@ -241,7 +240,8 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:3: contraction.a.program.activity: -1 is out of range; give a list of numbers >= 0"},
       // Patterns of a contraction.
       {program + "profile = { sigma_um = 30 }",
-       "test.toml:3: contraction.a.profile.shape: is missing; give one of: constant | linear | gaussian | plateau"},
+       "test.toml:3: contraction.a.profile.shape: is missing; give one of: constant | linear | gaussian | plateau | "
+       "table | array"},
       {program + "profile = { shape = \"gaussian\" }",
        "test.toml:3: contraction.a.profile.sigma_um: is missing; give the width of the gaussian, a number > 0, or "
        "sigma_cells"},
@@ -250,13 +250,13 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "number > 0"},
       {program + "profile = { shape = \"linear\", half_width_um = 50, sigma_um = 3 }",
        "test.toml:3: contraction.a.profile.sigma_um: has no meaning with shape \"linear\"; remove it, or choose shape "
-       "gaussian"},
+       "\"gaussian\""},
       {program + "profile = { shape = \"constant\", edge = 0.5 }",
        "test.toml:3: contraction.a.profile.edge: has no meaning where nothing fades; remove it, or choose another "
        "shape, or a taper"},
       {program + "profile = { shape = \"gausian\", sigma_um = 30 }",
        "test.toml:3: contraction.a.profile.shape: \"gausian\" is not known; give one of: constant | linear | gaussian "
-       "| plateau (did you mean \"gaussian\"?)"},
+       "| plateau | table | array (did you mean \"gaussian\"?)"},
       {program + "profile = { shape = \"gaussian\", sigma_um = 0 }",
        "test.toml:3: contraction.a.profile.sigma_um: 0 is out of range; give a number > 0"},
       {program + "profile = \"gaussian\"",
@@ -289,7 +289,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:1: region.a: is defined by itself: a > b > a; remove one of these references"},
       {"[region.a]",
        "test.toml:1: region.a: selects nothing; give face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, "
-       "union, intersect or except"},
+       "rows, neighbours_of, union, intersect or except"},
       {"[region.a]\nids = [1]\ncells_across = 3",
        "test.toml:3: region.a.cells_across: needs a face to lie on; give face, too"},
       {"[region.a]\nface = \"ventral\"\ncells_along = 13",
@@ -301,7 +301,8 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:3: region.a.cells_along: 18 cells on a face that has 9 that way; give at most 9"},
       {"[region.a]\nids = [756]", "test.toml:2: region.a.ids: there is no cell 756; give numbers from 0 to 755"},
       {"[region.a]\narray = \"x\"",
-       "test.toml:2: region.a.array: a built embryo has no arrays; use it with shape \"file\" or \"points\" only"},
+       "test.toml:2: region.a.array: a built embryo has no arrays; use it with shape \"file\", \"points\" or "
+       "\"surface\" only"},
       // Expectations.
       {"[expect]\nfurrow_depth_um = 28.89",
        "test.toml:2: expect.furrow_depth_um: 28.89 has no tolerance; give { value = ..., within_percent = ... } or { "
@@ -341,8 +342,9 @@ TEST(LoadScenario, ReportsAllErrorsAtOnceInOrderOfLines) {
             "test.toml:4: contraction.a.region: there is no region \"nowhere\"; known are: all\n"
             "test.toml:6: embryo.length_um: true is of the wrong type; give a number > 0\n"
             "test.toml:7: embryo.hue: unknown key; known are: shape, length_um, diameter_um, width_um, "
-            "cell_height_um, cells, elements_per_cell, cell_count, seed, belly_sag_um, back_sag_um, elements, "
-            "least_edge_ratio, layers, points_depth_um, scale, mirror, file, apical_array\n"
+            "cell_height_um, cells, elements_per_cell, cell_count, seed, curvature_per_um, rim, belly_sag_um, "
+            "back_sag_um, elements, least_edge_ratio, layers, points_depth_um, scale, centre, mend, "
+            "cell_height_array, mirror, file, apical_array\n"
             "--set: time.max_step_s: 0 is out of range; give a number > 0");
 }
 

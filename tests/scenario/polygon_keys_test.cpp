@@ -74,6 +74,23 @@ TEST(PolygonKeys, RegionsOfMeasuredArrays) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(PolygonKeys, AHeldRimIsHeldAndNothingElse) {
+  const std::string sheet =
+      "format = 1\n[embryo]\nshape = \"sheet\"\nlength_um = 60\nwidth_um = 40\ncell_count = 40\ncell_height_um = "
+      "9\nrim = ";
+  const auto held = make_model(load_scenario({"test", "test.toml", sheet + "\"held\"\n"}));
+  std::size_t at_rim = 0;
+  for (std::size_t n = 0; n < held->tissue.free_node_count(); ++n) {  // those that hang follow
+    const Vec3& x = held->tissue.rest_positions[n];
+    const bool is_at_rim = std::abs(x.x()) == 30 || std::abs(x.y()) == 20;
+    EXPECT_EQ(held->held[n], (std::array{is_at_rim, is_at_rim, is_at_rim})) << n;
+    at_rim += is_at_rim;
+  }
+  EXPECT_GT(at_rim, 40U);
+  const auto free = make_model(load_scenario({"test", "test.toml", sheet + "\"free\"\n"}));
+  for (const auto& node : free->held) EXPECT_EQ(node, (std::array{false, false, false}));
+}
+
 TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
   const auto expect = [](const std::string& text, const std::string& said) {
     EXPECT_NE(errors_of(text).find(said), std::string::npos) << errors_of(text);

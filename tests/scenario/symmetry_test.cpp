@@ -56,12 +56,18 @@ TEST(Symmetry, WhatHasNoImageIsRefused) {
       {pill + "[pressure.a]\nregion = \"right\"\npressure_Pa = 1", "test.toml:12: pressure.a.region: " + right},
       {pill + "[cortex.a]\nregion = \"belly\"\ntension_mN_per_m = 1\nvariation = { spread = 0.3 }",
        "test.toml:11: cortex.a: acts with the factor 0.8292 in cell 0 and 0.5967 in its image, cell 95; let variation, "
-       "delay and profile be symmetric, or remove embryo.mirror"},
+       "delay, pulse and profile be symmetric, or remove embryo.mirror"},
       {pill + "[contraction.a]\nregion = \"belly\"\nstiffness_nN_per_um = 1\ndelay = { speed_um_per_s = 1, from = "
               "\"low\" }",
        "test.toml:11: contraction.a: starts 11.48 s late in cell 0 and 193 s in its image, cell 95; let variation, "
-       "delay "
-       "and profile be symmetric, or remove embryo.mirror"},
+       "delay, pulse and profile be symmetric, or remove embryo.mirror"},
+      {pill + "[contraction.a]\nregion = \"belly\"\nstiffness_nN_per_um = 1\npulse = { period_s = 60 }",
+       "test.toml:11: contraction.a: pulses with the phase 0.8882 in cell 0 and 0.4079 in its image, cell 95; let "
+       "variation, delay, pulse and profile be symmetric, or remove embryo.mirror"},
+      {pill + "[elasticity.a]\nregion = \"belly\"\nprofile = { shape = \"table\", at_um = [-90, 90], factor = [1, 2] }",
+       "test.toml:11: elasticity.a: acts with the factor 1.235 in cell 0 and 1.765 in its image, cell 95; let "
+       "variation, "
+       "delay, pulse and profile be symmetric, or remove embryo.mirror"},
       {pill + "[hold.a]\nregion = \"all\"\nz_um = [0, 200]\ny_um = [10, 20]",
        "test.toml:11: hold.a: is not symmetric: of the node at -118.731, -11.1918, 0 um and its image it holds one; "
        "give "

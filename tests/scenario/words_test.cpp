@@ -46,9 +46,13 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("volume", "projection_weights", words::projection_weights);
   expect_words("contraction.*", "edges", words::edges);
   expect_words("cortex.*", "faces", words::edges);
-  for (const char* table : {"contraction.*", "cortex.*"}) {
+  for (const char* table : {"contraction.*", "cortex.*", "pressure.*", "elasticity.*"}) {
     expect_words(table, "profile.shape", words::profile_shapes);
     expect_words(table, "profile.axis", words::profile_axes);
+    expect_words(table, "variation.by", words::variation_bys);
+  }
+  for (const char* table : {"contraction.*", "cortex.*"}) {
+    expect_words(table, "pulse.phase", words::pulse_phases);
     expect_words(table, "delay.axis", words::delay_axes);
     expect_words(table, "delay.from", words::delay_starts);
   }

@@ -105,7 +105,7 @@ TEST_F(ReportRunTest, NewCellsAreANewTopology) {
 
 TEST_F(ReportRunTest, ThinsFramesByItsRuleAndSaysSo) {
   write_frames(20, 11);
-  const double bytes_a_frame = 2.0 * static_cast<double>(finer.rest_positions.size() * 5 + finer.elements.size() * 8);
+  const double bytes_a_frame = 2.0 * static_cast<double>(finer.rest_positions.size() * 5 + finer.elements.size() * 9);
   const ReportRun run = read_report_run(folder, 7 * bytes_a_frame);
   EXPECT_EQ(run.json["every"], 4);
   EXPECT_EQ(run.json["frames_saved"], 20);

@@ -4,11 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <ranges>
 
 namespace plica {
 namespace {
 
-// Coordinates of all cells' centres along an axis, um, across from the mean direction of the chosen ones.
+constexpr double degrees = 180 / std::numbers::pi;
+
+// Coordinates of all cells' centres along an axis, um or degrees, across from the mean direction of the chosen ones.
 std::vector<double> coordinates(const Tissue& tissue, const CellSet& cells, PatternAxis axis) {
   std::vector<double> result;
   Vec3 mean = Vec3::Zero();
@@ -24,6 +28,8 @@ std::vector<double> coordinates(const Tissue& tissue, const CellSet& cells, Patt
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (axis == PatternAxis::along) {
       result.push_back(cell_centre(tissue.cells[c], tissue.rest_positions).x());
+    } else if (axis == PatternAxis::angle) {
+      result.push_back(degrees * angle(from_axis(c)));
     } else if (!tissue.outer_shape) {
       result.push_back(from_axis(c).y());
     } else {
@@ -61,9 +67,45 @@ double distance_from(StartDelay::From from, double value, const Extent& extent) 
   return 0;
 }
 
+// Of a polygon half-way up a cell: its area, and how far it reaches along the embryo's axis and across it.
+struct PolygonSize {
+  double area = 0, along = 0, across = 0;
+};
+
+PolygonSize size_half_way_up(const Tissue& tissue, const Cell& cell) {
+  const std::size_t sides = cell.sides();
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < sides; ++i)
+    points.push_back(0.5 * (tissue.rest_positions[cell.basal_corners()[i].index()] +
+                            tissue.rest_positions[cell.apical_corners()[i].index()]));
+  Vec3 twice_area = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < sides; ++i) twice_area += (points[i] - points[0]).cross(points[i + 1] - points[0]);
+  const auto reach = [&](const Vec3& direction) {
+    const auto [low, high] =
+        std::ranges::minmax(points | std::views::transform([&](const Vec3& x) { return direction.dot(x); }));
+    return high - low;
+  };
+  const Vec3 normal = twice_area.normalized(), along = Vec3::UnitX() - normal.x() * normal;
+  if (along.norm() < 1e-3) return {};  // it faces along the axis
+  return {0.5 * twice_area.norm(), reach(along.normalized()), reach(normal.cross(along).normalized())};
+}
+
+// The mean width of polygons along an axis: what a line along it has in each polygon that it meets, on average.
+std::optional<double> mean_width_of_polygons(const Tissue& tissue, const CellSet& cells, PatternAxis axis) {
+  double area = 0, reach = 0;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (!cells[c] || tissue.cells[c].is_of_grid) continue;
+    const PolygonSize size = size_half_way_up(tissue, tissue.cells[c]);
+    area += size.area;
+    reach += axis == PatternAxis::along ? size.across : size.along;
+  }
+  return reach > 0 ? std::optional(area / reach) : std::nullopt;
+}
+
 // Mean width of the chosen cells along an axis, um: half-way up, as distances are measured between centres. (Cells of a
 // round embryo are wider at the apex.)
 double mean_width(const Tissue& tissue, const CellSet& cells, PatternAxis axis) {
+  if (const auto width = mean_width_of_polygons(tissue, cells, axis)) return *width;
   const EdgeDirection direction = axis == PatternAxis::along ? EdgeDirection::along : EdgeDirection::across;
   double sum = 0;
   std::size_t count = 0;
@@ -88,6 +130,15 @@ std::uint64_t mixed(std::uint64_t value) {
 // In (0, 1], from the upper 53 bits.
 double uniform(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 1) * 0x1p-53; }
 
+// Linear between points, as at the ends beyond them.
+double between(const std::vector<double>& places, const std::vector<double>& values, double place) {
+  const std::size_t next = std::ranges::upper_bound(places, place) - places.begin();
+  if (next == 0) return values.front();
+  if (next == places.size()) return values.back();
+  const double part = (place - places[next - 1]) / (places[next] - places[next - 1]);
+  return values[next - 1] + part * (values[next] - values[next - 1]);
+}
+
 // From 1 to 0 over a length, as a cosine.
 double fading(double way, double length) {
   if (way <= 0) return 1;
@@ -96,7 +147,12 @@ double fading(double way, double length) {
 
 }  // namespace
 
-double StrengthProfile::nearness(double distance) const {
+double StrengthProfile::of_array(double value) const {
+  return std::clamp((value - array_0) / (array_1 - array_0), 0.0, 1.0);
+}
+
+double StrengthProfile::nearness(double place) const {
+  const double distance = std::abs(place);
   switch (shape) {
     case Shape::constant:
       return 1;
@@ -106,19 +162,38 @@ double StrengthProfile::nearness(double distance) const {
       return std::exp(-0.5 * (distance / sigma) * (distance / sigma));
     case Shape::plateau:
       return fading(distance - half_width, fade);
+    case Shape::table:
+      return between(places, values, places.front() < 0 ? place : distance);
+    case Shape::array:
+      break;
   }
   return 1;
 }
 
 double Taper::nearness(double distance) const { return fade > 0 ? fading(distance - 0.5 * full_length, fade) : 1; }
 
-double chance_factor(double spread, std::uint64_t seed, std::size_t cell) {
+double chance_factor(double spread, std::uint64_t seed, std::uint64_t cell) {
   if (spread <= 0) return 1;
   const std::uint64_t first = mixed(mixed(seed) + cell), second = mixed(first);
   // Box and Muller's normal deviate; the factor's logarithm has the variance s2 and the mean -s2/2.
   const double normal = std::sqrt(-2 * std::log(uniform(first))) * std::cos(2 * std::numbers::pi * uniform(second));
   const double s2 = std::log(1 + spread * spread);
   return std::exp(std::sqrt(s2) * normal - 0.5 * s2);
+}
+
+// Places are told apart by a hundredth of a um. Its borders lie where no coordinate that is a round number does: there
+// rounding would decide.
+std::uint64_t place_number(const Vec3& place) {
+  constexpr double apart_um = 0.01, offset = 0.381966;
+  std::uint64_t number = 0;
+  for (const double x : place) number = mixed(number ^ static_cast<std::uint64_t>(std::llround(x / apart_um + offset)));
+  return number;
+}
+
+double CellPattern::pulse(CellId cell, double time_s) const {
+  if (pulse_periods_s.empty()) return 1;
+  const std::size_t c = cell.index();
+  return 1 + pulse_amplitude * std::sin(2 * std::numbers::pi * (time_s / pulse_periods_s[c] + pulse_phases[c]));
 }
 
 CellPattern::CellPattern(const CellSet& who)
@@ -130,8 +205,26 @@ CellPattern CellPattern::after_division(const Division& division) const {
   after.cells = inherited(division, cells);
   after.strengths = inherited(division, strengths);
   after.delays_s = inherited(division, delays_s);
+  after.pulse_amplitude = pulse_amplitude;
+  if (pulse_periods_s.empty()) return after;
+  after.pulse_periods_s = inherited(division, pulse_periods_s);
+  after.pulse_phases = inherited(division, pulse_phases);
   return after;
 }
+
+namespace {
+
+void add_pulses(const Tissue& tissue, const PulseRule& rule, CellPattern& pattern) {
+  if (!(rule.period_s > 0)) return;
+  pattern.pulse_amplitude = rule.amplitude;
+  for (const Cell& cell : tissue.cells) {
+    const std::uint64_t place = place_number(cell_centre(cell, tissue.rest_positions));
+    pattern.pulse_periods_s.push_back(rule.period_s * chance_factor(rule.spread, rule.seed, place));
+    pattern.pulse_phases.push_back(rule.together ? 0 : uniform(mixed(~mixed(rule.seed) + place)));
+  }
+}
+
+}  // namespace
 
 CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const PatternRule& pattern) {
   CellPattern result(cells);
@@ -140,11 +233,14 @@ CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const Patte
   if (profile.in_cells) {
     const double width = mean_width(tissue, about, profile.axis);
     for (double* length : {&profile.half_width, &profile.sigma, &profile.fade}) *length *= width;
+    for (double& place : profile.places) place *= width;
   }
   const auto from_middle = [&](PatternAxis axis) {
     std::vector<double> places = coordinates(tissue, about, axis);
     const Extent extent = extent_of(places, about);
-    for (double& place : places) place = std::abs(place - 0.5 * (extent.low + extent.high));
+    const double middle = 0.5 * (extent.low + extent.high);
+    for (double& place : places)
+      place = axis == PatternAxis::angle ? std::remainder(place - profile.centre, 360) : place - middle;
     return places;
   };
   const std::vector<double> place = from_middle(profile.axis), along = from_middle(PatternAxis::along);
@@ -152,12 +248,17 @@ CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const Patte
   const Extent ways = extent_of(way, cells);
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (!cells[c]) continue;
-    const double nearness = profile.nearness(place[c]) * pattern.taper.nearness(along[c]);
-    result.strengths[c] =
-        (pattern.edge + (pattern.middle - pattern.edge) * nearness) * chance_factor(pattern.spread, pattern.seed, c);
+    const double of_profile = profile.shape == StrengthProfile::Shape::array ? profile.of_array(profile.array[c])
+                                                                             : profile.nearness(place[c]);
+    const double nearness = of_profile * pattern.taper.nearness(std::abs(along[c]));
+    const std::uint64_t chance =
+        pattern.by_place ? place_number(cell_centre(tissue.cells[c], tissue.rest_positions)) : c;
+    result.strengths[c] = (pattern.edge + (pattern.middle - pattern.edge) * nearness) *
+                          chance_factor(pattern.spread, pattern.seed, chance);
     if (pattern.delay.speed > 0)
       result.delays_s[c] = std::max(0.0, distance_from(pattern.delay.from, way[c], ways)) / pattern.delay.speed;
   }
+  add_pulses(tissue, pattern.pulse, result);
   return result;
 }
 

@@ -107,13 +107,13 @@ double Contraction::activity(double delay_s, double time_s) const { return progr
 
 double Contraction::activity(const Spring& spring, const Step& step) const {
   const std::optional<double> given = GivenActivities(step.internal, 0).of(spring.cell);
-  return given ? *given : activity(spring.delay_s, step.end_time_s);
+  return given ? *given : activity(spring.delay_s, step.end_time_s) * pattern_.pulse(spring.cell, step.end_time_s);
 }
 
 std::optional<double> Contraction::activity_of(CellId cell, double time_s, std::span<const double> internal) const {
   if (pattern_.cells.empty() || !pattern_.cells[cell.index()]) return std::nullopt;
   if (const auto given = GivenActivities(internal, 0).of(cell)) return given;
-  return activity(pattern_.delays_s[cell.index()], time_s);
+  return activity(pattern_.delays_s[cell.index()], time_s) * pattern_.pulse(cell, time_s);
 }
 
 std::vector<double> Contraction::with_activities(std::span<const double> internal,

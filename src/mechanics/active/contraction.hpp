@@ -44,7 +44,7 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
 /// Its semidefinite tangent leaves out the turning of springs that push.
 class Contraction final : public Law {
  public:
-  /// `pattern`: for activity_of, the springs carry their own delays.
+  /// `pattern`: for pulses and activity_of, the springs carry their own delays.
   Contraction(std::vector<Spring> springs, Program program, CellPattern pattern = {});
 
   [[nodiscard]] std::string_view name() const override { return "contraction"; }
@@ -63,7 +63,7 @@ class Contraction final : public Law {
                                                             const Division& division) const override;
 
   [[nodiscard]] const Program& program() const { return program_; }
-  /// Activity at a time for springs with a delay: that of the program `delay_s` earlier, 0 before the program's time 0.
+  /// The program's activity at a time for springs with a delay: that `delay_s` earlier, 0 before the program's time 0.
   [[nodiscard]] double activity(double delay_s, double time_s) const;
   [[nodiscard]] bool is_active() const override { return true; }
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
@@ -73,6 +73,7 @@ class Contraction final : public Law {
   [[nodiscard]] std::vector<double> program_points_s() const override { return program_.delayed_points_s(delays_s()); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.delayed_jumps_s(delays_s()); }
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
+  [[nodiscard]] const CellPattern& pattern() const { return pattern_; }
 
  private:
   struct Pulled;  // a spring at given positions

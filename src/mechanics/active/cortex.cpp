@@ -97,11 +97,11 @@ double Cortex::rest_area_before(std::size_t face, const Step& step) const {
 // How active a cell is, strength apart.
 double Cortex::activity(CellId cell, double time_s, std::span<const double> internal) const {
   if (const auto told = given(internal).of(cell)) return *told;
-  const double delay_s = pattern_.delays_s[cell.index()];
-  if (!own_.is_used()) return rule_.program.delayed_at(delay_s, time_s);
+  const double delay_s = pattern_.delays_s[cell.index()], pulse = pattern_.pulse(cell, time_s);
+  if (!own_.is_used()) return pulse * rule_.program.delayed_at(delay_s, time_s);
   const double own = internal[area_numbers() + cell.index()];
-  if (!own_.starts()) return own * rule_.program.delayed_at(delay_s, time_s);
-  return own == OwnState::not_yet ? 0 : rule_.program.delayed_at(own, time_s);
+  if (!own_.starts()) return pulse * own * rule_.program.delayed_at(delay_s, time_s);
+  return own == OwnState::not_yet ? 0 : pulse * rule_.program.delayed_at(own, time_s);
 }
 
 // The factor on its stiffness.

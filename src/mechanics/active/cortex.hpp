@@ -73,6 +73,7 @@ class Cortex final : public Law {
                                                     std::span<const double> activities) const override;
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
+  [[nodiscard]] const CellPattern& pattern() const { return pattern_; }
   /// Areas and tensions at a step's end; faces.
   [[nodiscard]] std::vector<double> areas(std::span<const Vec3> positions) const;
   [[nodiscard]] std::vector<double> tensions(const Step& step) const;

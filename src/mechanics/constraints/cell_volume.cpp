@@ -18,8 +18,11 @@ void add_volume_hessian(const std::array<NodeId, 8>& nodes, const HexPoints& poi
 
 }  // namespace
 
-VolumeElements::VolumeElements(const Tissue& tissue, Kernels kernels)
-    : kernels_(kernels), chunks_(tissue.elements, tissue.element_cell), batches_(chunks_.batch_count()) {
+VolumeElements::VolumeElements(const Tissue& tissue, Kernels kernels, Values values)
+    : kernels_(kernels),
+      values_(values),
+      chunks_(tissue.elements, tissue.element_cell),
+      batches_(chunks_.batch_count()) {
   parallel_for(batches_.size() * ElementChunks::batch_size, [&](std::size_t place) { fit(tissue, place); });
 }
 
@@ -28,7 +31,7 @@ void VolumeElements::fit(const Tissue& tissue, std::size_t place) {
   const std::size_t e = std::min(place, chunks_.element_count() - 1), lane = place % ElementChunks::batch_size;
   VolumeBatch& batch = batches_[place / ElementChunks::batch_size];
   for (int i = 0; i < 8; ++i) batch.nodes[i][lane] = 3 * tissue.elements[e][i].number();
-  batch.cells[lane] = tissue.element_cell[e].number();
+  batch.owners[lane] = values_ == Values::of_cells ? tissue.element_cell[e].number() : static_cast<int>(e);
   batch.rest_volumes[lane] = hex_volume(tissue.element_rest_shape[e]);
 }
 
@@ -148,15 +151,17 @@ void CellVolumes::add_tangent(std::span<const Vec3> positions, std::span<const d
       tangent.takes_apart());
 }
 
-Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact, std::span<const double> factors,
-                       Kernels kernels)
-    : bulk_moduli_(tissue.cells.size(), bulk_modulus),
+Dilatation::Dilatation(const Tissue& tissue, std::vector<double> bulk_moduli, bool cells_are_exact, Kernels kernels)
+    : bulk_moduli_(tissue, std::move(bulk_moduli)),
       cells_are_exact_(cells_are_exact),
       kernels_(kernels),
-      volumes_(tissue, kernels) {
-  for (std::size_t c = 0; c < factors.size(); ++c) bulk_moduli_[c] *= factors[c];
+      volumes_(tissue, kernels, VolumeElements::Values::of_elements) {
   if (!cells_are_exact || tissue.elements.size() > tissue.cells.size()) elements_ = tissue.elements;
 }
+
+Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact,
+                       const std::vector<double>& factors, Kernels kernels)
+    : Dilatation(tissue, in_all_elements(tissue, bulk_modulus, factors), cells_are_exact, kernels) {}
 
 VolumeStep Dilatation::kernel_step(const Step& step) const {
   return {.batches = volumes_.batches(),
@@ -172,7 +177,7 @@ double Dilatation::energy(const Step& step) const {
   return volumes_.chunks().sum_over_elements([&](std::size_t e) {
     const double rest_volume = volumes_.rest_volume(e);
     const double strain = hex_volume(gather(step.positions, elements_[e])) / rest_volume - 1;
-    return volumes_.of_cell(e, bulk_moduli_) * rest_volume * strain * strain / 2;
+    return bulk_moduli_[e] * rest_volume * strain * strain / 2;
   });
 }
 
@@ -198,7 +203,7 @@ void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
         const auto& nodes = elements_[e];
         const HexPoints points = gather(step.positions, nodes);
         const double rest_volume = volumes_.rest_volume(e);
-        const double bulk_modulus = volumes_.of_cell(e, bulk_moduli_);
+        const double bulk_modulus = bulk_moduli_[e];
         const double pressure = bulk_modulus * (1 - hex_volume(points) / rest_volume);
         if (!step.semidefinite_tangent) add_volume_hessian(nodes, points, -pressure, tangent);
         const auto gradient = hex_volume_gradient(points);
@@ -217,9 +222,8 @@ NodeGroups Dilatation::node_groups(std::span<const double> /*internal*/) const {
 
 std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Division& division,
                                                 std::span<const Vec3>) const {
-  auto after = std::make_unique<Dilatation>(tissue, 0, cells_are_exact_, std::span<const double>(), kernels_);
-  after->bulk_moduli_ = inherited(division, bulk_moduli_);
-  return after;
+  return std::make_unique<Dilatation>(tissue, bulk_moduli_.after_division(tissue, division), cells_are_exact_,
+                                      kernels_);
 }
 
 void Dilatation::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {

@@ -7,6 +7,7 @@
 
 #include "core/uninitialised.hpp"
 #include "mechanics/constraint.hpp"
+#include "mechanics/elasticity/of_elements.hpp"
 #include "mechanics/kernels/element_chunks.hpp"
 #include "mechanics/kernels/kernels.hpp"
 #include "mechanics/kernels/volume_kernels.hpp"
@@ -18,7 +19,9 @@ namespace plica {
 /// Elements whose volume matters, eight side by side, and the way through them.
 class VolumeElements {
  public:
-  VolumeElements(const Tissue& tissue, Kernels kernels);
+  /// What values they have: a value a cell, or one an element.
+  enum class Values { of_cells, of_elements };
+  VolumeElements(const Tissue& tissue, Kernels kernels, Values values = Values::of_cells);
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements);
   void set_rest_volume(std::size_t element, double volume);
 
@@ -28,15 +31,12 @@ class VolumeElements {
   [[nodiscard]] double rest_volume(std::size_t element) const {
     return batches_[element / 8].rest_volumes[element % 8];
   }
-  /// That of the element's cell, among values of cells.
-  [[nodiscard]] double of_cell(std::size_t element, std::span<const double> values) const {
-    return values[static_cast<std::size_t>(batches_[element / 8].cells[element % 8])];
-  }
 
  private:
   void fit(const Tissue& tissue, std::size_t element);
 
   Kernels kernels_;
+  Values values_;
   ElementChunks chunks_;
   std::vector<VolumeBatch> batches_;
 };
@@ -103,10 +103,13 @@ class CellVolumes final : public Constraint {
 /// tangent leaves out the pressure times d2V/dx2.
 class Dilatation final : public Law {
  public:
-  /// `bulk_modulus` in kPa, times the cell's `factors`, where given. With `cells_are_exact` (cells' volumes are held)
-  /// it is left out while every cell is one element.
+  /// `bulk_moduli` of elements in kPa. With `cells_are_exact` (cells' volumes are held) it is left out while every cell
+  /// is one element.
+  Dilatation(const Tissue& tissue, std::vector<double> bulk_moduli, bool cells_are_exact,
+             Kernels kernels = chosen_kernels());
+  /// The same in all cells, times the cell's `factors`, where given.
   Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact = false,
-             std::span<const double> factors = {}, Kernels kernels = chosen_kernels());
+             const std::vector<double>& factors = {}, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "dilatation"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Dilatation>(*this); }
@@ -124,7 +127,7 @@ class Dilatation final : public Law {
   [[nodiscard]] VolumeStep kernel_step(const Step& step) const;
 
   std::vector<std::array<NodeId, 8>> elements_;  // none while it is left out
-  std::vector<double> bulk_moduli_;              // cells; kPa
+  OfElements<double> bulk_moduli_;               // kPa
   bool cells_are_exact_;
   Kernels kernels_;
   VolumeElements volumes_;

@@ -29,10 +29,9 @@ void nearest_rotation(const double (&F)[9], double (&R)[9]) {
   Eigen::Map<Mat3>{R} = rotation;
 }
 
-Corotational::Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity,
-                           std::vector<double> factors, Kernels kernels)
-    : moduli_(moduli),
-      factors_(factors.empty() ? std::vector<double>(tissue.cells.size(), 1.0) : std::move(factors)),
+Corotational::Corotational(const Tissue& tissue, std::vector<ElasticModuli> moduli, double shear_viscosity,
+                           Kernels kernels)
+    : moduli_(tissue, std::move(moduli)),
       shear_viscosity_(shear_viscosity),
       kernels_(kernels),
       chunks_(tissue.elements),
@@ -66,7 +65,7 @@ void Corotational::fit(const Tissue& tissue, std::size_t place) {
   // Cells of a grid keep the gradients that their scenarios were calibrated with.
   const ModeGradients modes =
       tissue.cells[tissue.element_cell[e].index()].is_of_grid ? ModeGradients::by_centre : ModeGradients::by_points;
-  const ElasticModuli moduli = factors_[tissue.element_cell[e].index()] * moduli_;
+  const ElasticModuli& moduli = moduli_[e];
   batch.shear[lane] = 2 * moduli.shear_modulus * volume;
   put_stiffness(hourglass_stiffness(rest, moduli, modes), lane, batch.stiffness);
   if (viscous_batches_.empty()) return;
@@ -158,7 +157,7 @@ NodeGroups Corotational::node_groups(std::span<const double> /*internal*/) const
 
 std::unique_ptr<Law> Corotational::after_division(const Tissue& tissue, const Division& division,
                                                   std::span<const Vec3>) const {
-  return std::make_unique<Corotational>(tissue, moduli_, shear_viscosity_, inherited(division, factors_), kernels_);
+  return std::make_unique<Corotational>(tissue, moduli_.after_division(tissue, division), shear_viscosity_, kernels_);
 }
 
 }  // namespace plica

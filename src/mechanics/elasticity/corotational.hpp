@@ -11,6 +11,7 @@
 #pragma once
 
 #include "mechanics/elasticity/hexahedron_stiffness.hpp"
+#include "mechanics/elasticity/of_elements.hpp"
 #include "mechanics/kernels/corotational_kernels.hpp"
 #include "mechanics/kernels/element_chunks.hpp"
 #include "mechanics/kernels/kernels.hpp"
@@ -21,10 +22,14 @@ namespace plica {
 
 class Corotational final : public Law {
  public:
-  /// Moduli are times the cell's `factors`, where given. `shear_viscosity` in nN s/um^2 (0: none). Rest shapes are
-  /// those of the tissue's elements. Throws std::domain_error when a rest shape is inverted.
+  /// `moduli` of elements; `shear_viscosity` in nN s/um^2 (0: none). Rest shapes are those of the tissue's elements.
+  /// Throws std::domain_error when a rest shape is inverted.
+  Corotational(const Tissue& tissue, std::vector<ElasticModuli> moduli, double shear_viscosity,
+               Kernels kernels = chosen_kernels());
+  /// The same in all cells, times the cell's `factors`, where given.
   Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity,
-               std::vector<double> factors = {}, Kernels kernels = chosen_kernels());
+               const std::vector<double>& factors = {}, Kernels kernels = chosen_kernels())
+      : Corotational(tissue, in_all_elements(tissue, moduli, factors), shear_viscosity, kernels) {}
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Corotational>(*this); }
@@ -46,8 +51,7 @@ class Corotational final : public Law {
   [[nodiscard]] NodeId node(std::size_t element, int corner) const;
   [[nodiscard]] const CorotationalKernels& kernels() const;
 
-  ElasticModuli moduli_;
-  std::vector<double> factors_;  // cells; on the moduli
+  OfElements<ElasticModuli> moduli_;
   double shear_viscosity_;
   Kernels kernels_;
   ElementChunks chunks_;

@@ -52,12 +52,23 @@ Mat3 deformation_gradient(const HexPoints& points, const HexPoints& rest, int g)
   return gauss_jacobian(points, g) * gauss_jacobian(rest, g).inverse();
 }
 
+std::vector<NeoHookeanMaterial> materials_of(const Tissue& tissue, const std::vector<double>& shear_moduli,
+                                             const std::vector<double>& relaxation_s) {
+  std::vector<NeoHookeanMaterial> materials;
+  for (std::size_t c = 0; c < shear_moduli.size(); ++c)
+    materials.push_back({shear_moduli[c], relaxation_s.empty() ? 0 : relaxation_s[c]});
+  return of_cells(tissue, materials);
+}
+
 }  // namespace
 
-NeoHookean::NeoHookean(const Tissue& tissue, std::vector<double> shear_moduli, std::vector<double> relaxation_s,
-                       Kernels kernels)
-    : shear_moduli_(std::move(shear_moduli)),
-      relaxation_s_(std::move(relaxation_s)),
+NeoHookean::NeoHookean(const Tissue& tissue, const std::vector<double>& shear_moduli,
+                       const std::vector<double>& relaxation_s, Kernels kernels)
+    : NeoHookean(tissue, materials_of(tissue, shear_moduli, relaxation_s), kernels) {}
+
+NeoHookean::NeoHookean(const Tissue& tissue, std::vector<NeoHookeanMaterial> materials, Kernels kernels)
+    : materials_(tissue, materials),
+      flows_(std::ranges::any_of(materials, [](const NeoHookeanMaterial& one) { return one.relaxation_s > 0; })),
       kernels_(kernels),
       elements_(tissue.elements),
       element_cell_(tissue.element_cell),
@@ -75,15 +86,15 @@ void NeoHookean::fit(const Tissue& tissue, std::size_t place) {
   if (place == e) rest_[e] = tissue.element_rest_shape[e];
   NeoHookeanBatch& batch = batches_[place / batch_size];
   for (int i = 0; i < 8; ++i) batch.nodes[i][lane] = 3 * elements_[e][i].number();
-  const std::size_t cell = element_cell_[e].index();
+  const auto& [shear_modulus, relaxation_s] = materials_[e];
   for (int g = 0; g < 8; ++g) {
     const Mat3 D0 = gauss_jacobian(tissue.element_rest_shape[e], g);
-    batch.weights[g][lane] = shear_moduli_[cell] * D0.determinant();
+    batch.weights[g][lane] = shear_modulus * D0.determinant();
     put((D0.transpose() * D0).inverse(), &batch.metrics[g][0][lane]);
     if (!flows()) continue;
     for (int k = 0; k < 9; ++k) flow_batches_[place / batch_size].frames[g][k][lane] = D0.data()[k];
   }
-  if (flows()) flow_batches_[place / batch_size].rates[lane] = relaxation_s_[cell] > 0 ? 1 / relaxation_s_[cell] : 0;
+  if (flows()) flow_batches_[place / batch_size].rates[lane] = relaxation_s > 0 ? 1 / relaxation_s : 0;
 }
 
 void NeoHookean::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
@@ -213,14 +224,13 @@ std::vector<double> NeoHookean::next_internal(const Step& step) const {
 
 std::unique_ptr<Law> NeoHookean::after_division(const Tissue& tissue, const Division& division,
                                                 std::span<const Vec3>) const {
-  return std::make_unique<NeoHookean>(tissue, inherited(division, shear_moduli_),
-                                      flows() ? inherited(division, relaxation_s_) : relaxation_s_, kernels_);
+  return std::make_unique<NeoHookean>(tissue, materials_.after_division(tissue, division), kernels_);
 }
 
 std::vector<double> NeoHookean::internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                         const Division& division) const {
   if (!flows()) return {};
-  std::vector<std::vector<std::size_t>> of_cell(shear_moduli_.size());  // elements before
+  std::vector<std::vector<std::size_t>> of_cell(std::ranges::max(element_cell_).index() + 1);  // elements before
   for (std::size_t e = 0; e < elements_.size(); ++e) of_cell[element_cell_[e].index()].push_back(e);
   const auto where = [](const HexPoints& rest, int g) {
     const std::array<double, 8> shape = hex_shape(gauss_point(g));

@@ -7,6 +7,7 @@
 // A change of volume meets 2 mu/3 only; the rest belongs to cell_volume.
 #pragma once
 
+#include "mechanics/elasticity/of_elements.hpp"
 #include "mechanics/kernels/element_chunks.hpp"
 #include "mechanics/kernels/kernels.hpp"
 #include "mechanics/kernels/neo_hookean_kernels.hpp"
@@ -15,14 +16,22 @@
 
 namespace plica {
 
+/// What an element is made of.
+struct NeoHookeanMaterial {
+  double shear_modulus = 0;  // mu, kPa
+  double relaxation_s = 0;   // tau; 0: it does not flow
+};
+
 /// Its semidefinite tangent has the flowed rest shape stand still, and is stiffer along rotations of a Gauss point that
 /// is under pressure: by as much as keeps any direction from negative stiffness.
 class NeoHookean final : public Law {
  public:
-  /// `shear_moduli` of the cells, kPa; `relaxation_s`, tau of the cells, 0 for one that does not flow, none at all when
-  /// no cell does. Rest shapes are those of the tissue's elements. Throws std::domain_error when one is inverted.
-  NeoHookean(const Tissue& tissue, std::vector<double> shear_moduli, std::vector<double> relaxation_s = {},
-             Kernels kernels = chosen_kernels());
+  /// `materials` of elements. Rest shapes are those of the tissue's elements. Throws std::domain_error when one is
+  /// inverted.
+  NeoHookean(const Tissue& tissue, std::vector<NeoHookeanMaterial> materials, Kernels kernels = chosen_kernels());
+  /// `shear_moduli` of the cells; `relaxation_s` of the cells, none at all when no cell flows.
+  NeoHookean(const Tissue& tissue, const std::vector<double>& shear_moduli,
+             const std::vector<double>& relaxation_s = {}, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<NeoHookean>(*this); }
@@ -51,12 +60,13 @@ class NeoHookean final : public Law {
 
  private:
   void fit(const Tissue& tissue, std::size_t element);  // makes what is kept of it from its rest shape
-  [[nodiscard]] bool flows() const { return !relaxation_s_.empty(); }
+  [[nodiscard]] bool flows() const { return flows_; }
   [[nodiscard]] Mat3 flowed_before(std::size_t element, int gauss_point, const Step& step) const;
   [[nodiscard]] NeoHookeanStep kernel_step(const Step& step) const;
   [[nodiscard]] const NeoHookeanKernels& kernels() const;
 
-  std::vector<double> shear_moduli_, relaxation_s_;  // cells
+  OfElements<NeoHookeanMaterial> materials_;
+  bool flows_;  // whether any does
   Kernels kernels_;
   std::vector<std::array<NodeId, 8>> elements_;
   std::vector<CellId> element_cell_;

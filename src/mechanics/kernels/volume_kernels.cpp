@@ -27,15 +27,15 @@ inline void for_elements(const VolumeStep& step, std::size_t first, std::size_t 
 }
 
 // What each element has of its cell.
-inline Lanes of_cells(const double* values, const Elements& e) {
+inline Lanes of_owners(const double* values, const Elements& e) {
   Lanes own = {};
-  for (int k = 0; k < width; ++k) own[k] = values[e.batch.cells[e.lane + k]];
+  for (int k = 0; k < width; ++k) own[k] = values[e.batch.owners[e.lane + k]];
   return own;
 }
 
 inline Lanes pressure(const VolumeStep& step, const Elements& e, const Vec (&m)[7]) {
-  if (!step.pressures) return of_cells(step.bulk_moduli, e) * (1.0 - volume(m) / e.rest_volume());
-  return of_cells(step.pressures, e);
+  if (!step.pressures) return of_owners(step.bulk_moduli, e) * (1.0 - volume(m) / e.rest_volume());
+  return of_owners(step.pressures, e);
 }
 
 inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
@@ -49,7 +49,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
     Vec m[7];
     gather_modes(e.batch.nodes, e.lane, step.positions, m);
     const Lanes V = volume(m);
-    for (int k = 0; k < e.count; ++k) volumes[e.batch.cells[e.lane + k]] += V[k];
+    for (int k = 0; k < e.count; ++k) volumes[e.batch.owners[e.lane + k]] += V[k];
   });
 }
 
@@ -97,7 +97,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
       volume_gradient(m, g);
       Lanes rate = dot(g[0], d[0]);
       for (int j = 1; j < 6; ++j) rate += dot(g[j], d[j]);
-      const Lanes tension = of_cells(step.bulk_moduli, e) * rate / e.rest_volume();
+      const Lanes tension = of_owners(step.bulk_moduli, e) * rate / e.rest_volume();
       for (int j = 0; j < 6; ++j) result[j] = result[j] + tension * g[j];
     }
     add_modes(e, result, product);

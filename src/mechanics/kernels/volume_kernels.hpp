@@ -10,17 +10,17 @@ namespace plica {
 struct alignas(64) VolumeBatch {
   int nodes[8][8];         // corners; three times the node's number
   double rest_volumes[8];  // um^3
-  int cells[8];            // whose pressure or bulk modulus they have
+  int owners[8];           // whose pressure they have: their cells; or bulk modulus: they themselves
 };
 
 /// Elements under pressure, and where they are. Vectors are x y z a node. The pressure is that of the cell, or that of
-/// dilatation, kappa (1 - V/V0), kappa the cell's.
+/// dilatation, kappa (1 - V/V0), kappa the element's.
 struct VolumeStep {
   const VolumeBatch* batches;
   std::size_t elements;
   const double* positions;    // um
   const double* pressures;    // cells, kPa; null: dilatation
-  const double* bulk_moduli;  // cells, kPa; of dilatation
+  const double* bulk_moduli;  // elements, kPa; of dilatation
   bool semidefinite_tangent;  // of dilatation: without its pressure's share
 };
 

@@ -1,11 +1,13 @@
-// What stands in for frame_file_vtk.cpp and mesh_file_vtk.cpp when plica is built without VTK.
-#ifndef PLICA_WITH_VTK
-
+// What stands in for frame_file_vtk.cpp, mesh_file_vtk.cpp and polygon_file_vtk.cpp when plica is built without VTK,
+// and for vertex_model_hdf5.cpp when it is built without HDF5.
 #include <fmt/format.h>
 
 #include "core/errors.hpp"
 #include "tissue/files/frame_file.hpp"
 #include "tissue/files/mesh_file.hpp"
+#include "tissue/files/polygon_file.hpp"
+
+#ifndef PLICA_WITH_VTK
 
 namespace plica {
 namespace {
@@ -25,7 +27,22 @@ Tissue read_mesh_file(const std::filesystem::path& file, const std::string&, con
 }
 TriangleSurface read_surface(const std::filesystem::path& file) { refuse(file); }
 std::vector<std::pair<double, std::string>> read_collection(const std::filesystem::path& pvd) { refuse(pvd); }
+PolygonFile read_vtk_polygons(const std::filesystem::path& file) {
+  throw FileError(fmt::format(
+      "{}: cannot be read: this plica was built without VTK. Build it with VTK, or save the surface as OBJ, OFF or PLY",
+      file.string()));
+}
 
 }  // namespace plica
+
+#endif
+
+#ifndef PLICA_WITH_HDF5
+
+plica::PolygonFile plica::read_vertex_model(const std::filesystem::path& file) {
+  throw FileError(fmt::format(
+      "{}: cannot be read: this plica was built without HDF5. Build it with HDF5, or save the surface as OBJ",
+      file.string()));
+}
 
 #endif

@@ -14,6 +14,16 @@
 
 namespace plica {
 
+/// The polygons of a mesh's cells, as lists of corners one after the other. Files hold them as field data of these
+/// names, with `polygon_` before them.
+struct FramePolygons {
+  std::vector<int> ends;           // cells: where the cell's corners end among all
+  std::vector<int> apical, basal;  // nodes, counter-clockwise seen from outside, above the apex
+  std::vector<int> elements;       // cells: the first element of each, whose values are the cell's
+
+  [[nodiscard]] bool empty() const { return ends.empty(); }
+};
+
 /// What write_mesh wrote: a moment of a run.
 struct Frame {
   Vectors positions;                                           // nodes; um
@@ -21,6 +31,7 @@ struct Frame {
   std::map<std::string, Vectors> node_vectors;                 // nodes, by name
   std::map<std::string, std::vector<double>> element_scalars;  // elements, by name
   std::optional<double> time_s;
+  FramePolygons polygons = {};  // none where every cell is one element, and in frames of older versions
 };
 
 /// A surface as flat triangles.

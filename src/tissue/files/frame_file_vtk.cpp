@@ -52,10 +52,19 @@ std::string frame_bytes(const fs::path& file) {
   std::vector<double> time;
   vtkDataArray* value = grid->GetFieldData()->GetArray("TimeValue");
   if (value != nullptr && value->GetNumberOfTuples() == 1) time.push_back(value->GetTuple1(0));
+  const auto field = [&](const char* name) {
+    std::vector<int> values;
+    vtkDataArray* array = grid->GetFieldData()->GetArray(name);
+    for (vtkIdType i = 0; array != nullptr && i < array->GetNumberOfTuples(); ++i)
+      values.push_back(static_cast<int>(array->GetTuple1(i)));
+    return values;
+  };
   std::string bytes;
   put(points, bytes);
   put(elements, bytes);
   put(time, bytes);
+  for (const char* name : {"polygon_ends", "polygon_apical", "polygon_basal", "polygon_elements"})
+    put(field(name), bytes);
   std::string vectors, scalars;
   each_array(*grid->GetPointData(), 3, points.size(), [&](const std::string& name, vtkDataArray& array) {
     Vectors values(points.size());
@@ -127,6 +136,9 @@ Frame read_frame(const fs::path& file) try {
   if (frame.elements.empty()) throw_unread(file, "it holds no hexahedra");
   const auto time = take<std::vector<double>>(rest);
   if (!time.empty()) frame.time_s = time.front();
+  for (std::vector<int>* list :
+       {&frame.polygons.ends, &frame.polygons.apical, &frame.polygons.basal, &frame.polygons.elements})
+    *list = take<std::vector<int>>(rest);
   const auto vectors = take<std::string>(rest), scalars = take<std::string>(rest);
   for (std::string_view left = vectors; !left.empty();) {
     const auto name = take<std::string>(left);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkCellTypes.h>
+#include <vtkDataSet.h>
 #include <vtkDataSetSurfaceFilter.h>
 #include <vtkGenericDataObjectReader.h>
 #include <vtkIdList.h>
@@ -25,7 +26,6 @@
 #include <sstream>
 #include <system_error>
 
-#include "core/child_process.hpp"
 #include "core/errors.hpp"
 #include "core/one_thread_vtk.hpp"
 #include "tissue/files/grid_reading.hpp"
@@ -131,27 +131,6 @@ void check_hexahedra(vtkUnstructuredGrid& grid) {
 
 }  // namespace
 
-void throw_unread(const std::filesystem::path& file, const std::string& why) {
-  throw FileError(fmt::format("{}: cannot be read: {}", file.string(), why));
-}
-
-std::string read_in_child(const std::filesystem::path& file, const std::function<std::string()>& read) {
-  // A letter for the kind of answer, then what was read or the error.
-  const std::optional<std::string> answer = output_of_child("reading " + file.string(), [&] {
-    try {
-      return 'r' + read();
-    } catch (const MeshError& error) {
-      return std::string("m") + error.what();
-    } catch (const FileError& error) {
-      return std::string("f") + error.what();
-    }
-  });
-  if (!answer || answer->empty()) throw_unread(file, "it is damaged: VTK breaks off at it");
-  if (answer->front() == 'f') throw FileError(answer->substr(1));
-  if (answer->front() == 'm') throw MeshError(answer->substr(1));
-  return answer->substr(1);
-}
-
 vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& file) {
   if (is_xml(file)) {
     vtkNew<vtkXMLUnstructuredGridReader> reader;
@@ -161,6 +140,17 @@ vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& file
   reader->ReadAllScalarsOn();  // by default, the first array only
   reader->ReadAllFieldsOn();
   return output_of<vtkUnstructuredGrid>(file, *reader, *reader);
+}
+
+vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& file) {
+  if (is_xml(file)) {
+    vtkNew<vtkXMLGenericDataObjectReader> reader;
+    return output_of<vtkDataSet>(file, *reader, *reader);
+  }
+  vtkNew<vtkGenericDataObjectReader> reader;
+  reader->ReadAllScalarsOn();
+  reader->ReadAllFieldsOn();
+  return output_of<vtkDataSet>(file, *reader, *reader);
 }
 
 vtkSmartPointer<vtkPolyData> read_triangles(const std::filesystem::path& file) {

@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
+#include <vtkFieldData.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <cmath>
+#include <limits>
+#include <set>
 
 #include "core/errors.hpp"
 #include "core/one_thread_vtk.hpp"
@@ -53,12 +56,52 @@ void copy_arrays(vtkUnstructuredGrid& grid, const std::string& apical_array, Hex
                                 names.empty() ? "is none at all" : "are: " + names));
 }
 
+std::vector<int> whole_numbers(vtkDataArray* array) {
+  std::vector<int> numbers;
+  if (array == nullptr) return numbers;
+  const vtkIdType components = array->GetNumberOfComponents();
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples() * components; ++i) {
+    const double value = array->GetComponent(i / components, static_cast<int>(i % components));
+    if (!(std::abs(value) <= std::numeric_limits<int>::max()) || value != std::floor(value))
+      throw MeshError(fmt::format("\"{}\" holds {}; its values are whole numbers", array->GetName(), value));
+    numbers.push_back(static_cast<int>(value));
+  }
+  return numbers;
+}
+
+/// Whose cells have several hexahedra, the array cell_id tells, or the lists beside the grid.
+void copy_groups(vtkUnstructuredGrid& grid, HexahedralMesh& mesh) {
+  const auto list = [&](const char* name) { return whole_numbers(grid.GetFieldData()->GetArray(name)); };
+  CellGroups groups{
+      {}, list("elements_per_cell"), list("cell_corner_counts"), list("cell_corners"), list("hanging_nodes")};
+  const bool is_told = !groups.elements_per_cell.empty() || !groups.corner_counts.empty();
+  const auto id = mesh.arrays.find("cell_id");
+  if (id == mesh.arrays.end()) {
+    if (is_told) throw MeshError("the file tells of its cells' corners, and has no cell array cell_id");
+    return;
+  }
+  const std::set<double> cells(id->second.begin(), id->second.end());
+  if (!is_told && cells.size() == mesh.cells.size()) return;
+  if (!is_told)
+    throw MeshError(fmt::format(
+        "the array cell_id joins {} hexahedra to {} cells, and the file does not tell their corners: it should have "
+        "the "
+        "field arrays cell_corner_counts and cell_corners, as plica mesh writes them. If each hexahedron is a cell, "
+        "remove cell_id",
+        mesh.cells.size(), cells.size()));
+  groups.cell_of = whole_numbers(grid.GetCellData()->GetArray("cell_id"));
+  mesh.groups = std::move(groups);
+}
+
 /// What the child process makes of the file.
 HexahedralMesh mesh_in(const std::filesystem::path& file, const std::string& apical_array) {
   HexahedralMesh mesh;
   const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
   copy_hexahedra(*grid, mesh.points, mesh.cells);
-  if (!mesh.cells.empty()) copy_arrays(*grid, apical_array, mesh);
+  if (!mesh.cells.empty()) {
+    copy_arrays(*grid, apical_array, mesh);
+    copy_groups(*grid, mesh);
+  }
   return mesh;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "tissue/hexahedral_mesh.hpp"
 
@@ -19,14 +18,6 @@ double bounded_height(double height, double bound) {
   return bound * (free_share + (1 - free_share) * std::tanh((share - free_share) / (1 - free_share)));
 }
 
-// The largest inward curvature's radius, or infinity where the surface is flat or hollow.
-double least_radius(const SurfaceBend& bend) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const double radius : bend.radii)
-    if (radius > 0) least = std::min(least, radius);
-  return least;
-}
-
 void check_heights(const PolygonSurface& polygons, std::span<const double> heights_um) {
   if (heights_um.size() != 1 && heights_um.size() != polygons.polygons.size())
     throw MeshError(fmt::format("{} heights for {} cells; there should be one, or one a cell", heights_um.size(),
@@ -36,12 +27,46 @@ void check_heights(const PolygonSurface& polygons, std::span<const double> heigh
       throw MeshError(fmt::format("the height of row {} is {:.4g} um; it should be positive", i, heights_um[i]));
 }
 
+// Whether a part of the basal face, about its middle, is turned over or nearly so, seen along the apical normal.
+bool is_folded(const PrismSheet& sheet, const std::vector<std::size_t>& cell) {
+  constexpr double least_share = 0.05;  // of the apical part above
+  const Vec3 normal = area_vector(sheet.apical, cell).normalized();
+  Vec3 apical_middle = Vec3::Zero(), basal_middle = Vec3::Zero();
+  for (const std::size_t vertex : cell) {
+    apical_middle += sheet.apical[vertex] / static_cast<double>(cell.size());
+    basal_middle += sheet.basal[vertex] / static_cast<double>(cell.size());
+  }
+  for (std::size_t k = 0; k < cell.size(); ++k) {
+    const std::size_t a = cell[k], b = cell[(k + 1) % cell.size()];
+    const double above = (sheet.apical[a] - apical_middle).cross(sheet.apical[b] - apical_middle).dot(normal);
+    const double below = (sheet.basal[a] - basal_middle).cross(sheet.basal[b] - basal_middle).dot(normal);
+    if (!(below > least_share * above)) return true;
+  }
+  return false;
+}
+
+// On a rough surface neighbouring normals cross before the bound says so. There, vertices come up until they do not.
+void unfold(PrismSheet& sheet) {
+  constexpr int most_passes = 30;
+  constexpr double left = 0.9;  // of a height, after a pass
+  for (int pass = 0; pass < most_passes; ++pass) {
+    std::vector<char> comes_up(sheet.apical.size(), 0);
+    for (const auto& cell : sheet.cells)
+      if (is_folded(sheet, cell))
+        for (const std::size_t vertex : cell) comes_up[vertex] = 1;
+    if (std::ranges::none_of(comes_up, [](char up) { return up != 0; })) return;
+    for (std::size_t v = 0; v < comes_up.size(); ++v)
+      if (comes_up[v] != 0) sheet.basal[v] = sheet.apical[v] + left * (sheet.basal[v] - sheet.apical[v]);
+  }
+}
+
 }  // namespace
 
-ExtrudedSheet extrude(const PolygonSurface& polygons, const StarSurface& surface, std::span<const double> heights_um) {
+ExtrudedSheet extrude(const PolygonSurface& polygons, std::span<const VertexBend> bends,
+                      std::span<const double> heights_um) {
   check_heights(polygons, heights_um);
   const auto height_of = [&](std::size_t cell) { return heights_um[heights_um.size() == 1 ? 0 : cell]; };
-  ExtrudedSheet sheet{{polygons.vertices, polygons.vertices, polygons.polygons}};
+  ExtrudedSheet sheet{{polygons.vertices, polygons.vertices, polygons.polygons}, "", 0, 0, 0};
 
   // What the cells at a vertex ask for, on average.
   std::vector<double> asked(sheet.apical.size(), 0.0), cell_count(sheet.apical.size(), 0.0);
@@ -52,10 +77,11 @@ ExtrudedSheet extrude(const PolygonSurface& polygons, const StarSurface& surface
     }
   for (std::size_t v = 0; v < sheet.apical.size(); ++v) {
     if (cell_count[v] == 0) continue;
-    const SurfaceBend bend = surface.bend(sheet.apical[v]);
-    sheet.basal[v] -= bounded_height(asked[v] / cell_count[v], largest_height_share * least_radius(bend)) * bend.normal;
+    const double bound = largest_height_share * bends[v].least_radius_um;
+    sheet.basal[v] -= bounded_height(asked[v] / cell_count[v], bound) * bends[v].normal;
   }
 
+  unfold(sheet);
   const std::vector<double> heights = prism_heights(sheet);
   for (std::size_t cell = 0; cell < sheet.cells.size(); ++cell) {
     double wanted = 0;
@@ -68,7 +94,15 @@ ExtrudedSheet extrude(const PolygonSurface& polygons, const StarSurface& surface
                                   cell, height_of(cell)));
   }
   if (!heights.empty()) sheet.lowest_um = heights[sheet.lowest_cell];
+  sheet.asked_um = heights_um.size() == 1 ? fmt::format("{:.3g} um", heights_um[0]) : "asked for";
   return sheet;
+}
+
+void note_lower_cells(const ExtrudedSheet& sheet, std::vector<std::string>& remarks) {
+  if (sheet.lower_cells > 0)
+    remarks.push_back(
+        fmt::format("{} cells are lower than {}, the lowest, cell {}, {:.3g} um: the surface bends too sharply there",
+                    sheet.lower_cells, sheet.asked_um, sheet.lowest_cell, sheet.lowest_um));
 }
 
 std::vector<double> prism_heights(const PrismSheet& sheet) {

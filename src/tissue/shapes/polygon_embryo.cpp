@@ -2,43 +2,88 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 
+#include "tissue/hexahedral_mesh.hpp"
 #include "tissue/shapes/even_points.hpp"
 #include "tissue/shapes/extrusion.hpp"
+#include "tissue/shapes/given_surface.hpp"
 #include "tissue/shapes/surface_polygons.hpp"
 
 namespace plica {
 namespace {
 
-// What had to be mended, in the words of whoever wants to know.
-std::vector<std::string> remarks_on(const CellPolygons& polygons, const ExtrudedSheet& sheet, double height_um) {
-  std::vector<std::string> remarks;
-  if (polygons.lengthened_edges + polygons.sharpened_corners > 0)
-    remarks.push_back(fmt::format(
-        "{} edges were too short for a mesh and {} angles too wide: their vertices were moved, by {:.2g} um at most",
-        polygons.lengthened_edges, polygons.sharpened_corners, polygons.furthest_move_um));
-  if (polygons.left_edges + polygons.left_corners > 0)
-    remarks.push_back(
-        fmt::format("{} edges are still short, and {} angles still wide", polygons.left_edges, polygons.left_corners));
-  if (sheet.lower_cells > 0)
-    remarks.push_back(fmt::format(
-        "{} cells are lower than {:.3g} um, the lowest, cell {}, {:.3g} um: the surface bends too sharply there",
-        sheet.lower_cells, height_um, sheet.lowest_cell, sheet.lowest_um));
-  return remarks;
-}
-
 Tissue build_on(const StarSurface& surface, const Vectors& points, const PolygonCells& cells) {
   const CellPolygons polygons = polygons_of_points(points, surface, {.least_edge = cells.least_edge_ratio});
-  const ExtrudedSheet sheet = extrude(polygons.surface, surface, std::array{cells.height_um});
+  const ExtrudedSheet sheet =
+      extrude(polygons.surface, vertex_bends(polygons.surface, surface), std::array{cells.height_um});
   Tissue tissue = tissue_from_prisms(sheet, cells.split, cells.layers);
   tissue.outer_shape = OuterShape(std::make_shared<const StarSurface>(surface));
-  tissue.remarks = remarks_on(polygons, sheet, cells.height_um);
+  tissue.remarks = remarks_on(polygons);
+  note_lower_cells(sheet, tissue.remarks);
   return tissue;
 }
 
+constexpr double largest_roughness = 0.02;  // of the least half-axis, that a vertex may be from a smooth surface
+
+StarSurface smooth_surface(const PolygonSurface& surface) {
+  const StarFit fit = fit_star_surface(surface.vertices);
+  const double allowed = largest_roughness * fit.surface.half_axes().minCoeff();
+  if (fit.largest_um > allowed)
+    throw MeshError(
+        fmt::format("vertex {} lies {:.2g} um from the smooth surface that is nearest to all, and {:.2g} um "
+                    "are allowed",
+                    fit.largest_row, fit.largest_um, allowed));
+  return fit.surface;
+}
+
+// No vertex lies beyond it.
+OuterShape shape_around(const StarSurface& smooth, const Vectors& vertices) {
+  double outside = 0;
+  for (const Vec3& vertex : vertices) outside = std::max(outside, smooth.closest(vertex).signed_distance_um);
+  return OuterShape(std::make_shared<const StarSurface>(smooth)).moved_out(outside);
+}
+
+void move_to_origin(PolygonSurface& surface) {
+  Vec3 sum = Vec3::Zero();
+  double area = 0;
+  for (const auto& polygon : surface.polygons) {
+    Vec3 middle = Vec3::Zero();
+    for (const std::size_t vertex : polygon) middle += surface.vertices[vertex] / static_cast<double>(polygon.size());
+    const PolygonFan fan = fan_about(surface.vertices, polygon, middle);
+    sum += fan.area * fan.centroid;
+    area += fan.area;
+  }
+  for (Vec3& vertex : surface.vertices) vertex -= sum / area;
+}
+
 }  // namespace
+
+SurfaceTissue build_under_surface(GivenSurface given, const PolygonCells& cells) {
+  PolygonSurface& surface = given.surface;
+  for (Vec3& vertex : surface.vertices) vertex = vertex.cwiseProduct(given.scale);
+  const MendedSurface mended = check_and_mend(surface, given.mend, {.least_edge = cells.least_edge_ratio});
+  if (given.centre) move_to_origin(surface);
+  SurfaceTissue result;
+  std::optional<StarSurface> smooth;
+  try {
+    if (!mended.is_closed) throw MeshError("the surface has a rim, and a shell is closed");
+    smooth = smooth_surface(surface);
+  } catch (const MeshError& error) {
+    result.why_no_shape = error.what();
+  }
+  const std::vector<double> heights_um = given.heights_um.empty() ? std::vector{cells.height_um} : given.heights_um;
+  const ExtrudedSheet sheet =
+      extrude(surface, smooth ? vertex_bends(surface, *smooth) : vertex_bends(surface), heights_um);
+  result.tissue = tissue_from_prisms(sheet, cells.split, cells.layers);
+  result.tissue.remarks = mended.remarks;
+  note_lower_cells(sheet, result.tissue.remarks);
+  if (smooth) result.tissue.outer_shape = shape_around(*smooth, surface.vertices);
+  return result;
+}
 
 Tissue build_egg(const EggShape& shape, std::size_t count, std::uint64_t seed, const PolygonCells& cells) {
   const StarSurface surface = egg_surface(shape);

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "tissue/hexahedral_mesh.hpp"
-
 namespace plica {
 namespace {
 
@@ -26,9 +24,9 @@ class Moves {
 
   [[nodiscard]] bool any() const { return any_; }
 
-  void apply(const StarSurface& surface, Vectors& vertices) const {
+  void apply(const MendingGround& ground, Vectors& vertices) const {
     for (std::size_t v = 0; v < vertices.size(); ++v)
-      if (!moves_[v].isZero(0)) vertices[v] = surface.put_on(vertices[v] + moves_[v]);
+      if (!moves_[v].isZero(0)) vertices[v] = ground.allowed(v, vertices[v] + moves_[v]);
   }
 
  private:
@@ -36,18 +34,12 @@ class Moves {
   bool any_ = false;
 };
 
-// The way along the edge, its left cell's point being `left`. The dual edge of a Delaunay triangulation is
-// perpendicular to the line between its points, but on a bent surface a short one may run backwards a little.
-Vec3 edge_direction(const Vec3& left, const Vec3& right, const Vec3& normal) {
-  return normal.cross(right - left).normalized();
-}
-
-std::size_t lengthen_edges(const std::vector<PolygonEdge>& edges, const Vectors& points, const Vectors& normals,
-                           double least_um, const Vectors& vertices, Moves& moves) {
+std::size_t lengthen_edges(const std::vector<PolygonEdge>& edges, const MendingGround& ground, double least_um,
+                           const Vectors& vertices, Moves& moves) {
   std::size_t count = 0;
   for (const PolygonEdge& edge : edges) {
     const auto [from, to] = edge.vertices;
-    const Vec3 direction = edge_direction(points[edge.left], points[edge.right], normals[edge.left]);
+    const Vec3 direction = ground.along(edge);
     const double length = (vertices[to] - vertices[from]).dot(direction);
     if (length >= least_um) continue;
     ++count;
@@ -86,13 +78,6 @@ double mean_length(const std::vector<PolygonEdge>& edges, const Vectors& vertice
   return sum / static_cast<double>(edges.size());
 }
 
-Vectors normals_at(const Vectors& points, const StarSurface& surface) {
-  Vectors normals;
-  normals.reserve(points.size());
-  for (const Vec3& point : points) normals.push_back(surface.bend(point).normal);
-  return normals;
-}
-
 }  // namespace
 
 std::vector<double> polygon_angles_deg(const Vectors& vertices, const std::vector<std::size_t>& polygon,
@@ -110,44 +95,48 @@ std::vector<double> polygon_angles_deg(const Vectors& vertices, const std::vecto
   return angles;
 }
 
-void mend_polygons(const Vectors& points, const StarSurface& surface, const PolygonOptions& options,
-                   CellPolygons& cells) {
-  Vectors& vertices = cells.surface.vertices;
-  const Vectors start = vertices, normals = normals_at(points, surface);
-  const std::vector<PolygonEdge> edges = polygon_edges(cells.surface);
+MendedPolygons mend_polygons(const MendingGround& ground, const PolygonOptions& options, PolygonSurface& surface) {
+  MendedPolygons mended;
+  Vectors& vertices = surface.vertices;
+  const Vectors start = vertices;
+  const std::vector<PolygonEdge> edges = polygon_edges(surface);
   const double least_um = options.least_edge * mean_length(edges, vertices);
-  for (;; ++cells.passes) {
+  for (;; ++mended.passes) {
     Moves moves(vertices.size());
-    cells.left_edges = lengthen_edges(edges, points, normals, least_um, vertices, moves);
-    cells.left_corners = sharpen_corners(cells.surface, normals, options.largest_angle_deg, moves);
-    if (cells.passes == 0) {
-      cells.lengthened_edges = cells.left_edges;
-      cells.sharpened_corners = cells.left_corners;
+    mended.left_edges = lengthen_edges(edges, ground, least_um, vertices, moves);
+    mended.left_corners = sharpen_corners(surface, ground.normals, options.largest_angle_deg, moves);
+    if (mended.passes == 0) {
+      mended.lengthened_edges = mended.left_edges;
+      mended.sharpened_corners = mended.left_corners;
     }
-    if (!moves.any() || cells.passes == most_passes) break;
-    moves.apply(surface, vertices);
+    if (!moves.any() || mended.passes == most_passes) break;
+    moves.apply(ground, vertices);
   }
   for (std::size_t v = 0; v < vertices.size(); ++v)
-    cells.furthest_move_um = std::max(cells.furthest_move_um, (vertices[v] - start[v]).norm());
+    mended.furthest_move_um = std::max(mended.furthest_move_um, (vertices[v] - start[v]).norm());
+  return mended;
 }
 
-void check_polygons(const Vectors& points, const StarSurface& surface, const PolygonSurface& polygons) {
-  for (std::size_t p = 0; p < polygons.polygons.size(); ++p) {
-    const auto& polygon = polygons.polygons[p];
-    const std::vector<double> angles = polygon_angles_deg(polygons.vertices, polygon, surface.bend(points[p]).normal);
-    double turn = 0;
-    for (const double angle : angles) turn += 180 - angle;
-    const double widest = *std::ranges::max_element(angles);
-    // Convex at every corner and once around: it cannot cross itself.
-    if (widest < 179 && std::abs(turn - 360) < 1 && polygon.size() > 2) continue;
-    const Vec3& at = points[p];
-    throw MeshError(
-        fmt::format("the cell of row {} at ({:.4g}, {:.4g}, {:.4g}) um {}; its point should be further from "
-                    "its neighbours', or these more even",
-                    p, at.x(), at.y(), at.z(),
-                    std::abs(turn - 360) < 1 ? fmt::format("is not convex, with a corner of {:.0f} degrees", widest)
-                                             : "crosses itself"));
-  }
+std::vector<std::string> remarks_on(const MendedPolygons& mended) {
+  std::vector<std::string> remarks;
+  if (mended.lengthened_edges + mended.sharpened_corners > 0)
+    remarks.push_back(fmt::format(
+        "{} edges were too short for a mesh and {} angles too wide: their vertices were moved, by {:.2g} um at most",
+        mended.lengthened_edges, mended.sharpened_corners, mended.furthest_move_um));
+  if (mended.left_edges + mended.left_corners > 0)
+    remarks.push_back(
+        fmt::format("{} edges are still short, and {} angles still wide", mended.left_edges, mended.left_corners));
+  return remarks;
+}
+
+std::string polygon_flaw(const Vectors& vertices, const std::vector<std::size_t>& polygon, const Vec3& normal) {
+  const std::vector<double> angles = polygon_angles_deg(vertices, polygon, normal);
+  double turn = 0;
+  for (const double angle : angles) turn += 180 - angle;
+  const double widest = *std::ranges::max_element(angles);
+  // Convex at every corner and once around: it cannot cross itself.
+  if (!(std::abs(turn - 360) < 1) || polygon.size() < 3) return "crosses itself";
+  return widest < 179 ? "" : fmt::format("is not convex, with a corner of {:.0f} degrees", widest);
 }
 
 }  // namespace plica

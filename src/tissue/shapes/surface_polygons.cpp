@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "tissue/hexahedral_mesh.hpp"
-#include "tissue/shapes/polygon_mending.hpp"
-
 namespace plica {
 namespace {
 
@@ -38,6 +36,19 @@ Vectors points_on(const Vectors& points, const StarSurface& surface, double furt
   return on;
 }
 
+// The dual edge of a Delaunay triangulation is perpendicular to the line between its points, but on a bent surface a
+// short one may run backwards a little.
+MendedPolygons mend_about(const Vectors& points, const StarSurface& surface, const PolygonOptions& options,
+                          PolygonSurface& polygons) {
+  MendingGround ground;
+  for (const Vec3& point : points) ground.normals.push_back(surface.bend(point).normal);
+  ground.along = [&](const PolygonEdge& edge) {
+    return Vec3(ground.normals[edge.left].cross(points[edge.right] - points[edge.left]).normalized());
+  };
+  ground.allowed = [&](std::size_t, const Vec3& to) { return surface.put_on(to); };
+  return mend_polygons(ground, options, polygons);
+}
+
 }  // namespace
 
 PolygonSurface dual_polygons(const Vectors& points, const SurfaceTriangulation& triangulation,
@@ -60,6 +71,18 @@ PolygonSurface dual_polygons(const Vectors& points, const SurfaceTriangulation& 
   return dual;
 }
 
+void check_polygons(const Vectors& points, const StarSurface& surface, const PolygonSurface& polygons) {
+  for (std::size_t p = 0; p < polygons.polygons.size(); ++p) {
+    const std::string flaw = polygon_flaw(polygons.vertices, polygons.polygons[p], surface.bend(points[p]).normal);
+    const Vec3& at = points[p];
+    if (!flaw.empty())
+      throw MeshError(
+          fmt::format("the cell of row {} at ({:.4g}, {:.4g}, {:.4g}) um {}; its point should be further from its "
+                      "neighbours', or these more even",
+                      p, at.x(), at.y(), at.z(), flaw));
+  }
+}
+
 CellPolygons polygons_of_points(const Vectors& points, const StarSurface& surface, const PolygonOptions& options) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!points[i].allFinite())
@@ -69,7 +92,7 @@ CellPolygons polygons_of_points(const Vectors& points, const StarSurface& surfac
   CellPolygons cells;
   cells.flipped_edges = flip_to_delaunay(on, triangulation);
   cells.surface = dual_polygons(on, triangulation, surface);
-  mend_polygons(on, surface, options, cells);
+  static_cast<MendedPolygons&>(cells) = mend_about(on, surface, options, cells.surface);
   check_polygons(on, surface, cells.surface);
   return cells;
 }

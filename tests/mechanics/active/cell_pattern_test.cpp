@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "mechanics/active/contraction.hpp"
+#include "mechanics/active/cortex.hpp"
+#include "support/law_checks.hpp"
+#include "support/prisms.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {
@@ -184,6 +188,151 @@ TEST(PatternRule, ChanceIsAFunctionOfSeedAndCell) {
   EXPECT_NE(all.strengths[4], all.strengths[20]);
   pattern.seed = 6;
   EXPECT_NE(cell_pattern(tissue, some, pattern).strengths[4], few.strengths[4]);
+}
+
+// In degrees about the belly, from wherever the region lies.
+TEST(PatternRule, AnglesAreAboutTheBelly) {
+  const Tissue ring = build_slice({.length_um = 7, .diameter_um = 180, .cell_height_um = 35, .cells = {1, 20, 20}});
+  PatternRule pattern;
+  int checked = 0;
+  for (const double centre : {0.0, 40.0, -170.0}) {
+    pattern.profile = {
+        .shape = Shape::plateau, .axis = PatternAxis::angle, .centre = centre, .half_width = 30, .fade = 25};
+    const CellPattern found = cell_pattern(ring, CellSet(80, true), pattern);
+    for (int c = 0; c < 80; ++c, ++checked) {
+      const Vec3 x = cell_centre(ring.cells[c], ring.rest_positions);
+      double d = std::abs(std::atan2(x.y(), -x.z()) * 180 / M_PI - centre);
+      if (d > 180) d = 360 - d;
+      const double expected = d <= 30 ? 1 : d < 55 ? 0.5 * (1 + std::cos(M_PI * (d - 30) / 25)) : 0;
+      EXPECT_NEAR(found.strengths[c], expected, 1e-9) << c;
+    }
+  }
+  EXPECT_EQ(checked, 240);
+}
+
+TEST(PatternRule, TablesAreLinearBetweenTheirPoints) {
+  const Tissue tissue = sheet();
+  PatternRule pattern;
+  pattern.profile = {.shape = Shape::table, .axis = PatternAxis::along, .places = {0, 30, 50}, .values = {2, 0.5, 1}};
+  const double by_distance[] = {1, 0.75, 1, 2, 1, 0.75, 1};  // 60, 40, 20, 0 um from the middle
+  const CellPattern found = cell_pattern(tissue, CellSet(21, true), pattern);
+  for (int c = 0; c < 21; ++c) EXPECT_NEAR(found.strengths[c], by_distance[c % 7], 1e-14) << c;
+  // With places on both sides; in cells.
+  pattern.profile.places = {-2, 0, 3};
+  pattern.profile.values = {0, 1, 4};
+  pattern.profile.in_cells = true;
+  const double by_place[] = {0, 0, 0.5, 1, 2, 3, 4};
+  const CellPattern other = cell_pattern(tissue, CellSet(21, true), pattern);
+  for (int c = 0; c < 21; ++c) EXPECT_NEAR(other.strengths[c], by_place[c % 7], 1e-14) << c;
+}
+
+TEST(PatternRule, ArraysSayHowStrongCellsAre) {
+  const Tissue tissue = sheet();
+  PatternRule pattern;
+  pattern.profile = {.shape = Shape::array, .array_0 = 2, .array_1 = 12};
+  for (int c = 0; c < 21; ++c) pattern.profile.array.push_back(c);
+  pattern.edge = 0.2;
+  CellPattern found = cell_pattern(tissue, CellSet(21, true), pattern);
+  for (int c = 0; c < 21; ++c) EXPECT_NEAR(found.strengths[c], 0.2 + 0.8 * std::clamp((c - 2) / 10.0, 0.0, 1.0), 1e-14);
+  std::swap(pattern.profile.array_0, pattern.profile.array_1);  // what weakens
+  found = cell_pattern(tissue, CellSet(21, true), pattern);
+  for (int c = 0; c < 21; ++c) EXPECT_NEAR(found.strengths[c], 1 - 0.8 * std::clamp((c - 2) / 10.0, 0.0, 1.0), 1e-14);
+}
+
+// Hexagons 12 wide from flat to flat, 20.78 / 2 between rows along the other direction: rows are 3/2 edges apart.
+TEST(PatternRule, PolygonsAreAsWideAsTheirRowsAreApart) {
+  const double edge = 4;
+  const Tissue comb = tissue_from_prisms(honeycomb(9, 9, edge, 12), PolygonSplit::diagonals, 1);
+  PatternRule in_cells, in_um;
+  in_cells.profile = {.shape = Shape::gaussian, .axis = PatternAxis::across, .sigma = 2, .in_cells = true};
+  in_um.profile = {.shape = Shape::gaussian, .axis = PatternAxis::across, .sigma = 2 * 1.5 * edge};
+  const CellSet cells(comb.cells.size(), true);
+  const CellPattern a = cell_pattern(comb, cells, in_cells), b = cell_pattern(comb, cells, in_um);
+  for (std::size_t c = 0; c < cells.size(); ++c) EXPECT_NEAR(a.strengths[c], b.strengths[c], 1e-12);
+}
+
+// The same cells in another order, with corners that are summed in another order, have the same chance by place.
+TEST(PatternRule, ChanceByPlaceDoesNotDependOnNumbers) {
+  const Tissue tissue = build_shell({.length_um = 460, .cells = {18, 9, 8}});
+  Tissue other = tissue;
+  std::ranges::reverse(other.cells);
+  for (Cell& cell : other.cells) std::ranges::reverse(cell.corners);
+  PatternRule pattern;
+  pattern.spread = 0.3;
+  pattern.by_place = true;
+  pattern.pulse = {.period_s = 80, .spread = 0.2, .seed = 3};
+  const std::size_t count = tissue.cells.size();
+  const CellPattern a = cell_pattern(tissue, CellSet(count, true), pattern),
+                    b = cell_pattern(other, CellSet(count, true), pattern);
+  double sum = 0, squares = 0, phases = 0;
+  for (std::size_t c = 0; c < count; ++c) {
+    EXPECT_EQ(a.strengths[c], b.strengths[count - 1 - c]);
+    EXPECT_EQ(a.pulse_phases[c], b.pulse_phases[count - 1 - c]);
+    EXPECT_EQ(a.pulse_periods_s[c], b.pulse_periods_s[count - 1 - c]);
+    sum += a.strengths[c], squares += a.strengths[c] * a.strengths[c], phases += a.pulse_phases[c];
+  }
+  const double n = static_cast<double>(count), mean = sum / n;
+  EXPECT_NEAR(mean, 1, 5 * 0.3 / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(squares / n - mean * mean), 0.3, 0.03);
+  EXPECT_NEAR(phases / n, 0.5, 5 * 0.289 / std::sqrt(n));
+  pattern.seed = 2;
+  EXPECT_NE(cell_pattern(tissue, CellSet(count, true), pattern).strengths[0], a.strengths[0]);
+}
+
+TEST(PatternRule, PulsesSwellAndEbbAboutOne) {
+  const Tissue tissue = sheet();
+  PatternRule pattern;
+  pattern.pulse = {.period_s = 80, .amplitude = 0.6, .seed = 4};
+  const CellPattern found = cell_pattern(tissue, CellSet(21, true), pattern);
+  for (int c = 0; c < 21; ++c) {
+    double sum = 0;
+    for (int k = 0; k < 16; ++k) {
+      const double factor = found.pulse(CellId(c), 5.0 * k);
+      EXPECT_NEAR(factor, 1 + 0.6 * std::sin(2 * M_PI * (k / 16.0 + found.pulse_phases[c])), 1e-12);
+      EXPECT_NEAR(factor, found.pulse(CellId(c), 5.0 * k + 80), 1e-12);
+      sum += factor;
+    }
+    EXPECT_NEAR(sum / 16, 1, 1e-12);
+  }
+  EXPECT_NE(found.pulse_phases[0], found.pulse_phases[1]);
+  pattern.pulse.together = true;
+  const CellPattern together = cell_pattern(tissue, CellSet(21, true), pattern);
+  for (int c = 0; c < 21; ++c) EXPECT_EQ(together.pulse(CellId(c), 20), 1.6);
+  EXPECT_EQ(CellPattern(CellSet(21, true)).pulse(CellId(3), 7), 1);
+  // Daughters pulse with their mother.
+  Division division;
+  division.origin = {CellId(5), CellId(2), CellId(5)};
+  const CellPattern after = found.after_division(division);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(after.pulse(CellId(k), 33), found.pulse(division.origin[k], 33));
+}
+
+// Laws with pulses: forces and tangents belong to their energy, and all scale with the pulse.
+TEST(PatternRule, LawsPulse) {
+  const Tissue tissue =
+      distorted_block({.length_um = 40, .width_um = 20, .cell_height_um = 20, .cells = {2, 1, 1}}, 2, 3);
+  PatternRule rule;
+  rule.pulse = {.period_s = 3, .amplitude = 0.9, .seed = 4};
+  const CellPattern pattern = cell_pattern(tissue, CellSet(2, true), rule);
+  const ContractionRule springs{.stiffness = 2, .preload = 3};
+  const Contraction contraction(contraction_springs(tissue, pattern, springs), Program({0, 2}, {0, 1}), pattern);
+  const CortexRule of_cortex{.tension = 2, .saturation = 0.2, .program = Program({0, 2}, {0, 1})};
+  const Cortex cortex(tissue, pattern, of_cortex);
+  check_derivatives(contraction, tissue, 4);
+  check_derivatives(cortex, tissue, 4);
+  const Motion motion = random_motion(tissue, 3, 1);
+  Vectors expected(tissue.node_count(), Vec3::Zero());
+  for (const int one : {0, 1}) {
+    CellSet alone(2, false);
+    alone[one] = true;
+    const Contraction part(contraction_springs(tissue, alone, springs), Program({0, 2}, {0, 1}), alone);
+    const Vectors forces = forces_of(part, motion.step());
+    const double factor = pattern.pulse(CellId(one), motion.end_time_s);
+    for (std::size_t n = 0; n < expected.size(); ++n) expected[n] += factor * forces[n];
+    EXPECT_NEAR(*contraction.activity_of(CellId(one), 1.3, {}), 0.65 * factor, 1e-12);
+    EXPECT_NEAR(*cortex.activity_of(CellId(one), 1.3, {}), 0.65 * factor, 1e-12);
+  }
+  const Vectors found = forces_of(contraction, motion.step());
+  for (std::size_t n = 0; n < expected.size(); ++n) EXPECT_LT((found[n] - expected[n]).norm(), 1e-12);
 }
 
 TEST(PatternRule, ScalesStiffnessAndPreloadOfACellsSprings) {

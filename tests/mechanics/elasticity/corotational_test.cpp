@@ -4,6 +4,7 @@
 
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/division.hpp"
+#include "mechanics/elasticity/neo_hookean.hpp"
 #include "support/law_checks.hpp"
 
 namespace plica {
@@ -31,6 +32,33 @@ Vec3 force_on(const Tissue& tissue, const Vectors& forces, const Chosen& chosen)
   for (std::size_t n = 0; n < forces.size(); ++n)
     if (chosen(tissue.rest_positions[n])) sum += forces[n];
   return sum;
+}
+
+// Layers of a cell: an affine motion has the energy density of each layer's own modulus, and forces are those of the
+// layers together.
+TEST(Corotational, ElementsOfACellMayDiffer) {
+  const Tissue tissue = build_block(
+      {.length_um = 20, .width_um = 15, .cell_height_um = 12, .cells = {2, 1, 1}, .elements_per_cell = {1, 1, 3}});
+  const ElasticModuli base = ElasticModuli::from_young(young, poisson);
+  std::vector<ElasticModuli> moduli;
+  std::vector<double> bulk;
+  double expected = 0;
+  Mat3 stretch = Mat3::Identity();
+  stretch(0, 0) = 1.2, stretch(1, 1) = 0.9, stretch(0, 2) = stretch(2, 0) = 0.1;
+  const Mat3 strain = stretch - Mat3::Identity(), deviator = strain - strain.trace() / 3 * Mat3::Identity();
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
+    const double factor = 1 + static_cast<double>(e % 3) * 4;
+    moduli.push_back(factor * base);
+    bulk.push_back(factor * base.bulk_modulus());
+    expected += factor * base.shear_modulus * hex_volume(tissue.element_rest_shape[e]) * deviator.squaredNorm();
+  }
+  const Corotational law(tissue, moduli, 0);
+  Motion motion = at_rest(tissue);
+  for (Vec3& x : motion.positions) x = stretch * x;
+  EXPECT_NEAR(law.energy(motion.step()), expected, 1e-9 * expected);
+  check_derivatives(law, tissue, 2);
+  check_derivatives(Dilatation(tissue, bulk, false), tissue, 2);
+  check_derivatives(NeoHookean(tissue, std::vector<NeoHookeanMaterial>{{1}, {2}, {3}, {4}, {5}, {6}}), tissue, 2);
 }
 
 TEST(Corotational, DerivativesAgreeWithFiniteDifferences) {

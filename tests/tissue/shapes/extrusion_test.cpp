@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "support/mesh_error.hpp"
 #include "tissue/shapes/egg_surface.hpp"
@@ -17,13 +18,18 @@ namespace {
 
 StarSurface ball_of(double radius) { return {Mat3::Identity(), Vec3::Constant(radius), {1.0}}; }
 
+ExtrudedSheet extrude_on(const PolygonSurface& polygons, const StarSurface& surface,
+                         std::span<const double> heights_um) {
+  return extrude(polygons, vertex_bends(polygons, surface), heights_um);
+}
+
 PolygonSurface cells_on(const StarSurface& surface, std::size_t count) {
   return polygons_of_points(even_points(surface, count, 1), surface).surface;
 }
 
 TEST(PrismSheet, OnASphereHasTheVolumeOfTheShell) {
   const StarSurface ball = ball_of(100);
-  const ExtrudedSheet sheet = extrude(cells_on(ball, 2000), ball, std::array{30.0});
+  const ExtrudedSheet sheet = extrude_on(cells_on(ball, 2000), ball, std::array{30.0});
   EXPECT_EQ(sheet.lower_cells, 0);
   EXPECT_NEAR(sheet.lowest_um, 30, 1e-9);
   for (std::size_t v = 0; v < sheet.apical.size(); ++v) {
@@ -51,7 +57,7 @@ TEST(PrismSheet, OfACubeHasItsVolume) {
 TEST(PrismSheet, IsLowerWhereTheSurfaceBendsSharply) {
   const StarSurface egg = egg_surface({500, 180, 180, {}, {}});  // least radius 32 um, at the poles
   const PolygonSurface polygons = cells_on(egg, 1500);
-  const ExtrudedSheet sheet = extrude(polygons, egg, std::array{35.0});
+  const ExtrudedSheet sheet = extrude_on(polygons, egg, std::array{35.0});
   EXPECT_GT(sheet.lower_cells, 10);
   EXPECT_LT(sheet.lower_cells, polygons.polygons.size() / 4);
   EXPECT_LT(sheet.lowest_um, 25);
@@ -64,7 +70,7 @@ TEST(PrismSheet, IsLowerWhereTheSurfaceBendsSharply) {
     }
   }
   // Nothing is turned inside out, however high.
-  for (const double volume : prism_volumes(extrude(polygons, egg, std::array{500.0}))) EXPECT_GT(volume, 0);
+  for (const double volume : prism_volumes(extrude_on(polygons, egg, std::array{500.0}))) EXPECT_GT(volume, 0);
 }
 
 TEST(PrismSheet, TakesAHeightACell) {
@@ -72,7 +78,7 @@ TEST(PrismSheet, TakesAHeightACell) {
   const PolygonSurface polygons = cells_on(ball, 200);
   std::vector<double> heights(200, 20.0);
   heights[50] = 26;
-  const ExtrudedSheet sheet = extrude(polygons, ball, heights);
+  const ExtrudedSheet sheet = extrude_on(polygons, ball, heights);
   for (std::size_t k = 0; k < polygons.polygons[50].size(); ++k) {
     const std::size_t vertex = polygons.polygons[50][k];
     EXPECT_NEAR((sheet.apical[vertex] - sheet.basal[vertex]).norm(), 22, 1e-9);  // (26 + 20 + 20) / 3
@@ -83,10 +89,10 @@ TEST(PrismSheet, TakesAHeightACell) {
 TEST(PrismSheet, RefusesHeightsThatDoNotFit) {
   const StarSurface ball = ball_of(100);
   const PolygonSurface polygons = cells_on(ball, 50);
-  expect_mesh_error([&] { extrude(polygons, ball, std::vector<double>(49, 20.0)); }, "49 heights for 50 cells");
+  expect_mesh_error([&] { extrude_on(polygons, ball, std::vector<double>(49, 20.0)); }, "49 heights for 50 cells");
   std::vector<double> heights(50, 20.0);
   heights[13] = 0;
-  expect_mesh_error([&] { extrude(polygons, ball, heights); }, "row 13");
+  expect_mesh_error([&] { extrude_on(polygons, ball, heights); }, "row 13");
 }
 
 }  // namespace

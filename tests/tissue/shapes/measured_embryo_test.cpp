@@ -68,7 +68,7 @@ TEST_F(MeasuredEmbryo, LivesAsAnEggOfTheKnownSize) {
   stage("living surface");
   const CellPolygons cells = polygons_of_points(points, fit.surface);
   stage("polygons");
-  const ExtrudedSheet sheet = extrude(cells.surface, fit.surface, std::array{35.0});
+  const ExtrudedSheet sheet = extrude(cells.surface, vertex_bends(cells.surface, fit.surface), std::array{35.0});
   stage("prisms");
 
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();

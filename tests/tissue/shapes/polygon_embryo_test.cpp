@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
+#include "support/mesh_error.hpp"
 #include "support/whole.hpp"
 #include "tissue/mesh_quality.hpp"
 #include "tissue/shapes/even_points.hpp"
@@ -89,6 +91,133 @@ TEST(PolygonEmbryo, AboutPointsHasTheirSurface) {
     const Vec3 point = points[c].cwiseProduct(Vec3(1.5, 1, 1));
     EXPECT_LT((apex.normalized() - point.normalized()).norm(), 0.07) << "half a cell; cell " << c;
   }
+}
+
+constexpr double golden = std::numbers::phi;
+
+// All even permutations of the coordinates with all signs.
+Vectors orbit(const std::vector<Vec3>& seeds) {
+  Vectors points;
+  for (const Vec3& seed : seeds)
+    for (int turn = 0; turn < 3; ++turn)
+      for (int signs = 0; signs < 8; ++signs) {
+        Vec3 point(seed[turn], seed[(turn + 1) % 3], seed[(turn + 2) % 3]);
+        for (int axis = 0; axis < 3; ++axis)
+          if ((signs >> axis & 1) != 0) point[axis] = -point[axis];
+        if (std::ranges::none_of(points, [&](const Vec3& other) { return (other - point).norm() < 1e-9; }))
+          points.push_back(point);
+      }
+  return points;
+}
+
+// A football: 12 pentagons, 20 hexagons, edges of 2.
+PolygonSurface truncated_icosahedron() {
+  PolygonSurface surface;
+  surface.vertices = orbit({{0, 1, 3 * golden}, {1, 2 + golden, 2 * golden}, {golden, 2, 2 * golden + 1}});
+  Vectors outward = orbit({{0, 1, golden}});
+  const Vectors of_hexagons = orbit({{1, 1, 1}, {0, golden, 1 / golden}});
+  outward.insert(outward.end(), of_hexagons.begin(), of_hexagons.end());
+  for (const Vec3& direction : outward) {
+    double farthest = 0;
+    for (const Vec3& vertex : surface.vertices) farthest = std::max(farthest, vertex.dot(direction));
+    auto& polygon = surface.polygons.emplace_back();
+    for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+      if (surface.vertices[v].dot(direction) > farthest - 1e-9) polygon.push_back(v);
+    const Vec3 u = direction.unitOrthogonal(), w = direction.normalized().cross(u);
+    std::ranges::sort(
+        polygon, {}, [&](std::size_t v) { return std::atan2(surface.vertices[v].dot(w), surface.vertices[v].dot(u)); });
+  }
+  return surface;
+}
+
+// The volume within plane faces: a pyramid each.
+double volume_within(const Vectors& vertices, const std::vector<std::vector<std::size_t>>& polygons) {
+  double volume = 0;
+  for (const auto& polygon : polygons) volume += area_vector(vertices, polygon).dot(vertices[polygon[0]]) / 3;
+  return volume;
+}
+
+double volume_of(const Tissue& tissue) {
+  double volume = 0;
+  for (const Cell& cell : tissue.cells) volume += cell_volume(tissue, cell, tissue.rest_positions);
+  return volume;
+}
+
+const double football_volume = (125 + 43 * std::sqrt(5.0)) / 4;  // of an edge of 1
+const double pentagon_area = std::sqrt(25 + 10 * std::sqrt(5.0)) / 4, hexagon_area = 1.5 * std::sqrt(3.0);
+
+// Known: area and volume of the solid. Its vertices lie on a ball, so the basal faces are those of a smaller one.
+TEST_P(PolygonEmbryo, UnderAFootballHasItsAreaAndVolume) {
+  const PolygonSurface football = truncated_icosahedron();
+  ASSERT_EQ(football.vertices.size(), 60U);
+  ASSERT_EQ(football.polygons.size(), 32U);
+  const double edge = 10, height = 8;
+  const SurfaceTissue made =
+      build_under_surface({.surface = football, .scale = Vec3::Constant(edge / 2)}, {height, GetParam(), 2});
+  const Tissue& tissue = made.tissue;
+  EXPECT_EQ(made.why_no_shape, "");
+  EXPECT_EQ(tissue.cells.size(), 32U);
+  EXPECT_EQ(expect_faces_enclose_the_cells(tissue).rims, 0U);
+  const std::vector<double> areas = apical_areas(tissue, tissue.rest_positions);
+  for (std::size_t c = 0; c < 32; ++c)
+    EXPECT_NEAR(areas[c] / (edge * edge), c < 12 ? pentagon_area : hexagon_area, 1e-12);
+  const double inside = 1 - height / (edge / 2 * football.vertices[0].norm());
+  EXPECT_NEAR(volume_of(tissue) / (football_volume * std::pow(edge, 3) * (1 - std::pow(inside, 3))), 1, 1e-9);
+  ASSERT_TRUE(tissue.outer_shape);
+  for (const NodeId corner : tissue.cells[0].apical_corners())
+    EXPECT_NEAR(tissue.outer_shape->gap(tissue.rest_positions[corner.index()]).value, 0, 1e-6);
+}
+
+// Off the origin there is no smooth surface. Its vertices are alike, so the basal faces are plane all the same, and
+// known from the way that a vertex goes: against the mean of its faces' normals by area.
+TEST_P(PolygonEmbryo, UnderAFootballElsewhereGoesAlongMeanNormals) {
+  PolygonSurface football = truncated_icosahedron();
+  const double height = 1.6;
+  Vectors basal(60, Vec3::Zero());
+  for (std::size_t c = 0; c < 32; ++c)
+    for (const std::size_t v : football.polygons[c])
+      basal[v] -=
+          (c < 12 ? pentagon_area : hexagon_area) * area_vector(football.vertices, football.polygons[c]).normalized();
+  for (std::size_t v = 0; v < 60; ++v) basal[v] = football.vertices[v] + height * basal[v].normalized();
+  for (Vec3& vertex : football.vertices) vertex += Vec3(100, 50, 0);
+  const SurfaceTissue made = build_under_surface({.surface = football}, {height, GetParam(), 1});
+  EXPECT_NE(made.why_no_shape.find("is it outside of them?"), std::string::npos) << made.why_no_shape;
+  EXPECT_NEAR(volume_of(made.tissue) / (8 * football_volume - volume_within(basal, football.polygons)), 1, 1e-9);
+}
+
+TEST(SurfaceEmbryo, TakesAHeightACellAndMovesToTheMiddle) {
+  PolygonSurface football = truncated_icosahedron();
+  for (Vec3& vertex : football.vertices) vertex += Vec3(100, 50, 0);
+  std::vector<double> heights(32, 1.0);
+  heights[3] = 1.3;
+  const SurfaceTissue off = build_under_surface({.surface = football, .heights_um = heights}, {});
+  EXPECT_NE(off.why_no_shape.find("is it outside of them?"), std::string::npos) << off.why_no_shape;
+  EXPECT_FALSE(off.tissue.outer_shape);
+  const SurfaceTissue centred = build_under_surface({.surface = football, .heights_um = heights, .centre = true}, {});
+  EXPECT_EQ(centred.why_no_shape, "");
+  const auto height = [&](std::size_t c) {
+    const Cell& cell = centred.tissue.cells[c];
+    return (centred.tissue.rest_positions[cell.apical_corners()[0].index()] -
+            centred.tissue.rest_positions[cell.basal_corners()[0].index()])
+        .norm();
+  };
+  EXPECT_NEAR(height(3), 1.1, 1e-9);  // the mean of three cells
+  expect_mesh_error(
+      [&] {
+        build_under_surface({.surface = football, .heights_um = {1, 2}}, {});
+      },
+      "2 heights for 32 cells");
+  heights[5] = 0;
+  expect_mesh_error([&] { build_under_surface({.surface = football, .heights_um = heights}, {}); },
+                    "the height of row 5 is 0 um; it should be positive");
+}
+
+TEST(SurfaceEmbryo, AnOpenOneHasNoShape) {
+  PolygonSurface football = truncated_icosahedron();
+  football.polygons.pop_back();
+  const SurfaceTissue made = build_under_surface({.surface = football}, {1});
+  EXPECT_EQ(made.why_no_shape, "the surface has a rim, and a shell is closed");
+  EXPECT_EQ(expect_faces_enclose_the_cells(made.tissue).rims, 6U);
 }
 
 }  // namespace

@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/output_file.hpp"
+#include "app/times.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "measure/reference_run.hpp"
+#include "record/polygon_surface.hpp"
+
+namespace plica {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportCommand {
+  std::string directory, out, time = "last", side = "apical";
+  bool overwrite = false, quiet = false;
+};
+
+/// The place of the frame that is nearest to a time; of the last one, where that is asked for.
+std::size_t place_of(const std::string& text, const std::vector<double>& times_s) {
+  const auto wanted_s = seconds_in(text);
+  if (!wanted_s) return times_s.size() - 1;
+  const double last_gap = times_s.size() > 1 ? times_s.back() - times_s[times_s.size() - 2] : 0;
+  if (*wanted_s < times_s.front() - 1e-6 || *wanted_s > times_s.back() + last_gap / 2 + 1e-6)
+    throw UsageError(fmt::format("--time {}: the frames go from {} s to {} s", text, times_s.front(), times_s.back()));
+  return static_cast<std::size_t>(
+      std::ranges::min_element(times_s, {}, [&](double time_s) { return std::abs(time_s - *wanted_s); }) -
+      times_s.begin());
+}
+
+void write_tables(const SurfaceMesh& surface, const ExportCommand& command) {
+  const fs::path directory = command.out;
+  const auto [vertices, edges, faces] = tables_of(surface);
+  const auto files = {std::pair("vert.csv", &vertices), {"edge.csv", &edges}, {"face.csv", &faces}};
+  for (const auto& [name, text] : files) require_free(directory / name, command.overwrite);
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) throw FileError(fmt::format("{}: {}", command.out, error.message()));
+  for (const auto& [name, text] : files) write_file(directory / name, *text);
+}
+
+void export_frame(const ExportCommand& command) {
+  const bool as_surface = command.out.ends_with(".vtp");
+  if (const fs::path file = command.out; !as_surface && file.has_extension())
+    throw UsageError(
+        fmt::format("--out {}: give FILE.vtp for a surface, or the name of a directory for tables", command.out));
+  if (as_surface) require_free(command.out, command.overwrite);
+  const ReferenceRun run(command.directory);
+  const std::vector<double> times_s = run.times_s();
+  const std::size_t place = place_of(command.time, times_s);
+  SurfaceMesh surface = surface_of(run.frame(place), command.side == "apical");
+  surface.time_s = times_s[place];
+  as_surface ? write_polygons(command.out, surface) : write_tables(surface, command);
+  if (!command.quiet)
+    fmt::print("{}: {} polygons, {} vertices at {:.4g} s\n", command.out, surface.ends.size(), surface.points.size(),
+               times_s[place]);
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app, int&) {
+  CLI::App* command = app.add_subcommand(
+      "export", "a moment of a run as polygons, a cell each: a surface for VTK, or tables for vertex models");
+  auto options = std::make_shared<ExportCommand>();
+  command->add_option("DIR", options->directory, "results of a run")->required();
+  command
+      ->add_option("--out,--output,-o", options->out,
+                   "FILE.vtp to write; or a directory, for vert.csv, edge.csv and face.csv")
+      ->required();
+  command->add_option("--time", options->time, "the moment, as 5min, 300s, 300 or last")->capture_default_str();
+  command->add_option("--side", options->side, "which polygons: apical or basal")
+      ->check(CLI::IsMember({"apical", "basal"}))
+      ->capture_default_str();
+  command->add_flag("--overwrite", options->overwrite, "replace files that are there");
+  command->add_flag("--quiet", options->quiet, "say nothing but errors");
+  command->footer(
+      "Examples: plica export results/drosophila --out apices.vtp\n"
+      "          plica export results/drosophila --time 2min --out tables");
+  command->callback([options] { export_frame(*options); });
+}
+
+}  // namespace plica

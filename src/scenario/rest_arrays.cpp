@@ -1,0 +1,65 @@
+#include "scenario/rest_arrays.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenario/acting.hpp"
+#include "scenario/materials.hpp"
+
+namespace plica {
+namespace {
+
+bool is_possible(const ProfileInput& profile, const Tissue& tissue) {
+  return profile.shape != "array" || tissue.cell_arrays.contains(profile.array);
+}
+
+bool is_finite(const std::vector<double>& values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+void add(const std::string& name, const std::vector<double>& values, NamedArrays& arrays) {
+  if (is_finite(values)) arrays.emplace_back(name, values);
+}
+
+template <class Inputs>
+void add_patterns(const std::string& tables, const Inputs& inputs, const Tissue& tissue, NamedArrays& arrays) {
+  for (const auto& [name, input] : inputs) {
+    if (!is_possible(input.profile, tissue)) continue;
+    const std::string of = "_" + tables + "." + name;
+    const CellPattern pattern = make_pattern(input, tissue);
+    add("strength" + of, pattern.strengths, arrays);
+    if (std::ranges::any_of(pattern.delays_s, [](double delay) { return delay > 0; }))
+      add("delay_s" + of, pattern.delays_s, arrays);
+    if (!pattern.pulse_phases.empty()) add("pulse_phase" + of, pattern.pulse_phases, arrays);
+  }
+}
+
+void add_materials(const Scenario& scenario, const Tissue& tissue, NamedArrays& arrays) {
+  const ElasticityInput& common = scenario.elasticity;
+  std::vector<ElasticMaterial> materials(tissue.elements.size(), {1, common.poisson_ratio, 0});
+  for (const auto& [name, input] : scenario.region_elasticities)
+    if (is_possible(input.profile, tissue)) put_material(input, common, make_pattern(input, tissue), tissue, materials);
+  std::vector<double> moduli, ratios;
+  for (const auto& [factor, poisson_ratio, relaxation_s] : materials) {
+    moduli.push_back(factor * common.young_modulus_Pa);
+    ratios.push_back(poisson_ratio);
+  }
+  for (const auto& [name, values] : {std::pair("young_modulus_Pa", &moduli), {"poisson_ratio", &ratios}})
+    if (std::ranges::any_of(*values, [&](double value) { return value != values->front(); }))
+      add(name, *values, arrays);
+}
+
+}  // namespace
+
+RestArrays rest_arrays(const Scenario& scenario, const Tissue& tissue) {
+  RestArrays arrays;
+  for (const auto& [name, values] : tissue.cell_arrays)
+    if (name != "cell_id" && !name.starts_with("region_")) add(name, values, arrays.cells);
+  add_patterns("contraction", scenario.contractions, tissue, arrays.cells);
+  add_patterns("cortex", scenario.cortices, tissue, arrays.cells);
+  add_patterns("pressure", scenario.pressures, tissue, arrays.cells);
+  add_materials(scenario, tissue, arrays.elements);
+  return arrays;
+}
+
+}  // namespace plica

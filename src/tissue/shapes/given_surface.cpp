@@ -1,0 +1,385 @@
+#include "tissue/shapes/given_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <queue>
+#include <set>
+#include <utility>
+
+#include "tissue/hexahedral_mesh.hpp"
+#include "tissue/shapes/vertex_bends.hpp"
+
+namespace plica {
+namespace {
+
+constexpr double largest_coordinate_um = 1e9;
+constexpr double same_place = 1e-6;            // of the mean edge
+constexpr double sharpest_fold_cosine = -0.9;  // of the angle between two neighbours' normals
+constexpr double farthest_move = 0.4;          // of the mean edge, by which mending may move a vertex
+
+std::string text_of(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) um", p.x(), p.y(), p.z()); }
+
+Vec3 middle_of(const PolygonSurface& surface, std::size_t face) {
+  Vec3 sum = Vec3::Zero();
+  for (const std::size_t vertex : surface.polygons[face]) sum += surface.vertices[vertex];
+  return sum / static_cast<double>(surface.polygons[face].size());
+}
+
+std::string face_at(const PolygonSurface& surface, std::size_t face) {
+  return fmt::format("face {} at {}", face, text_of(middle_of(surface, face)));
+}
+
+void check_corners(const PolygonSurface& surface) {
+  if (surface.polygons.empty()) throw MeshError("there is no face");
+  for (std::size_t face = 0; face < surface.polygons.size(); ++face) {
+    std::vector<std::size_t> corners = surface.polygons[face];
+    if (corners.size() < 3)
+      throw MeshError(fmt::format("face {} has {} corners; a cell has at least three", face, corners.size()));
+    for (const std::size_t vertex : corners) {
+      const Vec3& p = surface.vertices[vertex];
+      if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest_coordinate_um)
+        throw MeshError(fmt::format("vertex {} of face {} is at ({}, {}, {}); coordinates are finite, in um", vertex,
+                                    face, p.x(), p.y(), p.z()));
+    }
+    std::ranges::sort(corners);
+    if (const auto twice = std::ranges::adjacent_find(corners); twice != corners.end())
+      throw MeshError(fmt::format("{} has vertex {} twice, at {}", face_at(surface, face), *twice,
+                                  text_of(surface.vertices[*twice])));
+  }
+}
+
+double mean_side(const PolygonSurface& surface) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const auto& polygon : surface.polygons)
+    for (std::size_t k = 0; k < polygon.size(); ++k, ++count)
+      sum += (surface.vertices[polygon[(k + 1) % polygon.size()]] - surface.vertices[polygon[k]]).norm();
+  return sum / static_cast<double>(count);
+}
+
+// For each vertex the first one in its place. They are sorted along a direction that no grid is likely to be square to,
+// so that few are compared.
+std::vector<std::size_t> first_in_place(const PolygonSurface& surface) {
+  const Vec3 direction(0.5772157, 0.2146018, 0.7878593);
+  const double tolerance = same_place * mean_side(surface);
+  std::vector<char> is_used(surface.vertices.size(), 0);
+  for (const auto& polygon : surface.polygons)
+    for (const std::size_t vertex : polygon) is_used[vertex] = 1;
+  std::vector<std::pair<double, std::size_t>> sorted;
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+    if (is_used[v]) sorted.emplace_back(direction.dot(surface.vertices[v]), v);
+  std::ranges::sort(sorted);
+  std::vector<std::size_t> first(surface.vertices.size());
+  std::iota(first.begin(), first.end(), std::size_t{0});
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    for (std::size_t j = i + 1; j < sorted.size() && sorted[j].first - sorted[i].first <= tolerance; ++j) {
+      const auto [low, high] = std::minmax(sorted[i].second, sorted[j].second);
+      if ((surface.vertices[low] - surface.vertices[high]).norm() <= tolerance)
+        first[high] = std::min(first[high], first[low]);
+    }
+  return first;
+}
+
+// Neighbours share vertices after that.
+std::size_t merge_vertices(PolygonSurface& surface, bool mend) {
+  const std::vector<std::size_t> first = first_in_place(surface);
+  std::size_t merged = 0;
+  for (std::size_t v = 0; v < first.size(); ++v) {
+    if (first[v] == v) continue;
+    ++merged;
+    if (!mend)
+      throw MeshError(
+          fmt::format("vertices {} and {} lie at the same place, {}; neighbours should share their "
+                      "vertices: give mend = true",
+                      first[v], v, text_of(surface.vertices[v])));
+  }
+  for (auto& polygon : surface.polygons)
+    for (std::size_t& vertex : polygon)
+      while (first[vertex] != vertex) vertex = first[vertex];
+  return merged;
+}
+
+// Returns how many there were that are not `merged`.
+std::size_t drop_unused(PolygonSurface& surface, std::size_t merged) {
+  constexpr std::size_t unused = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> now(surface.vertices.size(), unused);
+  for (const auto& polygon : surface.polygons)
+    for (const std::size_t vertex : polygon) now[vertex] = 0;
+  Vectors kept;
+  for (std::size_t v = 0; v < now.size(); ++v) {
+    if (now[v] == unused) continue;
+    now[v] = kept.size();
+    kept.push_back(surface.vertices[v]);
+  }
+  for (auto& polygon : surface.polygons)
+    for (std::size_t& vertex : polygon) vertex = now[vertex];
+  const std::size_t dropped = surface.vertices.size() - kept.size() - merged;
+  surface.vertices = std::move(kept);
+  return dropped;
+}
+
+/// A face beyond an edge, and whether it runs along the edge in the same direction, as it should not.
+struct Across {
+  std::size_t face;
+  bool runs_alike;
+};
+
+// Faces across the edges of each face; none across a rim.
+std::vector<std::vector<Across>> faces_across(const PolygonSurface& surface) {
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::pair<std::size_t, bool>>> faces;  // and if it rises
+  for (std::size_t face = 0; face < surface.polygons.size(); ++face) {
+    const auto& polygon = surface.polygons[face];
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const std::size_t from = polygon[k], to = polygon[(k + 1) % polygon.size()];
+      faces[std::minmax(from, to)].emplace_back(face, from < to);
+    }
+  }
+  std::vector<std::vector<Across>> across(surface.polygons.size());
+  for (const auto& [edge, at] : faces) {
+    if (at.size() > 2)
+      throw MeshError(
+          fmt::format("the edge from {} to {} belongs to {} faces, {}, {} and {} among them; it may be the edge of two",
+                      text_of(surface.vertices[edge.first]), text_of(surface.vertices[edge.second]), at.size(),
+                      at[0].first, at[1].first, at[2].first));
+    if (at.size() < 2) continue;
+    const bool alike = at[0].second == at[1].second;
+    across[at[0].first].push_back({at[1].first, alike});
+    across[at[1].first].push_back({at[0].first, alike});
+  }
+  return across;
+}
+
+// Which faces have to be turned so that all wind like the first. MeshError when that cannot be, or there is a face that
+// the first is not joined to.
+std::vector<bool> unlike_first(const PolygonSurface& surface) {
+  const auto across = faces_across(surface);
+  std::vector<int> turn(surface.polygons.size(), -1);
+  std::queue<std::size_t> next;
+  turn[0] = 0;
+  next.push(0);
+  std::size_t reached = 0;
+  for (; !next.empty(); next.pop(), ++reached)
+    for (const Across& other : across[next.front()]) {
+      const int wanted = turn[next.front()] ^ static_cast<int>(other.runs_alike);
+      if (turn[other.face] == 1 - wanted)
+        throw MeshError(fmt::format("{} and face {} cannot both look outward: the surface has one side only",
+                                    face_at(surface, next.front()), other.face));
+      if (turn[other.face] == wanted) continue;
+      turn[other.face] = wanted;
+      next.push(other.face);
+    }
+  if (reached < turn.size()) {
+    const auto apart = static_cast<std::size_t>(std::ranges::find(turn, -1) - turn.begin());
+    throw MeshError(
+        fmt::format("the surface is not one piece: {} of {} faces are joined to face 0 by edges, and {} is "
+                    "not",
+                    reached, turn.size(), face_at(surface, apart)));
+  }
+  return {turn.begin(), turn.end()};
+}
+
+// All look outward: of a closed surface, the volume inside is positive; of an open one, most stay as they are.
+std::size_t turn_faces(PolygonSurface& surface, bool mend, bool& is_closed) {
+  std::vector<bool> turned = unlike_first(surface);
+  const auto turn = [&](std::size_t face) { std::ranges::reverse(surface.polygons[face]); };
+  std::size_t count = static_cast<std::size_t>(std::ranges::count(turned, true));
+  if (2 * count > turned.size()) {
+    turned.flip();
+    count = turned.size() - count;
+  }
+  for (std::size_t face = 0; face < turned.size(); ++face)
+    if (turned[face]) turn(face);
+  const std::vector<PolygonEdge> edges = polygon_edges(surface);
+  is_closed = std::ranges::none_of(edges, [](const PolygonEdge& edge) { return edge.right == no_polygon; });
+  double volume = 0;
+  for (std::size_t face = 0; face < turned.size(); ++face)
+    volume += middle_of(surface, face).dot(area_vector(surface.vertices, surface.polygons[face]));
+  if (is_closed && volume < 0) {
+    for (std::size_t face = 0; face < turned.size(); ++face) turn(face);
+    turned.flip();
+    count = turned.size() - count;
+  }
+  if (count > 0 && !mend)
+    throw MeshError(
+        fmt::format("{} winds the other way than it should, as {} of {} faces do: corners go "
+                    "counter-clockwise seen from outside; give mend = true",
+                    face_at(surface, static_cast<std::size_t>(std::ranges::find(turned, true) - turned.begin())), count,
+                    turned.size()));
+  return count;
+}
+
+// The faces about a vertex should follow each other across its edges: one fan.
+void check_fans(const PolygonSurface& surface) {
+  struct Corner {
+    std::size_t before, after, face;
+  };
+  std::vector<std::vector<Corner>> corners(surface.vertices.size());
+  for (std::size_t face = 0; face < surface.polygons.size(); ++face) {
+    const auto& polygon = surface.polygons[face];
+    const std::size_t n = polygon.size();
+    for (std::size_t k = 0; k < n; ++k)
+      corners[polygon[k]].push_back({polygon[(k + n - 1) % n], polygon[(k + 1) % n], face});
+  }
+  for (std::size_t v = 0; v < corners.size(); ++v) {
+    const auto& about = corners[v];
+    // From the face at the rim, if there is one, counter-clockwise.
+    std::size_t start = 0;
+    for (std::size_t i = 0; i < about.size(); ++i)
+      if (std::ranges::none_of(about, [&](const Corner& other) { return other.before == about[i].after; })) start = i;
+    std::size_t reached = 1;
+    for (std::size_t at = start; reached <= about.size(); ++reached) {
+      const auto next = std::ranges::find(about, about[at].before, &Corner::after);
+      if (next == about.end() || next == about.begin() + static_cast<std::ptrdiff_t>(start)) break;
+      at = static_cast<std::size_t>(next - about.begin());
+    }
+    if (reached == about.size()) continue;
+    throw MeshError(
+        fmt::format("the surface touches itself at vertex {} at {}: face {} and others meet there and share no edge "
+                    "with the rest",
+                    v, text_of(surface.vertices[v]), about.front().face));
+  }
+}
+
+void check_areas(const PolygonSurface& surface) {
+  const double least = 1e-9 * std::pow(mean_side(surface), 2);
+  for (std::size_t face = 0; face < surface.polygons.size(); ++face)
+    if (!(area_vector(surface.vertices, surface.polygons[face]).norm() > least))
+      throw MeshError(face_at(surface, face) + " has no area");
+}
+
+// Vertices along a wall between two cells, which cannot be convex on both sides, and along a straight rim. A face keeps
+// three corners.
+std::size_t drop_wall_vertices(PolygonSurface& surface, double largest_angle_deg) {
+  std::vector<std::set<std::size_t>> neighbours(surface.vertices.size());
+  std::vector<std::size_t> face_count(surface.vertices.size(), 0);
+  std::vector<double> angle_deg(surface.vertices.size(), 0.0);  // of one face there
+  for (const auto& polygon : surface.polygons) {
+    const std::vector<double> angles =
+        polygon_angles_deg(surface.vertices, polygon, area_vector(surface.vertices, polygon).normalized());
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const std::size_t next = polygon[(k + 1) % polygon.size()];
+      neighbours[polygon[k]].insert(next);
+      neighbours[next].insert(polygon[k]);
+      ++face_count[polygon[k]];
+      angle_deg[polygon[k]] = angles[k];
+    }
+  }
+  std::vector<char> goes(surface.vertices.size(), 0);
+  for (std::size_t v = 0; v < goes.size(); ++v)
+    goes[v] =
+        neighbours[v].size() == 2 && (face_count[v] == 2 || std::abs(180 - angle_deg[v]) < 180 - largest_angle_deg);
+  for (const auto& polygon : surface.polygons)
+    for (std::size_t k = 0, left = polygon.size() - static_cast<std::size_t>(std::ranges::count_if(
+                                                        polygon, [&](std::size_t v) { return goes[v] != 0; }));
+         left < 3 && k < polygon.size(); ++k)
+      if (std::exchange(goes[polygon[k]], 0) != 0) ++left;
+  for (auto& polygon : surface.polygons) std::erase_if(polygon, [&](std::size_t v) { return goes[v] != 0; });
+  return drop_unused(surface, 0);
+}
+
+// Neighbours face nearly the same way, or at least not against each other.
+void check_folds(const PolygonSurface& surface) {
+  Vectors normals;
+  for (const auto& polygon : surface.polygons) normals.push_back(area_vector(surface.vertices, polygon).normalized());
+  for (const PolygonEdge& edge : polygon_edges(surface)) {
+    if (edge.right == no_polygon || normals[edge.left].dot(normals[edge.right]) > sharpest_fold_cosine) continue;
+    throw MeshError(fmt::format(
+        "{} and its neighbour, face {}, are folded onto each other at the edge from {} to {}; if the sheet is "
+        "periodic, leave out the faces that reach across",
+        face_at(surface, edge.left), edge.right, text_of(surface.vertices[edge.vertices[0]]),
+        text_of(surface.vertices[edge.vertices[1]])));
+  }
+}
+
+double warp_deg(const PolygonSurface& surface, std::size_t face) {
+  const auto& polygon = surface.polygons[face];
+  const Vec3 middle = middle_of(surface, face), normal = area_vector(surface.vertices, polygon).normalized();
+  double least = 1;
+  for (std::size_t k = 0; polygon.size() > 3 && k < polygon.size(); ++k) {
+    const Vec3 one = (surface.vertices[polygon[k]] - middle)
+                         .cross(surface.vertices[polygon[(k + 1) % polygon.size()]] - middle)
+                         .normalized();
+    least = std::min(least, one.dot(normal));
+  }
+  return std::acos(std::clamp(least, -1.0, 1.0)) * 180 / std::numbers::pi;
+}
+
+void check_faces(const PolygonSurface& surface, bool mended) {
+  check_areas(surface);
+  for (std::size_t face = 0; face < surface.polygons.size(); ++face) {
+    const auto& polygon = surface.polygons[face];
+    const std::string flaw =
+        polygon_flaw(surface.vertices, polygon, area_vector(surface.vertices, polygon).normalized());
+    if (!flaw.empty())
+      throw MeshError(fmt::format("{} {}{}; cut it in two, or move its corners", face_at(surface, face), flaw,
+                                  mended ? "" : " (mend = true sharpens wide angles)"));
+    const double warp = warp_deg(surface, face);
+    if (warp > largest_warp_deg)
+      throw MeshError(
+          fmt::format("{} is far from flat: its corners lie up to {:.0f} degrees out of its plane, and {} "
+                      "are allowed",
+                      face_at(surface, face), warp, largest_warp_deg));
+  }
+}
+
+// Vertices move within the surface's tangent planes.
+MendedPolygons mend_shapes(PolygonSurface& surface, const PolygonOptions& options) {
+  const Vectors start = surface.vertices;
+  const std::vector<VertexBend> bends = vertex_bends(surface);
+  MendingGround ground;
+  for (const auto& polygon : surface.polygons)
+    ground.normals.push_back(area_vector(surface.vertices, polygon).normalized());
+  ground.along = [&](const PolygonEdge& edge) {
+    return Vec3((start[edge.vertices[1]] - start[edge.vertices[0]]).normalized());
+  };
+  ground.allowed = [&](std::size_t vertex, const Vec3& to) {
+    const Vec3& normal = bends[vertex].normal;
+    return Vec3(to - (to - start[vertex]).dot(normal) * normal);
+  };
+  const double limit_um = farthest_move * mean_side(surface);
+  const MendedPolygons mended = mend_polygons(ground, options, surface);
+  for (std::size_t v = 0; v < start.size(); ++v) {
+    if ((surface.vertices[v] - start[v]).norm() <= limit_um) continue;
+    surface.vertices = start;
+    check_faces(surface, true);  // a face is wrong, as a rule
+    throw MeshError(fmt::format(
+        "its short edges and wide angles cannot be mended: vertex {} at {} would move farther than {:.3g} um; "
+        "give mend = false, or a smaller least_edge_ratio",
+        v, text_of(start[v]), limit_um));
+  }
+  return mended;
+}
+
+}  // namespace
+
+MendedSurface check_and_mend(PolygonSurface& surface, bool mend, const PolygonOptions& options) {
+  MendedSurface result;
+  const auto remark = [&](std::size_t count, const char* what) {
+    if (count > 0) result.remarks.push_back(fmt::format("{} {}", count, what));
+  };
+  check_corners(surface);
+  const std::size_t merged = merge_vertices(surface, mend);
+  remark(merged, "vertices lay where others do and were merged with them");
+  check_corners(surface);
+  remark(drop_unused(surface, merged), "vertices that no face uses were dropped");
+  remark(turn_faces(surface, mend, result.is_closed), "faces wound the other way and were turned");
+  check_fans(surface);
+  check_areas(surface);
+  check_folds(surface);
+  if (mend) {
+    remark(drop_wall_vertices(surface, options.largest_angle_deg),
+           "vertices lay along a wall or the rim, where no third cell meets, and were dropped");
+    check_areas(surface);
+    const std::vector<std::string> shapes = remarks_on(mend_shapes(surface, options));
+    result.remarks.insert(result.remarks.end(), shapes.begin(), shapes.end());
+  }
+  check_faces(surface, mend);
+  return result;
+}
+
+}  // namespace plica

@@ -1,0 +1,153 @@
+"""`plica export` and what `plica mesh` shows: polygons read back with VTK's reader, tables, arrays, pictures."""
+import csv
+import math
+
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+
+import support
+from support import BLOCK, CommandLine, plica
+
+EGG = """\
+format = 1
+[embryo]
+shape = "egg"
+length_um = 200
+diameter_um = 100
+cell_count = 150
+cell_height_um = 18
+layers = 2
+[region.mesoderm]
+rows = 5
+[region.mesectoderm]
+neighbours_of = "mesoderm"
+[elasticity.apex]
+region = "mesoderm"
+height_percent = [50, 100]
+young_modulus_Pa = 4000
+[contraction.apical]
+region = "mesoderm"
+stiffness_nN_per_um = 4
+profile = { shape = "gaussian", axis = "angle", sigma_deg = 25 }
+pulse = { period_s = 60, amplitude = 0.5 }
+[time]
+end_s = 2
+[output]
+frame_every_s = 1
+"""
+
+
+def read(reader, path):
+    reader.SetFileName(str(path))
+    reader.Update()
+    return reader.GetOutput()
+
+
+def numbers(path):
+    with open(path, newline="") as file:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+
+class Export(CommandLine):
+    def path(self, name):
+        return self.folder / name
+
+    def expect(self, result, status, stdout="", stderr=""):
+        self.assertEqual(result.returncode, status, result.stderr)
+        self.assertIn(stdout, result.stdout)
+        self.assertIn(stderr, result.stderr)
+
+    def run_of(self, scenario):
+        self.expect(plica("run", self.write(scenario), "--out", self.path("run"), "--quiet"), 0)
+        return self.path("run")
+
+    def test_a_surface_reads_back(self):
+        run = self.run_of(EGG)
+        self.expect(plica("export", run, "--out", self.path("cells.vtp")), 0, stdout="150 polygons, 296 vertices at 2 s")
+        surface = read(vtkXMLPolyDataReader(), self.path("cells.vtp"))
+        self.assertEqual((surface.GetNumberOfPolys(), surface.GetNumberOfPoints()), (150, 296))
+        self.assertEqual(surface.GetFieldData().GetArray("TimeValue").GetValue(0), 2)
+        ids, strength = (surface.GetCellData().GetArray(name) for name in ("cell_id", "strength"))
+        self.assertEqual([ids.GetValue(c) for c in range(150)], list(range(150)))
+        self.assertGreater(max(strength.GetValue(c) for c in range(150)), 0.9)
+        # The points are nodes of the frame, which the frame's displacements have carried there.
+        grid = read(vtkXMLUnstructuredGridReader(), sorted((run / "frames").glob("*.vtu"))[-1])
+        nodes = {grid.GetPoint(n) for n in range(grid.GetNumberOfPoints())}
+        self.assertTrue(all(surface.GetPoint(p) in nodes for p in range(296)))
+        # Outwards is outwards.
+        for c in range(150):
+            points = surface.GetCell(c).GetPoints()
+            corners = [points.GetPoint(i) for i in range(points.GetNumberOfPoints())]
+            middle = [sum(x[k] for x in corners) / len(corners) for k in range(3)]
+            turn = 0
+            for a, b in zip(corners, corners[1:] + corners[:1]):
+                turn += middle[0] * (a[1] * b[2] - a[2] * b[1]) + middle[1] * (a[2] * b[0] - a[0] * b[2])
+                turn += middle[2] * (a[0] * b[1] - a[1] * b[0])
+            self.assertGreater(turn, 0)
+
+    def test_tables_are_those_of_the_surface(self):
+        run = self.run_of(EGG)
+        self.expect(plica("export", run, "--out", self.path("tables"), "--time", "1s", "--side", "basal"), 0,
+                    stdout="at 1 s")
+        vertices, edges, faces = (numbers(self.path("tables") / f"{name}.csv") for name in ("vert", "edge", "face"))
+        self.assertEqual((len(vertices), len(edges), len(faces)), (296, 888, 150))
+        self.assertEqual(list(edges[0]), ["edge", "srce", "trgt", "face", "opposite", "dx", "dy", "dz", "length"])
+        self.assertEqual(list(faces[0])[:7], ["face", "x", "y", "z", "num_sides", "area", "perimeter"])
+        sides = [0] * 150
+        for edge in edges:
+            srce, trgt = vertices[int(edge["srce"])], vertices[int(edge["trgt"])]
+            self.assertAlmostEqual(edge["length"], math.dist(*[[v[k] for k in "xyz"] for v in (srce, trgt)]), places=5)
+            other = edges[int(edge["opposite"])]
+            self.assertEqual((other["srce"], other["trgt"]), (edge["trgt"], edge["srce"]))
+            self.assertNotEqual(other["face"], edge["face"])
+            sides[int(edge["face"])] += 1
+        self.assertEqual(sides, [face["num_sides"] for face in faces])
+        self.assertLess(abs(sum(face["area"] for face in faces) / (math.pi * 4 * 32 * 82) - 1), 0.35)
+
+    def test_open_sheets_have_a_rim(self):
+        run = self.run_of(BLOCK)
+        self.expect(plica("export", run, "--out", self.path("tables"), "--quiet"), 0)
+        edges = numbers(self.path("tables") / "edge.csv")
+        self.assertEqual((len(edges), sum(edge["opposite"] < 0 for edge in edges)), (24, 10))
+
+    def test_what_is_wrong_is_said(self):
+        run = self.run_of(BLOCK)
+        out = self.path("cells.vtp")
+        for arguments, status, said in [
+                (("nowhere", "--out", out), 4, "nowhere"),
+                ((run, "--out", self.path("cells.stl")), 2, "give FILE.vtp for a surface, or the name of a directory"),
+                ((run, "--out", out, "--time", "soon"), 2, "--time soon: is no time; give 5min"),
+                ((run, "--out", out, "--time", "9min"), 2, "--time 9min: the frames go from 0 s to 0.5 s"),
+                ((run, "--out", out, "--side", "left"), 2, "--side"),
+                ((run,), 2, "--out")]:
+            self.expect(plica("export", *arguments), status, stderr=said)
+        self.assertFalse(out.exists())
+        out.write_text("mine")
+        self.expect(plica("export", run, "--out", out), 4, stderr="is there already")
+        self.assertEqual(out.read_text(), "mine")
+        self.expect(plica("export", run, "--out", out, "--overwrite"), 0)
+
+    def test_meshes_have_what_is_said_of_cells(self):
+        scenario = self.write(EGG)
+        self.expect(plica("mesh", scenario, "--out", self.path("rest.vtu")), 0)
+        grid = read(vtkXMLUnstructuredGridReader(), self.path("rest.vtu"))
+        data = grid.GetCellData()
+        strength, modulus, rows, beside = (
+            [data.GetArray(name).GetTuple1(e) for e in range(grid.GetNumberOfCells())]
+            for name in ("strength_contraction.apical", "young_modulus_Pa", "region_mesoderm", "region_mesectoderm"))
+        self.assertEqual({value for value, row in zip(strength, rows) if not row}, {0})
+        self.assertGreater(max(strength), 0.95)
+        # Half of the elements of these cells are their apices.
+        self.assertEqual(modulus.count(4000), sum(rows) / 2)
+        self.assertEqual(set(modulus), {1000, 4000})
+        self.assertFalse(any(a and b for a, b in zip(rows, beside)))
+        self.assertIsNotNone(data.GetArray("pulse_phase_contraction.apical"))
+        self.expect(plica("mesh", scenario, "--out", self.path("rest.png"), "--colour", "strength_contraction.apica"), 2,
+                    stderr="did you mean strength_contraction.apical? there are: region, ")
+        self.expect(plica("mesh", scenario, "--out", self.path("rest.jpg")), 2, stderr="must end in .vtu, or in .png")
+        self.expect(plica("mesh", scenario, "--out", self.path("rest.png"), "--color", "strength_contraction.apical",
+                          "--view", "ventral,cross-section"), 0)
+        self.assertEqual(self.path("rest.png").read_bytes()[:4], b"\x89PNG")
+
+
+if __name__ == "__main__":
+    support.main()

@@ -1,0 +1,199 @@
+"""Cells as polygons: of frames, and of label images."""
+import numpy as np
+import plica
+import pytest
+
+SMALL = """format = 1
+[embryo]
+shape = "egg"
+length_um = 200
+diameter_um = 100
+cell_count = 150
+cell_height_um = 18
+[region.belly]
+angle_deg = [-50, 50]
+[contraction.apical]
+region = "belly"
+stiffness_nN_per_um = 4
+profile = { shape = "gaussian", axis = "angle", sigma_deg = 25 }
+[time]
+end_s = 2
+"""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return plica.Simulation(plica.Scenario(SMALL)).run(out=tmp_path_factory.mktemp("polygons") / "run")
+
+
+def euler(polygons):
+    tables = polygons.to_tables()
+    assert (tables["edge"]["opposite"] >= 0).all()
+    return len(tables["vert"]) - len(tables["edge"]) / 2 + len(tables["face"])
+
+
+@pytest.mark.parametrize("side", ["apical", "basal"])
+def test_frames_have_polygons(run, side):
+    frame = run.frames[-1]
+    polygons = frame.polygons(side)
+    assert len(polygons) == 150 and euler(polygons) == 2
+    # Three cells meet at every vertex, so that a polygon has six corners less 12/150 on average.
+    assert np.mean([len(face) for face in polygons.faces]) == pytest.approx(6 - 12 / 150)
+    assert list(polygons.cell_data["cell_id"]) == list(range(150))
+    assert set(polygons.cell_data) >= {"strength", "pressure_Pa", "region_belly"}
+    # Outwards is outwards: the volume inside is that within the surface.
+    volume = 0
+    for face, centre in zip(polygons.faces, polygons.centres):
+        corners = polygons.points[face]
+        volume += np.einsum("ij,ij->", np.cross(corners, np.roll(corners, -1, axis=0)), np.tile(centre, (len(face), 1))) / 6
+    assert 4 / 3 * np.pi * (64 * 32 * 32 if side == "basal" else 90 * 45 * 45) < volume < 4 / 3 * np.pi * 100 * 50 * 50
+    with pytest.raises(ValueError, match="apical"):
+        frame.polygons("top")
+
+
+def test_strengths_are_the_profile(run):
+    rest = run.frames[0].polygons()
+    x, y, z = rest.centres.T
+    angle = np.degrees(np.arctan2(y, -z))
+    inside = rest.cell_data["region_belly"] > 0
+    assert np.allclose(rest.cell_data["strength"][inside], np.exp(-0.5 * (angle[inside] / 25) ** 2), atol=0.02)
+    assert (rest.cell_data["strength"][~inside] == 0).all()
+
+
+def test_cells_of_one_element_are_their_faces(tmp_path):
+    text = SMALL.replace('"egg"', '"pill"').replace("cell_count = 150\n", "cells = [6, 4, 4]\n")
+    frame = plica.Simulation(plica.Scenario(text)).run(out=tmp_path / "run").frames[0]
+    assert set(frame.field_data) == {"TimeValue"}  # nothing besides
+    for side in ("apical", "basal"):
+        polygons = frame.polygons(side)
+        assert len(polygons) == 128 and euler(polygons) == 2
+        assert polygons.areas.sum() == pytest.approx({"apical": 1, "basal": 0.64 * 0.82}[side] * np.pi * 100 * 200, rel=0.1)
+
+
+def test_older_frames_have_none(run):
+    frame = run.frames[0]
+    del frame.field_data["polygon_ends"]
+    with pytest.raises(plica.FileError, match="older version"):
+        frame.polygons()
+
+
+def test_tables():
+    # A unit square and a triangle beside it.
+    polygons = plica.Polygons([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0.5, 0]], [[0, 1, 2, 3], [1, 4, 2]],
+                              {"label": [7, 9]})
+    tables = polygons.to_tables()
+    assert list(tables["face"]["area"]) == [1, 0.5] and list(tables["face"]["num_sides"]) == [4, 3]
+    assert tables["face"]["perimeter"][1] == pytest.approx(1 + 2 * np.hypot(1, 0.5)) and list(tables["face"]["label"]) == [7, 9]
+    edges = tables["edge"]
+    assert list(edges["srce"]) == [0, 1, 2, 3, 1, 4, 2] and list(edges["trgt"]) == [1, 2, 3, 0, 4, 2, 1]
+    assert list(edges["opposite"]) == [-1, 6, -1, -1, -1, -1, 1] and edges["dx"][0] == 1 and edges.index.name == "edge"
+
+
+def test_files(run, tmp_path):
+    polygons = run.frames[-1].polygons()
+    polygons.write(tmp_path / "cells.obj")
+    lines = (tmp_path / "cells.obj").read_text().splitlines()
+    assert sum(line.startswith("f ") for line in lines) == 150
+    vertices = np.array([line.split()[1:] for line in lines if line.startswith("v ")], dtype=float)
+    assert (vertices == polygons.points).all()
+    assert [int(i) - 1 for i in lines[-1].split()[1:]] == list(polygons.faces[-1])
+    with pytest.raises(ValueError, match=".vtp or .obj"):
+        polygons.write(tmp_path / "cells.stl")
+    with pytest.raises(plica.FileError):
+        polygons.write(tmp_path / "nowhere" / "cells.obj")
+
+
+def test_vtp(run, tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    polygons = run.frames[-1].polygons()
+    polygons.write(tmp_path / "cells.vtp")
+    for surface in (pyvista.read(tmp_path / "cells.vtp"), polygons.to_pyvista()):
+        assert surface.n_cells == 150 and (surface.points == polygons.points).all()
+        assert (np.array(surface.get_cell(149).point_ids) == polygons.faces[149]).all()
+        assert (surface.cell_data["strength"] == polygons.cell_data["strength"]).all()
+
+
+def voronoi_labels(count, size, seed):
+    """Labels of evened random points, and the points, by row and column."""
+    spatial = pytest.importorskip("scipy.spatial")
+    points = np.random.default_rng(seed).uniform(0, size, (count, 2))
+    pixels = np.stack(np.mgrid[:size, :size], axis=-1).reshape(-1, 2)
+    for _ in range(4):
+        nearest = spatial.cKDTree(points).query(pixels)[1]
+        points = np.array([pixels[nearest == k].mean(axis=0) for k in range(count)])
+    return 1 + spatial.cKDTree(points).query(pixels)[1].reshape(size, size), points
+
+
+def test_labels_give_back_voronoi_polygons():
+    pytest.importorskip("skimage")
+    from scipy.spatial import Voronoi, cKDTree
+
+    size, um = 400, 0.25
+    labels, seeds = voronoi_labels(150, size, 1)
+    found = plica.polygons_of_labels(labels, um)
+    true = Voronoi(seeds)
+    rim = {*labels[0], *labels[-1], *labels[:, 0], *labels[:, -1]}
+    assert set(found.cell_data["label"]) == set(range(1, 151)) - rim
+    same = 0
+    for face, label, area in zip(found.faces, found.cell_data["label"], found.areas):
+        corners = true.vertices[true.regions[true.point_region[label - 1]]]
+        corners = um * np.column_stack([corners[:, 1], size - 1 - corners[:, 0]])
+        ours = found.points[face][:, :2]
+        # To 1.5 pixels: edges shorter than that are one corner.
+        assert max(cKDTree(ours).query(corners)[0].max(), cKDTree(corners).query(ours)[0].max()) < 1.5 * um
+        assert area == pytest.approx((labels == label).sum() * um**2, rel=0.06)
+        x, y = ours.T
+        assert (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() > 0
+        same += len(corners) == len(ours)
+    assert same > 0.7 * len(found)
+    # Neighbours share their edges: every half-edge inside has its opposite.
+    edges = found.to_tables()["edge"]
+    assert ((edges["opposite"] >= 0).sum() / len(edges)) > 0.7
+
+
+def test_lines_between_labels_are_shared_out():
+    segmentation = pytest.importorskip("skimage.segmentation")
+    labels, _ = voronoi_labels(60, 300, 2)
+    lines = labels.copy()
+    lines[segmentation.find_boundaries(labels, mode="inner")] = 0
+    plain, closed = plica.polygons_of_labels(labels, 1), plica.polygons_of_labels(lines, 1)
+    assert list(plain.cell_data["label"]) == list(closed.cell_data["label"])
+    assert np.allclose(plain.areas, closed.areas, rtol=0.15)
+    # Outside of the tissue there is nothing: cells at its rim do not grow.
+    island = np.where((np.indices(labels.shape) - 150).astype(float).__pow__(2).sum(axis=0) < 100**2, labels, 0)
+    whole = plica.polygons_of_labels(island, 1)
+    assert np.linalg.norm(whole.points[:, :2] - [150, 149], axis=1).max() < 101.5
+
+
+@pytest.mark.parametrize(("image", "um", "said"), [
+    (np.zeros((4, 4, 4), int), 1, "whole numbers of shape"),
+    (np.zeros((4, 4)), 1, "whole numbers of shape"),
+    (np.ones((4, 4), int), 0, "um_per_pixel: 0"),
+    (np.ones((4, 4), int), float("nan"), "um_per_pixel: nan"),
+    (np.ones((9, 9), int), 1, "no cell has three corners"),
+])
+def test_bad_labels(image, um, said):
+    pytest.importorskip("skimage")
+    with pytest.raises(ValueError, match=said):
+        plica.polygons_of_labels(image, um)
+
+
+def test_cells_in_pieces_are_named():
+    pytest.importorskip("skimage")
+    labels, _ = voronoi_labels(60, 300, 2)
+    inner = plica.polygons_of_labels(labels, 1).cell_data["label"]
+    labels[labels == inner[0]] = inner[-1]
+    with pytest.raises(ValueError, match=f"cell {inner[-1]} has 2 outlines"):
+        plica.polygons_of_labels(labels, 1)
+
+
+@pytest.mark.parametrize(("points", "faces", "data", "said"), [
+    ([[0, 0]], [], {}, "points: give finite numbers"),
+    ([[0, 0, np.nan]], [], {}, "points: give finite numbers"),
+    ([[0, 0, 0], [1, 0, 0]], [[0, 1]], {}, "polygon 0 has vertices"),
+    ([[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 1, 3]], {}, "polygon 0 has vertices"),
+    ([[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 1, 2]], {"a": [1, 2]}, "cell_data: a has shape"),
+])
+def test_bad_polygons(points, faces, data, said):
+    with pytest.raises(ValueError, match=said):
+        plica.Polygons(points, faces, data)

@@ -1,0 +1,184 @@
+// Readers of polygons: what each format may hold, and what is wrong with a file, by line.
+#include "tissue/files/polygon_file.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "support/mesh_error.hpp"
+#include "tissue/files/vertex_model.hpp"
+
+namespace plica {
+namespace {
+
+// A square pyramid without its base, with a triangle and a square.
+void expect_two_faces(const PolygonFile& file) {
+  ASSERT_EQ(file.surface.vertices.size(), 5U);
+  EXPECT_EQ(file.surface.vertices[4], Vec3(0.5, 0.5, 2));
+  ASSERT_EQ(file.surface.polygons.size(), 2U);
+  EXPECT_EQ(file.surface.polygons[0], (std::vector<std::size_t>{0, 1, 4}));
+  EXPECT_EQ(file.surface.polygons[1], (std::vector<std::size_t>{3, 2, 1, 0}));
+}
+
+TEST(PolygonFile, Obj) {
+  expect_two_faces(
+      polygons_in_obj("# pyramid\r\no one\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nv 0.5 0.5 +2e0\n"
+                      "f 1/1/1 2//1 5\ns off\nf -2 -3 -4 -5 # back\n"));
+}
+
+TEST(PolygonFile, Off) {
+  expect_two_faces(
+      polygons_in_off("OFF\n# pyramid\n5 2 0\n0 0 0\n1 0 0\n\n1 1 0\n0 1 0\n.5 .5 2\n3 0 1 4 255 0 0\n4 3 2 1 0"));
+  expect_two_faces(polygons_in_off("OFF 5 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n.5 .5 2\n3 0 1 4\n4 3 2 1 0\n"));
+}
+
+const std::string ply_header =
+    "element vertex 5\nproperty float x\nproperty float y\nproperty uchar red\nproperty float z\nelement edge 1\n"
+    "property list uchar int two\nelement face 2\nproperty double height\nproperty list uchar int vertex_indices\n"
+    "end_header\n";
+
+TEST(PolygonFile, PlyAsText) {
+  const PolygonFile file = polygons_in_ply("ply\r\nformat ascii 1.0\ncomment by hand\n" + ply_header +
+                                           "0 0 9 0\n1 0 9 0\n1 1 9 0\n0 1 9 0\n.5 .5 9 2\n2 0 1\n"
+                                           "7.5 3 0 1 4\n8 4 3 2 1 0\n");
+  expect_two_faces(file);
+  EXPECT_EQ(file.arrays, (std::map<std::string, CellArray>{{"height", {7.5, 8}}}));
+}
+
+// Appends the bytes of a number, the most significant first where asked for.
+template <class Number>
+void append(Number value, bool big, std::string& bytes) {
+  auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(value);
+  if (big == (std::endian::native == std::endian::little)) std::reverse(raw.begin(), raw.end());
+  bytes.append(raw.data(), raw.size());
+}
+
+std::string binary_ply(bool big) {
+  std::string bytes = "ply\nformat binary_" + std::string(big ? "big" : "little") + "_endian 1.0\n" + ply_header;
+  const auto add = [&](auto value) { append(value, big, bytes); };
+  for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0), Vec3(0.5, 0.5, 2)}) {
+    add(static_cast<float>(p.x()));
+    add(static_cast<float>(p.y()));
+    add(std::uint8_t{9});
+    add(static_cast<float>(p.z()));
+  }
+  for (const int end : {0, 1}) {
+    if (end == 0) add(std::uint8_t{2});
+    add(std::int32_t{end});
+  }
+  const std::array<std::vector<std::int32_t>, 2> faces = {{{0, 1, 4}, {3, 2, 1, 0}}};
+  for (int f = 0; f < 2; ++f) {
+    add(f == 0 ? 7.5 : 8.0);
+    add(static_cast<std::uint8_t>(faces[f].size()));
+    for (const std::int32_t vertex : faces[f]) add(vertex);
+  }
+  return bytes;
+}
+
+TEST(PolygonFile, PlyAsBytes) {
+  for (const bool big : {false, true}) {
+    const PolygonFile file = polygons_in_ply(binary_ply(big));
+    expect_two_faces(file);
+    EXPECT_EQ(file.arrays.at("height"), (CellArray{7.5, 8}));
+  }
+  const std::string whole = binary_ply(false);
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    EXPECT_THROW(polygons_in_ply(whole.substr(0, length)), MeshError) << length;
+}
+
+TEST(PolygonFile, SaysWhatIsWrongAndWhere) {
+  const auto obj = [](const char* text, const char* said) { expect_mesh_error([&] { polygons_in_obj(text); }, said); };
+  obj("v 0 0\n", "line 1: a vertex should have three coordinates");
+  obj("v 0 0 0\n\nv 0 one 0\n", "line 3: \"one\" is no number");
+  obj("v 0 0 0\nf 1 1.5 1\n", "line 2: \"1.5\" is no whole number");
+  obj("v 0 0 0\nf 0 1 1\n", "line 2: a face uses vertex 0; the first is 1, the last -1");
+  obj("v 0 0 0\nf -2 1 1\n", "line 2: a face uses vertex -2");
+  obj("v 0 0 0\nf 1 1 7\n", "face 0 uses vertex 6, and there are 1");
+  const auto off = [](const char* text, const char* said) { expect_mesh_error([&] { polygons_in_off(text); }, said); };
+  off("", "is empty");
+  off("4OFF\n", "line 1: \"4OFF\" stands where OFF should");
+  off("OFF\n", "the numbers of vertices and faces should stand here");
+  off("OFF\n2 1 0\n0 0 0\n", "the file ends after 1 of 2 vertices");
+  off("OFF\n1 1 0\n0 0 0\n", "the file ends after 0 of 1 faces");
+  off("OFF\n1 1 0\n0 0 0\n3 0 0\n", "line 4: a face should have 3 corners and has 2");
+  off("OFF\n1 1 0\n0 0 0\n3 0 0 -1\n", "line 4: a face uses vertex -1");
+  off("OFF\n1 1 0\n0 0 0\n3 0 0 4\n", "face 0 uses vertex 4, and there are 1");
+  const auto ply = [](const std::string& text, const char* said) {
+    expect_mesh_error([&] { polygons_in_ply(text); }, said);
+  };
+  const std::string start = "ply\nformat ascii 1.0\n";
+  ply("plx\n", "line 1: \"ply\" should stand here");
+  ply("ply\nformat utf8 1.0\nend_header\n", "line 2: \"utf8\" is no format; there are ascii, binary_little_endian");
+  ply("ply\nend_header\n", "the header names no format");
+  ply(start, "line 3: the file ends within its header");
+  ply(start + "property float x\nend_header\n", "line 3: a property stands before the first element");
+  ply(start + "element vertex many\nend_header\n", "line 3: \"many\" is no number of elements");
+  ply(start + "element vertex 1\nproperty half x\nend_header\n", "line 4: \"property half x\": there is no such type");
+  ply(start + "element vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
+      "vertices should have x, y and z");
+  ply(start + "element face 1\nproperty int a\nend_header\n0\n",
+      "faces should have a list vertex_indices or vertex_index");
+  ply(start + "element vertex 999999999999\nproperty int x\nproperty int y\nproperty int z\nend_header\n0 0 0\n",
+      "999999999999 elements \"vertex\" are more than the file can hold");
+  ply(start + "element face 1\nproperty list int int vertex_index\nend_header\n-3 1 2 3\n", "a list has -3 numbers");
+  ply(start + "element face 1\nproperty list int int vertex_index\nend_header\n3 1 2 3\n",
+      "face 0 uses vertex 1, and there are 0 before it");
+}
+
+// Two triangles that share the edge from 10 to 30; the rows of faces are numbered 5 and 6, and 7 has no edges.
+VertexModelTables two_triangles() {
+  return {{{10, 20, 30, 40}, {{"x", {0, 1, 1, 0}}, {"y", {0, 0, 1, 1}}}},
+          {{0, 1, 2, 3, 4, 5},
+           {{"srce", {10, 20, 30, 30, 10, 40}}, {"trgt", {20, 30, 10, 40, 30, 10}}, {"face", {6, 6, 6, 5, 5, 5}}}},
+          {{7, 5, 6}, {{"area", {0, 0.25, 0.75}}}}};
+}
+
+TEST(VertexModel, FacesAreRingsOfEdges) {
+  const PolygonFile file = polygons_of(two_triangles());
+  EXPECT_EQ(file.surface.polygons, (std::vector<std::vector<std::size_t>>{{0, 2, 3}, {0, 1, 2}}));
+  EXPECT_EQ(file.surface.vertices[2], Vec3(1, 1, 0));
+  EXPECT_EQ(file.arrays, (std::map<std::string, CellArray>{{"area", {0.25, 0.75}}}));
+}
+
+TEST(VertexModel, SaysWhatIsWrong) {
+  const auto expect = [](const auto& spoil, const char* said) {
+    VertexModelTables tables = two_triangles();
+    spoil(tables);
+    expect_mesh_error([&] { polygons_of(tables); }, said);
+  };
+  expect([](auto& t) { t.vertices.columns.erase("y"); },
+         "the table of vertices has no column \"y\" of numbers; it has x");
+  expect([](auto& t) { t.edges.columns.erase("srce"); }, "the table of edges has no column \"srce\"");
+  expect([](auto& t) { t.vertices.index[1] = 10; }, "the table of vertices has two rows 10");
+  expect([](auto& t) { t.edges.columns["trgt"][1] = 99; }, "an edge names row 99 of vertices, and there is none");
+  expect([](auto& t) { t.edges.columns["face"][1] = 99; }, "an edge names row 99 of faces, and there is none");
+  expect([](auto& t) { t.edges.columns["trgt"][1] = 40; }, "the 3 edges of face 6 are no ring");
+  expect([](auto& t) { t.edges.columns["trgt"][2] = 20; }, "the 3 edges of face 6 are no ring");
+  expect([](auto& t) { t.edges.columns["srce"][1] = 10; }, "two edges of face 6 begin at vertex 10");
+}
+
+TEST(PolygonFile, IsReadByItsEnding) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("plica_polygons_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  write_file(folder / "a.OBJ", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  EXPECT_EQ(read_polygon_file(folder / "a.OBJ").surface.polygons.size(), 1U);
+  write_file(folder / "a.stl", "solid\n");
+  expect_mesh_error([&] { read_polygon_file(folder / "a.stl"); }, "a.stl: \".stl\" is no ending of a file of polygons");
+  EXPECT_THROW(read_polygon_file(folder / "nowhere.ply"), FileError);
+  write_file(folder / "a.h5", "no HDF5");
+  try {
+    read_polygon_file(folder / "a.h5");
+    ADD_FAILURE();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("HDF5"), std::string::npos) << error.what();
+  }
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace plica
