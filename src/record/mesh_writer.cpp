@@ -136,9 +136,8 @@ void put_elements(const MeshElements& mesh, VtkText& vtu) {
 }
 
 /// Of the file as a whole.
-void put_field_data(const FramePolygons* polygons,
-                    const std::vector<std::pair<std::string, std::vector<int>>>& lists, std::optional<double> time_s,
-                    VtkText& vtk) {
+void put_field_data(const FramePolygons* polygons, const std::vector<std::pair<std::string, std::vector<int>>>& lists,
+                    std::optional<double> time_s, VtkText& vtk) {
   if (!time_s && polygons == nullptr && lists.empty()) return;
   vtk.line(2, "<FieldData>");
   vtk.time(time_s);

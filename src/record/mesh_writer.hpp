@@ -33,8 +33,8 @@ struct MeshArrays {
   std::vector<std::pair<std::string, std::vector<int>>> cell_integers;         // cells
   std::vector<std::pair<std::string, std::vector<double>>> node_scalars = {};  // nodes
   std::vector<std::pair<std::string, std::vector<double>>> element_scalars = {};
-  const FramePolygons* polygons = nullptr;  // that the file is to hold besides
-  std::vector<std::pair<std::string, std::vector<int>>> lists = {};            // of the whole: field data
+  const FramePolygons* polygons = nullptr;                           // that the file is to hold besides
+  std::vector<std::pair<std::string, std::vector<int>>> lists = {};  // of the whole: field data
 };
 
 FramePolygons polygons_of(const Tissue& tissue);

@@ -104,9 +104,10 @@ void set_hanging(const HexahedralMesh& mesh, Tissue& tissue) {
       size = std::max(size, (mesh.points[mean.back().first.index()] - mesh.points[mean[0].first.index()]).norm());
     }
     if (!((mean_of(mean, mesh.points) - mesh.points[node]).norm() <= hanging_tolerance * size))
-      throw MeshError(fmt::format("node {} hangs on {} nodes, the first node {}, and does not lie in the middle "
-                                  "between them",
-                                  node, between, mean[0].first.number()));
+      throw MeshError(
+          fmt::format("node {} hangs on {} nodes, the first node {}, and does not lie in the middle "
+                      "between them",
+                      node, between, mean[0].first.number()));
     tissue.hanging.push_back(std::move(mean));
   }
 }

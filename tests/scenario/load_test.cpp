@@ -238,7 +238,6 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "before, or the same twice for a jump"},
       {program + "program = { time_s = [0], activity = [-1] }",
        "test.toml:3: contraction.a.program.activity: -1 is out of range; give a list of numbers >= 0"},
-      // Patterns of a contraction.
       {program + "profile = { sigma_um = 30 }",
        "test.toml:3: contraction.a.profile.shape: is missing; give one of: constant | linear | gaussian | plateau | "
        "table | array"},

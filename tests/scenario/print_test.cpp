@@ -121,7 +121,8 @@ TEST(Reference, SaysTypeDefaultAndRange) {
   int count = 0;
   for (const std::string line : {
            "| `poisson_ratio` | number | `0.45` | > -1 and < 0.5 |",
-           "| `shape` | word | `\"pill\"` | pill \\| sphere \\| slice \\| block \\| egg \\| points \\| file |",
+           "| `shape` | word | `\"pill\"` | pill \\| sphere \\| slice \\| block \\| egg \\| points \\| sheet \\| "
+           "surface \\| file |",
            "| `step_s` | number | `\"adaptive\"` | >= 1e-06 or \"adaptive\" |",
            "| `cells` | 3 integers | `[18, 9, 8]` | 1 to 100000; with shape pill, sphere, slice, block |",
            "| `end_min` | number | see `end_s` | > 0; not with `end_s` |",

@@ -41,6 +41,7 @@ void expect_words(std::string_view table, std::string_view key, const Words& wor
 TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("embryo", "mirror", words::mirror_planes);
   expect_words("embryo", "elements", words::polygon_splits);
+  expect_words("embryo", "rim", words::rims);
   expect_words("region.*", "face", words::sides);
   expect_words("volume", "projection_surface", words::projection_surfaces);
   expect_words("volume", "projection_weights", words::projection_weights);
