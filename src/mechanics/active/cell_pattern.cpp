@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <ranges>
 
 namespace plica {
 namespace {
@@ -81,8 +80,9 @@ PolygonSize size_half_way_up(const Tissue& tissue, const Cell& cell) {
   Vec3 twice_area = Vec3::Zero();
   for (std::size_t i = 1; i + 1 < sides; ++i) twice_area += (points[i] - points[0]).cross(points[i + 1] - points[0]);
   const auto reach = [&](const Vec3& direction) {
-    const auto [low, high] =
-        std::ranges::minmax(points | std::views::transform([&](const Vec3& x) { return direction.dot(x); }));
+    std::vector<double> places;
+    for (const Vec3& x : points) places.push_back(direction.dot(x));
+    const auto [low, high] = std::ranges::minmax(places);
     return high - low;
   };
   const Vec3 normal = twice_area.normalized(), along = Vec3::UnitX() - normal.x() * normal;

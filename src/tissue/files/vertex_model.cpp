@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <ranges>
 #include <unordered_map>
 
+#include "core/names.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
@@ -15,7 +15,7 @@ const std::vector<double>& column(const NumberedTable& table, const char* name, 
   const auto found = table.columns.find(name);
   if (found == table.columns.end())
     throw MeshError(fmt::format("the table of {} has no column \"{}\" of numbers; it has {}", of, name,
-                                fmt::join(std::views::keys(table.columns), ", ")));
+                                fmt::join(keys_of(table.columns), ", ")));
   return found->second;
 }
 
