@@ -182,9 +182,11 @@ class Drawer:
         for key, least in (("time.tolerance_um", 1e-3), ("time.max_step_s", draft.get("time.end_s") / MOST_STEPS)):
             if draft.get(key) is not None:
                 draft.put("time", key.split(".")[1], max(draft.get(key), least))
-        for address in [a for a in draft.values if a.endswith(".pulse.period_s") and draft.get(a) != "none"]:
-            table, _, value = draft.values[address]  # steps are a small part of it
-            draft.put(table, "pulse.period_s", max(value, 10.0))
+        # An adaptive step is at most a twelfth of a pulse.
+        for key, unit_s in (("pulse.period_s", 1), ("pulse.period_min", 60)):
+            for address in [a for a in draft.values if a.endswith("." + key) and draft.get(a) != "none"]:
+                table, _, value = draft.values[address]
+                draft.put(table, key, max(value, 12 * draft.get("time.end_s") / (4 * MOST_STEPS) / unit_s))
         for address in [a for a in draft.values if a.startswith("division.") and a.endswith(".region")]:
             table = address.removesuffix(".region")
             draft.put(table, "max_generation", min(draft.get(f"{table}.max_generation", 1), 2))
