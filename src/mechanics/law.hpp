@@ -71,7 +71,8 @@ class TangentSink {
   virtual ~TangentSink() = default;
   virtual void add_block(NodeId row, NodeId column, const Mat3& block) = 0;
 
-  /// Whether several threads may add blocks at once, of nodes of which none is another's.
+  /// Whether several threads may add blocks at once that end on different nodes; those of a hanging node end on the
+  /// nodes that carry it.
   [[nodiscard]] virtual bool takes_apart() const { return false; }
 };
 

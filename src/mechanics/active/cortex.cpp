@@ -30,12 +30,12 @@ std::vector<Face> acting_faces(const Tissue& tissue, CellSide side, const CellPa
 }
 
 // As elements whose corners are those of the face, twice.
-ElementChunks chunks_of(const std::vector<Face>& faces) {
+ElementChunks chunks_of(const Tissue& tissue, const std::vector<Face>& faces) {
   std::vector<std::array<NodeId, 8>> corners;
   corners.reserve(faces.size());
   for (const auto& [n, cell, beyond, share] : faces)
     corners.push_back({n[0], n[1], n[2], n[3], n[0], n[1], n[2], n[3]});
-  return ElementChunks(corners);
+  return {tissue, corners};
 }
 
 // The cells of a face as one key, whichever is first.
@@ -68,7 +68,7 @@ Cortex::Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kerne
       kernels_(kernels),
       faces_(acting_faces(tissue, rule_.side, pattern_)),
       own_(tissue, rule_.own),
-      chunks_(chunks_of(faces_)),
+      chunks_(chunks_of(tissue, faces_)),
       batches_(chunks_.batch_count()) {
   for (const Face& face : faces_) {
     rest_areas_.push_back(area_at_rest(tissue, face));

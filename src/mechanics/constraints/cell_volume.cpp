@@ -21,7 +21,7 @@ void add_volume_hessian(const std::array<NodeId, 8>& nodes, const HexPoints& poi
 VolumeElements::VolumeElements(const Tissue& tissue, Kernels kernels, Values values)
     : kernels_(kernels),
       values_(values),
-      chunks_(tissue.elements, tissue.element_cell),
+      chunks_(tissue, tissue.elements, tissue.element_cell),
       batches_(chunks_.batch_count()) {
   parallel_for(batches_.size() * ElementChunks::batch_size, [&](std::size_t place) { fit(tissue, place); });
 }

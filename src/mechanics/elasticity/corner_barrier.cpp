@@ -30,7 +30,7 @@ Edges edges_of(int corner, const At& at) {
 CornerBarrier::CornerBarrier(const Tissue& tissue, double modulus, double threshold)
     : modulus_(modulus),
       threshold_(threshold),
-      chunks_(tissue.elements),
+      chunks_(tissue, tissue.elements),
       elements_(tissue.elements),
       rest_jacobians_(tissue.elements.size()),
       rest_volumes_(tissue.elements.size()) {

@@ -34,7 +34,7 @@ Corotational::Corotational(const Tissue& tissue, std::vector<ElasticModuli> modu
     : moduli_(tissue, std::move(moduli)),
       shear_viscosity_(shear_viscosity),
       kernels_(kernels),
-      chunks_(tissue.elements),
+      chunks_(tissue, tissue.elements),
       batches_(chunks_.batch_count()),
       viscous_batches_(shear_viscosity > 0 ? chunks_.batch_count() : 0) {
   require_upright_rest_shapes(tissue);

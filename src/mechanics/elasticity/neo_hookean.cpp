@@ -73,7 +73,7 @@ NeoHookean::NeoHookean(const Tissue& tissue, std::vector<NeoHookeanMaterial> mat
       elements_(tissue.elements),
       element_cell_(tissue.element_cell),
       rest_(tissue.element_rest_shape),
-      chunks_(tissue.elements),
+      chunks_(tissue, tissue.elements),
       batches_(chunks_.batch_count()),
       flow_batches_(flows() ? chunks_.batch_count() : 0) {
   require_upright_rest_shapes(tissue);

@@ -53,7 +53,7 @@ void require_upright_rest_shapes(const Tissue& tissue) {
 }
 
 TurningElements::TurningElements(const Tissue& tissue, bool viscous)
-    : elements_(tissue.elements.size()), chunks_(tissue.elements), viscous_(viscous) {
+    : elements_(tissue.elements.size()), chunks_(tissue, tissue.elements), viscous_(viscous) {
   require_upright_rest_shapes(tissue);
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     elements_[e].nodes = tissue.elements[e];

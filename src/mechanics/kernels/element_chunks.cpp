@@ -3,19 +3,23 @@
 #include <algorithm>
 #include <bitset>
 
+#include "tissue/tissue.hpp"
+
 namespace plica {
 
-ElementChunks::ElementChunks(std::span<const std::array<NodeId, 8>> elements, std::span<const CellId> element_cell)
+ElementChunks::ElementChunks(const Tissue& tissue, std::span<const std::array<NodeId, 8>> elements,
+                             std::span<const CellId> element_cell)
     : elements_(elements.size()), batches_in_chunk_(std::max<std::size_t>(8, (batch_count() - 1) / most_chunks + 1)) {
   using Colours = std::bitset<most_chunks>;
-  std::size_t nodes = 0, cells = 0;
-  for (const auto& element : elements)
-    for (const NodeId node : element) nodes = std::max(nodes, node.index() + 1);
+  std::size_t cells = 0;
   for (const CellId cell : element_cell) cells = std::max(cells, cell.index() + 1);
-  std::vector<Colours> of_node(nodes), of_cell(cells);
+  std::vector<Colours> of_node(tissue.node_count()), of_cell(cells);
   const auto for_all = [&](std::size_t chunk, const auto& take) {
     for (std::size_t e = first_batch(chunk) * batch_size; e < last_element(chunk); ++e) {
-      for (const NodeId node : elements[e]) take(of_node[node.index()]);
+      for (const NodeId node : elements[e]) {
+        take(of_node[node.index()]);
+        tissue.for_free_nodes(node, [&](NodeId free, double) { take(of_node[free.index()]); });
+      }
       if (!element_cell.empty()) take(of_cell[element_cell[e].index()]);
     }
   };

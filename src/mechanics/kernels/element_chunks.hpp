@@ -1,7 +1,8 @@
 // A way through all elements for any number of threads: chunks of consecutive elements, coloured so that chunks of one
-// colour have no node in common. Colours follow each other, the chunks of one colour are shared out among the threads.
-// So elements add to their nodes without more ado, and what a node gets is added up in the same order whoever does it.
-// Chunks are as long as they can be while there are enough of them to share out (docs/performance-notebook.md).
+// colour have no node in common, nor one that theirs hang on. Colours follow each other, the chunks of one colour are
+// shared out among the threads. So elements add to their nodes without more ado, and what a node gets is added up in
+// the same order whoever does it. Chunks are as long as they can be while there are enough of them to share out
+// (docs/performance-notebook.md).
 #pragma once
 
 #include <omp.h>
@@ -17,6 +18,8 @@
 
 namespace plica {
 
+struct Tissue;
+
 /// Vectors as kernels take them: x y z each.
 inline const double* numbers(std::span<const Vec3> vectors) { return reinterpret_cast<const double*>(vectors.data()); }
 inline double* numbers(std::span<Vec3> vectors) { return reinterpret_cast<double*>(vectors.data()); }
@@ -28,8 +31,10 @@ class ElementChunks {
   static constexpr std::size_t batch_size = 8;
   static constexpr std::size_t most_chunks = 64;
 
-  /// With the cells of elements, chunks of one colour have no cell in common either.
-  explicit ElementChunks(std::span<const std::array<NodeId, 8>> elements, std::span<const CellId> element_cell = {});
+  /// `elements`: those of the tissue, or its faces, say. With their cells, chunks of one colour have no cell in common
+  /// either.
+  ElementChunks(const Tissue& tissue, std::span<const std::array<NodeId, 8>> elements,
+                std::span<const CellId> element_cell = {});
 
   [[nodiscard]] std::size_t element_count() const { return elements_; }
   [[nodiscard]] std::size_t batch_count() const { return (elements_ + batch_size - 1) / batch_size; }

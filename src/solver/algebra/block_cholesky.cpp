@@ -70,7 +70,7 @@ BlockCholesky::BlockCholesky(const BlockPattern& pattern, Kernels kernels)
   prepare_blas();
   order(pattern);
   place_blocks(pattern);
-  std::size_t size = 0, widest = 0, longest = 0;
+  std::size_t size = 0;
   for (auto& node : supernodes_) {
     node.panel = size;
     size += node.width() * chunks_for(node.height());
@@ -79,12 +79,55 @@ BlockCholesky::BlockCholesky(const BlockPattern& pattern, Kernels kernels)
     if (!node.children.empty()) node.subtree = supernodes_[node.children.front()].subtree;
     node.work = static_cast<double>(node.width()) * static_cast<double>(node.height() * node.height());
     for (const int child : node.children) node.work += supernodes_[child].work;
-    widest = std::max(widest, node.width());
-    longest = std::max(longest, node.height());
   }
   panels_.resize(size);
-  own_.resize(widest + 1);  // as vectors of four
-  front_.resize(chunks_for(longest + 1));
+  share_out();
+}
+
+// Not by how many threads there are: sums are taken in another order with other branches.
+void BlockCholesky::share_out() {
+  constexpr std::size_t worth_sharing = 2'000'000;    // numbers: a millisecond a solve
+  std::vector<std::size_t> size(supernodes_.size());  // of each subtree
+  std::vector<int> roots;
+  for (std::size_t s = 0; s < supernodes_.size(); ++s) {
+    const Supernode& node = supernodes_[s];
+    size[s] = node.width() * node.height();
+    for (const int child : node.children) size[s] += size[child];
+    if (node.rows.empty()) roots.push_back(static_cast<int>(s));
+  }
+  // What is too large for one thread is trunk, and so is what is not worth a thread's while.
+  const std::size_t largest = factor_size_ / 12, least = factor_size_ / 200;
+  std::vector<char> is_trunk(supernodes_.size(), 1);
+  while (factor_size_ >= worth_sharing && !roots.empty()) {
+    const int root = roots.back();
+    roots.pop_back();
+    const Supernode& node = supernodes_[root];
+    if (size[root] > largest) {
+      roots.insert(roots.end(), node.children.begin(), node.children.end());
+    } else if (size[root] > least) {
+      Part& branch = branches_.emplace_back();
+      for (int s = node.subtree; s <= root; ++s) {
+        branch.supernodes.push_back(s);
+        is_trunk[s] = 0;
+      }
+      branch.end = node.first + node.columns;
+      branch.above.resize(nodes_);
+    }
+  }
+  for (std::size_t s = 0; s < supernodes_.size(); ++s)
+    if (is_trunk[s]) trunk_.supernodes.push_back(static_cast<int>(s));
+  trunk_.end = nodes_;
+  const auto make_scratch = [&](Part& part) {
+    std::size_t widest = 0, longest = 0;
+    for (const int s : part.supernodes) {
+      widest = std::max(widest, supernodes_[s].width());
+      longest = std::max(longest, supernodes_[s].height());
+    }
+    part.own.resize(widest + 1);  // as vectors of four
+    part.front.resize(chunks_for(longest + 1));
+  };
+  std::ranges::for_each(branches_, make_scratch);
+  make_scratch(trunk_);
 }
 
 void BlockCholesky::order(const BlockPattern& pattern) {
@@ -330,38 +373,63 @@ void BlockCholesky::solve(std::span<float> x) const {
   solve_up(z_, x);
 }
 
+template <class Body>
+void BlockCholesky::for_branches(const Body& body) const {
+#pragma omp parallel for schedule(dynamic) if (branches_.size() > 1)
+  for (Part& branch : branches_) body(branch);  // NOLINT(modernize-loop-convert): OpenMP's
+}
+
 void BlockCholesky::solve_down(std::span<const float> b, Halfway& z) const {
   z.resize(nodes_);
   for (int n = 0; n < nodes_; ++n) std::copy_n(&b[3 * n], 3, z[position_[n]].numbers);
-  for (const Supernode& node : supernodes_) {
-    const auto is_zero = [](const NodeNumbers& x) {
-      return x.numbers[0] == 0 && x.numbers[1] == 0 && x.numbers[2] == 0;
-    };
-    if (!std::all_of(&z[node.first], &z[node.first] + node.columns, is_zero)) solve_down(node, z);
-  }
+  const auto go_down = [&](Part& part) {
+    for (const int s : part.supernodes) {
+      const Supernode& node = supernodes_[s];
+      const auto is_zero = [](const NodeNumbers& x) {
+        return x.numbers[0] == 0 && x.numbers[1] == 0 && x.numbers[2] == 0;
+      };
+      if (!std::all_of(&z[node.first], &z[node.first] + node.columns, is_zero)) solve_down(node, part, z);
+    }
+  };
+  const auto rows_above = [&](const Part& branch) -> const std::vector<int>& {
+    return supernodes_[branch.supernodes.back()].rows;
+  };
+  for_branches([&](Part& branch) {
+    for (const int row : rows_above(branch)) branch.above[row] = {};
+    go_down(branch);
+  });
+  for (const Part& branch : branches_)
+    for (const int row : rows_above(branch))
+      write(z[row].numbers, read(z[row].numbers) + read(branch.above[row].numbers));
+  go_down(trunk_);
 }
 
 void BlockCholesky::solve_up(Halfway& z, std::span<float> x) const {
-  for (std::size_t s = supernodes_.size(); s-- > 0;) solve_up(supernodes_[s], z);
+  const auto go_up = [&](Part& part) {
+    for (std::size_t i = part.supernodes.size(); i-- > 0;) solve_up(supernodes_[part.supernodes[i]], part, z);
+  };
+  go_up(trunk_);
+  for_branches(go_up);
   for (int n = 0; n < nodes_; ++n) std::copy_n(z[position_[n]].numbers, 3, &x[3 * n]);
 }
 
-void BlockCholesky::solve_down(const Supernode& node, Halfway& x) const {
-  float* const own = own_.data();
-  float* const front = front_.data()->numbers;
+void BlockCholesky::solve_down(const Supernode& node, Part& part, Halfway& x) const {
+  float* const own = part.own.data();
+  float* const front = part.front.data()->numbers;
   for (int k = 0; k < node.columns; ++k) write(own + 3 * k, read(x[node.first + k].numbers));
-  products_->multiply(panel_of(node), own, front_.data());
+  products_->multiply(panel_of(node), own, part.front.data());
   for (int k = 0; k < node.columns; ++k) write(x[node.first + k].numbers, read(front + 3 * k));
   float* below = front + node.width();
   for (const int row : node.rows) {
-    write(x[row].numbers, read(x[row].numbers) - read(below));
+    float* const to = row < part.end ? x[row].numbers : part.above[row].numbers;
+    write(to, read(to) - read(below));
     below += 3;
   }
 }
 
-void BlockCholesky::solve_up(const Supernode& node, Halfway& x) const {
-  float* const own = own_.data();
-  float* const front = front_.data()->numbers;
+void BlockCholesky::solve_up(const Supernode& node, Part& part, Halfway& x) const {
+  float* const own = part.own.data();
+  float* const front = part.front.data()->numbers;
   for (int k = 0; k < node.columns; ++k) write(front + 3 * k, read(x[node.first + k].numbers));
   float* below = front + node.width();
   for (const int row : node.rows) {
@@ -369,7 +437,7 @@ void BlockCholesky::solve_up(const Supernode& node, Halfway& x) const {
     below += 3;
   }
   std::fill(below, front + chunks_for(node.height()) * PanelChunk::size, 0.0F);  // after the last node
-  products_->multiply_transposed(panel_of(node), front_.data(), own);
+  products_->multiply_transposed(panel_of(node), part.front.data(), own);
   for (int k = 0; k < node.columns; ++k) write(x[node.first + k].numbers, read(own + 3 * k));
 }
 

@@ -5,8 +5,9 @@
 // eliminated in a dense front, to which its children add their updates; subtrees are shared out among the threads. A
 // factor is applied much more often than it is made, so each supernode's panel [L11; L21] is kept as P = [L11^-1; L21
 // L11^-1]: both triangular solves are then plain products with P and its transpose, without dependencies inside, and
-// their time is that of reading P twice. Weighed: MUMPS (double precision; 2 ms a solve at 4500 unknowns, against 0.2
-// ms here), CHOLMOD (its supernodal part is GPL), Eigen's SimplicialLLT (no supernodes).
+// their time is that of reading P twice. Large factors are read by several threads: each takes subtrees, whose updates
+// of what is above them are kept apart and added in a fixed order. Weighed: MUMPS (double precision; 2 ms a solve at
+// 4500 unknowns, against 0.2 ms here), CHOLMOD (its supernodal part is GPL), Eigen's SimplicialLLT (no supernodes).
 #pragma once
 
 #include <cstddef>
@@ -87,8 +88,19 @@ class BlockCholesky final : public Preconditioner {
   void factorise_subtree(int root, std::span<const float> values, Fronts& fronts);
   void factorise_front(int s, std::span<const float> values, Fronts& fronts);
 
-  void solve_down(const Supernode& node, Halfway& x) const;  // from children to parents
-  void solve_up(const Supernode& node, Halfway& x) const;
+  // Supernodes that one thread takes in a solve, children first.
+  struct Part {
+    std::vector<int> supernodes;
+    int end = 0;                    // of its nodes, in the order of elimination
+    Halfway above;                  // what it adds to the nodes from there on; of the others nothing
+    std::vector<float> own;         // scratch: a supernode's own numbers,
+    std::vector<PanelChunk> front;  // and what its panel is multiplied with, or gives
+  };
+  void share_out();
+  template <class Body>
+  void for_branches(const Body& body) const;
+  void solve_down(const Supernode& node, Part& part, Halfway& x) const;  // from children to parents
+  void solve_up(const Supernode& node, Part& part, Halfway& x) const;
 
   const PanelProducts* products_;
   int nodes_ = 0;
@@ -96,9 +108,9 @@ class BlockCholesky final : public Preconditioner {
   std::vector<Supernode> supernodes_;  // children before parents
   UninitialisedVector<PanelChunk> panels_;
   std::size_t factor_size_ = 0;
-  mutable Halfway z_;                      // scratch of solve(),
-  mutable std::vector<float> own_;         // a supernode's own,
-  mutable std::vector<PanelChunk> front_;  // and what its panel is multiplied with, or gives
+  mutable std::vector<Part> branches_;  // subtrees that do not depend on each other
+  mutable Part trunk_;                  // and all above them
+  mutable Halfway z_;                   // scratch of solve()
 };
 
 }  // namespace plica

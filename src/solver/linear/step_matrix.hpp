@@ -39,8 +39,7 @@ class StepMatrix final : public TangentSink {
   /// when one adds a block outside the pattern that it states.
   void assemble(const Model& model, const Contacts& contacts, const Step& step, const Iterate& at);
   void add_block(NodeId row, NodeId column, const Mat3& block) override;
-  /// What acts on a hanging node acts on others.
-  [[nodiscard]] bool takes_apart() const override { return tissue_.free_node_count() == tissue_.node_count(); }
+  [[nodiscard]] bool takes_apart() const override { return true; }
   void take_gradients(const Model& model, std::span<const Vec3> positions) { jacobian_.update(model, positions); }
   [[nodiscard]] const ConstraintJacobian& jacobian() const { return jacobian_; }
 
