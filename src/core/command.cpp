@@ -15,6 +15,7 @@ CommandResult run_command(const std::vector<std::string>& words) {
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return {};
   std::vector<std::string> copies = words;
   std::vector<char*> arguments;
+  arguments.reserve(copies.size() + 1);
   for (std::string& word : copies) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;

@@ -1,5 +1,7 @@
 #include "scenario/rest_arrays.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +27,7 @@ template <class Inputs>
 void add_patterns(const std::string& tables, const Inputs& inputs, const Tissue& tissue, NamedArrays& arrays) {
   for (const auto& [name, input] : inputs) {
     if (!is_possible(input.profile, tissue)) continue;
-    const std::string of = "_" + tables + "." + name;
+    const std::string of = fmt::format("_{}.{}", tables, name);
     const CellPattern pattern = make_pattern(input, tissue);
     add("strength" + of, pattern.strengths, arrays);
     if (std::ranges::any_of(pattern.delays_s, [](double delay) { return delay > 0; }))
@@ -44,9 +46,11 @@ void add_materials(const Scenario& scenario, const Tissue& tissue, NamedArrays& 
     moduli.push_back(factor * common.young_modulus_Pa);
     ratios.push_back(poisson_ratio);
   }
-  for (const auto& [name, values] : {std::pair("young_modulus_Pa", &moduli), {"poisson_ratio", &ratios}})
-    if (std::ranges::any_of(*values, [&](double value) { return value != values->front(); }))
-      add(name, *values, arrays);
+  const auto add_when_uneven = [&](const std::string& name, const std::vector<double>& values) {
+    if (std::ranges::any_of(values, [&](double value) { return value != values.front(); })) add(name, values, arrays);
+  };
+  add_when_uneven("young_modulus_Pa", moduli);
+  add_when_uneven("poisson_ratio", ratios);
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ std::string submit(std::vector<std::string> words, const SlurmOptions& options) 
   words.insert(words.begin() + 2, options.sbatch.begin(), options.sbatch.end());
   const CommandResult result = run_command(words);
   if (result.status == -1) throw UsageError("sbatch cannot be run: is this a machine from which jobs are submitted?");
-  const std::string number = result.output.substr(0, result.output.find_first_of(";\n"));
+  std::string number = result.output.substr(0, result.output.find_first_of(";\n"));
   if (result.status != 0 || !number_in(number))
     throw UsageError("Slurm does not take the study: " +
                      result.output.substr(0, result.output.find_last_not_of('\n') + 1));
@@ -213,6 +213,7 @@ std::string jobs_on_slurm(const StudyDirectory& directory) {
   std::istringstream lines(result.output);
   for (std::string state; lines >> state;) ++by_state[state];
   std::vector<std::string> texts;
+  texts.reserve(by_state.size());
   for (const auto& [state, count] : by_state) texts.push_back(fmt::format("{} {}", count, state));
   return texts.empty() ? "none of its jobs is left"
                        : fmt::format("jobs {} and {}: {}", jobs.value("array", ""), jobs.value("gather", ""),

@@ -128,7 +128,7 @@ class Reader {
   std::optional<Value> get(const toml::table& table, const char* key, const std::string& path, const char* what) {
     const toml::node* node = table.get(key);
     if (node == nullptr) return {};
-    const std::optional<Value> value = node->value_exact<Value>();
+    std::optional<Value> value = node->value_exact<Value>();
     if constexpr (std::is_same_v<Value, double>) {
       const std::optional<double> number = node->is_number() ? node->value<double>() : std::nullopt;
       if (number && std::isfinite(*number)) return number;

@@ -196,11 +196,13 @@ void work_in_processes(int workers, std::span<const std::size_t> pieces,
     }
     while (pool.size() < static_cast<std::size_t>(workers) && !open.empty()) {
       std::vector<int> ends;
+      ends.reserve(pool.size());
       for (const auto& worker : pool) ends.push_back(worker->end());
       pool.push_back(std::make_unique<Worker>(do_work, ends));
       give(*pool.back());
     }
     std::vector<pollfd> waits_for;
+    waits_for.reserve(pool.size());
     for (const auto& worker : pool) waits_for.push_back({worker->end(), POLLIN, 0});
     ::poll(waits_for.data(), waits_for.size(), 100);
     for (std::size_t w = pool.size(); w-- > 0;) {

@@ -19,8 +19,8 @@ struct Capsule {
 
 class OuterShape {
  public:
-  OuterShape(const Capsule& capsule) : capsule_(capsule) {}
-  OuterShape(std::shared_ptr<const StarSurface> surface) : surface_(std::move(surface)) {}
+  OuterShape(const Capsule& capsule) : capsule_(capsule) {}  // NOLINT(google-explicit-constructor): it is one
+  explicit OuterShape(std::shared_ptr<const StarSurface> surface) : surface_(std::move(surface)) {}
 
   /// The parallel surface, farther out by so much.
   [[nodiscard]] OuterShape moved_out(double by_um) const;
