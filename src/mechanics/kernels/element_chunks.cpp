@@ -13,13 +13,11 @@ ElementChunks::ElementChunks(const Tissue& tissue, std::span<const std::array<No
   using Colours = std::bitset<most_chunks>;
   std::size_t cells = 0;
   for (const CellId cell : element_cell) cells = std::max(cells, cell.index() + 1);
-  std::vector<Colours> of_node(tissue.node_count()), of_cell(cells);
+  std::vector<Colours> of_node(tissue.free_node_count()), of_cell(cells);
   const auto for_all = [&](std::size_t chunk, const auto& take) {
     for (std::size_t e = first_batch(chunk) * batch_size; e < last_element(chunk); ++e) {
-      for (const NodeId node : elements[e]) {
-        take(of_node[node.index()]);
+      for (const NodeId node : elements[e])  // what shares a hanging node shares those that it hangs on
         tissue.for_free_nodes(node, [&](NodeId free, double) { take(of_node[free.index()]); });
-      }
       if (!element_cell.empty()) take(of_cell[element_cell[e].index()]);
     }
   };

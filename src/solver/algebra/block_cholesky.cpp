@@ -86,19 +86,18 @@ BlockCholesky::BlockCholesky(const BlockPattern& pattern, Kernels kernels)
 
 // Not by how many threads there are: sums are taken in another order with other branches.
 void BlockCholesky::share_out() {
-  constexpr std::size_t worth_sharing = 2'000'000;    // numbers: a millisecond a solve
   std::vector<std::size_t> size(supernodes_.size());  // of each subtree
   std::vector<int> roots;
   for (std::size_t s = 0; s < supernodes_.size(); ++s) {
     const Supernode& node = supernodes_[s];
     size[s] = node.width() * node.height();
     for (const int child : node.children) size[s] += size[child];
-    if (node.rows.empty()) roots.push_back(static_cast<int>(s));
+    if (node.rows.empty() && factor_size_ >= worth_sharing) roots.push_back(static_cast<int>(s));
   }
   // What is too large for one thread is trunk, and so is what is not worth a thread's while.
   const std::size_t largest = factor_size_ / 12, least = factor_size_ / 200;
   std::vector<char> is_trunk(supernodes_.size(), 1);
-  while (factor_size_ >= worth_sharing && !roots.empty()) {
+  while (!roots.empty()) {
     const int root = roots.back();
     roots.pop_back();
     const Supernode& node = supernodes_[root];
@@ -376,7 +375,7 @@ void BlockCholesky::solve(std::span<float> x) const {
 template <class Body>
 void BlockCholesky::for_branches(const Body& body) const {
 #pragma omp parallel for schedule(dynamic) if (branches_.size() > 1)
-  for (Part& branch : branches_) body(branch);  // NOLINT(modernize-loop-convert): OpenMP's
+  for (Part& branch : branches_) body(branch);
 }
 
 void BlockCholesky::solve_down(std::span<const float> b, Halfway& z) const {

@@ -24,6 +24,9 @@ namespace plica {
 
 class BlockCholesky final : public Preconditioner {
  public:
+  /// Numbers in a factor, 8 MB, from which on threads share out a solve, which reads them twice.
+  static constexpr std::size_t worth_sharing = 2'000'000;
+
   /// Orders the nodes and finds where the factor has entries. Once a topology. `kernels`: of the solves' products.
   explicit BlockCholesky(const BlockPattern& pattern, Kernels kernels = chosen_kernels());
 
@@ -91,8 +94,8 @@ class BlockCholesky final : public Preconditioner {
   // Supernodes that one thread takes in a solve, children first.
   struct Part {
     std::vector<int> supernodes;
-    int end = 0;                    // of its nodes, in the order of elimination
-    Halfway above;                  // what it adds to the nodes from there on; of the others nothing
+    int end = 0;                    // the first node above it, in the order of elimination
+    Halfway above;                  // what it adds to the nodes above it
     std::vector<float> own;         // scratch: a supernode's own numbers,
     std::vector<PanelChunk> front;  // and what its panel is multiplied with, or gives
   };
@@ -108,8 +111,8 @@ class BlockCholesky final : public Preconditioner {
   std::vector<Supernode> supernodes_;  // children before parents
   UninitialisedVector<PanelChunk> panels_;
   std::size_t factor_size_ = 0;
-  mutable std::vector<Part> branches_;  // subtrees that do not depend on each other
-  mutable Part trunk_;                  // and all above them
+  mutable std::vector<Part> branches_;  // subtrees that do not depend on each other; none in a small factor
+  mutable Part trunk_;                  // all others
   mutable Halfway z_;                   // scratch of solve()
 };
 

@@ -68,8 +68,10 @@ Iterate NewtonStepper::forecast(const State& state, double duration_s) const {
 }
 
 StepReport NewtonStepper::advance(const State& state, double duration_s, bool from_rest, State& next) {
-  Iterate still{state.positions, state.multipliers, state.contact_forces, state.in_contact};
-  Iterate at = from_rest ? still : forecast(state, duration_s);
+  const auto unmoved = [&] {
+    return Iterate{state.positions, state.multipliers, state.contact_forces, state.in_contact};
+  };
+  Iterate at = from_rest ? unmoved() : forecast(state, duration_s);
   const TimeOrder order = std::min(order_, possible_order(state, duration_s));
   BackwardDifference rates{duration_s, 0};
   Vectors earlier;
@@ -86,25 +88,25 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
             .ahead = rates.ahead,
             .internals = state.internals};
   StepReport report;
-  std::vector<unsigned char> contact_changes;
-  const auto begin_at = [&] {
-    contact_changes.assign(at.in_contact.size(), 0);
-    balance_.revise_contacts(at, contact_changes);
-    step.positions = at.positions;
-    return balance_.residual(step, at);
+  std::vector<unsigned char> contact_changes(at.in_contact.size());
+  const auto first_residual = [&](Iterate& start, std::vector<unsigned char>& changes) {
+    balance_.revise_contacts(start, changes);
+    step.positions = start.positions;
+    return balance_.residual(step, start);
   };
-  Residual now = begin_at();
-  // Where few corners of elements have come to their barrier, motion that goes on drives them deep into it: Newton's
-  // method then takes many iterations to come out, fewer from where everything was.
-  constexpr double poor_forecast = 0.05;
+  Residual now = first_residual(at, contact_changes);
+  // Where corners of elements have come to their barrier, motion that goes on drives them deep into it: Newton's method
+  // then takes many iterations to come out, fewer from where everything was.
+  constexpr double poor_forecast = 0.05;  // residual's forces, relative
   if (!from_rest && !(now.force < poor_forecast)) {
-    const double of_forecast = now.force;
-    std::swap(at, still);
-    now = begin_at();
-    if (!(now.force < of_forecast)) {
-      std::swap(at, still);
-      now = begin_at();
+    Iterate start = unmoved();
+    std::vector<unsigned char> changes(start.in_contact.size());
+    if (Residual there = first_residual(start, changes); there.finite() && !(now.force <= there.force)) {
+      at = std::move(start);
+      contact_changes = std::move(changes);
+      now = std::move(there);
     }
+    step.positions = at.positions;
   }
   // Whether nothing wants to leave or join an obstacle, by the forces of this iterate.
   const auto settle_contacts = [&] {

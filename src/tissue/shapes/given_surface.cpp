@@ -106,7 +106,7 @@ std::size_t merge_vertices(PolygonSurface& surface, bool mend) {
 
 // Returns how many there were that are not `merged`.
 std::size_t drop_unused(PolygonSurface& surface, std::size_t merged) {
-  constexpr std::size_t unused = static_cast<std::size_t>(-1);
+  constexpr auto unused = static_cast<std::size_t>(-1);
   std::vector<std::size_t> now(surface.vertices.size(), unused);
   for (const auto& polygon : surface.polygons)
     for (const std::size_t vertex : polygon) now[vertex] = 0;

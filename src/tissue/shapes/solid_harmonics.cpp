@@ -5,7 +5,7 @@
 namespace plica {
 namespace {
 
-constexpr std::size_t place(int l, int m) { return static_cast<std::size_t>(l * l + l + m); }
+constexpr int place(int l, int m) { return l * l + l + m; }
 
 }  // namespace
 

@@ -12,7 +12,8 @@ namespace {
 // The circumcentre of three points in their plane. That of a flat triangle is far away; it is brought back to within
 // the longest side of the triangle's middle, where it still lies on the right side of its neighbours'.
 Vec3 bounded_circumcentre(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, ac = c - a, normal = ab.cross(ac), middle = (a + b + c) / 3;
+  const Vec3 ab = b - a, ac = c - a, normal = ab.cross(ac);
+  Vec3 middle = (a + b + c) / 3;
   const Vec3 centre =
       a + (ab.squaredNorm() * ac.cross(normal) + ac.squaredNorm() * normal.cross(ab)) / (2 * normal.squaredNorm());
   const double longest = std::max({ab.norm(), ac.norm(), (c - b).norm()});
@@ -53,7 +54,7 @@ MendedPolygons mend_about(const Vectors& points, const StarSurface& surface, con
 
 PolygonSurface dual_polygons(const Vectors& points, const SurfaceTriangulation& triangulation,
                              const StarSurface& surface) {
-  constexpr std::size_t unnumbered = static_cast<std::size_t>(-1);
+  constexpr auto unnumbered = static_cast<std::size_t>(-1);
   PolygonSurface dual;
   dual.polygons = triangles_about(points.size(), triangulation);
   // Vertices are numbered as the polygons come, whatever order the triangles have.

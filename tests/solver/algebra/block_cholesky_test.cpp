@@ -111,8 +111,10 @@ TEST(BlockCholesky, KeepsLessThanTheDenseFactor) {
 }
 
 TEST(BlockCholesky, GivesTheSameBitsOnAnyNumberOfThreads) {
-  // Large enough for subtrees to be shared out, of the factor and of the solves too.
-  for (const System& system : {System(20, 16, 2), System(60, 60, 2)}) {
+  // Large enough for subtrees of the factor to be shared out; and of the solves.
+  const System large(60, 60, 2);
+  ASSERT_GT(BlockCholesky(large.pattern).factor_size(), BlockCholesky::worth_sharing);
+  for (const System& system : {System(20, 16, 2), large}) {
     std::vector<float> on_one;
     for (const int threads : {1, 2, 3, 8}) {
       const ThreadCount scope(threads);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -206,6 +207,26 @@ TEST(NewtonStepper, AfterForgettingItsFactorAStepDoesNotDependOnTheOnesBefore) {
   ASSERT_TRUE(fresh.advance(state, 2, false, b).converged());
   EXPECT_EQ(a.positions, b.positions);
   EXPECT_EQ(a.multipliers, b.multipliers);
+}
+
+// Motion that would go on too far, or nowhere.
+TEST(NewtonStepper, APoorForecastIsLeft) {
+  const Model model = dimpling_sheet();
+  NewtonStepper solver(model);
+  State state = steps(solver, rest_state(model), 2, 3);
+  const auto end_of_step = [&](bool from_rest) {
+    NewtonStepper fresh(model);
+    State next;
+    const StepReport report = fresh.advance(state, 2, from_rest, next);
+    EXPECT_TRUE(report.converged()) << report.reason();
+    return next.positions;
+  };
+  const Vectors from_state = end_of_step(true);
+  EXPECT_NE(end_of_step(false), from_state);  // a good one is not
+  for (const double rate : {1e6, std::numeric_limits<double>::quiet_NaN()}) {
+    std::ranges::fill(state.trend.multiplier_rates, rate);
+    EXPECT_EQ(end_of_step(false), from_state);
+  }
 }
 
 TEST(NewtonStepper, RestStaysAtRest) {
