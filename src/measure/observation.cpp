@@ -1,14 +1,14 @@
 #include "measure/observation.hpp"
 
 #include "measure/cells.hpp"
-#include "solver/projection/closed_surface.hpp"
+#include "tissue/faces.hpp"
 
 namespace plica {
 namespace {
 
 // None of a sheet that is open, though its rims may lie so evenly that nothing seems to be missing (a slice's).
 std::optional<double> rest_lumen_volume(const Tissue& tissue) {
-  if (!ClosedSurface(tissue.basal_facets).is_closed()) return std::nullopt;
+  if (!rim_of(tissue, tissue.basal_facets).empty()) return std::nullopt;
   return lumen_volume(tissue, tissue.rest_positions);
 }
 

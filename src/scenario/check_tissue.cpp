@@ -13,7 +13,6 @@
 #include "scenario/materials.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/words.hpp"
-#include "solver/projection/closed_surface.hpp"
 #include "tissue/division.hpp"
 #include "tissue/faces.hpp"
 
@@ -22,7 +21,7 @@ namespace {
 
 // A mesh file's apical surface may be open; that of a built embryo is not.
 void check_encloses(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
-  if (!ClosedSurface(tissue.apical_facets).is_closed())
+  if (!rim_of(tissue, tissue.apical_facets).empty())
     errors.push_back(diagnostic_at(scenario, "volume.projection_surface",
                                    "the apical surface of this mesh encloses nothing", "give \"cells\" or \"tissue\""));
 }

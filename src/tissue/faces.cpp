@@ -111,6 +111,26 @@ std::vector<Face> faces_of(const Tissue& tissue, CellSide side) {
   return faces;
 }
 
+std::vector<std::pair<NodeId, NodeId>> rim_of(const Tissue& tissue, std::span<const Facet> facets) {
+  // How often each pair of free nodes is an edge, the other way round counted as less. Edges are straight and hanging
+  // nodes means of free ones, so that an edge is a sum over pairs of those, and those on one line cancel.
+  std::map<std::pair<NodeId, NodeId>, double> uses;
+  for (const Facet& facet : facets)
+    for (int i = 0; i < 4; ++i)
+      tissue.for_free_nodes(facet.nodes[i], [&](NodeId from, double weight) {
+        tissue.for_free_nodes(facet.nodes[(i + 1) % 4], [&](NodeId to, double weight_of_to) {
+          if (from != to) uses[std::minmax(from, to)] += (from < to ? 1 : -1) * weight * weight_of_to;
+        });
+      });
+  std::vector<std::pair<NodeId, NodeId>> rim;
+  for (const auto& [edge, use] : uses) {
+    constexpr double rounding = 1e-9;
+    if (use > rounding) rim.push_back(edge);
+    if (use < -rounding) rim.emplace_back(edge.second, edge.first);
+  }
+  return rim;
+}
+
 std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue) {
   std::vector<std::vector<CellId>> neighbours(tissue.cells.size());
   for (const Face& face : all_lateral_faces(tissue))

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "tissue/tissue.hpp"
@@ -21,6 +23,10 @@ struct Face {
 /// face stands once, for the first of its two cells. After a division a wall is cut where the neighbour has been, so
 /// that each face has one cell on either side.
 std::vector<Face> faces_of(const Tissue& tissue, CellSide side);
+
+/// The rim of a surface of facets, none of a closed one: edges that two facets do not share, between free nodes, as the
+/// facet has them. Where nodes hang on a facet's edge and its neighbour's edges end at them, these are shared.
+std::vector<std::pair<NodeId, NodeId>> rim_of(const Tissue& tissue, std::span<const Facet> facets);
 
 /// The cells that share a wall with each cell, in the order of their numbers.
 std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue);

@@ -39,7 +39,7 @@ struct HexahedralMesh {
   std::vector<std::array<NodeId, 8>> cells;  // VTK's order, any face may be the apical one
   std::vector<int> apical_faces;             // cells; 0-5 in the order of hex_faces. Empty: find the outer surface
   std::map<std::string, CellArray> arrays;   // named; a number a hexahedron
-  CellGroups groups;                         // empty: each hexahedron is a cell
+  CellGroups groups = {};                    // empty: each hexahedron is a cell
 };
 
 /// Largest number of elements of a mesh.

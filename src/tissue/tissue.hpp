@@ -123,7 +123,7 @@ inline Vec3 mean_of(const NodeMean& mean, std::span<const Vec3> vectors) {
 struct Tissue {
   // Nodes: the free ones first, then those that hang on them. A free node keeps its number for good.
   Vectors rest_positions;                       // nodes; um
-  std::vector<NodeMean> hanging;                // of the last nodes; only where cells have divided
+  std::vector<NodeMean> hanging;                // of the last nodes; where cells are polygons or have divided
   std::vector<std::array<NodeId, 8>> elements;  // VTK's order
   std::vector<CellId> element_cell;             // elements
   std::vector<HexPoints> element_rest_shape;    // elements; um. A daughter's is her mother's, not where her nodes are

@@ -7,6 +7,7 @@
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/active/own_state.hpp"
 #include "mechanics/constraints/cell_volume.hpp"
+#include "mechanics/constraints/enclosed_volume.hpp"
 #include "mechanics/contact/self_contact.hpp"
 #include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/corotational.hpp"
@@ -35,7 +36,7 @@ class LawsOnPolygons : public testing::TestWithParam<PolygonSplit> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Splits, LawsOnPolygons, testing::Values(PolygonSplit::diagonals, PolygonSplit::kites),
-                         [](const auto& info) { return info.param == PolygonSplit::kites ? "kites" : "diagonals"; });
+                         [](const auto& given) { return given.param == PolygonSplit::kites ? "kites" : "diagonals"; });
 
 TEST_P(LawsOnPolygons, DerivativesAgreeWithFiniteDifferences) {
   const double size_um = 0.3;
@@ -47,6 +48,7 @@ TEST_P(LawsOnPolygons, DerivativesAgreeWithFiniteDifferences) {
   std::vector<double> pressures;
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) pressures.push_back(c % 3 == 0 ? 0.7 : -0.4);
   check_derivatives(ConstraintLaw(CellVolumes(tissue), pressures), tissue, size_um, 1);
+  check_derivatives(ConstraintLaw(EnclosedVolume(tissue), {0.7}), tissue, size_um, 1);
   for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
     check_derivatives(Cortex(tissue, all, {.side = side, .tension = 1.4, .saturation = 0.16, .stiffness = 0.7}), tissue,
                       size_um, 1);

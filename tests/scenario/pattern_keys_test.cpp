@@ -44,7 +44,9 @@ TEST(PatternKeys, RegionsByRowsAndNeighbours) {
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     const Vec3 centre = cell_centre(tissue.cells[c], tissue.rest_positions);
     const bool is_long = centre.x() >= -75 && centre.x() <= 75;
-    if (std::abs(std::abs(centre.x()) - 75) > 1) EXPECT_EQ(mesoderm[c], halves[c] < 5 && is_long) << c;
+    if (std::abs(std::abs(centre.x()) - 75) > 1) {
+      EXPECT_EQ(mesoderm[c], halves[c] < 5 && is_long) << c;
+    }
     EXPECT_EQ(beside[c], around[c]);
     EXPECT_EQ(side[c], far[c] && !around[c]);
     EXPECT_EQ(right[c], around[c] && centre.y() >= 0);

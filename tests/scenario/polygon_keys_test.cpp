@@ -37,8 +37,9 @@ TEST(PolygonKeys, RegionsByAngleAndLength) {
     const double angle = std::atan2(centre.y(), -centre.z()) * 180 / std::numbers::pi;
     // The egg is 250 long, so that 25 % are 62.5 from its end.
     const bool is_in = angle >= -40 && angle <= 60 && centre.x() >= -62.5 && centre.x() <= 75;
-    if (std::abs(centre.x() + 62.5) > 1 && std::abs(centre.x() - 75) > 1)
+    if (std::abs(centre.x() + 62.5) > 1 && std::abs(centre.x() - 75) > 1) {
       EXPECT_EQ(tissue.regions.at("belly")[c], is_in) << c;
+    }
     EXPECT_NE(tissue.regions.at("belly")[c], tissue.regions.at("rest")[c]);
     inside += is_in;
   }

@@ -11,7 +11,7 @@ namespace plica::support {
 namespace {
 
 struct Triplets final : TangentSink {
-  explicit Triplets(const Tissue& tissue) : tissue(tissue) {
+  explicit Triplets(const Tissue& of) : tissue(of) {
     for (std::size_t n = tissue.free_node_count(); n < tissue.node_count(); ++n)  // which have none of their own
       for (int i = 0; i < 3; ++i) entries.emplace_back(3 * n + i, 3 * n + i, 1);
   }

@@ -5,6 +5,7 @@
 
 #include "support/divided.hpp"
 #include "support/whole.hpp"
+#include "tissue/shapes/polygon_embryo.hpp"
 
 namespace plica {
 namespace {
@@ -42,6 +43,35 @@ TEST(Faces, FollowDivisions) {
     EXPECT_GT(counted.lateral, before.lateral);
     EXPECT_NEAR(counted.rim_area, before.rim_area, 1e-9 * before.rim_area);  // a wall inside has a cell on both sides
     before = counted;
+  }
+}
+
+TEST(Faces, RimOfAClosedSurfaceIsEmptyWhereNodesHang) {
+  Tissue shell = build_shell({200, 100, 20, {6, 4, 4}, {1, 1, 1}});
+  Random random(3);
+  for (int round = 0; round < 3; ++round) {
+    EXPECT_TRUE(rim_of(shell, shell.apical_facets).empty());
+    divide(shell, cuts_of(random_divisions(shell, 0.5, random)), 0);
+  }
+  for (const PolygonSplit split : {PolygonSplit::diagonals, PolygonSplit::kites}) {
+    const Tissue egg = build_egg({250, 120, 120, 11, 5}, 300, 1, {20, split, 1});
+    EXPECT_TRUE(rim_of(egg, egg.basal_facets).empty());
+    EXPECT_FALSE(rim_of(egg, std::span(egg.basal_facets).subspan(1)).empty());
+  }
+}
+
+// A block's, once about it and outward: what a division adds to it does not change what it goes round.
+TEST(Faces, RimOfAnOpenSurfaceGoesRoundIt) {
+  Tissue tissue = build_block({.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 3, 1}});
+  Random random(3);
+  for (int round = 0; round < 3; ++round) {
+    const auto rim = rim_of(tissue, tissue.apical_facets);
+    EXPECT_GE(rim.size(), 2U * (4 + 3));
+    double twice_area = 0;
+    for (const auto& [from, to] : rim)
+      twice_area += tissue.rest_positions[from.index()].cross(tissue.rest_positions[to.index()]).z();
+    EXPECT_NEAR(twice_area, 2 * 80 * 60, 1e-9);
+    divide(tissue, cuts_of(random_divisions(tissue, 0.5, random)), 0);
   }
 }
 

@@ -30,9 +30,9 @@ class Prisms : public testing::TestWithParam<Case> {
 INSTANTIATE_TEST_SUITE_P(Splits, Prisms,
                          testing::Values(Case{PolygonSplit::diagonals, 1}, Case{PolygonSplit::diagonals, 2},
                                          Case{PolygonSplit::kites, 1}, Case{PolygonSplit::kites, 3}),
-                         [](const auto& info) {
-                           return std::string(info.param.first == PolygonSplit::kites ? "kites" : "diagonals") +
-                                  std::to_string(info.param.second);
+                         [](const auto& given) {
+                           return std::string(given.param.first == PolygonSplit::kites ? "kites" : "diagonals") +
+                                  std::to_string(given.param.second);
                          });
 
 double flat_area(const PrismSheet& sheet, std::size_t cell) {

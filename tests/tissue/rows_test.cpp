@@ -34,7 +34,9 @@ TEST(Rows, OfAPillAreThoseOfItsBelly) {
   for (std::size_t c = 0; c < pill.cells.size(); ++c) {
     const GridPlace& place = *pill.cells[c].grid_place;
     // Half-way between the poles; nearer to them the shortest way leads over the end.
-    if (place.face == GridPlace::Face::dorsal && place.place[0] == 9) EXPECT_GE(found[c], 2 * 12);
+    if (place.face == GridPlace::Face::dorsal && place.place[0] == 9) {
+      EXPECT_GE(found[c], 2 * 12);
+    }
     if (place.face != GridPlace::Face::ventral) continue;
     EXPECT_EQ(found[c], std::abs(2 * place.place[1] - 8));
     ++belly;
@@ -55,7 +57,9 @@ TEST(Rows, OfPolygonsAreCellsThatOnePasses) {
     ASSERT_GE(found[c], 0);
     int nearest = found[c];
     for (const CellId other : neighbours[c]) nearest = std::min(nearest, found[other.index()]);
-    if (found[c] > 0) EXPECT_EQ(nearest, found[c] - 2);
+    if (found[c] > 0) {
+      EXPECT_EQ(nearest, found[c] - 2);
+    }
     Vec3 middle = Vec3::Zero();
     for (const NodeId node : egg.cells[c].apical_corners()) middle += egg.rest_positions[node.index()];
     middle /= static_cast<double>(egg.cells[c].sides());

@@ -21,9 +21,9 @@ class PolygonSheets : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Splits, PolygonSheets,
                          testing::Values(Case{PolygonSplit::diagonals, 0.3}, Case{PolygonSplit::diagonals, 0.45},
                                          Case{PolygonSplit::kites, 0.3}, Case{PolygonSplit::kites, 0.45}),
-                         [](const auto& info) {
-                           return std::string(info.param.first == PolygonSplit::kites ? "kites" : "diagonals") +
-                                  (info.param.second == 0.3 ? "3" : "45");
+                         [](const auto& given) {
+                           return std::string(given.param.first == PolygonSplit::kites ? "kites" : "diagonals") +
+                                  (given.param.second == 0.3 ? "3" : "45");
                          });
 
 /// Free nodes of walls that have a cell on one side only.

@@ -28,7 +28,7 @@ struct StrengthProfile {
   double fade = 0;        // plateau: then a cosine that is 0 after this length
   // Table: linear between these points, as at the ends beyond them. Places are distances, on both sides alike, where
   // none is negative.
-  std::vector<double> places, values;
+  std::vector<double> places = {}, values = {};
   bool in_cells = false;            // these lengths are in mean widths of the cells, along that axis
   CellArray array = {};             // array: of all cells
   double array_0 = 0, array_1 = 1;  // its values for 0 and for 1; beyond them as there

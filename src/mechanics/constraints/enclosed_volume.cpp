@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "tissue/division.hpp"
+#include "tissue/faces.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -47,31 +47,24 @@ EnclosedVolume::EnclosedVolume(const Tissue& tissue) : EnclosedVolume(tissue, 0)
   target_ = volume(tissue.rest_positions);
 }
 
-std::vector<EnclosedVolume::RimEdge> EnclosedVolume::rim_of(const Tissue& tissue) {
-  std::map<std::pair<NodeId, NodeId>, int> uses;
-  const auto for_edges = [&](const auto& take) {
-    for (const Facet& facet : tissue.basal_facets)
-      for (int i = 0; i < 4; ++i) take(facet.nodes[i], facet.nodes[(i + 1) % 4]);
-  };
-  for_edges([&](NodeId from, NodeId to) { ++uses[std::minmax(from, to)]; });
+std::vector<EnclosedVolume::RimEdge> EnclosedVolume::open_rim(const Tissue& tissue) {
   std::vector<RimEdge> rim;
-  for_edges([&](NodeId from, NodeId to) {
+  for (const auto& [from, to] : rim_of(tissue, tissue.basal_facets))
     // What closes a mirror plane is seen edge-on from the origin, which lies in it: its cone has no volume.
-    if (uses[std::minmax(from, to)] == 1 && tissue.own_share(std::array{from, to}) == 1)
+    if (tissue.own_share(std::array{from, to}) == 1)
       rim.push_back({from, to, Vec3(tissue.rest_positions[from.index()].x(), 0, 0)});
-  });
   return rim;
 }
 
 bool EnclosedVolume::is_closed(const Tissue& tissue) {
-  const std::vector<RimEdge> rim = rim_of(tissue);
+  const std::vector<RimEdge> rim = open_rim(tissue);
   const auto is_across = [&](const RimEdge& edge) {
     return std::abs(tissue.rest_positions[edge.to.index()].x() - edge.place.x()) < 1e-9;
   };
   return !tissue.basal_facets.empty() && std::ranges::all_of(rim, is_across);
 }
 
-EnclosedVolume::EnclosedVolume(const Tissue& tissue, double target) : rim_(rim_of(tissue)), target_(target) {
+EnclosedVolume::EnclosedVolume(const Tissue& tissue, double target) : rim_(open_rim(tissue)), target_(target) {
   for (const Facet& facet : tissue.basal_facets) facets_.push_back(facet.nodes);
   Vectors gradient(tissue.node_count(), Vec3::Zero());
   add_forces(tissue.rest_positions, std::array{1.0}, gradient);

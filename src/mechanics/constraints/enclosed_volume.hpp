@@ -54,7 +54,7 @@ class EnclosedVolume final : public Constraint {
     NodeId from, to;
     Vec3 place;
   };
-  [[nodiscard]] static std::vector<RimEdge> rim_of(const Tissue& tissue);
+  [[nodiscard]] static std::vector<RimEdge> open_rim(const Tissue& tissue);
 
   std::vector<std::array<NodeId, 4>> facets_;
   std::vector<RimEdge> rim_;

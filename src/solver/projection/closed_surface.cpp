@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <utility>
 
 namespace plica {
@@ -39,16 +38,6 @@ ClosedSurface::ClosedSurface(const std::vector<Quad>& facets) {
     for (int i = 0; i < 4; ++i)
       places[i] = static_cast<int>(std::lower_bound(nodes_.begin(), nodes_.end(), facets[f][i]) - nodes_.begin());
   }
-}
-
-bool ClosedSurface::is_closed() const {
-  std::multiset<std::pair<int, int>> edges;
-  for (const auto& facet : facets_)
-    for (int i = 0; i < 4; ++i)
-      if (facet[i] != facet[(i + 1) % 4]) edges.emplace(facet[i], facet[(i + 1) % 4]);
-  return !edges.empty() && std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
-    return edges.count(edge) == edges.count({edge.second, edge.first});
-  });
 }
 
 void ClosedSurface::gather(std::span<const Vec3> positions, Vectors& points) const {

@@ -27,9 +27,6 @@ class ClosedSurface {
 
   [[nodiscard]] const std::vector<NodeId>& nodes() const { return nodes_; }
 
-  /// Whether it encloses a volume: every edge belongs to two facets, once in each direction.
-  [[nodiscard]] bool is_closed() const;
-
   /// The positions of its nodes relative to the first, so that rounding does not depend on where the body lies.
   void gather(std::span<const Vec3> positions, Vectors& points) const;
 

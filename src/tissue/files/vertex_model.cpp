@@ -66,7 +66,8 @@ PolygonFile polygons_of(const VertexModelTables& tables) {
       if (step->second == ring.front()) break;
       ring.push_back(step->second);
     }
-    if (ring.size() != next[f].size() || next[f].find(ring.back())->second != ring.front())
+    const auto last = next[f].find(ring.back());
+    if (ring.size() != next[f].size() || last == next[f].end() || last->second != ring.front())
       throw MeshError(fmt::format("the {} edges of face {} are no ring", next[f].size(), tables.faces.index[f]));
     file.surface.polygons.push_back(std::move(ring));
     kept.push_back(f);

@@ -32,11 +32,11 @@ struct MeasuredPoints {
 Tissue build_about_points(const MeasuredPoints& measured, const PolygonCells& cells);
 
 struct GivenSurface {
-  PolygonSurface surface;          // the cells' apical faces
-  std::vector<double> heights_um;  // cells; empty: all as PolygonCells says
-  Vec3 scale = {1, 1, 1};          // of its vertices, along x, y, z
-  bool centre = false;             // moves its middle, the mean of its faces' middles by area, to the origin
-  bool mend = true;                // see given_surface.hpp
+  PolygonSurface surface;               // the cells' apical faces
+  std::vector<double> heights_um = {};  // cells; empty: all as PolygonCells says
+  Vec3 scale = {1, 1, 1};               // of its vertices, along x, y, z
+  bool centre = false;                  // moves its middle, the mean of its faces' middles by area, to the origin
+  bool mend = true;                     // see given_surface.hpp
 };
 
 /// A tissue whose apical surface is that of polygons, and the reason where it has no `outer_shape`: that is a smooth

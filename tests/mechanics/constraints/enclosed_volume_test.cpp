@@ -6,7 +6,9 @@
 
 #include "measure/cells.hpp"
 #include "support/constraint_law.hpp"
+#include "support/divided.hpp"
 #include "support/law_checks.hpp"
+#include "tissue/shapes/polygon_embryo.hpp"
 
 namespace plica {
 namespace {
@@ -22,6 +24,21 @@ TEST(HeldVolume, IsTheLumen) {
 TEST(HeldVolume, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = build_block({.length_um = 40, .width_um = 20, .cells = {2, 1, 1}});
   check_derivatives(ConstraintLaw(EnclosedVolume(tissue), {0.7}), tissue, 4);
+}
+
+// Nodes that hang on its facets' edges, of polygons or after divisions, leave no hole.
+TEST(HeldVolume, IsTheLumenWhereNodesHang) {
+  Tissue divided = build_shell({200, 100, 20, {6, 4, 4}, {1, 1, 1}});
+  Random random(3);
+  for (int round = 0; round < 2; ++round) divide(divided, cuts_of(random_divisions(divided, 0.5, random)), 0);
+  for (const Tissue& tissue : {divided, build_egg({250, 120, 120, 11, 5}, 300, 1, {20, PolygonSplit::diagonals, 1})}) {
+    ASSERT_FALSE(tissue.hanging.empty());
+    EXPECT_TRUE(EnclosedVolume::is_closed(tissue));
+    Vectors moved = tissue.rest_positions;
+    for (Vec3& x : moved) x += Vec3(0.1 * x.y(), 0.2 * x.x(), 30);
+    const double lumen = lumen_volume(tissue, moved).value();
+    EXPECT_NEAR(EnclosedVolume(tissue).volume(moved), lumen, 1e-12 * lumen);
+  }
 }
 
 // A slice is closed by the planes at its ends: the prism over its basal polygon, wherever nodes go in these planes. A

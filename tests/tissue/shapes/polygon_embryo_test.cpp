@@ -23,7 +23,7 @@ const EggShape small_egg{250, 120, 120, 11.0, 5.0};
 class PolygonEmbryo : public testing::TestWithParam<PolygonSplit> {};
 
 INSTANTIATE_TEST_SUITE_P(Splits, PolygonEmbryo, testing::Values(PolygonSplit::diagonals, PolygonSplit::kites),
-                         [](const auto& info) { return info.param == PolygonSplit::kites ? "kites" : "diagonals"; });
+                         [](const auto& given) { return given.param == PolygonSplit::kites ? "kites" : "diagonals"; });
 
 TEST_P(PolygonEmbryo, IsClosedAndUpright) {
   const Tissue tissue = build_egg(small_egg, 400, 1, {20, GetParam(), 2});
