@@ -271,8 +271,8 @@ struct MonitorInput {
 };
 
 struct FurrowInput {
-  std::string region;  // contractile cells whose furrow is measured; empty: the first contraction's region
-  int vce_cell = 2;    // VCE is this cell of the region's midline, counted from its ends
+  std::string region;           // contractile cells whose furrow is measured; empty: the first contraction's region
+  std::optional<int> vce_cell;  // VCE is this cell of the region's midline, counted from its ends; empty: 2
 };
 
 struct OutputInput {

@@ -271,8 +271,9 @@ std::vector<Row> make_rows() {
 
       furrow("region", &FurrowInput::region, anything,
              "Contractile cells whose furrow is measured; without it the largest region that contracts."),
-      furrow("vce_cell", &FurrowInput::vce_cell, between(1, max_count),
-             "VCE is this cell of the region's midline, counted from its ends."),
+      furrow(
+          "vce_cell", &FurrowInput::vce_cell, between(1, max_count),
+          "VCE is this cell of the region's midline, counted from its ends; without it the second, if there is one."),
 
       output("frame_every_s", &O::frame_every_s, not_negative,
              "Time between frames (s); 0: only the first and the last."),

@@ -418,7 +418,7 @@ FurrowSites make_furrow_sites(const Scenario& scenario, const Tissue& tissue) {
   const std::vector<std::string> contracting = contracting_regions(scenario, tissue);
   if (region.empty() && !contracting.empty()) region = contracting.front();
   if (region.empty()) return choose_furrow_sites(tissue, CellSet(tissue.cells.size(), false), 1);
-  FurrowSites sites = choose_furrow_sites(tissue, tissue.regions.at(region), scenario.furrow.vce_cell);
+  FurrowSites sites = choose_furrow_sites(tissue, tissue.regions.at(region), scenario.furrow.vce_cell.value_or(2));
   if (scenario.furrow.vce_cell > sites.midline_pairs && sites.midline_pairs > 0)
     throw ScenarioError(
         {diagnostic_at(scenario, "furrow.vce_cell",

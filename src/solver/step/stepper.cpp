@@ -37,8 +37,7 @@ std::string StepReport::remedy() const {
     case Outcome::inverted_element:
       return "it is pulled or pushed more than its shape bears: lower stiffness_nN_per_um, preload_nN, "
              "tension_mN_per_m or pressure_Pa of what acts there (by halves, say), raise elasticity.young_modulus_Pa, "
-             "or give it more "
-             "elements (embryo.elements_per_cell)";
+             "or give it more elements (embryo.elements_per_cell; of polygons, embryo.elements = \"kites\")";
     case Outcome::no_convergence:
       return "lower the forces that act there, raise elasticity.young_modulus_Pa, or give a shorter time.max_step_s";
     case Outcome::no_linear_convergence:

@@ -57,9 +57,12 @@ PolygonFile polygons_of(const VertexModelTables& tables) {
     if (!next[face_rows.row(face[e])].emplace(vertex_rows.row(from[e]), vertex_rows.row(to[e])).second)
       throw MeshError(fmt::format("two edges of face {} begin at vertex {}; they should be a ring", face[e], from[e]));
 
+  // tyssue leaves cells that have gone in its tables.
+  const auto alive = tables.faces.columns.find("is_alive");
+  const auto is_alive = [&](std::size_t f) { return alive == tables.faces.columns.end() || alive->second[f] != 0; };
   std::vector<std::size_t> kept;
   for (std::size_t f = 0; f < next.size(); ++f) {
-    if (next[f].empty()) continue;
+    if (next[f].empty() || !is_alive(f)) continue;
     std::vector<std::size_t> ring = {next[f].begin()->first};
     for (auto step = next[f].begin(); ring.size() <= next[f].size() && step != next[f].end();
          step = next[f].find(step->second)) {

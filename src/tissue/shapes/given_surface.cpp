@@ -18,8 +18,9 @@ namespace plica {
 namespace {
 
 constexpr double largest_coordinate_um = 1e9;
-constexpr double same_place = 1e-6;            // of the mean edge
+constexpr double same_place = 1e-4;            // of the mean edge: five digits in a text
 constexpr double sharpest_fold_cosine = -0.9;  // of the angle between two neighbours' normals
+constexpr double deepest_rim_angle_deg = 220;  // to which a corner of one face may go in to be no corner
 constexpr double farthest_move = 0.4;          // of the mean edge, by which mending may move a vertex
 
 std::string text_of(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) um", p.x(), p.y(), p.z()); }
@@ -177,8 +178,8 @@ std::vector<bool> unlike_first(const PolygonSurface& surface) {
     const auto apart = static_cast<std::size_t>(std::ranges::find(turn, -1) - turn.begin());
     throw MeshError(
         fmt::format("the surface is not one piece: {} of {} faces are joined to face 0 by edges, and {} is "
-                    "not",
-                    reached, turn.size(), face_at(surface, apart)));
+                    "not; corners that neighbours share may lie {:.2g} um apart, no more",
+                    reached, turn.size(), face_at(surface, apart), same_place * mean_side(surface)));
   }
   return {turn.begin(), turn.end()};
 }
@@ -211,6 +212,17 @@ std::size_t turn_faces(PolygonSurface& surface, bool mend, bool& is_closed) {
                     face_at(surface, static_cast<std::size_t>(std::ranges::find(turned, true) - turned.begin())), count,
                     turned.size()));
   return count;
+}
+
+// Of an open surface, which might have been meant the other way round.
+std::string apical_side_text(const PolygonSurface& surface) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& polygon : surface.polygons) sum += area_vector(surface.vertices, polygon);
+  const Vec3 way = sum.normalized();
+  return fmt::format(
+      ", as the most wind: the apical side looks along ({:.2f}, {:.2f}, {:.2f}); for the other side, turn most "
+      "faces of the file round",
+      way.x(), way.y(), way.z());
 }
 
 // The faces about a vertex should follow each other across its edges: one fan.
@@ -252,8 +264,8 @@ void check_areas(const PolygonSurface& surface) {
       throw MeshError(face_at(surface, face) + " has no area");
 }
 
-// Vertices along a wall between two cells, which cannot be convex on both sides, and along a straight rim. A face keeps
-// three corners.
+// Vertices along a wall between two cells, which cannot be convex on both sides, and along a rim where it is straight
+// or bent inward a little. A face keeps three corners.
 std::size_t drop_wall_vertices(PolygonSurface& surface, double largest_angle_deg) {
   std::vector<std::set<std::size_t>> neighbours(surface.vertices.size());
   std::vector<std::size_t> face_count(surface.vertices.size(), 0);
@@ -271,8 +283,8 @@ std::size_t drop_wall_vertices(PolygonSurface& surface, double largest_angle_deg
   }
   std::vector<char> goes(surface.vertices.size(), 0);
   for (std::size_t v = 0; v < goes.size(); ++v)
-    goes[v] =
-        neighbours[v].size() == 2 && (face_count[v] == 2 || std::abs(180 - angle_deg[v]) < 180 - largest_angle_deg);
+    goes[v] = neighbours[v].size() == 2 &&
+              (face_count[v] == 2 || (angle_deg[v] > largest_angle_deg && angle_deg[v] < deepest_rim_angle_deg));
   for (const auto& polygon : surface.polygons)
     for (std::size_t k = 0, left = polygon.size() - static_cast<std::size_t>(std::ranges::count_if(
                                                         polygon, [&](std::size_t v) { return goes[v] != 0; }));
@@ -367,7 +379,9 @@ MendedSurface check_and_mend(PolygonSurface& surface, bool mend, const PolygonOp
   remark(merged, "vertices lay where others do and were merged with them");
   check_corners(surface);
   remark(drop_unused(surface, merged), "vertices that no face uses were dropped");
-  remark(turn_faces(surface, mend, result.is_closed), "faces wound the other way and were turned");
+  const std::size_t turned = turn_faces(surface, mend, result.is_closed);
+  remark(turned, "faces wound the other way and were turned");
+  if (turned > 0 && !result.is_closed) result.remarks.back() += apical_side_text(surface);
   check_fans(surface);
   check_areas(surface);
   check_folds(surface);

@@ -15,8 +15,8 @@ struct MendedSurface {
 
 /// Makes one sheet of `surface` in which neighbours share vertices and all faces look outward. Vertices that no face
 /// uses are dropped. With `mend`, vertices in one place become one, faces that wind the other way than most are turned
-/// (all, where they look inward), vertices along a wall between two faces or a straight rim are dropped, short edges
-/// are lengthened and wide angles sharpened, as `options` say.
+/// (all, where they look inward), vertices along a wall between two faces, or a rim that is straight or bent inward
+/// a little there, are dropped, short edges are lengthened and wide angles sharpened, as `options` say.
 ///
 /// MeshError, which names a face and its place, when a vertex is no point, a face has fewer than three corners, one of
 /// them twice, or no area, is not convex or far from flat; when an edge has more than two faces, the surface touches

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 namespace plica {
 namespace {
@@ -16,7 +17,8 @@ std::vector<std::vector<std::size_t>> polygons_at_vertices(const PolygonSurface&
 }
 
 // Least squares for the depth below the tangent plane, a u + b v + (e u^2 + 2 f u v + g v^2) / 2. The slopes a and b
-// take up what the normal is wrong by. Where there are fewer vertices than unknowns, the flattest one.
+// take up what the normal is wrong by. Where the vertices do not fix all of them, few ones or some on a conic, the
+// flattest one.
 double least_radius(const Vec3& at, const Vec3& normal, const Vectors& others) {
   const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
   double size = 0;
@@ -31,7 +33,10 @@ double least_radius(const Vec3& at, const Vec3& normal, const Vectors& others) {
     rows.row(i) << x, y, 0.5 * x * x, x * y, 0.5 * y * y;
     depths[i] = -way.dot(normal);
   }
-  const Eigen::VectorXd fit = rows.completeOrthogonalDecomposition().solve(depths);
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposed;
+  decomposed.setThreshold(1e-3);  // on a conic nearly, rounding would be taken for curvature
+  decomposed.compute(rows);
+  const Eigen::VectorXd fit = decomposed.solve(depths);
   const double mean = 0.5 * (fit[2] + fit[4]), half = 0.5 * (fit[2] - fit[4]);
   const double curvature = mean + std::sqrt(half * half + fit[3] * fit[3]);
   return curvature > 1e-9 ? size / curvature : infinity;
@@ -47,17 +52,16 @@ std::vector<VertexBend> vertex_bends(const PolygonSurface& polygons) {
   for (std::size_t vertex = 0; vertex < bends.size(); ++vertex) {
     if (about[vertex].empty()) continue;
     Vec3 normal = Vec3::Zero();
-    std::vector<std::size_t> ring;
-    for (const std::size_t p : about[vertex]) {
-      normal += areas[p];
-      for (const std::size_t other : polygons.polygons[p])
-        if (other != vertex) ring.push_back(other);
-    }
+    for (const std::size_t p : about[vertex]) normal += areas[p];
     if (normal.norm() > 0) bends[vertex].normal = normal.normalized();
-    std::ranges::sort(ring);
-    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    // Those of its polygons; at a rim, where these are one or two, of their neighbours, too.
+    std::set<std::size_t> ring = {vertex};
+    for (int rings = 0; rings < 2 && ring.size() < 9; ++rings)
+      for (const std::size_t near : std::set(ring))
+        for (const std::size_t p : about[near]) ring.insert(polygons.polygons[p].begin(), polygons.polygons[p].end());
     Vectors others;
-    for (const std::size_t other : ring) others.push_back(polygons.vertices[other]);
+    for (const std::size_t other : ring)
+      if (other != vertex) others.push_back(polygons.vertices[other]);
     bends[vertex].least_radius_um = least_radius(polygons.vertices[vertex], bends[vertex].normal, others);
   }
   return bends;

@@ -145,6 +145,15 @@ TEST(VertexModel, FacesAreRingsOfEdges) {
   EXPECT_EQ(file.arrays, (std::map<std::string, CellArray>{{"area", {0.25, 0.75}}}));
 }
 
+TEST(VertexModel, CellsThatHaveGoneAreLeftOut) {
+  VertexModelTables tables = two_triangles();
+  tables.faces.columns["is_alive"] = {1, 1, 0};
+  tables.edges.columns["trgt"][1] = 40;  // what is left of the ring of face 6
+  const PolygonFile file = polygons_of(tables);
+  EXPECT_EQ(file.surface.polygons, (std::vector<std::vector<std::size_t>>{{0, 2, 3}}));
+  EXPECT_EQ(file.arrays.at("area"), CellArray{0.25});
+}
+
 TEST(VertexModel, SaysWhatIsWrong) {
   const auto expect = [](const auto& spoil, const char* said) {
     VertexModelTables tables = two_triangles();

@@ -95,7 +95,9 @@ TEST(GivenSurface, FacesAreTurnedOutward) {
   EXPECT_EQ(all(check_and_mend(surface, true)), "6 faces wound the other way and were turned\n");
   surface = squares(3, 1);
   std::ranges::reverse(surface.polygons[0]);
-  EXPECT_EQ(all(check_and_mend(surface, true)), "1 faces wound the other way and were turned\n");
+  EXPECT_EQ(all(check_and_mend(surface, true)),
+            "1 faces wound the other way and were turned, as the most wind: the apical side looks along (0.00, 0.00, "
+            "1.00); for the other side, turn most faces of the file round\n");
   EXPECT_GT(area_vector(surface.vertices, surface.polygons[0]).z(), 0);
 }
 
@@ -126,6 +128,19 @@ TEST(GivenSurface, VerticesAlongAWallAreDropped) {
   EXPECT_EQ(all(check_and_mend(surface, true)),
             "3 vertices lay along a wall or the rim, where no third cell meets, and were dropped\n");
   EXPECT_EQ(surface.polygons, (std::vector<Face>{{0, 1, 4, 3}, {1, 6, 2, 5, 4}}));
+  // A rim that is bent inward.
+  surface = squares(2, 1);
+  surface.vertices.emplace_back(0.5, 0.1, 0);
+  surface.polygons[0] = {0, 6, 1, 4, 3};
+  EXPECT_NE(all(check_and_mend(surface, true)).find("1 vertices lay along a wall or the rim"), std::string::npos);
+  EXPECT_EQ(surface.polygons[0], (Face{0, 1, 4, 3}));
+}
+
+TEST(GivenSurface, NeighboursOfAFileOfFiveDigitsAreJoined) {
+  PolygonSurface surface = squares(2, 1);
+  for (const std::size_t v : {1, 4}) surface.vertices.push_back(surface.vertices[v] + Vec3(2e-5, 0, 0));
+  surface.polygons[1] = {6, 2, 5, 7};
+  EXPECT_EQ(all(check_and_mend(surface, true)), "2 vertices lay where others do and were merged with them\n");
 }
 
 // The smallest surfaces that are wrong each in one way.

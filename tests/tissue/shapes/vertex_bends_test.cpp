@@ -43,6 +43,17 @@ TEST(VertexBends, OnACylinderAndInAPipe) {
   }
 }
 
+// A corner of one hexagon has five others, all on one circle with it: they do not say how it bends, and a nanometre
+// there is no curvature.
+TEST(VertexBends, AtTheRimOfADome) {
+  PrismSheet sheet = support::bent(support::honeycomb(12, 12, 4.6, 1), [](const Vec3& x) {
+    return Vec3(x.x(), x.y(), -(x.x() * x.x() + x.y() * x.y()) / 600);
+  });
+  support::Random random(1);
+  for (Vec3& x : sheet.apical) x.z() += 1e-3 * random.number();
+  for (const VertexBend& bend : vertex_bends({sheet.apical, sheet.cells})) EXPECT_GT(bend.least_radius_um, 150);
+}
+
 TEST(VertexBends, OfAFlatPatch) {
   const PrismSheet sheet = support::irregular_polygons(6, 5, 4, 1, 0.2, 1);
   for (const VertexBend& bend : vertex_bends({sheet.apical, sheet.cells})) {
