@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/lattice.hpp"
 #include "tissue/mesh_faces.hpp"
 #include "tissue/mesh_orientation.hpp"
+#include "tissue/polygon_cell.hpp"
 #include "tissue/polygon_rim.hpp"
 
 namespace plica {
@@ -156,6 +158,52 @@ void add_cell(const SortedHexahedra& sorted, const MeshFaces& faces, std::size_t
   tissue.cells.push_back(std::move(cell));
 }
 
+// The quadrilaterals of a cell of one layer whose nodes are corners and middles of edges, as prisms by diagonals have.
+std::optional<std::vector<OutlineQuad>> outline_quads(const Tissue& tissue, const Cell& cell) {
+  const auto corners = cell.basal_corners();
+  const auto wall_from = [&](NodeId node) {
+    const auto found = std::ranges::find(corners, node);
+    return found == corners.end() ? std::nullopt : std::optional(static_cast<int>(found - corners.begin()));
+  };
+  const auto place_of = [&](NodeId node) -> std::optional<OutlinePlace> {
+    if (const auto wall = wall_from(node)) return OutlinePlace{*wall, 0};
+    if (node.index() < tissue.free_node_count()) return std::nullopt;
+    const NodeMean& mean = tissue.hanging[node.index() - tissue.free_node_count()];
+    const auto one = wall_from(mean.front().first), other = wall_from(mean.back().first);
+    const int sides = static_cast<int>(cell.sides());
+    if (mean.size() != 2 || !one || !other) return std::nullopt;
+    if ((*one + 1) % sides == *other) return OutlinePlace{*one, 0.5};
+    if ((*other + 1) % sides == *one) return OutlinePlace{*other, 0.5};
+    return std::nullopt;
+  };
+  std::vector<OutlineQuad> quads;
+  const std::size_t begin = cell.first_element.index();
+  for (std::size_t e = begin; e < begin + cell.element_count; ++e) {
+    OutlineQuad& quad = quads.emplace_back();
+    for (int i = 0; i < 4; ++i) {
+      const std::optional<OutlinePlace> place = place_of(tissue.elements[e][i]);
+      if (!place) return std::nullopt;
+      quad[i] = *place;
+    }
+  }
+  return quads;
+}
+
+// What division needs, where all cells are of that kind.
+void set_walls(Tissue& tissue) {
+  std::vector<std::vector<OutlineQuad>> quads;
+  for (const Cell& cell : tissue.cells) {
+    auto of_cell = outline_quads(tissue, cell);
+    const bool is_one_layer = cell.edges.back().nodes.size() == 2;  // a lateral edge
+    if (!of_cell || !is_one_layer || cell.edges.front().nodes.size() != 2) return;
+    quads.push_back(std::move(*of_cell));
+  }
+  for (std::size_t c = 0; c < quads.size(); ++c) {
+    tissue.cells[c].quadrilaterals = std::move(quads[c]);
+    tissue.cells[c].walls = walls_between_corners(tissue.cells[c]);
+  }
+}
+
 Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces) {
   const std::size_t count = sorted.first.size() - 1;
   if (mesh.groups.corner_counts.size() != count)
@@ -173,6 +221,7 @@ Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, 
   if (next != mesh.groups.corners.size())
     throw MeshError(fmt::format("cell_corners has {} nodes, and cell_corner_counts adds up to {}",
                                 mesh.groups.corners.size(), next));
+  set_walls(tissue);
   tissue.regions["all"] = CellSet(count, true);
   return tissue;
 }

@@ -109,6 +109,16 @@ void set_polygon_edges(const PolygonChains& chains, const Vectors& rest_position
   for (const CellEdge& edge : cell.edges) cell.lines.push_back({edge, 1});
 }
 
+std::vector<std::vector<WallStop>> walls_between_corners(const Cell& cell) {
+  std::vector<std::vector<WallStop>> walls;
+  const auto basal = cell.basal_corners(), apical = cell.apical_corners();
+  for (std::size_t i = 0; i < cell.sides(); ++i) {
+    const std::size_t next = (i + 1) % cell.sides();
+    walls.push_back({{0, basal[i], apical[i]}, {1, basal[next], apical[next]}});
+  }
+  return walls;
+}
+
 void set_corners_and_lines_of_walls(const Vectors& rest_positions, Cell& cell) {
   PolygonChains chains;
   for (const auto& wall : cell.walls) {

@@ -56,6 +56,9 @@ inline PrismCorners rest_prism(const Cell& cell) { return prism_of(cell.rest_sha
 /// Sets edges and lines. How far an edge runs along, its ends at rest say.
 void set_polygon_edges(const PolygonChains& chains, const Vectors& rest_positions, Cell& cell);
 
+/// The walls of a cell without stops but its corners, as division needs them.
+std::vector<std::vector<WallStop>> walls_between_corners(const Cell& cell);
+
 /// Sets corners, edges and lines of a cell that has walls by their stops.
 void set_corners_and_lines_of_walls(const Vectors& rest_positions, Cell& cell);
 

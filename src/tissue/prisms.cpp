@@ -160,10 +160,7 @@ class Builder {
       chains.lateral.push_back(std::move(chain));
     }
     set_polygon_edges(chains, tissue_.rest_positions, cell);
-    if (!divides()) return;
-    for (std::size_t i = 0; i < n; ++i)
-      cell.walls.push_back({{0, chains.basal[i].front(), chains.apical[i].front()},
-                            {1, chains.basal[i].back(), chains.apical[i].back()}});
+    if (divides()) cell.walls = walls_between_corners(cell);
   }
 
   const PrismSheet& sheet_;

@@ -60,6 +60,8 @@ struct GridPlace {
 struct WallStop {
   double at;  // along the wall, from 0 to 1
   NodeId basal, apical;
+
+  bool operator==(const WallStop&) const = default;
 };
 
 /// A place on the outline of a cell's polygon: on a wall, from its first corner (0) to the next (1); or not on it, in
@@ -69,6 +71,7 @@ struct OutlinePlace {
   double at = 0;
 
   [[nodiscard]] bool is_middle() const { return wall < 0; }
+  bool operator==(const OutlinePlace&) const = default;
 };
 
 /// A quadrilateral that a polygon is split into: its corners, counter-clockwise seen from outside.

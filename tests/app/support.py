@@ -119,7 +119,7 @@ def start(*arguments, **options):
     return subprocess.Popen([PROGRAM, *map(str, arguments)], **options)
 
 
-def plica(*arguments, timeout=60, **options):
+def plica(*arguments, timeout=240, **options):
     """The finished program: returncode, stdout, stderr."""
     count_case()
     process = start(*arguments, **options)

@@ -41,6 +41,8 @@ inline void expect_same_tissue(const Tissue& one, const Tissue& other) {
     EXPECT_EQ(a.is_of_grid, b.is_of_grid);
     EXPECT_EQ(a.corners, b.corners);
     EXPECT_EQ(a.rest_shape, b.rest_shape);
+    EXPECT_EQ(a.walls, b.walls);
+    EXPECT_EQ(a.quadrilaterals, b.quadrilaterals);
     EXPECT_EQ(a.lineage.id, b.lineage.id);
     ASSERT_EQ(a.edges.size(), b.edges.size());
     for (std::size_t e = 0; e < a.edges.size(); ++e) expect_same_edge(a.edges[e], b.edges[e]);
