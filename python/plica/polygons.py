@@ -112,16 +112,22 @@ class Polygons:
         return tables
 
     def write(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes the surface: ``.vtp`` with its arrays, or ``.obj`` without.
+        """Writes the surface: ``.ply`` or ``.vtp`` with its arrays, or ``.obj`` without.
 
         Parameters
         ----------
         path : str or path
+            Every plica reads ``.ply`` and ``.obj`` as ``embryo.file`` of a surface; ``.vtp`` takes one with VTK.
+
+        Raises
+        ------
+        ValueError
+            Another ending; in ``.ply``, an array whose name is not one word.
         """
         file = Path(path)
-        texts = {".vtp": self._vtp, ".obj": self._obj}
+        texts = {".ply": self._ply, ".vtp": self._vtp, ".obj": self._obj}
         if file.suffix not in texts:
-            raise ValueError(f"{file}: the file's name must end in .vtp or .obj")
+            raise ValueError(f"{file}: the file's name must end in .ply, .vtp or .obj")
         try:
             file.write_text(texts[file.suffix](), encoding="utf-8")
         except OSError as error:
@@ -130,6 +136,18 @@ class Polygons:
     def _obj(self) -> str:
         lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in self.points.tolist()]
         lines += ["f " + " ".join(str(vertex + 1) for vertex in face) for face in self.faces]
+        return "\n".join(lines) + "\n"
+
+    def _ply(self) -> str:
+        for name in self.cell_data:
+            if name.split() != [name]:
+                raise ValueError(f"cell_data: {name!r}; in a .ply file the name of an array is one word, without blanks")
+        arrays = [np.asarray(values, dtype=np.float64).tolist() for values in self.cell_data.values()]
+        lines = ["ply", "format ascii 1.0", f"element vertex {len(self.points)}", *(f"property double {axis}" for axis in "xyz"),
+                 f"element face {len(self.faces)}", "property list uchar int vertex_indices",
+                 *(f"property double {name}" for name in self.cell_data), "end_header"]
+        lines += [f"{x!r} {y!r} {z!r}" for x, y, z in self.points.tolist()]
+        lines += [" ".join(map(repr, [len(face), *face.tolist(), *values])) for face, *values in zip(self.faces, *arrays)]
         return "\n".join(lines) + "\n"
 
     def _vtp(self) -> str:

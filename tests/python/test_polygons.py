@@ -97,7 +97,7 @@ def test_files(run, tmp_path):
     vertices = np.array([line.split()[1:] for line in lines if line.startswith("v ")], dtype=float)
     assert (vertices == polygons.points).all()
     assert [int(i) - 1 for i in lines[-1].split()[1:]] == list(polygons.faces[-1])
-    with pytest.raises(ValueError, match=".vtp or .obj"):
+    with pytest.raises(ValueError, match=".ply, .vtp or .obj"):
         polygons.write(tmp_path / "cells.stl")
     with pytest.raises(plica.FileError):
         polygons.write(tmp_path / "nowhere" / "cells.obj")
@@ -111,6 +111,35 @@ def test_vtp(run, tmp_path):
         assert surface.n_cells == 150 and (surface.points == polygons.points).all()
         assert (np.array(surface.get_cell(149).point_ids) == polygons.faces[149]).all()
         assert (surface.cell_data["strength"] == polygons.cell_data["strength"]).all()
+
+
+def test_ply_keeps_arrays(tmp_path):
+    """What is written comes back as a sheet: cells in the order of the faces, regions by the arrays."""
+    spatial = pytest.importorskip("scipy.spatial")
+    # A row of seven hexagons, the walls between them given once.
+    turns = np.radians(60 * np.arange(6) + 30)
+    centres = np.column_stack([10 * np.arange(7) - 30, np.zeros(7)])
+    corners = (centres[:, None] + 10 / np.sqrt(3) * np.stack([np.cos(turns), np.sin(turns)], axis=-1)).reshape(-1, 2)
+    first = [int(pair[0]) for pair in map(sorted, spatial.cKDTree(corners).query_ball_point(corners, 1e-6))]
+    used, faces = np.unique(first, return_inverse=True)
+    label = np.array([40, 7, 12, 3, 99, 5, 1])
+    cells = plica.Polygons(np.column_stack([corners[used], np.zeros(len(used))]), faces.reshape(7, 6),
+                           {"label": label, "signal": label / 3})
+    cells.write(tmp_path / "cells.ply")
+    scenario = plica.Scenario({
+        "format": 1, "embryo": {"shape": "surface", "file": str(tmp_path / "cells.ply"), "cell_height_um": 12, "rim": "held"},
+        "region": {"high": {"array": "signal", "above": 4.0}, "one": {"array": "label", "above": 98.5}},
+        "contraction": {"apical": {"region": "high"}}, "time": {"end_min": 1},
+    })
+    sim = plica.Simulation(scenario)
+    assert list(sim.regions["high"]) == list(label / 3 > 4.0) and list(sim.regions["one"]) == list(label == 99)
+    assert np.allclose(sim.cell_data["x_um"], centres[:, 0], atol=1e-6) and np.allclose(sim.cell_data["y_um"], 0, atol=1e-6)
+    assert np.allclose(sim.cell_data["apical_area_um2"], cells.areas)
+    for name in ("mean signal", "", " signal"):
+        cells.cell_data = {name: label}
+        with pytest.raises(ValueError, match="one word"):
+            cells.write(tmp_path / "other.ply")
+    assert not (tmp_path / "other.ply").exists()
 
 
 def voronoi_labels(count, size, seed):
