@@ -189,13 +189,12 @@ std::optional<std::vector<OutlineQuad>> outline_quads(const Tissue& tissue, cons
   return quads;
 }
 
-// What division needs, where all cells are of that kind.
+// What division needs, where all cells are of that kind. (Of several layers or of kites, other nodes are corners.)
 void set_walls(Tissue& tissue) {
   std::vector<std::vector<OutlineQuad>> quads;
   for (const Cell& cell : tissue.cells) {
     auto of_cell = outline_quads(tissue, cell);
-    const bool is_one_layer = cell.edges.back().nodes.size() == 2;  // a lateral edge
-    if (!of_cell || !is_one_layer || cell.edges.front().nodes.size() != 2) return;
+    if (!of_cell) return;
     quads.push_back(std::move(*of_cell));
   }
   for (std::size_t c = 0; c < quads.size(); ++c) {
