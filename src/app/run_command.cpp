@@ -34,9 +34,9 @@ void print_result(const nlohmann::ordered_json& summary, const std::string& out)
   const std::string criterion = summary.at("stopped_by").is_string() && summary.at("stopped_by") != "equilibrium"
                                     ? fmt::format(" (stopped by {})", summary.at("stopped_by").get<std::string>())
                                     : "";
-  fmt::print("{}: {}{} at {:.2f} min after {} steps in {:.1f} s\n", summary.at("scenario").get<std::string>(),
+  fmt::print("{}: {}{} at {:.2f} min after {} step{} in {:.1f} s\n", summary.at("scenario").get<std::string>(),
              summary.at("status").get<std::string>(), criterion, summary.at("time_s").get<double>() / units::minute,
-             summary.at("steps").get<int>(), summary.at("wall_s").get<double>());
+             summary.at("steps").get<int>(), summary.at("steps") == 1 ? "" : "s", summary.at("wall_s").get<double>());
   const nlohmann::ordered_json &closed_s = summary.at("lips_closed_time_s"), &closed = summary.at("lips_closed");
   const std::string lips = closed.is_null() ? ""
                            : closed_s.is_number()
@@ -97,6 +97,11 @@ void report_ending(const Simulation& simulation, const nlohmann::ordered_json& s
         stderr,
         "plica: gave up: {0}; the last good state is in {1}, seen by: plica render {1} --time last --out last.png\n",
         simulation.failure(), options.out);
+  if (simulation.status() == RunStatus::equilibrium && summary.at("steps") == 1)
+    fmt::print(stderr,
+               "warning: at rest after the first step: nothing is faster than stop.equilibrium_speed_um_per_min ({:g}); "
+               "lower it, or give more force or less drag\n",
+               simulation.controls().equilibrium_speed_um_per_s * units::minute);
   if (simulation.status() == RunStatus::under_way && can_archive())
     fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");
   if (!options.quiet) print_result(summary, options.out);

@@ -46,6 +46,12 @@ class Outcomes(CommandLine):
             tables = ("provenance", "energy_by_law_nN_um", "tension_by_law_mN_per_m")
             self.assertTrue(key in tables or not isinstance(value, dict), "flat")
 
+    def test_rest_from_the_first_step_on_is_no_success_in_silence(self):
+        result = self.run_scenario(BLOCK, "--set", "stop.at_equilibrium=true", "--set", "stop.equilibrium_speed_um_per_min=1e9")
+        self.assertIn("after 1 step in", result.stdout)
+        self.assertIn("stop.equilibrium_speed_um_per_min (1e+09)", self.assert_messages(result)[0])
+        self.assertEqual(self.summary()["status"], "equilibrium")
+
     def test_every_column_is_in_the_documentation(self):
         page = (Path(__file__).resolve().parents[2] / "docs" / "measures.md").read_text(encoding="utf-8")
         self.run_scenario(BLOCK + '[division.d]\nregion = "all"\nat_s = 0.2\n')
