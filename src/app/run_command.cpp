@@ -98,10 +98,11 @@ void report_ending(const Simulation& simulation, const nlohmann::ordered_json& s
         "plica: gave up: {0}; the last good state is in {1}, seen by: plica render {1} --time last --out last.png\n",
         simulation.failure(), options.out);
   if (simulation.status() == RunStatus::equilibrium && summary.at("steps") == 1)
-    fmt::print(stderr,
-               "warning: at rest after the first step: nothing is faster than stop.equilibrium_speed_um_per_min ({:g}); "
-               "lower it, or give more force or less drag\n",
-               simulation.controls().equilibrium_speed_um_per_s * units::minute);
+    fmt::print(
+        stderr,
+        "warning: at rest after the first step: nothing is faster than stop.equilibrium_speed_um_per_min ({:g}); "
+        "lower it, or give more force or less drag\n",
+        simulation.controls().equilibrium_speed_um_per_s * units::minute);
   if (simulation.status() == RunStatus::under_way && can_archive())
     fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");
   if (!options.quiet) print_result(summary, options.out);

@@ -295,6 +295,15 @@ struct PressureInput {
   VariationInput variation;
 };
 
+/// Cells that lose their pull: cut by a laser, or switched off by light.
+struct AblationInput {
+  std::string region;
+  std::vector<std::string> faces = {"apical", "basal", "lateral"};
+  std::vector<std::string> only;        // names of tables, as cortex.apical; empty: all
+  std::optional<double> at_s, until_s;  // TOML: at_s or at_min; empty until_s: for good
+  double remaining = 0;                 // the part of their strength that is left
+};
+
 struct ExpectInput {
   double value = 0;
   std::optional<double> within;          // absolute
@@ -333,6 +342,7 @@ struct Scenario {
   std::map<std::string, HoldInput> holds;
   std::map<std::string, PressureInput> pressures;
   std::map<std::string, DivisionInput> divisions;
+  std::map<std::string, AblationInput> ablations;
   std::map<std::string, ExpectInput> expect;  // keys are those of summary.json, monitors' among them
 };
 

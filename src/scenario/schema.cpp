@@ -392,6 +392,10 @@ std::span<const TableInfo> schema_tables() {
       {"self_contact", "What keeps the sheet from passing through itself.", {}},
       {"hold.*", "Nodes of a region fixed in given directions.", names_in(&S::holds)},
       {"pressure.*", "A pressure on faces of a region.", names_in(&S::pressures)},
+      {"ablation.*",
+       "Cells of a region lose the strength of their cortices and contractions at a time: cut by a laser, or switched "
+       "off by light.",
+       names_in(&S::ablations)},
       {"division.*",
        "Cells of a region divide, at a time or when they pass a threshold. Cells begin as one element each.",
        names_in(&S::divisions)},

@@ -233,6 +233,15 @@ void check_division(const std::string& table, const DivisionInput& division, Inp
     input.report(table + ".threshold", "belongs to `when`", "remove it, or give when");
 }
 
+void check_ablation(const std::string& name, const AblationInput& ablation, Input& input) {
+  const std::string table = "ablation." + name;
+  for (const std::string key : {"", ".at_s", ".at_min", ".until_s", ".until_min"})
+    if (!input.sound(table + key)) return;
+  if (!ablation.at_s) return input.report(table, "says not when", "give at_min, or at_s; 0 from the beginning");
+  if (ablation.until_s && has_come(*ablation.until_s, *ablation.at_s))
+    input.report(table + ".until_s", "does not come after the ablation", "give a later time, or \"none\"");
+}
+
 /// The rules about regions: selectors that make sense on this embryo, names that exist, no circles.
 class RegionCheck {
  public:
@@ -259,6 +268,16 @@ class RegionCheck {
     for (const auto& [name, it] : scenario_.holds) check_reference("hold." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.pressures) check_acting("pressure." + name, it);
     for (const auto& [name, it] : scenario_.divisions) check_reference("division." + name + ".region", it.region);
+    std::vector<std::string> tables;
+    for (const auto& [name, it] : scenario_.cortices) tables.push_back("cortex." + name);
+    for (const auto& [name, it] : scenario_.contractions) tables.push_back("contraction." + name);
+    for (const auto& [name, it] : scenario_.ablations) {
+      const std::string only = "ablation." + name + ".only";
+      check_reference("ablation." + name + ".region", it.region);
+      for (const std::string& table : it.only)
+        if (std::ranges::find(tables, table) == tables.end() && input_.sound(only) && input_.sound(table))
+          input_.report(only, fmt::format("there is no [{}]", table), did_you_mean(table, tables));
+    }
     for (const auto& [name, it] : scenario_.monitors) {
       check_reference("monitor." + name + ".region", it.region);
       check_reference("monitor." + name + ".from", it.from);
@@ -416,6 +435,7 @@ void validate(Scenario& scenario, Input& input) {
   if (!scenario.divisions.empty() && input.sound("embryo.shape") && shape_of(scenario.embryo) == EmbryoShape::slice)
     input.report("embryo.shape", "the cells of a slice do not divide: its planes would no longer be alike",
                  "take a pill, or no [division]");
+  for (const auto& [name, it] : scenario.ablations) check_ablation(name, it, input);
   RegionCheck regions(scenario, input);
   for (const auto& [name, region] : scenario.regions) regions.check_selectors(name, region);
   regions.check_references();
