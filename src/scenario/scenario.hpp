@@ -262,12 +262,13 @@ struct CriterionInput {
 struct MonitorInput {
   std::string quantity;
   std::string region = "all";
-  std::string face;          // apical | basal; empty: all nodes; of the area, apical
-  std::string axis;          // x | y | z; empty: the norm
-  std::string from;          // of a force: what the cells of this region exert, volumes' pressures included
-  std::string over;          // mean | max | min | sum | rms; empty: mean
-  std::string reference;     // directory of a run, or a mesh file
-  std::string reference_at;  // same-time | end; empty: same-time
+  std::string face;            // apical | basal; empty: all nodes; of the area, apical
+  std::string axis;            // x | y | z; empty: the norm
+  std::string from;            // of a force: what the cells of this region exert, volumes' pressures included
+  std::string over;            // mean | max | min | sum | rms; empty: mean
+  std::string reference;       // directory of a run, or a mesh file
+  std::string reference_at;    // same-time | end; empty: same-time
+  std::optional<double> at_s;  // TOML: at_s or at_min; empty: the last value
 };
 
 struct FurrowInput {

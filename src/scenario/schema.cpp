@@ -268,6 +268,11 @@ std::vector<Row> make_rows() {
               {.is_path = true}),
       monitor("reference_at", &M::reference_at, one_of(words::reference_times),
               "Which of the run's frames; without it, the one of the same time."),
+      monitor(
+          "at_s", &M::at_s, not_negative,
+          "When the value is taken that `summary.json` and a study's table have (s), linear between steps; without it, "
+          "the last one."),
+      monitor("at_min", &M::at_s, not_negative, "The same in minutes.", {.instead_of = "at_s", .scale = 60}),
 
       furrow("region", &FurrowInput::region, anything,
              "Contractile cells whose furrow is measured; without it the largest region that contracts."),
