@@ -78,8 +78,9 @@ void draw(const MeshCommand& command, Frame frame, bool is_embryo) {
                                  nearest ? fmt::format("did you mean {}? ", *nearest) : "", fmt::join(colours, ", ")));
   }
   std::vector<View> wanted;
-  for (const std::string& name : command.views) wanted.push_back(named("--view", name, views()));
-  if (wanted.empty()) wanted.push_back(views().front());
+  const std::vector<View> known = views_of(frame);
+  for (const std::string& name : command.views) wanted.push_back(named("--view", name, known));
+  if (wanted.empty()) wanted.push_back(known.front());
   Painter painter;
   write_file(command.out, painter.png(rest_picture(std::move(frame), command.colour, wanted, is_embryo)));
 }
@@ -132,7 +133,8 @@ void add_mesh_command(CLI::App& app, int&) {
       ->capture_default_str();
   command
       ->add_option("--view", options->views,
-                   fmt::format("from where: {}; several, a row each", fmt::join(names_of(views()), ", ")))
+                   fmt::format("from where: {}; several, a row each (default: antero-ventral, of an open sheet apical)",
+                               fmt::join(names_of(views()), ", ")))
       ->delimiter(',')
       ->type_name("NAME,...");
   command->add_flag("--overwrite", options->overwrite, "replace the file where it is there");

@@ -57,12 +57,12 @@ void read_size(const std::string& text, PictureOptions& options) {
 
 PictureOptions options_of(const RenderCommand& command) {
   PictureOptions options;
-  std::vector<std::string> wanted = command.views;
   for (const std::string& place : command.at_x_um) options.cuts_at_x_um.push_back(place_in(place));
   options.sections = command.sections;
   const bool with_cuts = command.sections || !command.at_x_um.empty();
-  if (wanted.empty() && !with_cuts) wanted = {"antero-ventral"};
-  if (command.views.empty() && command.strip && !with_cuts) wanted.emplace_back("cross-section");
+  options.usual_view = command.views.empty() && !with_cuts;
+  std::vector<std::string> wanted = command.views;
+  if (options.usual_view && command.strip) wanted.emplace_back("cross-section");
   for (const std::string& name : wanted) options.views.push_back(named("--view", name, views()));
   options.field = named("--colour", command.colour, colour_fields());
   if (!command.range.empty()) options.range = range_in(command.range);
@@ -167,7 +167,8 @@ void add_render_command(CLI::App& app, int& status) {
       ->required();
   command
       ->add_option("--view", options->views,
-                   fmt::format("from where: {}; several, a row each", fmt::join(names_of(views()), ", ")))
+                   fmt::format("from where: {}; several, a row each (default: antero-ventral, of an open sheet apical)",
+                               fmt::join(names_of(views()), ", ")))
       ->delimiter(',')
       ->type_name("NAME,...");
   command

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "show/skin.hpp"
+#include "tissue/hexahedron.hpp"
 
 namespace plica {
 namespace {
@@ -197,8 +199,31 @@ const std::vector<View>& views() {
       {"ventral", "from below, anterior to the left", {0, 0, 1}, {0, -1, 0}, {}},
       {"side", "from the left side, anterior to the left", {0, 1, 0}, {0, 0, 1}, {}},
       {"cross-section", "cut across the middle, from the front", {1, 0, 0}, {0, 0, 1}, 0},
-      {"sagittal-section", "cut along the midline, anterior to the left", {0, 1, 0}, {0, 0, 1}, 1}};
+      {"sagittal-section", "cut along the midline, anterior to the left", {0, 1, 0}, {0, 0, 1}, 1},
+      {"apical", "the apical side from outside", {0, 0, -1}, {0, 1, 0}, {}}};
   return all;
+}
+
+std::vector<View> views_of(const Frame& rest) {
+  constexpr double least_open = 0.2;  // of the sum of areas, that of their vectors: 0 of a closed surface, 1 of a flat one
+  std::vector<View> views = plica::views();
+  Vec3 vectors = Vec3::Zero();
+  double area = 0;
+  for (const auto& element : rest.elements) {
+    std::array<Vec3, 4> apex;
+    for (int i = 0; i < 4; ++i) apex[i] = rest.positions[element[hex_faces[apical_face][i]].index()];
+    const Vec3 vector = facet_area_vector(apex);
+    vectors += vector;
+    area += vector.norm();
+  }
+  if (!(vectors.norm() > least_open * area)) return views;
+  // x to the right, as far as it is across the sight; where it is along it, y.
+  const auto apical = std::ranges::find(views, "apical", &View::name);
+  apical->sight = -vectors.normalized();
+  const bool along_x = std::abs(apical->sight.x()) > 0.9;
+  apical->up = (along_x ? Vec3::UnitY() : Vec3::UnitX()).cross(apical->sight);
+  std::rotate(views.begin(), apical, apical + 1);
+  return views;
 }
 
 View cross_section_at(double x_um) {

@@ -88,8 +88,12 @@ struct View {
   double cut_um = view_cut_um;  // where that plane is, from the origin
 };
 
-/// ventral, antero-ventral, side, cross-section, sagittal-section.
+/// antero-ventral, ventral, side, cross-section, sagittal-section, apical.
 const std::vector<View>& views();
+
+/// The same of a tissue at rest, where `apical` looks against the mean normal of its apices. The first is the usual one:
+/// antero-ventral, but of an open sheet `apical`.
+std::vector<View> views_of(const Frame& rest);
 
 /// The cross-section at another place along the embryo, called "x = 125 µm".
 View cross_section_at(double x_um);

@@ -57,9 +57,10 @@ ordered_json maps_json() {
   return maps;
 }
 
-ordered_json views_json() {
+// Of several runs, those of the first.
+ordered_json views_json(const std::vector<ReportRun>& runs) {
   ordered_json list = ordered_json::array();
-  for (const View& view : views())
+  for (const View& view : runs.front().views)
     list.push_back({{"name", view.name},
                     {"label", view.label},
                     {"sight", {view.sight.x(), view.sight.y(), view.sight.z()}},
@@ -145,7 +146,7 @@ std::string report_page(const std::vector<ReportRun>& runs) {
                        {"made_by", fmt::format("plica {} ({})", version(), commit())},
                        {"fields", fields_json(runs)},
                        {"maps", maps_json()},
-                       {"views", views_json()},
+                       {"views", views_json(runs)},
                        {"view_cut_um", view_cut_um},
                        {"varied", varied_json(runs)},
                        {"runs", ordered_json::array()}};

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/errors.hpp"
-#include "show/looks.hpp"
 
 namespace plica {
 namespace {
@@ -165,6 +164,7 @@ void ReportFrames::add(const Frame& frame, double time_s) {
     coloured_regions_ = coloured_regions(frame);
     regions_.resize(std::min(regions_.size(), most_regions));
     rest_positions_ = frame.positions;
+    views_ = views_of(frame);
   }
   const bool new_cells = topologies_.empty() || !shows(topologies_.back(), frame);
   if (new_cells) {
@@ -203,7 +203,9 @@ void ReportFrames::pack_into(ReportRun& run) const {
   run.json["every"] = every_;
   run.json["regions"] = regions_;
   run.json["coloured_regions"] = coloured_regions_;
-  if (!topologies_.empty()) pack_frames(topologies_, run);
+  if (topologies_.empty()) return;
+  run.views = views_;
+  pack_frames(topologies_, run);
 }
 
 }  // namespace plica

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "show/looks.hpp"
 #include "show/packing.hpp"
 #include "show/skin.hpp"
 #include "tissue/files/frame_file.hpp"
@@ -19,6 +20,7 @@ struct ReportRun {
   nlohmann::ordered_json json;
   PackedArrays frames;
   std::map<std::string, Quantiser> fields;  // range of each field over the frames, by its name
+  std::vector<View> views = plica::views();
 };
 
 /// What is shown of one frame, until all are known and can be told in whole numbers.
@@ -61,6 +63,7 @@ class ReportFrames {
   double most_bytes_, bytes_ = 0;
   std::size_t seen_ = 0, every_ = 1;
   std::vector<std::string> regions_, coloured_regions_;
+  std::vector<View> views_;
   std::vector<FrameTopology> topologies_;
   Vectors rest_positions_;
 };

@@ -42,7 +42,6 @@ bool passes_through_itself(const Frame& frame) {
 
 RunPictures::RunPictures(std::filesystem::path directory, PictureOptions options)
     : run_(std::move(directory)), options_(std::move(options)), times_s_(run_.times_s()) {
-  for (const View& view : options_.views) rows_.push_back({view, {0, 0}});
   look_through();
   const std::optional<Scenario> scenario = scenario_of_run(run_.directory());
   is_embryo_ = !scenario || !is_patch(shape_of(scenario->embryo));
@@ -72,7 +71,7 @@ void RunPictures::look_through() {
     Frame frame = run_.frame(i);
     if (i == 0) middle_ = far_middle(frame.positions);
     centre(frame);
-    if (i == 0) add_cuts(frame.positions);
+    if (i == 0) add_rows(frame);
     for (const double value : field_values(frame, options_.field)) {
       if (!std::isfinite(value)) continue;
       smallest_ = std::min(smallest_, value);
@@ -85,6 +84,13 @@ void RunPictures::look_through() {
     farthest_um_.push_back(farthest_displacement_um(frame));
     if (i == 0) rest_ = std::move(frame);
   }
+}
+
+void RunPictures::add_rows(const Frame& rest) {
+  const std::vector<View> views = views_of(rest);
+  if (options_.usual_view) rows_.push_back({views.front(), {0, 0}});
+  for (const View& view : options_.views) rows_.push_back({*std::ranges::find(views, view.name, &View::name), {0, 0}});
+  add_cuts(rest.positions);
 }
 
 // Views look at the middle of the body; places are given as the run has them.

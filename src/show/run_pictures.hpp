@@ -11,7 +11,8 @@
 namespace plica {
 
 struct PictureOptions {
-  std::vector<View> views;           // rows
+  bool usual_view = false;           // a row of the first of the run's views_of()
+  std::vector<View> views;           // then rows of these
   std::vector<double> cuts_at_x_um;  // then cross-sections at these places, as the run counts x
   bool sections = false;             // then those at a quarter, half and three quarters of the length at rest
   ColourField field;                 // what colours the cells
@@ -47,6 +48,7 @@ class RunPictures {
  private:
   void look_through();
   void centre(Frame& frame) const;
+  void add_rows(const Frame& rest);
   void add_cuts(const Vectors& rest);
 
   ReferenceRun run_;

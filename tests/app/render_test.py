@@ -11,7 +11,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructured
 import support
 from support import SPHERE, CommandLine, plica
 
-VIEWS = "antero-ventral ventral side cross-section sagittal-section".split()
+VIEWS = "antero-ventral ventral side cross-section sagittal-section apical".split()
 
 
 def size_of(path):
@@ -156,6 +156,21 @@ class Render(CommandLine):
         self.assertGreater(height, width, "three rows")
         self.render("--sections", "--movie", "--size", "300x600", "--overwrite", "--quiet")
         self.assertEqual(size_of(self.folder / "picture_00003.png"), (300, 600))
+
+    # A block stands for a sheet: it is seen from its apical side, from above, unless told otherwise.
+    def test_an_open_sheet_is_seen_from_its_apical_side(self):
+        block = SPHERE.replace('"sphere"\ndiameter_um = 200', '"block"\nlength_um = 200\nwidth_um = 150')
+        self.assertNotEqual(block, SPHERE)
+        pictures = {}
+        for name, text in (("ball", SPHERE), ("sheet", block)):
+            self.run_scenario(text, "--quiet", out=self.folder / name)
+            for view in ("apical", "antero-ventral", ""):
+                self.out = self.folder / name
+                self.render("--size", "400x300", "--overwrite", *(["--view", view] if view else []))
+                pictures[name, view] = self.picture.read_bytes()
+        self.assertEqual(pictures["sheet", ""], pictures["sheet", "apical"])
+        self.assertEqual(pictures["ball", ""], pictures["ball", "antero-ventral"])
+        self.assertNotEqual(pictures["sheet", ""], pictures["sheet", "antero-ventral"])
 
     def test_another_range_gives_other_colours(self):
         blue = []

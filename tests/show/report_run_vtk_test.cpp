@@ -154,6 +154,14 @@ TEST_F(ReportRunTest, SeveralRunsAreToldApartByKeysAndNames) {
   EXPECT_EQ(data["runs"][2]["name"], "none");
 }
 
+TEST_F(ReportRunTest, PageOfASheetBeginsAtItsApicalSide) {
+  write_frames(1);
+  const nlohmann::json views = data_of(report_page_of({folder}))["views"];
+  ASSERT_EQ(views.size(), plica::views().size());
+  EXPECT_EQ(views[0]["name"], "apical");
+  EXPECT_LT(views[0]["sight"][2], -0.9);
+}
+
 TEST_F(ReportRunTest, PageHoldsNoMarkupOfTheScenario) {
   write_frames(2);
   std::ofstream(folder / "summary.json") << R"({"title": "</script><b>&\u2028"})";
