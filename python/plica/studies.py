@@ -134,7 +134,7 @@ def render(
         A PNG file to write.
     color : str
         What colours it: displacement, speed, area-ratio, pressure, volume-error, volume, contraction, strength, generation,
-        region or self-intersections. Of a simulation, what ``Simulation.cell_data`` has.
+        region or self-intersections; of a frame also an array that the cells' file has, as of genes. Of a simulation, what ``Simulation.cell_data`` has.
     view : str, optional
         antero-ventral, ventral, side, cross-section, sagittal-section or apical: at the apical side from outside. By default
         antero-ventral, of an open sheet apical.
@@ -161,7 +161,7 @@ def render(
     """
     pyvista = needed("pyvista", "render")
     _make_sure_of_drawing()
-    field = _named("color", color, _core.colour_fields())
+    fields = _core.colour_fields()
     if isinstance(what, Simulation):
         grid = what.to_pyvista()
         grid.point_data["displacement_um"] = what.positions - what.rest_positions
@@ -171,6 +171,9 @@ def render(
     else:
         frame = what if isinstance(what, Frame) else _frame_of(what, time_min)
         grid = frame.to_pyvista()
+    # What a file has measured in the cells looks like any number from 0 on.
+    given = {k: {**fields["volume"], "label": k, "array": k} for k in grid.cell_data.keys() if not k.startswith("region_")}
+    field = _named("color", color, {**given, **fields})
     views = _core.views(np.asarray(grid.points, dtype=float), grid.cells_dict[pyvista.CellType.HEXAHEDRON].astype(np.int32))
     seen = _named("view", view or next(iter(views)), views)
     values, names = _values(grid, field)

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "app/commands.hpp"
-#include "app/named.hpp"
 #include "app/output_file.hpp"
 #include "app/scenario_options.hpp"
 #include "core/errors.hpp"
@@ -17,6 +16,7 @@
 #include "scenario/setup.hpp"
 #include "scenario/suggest.hpp"
 #include "scenario/words.hpp"
+#include "show/named.hpp"
 #include "show/rest_picture.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/mesh_quality.hpp"

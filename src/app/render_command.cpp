@@ -6,13 +6,13 @@
 
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
-#include "app/named.hpp"
 #include "app/output_file.hpp"
 #include "app/times.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/names.hpp"
 #include "core/numbers.hpp"
+#include "show/named.hpp"
 #include "show/run_pictures.hpp"
 
 namespace plica {
@@ -64,7 +64,7 @@ PictureOptions options_of(const RenderCommand& command) {
   std::vector<std::string> wanted = command.views;
   if (options.usual_view && command.strip) wanted.emplace_back("cross-section");
   for (const std::string& name : wanted) options.views.push_back(named("--view", name, views()));
-  options.field = named("--colour", command.colour, colour_fields());
+  options.colour = command.colour;
   if (!command.range.empty()) options.range = range_in(command.range);
   if (!command.size.empty()) read_size(command.size, options);
   options.edges = !command.no_edges;
@@ -187,7 +187,7 @@ void add_render_command(CLI::App& app, int& status) {
   command->add_flag("--movie", options->movie, "every frame, a file each; says how to make a movie of them");
   command
       ->add_option("--colour,--color", options->colour,
-                   fmt::format("coloured by: {}", fmt::join(names_of(colour_fields()), ", ")))
+                   fmt::format("coloured by: {}, or an array that the cells' file has", fmt::join(names_of(colour_fields()), ", ")))
       ->type_name("NAME")
       ->capture_default_str();
   command->add_option("--range", options->range, "ends of the colour scale (default: what all frames of the run need)")

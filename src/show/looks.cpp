@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "core/names.hpp"
+#include "measure/cell_columns.hpp"
 #include "show/skin.hpp"
 #include "tissue/hexahedron.hpp"
 
@@ -125,6 +127,14 @@ const std::vector<ColourField>& colour_fields() {
   return fields;
 }
 
+std::vector<ColourField> fields_of(const Frame& frame) {
+  std::vector<ColourField> fields = colour_fields();
+  const std::vector<std::string> plicas = names_of(fields);
+  for (const auto& [name, values] : frame.element_scalars)
+    if (!is_plicas(name) && std::ranges::find(plicas, name) == plicas.end()) fields.push_back({name, name, "", name});
+  return fields;
+}
+
 std::vector<std::string> regions_of(const Frame& frame) {
   std::vector<std::string> names;
   for (const auto& [name, values] : frame.element_scalars)
@@ -175,7 +185,7 @@ std::vector<std::string> step_names(const Frame& frame, const ColourField& field
 ColourRange colour_range(const ColourField& field, double smallest, double largest) {
   switch (field.kind) {
     case ScaleKind::from_zero:
-      return {0, rounded_up(largest)};
+      return {smallest < 0 ? -rounded_up(-smallest) : 0, rounded_up(largest)};
     case ScaleKind::about: {
       double reach = rounded_up(std::max(field.centre - smallest, largest - field.centre));
       // A ratio has no values below 0; those that are more than twice the middle look like the largest.

@@ -29,10 +29,12 @@ const char* name_of(ScaleKind kind) {
   return kind == ScaleKind::from_zero ? "from-zero" : kind == ScaleKind::about ? "about" : "steps";
 }
 
-// Quantities, each with one scale for all frames of all runs.
+// Quantities that all runs with frames have, each with one scale for all frames of all runs.
 ordered_json fields_json(const std::vector<ReportRun>& runs) {
   ordered_json fields = ordered_json::array();
-  for (const ColourField& field : colour_fields()) {
+  for (const ColourField& field : runs.front().colours) {
+    if (std::ranges::any_of(runs, [&](const ReportRun& run) { return !run.fields.empty() && !run.fields.contains(field.name); }))
+      continue;
     Quantiser all;
     for (const ReportRun& run : runs)
       if (const auto found = run.fields.find(field.name); found != run.fields.end())

@@ -9,6 +9,7 @@
 #include "core/errors.hpp"
 #include "record/run_scenario.hpp"
 #include "scenario/words.hpp"
+#include "show/named.hpp"
 
 namespace plica {
 namespace {
@@ -71,8 +72,9 @@ void RunPictures::look_through() {
     Frame frame = run_.frame(i);
     if (i == 0) middle_ = far_middle(frame.positions);
     centre(frame);
+    if (i == 0) field_ = named("--colour", options_.colour, fields_of(frame));
     if (i == 0) add_rows(frame);
-    for (const double value : field_values(frame, options_.field)) {
+    for (const double value : field_values(frame, field_)) {
       if (!std::isfinite(value)) continue;
       smallest_ = std::min(smallest_, value);
       largest_ = std::max(largest_, value);
@@ -142,9 +144,9 @@ Picture RunPictures::picture(const std::vector<double>& times_s) const {
     picture.columns.push_back({time_text(time_s) + mark, std::move(*frame)});
   }
   picture.rows = rows_;
-  picture.field = options_.field;
+  picture.field = field_;
   if (picture.field.kind == ScaleKind::steps) picture.step_names = step_names(rest_, picture.field, largest_);
-  picture.range = options_.range.value_or(colour_range(options_.field, smallest_, largest_));
+  picture.range = options_.range.value_or(colour_range(field_, smallest_, largest_));
   if (is_embryo_) picture.rest = rest_;
   picture.shell = shell_;
   picture.edges = options_.edges;

@@ -15,7 +15,7 @@ struct PictureOptions {
   std::vector<View> views;           // then rows of these
   std::vector<double> cuts_at_x_um;  // then cross-sections at these places, as the run counts x
   bool sections = false;             // then those at a quarter, half and three quarters of the length at rest
-  ColourField field;                 // what colours the cells
+  std::string colour = "displacement";  // what colours the cells: of the run's fields_of()
   std::optional<ColourRange> range;  // empty: what all frames of the run need
   bool edges = true;                 // outlines of cells
   bool shell = false;                // the vitelline shell, where the scenario has one
@@ -26,7 +26,7 @@ struct PictureOptions {
 class RunPictures {
  public:
   /// FileError when the directory holds no frames, the frames lack the field's array, or a shell is asked for that the
-  /// run does not have.
+  /// run does not have. UsageError when there is no field of that name.
   RunPictures(std::filesystem::path directory, PictureOptions options);
 
   [[nodiscard]] const std::vector<double>& times_s() const { return times_s_; }  // of the frames
@@ -53,6 +53,7 @@ class RunPictures {
 
   ReferenceRun run_;
   PictureOptions options_;
+  ColourField field_;
   std::vector<double> times_s_, farthest_um_;  // a frame each
   double smallest_ = 0, largest_ = 0;          // of the field, over all frames
   std::vector<PictureRow> rows_;

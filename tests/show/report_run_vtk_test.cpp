@@ -86,7 +86,7 @@ TEST_F(ReportRunTest, HoldsPositionsAndValuesOfEveryFrame) {
         const double expected = block.rest_positions[n][static_cast<int>(i)] + (i == 0 ? static_cast<double>(f) : 0.0);
         EXPECT_NEAR(position, expected, 0.51 * (high - low) / 65535);
       }
-  const auto pressures = unpacked(run, "0/pressure");
+  const auto pressures = unpacked(run, "0/field/pressure");
   EXPECT_EQ(pressures.front(), 0u);
   EXPECT_EQ(pressures.back(), 65535u);
   EXPECT_DOUBLE_EQ(run.fields.at("pressure").high, 0.5);
