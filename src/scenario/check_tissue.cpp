@@ -82,10 +82,11 @@ void check_contact_at_rest(const Scenario& scenario, const Tissue& tissue, std::
   const CellSet crossing = self_intersecting_cells(tissue, tissue.rest_positions);
   const auto first = std::ranges::find(crossing, true);
   if (first != crossing.end())
-    errors.push_back(diagnostic_at(scenario, "self_contact.surface",
-                                   fmt::format("the mesh passes through itself at rest, at {}",
-                                               cell_at(tissue, CellId(static_cast<std::size_t>(first - crossing.begin())))),
-                                   "mend the mesh, or give \"none\""));
+    errors.push_back(
+        diagnostic_at(scenario, "self_contact.surface",
+                      fmt::format("the mesh passes through itself at rest, at {}",
+                                  cell_at(tissue, CellId(static_cast<std::size_t>(first - crossing.begin())))),
+                      "mend the mesh, or give \"none\""));
 }
 
 // Where two tables speak of one cell, nobody knows which is meant.
@@ -134,10 +135,10 @@ void check_arrays(const Scenario& scenario, const Tissue& tissue, std::vector<Di
       const CellSet& cells = tissue.regions.at(input.region);
       for (std::size_t c = 0; c < cells.size(); ++c)
         if (cells[c] && !std::isfinite(array->second[c])) {
-          errors.push_back(diagnostic_at(scenario, key,
-                                         fmt::format("array \"{}\" has no number in {}", input.profile.array,
-                                                     cell_at(tissue, CellId(c))),
-                                         "give every cell of the region one"));
+          errors.push_back(diagnostic_at(
+              scenario, key,
+              fmt::format("array \"{}\" has no number in {}", input.profile.array, cell_at(tissue, CellId(c))),
+              "give every cell of the region one"));
           break;
         }
     }
@@ -176,11 +177,11 @@ void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vecto
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
     if (!(hex_scaled_jacobian(tissue.element_rest_shape[e]) > 0)) {
       const bool has_grid = is_of_grid(shape_of(scenario.embryo));
-      errors.push_back(diagnostic_at(scenario, has_grid ? "embryo.cells" : "embryo.cell_height_um",
-                                     fmt::format("the mesh would be inverted: {} is inside out or flat at rest",
-                                                 cell_at(tissue, tissue.element_cell[e])),
-                                     has_grid ? "take more cells, or flatter ones"
-                                              : "give a smaller height, or smooth the surface there"));
+      errors.push_back(diagnostic_at(
+          scenario, has_grid ? "embryo.cells" : "embryo.cell_height_um",
+          fmt::format("the mesh would be inverted: {} is inside out or flat at rest",
+                      cell_at(tissue, tissue.element_cell[e])),
+          has_grid ? "take more cells, or flatter ones" : "give a smaller height, or smooth the surface there"));
       return;
     }
 }

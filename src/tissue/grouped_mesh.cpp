@@ -51,16 +51,16 @@ std::string cell_at(const HexahedralMesh& mesh, const SortedHexahedra& sorted, s
 }
 
 // Reads a cell's lattice off its hexahedra, the first direction fastest.
-CellLattice lattice_of(const HexahedralMesh& mesh, const SortedHexahedra& sorted, std::size_t c, const std::array<int, 3>& elements) {
+CellLattice lattice_of(const HexahedralMesh& mesh, const SortedHexahedra& sorted, std::size_t c,
+                       const std::array<int, 3>& elements) {
   CellLattice lattice;
   lattice.elements = elements;
   const auto [nu, nv, nw] = elements;
   const std::size_t begin = sorted.first[c], count = sorted.first[c + 1] - begin;
   if (std::ranges::any_of(elements, [](int n) { return n < 1 || n > 1000; }) ||
       static_cast<std::size_t>(nu) * static_cast<std::size_t>(nv) * static_cast<std::size_t>(nw) != count)
-    throw MeshError(
-        fmt::format("{} has {} hexahedra, and elements_per_cell says {} x {} x {}", cell_at(mesh, sorted, c), count, nu,
-                    nv, nw));
+    throw MeshError(fmt::format("{} has {} hexahedra, and elements_per_cell says {} x {} x {}",
+                                cell_at(mesh, sorted, c), count, nu, nv, nw));
   lattice.nodes.resize(static_cast<std::size_t>(nu + 1) * static_cast<std::size_t>(nv + 1) *
                        static_cast<std::size_t>(nw + 1));
   for (std::size_t e = 0; e < count; ++e) {
@@ -126,19 +126,18 @@ void set_corners(const HexahedralMesh& mesh, const SortedHexahedra& sorted, std:
                  std::size_t free, Cell& cell) {
   const int count = mesh.groups.corner_counts[c];
   if (count < 6 || count % 2 != 0 || static_cast<std::size_t>(count) > mesh.groups.corners.size() - next)
-    throw MeshError(
-        fmt::format("{} has {} corners; they are 6 or more, as many at its base as at its apex",
-                    cell_at(mesh, sorted, c), count));
+    throw MeshError(fmt::format("{} has {} corners; they are 6 or more, as many at its base as at its apex",
+                                cell_at(mesh, sorted, c), count));
   for (int k = 0; k < count; ++k) {
     const int corner = mesh.groups.corners[next++];
     if (corner < 0 || static_cast<std::size_t>(corner) >= free)
-      throw MeshError(
-          fmt::format("a corner of {} is node {}, which is no free one", cell_at(mesh, sorted, c), corner));
+      throw MeshError(fmt::format("a corner of {} is node {}, which is no free one", cell_at(mesh, sorted, c), corner));
     cell.corners.emplace_back(corner);
   }
 }
 
-void add_cell(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces, std::size_t c, Cell cell, Tissue& tissue) {
+void add_cell(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces, std::size_t c,
+              Cell cell, Tissue& tissue) {
   const CellId id(c);
   const std::size_t begin = sorted.first[c], end = sorted.first[c + 1], basal = tissue.basal_facets.size(),
                     apical = tissue.apical_facets.size();

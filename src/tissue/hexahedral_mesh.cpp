@@ -54,8 +54,8 @@ void check_cell_nodes(const HexahedralMesh& mesh, std::size_t cell) {
   }
   std::sort(nodes.begin(), nodes.end());
   const auto twice = std::adjacent_find(nodes.begin(), nodes.end());
-  if (twice != nodes.end()) throw MeshError(
-        fmt::format("{} uses node {} twice; a hexahedron has eight", cell_at(mesh, cell), twice->number()));
+  if (twice != nodes.end())
+    throw MeshError(fmt::format("{} uses node {} twice; a hexahedron has eight", cell_at(mesh, cell), twice->number()));
 }
 
 /// What may have gone wrong with a cell whose Jacobian is not positive at each corner.
@@ -72,7 +72,8 @@ void check_cells(const HexahedralMesh& mesh) {
     check_cell_nodes(mesh, cell);
     const HexPoints points = gather(mesh.points, mesh.cells[cell]);
     if (!(hex_scaled_jacobian(points) > 0))
-      throw MeshError(fmt::format("{} is inverted (det J <= 0 at a corner): {}", cell_at(mesh, cell), inversion_remedy(points)));
+      throw MeshError(
+          fmt::format("{} is inverted (det J <= 0 at a corner): {}", cell_at(mesh, cell), inversion_remedy(points)));
   }
 }
 
@@ -179,9 +180,10 @@ Vectors drop_unused_nodes(const Vectors& points, std::vector<CellLattice>& cells
 void check_elements(const Tissue& tissue) {
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
     if (!(hex_scaled_jacobian(tissue.element_rest_shape[e]) > 0))
-      throw MeshError(fmt::format("{} is so warped that its elements are inverted (det J <= 0 within it); move its "
-                                  "corners, or give fewer elements_per_cell",
-                                  cell_at(tissue, tissue.element_cell[e])));
+      throw MeshError(
+          fmt::format("{} is so warped that its elements are inverted (det J <= 0 within it); move its "
+                      "corners, or give fewer elements_per_cell",
+                      cell_at(tissue, tissue.element_cell[e])));
 }
 
 }  // namespace

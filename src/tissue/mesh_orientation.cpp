@@ -55,8 +55,8 @@ std::size_t outer_component(const HexahedralMesh& mesh, const std::vector<CellFa
         "the mesh has a single surface (a block or an open sheet), so which faces are apical cannot be told; {}",
         apical_remedy));
   if (volume.size() > 2)
-    throw MeshError(
-        fmt::format("the mesh has {} separate surfaces where one closed layer has two; {}", volume.size(), apical_remedy));
+    throw MeshError(fmt::format("the mesh has {} separate surfaces where one closed layer has two; {}", volume.size(),
+                                apical_remedy));
   const auto [first, first_volume] = *volume.begin();
   const auto [second, second_volume] = *volume.rbegin();
   if ((first_volume > 0) == (second_volume > 0))
@@ -87,9 +87,8 @@ std::vector<int> outer_faces(const HexahedralMesh& mesh, const MeshFaces& faces)
   for (const CellFace& side : surface) {
     if (components.set_of(face_node(mesh, side, 0).index()) != outer) continue;
     if (apical[side.cell] >= 0)
-      throw MeshError(
-          fmt::format("{} has more than one face on the outer surface, and a cell has one apical face; {}",
-                      cell_at(mesh, side.cell), apical_remedy));
+      throw MeshError(fmt::format("{} has more than one face on the outer surface, and a cell has one apical face; {}",
+                                  cell_at(mesh, side.cell), apical_remedy));
     apical[side.cell] = side.face;
   }
   for (std::size_t cell = 0; cell < apical.size(); ++cell)
