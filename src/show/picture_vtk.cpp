@@ -44,10 +44,10 @@ namespace plica {
 namespace {
 
 constexpr Rgb ink = {0.12, 0.12, 0.12}, grey = {0.55, 0.55, 0.55}, shell_grey = {0.45, 0.45, 0.5};
-constexpr double ambient = 0.55;   // of the light; the rest comes from the eye
-constexpr int map_entries = 1024;  // of the table of colours
-constexpr int samples = 4;         // a pixel, by the graphics library, before pixels are averaged
-constexpr double eye_um = 3000;    // its distance
+constexpr double ambient = 0.55;                         // of the light; the rest comes from the eye
+constexpr int map_entries = 1024;                        // of the table of colours
+constexpr int samples = 4;                               // a pixel, by the graphics library, before pixels are averaged
+constexpr double eye_um = 3000;                          // its distance
 constexpr double in_front_px = 2, most_in_front_um = 1;  // what lines are moved by, so that facets do not hide them
 constexpr double descender_em = 0.1;
 constexpr double band_em = 0.15;              // thickness of the shell, in letters' heights

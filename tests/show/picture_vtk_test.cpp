@@ -152,7 +152,8 @@ TEST(Picture, OfASymmetricEmbryoIsSymmetric) {
 
 // A sheet of 20 um whose lower side has walls that its upper side has not: nothing of them is seen from above.
 TEST(Picture, OfASmallSheetShowsNoEdgeBehindItsSurface) {
-  Tissue sheet = support::mapped_lattice(4, 4, 1, [](int i, int j, int k) { return Vec3(5 * i - 10, 5 * j - 10, 0.5 * k); });
+  Tissue sheet =
+      support::mapped_lattice(4, 4, 1, [](int i, int j, int k) { return Vec3(5 * i - 10, 5 * j - 10, 0.5 * k); });
   Picture picture;
   picture.columns.push_back({"", support::frame_of(sheet)});
   const View seen = {"tilted", "", {0.4, 0.3, -0.87}, {0, 1, 0}, {}};
@@ -162,8 +163,8 @@ TEST(Picture, OfASmallSheetShowsNoEdgeBehindItsSurface) {
   const Layout layout = make_layout(picture);
   const Image image = read_png(Painter().png(picture));
   int cases = 0;
-  // The edges of the lower side, 0.5 um below the upper one, are seen through its cells' middles where they are drawn in
-  // front of it.
+  // The edges of the lower side, 0.5 um below the upper one, are seen through its cells' middles where they are drawn
+  // in front of it.
   for (const auto& place : sheet.rest_positions) {
     if (place.z() > 0 || place.x() > 9) continue;
     const Vec3 on_edge = place + Vec3(2.5, 0, 0);
