@@ -8,6 +8,7 @@
 #include "app/commands.hpp"
 #include "app/output_file.hpp"
 #include "app/scenario_options.hpp"
+#include "app/slow_word.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/names.hpp"
@@ -91,7 +92,10 @@ void mesh(const MeshCommand& command) {
     throw UsageError("--out " + command.out + ": the file's name must end in .vtu, or in .png for a picture");
   require_free(command.out, command.overwrite);
   const Scenario scenario = command.scenario.load();
-  const Tissue tissue = make_tissue(scenario);
+  const Tissue tissue = [&] {
+    const SlowWord word;
+    return make_tissue(scenario);
+  }();
   const RestArrays at_rest = rest_arrays(scenario, tissue);
   const FramePolygons polygons = polygons_of(tissue);
   MeshArrays arrays;

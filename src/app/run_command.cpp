@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <new>
 #include <stdexcept>
 
@@ -8,6 +9,7 @@
 #include "app/interruption.hpp"
 #include "app/progress.hpp"
 #include "app/scenario_options.hpp"
+#include "app/slow_word.hpp"
 #include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
@@ -112,7 +114,10 @@ int run_scenario(const RunOptions& options) {
   const Recorder::Clock::time_point start = Recorder::Clock::now();
   const ScenarioSource source = find_scenario(options.scenario.name_or_path);
   const Scenario scenario = load_scenario(source, options.scenario.overrides);
+  std::optional<SlowWord> word;
+  if (!options.quiet) word.emplace();
   Simulation simulation(scenario);
+  word.reset();
   use_threads(options.threads, simulation.model().tissue.elements.size(), options.scenario.name_or_path);
 
   if (!options.quiet)
