@@ -194,7 +194,8 @@ NB_MODULE(_core, module) {
       "colour_range",
       [](const std::string& name, double smallest, double largest) {
         const auto field = std::ranges::find(colour_fields(), name, &ColourField::name);
-        const ColourRange range = colour_range(field == colour_fields().end() ? ColourField{} : *field, smallest, largest);
+        const ColourRange range =
+            colour_range(field == colour_fields().end() ? ColourField{} : *field, smallest, largest);
         return std::pair(range.low, range.high);
       },
       nb::arg("field"), nb::arg("smallest"), nb::arg("largest"));

@@ -187,7 +187,8 @@ void add_render_command(CLI::App& app, int& status) {
   command->add_flag("--movie", options->movie, "every frame, a file each; says how to make a movie of them");
   command
       ->add_option("--colour,--color", options->colour,
-                   fmt::format("coloured by: {}, or an array that the cells' file has", fmt::join(names_of(colour_fields()), ", ")))
+                   fmt::format("coloured by: {}, or an array that the cells' file has",
+                               fmt::join(names_of(colour_fields()), ", ")))
       ->type_name("NAME")
       ->capture_default_str();
   command->add_option("--range", options->range, "ends of the colour scale (default: what all frames of the run need)")

@@ -215,7 +215,8 @@ const std::vector<View>& views() {
 }
 
 std::vector<View> views_of(const Frame& rest) {
-  constexpr double least_open = 0.2;  // of the sum of areas, that of their vectors: 0 of a closed surface, 1 of a flat one
+  constexpr double least_open =
+      0.2;  // of the sum of areas, that of their vectors: 0 of a closed surface, 1 of a flat one
   std::vector<View> views = plica::views();
   Vec3 vectors = Vec3::Zero();
   double area = 0;

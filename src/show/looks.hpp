@@ -95,8 +95,8 @@ struct View {
 /// antero-ventral, ventral, side, cross-section, sagittal-section, apical.
 const std::vector<View>& views();
 
-/// The same of a tissue at rest, where `apical` looks against the mean normal of its apices. The first is the usual one:
-/// antero-ventral, but of an open sheet `apical`.
+/// The same of a tissue at rest, where `apical` looks against the mean normal of its apices. The first is the usual
+/// one: antero-ventral, but of an open sheet `apical`.
 std::vector<View> views_of(const Frame& rest);
 
 /// The cross-section at another place along the embryo, called "x = 125 µm".

@@ -33,7 +33,8 @@ const char* name_of(ScaleKind kind) {
 ordered_json fields_json(const std::vector<ReportRun>& runs) {
   ordered_json fields = ordered_json::array();
   for (const ColourField& field : runs.front().colours) {
-    if (std::ranges::any_of(runs, [&](const ReportRun& run) { return !run.fields.empty() && !run.fields.contains(field.name); }))
+    if (std::ranges::any_of(
+            runs, [&](const ReportRun& run) { return !run.fields.empty() && !run.fields.contains(field.name); }))
       continue;
     Quantiser all;
     for (const ReportRun& run : runs)

@@ -119,7 +119,8 @@ void pack_moments(const FrameTopology& topology, const std::string& prefix, cons
     const Quantiser& range = run.fields.at(name);
     for (const FrameMoment& moment : topology.moments)
       for (const float value : moment.fields[f]) steps.push_back(range.step_of(value));
-    run.frames.add(prefix + "field/" + name, std::span<const std::uint16_t>(steps), topology.moments.front().fields[f].size());
+    run.frames.add(prefix + "field/" + name, std::span<const std::uint16_t>(steps),
+                   topology.moments.front().fields[f].size());
   }
 }
 

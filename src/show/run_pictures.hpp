@@ -11,15 +11,15 @@
 namespace plica {
 
 struct PictureOptions {
-  bool usual_view = false;           // a row of the first of the run's views_of()
-  std::vector<View> views;           // then rows of these
-  std::vector<double> cuts_at_x_um;  // then cross-sections at these places, as the run counts x
-  bool sections = false;             // then those at a quarter, half and three quarters of the length at rest
+  bool usual_view = false;              // a row of the first of the run's views_of()
+  std::vector<View> views;              // then rows of these
+  std::vector<double> cuts_at_x_um;     // then cross-sections at these places, as the run counts x
+  bool sections = false;                // then those at a quarter, half and three quarters of the length at rest
   std::string colour = "displacement";  // what colours the cells: of the run's fields_of()
-  std::optional<ColourRange> range;  // empty: what all frames of the run need
-  bool edges = true;                 // outlines of cells
-  bool shell = false;                // the vitelline shell, where the scenario has one
-  int width_px = 0, height_px = 0;   // as in Picture
+  std::optional<ColourRange> range;     // empty: what all frames of the run need
+  bool edges = true;                    // outlines of cells
+  bool shell = false;                   // the vitelline shell, where the scenario has one
+  int width_px = 0, height_px = 0;      // as in Picture
 };
 
 /// A run whose frames have been looked through once: all its pictures have one colour scale and one size of panel.

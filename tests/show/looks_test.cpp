@@ -115,7 +115,8 @@ TEST(ColourFields, ComeFromArraysThatFramesHave) {
   }
 }
 
-// However a sheet lies, the view `apical` looks at its apices, with x to the right where that can be; and it comes first.
+// However a sheet lies, the view `apical` looks at its apices, with x to the right where that can be; and it comes
+// first.
 TEST(Views, OfAnOpenSheetBeginAtItsApicalSide) {
   Frame sheet = support::frame_of(support::distorted_block({60, 40, 10, {6, 4, 1}, {1, 1, 2}}, 1, 3));
   const Vectors flat = sheet.positions;
