@@ -11,7 +11,7 @@ LINEAR = "[time]\n", '[time]\nscheme = "linearly-implicit"\n'
 
 class Schemes(CommandLine):
     def test_a_projection_of_cells_above_each_other_is_refused(self):
-        self.assert_refused(BLOCK.replace("[3, 2, 1]", "[3, 2, 2]") + PAPER, "one layer of cells", "cell 0 has no",
+        self.assert_refused(BLOCK.replace("[3, 2, 1]", "[3, 2, 2]") + PAPER, "one layer of cells", "cell 0 at (", "has no",
                             key="volume.method", line=20)
 
     def test_every_combination_of_force_step_and_volumes(self):
