@@ -93,9 +93,9 @@ void advise_on_ablations(const Scenario& scenario, const Tissue& tissue, const S
     const CellSet& cells = tissue.regions.at(ablation.region);
     bool takes = false;
     const auto look = [&](const std::string& table, const std::string& faces, const std::string& region) {
+      if (!takes_from(ablation, table, faces)) return;
       const CellSet& acting = tissue.regions.at(region);
-      for (std::size_t c = 0; c < cells.size(); ++c)
-        takes = takes || (cells[c] && acting[c] && takes_from(ablation, table, faces));
+      for (std::size_t c = 0; c < cells.size(); ++c) takes = takes || (cells[c] && acting[c]);
     };
     for (const auto& [other, cortex] : scenario.cortices) look("cortex." + other, cortex.faces, cortex.region);
     for (const auto& [other, springs] : scenario.contractions)
@@ -138,6 +138,9 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   for (const auto& [name, division] : scenario.divisions)
     if (division.at_s && *division.at_s >= scenario.time.end_s)
       warn(fmt::format("division.{}: it comes after the run's end at {} s", name, scenario.time.end_s));
+  for (const auto& [name, monitor] : scenario.monitors)
+    if (monitor.at_s && *monitor.at_s > scenario.time.end_s)
+      warn(fmt::format("monitor.{}: its time comes after the run's end at {} s", name, scenario.time.end_s));
   advise_on_ablations(scenario, model.tissue, warn);
   for (const auto& [name, contraction] : scenario.contractions)
     if (contraction.stiffness_nN_per_um > 0 || contraction.preload_nN > 0)

@@ -60,9 +60,8 @@ std::vector<Row> make_rows() {
       top("title", &S::title, anything, "One line for reports."),
       {"", "base", [](S&, const std::string&) -> Slot { return std::monostate(); }, anything,
        "Built-in name, or path relative to this file, of the scenario to inherit from key by key. Not inherited is "
-       "what a "
-       "new `embryo.shape` has no use for: keys of `[embryo]`, and `face` or `array` of a region that is given another "
-       "selector."},
+       "what a new `embryo.shape` has no use for: keys of `[embryo]`, and `face` or `array` of a region that is given "
+       "another selector."},
 
       embryo("shape", &E::shape, one_of(words::embryo_shapes),
              "Closed sheets (pill, sphere); a ring of cells from the middle of an endless embryo (slice: plane strain, "

@@ -252,8 +252,21 @@ void check_division(const std::string& table, const DivisionInput& division, Inp
     input.report(table + ".threshold", "belongs to `when`", "remove it, or give when");
 }
 
-void check_ablation(const std::string& name, const AblationInput& ablation, Input& input) {
+/// The tables by which cells pull, as [ablation] names them.
+std::vector<std::string> pulling_tables(const Scenario& scenario) {
+  std::vector<std::string> tables;
+  for (const auto& [name, it] : scenario.cortices) tables.push_back("cortex." + name);
+  for (const auto& [name, it] : scenario.contractions) tables.push_back("contraction." + name);
+  return tables;
+}
+
+void check_ablation(const std::string& name, const Scenario& scenario, Input& input) {
+  const AblationInput& ablation = scenario.ablations.at(name);
   const std::string table = "ablation." + name;
+  const std::vector<std::string> known = pulling_tables(scenario);
+  for (const std::string& other : ablation.only)
+    if (std::ranges::find(known, other) == known.end() && input.sound(table + ".only") && input.sound(other))
+      input.report(table + ".only", fmt::format("there is no [{}]", other), did_you_mean(other, known));
   for (const std::string key : {"", ".at_s", ".at_min", ".until_s", ".until_min"})
     if (!input.sound(table + key)) return;
   if (!ablation.at_s) return input.report(table, "says not when", "give at_min, or at_s; 0 from the beginning");
@@ -287,16 +300,7 @@ class RegionCheck {
     for (const auto& [name, it] : scenario_.holds) check_reference("hold." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.pressures) check_acting("pressure." + name, it);
     for (const auto& [name, it] : scenario_.divisions) check_reference("division." + name + ".region", it.region);
-    std::vector<std::string> tables;
-    for (const auto& [name, it] : scenario_.cortices) tables.push_back("cortex." + name);
-    for (const auto& [name, it] : scenario_.contractions) tables.push_back("contraction." + name);
-    for (const auto& [name, it] : scenario_.ablations) {
-      const std::string only = "ablation." + name + ".only";
-      check_reference("ablation." + name + ".region", it.region);
-      for (const std::string& table : it.only)
-        if (std::ranges::find(tables, table) == tables.end() && input_.sound(only) && input_.sound(table))
-          input_.report(only, fmt::format("there is no [{}]", table), did_you_mean(table, tables));
-    }
+    for (const auto& [name, it] : scenario_.ablations) check_reference("ablation." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.monitors) {
       check_reference("monitor." + name + ".region", it.region);
       check_reference("monitor." + name + ".from", it.from);
@@ -462,7 +466,7 @@ void validate(Scenario& scenario, Input& input) {
   if (!scenario.divisions.empty() && input.sound("embryo.shape") && shape_of(scenario.embryo) == EmbryoShape::slice)
     input.report("embryo.shape", "the cells of a slice do not divide: its planes would no longer be alike",
                  "take a pill, or no [division]");
-  for (const auto& [name, it] : scenario.ablations) check_ablation(name, it, input);
+  for (const auto& [name, it] : scenario.ablations) check_ablation(name, scenario, input);
   RegionCheck regions(scenario, input);
   for (const auto& [name, region] : scenario.regions) regions.check_selectors(name, region);
   regions.check_references();

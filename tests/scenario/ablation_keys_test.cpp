@@ -108,6 +108,9 @@ TEST(AblationKeys, WhatTakesNothingIsTold) {
   EXPECT_EQ(advice_on("at_s = 5"), "");
   EXPECT_EQ(advice_on("at_s = 5\nonly = [\"cortex.walls\"]"), "");
   EXPECT_NE(advice_on("at_s = 5\nonly = [\"cortex.walls\"]\nfaces = [\"apical\"]"), "");
+  EXPECT_EQ(advice_on("at_s = 5\n[monitor.ablation]\nquantity = \"time\"\nat_s = 60"), "");
+  EXPECT_EQ(advice_on("at_s = 5\n[monitor.ablation]\nquantity = \"time\"\nat_s = 61"),
+            "warning: monitor.ablation: its time comes after the run's end at 60 s");
   EXPECT_EQ(advice_on("at_s = 60"), "warning: ablation.cut: it comes after the run's end at 60 s");
   EXPECT_EQ(advice_on("at_s = 5\nfaces = [\"basal\"]"),
             "warning: ablation.cut: takes nothing: no such cortex or contraction acts on these faces in region first");
