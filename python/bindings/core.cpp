@@ -106,9 +106,9 @@ nb::dict calibration(const CheckedScenario& scenario, const std::vector<std::str
   return answer;
 }
 
-/// How results look: the quantities that colour an embryo, by which colours, and from where it is seen.
-nb::dict looks() {
-  nb::dict fields, views_of, answer;
+/// The quantities that colour an embryo, and by which colours.
+nb::dict colour_fields_by_name() {
+  nb::dict fields;
   for (const ColourField& field : colour_fields()) {
     nb::dict row;
     row["label"] = field.title();
@@ -121,17 +121,22 @@ nb::dict looks() {
     row["colours"] = colours;
     fields[field.name.c_str()] = row;
   }
-  for (const View& view : views()) {
+  return fields;
+}
+
+/// From where a tissue is seen; first the usual view.
+nb::dict views_by_name(const Numbers& points, const Whole& hexahedra) {
+  nb::dict views;
+  const auto mesh = mesh_of(points, hexahedra, {}, {});
+  for (const View& view : views_of({.positions = mesh->points, .elements = mesh->cells})) {
     nb::dict row;
     row["sight"] = std::tuple(view.sight.x(), view.sight.y(), view.sight.z());
     row["up"] = std::tuple(view.up.x(), view.up.y(), view.up.z());
     row["cut_axis"] = view.cut_axis;
     row["cut_um"] = view.cut_um;
-    views_of[view.name.c_str()] = row;
+    views[view.name.c_str()] = row;
   }
-  answer["fields"] = fields;
-  answer["views"] = views_of;
-  return answer;
+  return views;
 }
 
 }  // namespace
@@ -183,13 +188,14 @@ NB_MODULE(_core, module) {
         return read_checkpoint_bytes({saved.c_str(), saved.size()}).scenario;
       },
       nb::arg("saved"));
-  module.def("looks", &looks);
+  module.def("colour_fields", &colour_fields_by_name);
+  module.def("views", &views_by_name, nb::arg("points"), nb::arg("hexahedra"));
   module.def(
       "colour_range",
       [](const std::string& name, double smallest, double largest) {
         const auto field = std::ranges::find(colour_fields(), name, &ColourField::name);
-        if (field == colour_fields().end()) throw UsageError("there is no colour " + name);
-        const ColourRange range = colour_range(*field, smallest, largest);
+        const ColourRange range =
+            colour_range(field == colour_fields().end() ? ColourField{} : *field, smallest, largest);
         return std::pair(range.low, range.high);
       },
       nb::arg("field"), nb::arg("smallest"), nb::arg("largest"));

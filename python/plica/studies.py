@@ -119,7 +119,7 @@ def render(
     path: Optional[Union[str, os.PathLike[str]]] = None,
     *,
     color: str = "displacement",
-    view: str = "antero-ventral",
+    view: Optional[str] = None,
     time_min: Optional[float] = None,
     size: tuple[int, int] = (1000, 700),
     limits: Optional[tuple[float, float]] = None,
@@ -134,9 +134,10 @@ def render(
         A PNG file to write.
     color : str
         What colours it: displacement, speed, area-ratio, pressure, volume-error, volume, contraction, strength, generation,
-        region or self-intersections. Of a simulation, what ``Simulation.cell_data`` has.
-    view : str
-        ventral, antero-ventral, side, cross-section or sagittal-section.
+        region or self-intersections; of a frame also an array that the cells' file has, as of genes. Of a simulation, what ``Simulation.cell_data`` has.
+    view : str, optional
+        antero-ventral, ventral, side, cross-section, sagittal-section or apical: at the apical side from outside. By default
+        antero-ventral, of an open sheet apical.
     time_min : float, optional
         Of a run: the frame nearest to this time; by default the last.
     size : (int, int)
@@ -160,11 +161,7 @@ def render(
     """
     pyvista = needed("pyvista", "render")
     _make_sure_of_drawing()
-    looks = _core.looks()
-    for name, value, known in (("color", color, looks["fields"]), ("view", view, looks["views"])):
-        if value not in known:
-            raise ValueError(f"{name} {value!r}: there is none of that name; there are: {', '.join(known)}")
-    field, seen = looks["fields"][color], looks["views"][view]
+    fields = _core.colour_fields()
     if isinstance(what, Simulation):
         grid = what.to_pyvista()
         grid.point_data["displacement_um"] = what.positions - what.rest_positions
@@ -174,6 +171,11 @@ def render(
     else:
         frame = what if isinstance(what, Frame) else _frame_of(what, time_min)
         grid = frame.to_pyvista()
+    # What a file has measured in the cells looks like any number from 0 on.
+    given = {k: {**fields["volume"], "label": k, "array": k} for k in grid.cell_data.keys() if not k.startswith("region_")}
+    field = _named("color", color, {**given, **fields})
+    views = _core.views(np.asarray(grid.points, dtype=float), grid.cells_dict[pyvista.CellType.HEXAHEDRON].astype(np.int32))
+    seen = _named("view", view or next(iter(views)), views)
     values, names = _values(grid, field)
     data = grid.point_data if field["on_nodes"] else grid.cell_data
     data["colour"] = values
@@ -203,6 +205,12 @@ def render(
     picture = plotter.screenshot(None if path is None else os.fspath(path), return_img=True)
     plotter.close()
     return picture
+
+
+def _named(what: str, name: str, known: Mapping[str, Any]) -> Any:
+    if name not in known:
+        raise ValueError(f"{what} {name!r}: there is none of that name; there are: {', '.join(known)}")
+    return known[name]
 
 
 def _make_sure_of_drawing() -> None:

@@ -8,6 +8,7 @@
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
 #include "app/scenario_options.hpp"
+#include "app/slow_word.hpp"
 #include "app/words.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -71,10 +72,12 @@ void add_check_command(CLI::App& app, int&) {
   command->callback([options] {
     if (const std::optional<StudyInput> study = study_in(*options)) return check_study(*study);
     const Scenario scenario = options->load();
+    std::optional<SlowWord> word(std::in_place);
     const auto model = make_model(scenario);
     (void)make_watch(scenario, model->tissue);
     (void)make_furrow_sites(scenario, model->tissue);
     (void)make_solved_side(scenario, *model);
+    word.reset();
     fmt::print("{}", resolved_toml(scenario));
     for (const std::string& line : advice(scenario, *model)) fmt::print(stderr, "{}\n", line);
   });

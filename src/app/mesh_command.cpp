@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include "app/commands.hpp"
-#include "app/named.hpp"
 #include "app/output_file.hpp"
 #include "app/scenario_options.hpp"
+#include "app/slow_word.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/names.hpp"
@@ -17,6 +17,7 @@
 #include "scenario/setup.hpp"
 #include "scenario/suggest.hpp"
 #include "scenario/words.hpp"
+#include "show/named.hpp"
 #include "show/rest_picture.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/mesh_quality.hpp"
@@ -78,8 +79,9 @@ void draw(const MeshCommand& command, Frame frame, bool is_embryo) {
                                  nearest ? fmt::format("did you mean {}? ", *nearest) : "", fmt::join(colours, ", ")));
   }
   std::vector<View> wanted;
-  for (const std::string& name : command.views) wanted.push_back(named("--view", name, views()));
-  if (wanted.empty()) wanted.push_back(views().front());
+  const std::vector<View> known = views_of(frame);
+  for (const std::string& name : command.views) wanted.push_back(named("--view", name, known));
+  if (wanted.empty()) wanted.push_back(known.front());
   Painter painter;
   write_file(command.out, painter.png(rest_picture(std::move(frame), command.colour, wanted, is_embryo)));
 }
@@ -90,7 +92,10 @@ void mesh(const MeshCommand& command) {
     throw UsageError("--out " + command.out + ": the file's name must end in .vtu, or in .png for a picture");
   require_free(command.out, command.overwrite);
   const Scenario scenario = command.scenario.load();
-  const Tissue tissue = make_tissue(scenario);
+  const Tissue tissue = [&] {
+    const SlowWord word;
+    return make_tissue(scenario);
+  }();
   const RestArrays at_rest = rest_arrays(scenario, tissue);
   const FramePolygons polygons = polygons_of(tissue);
   MeshArrays arrays;
@@ -132,7 +137,8 @@ void add_mesh_command(CLI::App& app, int&) {
       ->capture_default_str();
   command
       ->add_option("--view", options->views,
-                   fmt::format("from where: {}; several, a row each", fmt::join(names_of(views()), ", ")))
+                   fmt::format("from where: {}; several, a row each (default: antero-ventral, of an open sheet apical)",
+                               fmt::join(names_of(views()), ", ")))
       ->delimiter(',')
       ->type_name("NAME,...");
   command->add_flag("--overwrite", options->overwrite, "replace the file where it is there");

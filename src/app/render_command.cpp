@@ -6,13 +6,13 @@
 
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
-#include "app/named.hpp"
 #include "app/output_file.hpp"
 #include "app/times.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/names.hpp"
 #include "core/numbers.hpp"
+#include "show/named.hpp"
 #include "show/run_pictures.hpp"
 
 namespace plica {
@@ -57,14 +57,14 @@ void read_size(const std::string& text, PictureOptions& options) {
 
 PictureOptions options_of(const RenderCommand& command) {
   PictureOptions options;
-  std::vector<std::string> wanted = command.views;
   for (const std::string& place : command.at_x_um) options.cuts_at_x_um.push_back(place_in(place));
   options.sections = command.sections;
   const bool with_cuts = command.sections || !command.at_x_um.empty();
-  if (wanted.empty() && !with_cuts) wanted = {"antero-ventral"};
-  if (command.views.empty() && command.strip && !with_cuts) wanted.emplace_back("cross-section");
+  options.usual_view = command.views.empty() && !with_cuts;
+  std::vector<std::string> wanted = command.views;
+  if (options.usual_view && command.strip) wanted.emplace_back("cross-section");
   for (const std::string& name : wanted) options.views.push_back(named("--view", name, views()));
-  options.field = named("--colour", command.colour, colour_fields());
+  options.colour = command.colour;
   if (!command.range.empty()) options.range = range_in(command.range);
   if (!command.size.empty()) read_size(command.size, options);
   options.edges = !command.no_edges;
@@ -167,7 +167,8 @@ void add_render_command(CLI::App& app, int& status) {
       ->required();
   command
       ->add_option("--view", options->views,
-                   fmt::format("from where: {}; several, a row each", fmt::join(names_of(views()), ", ")))
+                   fmt::format("from where: {}; several, a row each (default: antero-ventral, of an open sheet apical)",
+                               fmt::join(names_of(views()), ", ")))
       ->delimiter(',')
       ->type_name("NAME,...");
   command
@@ -186,7 +187,8 @@ void add_render_command(CLI::App& app, int& status) {
   command->add_flag("--movie", options->movie, "every frame, a file each; says how to make a movie of them");
   command
       ->add_option("--colour,--color", options->colour,
-                   fmt::format("coloured by: {}", fmt::join(names_of(colour_fields()), ", ")))
+                   fmt::format("coloured by: {}, or an array that the cells' file has",
+                               fmt::join(names_of(colour_fields()), ", ")))
       ->type_name("NAME")
       ->capture_default_str();
   command->add_option("--range", options->range, "ends of the colour scale (default: what all frames of the run need)")

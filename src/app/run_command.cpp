@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <new>
 #include <stdexcept>
 
@@ -8,6 +9,7 @@
 #include "app/interruption.hpp"
 #include "app/progress.hpp"
 #include "app/scenario_options.hpp"
+#include "app/slow_word.hpp"
 #include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
@@ -98,10 +100,11 @@ void report_ending(const Simulation& simulation, const nlohmann::ordered_json& s
         "plica: gave up: {0}; the last good state is in {1}, seen by: plica render {1} --time last --out last.png\n",
         simulation.failure(), options.out);
   if (simulation.status() == RunStatus::equilibrium && summary.at("steps") == 1)
-    fmt::print(stderr,
-               "warning: at rest after the first step: nothing is faster than stop.equilibrium_speed_um_per_min ({:g}); "
-               "lower it, or give more force or less drag\n",
-               simulation.controls().equilibrium_speed_um_per_s * units::minute);
+    fmt::print(
+        stderr,
+        "warning: at rest after the first step: nothing is faster than stop.equilibrium_speed_um_per_min ({:g}); "
+        "lower it, or give more force or less drag\n",
+        simulation.controls().equilibrium_speed_um_per_s * units::minute);
   if (simulation.status() == RunStatus::under_way && can_archive())
     fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");
   if (!options.quiet) print_result(summary, options.out);
@@ -111,7 +114,10 @@ int run_scenario(const RunOptions& options) {
   const Recorder::Clock::time_point start = Recorder::Clock::now();
   const ScenarioSource source = find_scenario(options.scenario.name_or_path);
   const Scenario scenario = load_scenario(source, options.scenario.overrides);
+  std::optional<SlowWord> word;
+  if (!options.quiet) word.emplace();
   Simulation simulation(scenario);
+  word.reset();
   use_threads(options.threads, simulation.model().tissue.elements.size(), options.scenario.name_or_path);
 
   if (!options.quiet)

@@ -206,6 +206,12 @@ std::span<const LineageColumn> lineage_columns() {
   return table;
 }
 
+bool is_plicas(std::string_view cell_array) {
+  return cell_array.starts_with("region_") || std::ranges::any_of(cell_columns(), [&](const CellColumn& column) {
+           return column.in_frames != InFrames::nothing && column.name == cell_array;
+         });
+}
+
 std::vector<std::string> cells_csv_names() { return names_of(cell_columns(), &CellColumn::in_csv); }
 
 }  // namespace plica

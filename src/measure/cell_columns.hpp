@@ -45,6 +45,10 @@ struct CellColumn {
 std::span<const CellColumn> cell_columns();
 std::vector<std::string> cells_csv_names();
 
+/// Whether cell data of frames have this name: of these columns, or a region's. What a file has measured in its cells
+/// stands beside them under its own names; of these, it is left out.
+bool is_plicas(std::string_view cell_array);
+
 /// A column that goes to one place only.
 template <class Values>
 struct PlainColumn {

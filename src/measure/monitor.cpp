@@ -17,7 +17,7 @@ namespace {
 using Info = QuantityInfo;
 constexpr auto may = Info::Axis::may_have, must = Info::Axis::must_have, no_axis = Info::Axis::none;
 
-constexpr std::array<Info, 14> table = {{
+constexpr std::array<Info, 15> table = {{
     {Quantity::position, "position", "um", Info::Of::node, "Coordinate along `axis`.", must},
     {Quantity::displacement, "displacement", "um", Info::Of::node, "From its place at rest: norm, or component.", may},
     {Quantity::speed, "speed", "um_per_s", Info::Of::node,
@@ -44,6 +44,8 @@ constexpr std::array<Info, 14> table = {{
     {Quantity::volume, "volume", "um3", Info::Of::cell, "Signed: negative in a cell that is inside out."},
     {Quantity::area, "area", "um2", Info::Of::cell,
      "Of the apical facets, or basal with `face = \"basal\"`; as in `cells.csv`."},
+    {Quantity::area_ratio, "area_ratio", "", Info::Of::cell,
+     "Of the apical facets, over that at rest; as in `cells.csv`. A mean is over cells, small and large ones alike."},
     {Quantity::pressure, "pressure", "Pa", Info::Of::cell, "What holds the cell's volume; positive in compression."},
     {Quantity::kinetic_energy, "kinetic_energy", "nN_um", Info::Of::region,
      "$\\tfrac12\\sum m v^2$, an eighth of each element's mass at each of its nodes. Refused without a density."},
@@ -171,6 +173,11 @@ std::vector<double> cell_values(const Monitor& monitor, const Moment& moment) {
   if (monitor.quantity == Quantity::area)
     of_all = monitor.face == Monitor::Face::basal ? basal_areas(tissue, moment.state.positions)
                                                   : apical_areas(tissue, moment.state.positions);
+  if (monitor.quantity == Quantity::area_ratio) {
+    of_all = apical_areas(tissue, moment.state.positions);
+    const std::vector<double> at_rest = rest_apical_areas(tissue);
+    for (std::size_t c = 0; c < of_all.size(); ++c) of_all[c] /= at_rest[c];
+  }
   if (monitor.quantity == Quantity::pressure && moment.model.volumes().is_held())
     for (const double pressure : moment.state.pressures(moment.model)) of_all.push_back(pressure / units::pascal);
   std::vector<double> values;
@@ -230,7 +237,7 @@ std::vector<NodeId> monitored_nodes(const Monitor& monitor, const Tissue& tissue
 
 std::vector<CellId> monitored_cells(const Monitor& monitor, const Tissue& tissue) {
   CellSet chosen = tissue.regions.at(monitor.region);
-  if (monitor.quantity == Quantity::area) {
+  if (monitor.quantity == Quantity::area || monitor.quantity == Quantity::area_ratio) {
     CellSet has_side(chosen.size(), false);
     for (const Facet& facet : monitor.face == Monitor::Face::basal ? tissue.basal_facets : tissue.apical_facets)
       has_side[facet.cell.index()] = chosen[facet.cell.index()];

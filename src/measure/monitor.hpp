@@ -26,6 +26,7 @@ enum class Quantity {
   force,
   volume,
   area,
+  area_ratio,
   pressure,
   kinetic_energy,
   time,
@@ -67,7 +68,8 @@ struct Monitor {
   std::optional<int> axis;  // 0 1 2: that component; empty: the norm
   std::string from;         // of a force: only what the cells of this region exert
   Over over = Over::mean;
-  double poisson_ratio = 0;  // of the energy norm
+  std::optional<double> at_s;  // when the value is taken that a summary has; empty: the last
+  double poisson_ratio = 0;    // of the energy norm
   std::shared_ptr<const ReferenceRun> reference_run;
   std::optional<Frame> reference_frame;  // the run's last one, where it is measured against its end
   std::shared_ptr<const SurfaceDistance> reference_surface;

@@ -44,7 +44,6 @@ RunPictures ReproductionPictures::run_pictures(const std::string& run, const std
   (void)painter();
   PictureOptions options;
   for (const std::string& name : names) options.views.push_back(named(views(), name));
-  options.field = named(colour_fields(), "displacement");
   return {results_.folder(run), options};
 }
 

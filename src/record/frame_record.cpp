@@ -39,6 +39,9 @@ FrameCells::FrameCells(const Tissue& tissue)
       polygons(polygons_of(tissue)) {
   for (const auto& [name, set] : tissue.regions)
     regions.emplace_back("region_" + name, std::vector<int>(set.begin(), set.end()));
+  for (const auto& [name, values] : tissue.cell_arrays)
+    if (!is_plicas(name) && std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
+      given.emplace_back(name, values);
 }
 
 MeshElements FrameRecord::mesh() const { return {cells->elements, cells->element_cell, cells->cells, cells->nodes}; }
@@ -47,6 +50,7 @@ MeshArrays FrameRecord::arrays() const {
   MeshArrays arrays{{vectors.begin(), vectors.end()}, scalars, integers};
   // Of cells of one element each they are its faces.
   if (cells->elements.size() > cells->cells) arrays.polygons = &cells->polygons;
+  arrays.cell_scalars.insert(arrays.cell_scalars.end(), cells->given.begin(), cells->given.end());
   arrays.cell_integers.insert(arrays.cell_integers.end(), cells->regions.begin(), cells->regions.end());
   return arrays;
 }

@@ -19,7 +19,8 @@ struct FrameCells {
   std::vector<std::array<NodeId, 8>> elements;
   std::vector<CellId> element_cell;
   std::size_t cells = 0, nodes = 0;
-  std::vector<std::pair<std::string, std::vector<int>>> regions;  // cells, by their arrays' names
+  std::vector<std::pair<std::string, std::vector<int>>> regions;   // cells, by their arrays' names
+  std::vector<std::pair<std::string, std::vector<double>>> given;  // cells: what a file has measured in them
   FramePolygons polygons;
 
   explicit FrameCells(const Tissue& tissue);

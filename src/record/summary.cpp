@@ -9,6 +9,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/clock.hpp"
 #include "core/memory.hpp"
 #include "core/version.hpp"
 #include "measure/cells.hpp"
@@ -62,6 +63,16 @@ std::optional<double> last_value(const std::vector<Observation>& rows, std::size
   return value;
 }
 
+// Its value at a time, linear between steps; nothing where it has none at the steps around it.
+std::optional<double> value_at(const std::vector<Observation>& rows, std::size_t monitor, double time_s) {
+  const auto after = std::ranges::find_if(rows, [&](const Observation& row) { return has_come(time_s, row.time_s()); });
+  if (after == rows.end()) return std::nullopt;
+  const auto before = after == rows.begin() || is_same_instant(after->time_s(), time_s) ? after : after - 1;
+  const std::optional<double> from = before->monitors[monitor], to = after->monitors[monitor];
+  if (!from || !to || before == after) return to;
+  return *from + (*to - *from) * (time_s - before->time_s()) / (after->time_s() - before->time_s());
+}
+
 }  // namespace
 
 Json make_summary(const Scenario& scenario, const Simulation& simulation, const std::vector<Observation>& rows,
@@ -89,7 +100,9 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   const auto values = summary_values(rows);
   for (const auto& [column, value] : values)
     if (!column->of_projection) summary[column->name] = in_json(*column, value);
-  for (std::size_t m = 0; m < monitors.size(); ++m) summary[monitors[m].column()] = number(last_value(rows, m));
+  for (std::size_t m = 0; m < monitors.size(); ++m)
+    summary[monitors[m].column()] =
+        number(monitors[m].at_s ? value_at(rows, m, *monitors[m].at_s) : last_value(rows, m));
   const bool projects = method_of(scenario.volume) == VolumeMethod::projection;
   for (const auto& [column, value] : values)
     if (column->of_projection) summary[column->name] = projects ? in_json(*column, value) : Json(nullptr);

@@ -1,5 +1,7 @@
 #include "scenario/acting.hpp"
 
+#include <algorithm>
+
 #include "scenario/words.hpp"
 
 namespace plica {
@@ -62,6 +64,22 @@ CellPattern make_pattern(const CortexInput& input, const Tissue& tissue) { retur
 CellPattern make_pattern(const PressureInput& input, const Tissue& tissue) { return strengths_of(input, tissue); }
 CellPattern make_pattern(const RegionElasticityInput& input, const Tissue& tissue) {
   return strengths_of(input, tissue);
+}
+
+bool takes_from(const AblationInput& ablation, const std::string& table, const std::string& faces) {
+  const auto names = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::ranges::find(list, name) != list.end();
+  };
+  return names(ablation.faces, faces) && (ablation.only.empty() || names(ablation.only, table));
+}
+
+std::vector<Ablation> make_ablations(const Scenario& scenario, const std::string& table, const std::string& faces,
+                                     const Tissue& tissue) {
+  std::vector<Ablation> ablations;
+  for (const auto& [name, input] : scenario.ablations)
+    if (takes_from(input, table, faces))
+      ablations.emplace_back(tissue.regions.at(input.region), input.remaining, *input.at_s, input.until_s);
+  return ablations;
 }
 
 std::vector<bool> held_nodes(const HoldInput& input, const Tissue& tissue) {

@@ -14,6 +14,13 @@ CellPattern make_pattern(const CortexInput& input, const Tissue& tissue);
 CellPattern make_pattern(const PressureInput& input, const Tissue& tissue);
 CellPattern make_pattern(const RegionElasticityInput& input, const Tissue& tissue);
 
+/// Whether an ablation takes from a table, cortex.NAME or contraction.NAME, that acts on these faces, or their edges.
+bool takes_from(const AblationInput& ablation, const std::string& table, const std::string& faces);
+
+/// What the scenario takes away from cells' strength in that table.
+std::vector<Ablation> make_ablations(const Scenario& scenario, const std::string& table, const std::string& faces,
+                                     const Tissue& tissue);
+
 /// The longest step that sees pulses, s.
 inline double longest_step_of_pulses_s(const PulseInput& pulse) { return *pulse.period_s / (12 * (1 + pulse.spread)); }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
 #include "scenario/acting.hpp"
 #include "scenario/setup.hpp"
@@ -45,6 +46,7 @@ std::set<std::string> used_regions(const Scenario& scenario) {
   take_all(scenario.holds);
   take_all(scenario.pressures);
   take_all(scenario.divisions);
+  take_all(scenario.ablations);
   take_all(scenario.monitors);
   const auto take_middles = [&](const auto& tables) {
     for (const auto& [name, table] : tables) used.insert(table.profile.about);
@@ -84,6 +86,26 @@ void advise_on_profiles(const Scenario& scenario, const Tissue& tissue, const Sa
   look("pressure", scenario.pressures);
 }
 
+void advise_on_ablations(const Scenario& scenario, const Tissue& tissue, const Say& warn) {
+  for (const auto& [name, ablation] : scenario.ablations) {
+    if (*ablation.at_s >= scenario.time.end_s)
+      warn(fmt::format("ablation.{}: it comes after the run's end at {} s", name, scenario.time.end_s));
+    const CellSet& cells = tissue.regions.at(ablation.region);
+    bool takes = false;
+    const auto look = [&](const std::string& table, const std::string& faces, const std::string& region) {
+      const CellSet& acting = tissue.regions.at(region);
+      for (std::size_t c = 0; c < cells.size(); ++c)
+        takes = takes || (cells[c] && acting[c] && takes_from(ablation, table, faces));
+    };
+    for (const auto& [other, cortex] : scenario.cortices) look("cortex." + other, cortex.faces, cortex.region);
+    for (const auto& [other, springs] : scenario.contractions)
+      look("contraction." + other, springs.edges, springs.region);
+    if (!takes)
+      warn(fmt::format("ablation.{}: takes nothing: no such cortex or contraction acts on these faces in region {}",
+                       name, ablation.region));
+  }
+}
+
 int longest_axis(const Vectors& positions) {
   Eigen::AlignedBox3d box;
   for (const Vec3& position : positions) box.extend(position);
@@ -116,6 +138,7 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   for (const auto& [name, division] : scenario.divisions)
     if (division.at_s && *division.at_s >= scenario.time.end_s)
       warn(fmt::format("division.{}: it comes after the run's end at {} s", name, scenario.time.end_s));
+  advise_on_ablations(scenario, model.tissue, warn);
   for (const auto& [name, contraction] : scenario.contractions)
     if (contraction.stiffness_nN_per_um > 0 || contraction.preload_nN > 0)
       note(
@@ -125,12 +148,10 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   for (const auto& [name, contraction] : scenario.contractions)
     if (!contraction.program.activity.empty() && std::ranges::max(contraction.program.activity) == 0)
       warn(fmt::format("contraction.{}: its program is 0 at every point", name));
-  auto law = model.laws.begin();  // contractions are among them in the order of their names
-  for (const auto& [name, contraction] : scenario.contractions) {
-    law = std::find_if(law, model.laws.end(), [](const auto& one) { return one->name() == "contraction"; });
-    if ((*law++)->program_points_s().back() > scenario.time.end_s)
-      warn(fmt::format("contraction.{}: its program goes on after the run's end at {} s", name, scenario.time.end_s));
-  }
+  for (const auto& law : model.laws)
+    if (const auto* contraction = dynamic_cast<const Contraction*>(law.get());
+        contraction != nullptr && contraction->last_program_point_s() > scenario.time.end_s)
+      warn(fmt::format("{}: its program goes on after the run's end at {} s", law->label(), scenario.time.end_s));
   for (const auto& [name, cortex] : scenario.cortices)
     for (const ProgramInput* program : {&cortex.program, &cortex.stiffness_program})
       if (!program->time_s.empty() && program->time_s.back() > scenario.time.end_s)

@@ -15,6 +15,7 @@
 #include "scenario/words.hpp"
 #include "tissue/division.hpp"
 #include "tissue/faces.hpp"
+#include "tissue/place.hpp"
 
 namespace plica {
 namespace {
@@ -38,9 +39,9 @@ void check_is_one_layer(const Scenario& scenario, const Tissue& tissue, std::vec
   const std::optional<CellId> inner = cell_between_layers(tissue);
   if (!inner) return;
   errors.push_back(diagnostic_at(scenario, "volume.method",
-                                 fmt::format("a projection needs one layer of cells, and cell {} has no apical or no "
+                                 fmt::format("a projection needs one layer of cells, and {} has no apical or no "
                                              "basal face: nothing slows the nodes between cells above each other",
-                                             inner->number()),
+                                             cell_at(tissue, *inner)),
                                  "give \"coupled\" or \"none\", or one layer of cells"));
 }
 
@@ -63,8 +64,8 @@ void check_faces(const Scenario& scenario, const Tissue& tissue, std::vector<Dia
     for (std::size_t c = 0; c < region.size(); ++c)
       if (region[c] && tissue.cells[c].sides() != 4) {
         errors.push_back(diagnostic_at(scenario, "contraction." + name + ".diagonals",
-                                       fmt::format("cell {} has {} corners; which diagonals contract is told for four",
-                                                   c, tissue.cells[c].sides()),
+                                       fmt::format("{} has {} corners; which diagonals contract is told for four",
+                                                   cell_at(tissue, CellId(c)), tissue.cells[c].sides()),
                                        "give false"));
         break;
       }
@@ -81,10 +82,11 @@ void check_contact_at_rest(const Scenario& scenario, const Tissue& tissue, std::
   const CellSet crossing = self_intersecting_cells(tissue, tissue.rest_positions);
   const auto first = std::ranges::find(crossing, true);
   if (first != crossing.end())
-    errors.push_back(diagnostic_at(scenario, "self_contact.surface",
-                                   fmt::format("the mesh passes through itself at rest, at cell {}",
-                                               CellId(static_cast<std::size_t>(first - crossing.begin())).number()),
-                                   "mend the mesh, or give \"none\""));
+    errors.push_back(
+        diagnostic_at(scenario, "self_contact.surface",
+                      fmt::format("the mesh passes through itself at rest, at {}",
+                                  cell_at(tissue, CellId(static_cast<std::size_t>(first - crossing.begin())))),
+                      "mend the mesh, or give \"none\""));
 }
 
 // Where two tables speak of one cell, nobody knows which is meant.
@@ -104,8 +106,8 @@ void check_elasticities_apart(const Scenario& scenario, const Tissue& tissue, st
         const bool has_layers = input.height_percent.has_value();
         errors.push_back(
             diagnostic_at(scenario, "elasticity." + name,
-                          fmt::format("elasticity.{} speaks of {}cell {}, too", *spoken_of[e],
-                                      has_layers ? "the same layer of " : "", tissue.element_cell[e].number()),
+                          fmt::format("elasticity.{} speaks of {}{}, too", *spoken_of[e],
+                                      has_layers ? "the same layer of " : "", cell_at(tissue, tissue.element_cell[e])),
                           has_layers ? "give them parts of the height without common elements, or other regions"
                                      : "give them regions without common cells, by `except` for instance"));
         break;
@@ -133,9 +135,10 @@ void check_arrays(const Scenario& scenario, const Tissue& tissue, std::vector<Di
       const CellSet& cells = tissue.regions.at(input.region);
       for (std::size_t c = 0; c < cells.size(); ++c)
         if (cells[c] && !std::isfinite(array->second[c])) {
-          errors.push_back(diagnostic_at(scenario, key,
-                                         fmt::format("array \"{}\" has no number in cell {}", input.profile.array, c),
-                                         "give every cell of the region one"));
+          errors.push_back(diagnostic_at(
+              scenario, key,
+              fmt::format("array \"{}\" has no number in {}", input.profile.array, cell_at(tissue, CellId(c))),
+              "give every cell of the region one"));
           break;
         }
     }
@@ -153,7 +156,7 @@ void check_moduli(const Scenario& scenario, const Tissue& tissue, std::vector<Di
     for (std::size_t c = 0; c < tissue.cells.size(); ++c)
       if (pattern.cells[c] && !(pattern.strengths[c] > 1e-6)) {
         errors.push_back(diagnostic_at(scenario, "elasticity." + name + ".profile",
-                                       fmt::format("the modulus of cell {} would be 0", c),
+                                       fmt::format("the modulus of {} would be 0", cell_at(tissue, CellId(c))),
                                        "give profile.edge, or factors, above 0"));
         break;
       }
@@ -174,10 +177,11 @@ void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vecto
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
     if (!(hex_scaled_jacobian(tissue.element_rest_shape[e]) > 0)) {
       const bool has_grid = is_of_grid(shape_of(scenario.embryo));
-      errors.push_back(diagnostic_at(scenario, has_grid ? "embryo.cells" : "embryo.cell_height_um",
-                                     fmt::format("the mesh would be inverted: cell {} is inside out or flat at rest",
-                                                 tissue.element_cell[e].number()),
-                                     "take more cells, or flatter ones"));
+      errors.push_back(diagnostic_at(
+          scenario, has_grid ? "embryo.cells" : "embryo.cell_height_um",
+          fmt::format("the mesh would be inverted: {} is inside out or flat at rest",
+                      cell_at(tissue, tissue.element_cell[e])),
+          has_grid ? "take more cells, or flatter ones" : "give a smaller height, or smooth the surface there"));
       return;
     }
 }

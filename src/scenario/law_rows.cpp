@@ -12,6 +12,7 @@ using P = PressureInput;
 using X = CortexInput;
 using N = EnclosedInput;
 using F = SelfContactInput;
+using A = AblationInput;
 
 /// The keys of a program within a table; `meaning`: of its activity.
 template <class Table>
@@ -38,6 +39,7 @@ std::vector<Row> law_rows() {
   const auto enclosed = rows_in("enclosed.*", &S::enclosed);
   const auto contact = rows_in("self_contact", &S::self_contact);
   const auto pressure = rows_in("pressure.*", &S::pressures);
+  const auto ablation = rows_in("ablation.*", &S::ablations);
   std::vector<Row> rows = {
       elasticity(
           "model", &E::model, one_of(words::elastic_models),
@@ -184,6 +186,25 @@ std::vector<Row> law_rows() {
   add_program(rows, pressure, &P::program, program_keys,
               "Activity at these times: a factor on the pressure, linear between them.");
   add_strengths(rows, pressure);
+
+  const std::vector<Row> of_ablation = {
+      ablation("region", &A::region, anything, "Region whose cells lose their strength.", {.required = true}),
+      ablation("faces", &A::faces, one_of(words::edges),
+               "On which faces: cortices on them lose tension and stiffness, contractions of their edges the whole of "
+               "theirs. A wall keeps the half that a neighbour outside the region gives it."),
+      ablation("only", &A::only, anything,
+               "Names of tables, such as [\"cortex.apical\"], where others on these faces keep their strength; [] for "
+               "all: a "
+               "laser cuts all of a cortex, light switches off its myosin."),
+      ablation("at_s", &A::at_s, not_negative, "When (s); 0: from the beginning."),
+      ablation("at_min", &A::at_s, not_negative, "The same in minutes.", {.instead_of = "at_s", .scale = 60}),
+      ablation("until_s", &A::until_s, {.low = 0, .low_included = false, .word_for_none = "none"},
+               "When it comes back (s); none: never."),
+      ablation("until_min", &A::until_s, {.low = 0, .low_included = false, .word_for_none = "none"},
+               "The same in minutes.", {.instead_of = "until_s", .scale = 60}),
+      ablation("remaining", &A::remaining, between(0, 1), "The part of it that is left."),
+  };
+  rows.insert(rows.end(), of_ablation.begin(), of_ablation.end());
   return rows;
 }
 

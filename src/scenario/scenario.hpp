@@ -263,12 +263,13 @@ struct CriterionInput {
 struct MonitorInput {
   std::string quantity;
   std::string region = "all";
-  std::string face;          // apical | basal; empty: all nodes; of the area, apical
-  std::string axis;          // x | y | z; empty: the norm
-  std::string from;          // of a force: what the cells of this region exert, volumes' pressures included
-  std::string over;          // mean | max | min | sum | rms; empty: mean
-  std::string reference;     // directory of a run, or a mesh file
-  std::string reference_at;  // same-time | end; empty: same-time
+  std::string face;            // apical | basal; empty: all nodes; of the area, apical
+  std::string axis;            // x | y | z; empty: the norm
+  std::string from;            // of a force: what the cells of this region exert, volumes' pressures included
+  std::string over;            // mean | max | min | sum | rms; empty: mean
+  std::string reference;       // directory of a run, or a mesh file
+  std::string reference_at;    // same-time | end; empty: same-time
+  std::optional<double> at_s;  // TOML: at_s or at_min; empty: the last value
 };
 
 struct FurrowInput {
@@ -294,6 +295,15 @@ struct PressureInput {
   ProgramInput program;
   ProfileInput profile;
   VariationInput variation;
+};
+
+/// Cells that lose their pull: cut by a laser, or switched off by light.
+struct AblationInput {
+  std::string region;
+  std::vector<std::string> faces = {"apical", "basal", "lateral"};
+  std::vector<std::string> only;        // names of tables, as cortex.apical; empty: all
+  std::optional<double> at_s, until_s;  // TOML: at_s or at_min; empty until_s: for good
+  double remaining = 0;                 // the part of their strength that is left
 };
 
 struct ExpectInput {
@@ -334,6 +344,7 @@ struct Scenario {
   std::map<std::string, HoldInput> holds;
   std::map<std::string, PressureInput> pressures;
   std::map<std::string, DivisionInput> divisions;
+  std::map<std::string, AblationInput> ablations;
   std::map<std::string, ExpectInput> expect;  // keys are those of summary.json, monitors' among them
 };
 

@@ -59,7 +59,10 @@ std::vector<Row> make_rows() {
       top("format", &S::format, between(1, 1), "Version of this format."),
       top("title", &S::title, anything, "One line for reports."),
       {"", "base", [](S&, const std::string&) -> Slot { return std::monostate(); }, anything,
-       "Built-in name, or path relative to this file, of the scenario to inherit from key by key."},
+       "Built-in name, or path relative to this file, of the scenario to inherit from key by key. Not inherited is "
+       "what a "
+       "new `embryo.shape` has no use for: keys of `[embryo]`, and `face` or `array` of a region that is given another "
+       "selector."},
 
       embryo("shape", &E::shape, one_of(words::embryo_shapes),
              "Closed sheets (pill, sphere); a ring of cells from the middle of an endless embryo (slice: plane strain, "
@@ -272,6 +275,11 @@ std::vector<Row> make_rows() {
               {.is_path = true}),
       monitor("reference_at", &M::reference_at, one_of(words::reference_times),
               "Which of the run's frames; without it, the one of the same time."),
+      monitor(
+          "at_s", &M::at_s, not_negative,
+          "When the value is taken that `summary.json` and a study's table have (s), linear between steps; without it, "
+          "the last one."),
+      monitor("at_min", &M::at_s, not_negative, "The same in minutes.", {.instead_of = "at_s", .scale = 60}),
 
       furrow("region", &FurrowInput::region, anything,
              "Contractile cells whose furrow is measured; without it the largest region that contracts."),
@@ -396,6 +404,10 @@ std::span<const TableInfo> schema_tables() {
       {"self_contact", "What keeps the sheet from passing through itself.", {}},
       {"hold.*", "Nodes of a region fixed in given directions.", names_in(&S::holds)},
       {"pressure.*", "A pressure on faces of a region.", names_in(&S::pressures)},
+      {"ablation.*",
+       "Cells of a region lose the strength of their cortices and contractions at a time: cut by a laser, or switched "
+       "off by light.",
+       names_in(&S::ablations)},
       {"division.*",
        "Cells of a region divide, at a time or when they pass a threshold. Cells begin as one element each.",
        names_in(&S::divisions)},

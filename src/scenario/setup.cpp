@@ -157,8 +157,9 @@ struct Origin {
 
 /// Of the model's cells.
 template <class Acting>
-CellPattern pattern_of(const Acting& input, const Origin& origin) {
+CellPattern pattern_of(const Acting& input, const Origin& origin, std::vector<Ablation> ablations = {}) {
   CellPattern of_whole = make_pattern(input, origin.whole);
+  of_whole.ablations = std::move(ablations);
   if (!origin.mirror.is_used()) return of_whole;
   Division side;
   side.origin = origin.mirror.origins;
@@ -220,11 +221,12 @@ void add_contractions(const Scenario& scenario, const Origin& origin, Model& mod
     rule.preload = input.preload_nN;
     rule.damping = input.damping_nN_s_per_um;
     rule.tension = input.tension_mN_per_m;  // nN/um is the same
-    CellPattern pattern = pattern_of(input, origin);
+    const std::string table = "contraction." + name;
+    CellPattern pattern = pattern_of(input, origin, make_ablations(scenario, table, input.edges, origin.whole));
     std::vector<Spring> springs = contraction_springs(model.tissue, pattern, rule);
     model.laws.push_back(
         std::make_unique<Contraction>(std::move(springs), make_program(input.program), std::move(pattern)));
-    model.laws.back()->set_label("contraction." + name);
+    model.laws.back()->set_label(table);
   }
 }
 
@@ -258,8 +260,10 @@ void add_cortices(const Scenario& scenario, const Origin& origin, Model& model) 
     rule.program = make_program(input.program);
     rule.stiffness_program = make_program(input.stiffness_program);
     rule.own = make_own_state(input);
-    model.laws.push_back(std::make_unique<Cortex>(model.tissue, pattern_of(input, origin), std::move(rule)));
-    model.laws.back()->set_label("cortex." + name);
+    const std::string table = "cortex." + name;
+    CellPattern pattern = pattern_of(input, origin, make_ablations(scenario, table, input.faces, origin.whole));
+    model.laws.push_back(std::make_unique<Cortex>(model.tissue, std::move(pattern), std::move(rule)));
+    model.laws.back()->set_label(table);
   }
 }
 

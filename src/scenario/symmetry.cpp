@@ -108,6 +108,7 @@ MirroredSide mirrored_side(const Scenario& scenario, const Tissue& whole) {
   for (const auto& [name, input] : scenario.cortices) check.check_acting("cortex." + name, input);
   for (const auto& [name, input] : scenario.pressures) check.check_acting("pressure." + name, input);
   for (const auto& [name, input] : scenario.region_elasticities) check.check_acting("elasticity." + name, input);
+  for (const auto& [name, input] : scenario.ablations) check.check_region("ablation." + name, input.region);
   for (const auto& [name, input] : scenario.holds) check.check_hold("hold." + name, input);
   check.finish();
   return side;

@@ -40,6 +40,24 @@ void check_unused_keys(Scenario& scenario, Input& input) {
   if (shape_of(scenario.embryo) == EmbryoShape::sphere) scenario.embryo.length_um = scenario.embryo.diameter_um;
 }
 
+/// Likewise of regions that were inherited from a scenario of another shape: what they are selected by since then
+/// stands in place of selectors that this shape lacks.
+void drop_unfit_selectors(Scenario& scenario, Input& input) {
+  const EmbryoShape shape = shape_of(scenario.embryo);
+  std::set<std::string_view> unfit;
+  if (!is_of_grid(shape)) unfit = {"face", "cells_along", "cells_across"};
+  if (!is_from_file(shape)) unfit.insert({"array", "above", "below"});
+  const std::vector<const Row*> rows = rows_of("region.*");
+  for (const auto& [name, region] : scenario.regions) {
+    const auto is_new = [&](const Row* row) {
+      return input.given_with(fmt::format("region.{}.{}", name, row->key), "embryo.shape");
+    };
+    if (std::ranges::any_of(rows, [&](const Row* row) { return !unfit.contains(row->key) && is_new(row); }))
+      for (const Row* row : rows)
+        if (unfit.contains(row->key) && !is_new(row)) reset_to_default(*row, scenario, name);
+  }
+}
+
 void check_element_count(const EmbryoInput& embryo, Input& input) {
   const auto& per_cell = embryo.elements_per_cell;
   const std::int64_t elements = cell_count(embryo) * per_cell[0] * per_cell[1] * per_cell[2];
@@ -52,6 +70,7 @@ void check_element_count(const EmbryoInput& embryo, Input& input) {
 void check_embryo(Scenario& scenario, Input& input) {
   if (!input.sound("embryo.shape")) return;
   check_unused_keys(scenario, input);
+  drop_unfit_selectors(scenario, input);
   const EmbryoInput& embryo = scenario.embryo;
   const auto sound = [&](std::string_view key) { return input.sound(fmt::format("embryo.{}", key)); };
   if (is_from_file(shape_of(embryo))) {
@@ -257,6 +276,15 @@ void check_division(const std::string& table, const DivisionInput& division, Inp
     input.report(table + ".threshold", "belongs to `when`", "remove it, or give when");
 }
 
+void check_ablation(const std::string& name, const AblationInput& ablation, Input& input) {
+  const std::string table = "ablation." + name;
+  for (const std::string key : {"", ".at_s", ".at_min", ".until_s", ".until_min"})
+    if (!input.sound(table + key)) return;
+  if (!ablation.at_s) return input.report(table, "says not when", "give at_min, or at_s; 0 from the beginning");
+  if (ablation.until_s && has_come(*ablation.until_s, *ablation.at_s))
+    input.report(table + ".until_s", "does not come after the ablation", "give a later time, or \"none\"");
+}
+
 /// The rules about regions: selectors that make sense on this embryo, names that exist, no circles.
 class RegionCheck {
  public:
@@ -283,6 +311,16 @@ class RegionCheck {
     for (const auto& [name, it] : scenario_.holds) check_reference("hold." + name + ".region", it.region);
     for (const auto& [name, it] : scenario_.pressures) check_acting("pressure." + name, it);
     for (const auto& [name, it] : scenario_.divisions) check_reference("division." + name + ".region", it.region);
+    std::vector<std::string> tables;
+    for (const auto& [name, it] : scenario_.cortices) tables.push_back("cortex." + name);
+    for (const auto& [name, it] : scenario_.contractions) tables.push_back("contraction." + name);
+    for (const auto& [name, it] : scenario_.ablations) {
+      const std::string only = "ablation." + name + ".only";
+      check_reference("ablation." + name + ".region", it.region);
+      for (const std::string& table : it.only)
+        if (std::ranges::find(tables, table) == tables.end() && input_.sound(only) && input_.sound(table))
+          input_.report(only, fmt::format("there is no [{}]", table), did_you_mean(table, tables));
+    }
     for (const auto& [name, it] : scenario_.monitors) {
       check_reference("monitor." + name + ".region", it.region);
       check_reference("monitor." + name + ".from", it.from);
@@ -316,14 +354,14 @@ class RegionCheck {
     const EmbryoShape shape = shape_of(scenario_.embryo);
     if (!region.array.empty() && !is_from_file(shape)) {
       input_.report(path + ".array", "a built embryo has no arrays",
-                    "use it with shape \"file\", \"points\" or \"surface\" only");
+                    "use it with shape \"file\", \"points\" or \"surface\" only" + instead_of(path + ".array"));
     }
     for (const auto& [key, value] : {std::pair("above", region.above), {"below", region.below}})
       if (value && region.array.empty() && input_.sound(path + ".array"))
         input_.report(fmt::format("{}.{}", path, key), "needs an array", "give array, too");
     if (!region.face.empty() && !is_of_grid(shape)) {
       input_.report(path + ".face", "cells that are no grid have no named sides",
-                    "use angle_deg, length_percent, ids, array, x_um, y_um or z_um");
+                    "use angle_deg, length_percent, ids, array, x_um, y_um or z_um" + instead_of(path + ".face"));
     }
     if (is_of_grid(shape) && input_.sound("embryo.cells")) check_cell_numbers(path, region);
   }
@@ -338,6 +376,14 @@ class RegionCheck {
   }
 
  private:
+  // What to do about a selector that another scenario has given, for another shape.
+  [[nodiscard]] std::string instead_of(const std::string& address) const {
+    if (input_.given_with(address, "embryo.shape")) return "";
+    const std::string region = address.substr(0, address.rfind('.'));
+    return fmt::format("; another selector in a [{}] of your own takes the place of the {} that is inherited", region,
+                       address.substr(region.size() + 1));
+  }
+
   void check_cell_numbers(const std::string& path, const RegionInput& region) {
     const auto& [a, b, c] = scenario_.embryo.cells;
     if (region.face == "ventral" || region.face == "dorsal") check_strip(path, region, a, b);
@@ -441,6 +487,7 @@ void validate(Scenario& scenario, Input& input) {
   if (!scenario.divisions.empty() && input.sound("embryo.shape") && shape_of(scenario.embryo) == EmbryoShape::slice)
     input.report("embryo.shape", "the cells of a slice do not divide: its planes would no longer be alike",
                  "take a pill, or no [division]");
+  for (const auto& [name, it] : scenario.ablations) check_ablation(name, it, input);
   RegionCheck regions(scenario, input);
   for (const auto& [name, region] : scenario.regions) regions.check_selectors(name, region);
   regions.check_references();

@@ -31,6 +31,7 @@ Monitor make_monitor(const std::string& name, const MonitorInput& input, const S
   monitor.face = meaning_of(words::monitor_faces, input.face, monitor.face);
   if (!input.axis.empty()) monitor.axis = meaning_of(words::axes, input.axis);
   monitor.over = meaning_of(words::overs, input.over, monitor.over);
+  monitor.at_s = input.at_s;
   monitor.poisson_ratio = scenario.elasticity.poisson_ratio;
   open_reference(input, monitor);
   return monitor;

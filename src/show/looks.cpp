@@ -6,6 +6,10 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "core/names.hpp"
+#include "measure/cell_columns.hpp"
+#include "show/skin.hpp"
+#include "tissue/hexahedron.hpp"
 
 namespace plica {
 namespace {
@@ -123,6 +127,14 @@ const std::vector<ColourField>& colour_fields() {
   return fields;
 }
 
+std::vector<ColourField> fields_of(const Frame& frame) {
+  std::vector<ColourField> fields = colour_fields();
+  const std::vector<std::string> plicas = names_of(fields);
+  for (const auto& [name, values] : frame.element_scalars)
+    if (!is_plicas(name) && std::ranges::find(plicas, name) == plicas.end()) fields.push_back({name, name, "", name});
+  return fields;
+}
+
 std::vector<std::string> regions_of(const Frame& frame) {
   std::vector<std::string> names;
   for (const auto& [name, values] : frame.element_scalars)
@@ -173,7 +185,7 @@ std::vector<std::string> step_names(const Frame& frame, const ColourField& field
 ColourRange colour_range(const ColourField& field, double smallest, double largest) {
   switch (field.kind) {
     case ScaleKind::from_zero:
-      return {0, rounded_up(largest)};
+      return {smallest < 0 ? -rounded_up(-smallest) : 0, rounded_up(largest)};
     case ScaleKind::about: {
       double reach = rounded_up(std::max(field.centre - smallest, largest - field.centre));
       // A ratio has no values below 0; those that are more than twice the middle look like the largest.
@@ -197,8 +209,32 @@ const std::vector<View>& views() {
       {"ventral", "from below, anterior to the left", {0, 0, 1}, {0, -1, 0}, {}},
       {"side", "from the left side, anterior to the left", {0, 1, 0}, {0, 0, 1}, {}},
       {"cross-section", "cut across the middle, from the front", {1, 0, 0}, {0, 0, 1}, 0},
-      {"sagittal-section", "cut along the midline, anterior to the left", {0, 1, 0}, {0, 0, 1}, 1}};
+      {"sagittal-section", "cut along the midline, anterior to the left", {0, 1, 0}, {0, 0, 1}, 1},
+      {"apical", "the apical side from outside", {0, 0, -1}, {0, 1, 0}, {}}};
   return all;
+}
+
+std::vector<View> views_of(const Frame& rest) {
+  constexpr double least_open =
+      0.2;  // of the sum of areas, that of their vectors: 0 of a closed surface, 1 of a flat one
+  std::vector<View> views = plica::views();
+  Vec3 vectors = Vec3::Zero();
+  double area = 0;
+  for (const auto& element : rest.elements) {
+    std::array<Vec3, 4> apex;
+    for (int i = 0; i < 4; ++i) apex[i] = rest.positions[element[hex_faces[apical_face][i]].index()];
+    const Vec3 vector = facet_area_vector(apex);
+    vectors += vector;
+    area += vector.norm();
+  }
+  if (!(vectors.norm() > least_open * area)) return views;
+  // x to the right, as far as it is across the sight; where it is along it, y.
+  const auto apical = std::ranges::find(views, "apical", &View::name);
+  apical->sight = -vectors.normalized();
+  const bool along_x = std::abs(apical->sight.x()) > 0.9;
+  apical->up = (along_x ? Vec3::UnitY() : Vec3::UnitX()).cross(apical->sight);
+  std::rotate(views.begin(), apical, apical + 1);
+  return views;
 }
 
 View cross_section_at(double x_um) {

@@ -47,6 +47,9 @@ struct ColourField {
 /// region, self-intersections.
 const std::vector<ColourField>& colour_fields();
 
+/// These, and what a file has measured in the frame's cells: genes, say. Theirs is the name of the array.
+std::vector<ColourField> fields_of(const Frame& frame);
+
 /// Of a frame's arrays: 1 in the cells of the region whose name follows.
 inline constexpr std::string_view region_prefix = "region_";
 
@@ -70,7 +73,8 @@ struct ColourRange {
 /// the numbers up to `largest`.
 std::vector<std::string> step_names(const Frame& frame, const ColourField& field, double largest);
 
-/// A scale of the field's kind that holds all values, ends rounded outwards to two digits at most.
+/// A scale of the field's kind that holds all values, ends rounded outwards to two digits at most. It has 0, unless it
+/// is about another number.
 ColourRange colour_range(const ColourField& field, double smallest, double largest);
 
 /// The value's colour; values outside of the range have that of its nearer end.
@@ -88,8 +92,12 @@ struct View {
   double cut_um = view_cut_um;  // where that plane is, from the origin
 };
 
-/// ventral, antero-ventral, side, cross-section, sagittal-section.
+/// antero-ventral, ventral, side, cross-section, sagittal-section, apical.
 const std::vector<View>& views();
+
+/// The same of a tissue at rest, where `apical` looks against the mean normal of its apices. The first is the usual
+/// one: antero-ventral, but of an open sheet `apical`.
+std::vector<View> views_of(const Frame& rest);
 
 /// The cross-section at another place along the embryo, called "x = 125 µm".
 View cross_section_at(double x_um);

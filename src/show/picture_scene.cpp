@@ -10,8 +10,6 @@
 namespace plica {
 namespace {
 
-constexpr int apical_face = 5;  // of an element, in the order of hex_faces
-
 Vec3 place_of(const Frame& frame, const CutPolygon::Corner& corner) {
   return (1 - corner.part) * frame.positions[corner.first.index()] +
          corner.part * frame.positions[corner.second.index()];

@@ -44,11 +44,11 @@ namespace plica {
 namespace {
 
 constexpr Rgb ink = {0.12, 0.12, 0.12}, grey = {0.55, 0.55, 0.55}, shell_grey = {0.45, 0.45, 0.5};
-constexpr double ambient = 0.55;   // of the light; the rest comes from the eye
-constexpr int map_entries = 1024;  // of the table of colours
-constexpr int samples = 4;         // a pixel, by the graphics library, before pixels are averaged
-constexpr double eye_um = 3000;    // its distance
-constexpr double in_front_um = 1;  // what lines are moved by, so that facets do not hide them
+constexpr double ambient = 0.55;                         // of the light; the rest comes from the eye
+constexpr int map_entries = 1024;                        // of the table of colours
+constexpr int samples = 4;                               // a pixel, by the graphics library, before pixels are averaged
+constexpr double eye_um = 3000;                          // its distance
+constexpr double in_front_px = 2, most_in_front_um = 1;  // what lines are moved by, so that facets do not hide them
 constexpr double descender_em = 0.1;
 constexpr double band_em = 0.15;              // thickness of the shell, in letters' heights
 constexpr double most_pixels_averaged = 5e6;  // larger pictures are not drawn finer than they are shown
@@ -197,9 +197,11 @@ class Stage {
     renderer->SetViewport(box.left / width, std::max(0.0, box.bottom / height), (box.left + box.width) / width,
                           std::min(1.0, (box.bottom + box.height) / height));
     const Vec3 sight = view.sight.normalized();
-    add_lines(scene.rest, in_front_um * sight, grey, 0.09 * layout_.font_px * scale_, *renderer);
+    // No further than that: edges behind a wall would show through it.
+    const Vec3 behind = std::min(in_front_px * layout_.um_per_px, most_in_front_um) * sight;
+    add_lines(scene.rest, behind, grey, 0.09 * layout_.font_px * scale_, *renderer);
     add_facets(scene, *table_, *renderer);
-    add_lines(scene.outlines, -in_front_um * sight, ink, outline_px(scene, layout_) * scale_, *renderer);
+    add_lines(scene.outlines, -behind, ink, outline_px(scene, layout_) * scale_, *renderer);
     add_plain(*poly_data(scene.shell, 3, false, Vec3::Zero()), shell_grey, 0.6, 1, *renderer);
     add_dots(picture_.columns[panel.column].dots, view, 0.3 * layout_.font_px * layout_.um_per_px, *renderer);
     vtkCamera& camera = *renderer->GetActiveCamera();

@@ -29,10 +29,13 @@ const char* name_of(ScaleKind kind) {
   return kind == ScaleKind::from_zero ? "from-zero" : kind == ScaleKind::about ? "about" : "steps";
 }
 
-// Quantities, each with one scale for all frames of all runs.
+// Quantities that all runs with frames have, each with one scale for all frames of all runs.
 ordered_json fields_json(const std::vector<ReportRun>& runs) {
   ordered_json fields = ordered_json::array();
-  for (const ColourField& field : colour_fields()) {
+  for (const ColourField& field : runs.front().colours) {
+    if (std::ranges::any_of(
+            runs, [&](const ReportRun& run) { return !run.fields.empty() && !run.fields.contains(field.name); }))
+      continue;
     Quantiser all;
     for (const ReportRun& run : runs)
       if (const auto found = run.fields.find(field.name); found != run.fields.end())
@@ -57,9 +60,10 @@ ordered_json maps_json() {
   return maps;
 }
 
-ordered_json views_json() {
+// Of several runs, those of the first.
+ordered_json views_json(const std::vector<ReportRun>& runs) {
   ordered_json list = ordered_json::array();
-  for (const View& view : views())
+  for (const View& view : runs.front().views)
     list.push_back({{"name", view.name},
                     {"label", view.label},
                     {"sight", {view.sight.x(), view.sight.y(), view.sight.z()}},
@@ -145,7 +149,7 @@ std::string report_page(const std::vector<ReportRun>& runs) {
                        {"made_by", fmt::format("plica {} ({})", version(), commit())},
                        {"fields", fields_json(runs)},
                        {"maps", maps_json()},
-                       {"views", views_json()},
+                       {"views", views_json(runs)},
                        {"view_cut_um", view_cut_um},
                        {"varied", varied_json(runs)},
                        {"runs", ordered_json::array()}};

@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "core/errors.hpp"
-#include "show/looks.hpp"
 
 namespace plica {
 namespace {
 
 using nlohmann::ordered_json;
 constexpr std::size_t most_regions = 32;  // bits
+constexpr std::size_t most_given_arrays = 16;
 
 const std::vector<double>& cell_ids(const Frame& frame) {
   const auto found = frame.element_scalars.find("cell_id");
@@ -56,12 +56,13 @@ bool shows(const FrameTopology& topology, const Frame& frame) {
   return true;
 }
 
-FrameMoment moment_of(const Frame& frame, const FrameTopology& topology, double time_s, std::size_t number) {
+FrameMoment moment_of(const Frame& frame, const std::vector<ColourField>& fields, const FrameTopology& topology,
+                      double time_s, std::size_t number) {
   FrameMoment moment{time_s, number, false, {}, {}};
   for (const Vec3& position : frame.positions)
     moment.positions.push_back(
         {static_cast<float>(position.x()), static_cast<float>(position.y()), static_cast<float>(position.z())});
-  for (const ColourField& field : colour_fields()) {
+  for (const ColourField& field : fields) {
     const std::vector<double> values = field_values(frame, field);
     std::vector<float> kept;
     if (field.on_nodes)
@@ -112,13 +113,14 @@ void pack_moments(const FrameTopology& topology, const std::string& prefix, cons
       for (int i = 0; i < 3; ++i) steps.push_back(box[i].step_of(position[i]));
   run.frames.add(prefix + "positions", std::span<const std::uint16_t>(steps),
                  3 * topology.moments.front().positions.size());
-  for (std::size_t f = 0; f < colour_fields().size(); ++f) {
-    const std::string& name = colour_fields()[f].name;
+  for (std::size_t f = 0; f < run.colours.size(); ++f) {
+    const std::string& name = run.colours[f].name;
     steps.clear();
     const Quantiser& range = run.fields.at(name);
     for (const FrameMoment& moment : topology.moments)
       for (const float value : moment.fields[f]) steps.push_back(range.step_of(value));
-    run.frames.add(prefix + name, std::span<const std::uint16_t>(steps), topology.moments.front().fields[f].size());
+    run.frames.add(prefix + "field/" + name, std::span<const std::uint16_t>(steps),
+                   topology.moments.front().fields[f].size());
   }
 }
 
@@ -128,8 +130,8 @@ void pack_frames(const std::vector<FrameTopology>& topologies, ReportRun& run) {
     for (const FrameMoment& moment : topology.moments) {
       for (const auto& position : moment.positions)
         for (int i = 0; i < 3; ++i) box[i].include(position[i]);
-      for (std::size_t f = 0; f < colour_fields().size(); ++f) {
-        Quantiser& range = run.fields[colour_fields()[f].name];
+      for (std::size_t f = 0; f < run.colours.size(); ++f) {
+        Quantiser& range = run.fields[run.colours[f].name];
         for (const float value : moment.fields[f]) range.include(value);
       }
     }
@@ -165,6 +167,9 @@ void ReportFrames::add(const Frame& frame, double time_s) {
     coloured_regions_ = coloured_regions(frame);
     regions_.resize(std::min(regions_.size(), most_regions));
     rest_positions_ = frame.positions;
+    views_ = views_of(frame);
+    fields_ = fields_of(frame);
+    fields_.resize(std::min(fields_.size(), colour_fields().size() + most_given_arrays));
   }
   const bool new_cells = topologies_.empty() || !shows(topologies_.back(), frame);
   if (new_cells) {
@@ -180,7 +185,7 @@ void ReportFrames::add(const Frame& frame, double time_s) {
     }
   }
   FrameTopology& topology = topologies_.back();
-  topology.moments.push_back(moment_of(frame, topology, time_s, seen_++));
+  topology.moments.push_back(moment_of(frame, fields_, topology, time_s, seen_++));
   topology.moments.back().at_division = new_cells;
   bytes_ += bytes_of(topology.moments.back());
   thin_out();
@@ -203,7 +208,10 @@ void ReportFrames::pack_into(ReportRun& run) const {
   run.json["every"] = every_;
   run.json["regions"] = regions_;
   run.json["coloured_regions"] = coloured_regions_;
-  if (!topologies_.empty()) pack_frames(topologies_, run);
+  if (topologies_.empty()) return;
+  run.views = views_;
+  run.colours = fields_;
+  pack_frames(topologies_, run);
 }
 
 }  // namespace plica

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "show/looks.hpp"
 #include "show/packing.hpp"
 #include "show/skin.hpp"
 #include "tissue/files/frame_file.hpp"
@@ -19,6 +20,8 @@ struct ReportRun {
   nlohmann::ordered_json json;
   PackedArrays frames;
   std::map<std::string, Quantiser> fields;  // range of each field over the frames, by its name
+  std::vector<View> views = plica::views();
+  std::vector<ColourField> colours = colour_fields();
 };
 
 /// What is shown of one frame, until all are known and can be told in whole numbers.
@@ -27,7 +30,7 @@ struct FrameMoment {
   std::size_t number = 0;    // of the frame in the run
   bool at_division = false;  // the first with new cells, or the last without them: it stays
   std::vector<std::array<float, 3>> positions;
-  std::vector<std::vector<float>> fields;  // in the order of colour_fields(); a value a node or a cell
+  std::vector<std::vector<float>> fields;  // in the order of ReportFrames' fields; a value a node or a cell
 };
 
 /// The frames between two divisions: the same cells of the same elements.
@@ -61,6 +64,8 @@ class ReportFrames {
   double most_bytes_, bytes_ = 0;
   std::size_t seen_ = 0, every_ = 1;
   std::vector<std::string> regions_, coloured_regions_;
+  std::vector<View> views_;
+  std::vector<ColourField> fields_;
   std::vector<FrameTopology> topologies_;
   Vectors rest_positions_;
 };

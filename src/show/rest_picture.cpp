@@ -19,7 +19,6 @@ Picture rest_picture(Frame frame, const std::string& colour, const std::vector<V
   const auto [smallest, largest] = std::ranges::minmax(values);
   if (picture.field.kind == ScaleKind::steps) picture.step_names = step_names(frame, picture.field, largest);
   picture.range = colour_range(picture.field, smallest, largest);
-  if (smallest < 0) picture.range.low = -colour_range(picture.field, 0, -smallest).high;
   for (const View& view : views) picture.rows.push_back({view, half_size_um(frame.positions, view)});
   picture.anatomy = is_embryo;
   picture.columns.push_back({"", std::move(frame)});

@@ -9,6 +9,7 @@
 #include "core/errors.hpp"
 #include "record/run_scenario.hpp"
 #include "scenario/words.hpp"
+#include "show/named.hpp"
 
 namespace plica {
 namespace {
@@ -42,7 +43,6 @@ bool passes_through_itself(const Frame& frame) {
 
 RunPictures::RunPictures(std::filesystem::path directory, PictureOptions options)
     : run_(std::move(directory)), options_(std::move(options)), times_s_(run_.times_s()) {
-  for (const View& view : options_.views) rows_.push_back({view, {0, 0}});
   look_through();
   const std::optional<Scenario> scenario = scenario_of_run(run_.directory());
   is_embryo_ = !scenario || !is_patch(shape_of(scenario->embryo));
@@ -72,8 +72,9 @@ void RunPictures::look_through() {
     Frame frame = run_.frame(i);
     if (i == 0) middle_ = far_middle(frame.positions);
     centre(frame);
-    if (i == 0) add_cuts(frame.positions);
-    for (const double value : field_values(frame, options_.field)) {
+    if (i == 0) field_ = named("--colour", options_.colour, fields_of(frame));
+    if (i == 0) add_rows(frame);
+    for (const double value : field_values(frame, field_)) {
       if (!std::isfinite(value)) continue;
       smallest_ = std::min(smallest_, value);
       largest_ = std::max(largest_, value);
@@ -85,6 +86,13 @@ void RunPictures::look_through() {
     farthest_um_.push_back(farthest_displacement_um(frame));
     if (i == 0) rest_ = std::move(frame);
   }
+}
+
+void RunPictures::add_rows(const Frame& rest) {
+  const std::vector<View> views = views_of(rest);
+  if (options_.usual_view) rows_.push_back({views.front(), {0, 0}});
+  for (const View& view : options_.views) rows_.push_back({*std::ranges::find(views, view.name, &View::name), {0, 0}});
+  add_cuts(rest.positions);
 }
 
 // Views look at the middle of the body; places are given as the run has them.
@@ -136,9 +144,9 @@ Picture RunPictures::picture(const std::vector<double>& times_s) const {
     picture.columns.push_back({time_text(time_s) + mark, std::move(*frame)});
   }
   picture.rows = rows_;
-  picture.field = options_.field;
+  picture.field = field_;
   if (picture.field.kind == ScaleKind::steps) picture.step_names = step_names(rest_, picture.field, largest_);
-  picture.range = options_.range.value_or(colour_range(options_.field, smallest_, largest_));
+  picture.range = options_.range.value_or(colour_range(field_, smallest_, largest_));
   if (is_embryo_) picture.rest = rest_;
   picture.shell = shell_;
   picture.edges = options_.edges;

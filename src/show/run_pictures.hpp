@@ -11,21 +11,22 @@
 namespace plica {
 
 struct PictureOptions {
-  std::vector<View> views;           // rows
-  std::vector<double> cuts_at_x_um;  // then cross-sections at these places, as the run counts x
-  bool sections = false;             // then those at a quarter, half and three quarters of the length at rest
-  ColourField field;                 // what colours the cells
-  std::optional<ColourRange> range;  // empty: what all frames of the run need
-  bool edges = true;                 // outlines of cells
-  bool shell = false;                // the vitelline shell, where the scenario has one
-  int width_px = 0, height_px = 0;   // as in Picture
+  bool usual_view = false;              // a row of the first of the run's views_of()
+  std::vector<View> views;              // then rows of these
+  std::vector<double> cuts_at_x_um;     // then cross-sections at these places, as the run counts x
+  bool sections = false;                // then those at a quarter, half and three quarters of the length at rest
+  std::string colour = "displacement";  // what colours the cells: of the run's fields_of()
+  std::optional<ColourRange> range;     // empty: what all frames of the run need
+  bool edges = true;                    // outlines of cells
+  bool shell = false;                   // the vitelline shell, where the scenario has one
+  int width_px = 0, height_px = 0;      // as in Picture
 };
 
 /// A run whose frames have been looked through once: all its pictures have one colour scale and one size of panel.
 class RunPictures {
  public:
   /// FileError when the directory holds no frames, the frames lack the field's array, or a shell is asked for that the
-  /// run does not have.
+  /// run does not have. UsageError when there is no field of that name.
   RunPictures(std::filesystem::path directory, PictureOptions options);
 
   [[nodiscard]] const std::vector<double>& times_s() const { return times_s_; }  // of the frames
@@ -47,10 +48,12 @@ class RunPictures {
  private:
   void look_through();
   void centre(Frame& frame) const;
+  void add_rows(const Frame& rest);
   void add_cuts(const Vectors& rest);
 
   ReferenceRun run_;
   PictureOptions options_;
+  ColourField field_;
   std::vector<double> times_s_, farthest_um_;  // a frame each
   double smallest_ = 0, largest_ = 0;          // of the field, over all frames
   std::vector<PictureRow> rows_;

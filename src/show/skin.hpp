@@ -9,10 +9,12 @@
 
 namespace plica {
 
+inline constexpr int apical_face = 5;  // of an element, in the order of hex_faces
+
 struct SkinFacet {
   std::array<NodeId, 4> nodes;  // counter-clockwise, seen from outside
   std::size_t element = 0;
-  int face = 0;  // of the element, in the order of hex_faces: 4 basal, 5 apical
+  int face = 0;  // of the element, in the order of hex_faces: 4 basal, 5 apical_face
 };
 
 /// The facets that no two elements share, and those of their edges that part two cells or two faces of one.

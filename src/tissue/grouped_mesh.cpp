@@ -9,6 +9,7 @@
 #include "tissue/lattice.hpp"
 #include "tissue/mesh_faces.hpp"
 #include "tissue/mesh_orientation.hpp"
+#include "tissue/place.hpp"
 #include "tissue/polygon_cell.hpp"
 #include "tissue/polygon_rim.hpp"
 
@@ -42,16 +43,24 @@ SortedHexahedra sorted_hexahedra(const HexahedralMesh& mesh) {
   return sorted;
 }
 
+// "cell 12 at (1.5, 0, -20) um": the middle of its first hexahedron.
+std::string cell_at(const HexahedralMesh& mesh, const SortedHexahedra& sorted, std::size_t c) {
+  Vec3 middle = Vec3::Zero();
+  for (const NodeId node : sorted.elements[sorted.first[c]]) middle += mesh.points[node.index()] / 8;
+  return fmt::format("cell {} at {}", c, place_text(middle));
+}
+
 // Reads a cell's lattice off its hexahedra, the first direction fastest.
-CellLattice lattice_of(const SortedHexahedra& sorted, std::size_t c, const std::array<int, 3>& elements) {
+CellLattice lattice_of(const HexahedralMesh& mesh, const SortedHexahedra& sorted, std::size_t c,
+                       const std::array<int, 3>& elements) {
   CellLattice lattice;
   lattice.elements = elements;
   const auto [nu, nv, nw] = elements;
   const std::size_t begin = sorted.first[c], count = sorted.first[c + 1] - begin;
   if (std::ranges::any_of(elements, [](int n) { return n < 1 || n > 1000; }) ||
       static_cast<std::size_t>(nu) * static_cast<std::size_t>(nv) * static_cast<std::size_t>(nw) != count)
-    throw MeshError(
-        fmt::format("cell {} has {} hexahedra, and elements_per_cell says {} x {} x {}", c, count, nu, nv, nw));
+    throw MeshError(fmt::format("{} has {} hexahedra, and elements_per_cell says {} x {} x {}",
+                                cell_at(mesh, sorted, c), count, nu, nv, nw));
   lattice.nodes.resize(static_cast<std::size_t>(nu + 1) * static_cast<std::size_t>(nv + 1) *
                        static_cast<std::size_t>(nw + 1));
   for (std::size_t e = 0; e < count; ++e) {
@@ -62,9 +71,8 @@ CellLattice lattice_of(const SortedHexahedra& sorted, std::size_t c, const std::
       NodeId& node = lattice.nodes[static_cast<std::size_t>(place)];
       if (node.valid() && node != sorted.elements[begin + e][i])
         throw MeshError(
-            fmt::format("the hexahedra of cell {} are no grid of {} x {} x {} in order, the first direction "
-                        "fastest",
-                        c, nu, nv, nw));
+            fmt::format("the hexahedra of {} are no grid of {} x {} x {} in order, the first direction fastest",
+                        cell_at(mesh, sorted, c), nu, nv, nw));
       node = sorted.elements[begin + e][i];
     }
   }
@@ -79,7 +87,7 @@ Tissue from_grid(const HexahedralMesh& mesh, const SortedHexahedra& sorted, cons
         fmt::format("elements_per_cell has {} numbers for {} cells; they are three a cell", counts.size(), cell_count));
   std::vector<CellLattice> lattices;
   for (std::size_t c = 0; c < cell_count; ++c) {
-    lattices.push_back(lattice_of(sorted, c, {counts[3 * c], counts[3 * c + 1], counts[3 * c + 2]}));
+    lattices.push_back(lattice_of(mesh, sorted, c, {counts[3 * c], counts[3 * c + 1], counts[3 * c + 2]}));
     lattices.back().has_basal = faces.on_surface({sorted.first[c], 4});
     lattices.back().has_apical = faces.on_surface({sorted.first[c + 1] - 1, 5});
   }
@@ -118,20 +126,22 @@ void set_hanging(const HexahedralMesh& mesh, Tissue& tissue) {
   }
 }
 
-void set_corners(const HexahedralMesh& mesh, std::size_t c, std::size_t& next, std::size_t free, Cell& cell) {
+void set_corners(const HexahedralMesh& mesh, const SortedHexahedra& sorted, std::size_t c, std::size_t& next,
+                 std::size_t free, Cell& cell) {
   const int count = mesh.groups.corner_counts[c];
   if (count < 6 || count % 2 != 0 || static_cast<std::size_t>(count) > mesh.groups.corners.size() - next)
-    throw MeshError(
-        fmt::format("cell {} has {} corners; they are 6 or more, as many at its base as at its apex", c, count));
+    throw MeshError(fmt::format("{} has {} corners; they are 6 or more, as many at its base as at its apex",
+                                cell_at(mesh, sorted, c), count));
   for (int k = 0; k < count; ++k) {
     const int corner = mesh.groups.corners[next++];
     if (corner < 0 || static_cast<std::size_t>(corner) >= free)
-      throw MeshError(fmt::format("a corner of cell {} is node {}, which is no free one", c, corner));
+      throw MeshError(fmt::format("a corner of {} is node {}, which is no free one", cell_at(mesh, sorted, c), corner));
     cell.corners.emplace_back(corner);
   }
 }
 
-void add_cell(const SortedHexahedra& sorted, const MeshFaces& faces, std::size_t c, Cell cell, Tissue& tissue) {
+void add_cell(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces, std::size_t c,
+              Cell cell, Tissue& tissue) {
   const CellId id(c);
   const std::size_t begin = sorted.first[c], end = sorted.first[c + 1], basal = tissue.basal_facets.size(),
                     apical = tissue.apical_facets.size();
@@ -153,10 +163,10 @@ void add_cell(const SortedHexahedra& sorted, const MeshFaces& faces, std::size_t
                                    std::span(tissue.apical_facets).subspan(apical), cell);
   if (!chains)
     throw MeshError(fmt::format(
-        "the corners of cell {} do not fit its hexahedra: in cell_corners stand those of its basal face, "
+        "the corners of {} do not fit its hexahedra: in cell_corners stand those of its basal face, "
         "counter-clockwise seen from the apex, then the apical ones above them; the first four nodes of each "
         "hexahedron are basal",
-        c));
+        cell_at(mesh, sorted, c)));
   set_polygon_edges(*chains, tissue.rest_positions, cell);
   for (const NodeId corner : cell.corners) cell.rest_shape.push_back(tissue.rest_positions[corner.index()]);
   tissue.cells.push_back(std::move(cell));
@@ -218,8 +228,8 @@ Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, 
   std::size_t next = 0;
   for (std::size_t c = 0; c < count; ++c) {
     Cell cell;
-    set_corners(mesh, c, next, tissue.free_node_count(), cell);
-    add_cell(sorted, faces, c, std::move(cell), tissue);
+    set_corners(mesh, sorted, c, next, tissue.free_node_count(), cell);
+    add_cell(mesh, sorted, faces, c, std::move(cell), tissue);
   }
   if (next != mesh.groups.corners.size())
     throw MeshError(fmt::format("cell_corners has {} nodes, and cell_corner_counts adds up to {}",
@@ -277,7 +287,7 @@ Tissue tissue_from_groups(const HexahedralMesh& mesh) {
   if (const auto unused = std::ranges::find(is_used, 0); unused != is_used.end())
     throw MeshError(fmt::format("node {} belongs to no hexahedron; remove it", unused - is_used.begin()));
   const SortedHexahedra sorted = sorted_hexahedra(mesh);
-  const MeshFaces faces(sorted.elements);
+  const MeshFaces faces(sorted.elements, mesh.points);
   Tissue tissue =
       mesh.groups.elements_per_cell.empty() ? from_polygons(mesh, sorted, faces) : from_grid(mesh, sorted, faces);
   for (const auto& [name, values] : mesh.arrays) tissue.cell_arrays[name] = of_cells(values, sorted);

@@ -8,6 +8,7 @@
 #include "tissue/lattice.hpp"
 #include "tissue/mesh_faces.hpp"
 #include "tissue/mesh_orientation.hpp"
+#include "tissue/place.hpp"
 
 namespace plica {
 namespace {
@@ -53,7 +54,8 @@ void check_cell_nodes(const HexahedralMesh& mesh, std::size_t cell) {
   }
   std::sort(nodes.begin(), nodes.end());
   const auto twice = std::adjacent_find(nodes.begin(), nodes.end());
-  if (twice != nodes.end()) throw MeshError(fmt::format("cell {} uses node {} twice", cell, twice->number()));
+  if (twice != nodes.end())
+    throw MeshError(fmt::format("{} uses node {} twice; a hexahedron has eight", cell_at(mesh, cell), twice->number()));
 }
 
 /// What may have gone wrong with a cell whose Jacobian is not positive at each corner.
@@ -70,7 +72,8 @@ void check_cells(const HexahedralMesh& mesh) {
     check_cell_nodes(mesh, cell);
     const HexPoints points = gather(mesh.points, mesh.cells[cell]);
     if (!(hex_scaled_jacobian(points) > 0))
-      throw MeshError(fmt::format("cell {} is inverted (det J <= 0 at a corner): {}", cell, inversion_remedy(points)));
+      throw MeshError(
+          fmt::format("{} is inverted (det J <= 0 at a corner): {}", cell_at(mesh, cell), inversion_remedy(points)));
   }
 }
 
@@ -177,8 +180,10 @@ Vectors drop_unused_nodes(const Vectors& points, std::vector<CellLattice>& cells
 void check_elements(const Tissue& tissue) {
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
     if (!(hex_scaled_jacobian(tissue.element_rest_shape[e]) > 0))
-      throw MeshError(fmt::format("cell {} is so warped that its elements are inverted (det J <= 0 within it)",
-                                  tissue.element_cell[e].number()));
+      throw MeshError(
+          fmt::format("{} is so warped that its elements are inverted (det J <= 0 within it); move its "
+                      "corners, or give fewer elements_per_cell",
+                      cell_at(tissue, tissue.element_cell[e])));
 }
 
 }  // namespace
@@ -192,7 +197,7 @@ Tissue tissue_from_mesh(const HexahedralMesh& mesh, const std::array<int, 3>& el
       throw MeshError("elements_per_cell divides cells of one hexahedron; those of this file have several already");
     return tissue_from_groups(mesh);
   }
-  const MeshFaces faces(mesh.cells);
+  const MeshFaces faces(mesh.cells, mesh.points);
   check_welded(mesh, faces);
   const std::vector<int> apical = mesh.apical_faces.empty() ? outer_faces(mesh, faces) : mesh.apical_faces;
   check_apical_faces(mesh, faces, apical);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tissue/hexahedral_mesh.hpp"
+#include "tissue/place.hpp"
 
 namespace plica {
 namespace {
@@ -28,6 +29,13 @@ bool opposite(FaceNodes a, const FaceNodes& b) {
   return false;
 }
 
+std::string at_middle(const FaceNodes& face, std::span<const Vec3> points) {
+  if (points.empty()) return "";
+  Vec3 middle = Vec3::Zero();
+  for (const NodeId node : face) middle += points[node.index()] / 4;
+  return " at " + place_text(middle);
+}
+
 }  // namespace
 
 std::array<NodeId, 4> face_nodes(const std::array<NodeId, 8>& cell, int face) {
@@ -36,7 +44,8 @@ std::array<NodeId, 4> face_nodes(const std::array<NodeId, 8>& cell, int face) {
   return nodes;
 }
 
-MeshFaces::MeshFaces(const std::vector<std::array<NodeId, 8>>& cells) : other_side_(cells.size() * 6, -1) {
+MeshFaces::MeshFaces(const std::vector<std::array<NodeId, 8>>& cells, std::span<const Vec3> points)
+    : other_side_(cells.size() * 6, -1) {
   std::vector<FaceUse> uses(cells.size() * 6);
   for (std::size_t side = 0; side < uses.size(); ++side) {
     uses[side] = {face_nodes(cells[side / 6], static_cast<int>(side % 6)), static_cast<std::int32_t>(side)};
@@ -48,12 +57,13 @@ MeshFaces::MeshFaces(const std::vector<std::array<NodeId, 8>>& cells) : other_si
     const std::int32_t a = uses[i - 1].side, b = uses[i].side;
     if (other_side_[a] >= 0)
       throw MeshError(
-          fmt::format("cells {}, {} and {} share one face; at most two can", other_side_[a] / 6, a / 6, b / 6));
+          fmt::format("cells {}, {} and {} share one face{}; two can: remove the one that lies over another",
+                      other_side_[a] / 6, a / 6, b / 6, at_middle(uses[i].sorted_nodes, points)));
     if (!opposite(face_nodes(cells[a / 6], a % 6), face_nodes(cells[b / 6], b % 6)))
       throw MeshError(
-          fmt::format("cells {} and {} share four nodes but do not lie on the two sides of one face: one is twisted, "
-                      "or they overlap",
-                      a / 6, b / 6));
+          fmt::format("cells {} and {} share four nodes{} but do not lie on the two sides of one face: one is twisted, "
+                      "or they overlap; turn or remove one",
+                      a / 6, b / 6, at_middle(uses[i].sorted_nodes, points)));
     other_side_[a] = b;
     other_side_[b] = a;
   }

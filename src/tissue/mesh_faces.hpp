@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "tissue/tissue.hpp"
@@ -21,8 +22,8 @@ std::array<NodeId, 4> face_nodes(const std::array<NodeId, 8>& cell, int face);
 class MeshFaces {
  public:
   /// Pairs the faces of cells in VTK's order. MeshError when more than two cells share a face, or when two share its
-  /// nodes but not the face: twisted, or lying over each other.
-  explicit MeshFaces(const std::vector<std::array<NodeId, 8>>& cells);
+  /// nodes but not the face: twisted, or lying over each other. It says where, if `points` are given.
+  explicit MeshFaces(const std::vector<std::array<NodeId, 8>>& cells, std::span<const Vec3> points = {});
 
   /// The same face as the cell beyond it has it; nothing on the surface.
   [[nodiscard]] std::optional<CellFace> neighbour(const CellFace& side) const;

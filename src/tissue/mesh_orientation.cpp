@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "tissue/place.hpp"
+
 namespace plica {
 namespace {
+
+constexpr const char* apical_remedy = "name the cell array that holds each cell's apical face (0-5) as apical_array";
 
 /// A number of sets of nodes that grow together (union-find).
 class NodeSets {
@@ -42,7 +46,6 @@ double enclosed_volume(const HexahedralMesh& mesh, const CellFace& side, const V
 /// The name (first node) of the component of the surface that is the outside of a closed layer. Faces look out of the
 /// cells, so the outside encloses a positive volume and the inside, seen from the lumen, a negative one.
 std::size_t outer_component(const HexahedralMesh& mesh, const std::vector<CellFace>& surface, NodeSets& components) {
-  constexpr const char* remedy = "name the cell array that holds each cell's apical face (0-5) as apical_array";
   const Vec3 origin = mesh.points[face_node(mesh, surface.front(), 0).index()];
   std::map<std::size_t, double> volume;
   for (const CellFace& side : surface)
@@ -50,14 +53,14 @@ std::size_t outer_component(const HexahedralMesh& mesh, const std::vector<CellFa
   if (volume.size() == 1)
     throw MeshError(fmt::format(
         "the mesh has a single surface (a block or an open sheet), so which faces are apical cannot be told; {}",
-        remedy));
+        apical_remedy));
   if (volume.size() > 2)
-    throw MeshError(
-        fmt::format("the mesh has {} separate surfaces where one closed layer has two; {}", volume.size(), remedy));
+    throw MeshError(fmt::format("the mesh has {} separate surfaces where one closed layer has two; {}", volume.size(),
+                                apical_remedy));
   const auto [first, first_volume] = *volume.begin();
   const auto [second, second_volume] = *volume.rbegin();
   if ((first_volume > 0) == (second_volume > 0))
-    throw MeshError(fmt::format("the mesh is two separate bodies and not one closed layer; {}", remedy));
+    throw MeshError(fmt::format("the mesh is two separate bodies and not one closed layer; {}", apical_remedy));
   return first_volume > 0 ? first : second;
 }
 
@@ -84,13 +87,14 @@ std::vector<int> outer_faces(const HexahedralMesh& mesh, const MeshFaces& faces)
   for (const CellFace& side : surface) {
     if (components.set_of(face_node(mesh, side, 0).index()) != outer) continue;
     if (apical[side.cell] >= 0)
-      throw MeshError(
-          fmt::format("cell {} has more than one face on the outer surface; a cell has one apical face", side.cell));
+      throw MeshError(fmt::format("{} has more than one face on the outer surface, and a cell has one apical face; {}",
+                                  cell_at(mesh, side.cell), apical_remedy));
     apical[side.cell] = side.face;
   }
   for (std::size_t cell = 0; cell < apical.size(); ++cell)
     if (apical[cell] < 0)
-      throw MeshError(fmt::format("cell {} has no face on the outer surface; the layer must be one cell thick", cell));
+      throw MeshError(fmt::format("{} has no face on the outer surface; the layer must be one cell thick, or {}",
+                                  cell_at(mesh, cell), apical_remedy));
   return apical;
 }
 
@@ -121,7 +125,9 @@ void check_apical_faces(const HexahedralMesh& mesh, const MeshFaces& faces, cons
       const bool stacked = here.size() != 2 && there.size() != 2;
       if (!stacked && here != there)
         throw MeshError(
-            fmt::format("the apical faces of the neighbours {} and {} do not fit together", cell, beyond->cell));
+            fmt::format("the apical faces of {} and its neighbour, cell {}, do not fit together; mend the array that "
+                        "names them",
+                        cell_at(mesh, cell), beyond->cell));
     }
 }
 

@@ -69,6 +69,9 @@ class BadScenario(CommandLine):
             with self.subTest(height):
                 self.assert_refused(SPHERE.replace("cell_height_um = 30", f"cell_height_um = {height}"), "embryo.")
         self.assert_refused(SPHERE.replace("diameter_um = 200", "diameter_um = 1e300"), "embryo.")
+        egg = 'format = 1\n[embryo]\nshape = "egg"\nlength_um = 300\ndiameter_um = 60\ncell_count = 60\ncell_height_um = 29\n'
+        self.assert_refused(egg, "the mesh would be inverted: cell ", ") um is inside out or flat", "give a smaller height",
+                            line=7, key="embryo.cell_height_um")
 
     def test_hundreds_of_millions_of_cells_are_refused_before_any_is_made(self):
         for cells in ("[1000, 1000, 1000]", "[100000, 100000, 1]", "[100000, 100000, 100000]", "[20000, 20000, 1]"):

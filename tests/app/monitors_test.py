@@ -53,6 +53,22 @@ class Monitors(CommandLine):
         self.assertEqual(plica("run", self.out / "scenario.toml", "--out", again).returncode, 0)
         self.assertEqual((again / "series.csv").read_bytes(), (self.out / "series.csv").read_bytes())
 
+    def test_a_monitor_may_be_read_at_a_time(self):
+        def text(keys):
+            return BLOCK + f'[monitor.motion]\nquantity = "displacement"\n{keys}\n'
+
+        self.run_scenario(text("at_s = 0.25"))
+        rows = {float(row["time_s"]): float(row["motion.displacement_um"]) for row in table(self.out / "series.csv")}
+        before, after = max(t for t in rows if t <= 0.25), min(t for t in rows if t >= 0.25)
+        self.assertLess(before, after)
+        part = (0.25 - before) / (after - before)
+        expected = (1 - part) * rows[before] + part * rows[after]
+        self.assertAlmostEqual(self.summary()["motion.displacement_um"], expected, delta=1e-8)
+        for keys, value in (("at_s = 0.2", rows[0.2]), ("at_min = 0", 0), ("at_s = 9", None), ("", rows[max(rows)])):
+            self.run_scenario(text(keys), "--overwrite")
+            found = self.summary()["motion.displacement_um"]
+            self.assertIsNone(found) if value is None else self.assertAlmostEqual(found, value, delta=1e-8)
+
     def test_only_computing_time_differs_between_runs(self):
         text = BLOCK + MONITORS + '[monitor.cpu]\nquantity = "wall"\n'
         other = self.folder / "other"

@@ -1,4 +1,5 @@
 """`plica render`: what it writes, what it refuses, and what it leaves behind."""
+import math
 import os
 import re
 import signal
@@ -11,7 +12,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructured
 import support
 from support import SPHERE, CommandLine, plica
 
-VIEWS = "antero-ventral ventral side cross-section sagittal-section".split()
+VIEWS = "antero-ventral ventral side cross-section sagittal-section apical".split()
 
 
 def size_of(path):
@@ -156,6 +157,41 @@ class Render(CommandLine):
         self.assertGreater(height, width, "three rows")
         self.render("--sections", "--movie", "--size", "300x600", "--overwrite", "--quiet")
         self.assertEqual(size_of(self.folder / "picture_00003.png"), (300, 600))
+
+    # A block stands for a sheet: it is seen from its apical side, from above, unless told otherwise.
+    def test_an_open_sheet_is_seen_from_its_apical_side(self):
+        block = SPHERE.replace('"sphere"\ndiameter_um = 200', '"block"\nlength_um = 200\nwidth_um = 150')
+        self.assertNotEqual(block, SPHERE)
+        pictures = {}
+        for name, text in (("ball", SPHERE), ("sheet", block)):
+            self.run_scenario(text, "--quiet", out=self.folder / name)
+            for view in ("apical", "antero-ventral", ""):
+                self.out = self.folder / name
+                self.render("--size", "400x300", "--overwrite", *(["--view", view] if view else []))
+                pictures[name, view] = self.picture.read_bytes()
+        self.assertEqual(pictures["sheet", ""], pictures["sheet", "apical"])
+        self.assertEqual(pictures["ball", ""], pictures["ball", "antero-ventral"])
+        self.assertNotEqual(pictures["sheet", ""], pictures["sheet", "antero-ventral"])
+
+    def test_what_was_measured_in_cells_colours_them(self):
+        rows = ["x_um,y_um,z_um,sna,volume_um3"]
+        for i in range(200):
+            z = 1 - (2 * i + 1) / 200
+            r, turn = math.sqrt(1 - z * z), 2.4 * i
+            rows.append(f"{120 * z},{60 * r * math.sin(turn)},{60 * r * math.cos(turn)},{i},7")
+        self.write("\n".join(rows) + "\n", "points.csv")
+        self.out = self.folder / "genes"
+        self.run_scenario('format = 1\n[embryo]\nshape = "points"\nfile = "points.csv"\ncell_height_um = 15\n[vitelline]\n'
+                          'enabled = false\n[time]\nend_s = 1\n', "--quiet")
+        cells = support.read_vtu(self.out / "frames/frame_00000.vtu")
+        by_cell = dict(zip(cells["cell_id"][1], cells["sna"][1]))
+        self.assertEqual([by_cell[i] for i in range(200)], list(range(200)))
+        self.assertNotIn(7, cells["volume_um3"][1])
+        self.render("--colour", "sna", "--size", "400x300", "--view", "ventral")
+        self.assertGreater(len({pixel for row in pixels_of(self.picture) for pixel in row}), 200)
+        self.picture.unlink()
+        self.assertIn("did you mean sna?", self.refused(2, "--colour", "snaa"))
+        self.assertIn('"name":"sna"', (self.out / "report.html").read_text(encoding="utf-8"))
 
     def test_another_range_gives_other_colours(self):
         blue = []

@@ -1,4 +1,7 @@
 """Commands and options: help, usage, what `check` prints, --set, --quiet."""
+import os
+import pty
+import select
 import shutil
 
 import support
@@ -85,6 +88,20 @@ class Usage(CommandLine):
         self.assertEqual(result.returncode, 0, result.stderr)
         for line in ("stiffness_nN_per_um = 2.5", "end_s = 9", "ids = [0, 1]", 'title = "Another title"'):
             self.assertIn(line, result.stdout.splitlines())
+
+    def test_building_that_takes_long_is_not_silent(self):
+        path = self.write('format = 1\n[embryo]\nshape = "egg"\ncell_count = 90000\n[vitelline]\nenabled = false\n')
+        terminal, end = pty.openpty()
+        process = support.start("check", path, stderr=end)
+        support.count_case()
+        try:
+            self.assertTrue(select.select([terminal], [], [], 60)[0], "not a word in a minute")
+            self.assertEqual(os.read(terminal, 100), b"building the embryo ...")
+        finally:
+            process.kill()
+            process.communicate()
+            os.close(terminal)
+            os.close(end)
 
     def test_quiet_is_quiet_and_piped_progress_has_no_control_characters(self):
         result = self.run_scenario(BLOCK, "--quiet")

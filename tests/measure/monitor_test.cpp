@@ -117,12 +117,15 @@ TEST(Monitor, AreaOfEitherSide) {
   EXPECT_NEAR(number(monitor, model, state), 400, 1e-10);
   monitor.over = Over::sum;
   EXPECT_NEAR(number(monitor, model, state), 1200, 1e-10);
+  EXPECT_NEAR(number(monitor_of(Quantity::area_ratio, "all"), model, state), 0.5, 1e-12);
 }
 
 TEST(Monitor, CellsOfALowerLayerHaveNoApicalArea) {
   const Model model(build_block({.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 2}}));
   Monitor monitor = monitor_of(Quantity::area, "all");
   EXPECT_EQ(monitored_cells(monitor, model.tissue).size(), 1U);
+  monitor.quantity = Quantity::area_ratio;
+  EXPECT_EQ(number(monitor, model, rest_state(model)), 1);
   monitor.quantity = Quantity::volume;
   EXPECT_EQ(monitored_cells(monitor, model.tissue).size(), 2U);
 }

@@ -53,6 +53,7 @@ TEST(Symmetry, WhatHasNoImageIsRefused) {
       {pill + "[contraction.a]\nregion = \"right\"\nstiffness_nN_per_um = 1",
        "test.toml:12: contraction.a.region: " + right},
       {pill + "[cortex.a]\nregion = \"right\"\ntension_mN_per_m = 1", "test.toml:12: cortex.a.region: " + right},
+      {pill + "[ablation.a]\nregion = \"right\"\nat_s = 1", "test.toml:12: ablation.a.region: " + right},
       {pill + "[pressure.a]\nregion = \"right\"\npressure_Pa = 1", "test.toml:12: pressure.a.region: " + right},
       {pill + "[cortex.a]\nregion = \"belly\"\ntension_mN_per_m = 1\nvariation = { spread = 0.3 }",
        "test.toml:11: cortex.a: acts with the factor 0.8292 in cell 0 and 0.5967 in its image, cell 95; let variation, "

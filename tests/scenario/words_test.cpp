@@ -64,6 +64,7 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("self_contact", "surface", words::contact_surfaces);
   expect_words("hold.*", "directions", words::axes);
   expect_words("pressure.*", "face", words::pressure_faces);
+  expect_words("ablation.*", "faces", words::edges);
   expect_words("division.*", "when", words::division_triggers);
   expect_words("division.*", "plane", words::division_planes);
   expect_words("time", "scheme", words::schemes);

@@ -7,6 +7,9 @@
 
 #include "core/errors.hpp"
 #include "measure/cell_columns.hpp"
+#include "support/frames.hpp"
+#include "support/tissues.hpp"
+#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {
@@ -110,6 +113,32 @@ TEST(ColourFields, ComeFromArraysThatFramesHave) {
     const bool in_frames = of_cells != cell_columns().end() && of_cells->in_frames != InFrames::nothing;
     EXPECT_TRUE(field.on_nodes ? of_nodes : in_frames) << field.name;
   }
+}
+
+// However a sheet lies, the view `apical` looks at its apices, with x to the right where that can be; and it comes
+// first.
+TEST(Views, OfAnOpenSheetBeginAtItsApicalSide) {
+  Frame sheet = support::frame_of(support::distorted_block({60, 40, 10, {6, 4, 1}, {1, 1, 2}}, 1, 3));
+  const Vectors flat = sheet.positions;
+  int cases = 0;
+  for (const Mat3& turn : {Mat3(Mat3::Identity()), Mat3(Eigen::AngleAxisd(2.5, Vec3::UnitX())),
+                           Mat3(Eigen::AngleAxisd(1.5, Vec3::UnitY()))}) {
+    for (std::size_t n = 0; n < flat.size(); ++n) sheet.positions[n] = turn * flat[n];
+    const View view = views_of(sheet).front();
+    EXPECT_EQ(view.name, "apical");
+    EXPECT_NEAR(view.sight.normalized().dot(turn * -Vec3::UnitZ()), 1, 0.01);
+    EXPECT_GT(view.sight.cross(view.up).norm(), 0.1);
+    EXPECT_GT(view.sight.cross(view.up).dot(cases == 2 ? Vec3::UnitY() : Vec3::UnitX()), 0.9);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
+TEST(Views, OfAClosedEmbryoBeginAtTheBelly) {
+  const std::vector<View> of_embryo = views_of(support::frame_of(build_shell({460, 280, 40, {6, 3, 4}, {1, 1, 1}})));
+  ASSERT_EQ(of_embryo.size(), views().size());
+  for (std::size_t i = 0; i < views().size(); ++i) EXPECT_EQ(of_embryo[i].name, views()[i].name);
+  EXPECT_EQ(of_embryo.front().name, "antero-ventral");
 }
 
 // Where regions overlap, a cell has the number of the smallest.

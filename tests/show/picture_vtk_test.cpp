@@ -150,6 +150,31 @@ TEST(Picture, OfASymmetricEmbryoIsSymmetric) {
   EXPECT_LT(differ_across, coloured / 100);
 }
 
+// A sheet of 20 um whose lower side has walls that its upper side has not: nothing of them is seen from above.
+TEST(Picture, OfASmallSheetShowsNoEdgeBehindItsSurface) {
+  Tissue sheet =
+      support::mapped_lattice(4, 4, 1, [](int i, int j, int k) { return Vec3(5 * i - 10, 5 * j - 10, 0.5 * k); });
+  Picture picture;
+  picture.columns.push_back({"", support::frame_of(sheet)});
+  const View seen = {"tilted", "", {0.4, 0.3, -0.87}, {0, 1, 0}, {}};
+  picture.rows.push_back({seen, half_size_um(sheet.rest_positions, seen)});
+  picture.field = field("displacement");
+  picture.width_px = 800;
+  const Layout layout = make_layout(picture);
+  const Image image = read_png(Painter().png(picture));
+  int cases = 0;
+  // The edges of the lower side, 0.5 um below the upper one, are seen through its cells' middles where they are drawn
+  // in front of it.
+  for (const auto& place : sheet.rest_positions) {
+    if (place.z() > 0 || place.x() > 9) continue;
+    const Vec3 on_edge = place + Vec3(2.5, 0, 0);
+    const auto [x, y] = pixel_of(layout, layout.panels[0], seen, on_edge);
+    ++cases;
+    EXPECT_GT(image.at(x, y)[0], 150) << x << " " << y;
+  }
+  EXPECT_EQ(cases, 20);
+}
+
 TEST(Picture, HasALegendInTheColoursOfItsMap) {
   const Picture picture = pill_picture({"ventral"}, "displacement");
   const Layout layout = make_layout(picture);

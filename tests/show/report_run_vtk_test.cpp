@@ -86,7 +86,7 @@ TEST_F(ReportRunTest, HoldsPositionsAndValuesOfEveryFrame) {
         const double expected = block.rest_positions[n][static_cast<int>(i)] + (i == 0 ? static_cast<double>(f) : 0.0);
         EXPECT_NEAR(position, expected, 0.51 * (high - low) / 65535);
       }
-  const auto pressures = unpacked(run, "0/pressure");
+  const auto pressures = unpacked(run, "0/field/pressure");
   EXPECT_EQ(pressures.front(), 0u);
   EXPECT_EQ(pressures.back(), 65535u);
   EXPECT_DOUBLE_EQ(run.fields.at("pressure").high, 0.5);
@@ -152,6 +152,14 @@ TEST_F(ReportRunTest, SeveralRunsAreToldApartByKeysAndNames) {
   EXPECT_EQ(data["runs"][0]["name"], "soft/run");
   EXPECT_EQ(data["runs"][1]["name"], "stiff/run");
   EXPECT_EQ(data["runs"][2]["name"], "none");
+}
+
+TEST_F(ReportRunTest, PageOfASheetBeginsAtItsApicalSide) {
+  write_frames(1);
+  const nlohmann::json views = data_of(report_page_of({folder}))["views"];
+  ASSERT_EQ(views.size(), plica::views().size());
+  EXPECT_EQ(views[0]["name"], "apical");
+  EXPECT_LT(views[0]["sight"][2], -0.9);
 }
 
 TEST_F(ReportRunTest, PageHoldsNoMarkupOfTheScenario) {

@@ -77,7 +77,7 @@ export class Topology {
   /** The field's values, likewise: one a node or a cell. */
   values(field: Field, moment: number, part: number, out: Float32Array): void {
     const range = this.data.fields[field.name];
-    const steps = this.array(field.name);
+    const steps = this.array(`field/${field.name}`);
     const count = field.on_nodes ? this.nodes : this.cells;
     const scale = (range.high - range.low) / 65535;
     const at = moment * count;
@@ -90,7 +90,7 @@ export class Topology {
   /** The field's value of a cell; of one on nodes, the mean over the cell's. */
   valueOfCell(field: Field, moment: number, cell: number): number {
     const { low, high } = this.data.fields[field.name];
-    const steps = this.array(field.name);
+    const steps = this.array(`field/${field.name}`);
     const places = field.on_nodes ? this.nodesOfCell(cell) : [cell];
     const first = moment * (field.on_nodes ? this.nodes : this.cells);
     const mean = places.reduce((sum, place) => sum + steps[first + place], 0) / places.length;

@@ -196,6 +196,27 @@ double CellPattern::pulse(CellId cell, double time_s) const {
   return 1 + pulse_amplitude * std::sin(2 * std::numbers::pi * (time_s / pulse_periods_s[c] + pulse_phases[c]));
 }
 
+Ablation::Ablation(CellSet who, double part, double at_s, std::optional<double> until_s)
+    : cells(std::move(who)),
+      remaining(until_s ? Program({at_s, at_s, *until_s, *until_s}, {1, part, part, 1})
+                        : Program({at_s, at_s}, {1, part})) {}
+
+double CellPattern::remaining(CellId cell, double time_s) const {
+  double part = 1;
+  for (const Ablation& ablation : ablations)
+    if (ablation.cells[cell.index()]) part *= ablation.remaining.at(time_s);
+  return part;
+}
+
+std::vector<double> CellPattern::with_ablations(std::vector<double> times_s) const {
+  for (const Ablation& ablation : ablations) {
+    const std::vector<double> jumps_s = ablation.remaining.jumps_s();
+    times_s.insert(times_s.end(), jumps_s.begin(), jumps_s.end());
+  }
+  std::ranges::sort(times_s);
+  return times_s;
+}
+
 CellPattern::CellPattern(const CellSet& who)
     : cells(who), strengths(who.begin(), who.end()), delays_s(who.size(), 0.0) {}
 
@@ -205,6 +226,8 @@ CellPattern CellPattern::after_division(const Division& division) const {
   after.cells = inherited(division, cells);
   after.strengths = inherited(division, strengths);
   after.delays_s = inherited(division, delays_s);
+  after.ablations = ablations;
+  for (Ablation& ablation : after.ablations) ablation.cells = inherited(division, ablation.cells);
   after.pulse_amplitude = pulse_amplitude;
   if (pulse_periods_s.empty()) return after;
   after.pulse_periods_s = inherited(division, pulse_periods_s);

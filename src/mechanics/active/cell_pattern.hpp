@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/vector.hpp"
+#include "mechanics/active/program.hpp"
 #include "tissue/division.hpp"
 #include "tissue/tissue.hpp"
 
@@ -74,6 +75,15 @@ struct PatternRule {
   PulseRule pulse;
 };
 
+/// Cells whose strength is taken away, for good or for a while.
+struct Ablation {
+  CellSet cells;
+  Program remaining;  // the part of it that is left
+
+  /// All of it until a time and at it, later `part`, until another time or for ever.
+  Ablation(CellSet who, double part, double at_s, std::optional<double> until_s);
+};
+
 /// What a law by which cells act is told of each cell.
 struct CellPattern {
   CellSet cells;                  // who acts; empty: nobody
@@ -81,6 +91,7 @@ struct CellPattern {
   std::vector<double> delays_s;   // cells
   double pulse_amplitude = 0;
   std::vector<double> pulse_periods_s, pulse_phases;  // cells, phases in periods; empty: no pulses
+  std::vector<Ablation> ablations;                    // one that comes upon another takes a part of what that has left
 
   CellPattern() = default;
   /// All alike, and at once.
@@ -88,6 +99,11 @@ struct CellPattern {
 
   /// The factor that pulses put on a cell's activity, whose mean over a period is 1.
   [[nodiscard]] double pulse(CellId cell, double time_s) const;
+
+  /// The part of a cell's strength that ablations have left.
+  [[nodiscard]] double remaining(CellId cell, double time_s) const;
+  /// These times, and those at which ablations begin and end, where forces jump; in order.
+  [[nodiscard]] std::vector<double> with_ablations(std::vector<double> times_s) const;
 
   /// Daughters have what their mother had.
   [[nodiscard]] CellPattern after_division(const Division& division) const;

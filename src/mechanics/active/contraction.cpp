@@ -105,15 +105,19 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
 
 double Contraction::activity(double delay_s, double time_s) const { return program_.delayed_at(delay_s, time_s); }
 
+double Contraction::activity(CellId cell, double delay_s, double time_s, std::span<const double> internal) const {
+  const double part = pattern_.remaining(cell, time_s);
+  if (const auto given = GivenActivities(internal, 0).of(cell)) return part * *given;
+  return part * activity(delay_s, time_s) * pattern_.pulse(cell, time_s);
+}
+
 double Contraction::activity(const Spring& spring, const Step& step) const {
-  const std::optional<double> given = GivenActivities(step.internal, 0).of(spring.cell);
-  return given ? *given : activity(spring.delay_s, step.end_time_s) * pattern_.pulse(spring.cell, step.end_time_s);
+  return activity(spring.cell, spring.delay_s, step.end_time_s, step.internal);
 }
 
 std::optional<double> Contraction::activity_of(CellId cell, double time_s, std::span<const double> internal) const {
   if (pattern_.cells.empty() || !pattern_.cells[cell.index()]) return std::nullopt;
-  if (const auto given = GivenActivities(internal, 0).of(cell)) return given;
-  return activity(pattern_.delays_s[cell.index()], time_s) * pattern_.pulse(cell, time_s);
+  return activity(cell, pattern_.delays_s[cell.index()], time_s, internal);
 }
 
 std::vector<double> Contraction::with_activities(std::span<const double> internal,
@@ -130,6 +134,14 @@ std::vector<double> Contraction::delays_s() const {
   std::vector<double> delays;
   for (const Spring& spring : springs_) delays.push_back(spring.delay_s);
   return delays;
+}
+
+std::vector<double> Contraction::program_points_s() const {
+  return pattern_.with_ablations(program_.delayed_points_s(delays_s()));
+}
+
+std::vector<double> Contraction::program_jumps_s() const {
+  return pattern_.with_ablations(program_.delayed_jumps_s(delays_s()));
 }
 
 // The tension T(l) of a spring over a step, its derivative dT/dl, and the energy it derives from.

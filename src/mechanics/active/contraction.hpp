@@ -44,7 +44,7 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
 /// Its semidefinite tangent leaves out the turning of springs that push.
 class Contraction final : public Law {
  public:
-  /// `pattern`: for pulses and activity_of, the springs carry their own delays.
+  /// `pattern`: for pulses, ablations and activity_of, the springs carry their own delays.
   Contraction(std::vector<Spring> springs, Program program, CellPattern pattern = {});
 
   [[nodiscard]] std::string_view name() const override { return "contraction"; }
@@ -65,18 +65,23 @@ class Contraction final : public Law {
   [[nodiscard]] const Program& program() const { return program_; }
   /// The program's activity at a time for springs with a delay: that `delay_s` earlier, 0 before the program's time 0.
   [[nodiscard]] double activity(double delay_s, double time_s) const;
+  /// When the last spring comes to the program's end.
+  [[nodiscard]] double last_program_point_s() const { return program_.delayed_points_s(delays_s()).back(); }
   [[nodiscard]] bool is_active() const override { return true; }
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
                                                   std::span<const double> internal) const override;
   [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
                                                     std::span<const double> activities) const override;
-  [[nodiscard]] std::vector<double> program_points_s() const override { return program_.delayed_points_s(delays_s()); }
-  [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.delayed_jumps_s(delays_s()); }
+  [[nodiscard]] std::vector<double> program_points_s() const override;
+  [[nodiscard]] std::vector<double> program_jumps_s() const override;
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
   [[nodiscard]] const CellPattern& pattern() const { return pattern_; }
 
  private:
   struct Pulled;  // a spring at given positions
+  // Of a spring of this cell that starts after a delay: by its program or as told from outside, pulses and ablations
+  // included.
+  [[nodiscard]] double activity(CellId cell, double delay_s, double time_s, std::span<const double> internal) const;
   [[nodiscard]] double activity(const Spring& spring, const Step& step) const;
   template <class Take>
   void for_springs(const Step& step, const Take& take) const;

@@ -48,11 +48,6 @@ std::vector<double> joined(std::vector<double> a, std::span<const double> b) {
   return a;
 }
 
-std::vector<double> sorted(std::vector<double> a) {
-  std::ranges::sort(a);
-  return a;
-}
-
 // Integral of v/(1 + q v) from 0 to w.
 double integral_of_yielding(double w, double q) {
   const double x = q * w;
@@ -74,10 +69,13 @@ Cortex::Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kerne
     rest_areas_.push_back(area_at_rest(tissue, face));
     strengths_.push_back(strength_of(face, pattern_));
   }
-  for (std::size_t place = 0; place < batches_.size() * batch_size; ++place)
-    for (int i = 0; i < 4; ++i)
-      batches_[place / batch_size].nodes[i][place % batch_size] =
-          3 * faces_[std::min(place, faces_.size() - 1)].nodes[i].number();
+  constexpr double blunt = 0.05;  // of the area at rest that a Gauss point has
+  for (std::size_t place = 0; place < batches_.size() * batch_size; ++place) {
+    const std::size_t face = std::min(place, faces_.size() - 1);
+    FaceBatch& batch = batches_[place / batch_size];
+    batch.blunt[place % batch_size] = 0.25 * blunt * rest_areas_[face];
+    for (int i = 0; i < 4; ++i) batch.nodes[i][place % batch_size] = 3 * faces_[face].nodes[i].number();
+  }
 }
 
 const FaceKernels& Cortex::kernels() const {
@@ -96,19 +94,21 @@ double Cortex::rest_area_before(std::size_t face, const Step& step) const {
 
 // How active a cell is, strength apart.
 double Cortex::activity(CellId cell, double time_s, std::span<const double> internal) const {
-  if (const auto told = given(internal).of(cell)) return *told;
-  const double delay_s = pattern_.delays_s[cell.index()], pulse = pattern_.pulse(cell, time_s);
-  if (!own_.is_used()) return pulse * rule_.program.delayed_at(delay_s, time_s);
+  const double part = pattern_.remaining(cell, time_s);
+  if (const auto told = given(internal).of(cell)) return part * *told;
+  const double delay_s = pattern_.delays_s[cell.index()], factor = part * pattern_.pulse(cell, time_s);
+  if (!own_.is_used()) return factor * rule_.program.delayed_at(delay_s, time_s);
   const double own = internal[area_numbers() + cell.index()];
-  if (!own_.starts()) return pulse * own * rule_.program.delayed_at(delay_s, time_s);
-  return own == OwnState::not_yet ? 0 : pulse * rule_.program.delayed_at(own, time_s);
+  if (!own_.starts()) return factor * own * rule_.program.delayed_at(delay_s, time_s);
+  return own == OwnState::not_yet ? 0 : factor * rule_.program.delayed_at(own, time_s);
 }
 
 // The factor on its stiffness.
 double Cortex::stiffening(CellId cell, const Step& step) const {
-  if (!own_.starts()) return rule_.stiffness_program.at(step.end_time_s);
+  const double part = pattern_.remaining(cell, step.end_time_s);
+  if (!own_.starts()) return part * rule_.stiffness_program.at(step.end_time_s);
   const double own = step.internal[area_numbers() + cell.index()];
-  return rule_.stiffness_program.at(own == OwnState::not_yet ? 0 : step.end_time_s - own);
+  return part * rule_.stiffness_program.at(own == OwnState::not_yet ? 0 : step.end_time_s - own);
 }
 
 // A number of a cell times its strength; of a wall the mean of those of its two cells; the tissue's share of that.
@@ -338,13 +338,15 @@ std::vector<double> Cortex::rest_areas_after_division(std::span<const double> in
 }
 
 std::vector<double> Cortex::program_points_s() const {
-  if (own_.starts()) return {};  // nobody knows yet
-  return sorted(joined(rule_.stiffness_program.times_s(), rule_.program.delayed_points_s(pattern_.delays_s)));
+  if (own_.starts()) return pattern_.with_ablations({});  // nobody knows the others yet
+  return pattern_.with_ablations(
+      joined(rule_.stiffness_program.times_s(), rule_.program.delayed_points_s(pattern_.delays_s)));
 }
 
 std::vector<double> Cortex::program_jumps_s() const {
-  if (own_.starts()) return {};
-  return sorted(joined(rule_.stiffness_program.jumps_s(), rule_.program.delayed_jumps_s(pattern_.delays_s)));
+  if (own_.starts()) return pattern_.with_ablations({});
+  return pattern_.with_ablations(
+      joined(rule_.stiffness_program.jumps_s(), rule_.program.delayed_jumps_s(pattern_.delays_s)));
 }
 
 }  // namespace plica

@@ -8,7 +8,6 @@ namespace plica::PLICA_KERNELS {
 namespace {
 
 constexpr double gauss = 0.57735026918962576;  // 1/sqrt(3)
-constexpr double tiny = 1e-60;                 // um^4: an area this small has no direction, and does not pull
 
 // dx/ds at t = -gauss and gauss, dx/dt at s = -gauss and gauss: linear in the corners.
 struct Slants {
@@ -40,6 +39,7 @@ struct Faces {
   std::size_t first;  // face
   int lane, count;
 
+  [[nodiscard]] Lanes blunt() const { return load(batch.blunt + lane); }
   [[nodiscard]] Slants slants_of(const double* vectors) const {
     Vec x[4];
     for (int i = 0; i < 4; ++i) x[i] = gather(vectors, batch.nodes[i] + lane);
@@ -67,19 +67,28 @@ inline void for_faces(const FaceStep& step, std::size_t first, std::size_t last,
   }
 }
 
-// n and what follows from it.
+// n, and what follows from the area phi(|n|) that it stands for: dphi/dn, and d2phi/dn2 = p (I - q u u^T).
 struct Normal {
-  Vec unit;       // 0 where there is no area
-  Lanes length;   // |n|
-  Lanes inverse;  // 1/|n|, or 0
+  Vec unit;        // u = dphi/dn = p n: n/|n| where |n| is not small
+  Lanes length;    // phi
+  Lanes inverse;   // p: 1/|n| there
+  Lanes straight;  // q: 1 there
 };
 
-inline Normal normal(const Vec& a, const Vec& b) {
+inline Normal normal(const Vec& a, const Vec& b, Lanes blunt) {
   const Vec n = cross(a, b);
-  const Lanes square = dot(n, n), length = root(square);
-  Lanes inverse = 1 / root(square + tiny);
-  for (int k = 0; k < width; ++k) inverse[k] = square[k] > tiny ? inverse[k] : 0;
-  return {inverse * n, length, inverse};
+  const Lanes square = dot(n, n);
+  Lanes length = root(square), inverse = 1 / root(square), straight = broadcast(1);
+  const Lanes whole = blunt * blunt;
+  if (any(square < whole))
+    for (int k = 0; k < width; ++k) {
+      if (!(square[k] < whole[k])) continue;
+      const double x = square[k] / whole[k], p = 1.5 - 0.5 * x;
+      length[k] = blunt[k] * (0.375 + x * (0.75 - 0.125 * x));
+      inverse[k] = p / blunt[k];
+      straight[k] = 1 / (p * p * p);
+    }
+  return {inverse * n, length, inverse, straight};
 }
 
 // dA/da and dA/db at all points.
@@ -93,9 +102,9 @@ inline Slants area_gradient(const Slants& x, const Normal (&n)[2][2]) {
   return g;
 }
 
-inline void normals(const Slants& x, Normal (&n)[2][2]) {
+inline void normals(const Slants& x, Lanes blunt, Normal (&n)[2][2]) {
   for (int s = 0; s < 2; ++s)
-    for (int t = 0; t < 2; ++t) n[s][t] = normal(x.a[t], x.b[s]);
+    for (int t = 0; t < 2; ++t) n[s][t] = normal(x.a[t], x.b[s], blunt);
 }
 
 inline Lanes positive_part(Lanes value) {
@@ -106,9 +115,10 @@ inline Lanes positive_part(Lanes value) {
 [[gnu::flatten]] void write_areas(const FaceStep& step, std::size_t first, std::size_t last, double* areas) {
   for (std::size_t b = first; b < last; ++b)
     for (int lane = 0; lane < batch_size; lane += width) {
-      const Slants x = Faces{step.batches[b], 0, lane, width}.slants_of(step.positions);
+      const Faces faces{step.batches[b], 0, lane, width};
+      const Slants x = faces.slants_of(step.positions);
       Normal n[2][2];
-      normals(x, n);
+      normals(x, faces.blunt(), n);
       const Lanes area = n[0][0].length + n[0][1].length + n[1][0].length + n[1][1].length;
       store_loose(area, areas + b * batch_size + lane);
     }
@@ -118,7 +128,7 @@ inline Lanes positive_part(Lanes value) {
   for_faces(step, first, last, [&](const Faces& faces) {
     const Slants x = faces.slants_of(step.positions);
     Normal n[2][2];
-    normals(x, n);
+    normals(x, faces.blunt(), n);
     Slants g = area_gradient(x, n);
     const Lanes pull = -load_loose(step.tensions + faces.first);
     for (int k = 0; k < 2; ++k) {
@@ -144,7 +154,7 @@ inline Slants product(const Slants& x, const Normal (&n)[2][2], const Slants& g,
     for (int t = 0; t < 2; ++t) {
       const Vec& unit = n[s][t].unit;
       const Vec turned = cross(d.a[t], x.b[s]) + cross(x.a[t], d.b[s]);
-      const Vec tilted = (tension * n[s][t].inverse) * (turned - dot(unit, turned) * unit);
+      const Vec tilted = (tension * n[s][t].inverse) * (turned - (n[s][t].straight * dot(unit, turned)) * unit);
       result.a[t] = result.a[t] + cross(x.b[s], tilted);
       result.b[s] = result.b[s] + cross(tilted, x.a[t]);
       if (semidefinite) continue;
@@ -160,7 +170,7 @@ inline Slants product(const Slants& x, const Normal (&n)[2][2], const Slants& g,
   for_faces(step, first, last, [&](const Faces& faces) {
     const Slants x = faces.slants_of(step.positions), d = faces.slants_of(direction);
     Normal n[2][2];
-    normals(x, n);
+    normals(x, faces.blunt(), n);
     Lanes tension = load_loose(step.tensions + faces.first), slope = load_loose(step.slopes + faces.first);
     if (step.semidefinite_tangent) tension = positive_part(tension), slope = positive_part(slope);
     faces.add(product(x, n, area_gradient(x, n), d, tension, slope, step.semidefinite_tangent), product_of);
@@ -173,7 +183,7 @@ inline Slants product(const Slants& x, const Normal (&n)[2][2], const Slants& g,
     const Faces faces{step.batches[batch], batch * batch_size + static_cast<std::size_t>(lane), lane, width};
     const Slants x = faces.slants_of(step.positions);
     Normal n[2][2];
-    normals(x, n);
+    normals(x, faces.blunt(), n);
     const Slants g = area_gradient(x, n);
     Lanes tension = load_loose(step.tensions + faces.first), slope = load_loose(step.slopes + faces.first);
     if (step.semidefinite_tangent) tension = positive_part(tension), slope = positive_part(slope);

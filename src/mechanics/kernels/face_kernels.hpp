@@ -9,6 +9,7 @@ namespace plica {
 /// Eight faces side by side: the last index is the face's. A batch that is not full repeats its last face.
 struct alignas(64) FaceBatch {
   int nodes[4][8];  // corners, in turn around the face; three times the node's number
+  double blunt[8];  // um^2: what a Gauss point stands for is rounded off below this (docs/theory/cortex.md)
 };
 
 /// The tangents of eight faces, nN/um: 3 x 3 blocks, by columns, of the 10 pairs of corners (0,0), (1,0), (1,1), ...
@@ -30,7 +31,7 @@ struct FaceStep {
 
 /// Kernels for the batches from `first` to before `last`. Each comes from one instruction set.
 struct FaceKernels {
-  /// Areas, filled up to whole batches, um^2: bilinear facets, 2 x 2 Gauss points.
+  /// Areas, filled up to whole batches, um^2: bilinear facets, 2 x 2 Gauss points, rounded off near none.
   void (*write_areas)(const FaceStep&, std::size_t first, std::size_t last, double* areas);
   /// Adds -T dA/dx, nN.
   void (*add_forces)(const FaceStep&, std::size_t first, std::size_t last, double* forces);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tissue/hexahedral_mesh.hpp"
+#include "tissue/place.hpp"
 
 namespace plica {
 namespace {
@@ -90,8 +91,10 @@ ExtrudedSheet extrude(const PolygonSurface& polygons, std::span<const VertexBend
     if (heights[cell] < 0.99 * wanted) ++sheet.lower_cells;
     if (heights[cell] < heights[sheet.lowest_cell]) sheet.lowest_cell = cell;
     if (!(area_vector(sheet.basal, sheet.cells[cell]).dot(area_vector(sheet.apical, sheet.cells[cell])) > 0))
-      throw MeshError(fmt::format("the basal face of row {} is turned over; its height of {:.3g} um should be less",
-                                  cell, height_of(cell)));
+      throw MeshError(fmt::format(
+          "the basal face of cell {}, whose apex is at {}, is turned over; its height of {:.3g} um should be "
+          "less, or the surface smoother there",
+          cell, place_text(sheet.apical[sheet.cells[cell].front()]), height_of(cell)));
   }
   if (!heights.empty()) sheet.lowest_um = heights[sheet.lowest_cell];
   sheet.asked_um = heights_um.size() == 1 ? fmt::format("{:.3g} um", heights_um[0]) : "asked for";

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "tissue/hexahedral_mesh.hpp"
+#include "tissue/place.hpp"
 #include "tissue/shapes/vertex_bends.hpp"
 
 namespace plica {
@@ -23,8 +24,6 @@ constexpr double sharpest_fold_cosine = -0.9;  // of the angle between two neigh
 constexpr double deepest_rim_angle_deg = 220;  // to which a corner of one face may go in to be no corner
 constexpr double farthest_move = 0.4;          // of the mean edge, by which mending may move a vertex
 
-std::string text_of(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) um", p.x(), p.y(), p.z()); }
-
 Vec3 middle_of(const PolygonSurface& surface, std::size_t face) {
   Vec3 sum = Vec3::Zero();
   for (const std::size_t vertex : surface.polygons[face]) sum += surface.vertices[vertex];
@@ -32,7 +31,7 @@ Vec3 middle_of(const PolygonSurface& surface, std::size_t face) {
 }
 
 std::string face_at(const PolygonSurface& surface, std::size_t face) {
-  return fmt::format("face {} at {}", face, text_of(middle_of(surface, face)));
+  return fmt::format("face {} at {}", face, place_text(middle_of(surface, face)));
 }
 
 void check_corners(const PolygonSurface& surface) {
@@ -50,7 +49,7 @@ void check_corners(const PolygonSurface& surface) {
     std::ranges::sort(corners);
     if (const auto twice = std::ranges::adjacent_find(corners); twice != corners.end())
       throw MeshError(fmt::format("{} has vertex {} twice, at {}", face_at(surface, face), *twice,
-                                  text_of(surface.vertices[*twice])));
+                                  place_text(surface.vertices[*twice])));
   }
 }
 
@@ -97,7 +96,7 @@ std::size_t merge_vertices(PolygonSurface& surface, bool mend) {
       throw MeshError(
           fmt::format("vertices {} and {} lie at the same place, {}; neighbours should share their "
                       "vertices: give mend = true",
-                      first[v], v, text_of(surface.vertices[v])));
+                      first[v], v, place_text(surface.vertices[v])));
   }
   for (auto& polygon : surface.polygons)
     for (std::size_t& vertex : polygon)
@@ -145,7 +144,7 @@ std::vector<std::vector<Across>> faces_across(const PolygonSurface& surface) {
     if (at.size() > 2)
       throw MeshError(
           fmt::format("the edge from {} to {} belongs to {} faces, {}, {} and {} among them; it may be the edge of two",
-                      text_of(surface.vertices[edge.first]), text_of(surface.vertices[edge.second]), at.size(),
+                      place_text(surface.vertices[edge.first]), place_text(surface.vertices[edge.second]), at.size(),
                       at[0].first, at[1].first, at[2].first));
     if (at.size() < 2) continue;
     const bool alike = at[0].second == at[1].second;
@@ -253,7 +252,7 @@ void check_fans(const PolygonSurface& surface) {
     throw MeshError(
         fmt::format("the surface touches itself at vertex {} at {}: face {} and others meet there and share no edge "
                     "with the rest",
-                    v, text_of(surface.vertices[v]), about.front().face));
+                    v, place_text(surface.vertices[v]), about.front().face));
   }
 }
 
@@ -303,8 +302,8 @@ void check_folds(const PolygonSurface& surface) {
     throw MeshError(fmt::format(
         "{} and its neighbour, face {}, are folded onto each other at the edge from {} to {}; if the sheet is "
         "periodic, leave out the faces that reach across",
-        face_at(surface, edge.left), edge.right, text_of(surface.vertices[edge.vertices[0]]),
-        text_of(surface.vertices[edge.vertices[1]])));
+        face_at(surface, edge.left), edge.right, place_text(surface.vertices[edge.vertices[0]]),
+        place_text(surface.vertices[edge.vertices[1]])));
   }
 }
 
@@ -362,7 +361,7 @@ MendedPolygons mend_shapes(PolygonSurface& surface, const PolygonOptions& option
     throw MeshError(fmt::format(
         "its short edges and wide angles cannot be mended: vertex {} at {} would move farther than {:.3g} um; "
         "give mend = false, or a smaller least_edge_ratio",
-        v, text_of(start[v]), limit_um));
+        v, place_text(start[v]), limit_um));
   }
   return mended;
 }

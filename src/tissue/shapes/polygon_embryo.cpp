@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "tissue/hexahedral_mesh.hpp"
+#include "tissue/place.hpp"
 #include "tissue/shapes/even_points.hpp"
 #include "tissue/shapes/extrusion.hpp"
 #include "tissue/shapes/given_surface.hpp"
@@ -34,9 +35,9 @@ StarSurface smooth_surface(const PolygonSurface& surface) {
   const double allowed = largest_roughness * fit.surface.half_axes().minCoeff();
   if (fit.largest_um > allowed)
     throw MeshError(
-        fmt::format("vertex {} lies {:.2g} um from the smooth surface that is nearest to all, and {:.2g} um "
-                    "are allowed",
-                    fit.largest_row, fit.largest_um, allowed));
+        fmt::format("vertex {} at {} lies {:.2g} um from the smooth surface that is nearest to all, and {:.2g} um "
+                    "are allowed; smooth the surface there",
+                    fit.largest_row, place_text(surface.vertices[fit.largest_row]), fit.largest_um, allowed));
   return fit.surface;
 }
 

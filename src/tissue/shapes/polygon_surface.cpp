@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tissue/hexahedral_mesh.hpp"
+#include "tissue/place.hpp"
 
 namespace plica {
 namespace {
@@ -38,10 +39,11 @@ std::vector<Side> sorted_sides(const PolygonSurface& surface) {
     if (sides[i].low != sides[i + 1].low || sides[i].high != sides[i + 1].high) continue;
     const bool third = i + 2 < sides.size() && sides[i + 2].low == sides[i].low && sides[i + 2].high == sides[i].high;
     if (third || sides[i].rises == sides[i + 1].rises)
-      throw MeshError(fmt::format(
-          "the edge between vertices {} and {} {}; neighbours should share an edge in twos and "
-          "run along it in opposite directions",
-          sides[i].low, sides[i].high, third ? "belongs to more than two cells" : "runs the same way in two cells"));
+      throw MeshError(
+          fmt::format("the edge between vertices {} and {} at {} {}; neighbours should share an edge in twos and "
+                      "run along it in opposite directions",
+                      sides[i].low, sides[i].high, place_text(surface.vertices[sides[i].low]),
+                      third ? "belongs to more than two cells" : "runs the same way in two cells"));
     ++i;
   }
   return sides;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tissue/hexahedral_mesh.hpp"
+#include "tissue/place.hpp"
 #include "tissue/shapes/solid_harmonics.hpp"
 #include "tissue/shapes/star_surface.hpp"
 
@@ -14,10 +15,6 @@ constexpr std::size_t least_points = 12;
 constexpr std::size_t points_per_coefficient = 3;
 constexpr double widest_hole_cosine = 0.2;  // about 78 degrees from a direction to the next point: no surface around
 constexpr double largest_share = 0.1;       // of a point's radius, that it may be from the surface
-
-std::string text_of(const Vec3& point) {
-  return fmt::format("({:.4g}, {:.4g}, {:.4g}) um", point.x(), point.y(), point.z());
-}
 
 void check_points(const Vectors& points) {
   if (points.size() < least_points)
@@ -129,7 +126,7 @@ StarFit fit_star_surface(const Vectors& points, int degree) {
         "row {} at {} is {:.2g} um from the smooth closed surface through the points, and {} of "
         "{} rows are further than a tenth of their radius; points should lie on one surface "
         "that every ray from the origin meets once",
-        farthest, text_of(points[farthest]), farthest_share * points[farthest].norm(), far_count, points.size()));
+        farthest, place_text(points[farthest]), farthest_share * points[farthest].norm(), far_count, points.size()));
   fit.rms_um = std::sqrt(squares / static_cast<double>(points.size()));
   return fit;
 }

@@ -335,6 +335,52 @@ TEST(PatternRule, LawsPulse) {
   for (std::size_t n = 0; n < expected.size(); ++n) EXPECT_LT((found[n] - expected[n]).norm(), 1e-12);
 }
 
+TEST(PatternRule, AblationsTakeStrengthForAWhileOrForGood) {
+  CellPattern pattern(CellSet(3, true));
+  pattern.ablations.emplace_back(CellSet{true, true, false}, 0.2, 60, 90);
+  pattern.ablations.emplace_back(CellSet{false, true, true}, 0, 80, std::nullopt);
+  for (const auto& [time_s, left] : {std::pair(0.0, std::array{1.0, 1.0, 1.0}),
+                                     {60.0, {1, 1, 1}},
+                                     {70.0, {0.2, 0.2, 1}},
+                                     {85.0, {0.2, 0, 0}},
+                                     {100.0, {1, 0, 0}}})
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(pattern.remaining(CellId(c), time_s), left[c]) << time_s << " " << c;
+  EXPECT_EQ(pattern.with_ablations({70, 5}), (std::vector<double>{5, 60, 70, 80, 90}));
+  Division division;
+  division.origin = {CellId(2), CellId(0), CellId(2)};
+  const CellPattern after = pattern.after_division(division);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(after.remaining(CellId(k), 85), pattern.remaining(division.origin[k], 85));
+}
+
+// Springs lose all of their pull; a cortex its tension and stiffness, not what keeps a face from vanishing. Told from
+// outside to act, a cell acts with what is left.
+TEST(PatternRule, LawsLoseWhatAblationsTake) {
+  const Tissue tissue =
+      distorted_block({.length_um = 40, .width_um = 20, .cell_height_um = 20, .cells = {2, 1, 1}}, 2, 3);
+  const Motion motion = random_motion(tissue, 3, 1);
+  CellPattern whole(CellSet(2, true)), cut = whole;
+  cut.ablations.emplace_back(CellSet(2, true), 0.3, 0.5 * motion.end_time_s, std::nullopt);
+  const ContractionRule springs{.stiffness = 2, .preload = 3};
+  const Contraction before(contraction_springs(tissue, whole, springs), Program(), whole);
+  const Contraction after(contraction_springs(tissue, cut, springs), Program(), cut);
+  const CortexRule rule{.tension = 2, .saturation = 0.2, .stiffness = 5};
+  const Cortex skin_before(tissue, whole, rule), skin_after(tissue, cut, rule);
+  const CortexRule crowding{.crowding = 0.5};
+  const Cortex crowd_before(tissue, whole, crowding), crowd_after(tissue, cut, crowding);
+  const auto expect_part = [&](const Law& of_whole, const Law& of_cut, double part) {
+    const Vectors a = forces_of(of_whole, motion.step()), b = forces_of(of_cut, motion.step());
+    for (std::size_t n = 0; n < a.size(); ++n) EXPECT_LT((b[n] - part * a[n]).norm(), 1e-12 * (1 + a[n].norm()));
+  };
+  expect_part(before, after, 0.3);
+  expect_part(skin_before, skin_after, 0.3);
+  expect_part(crowd_before, crowd_after, 1);
+  check_derivatives(after, tissue, 4);
+  check_derivatives(skin_after, tissue, 4);
+  EXPECT_EQ(*after.activity_of(CellId(0), motion.end_time_s, after.with_activities({}, std::vector{0.5, 1.0})), 0.15);
+  EXPECT_EQ(after.program_jumps_s(), (std::vector{0.5 * motion.end_time_s}));
+  EXPECT_EQ(skin_after.program_jumps_s(), after.program_jumps_s());
+}
+
 TEST(PatternRule, ScalesStiffnessAndPreloadOfACellsSprings) {
   const Tissue tissue = sheet();
   CellSet one(21, false);

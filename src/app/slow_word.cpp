@@ -1,0 +1,34 @@
+#include "app/slow_word.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <string_view>
+
+namespace plica {
+namespace {
+
+constexpr unsigned patience_s = 3;
+constexpr std::string_view word = "building the embryo ...", gone = "\r\033[K";
+
+volatile std::sig_atomic_t is_said = 0;
+
+void say(std::string_view text) {
+  if (::write(STDERR_FILENO, text.data(), text.size()) > 0) is_said = 1;
+}
+
+}  // namespace
+
+SlowWord::SlowWord() {
+  if (::isatty(STDERR_FILENO) == 0) return;
+  std::signal(SIGALRM, [](int) { say(word); });
+  ::alarm(patience_s);
+}
+
+SlowWord::~SlowWord() {
+  ::alarm(0);
+  if (is_said != 0) say(gone);
+  is_said = 0;
+}
+
+}  // namespace plica

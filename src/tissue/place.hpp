@@ -1,0 +1,21 @@
+// Where something is, for messages about it.
+#pragma once
+
+#include <string>
+
+#include "core/ids.hpp"
+#include "core/vector.hpp"
+
+namespace plica {
+
+struct HexahedralMesh;
+struct Tissue;
+
+/// "(1.5, 0, -20) um".
+std::string place_text(const Vec3& place);
+
+/// "cell 12 at (1.5, 0, -20) um": its middle at rest, or that of its nodes.
+std::string cell_at(const Tissue& tissue, CellId cell);
+std::string cell_at(const HexahedralMesh& mesh, std::size_t cell);
+
+}  // namespace plica
