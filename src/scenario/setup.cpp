@@ -308,7 +308,7 @@ void make_endless(const Scenario& scenario, Model& model) {
   model.laws.push_back(std::make_unique<Ties>(ties_along_x(model.tissue), stiffness));
 }
 
-/// A node, and what it is an image of.
+/// Holds a node, and what it is an image of.
 void hold(NodeId node, int axis, Model& model) {
   for (const NodeId one : {node, model.tissue.original(node)}) model.held[one.index()][axis] = true;
 }
