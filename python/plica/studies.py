@@ -134,7 +134,8 @@ def render(
         A PNG file to write.
     color : str
         What colours it: displacement, speed, area-ratio, pressure, volume-error, volume, contraction, strength, generation,
-        region or self-intersections; of a frame also an array that the cells' file has, as of genes. Of a simulation, what ``Simulation.cell_data`` has.
+        region or self-intersections; of a frame also an array that the cells' file has, as of genes. Of a simulation, what
+        ``Simulation.cell_data`` has.
     view : str, optional
         antero-ventral, ventral, side, cross-section, sagittal-section or apical: at the apical side from outside. By default
         antero-ventral, of an open sheet apical.

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <optional>
 #include <new>
+#include <optional>
 #include <stdexcept>
 
 #include "app/commands.hpp"

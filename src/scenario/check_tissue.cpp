@@ -177,11 +177,11 @@ void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vecto
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
     if (!(hex_scaled_jacobian(tissue.element_rest_shape[e]) > 0)) {
       const bool has_grid = is_of_grid(shape_of(scenario.embryo));
-      errors.push_back(diagnostic_at(
-          scenario, has_grid ? "embryo.cells" : "embryo.cell_height_um",
-          fmt::format("the mesh would be inverted: {} is inside out or flat at rest",
-                      cell_at(tissue, tissue.element_cell[e])),
-          has_grid ? "take more cells, or flatter ones" : "give a smaller height, or smooth the surface there"));
+      errors.push_back(diagnostic_at(scenario, has_grid ? "embryo.cells" : "embryo.cell_height_um",
+                                     fmt::format("the mesh would be inverted: {} is inside out or flat at rest",
+                                                 cell_at(tissue, tissue.element_cell[e])),
+                                     has_grid ? "take more cells, or flatter ones"
+                                              : "give a smaller height, or a surface that is bent less there"));
       return;
     }
 }

@@ -59,13 +59,14 @@ TEST(InteriorKeys, ModuliByRegionSayWhatWouldBeRight) {
       {"[embryo]\nelements_per_cell = [1, 1, 3]\n[region.belly]\nface = \"ventral\"\n" + soft +
            "young_modulus_Pa = 5\nheight_percent = [60, 100]\n[elasticity.apex]\nregion = \"belly\"\n"
            "height_percent = [80, 100]\npoisson_ratio = 0.3",
-       "test.toml:5: elasticity.soft: elasticity.apex speaks of the same layer of cell 0, too; give them parts of the "
-       "height without common elements, or other regions"},
+       "test.toml:5: elasticity.soft: elasticity.apex speaks of the same layer of cell 0 at (-154.4, -67.53, -74.13) "
+       "um, "
+       "too; give them parts of the height without common elements, or other regions"},
       {soft + "young_modulus_Pa = 5\nheight_percent = [80, 10]",
        "test.toml:4: elasticity.soft.height_percent: low is above high; give [low, high], 0 to 100"},
       {soft + "profile = { shape = \"linear\", half_width_um = 20 }",
-       "test.toml:3: elasticity.soft.profile: the modulus of cell 0 would be 0; give profile.edge, or factors, above "
-       "0"},
+       "test.toml:3: elasticity.soft.profile: the modulus of cell 0 at (-154.4, -67.53, -74.13) um would be 0; give "
+       "profile.edge, or factors, above 0"},
       {soft + "young_modulus_Pa = 5\nheight_percent = [0, 50]\n[division.d]\nregion = \"all\"\nat_s = 9",
        "test.toml:4: elasticity.soft.height_percent: cells with layers do not divide; remove it, or [division]"},
       {"[elasticity.soft]\nregion = \"belly\"\nyoung_modulus_Pa = 5",
@@ -74,8 +75,8 @@ TEST(InteriorKeys, ModuliByRegionSayWhatWouldBeRight) {
        "test.toml:3: elasticity.soft: model \"shape-memory\" is the same in all cells; remove it, or choose model "
        "\"corotational\" or \"neo-hookean\""},
       {two,
-       "test.toml:9: elasticity.stiff: elasticity.soft speaks of cell 72, too; give them regions without common cells, "
-       "by `except` for instance"},
+       "test.toml:9: elasticity.stiff: elasticity.soft speaks of cell 72 at (-167.4, 0, -90.53) um, too; give them "
+       "regions without common cells, by `except` for instance"},
   });
 }
 

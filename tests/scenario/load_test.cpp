@@ -476,34 +476,6 @@ TEST_F(LoadFiles, InheritsFromABuiltinAndDropsWhatAnotherShapeDoesNotUse) {
   EXPECT_EQ(scenario.contractions.at("apical").region, "furrow");
 }
 
-TEST_F(LoadFiles, ARegionSelectedAnewDropsWhatAnotherShapeSelectedItBy) {
-  const std::string egg = "[embryo]\nshape = \"egg\"\ncell_count = 300\n",
-                    belly = "[region.furrow]\nangle_deg = [-30, 30]\n";
-  const Scenario scenario = load("base = \"drosophila\"\n" + egg + belly);
-  EXPECT_EQ(scenario.regions.at("furrow").face, "");
-  EXPECT_FALSE(scenario.regions.at("furrow").cells_along || scenario.regions.at("furrow").cells_across);
-  EXPECT_TRUE(scenario.regions.at("furrow").angle_deg);
-  // Where the shape has faces, selectors are intersected as ever.
-  EXPECT_EQ(load("base = \"drosophila\"\n" + belly).regions.at("furrow").face, "ventral");
-  // Arrays go the same way.
-  write("points.toml", "[embryo]\nshape = \"points\"\nfile = \"a.csv\"\n[region.r]\narray = \"gene\"\nabove = 2\n");
-  const std::string pill =
-      write("pill.toml", "base = \"points.toml\"\n[embryo]\nshape = \"pill\"\n[region.r]\nface = \"left\"\n");
-  EXPECT_EQ(load_scenario(find_scenario(pill)).regions.at("r").array, "");
-
-  const std::string what = errors_in(write("none.toml", "base = \"drosophila\"\n" + egg));
-  EXPECT_NE(what.find("drosophila:"), std::string::npos) << what;
-  EXPECT_NE(what.find("region.furrow.face: cells that are no grid have no named sides; use angle_deg"),
-            std::string::npos)
-      << what;
-  EXPECT_NE(
-      what.find("another selector in a [region.furrow] of your own takes the place of the face that is inherited"),
-      std::string::npos)
-      << what;
-  const std::string both = errors_in(write("both.toml", "base = \"drosophila\"\n" + egg + belly + "face = \"left\"\n"));
-  EXPECT_NE(both.find("both.toml:7: region.furrow.face: cells that are no grid"), std::string::npos) << both;
-}
-
 TEST_F(LoadFiles, ReportsErrorsWhereTheyAreWritten) {
   const std::string base = write("base.toml", "format = 1\n[time]\nend_s = -5\n");
   const std::string top = write("top.toml", "base = \"base.toml\"\n[time]\nstep_s = -1\n");

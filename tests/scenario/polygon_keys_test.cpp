@@ -92,6 +92,31 @@ TEST(PolygonKeys, AHeldRimIsHeldAndNothingElse) {
   for (const auto& node : free->held) EXPECT_EQ(node, (std::array{false, false, false}));
 }
 
+TEST(PolygonKeys, ARegionSelectedAnewDropsWhatAnotherShapeSelectedItBy) {
+  const auto load = [](const std::string& text) { return load_scenario({"test", "test.toml", text}); };
+  const std::string base = "base = \"drosophila\"\n", shape = "[embryo]\nshape = \"egg\"\ncell_count = 300\n",
+                    belly = "[region.furrow]\nangle_deg = [-30, 30]\n";
+  const RegionInput furrow = load(base + shape + belly).regions.at("furrow");
+  EXPECT_EQ(furrow.face, "");
+  EXPECT_FALSE(furrow.cells_along || furrow.cells_across);
+  EXPECT_TRUE(furrow.angle_deg);
+  // Where the shape has faces, selectors are intersected as ever.
+  EXPECT_EQ(load(base + belly).regions.at("furrow").face, "ventral");
+  // Arrays go the same way.
+  const std::string pill =
+      "base = \"drosophila-atlas\"\n[embryo]\nshape = \"pill\"\n[region.mesoderm]\nface = \"left\"\n";
+  EXPECT_EQ(load(pill).regions.at("mesoderm").array, "");
+  EXPECT_FALSE(load(pill).regions.at("mesoderm").above);
+
+  const std::string inherited = errors_of(base + shape), own = errors_of(base + shape + belly + "face = \"left\"\n");
+  EXPECT_TRUE(inherited.starts_with("drosophila:")) << inherited;
+  EXPECT_NE(inherited.find("region.furrow.face: cells that are no grid have no named sides; use angle_deg, "),
+            std::string::npos);
+  EXPECT_NE(inherited.find("in a [region.furrow] of your own takes the place of the face that is inherited"),
+            std::string::npos);
+  EXPECT_EQ(own.find("test.toml:7: region.furrow.face: cells that are no grid"), 0U) << own;
+}
+
 TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
   const auto expect = [](const std::string& text, const std::string& said) {
     EXPECT_NE(errors_of(text).find(said), std::string::npos) << errors_of(text);

@@ -166,13 +166,13 @@ TEST(Picture, OfASmallSheetShowsNoEdgeBehindItsSurface) {
   // The edges of the lower side, 0.5 um below the upper one, are seen through its cells' middles where they are drawn
   // in front of it.
   for (const auto& place : sheet.rest_positions) {
-    if (place.z() > 0 || place.x() > 9) continue;
+    if (place.z() > 0 || place.x() > 9 || place.y() < -9) continue;  // that of the near side is seen
     const Vec3 on_edge = place + Vec3(2.5, 0, 0);
     const auto [x, y] = pixel_of(layout, layout.panels[0], seen, on_edge);
     ++cases;
     EXPECT_GT(image.at(x, y)[0], 150) << x << " " << y;
   }
-  EXPECT_EQ(cases, 20);
+  EXPECT_EQ(cases, 16);
 }
 
 TEST(Picture, HasALegendInTheColoursOfItsMap) {

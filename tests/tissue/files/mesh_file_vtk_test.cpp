@@ -267,7 +267,7 @@ TEST_F(MeshFileTest, WhatIsWrongWithACellIsSaid) {
       {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, 8}}), "cell 0 uses node 8, and the nodes are 0 to 7"},
       {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, -1}}), "cell 0 uses node -1, and the nodes are 0 to 7"},
       {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, 6}}),
-       "cell 0 at (0.5, 0.375, 0.5) um uses node 6 twice; a hexahedron has eight"},
+       "cell 0 at (0.625, 0.5, 0.5) um uses node 6 twice; a hexahedron has eight"},
       {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6}}), "cell 0 is a hexahedron with 7 nodes"},
       {binary_cube(std::nan("")), "node 6 of cell 0 is at (1, 1, nan); coordinates are finite, in um"},
       {legacy(with(6, "1 1 1e200"), {cube}), "node 6 of cell 0 is at (1, 1, 1e+200); coordinates are finite, in um"},
@@ -309,7 +309,7 @@ TEST_F(MeshFileTest, TheApicalArrayMustBeThereAndFit) {
   write_mesh(file, block, block.rest_positions, {{}, {}, {{"top", {5, 4, 5}}}});
   EXPECT_EQ(
       error<MeshError>("top"),
-      "the apical faces of cell 0 at (-10, 0, 0) um and its neighbour, cell 1, do not fit together; mend the array "
+      "the apical faces of cell 0 at (-20, 0, 0) um and its neighbour, cell 1, do not fit together; mend the array "
       "that names them");
   write_mesh(file, block, block.rest_positions, {{}, {}, {{"top", {5, 5, 0}}}});
   EXPECT_EQ(
