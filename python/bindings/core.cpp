@@ -128,7 +128,10 @@ nb::dict colour_fields_by_name() {
 nb::dict views_by_name(const Numbers& points, const Whole& hexahedra) {
   nb::dict views;
   const auto mesh = mesh_of(points, hexahedra, {}, {});
-  for (const View& view : views_of({.positions = mesh->points, .elements = mesh->cells})) {
+  Frame frame;
+  frame.positions = mesh->points;
+  frame.elements = mesh->cells;
+  for (const View& view : views_of(frame)) {
     nb::dict row;
     row["sight"] = std::tuple(view.sight.x(), view.sight.y(), view.sight.z());
     row["up"] = std::tuple(view.up.x(), view.up.y(), view.up.z());

@@ -9,7 +9,7 @@ namespace plica {
 namespace {
 
 constexpr unsigned patience_s = 3;
-constexpr std::string_view word = "building the embryo ...", gone = "\r\033[K";
+constexpr std::string_view what_is_done = "building the embryo ...", erased = "\r\033[K";
 
 volatile std::sig_atomic_t is_said = 0;
 
@@ -21,13 +21,13 @@ void say(std::string_view text) {
 
 SlowWord::SlowWord() {
   if (::isatty(STDERR_FILENO) == 0) return;
-  std::signal(SIGALRM, [](int) { say(word); });
+  std::signal(SIGALRM, [](int) { say(what_is_done); });
   ::alarm(patience_s);
 }
 
 SlowWord::~SlowWord() {
   ::alarm(0);
-  if (is_said != 0) say(gone);
+  if (is_said != 0) say(erased);
   is_said = 0;
 }
 

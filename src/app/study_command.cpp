@@ -62,7 +62,7 @@ class StudyProgress {
 
 std::string by_status(const StudyStatus& status) {
   std::vector<std::string> texts;
-  for (const auto& [word, count] : status.by_status) texts.push_back(fmt::format("{} {}", count, word));
+  for (const auto& [status_word, count] : status.by_status) texts.push_back(fmt::format("{} {}", count, status_word));
   if (status.ended() < status.runs) texts.push_back(fmt::format("{} not run", status.runs - status.ended()));
   return fmt::format("{}: {}", plural(status.runs, "run"), fmt::join(texts, ", "));
 }

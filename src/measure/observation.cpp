@@ -8,7 +8,7 @@ namespace {
 
 // None of a sheet that is open, though its rims may lie so evenly that nothing seems to be missing (a slice's).
 std::optional<double> rest_lumen_volume(const Tissue& tissue) {
-  if (!rim_of(tissue, tissue.basal_facets).empty()) return std::nullopt;
+  if (!encloses(tissue, tissue.basal_facets)) return std::nullopt;
   return lumen_volume(tissue, tissue.rest_positions);
 }
 

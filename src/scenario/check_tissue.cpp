@@ -22,7 +22,7 @@ namespace {
 
 // A mesh file's apical surface may be open; that of a built embryo is not.
 void check_encloses(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
-  if (!rim_of(tissue, tissue.apical_facets).empty())
+  if (!encloses(tissue, tissue.apical_facets))
     errors.push_back(diagnostic_at(scenario, "volume.projection_surface",
                                    "the apical surface of this mesh encloses nothing", "give \"cells\" or \"tissue\""));
 }

@@ -57,6 +57,7 @@ struct EmbryoInput {
   int layers = 1;                                   // of polygons: elements from basal to apical
   std::vector<double> curvature_per_um = {0, 0};    // sheet: along and across; positive as an embryo's
   std::string rim = "free";                         // sheet, surface: free | held
+  std::vector<std::string> periodic;                // sheet: x, y: directions along which it repeats itself
   std::string cell_height_array;                    // surface: array of heights; empty: cell_height_um
   bool mend = true;                                 // surface: whether what is safe to mend is mended
   bool centre = false;                              // surface: whether its middle is moved to the origin

@@ -94,6 +94,10 @@ std::vector<Row> make_rows() {
           {.shapes = {"sheet"}}),
       embryo("rim", &E::rim, one_of(words::rims), "Whether the outer walls of the cells at the rim are held in place.",
              {.shapes = {"sheet", "surface"}}),
+      embryo("periodic", &E::periodic, one_of(words::periods),
+             "Directions along which a sheet repeats itself, so that it has no rim there: cells at one end are the "
+             "neighbours of those at the other. Its length along them is fixed, and it is not bent along them.",
+             {.may_be_empty = true, .shapes = {"sheet"}}),
       embryo("belly_sag_um", &E::belly_sag_um, positive,
              "How far the belly's outline bulges beyond its chord from 20 to 80 % of the length (µm); goes with "
              "`back_sag_um`. Without both, an ellipsoid.",

@@ -74,9 +74,11 @@ Tissue polygonal_tissue(const Scenario& scenario) {
     if (shape_of(e) == EmbryoShape::egg)
       return build_egg({e.length_um, e.diameter_um, e.diameter_um, e.belly_sag_um, e.back_sag_um}, e.cell_count, e.seed,
                        cells);
-    if (shape_of(e) == EmbryoShape::sheet)
-      return build_sheet({e.length_um, e.width_um, {e.curvature_per_um[0], e.curvature_per_um[1]}}, e.cell_count,
-                         e.seed, cells);
+    if (shape_of(e) == EmbryoShape::sheet) {
+      SheetShape sheet{e.length_um, e.width_um, {e.curvature_per_um[0], e.curvature_per_um[1]}};
+      for (const std::string& axis : e.periodic) sheet.is_periodic[meaning_of(words::periods, axis)] = true;
+      return build_sheet(sheet, e.cell_count, e.seed, cells);
+    }
     const PointTable table = table_of(e.file);
     Tissue tissue =
         build_about_points({table.points, e.points_depth_um, Vec3(e.scale[0], e.scale[1], e.scale[2])}, cells);
@@ -306,12 +308,17 @@ void make_endless(const Scenario& scenario, Model& model) {
   model.laws.push_back(std::make_unique<Ties>(ties_along_x(model.tissue), stiffness));
 }
 
+/// Holds a node, and what it is an image of.
+void hold(NodeId node, int axis, Model& model) {
+  for (const NodeId one : {node, model.tissue.original(node)}) model.held[one.index()][axis] = true;
+}
+
 void add_holds(const Scenario& scenario, Model& model) {
   for (const auto& [name, input] : scenario.holds) {
     const std::vector<bool> nodes = held_nodes(input, model.tissue);
     for (std::size_t n = 0; n < nodes.size(); ++n)
       for (const std::string& direction : input.directions)
-        if (nodes[n]) model.held[n][meaning_of(words::axes, direction)] = true;
+        if (nodes[n]) hold(NodeId(n), meaning_of(words::axes, direction), model);
   }
 }
 
@@ -319,7 +326,8 @@ void add_holds(const Scenario& scenario, Model& model) {
 void hold_rim(Model& model) {
   for (const Face& face : faces_of(model.tissue, CellSide::lateral))
     if (!face.beyond && face.share == 1)
-      for (const NodeId node : face.nodes) model.held[node.index()] = {true, true, true};
+      for (const NodeId node : face.nodes)
+        for (int axis = 0; axis < 3; ++axis) hold(node, axis, model);
 }
 
 /// Nodes on a mirror plane stay on it.

@@ -127,6 +127,30 @@ void check_mirror(const Scenario& scenario, Input& input) {
                  "remove it, or give time.scheme \"newton\" and volume.method \"coupled\" or \"none\"");
 }
 
+void check_periods(const Scenario& scenario, Input& input) {
+  const EmbryoInput& embryo = scenario.embryo;
+  const std::string address = "embryo.periodic";
+  if (embryo.periodic.empty() || !input.sound(address)) return;
+  if (std::set(embryo.periodic.begin(), embryo.periodic.end()).size() < embryo.periodic.size())
+    return input.report(address, fmt::format("\"{}\" stands there twice", embryo.periodic.back()),
+                        "give each direction once");
+  for (const std::string& axis : embryo.periodic)
+    if (input.sound("embryo.curvature_per_um") && embryo.curvature_per_um.size() == 2 &&
+        embryo.curvature_per_um[meaning_of(words::periods, axis)] != 0)
+      input.report("embryo.curvature_per_um",
+                   fmt::format("a sheet that is bent along {} does not repeat itself along {}", axis, axis),
+                   fmt::format("give 0 there, or leave \"{}\" out of embryo.periodic", axis));
+  if (embryo.periodic.size() == words::periods.size() && meaning_of(words::rims, embryo.rim) &&
+      input.sound("embryo.rim"))
+    input.report("embryo.rim", "a sheet that is periodic along x and y has no rim",
+                 "remove it, or leave a direction out of embryo.periodic");
+  if (!scenario.divisions.empty())
+    input.report(address, "cells of a periodic sheet do not divide yet", "remove it, or [division]");
+  if (scenario.time.scheme != "newton" || method_of(scenario.volume) == VolumeMethod::projection)
+    input.report(address, "the paper's algorithm does not know periodic sheets",
+                 "remove it, or give time.scheme \"newton\" and volume.method \"coupled\" or \"none\"");
+}
+
 void check_vitelline(Scenario& scenario, Input& input) {
   const EmbryoShape shape = shape_of(scenario.embryo);
   if ((!is_patch(shape) && shape != EmbryoShape::surface) || !input.sound("vitelline.enabled")) return;
@@ -427,6 +451,7 @@ class RegionCheck {
 void validate(Scenario& scenario, Input& input) {
   check_embryo(scenario, input);
   check_mirror(scenario, input);
+  check_periods(scenario, input);
   check_vitelline(scenario, input);
   check_shell_drag(scenario, input);
   check_elasticity(scenario, input);

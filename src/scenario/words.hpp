@@ -76,6 +76,7 @@ inline constexpr auto embryo_shapes = std::to_array<Word<EmbryoShape>>({{"pill",
 inline constexpr auto polygon_splits =
     std::to_array<Word<PolygonSplit>>({{"diagonals", PolygonSplit::diagonals}, {"kites", PolygonSplit::kites}});
 
+inline constexpr auto periods = std::to_array<Word<int>>({{"x", 0}, {"y", 1}});
 inline constexpr auto rims = std::to_array<Word<bool>>({{"free", false}, {"held", true}});  // whether it is held
 
 inline constexpr auto elastic_models =

@@ -389,6 +389,7 @@ void set_element_rest_shapes(Tissue& tissue, CellId id) {
 }
 
 std::optional<std::string> why_indivisible(const Tissue& tissue) {
+  if (tissue.is_periodic()) return "the tissue is periodic";
   for (const Cell& cell : tissue.cells)
     if (cell.walls.empty())
       return cell.is_of_grid ? "its cells have several elements each"

@@ -19,7 +19,10 @@ double share_of(const Tissue& tissue, const Face& face) {
 }
 
 std::vector<Face> lateral_faces(const Tissue& tissue) {
-  const MeshFaces pairs(tissue.elements);
+  auto joined = tissue.elements;
+  for (auto& nodes : joined)
+    for (NodeId& node : nodes) node = tissue.original(node);
+  const MeshFaces pairs(joined);
   std::vector<char> is_outer(6 * tissue.elements.size(), 0);  // whether an apical or basal face of elements
   const auto place_of = [&](const Facet& facet) {
     // The face of its element that has the facet's nodes.
@@ -72,6 +75,7 @@ std::vector<Face> faces_between_stops(const Tissue& tissue) {
 std::vector<Face> faces_between_edges(const Tissue& tissue) {
   std::vector<Face> faces;
   std::map<std::pair<NodeId, NodeId>, std::size_t> place;  // in faces, by two opposite nodes
+  const auto key = [&](NodeId low, NodeId high) { return std::pair(tissue.original(low), tissue.original(high)); };
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     const Cell& cell = tissue.cells[c];
     const std::size_t sides = cell.sides();
@@ -80,12 +84,12 @@ std::vector<Face> faces_between_edges(const Tissue& tissue) {
       const auto &from = lateral[i].nodes, &to = lateral[(i + 1) % sides].nodes;
       for (std::size_t level = 1; level < from.size(); ++level) {
         // The neighbour has the same face from the other side.
-        const auto beyond = place.find({to[level - 1], from[level]});
+        const auto beyond = place.find(key(to[level - 1], from[level]));
         if (beyond != place.end()) {
           faces[beyond->second].beyond = CellId(c);
           continue;
         }
-        place.emplace(std::pair(from[level - 1], to[level]), faces.size());
+        place.emplace(key(from[level - 1], to[level]), faces.size());
         faces.push_back({{from[level - 1], to[level - 1], to[level], from[level]}, CellId(c), {}});
       }
     }
@@ -94,7 +98,8 @@ std::vector<Face> faces_between_edges(const Tissue& tissue) {
 }
 
 std::vector<Face> all_lateral_faces(const Tissue& tissue) {
-  if (tissue.hanging.empty()) return lateral_faces(tissue);
+  if (std::ranges::all_of(tissue.hanging, [](const NodeMean& mean) { return mean.size() == 1; }))
+    return lateral_faces(tissue);
   std::vector<Face> faces =
       tissue.cells.front().walls.empty() ? faces_between_edges(tissue) : faces_between_stops(tissue);
   for (Face& face : faces) face.share = share_of(tissue, face);
@@ -129,6 +134,10 @@ std::vector<std::pair<NodeId, NodeId>> rim_of(const Tissue& tissue, std::span<co
     if (use < -rounding) rim.emplace_back(edge.second, edge.first);
   }
   return rim;
+}
+
+bool encloses(const Tissue& tissue, std::span<const Facet> facets) {
+  return !tissue.is_periodic() && rim_of(tissue, facets).empty();
 }
 
 std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue) {

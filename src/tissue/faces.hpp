@@ -28,6 +28,9 @@ std::vector<Face> faces_of(const Tissue& tissue, CellSide side);
 /// facet has them. Where nodes hang on a facet's edge and its neighbour's edges end at them, these are shared.
 std::vector<std::pair<NodeId, NodeId>> rim_of(const Tissue& tissue, std::span<const Facet> facets);
 
+/// Whether a surface of facets encloses a volume: it has no rim, and does not go on for ever either.
+bool encloses(const Tissue& tissue, std::span<const Facet> facets);
+
 /// The cells that share a wall with each cell, in the order of their numbers.
 std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue);
 

@@ -98,7 +98,11 @@ void set_hanging(const HexahedralMesh& mesh, Tissue& tissue) {
   const std::vector<int>& hanging = mesh.groups.hanging;
   std::size_t count = 0;
   for (std::size_t h = 0; h < hanging.size(); h += 1 + static_cast<std::size_t>(hanging[h]), ++count)
-    if (hanging[h] < 2 || static_cast<std::size_t>(hanging[h]) >= hanging.size() - h || count >= mesh.points.size())
+    if (hanging[h] == 1)
+      throw MeshError(
+          "the mesh is a periodic sheet, and such meshes are not read; give the keys of shape \"sheet\" that made it");
+    else if (hanging[h] < 2 || static_cast<std::size_t>(hanging[h]) >= hanging.size() - h ||
+             count >= mesh.points.size())
       throw MeshError(
           "hanging_nodes should be, for each of the last nodes of the mesh, how many nodes it lies between, and which");
   const std::size_t free = mesh.points.size() - count;

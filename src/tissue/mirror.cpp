@@ -136,6 +136,8 @@ Vectors Mirror::whole(std::span<const Vec3> of_side) const {
 }
 
 MirroredSide side_of(const Tissue& whole, const std::array<bool, 3>& axes) {
+  if (whole.is_periodic())
+    throw NotSymmetric("no side of a periodic sheet stands for the whole", "remove it, or embryo.periodic");
   const Reflecting reflecting(whole);
   MirroredSide side{whole, {}};
   Mirror& mirror = side.mirror;

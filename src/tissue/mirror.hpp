@@ -58,7 +58,7 @@ struct MirroredSide {
   Mirror mirror;
 };
 
-/// NotSymmetric when a node or cell has no image, or when a plane cuts a cell in two.
+/// NotSymmetric when a node or cell has no image, when a plane cuts a cell in two, and of a periodic sheet.
 MirroredSide side_of(const Tissue& whole, const std::array<bool, 3>& axes);
 
 }  // namespace plica

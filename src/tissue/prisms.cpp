@@ -71,23 +71,45 @@ class Builder {
     return middle_of_edge(from, to);
   }
 
+  // Of images of a place, what they are images of.
+  [[nodiscard]] Place original(const Place& place) const {
+    const Periods& periods = sheet_.periods;
+    if (place.kind == Place::Kind::vertex) return vertex(periods.original(place.first));
+    if (place.kind == Place::Kind::middle) return place;
+    return middle_of_edge(periods.original(place.first), periods.original(place.second));
+  }
+
   NodeId node(const Place& place, int level) {
     const auto [known, is_new] = nodes_.try_emplace({place, level}, NodeId(tissue_.rest_positions.size()));
-    if (is_new) {
-      tissue_.rest_positions.push_back(at(place, static_cast<double>(level) / layers_));
-      hanging_.emplace_back();
-      if (hangs_ && place.kind != Place::Kind::vertex) {
-        const NodeId self = known->second;
-        const std::vector<std::size_t> on =
-            place.kind == Place::Kind::edge ? std::vector{place.first, place.second} : sheet_.cells[place.first];
-        for (const std::size_t end : on) {
-          const NodeId corner = node(vertex(end), level);
-          hanging_[self.index()].emplace_back(corner, 1.0 / static_cast<double>(on.size()));
-        }
-        return self;
-      }
+    const NodeId self = known->second;
+    if (!is_new) return self;
+    tissue_.rest_positions.push_back(at(place, static_cast<double>(level) / layers_));
+    hanging_.emplace_back();
+    shifts_.push_back(Vec3::Zero());
+    if (hangs_ && place.kind != Place::Kind::vertex) {
+      const std::vector<std::size_t> on =
+          place.kind == Place::Kind::edge ? std::vector{place.first, place.second} : sheet_.cells[place.first];
+      for (const std::size_t end : on) hang(self, node(vertex(end), level), 1.0 / static_cast<double>(on.size()));
+      return self;
     }
-    return known->second;
+    // The image that came first is the free one.
+    const NodeId first = firsts_.try_emplace({original(place), level}, self).first->second;
+    if (first == self) return self;
+    Vec3& position = tissue_.rest_positions[self.index()];
+    const Vec3& of_first = tissue_.rest_positions[first.index()];
+    shifts_[self.index()] = sheet_.periods.whole(position - of_first);
+    position = of_first + shifts_[self.index()];
+    hang(self, first, 1);
+    return self;
+  }
+
+  // On a node, or where that is an image, on what it is an image of.
+  void hang(NodeId self, NodeId on, double weight) {
+    if (const NodeMean& image = hanging_[on.index()]; !image.empty()) {
+      shifts_[self.index()] += weight * shifts_[on.index()];
+      on = image.front().first;
+    }
+    hanging_[self.index()].emplace_back(on, weight);
   }
 
   void add_cell(std::size_t c) {
@@ -126,6 +148,7 @@ class Builder {
         if (free) continue;
         for (auto& [on, weight] : hanging_[n]) on = now[on.index()];
         tissue_.hanging.push_back(hanging_[n]);
+        if (sheet_.periods.is_used()) tissue_.hanging_shifts.push_back(shifts_[n]);
       }
     const auto renumber = [&](auto& nodes) {
       for (NodeId& one : nodes) one = now[one.index()];
@@ -138,7 +161,7 @@ class Builder {
   }
 
   // What division needs: nodes where they are put by it, and no others.
-  [[nodiscard]] bool divides() const { return hangs_ && layers_ == 1; }
+  [[nodiscard]] bool divides() const { return hangs_ && layers_ == 1 && !sheet_.periods.is_used(); }
 
   // Corners, edges, lines and walls.
   void set_polygons(Cell& cell) {
@@ -167,8 +190,10 @@ class Builder {
   bool hangs_;
   int layers_;
   Tissue tissue_;
-  std::map<std::pair<Place, int>, NodeId> nodes_;  // by place and level
-  std::vector<NodeMean> hanging_;                  // nodes; empty of free ones
+  std::map<std::pair<Place, int>, NodeId> nodes_;   // by place and level
+  std::map<std::pair<Place, int>, NodeId> firsts_;  // by what they are images of
+  std::vector<NodeMean> hanging_;                   // nodes; empty of free ones
+  Vectors shifts_;                                  // nodes; as Tissue::hanging_shifts
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "tissue/periods.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -12,6 +13,7 @@ namespace plica {
 struct PrismSheet {
   Vectors apical, basal;                        // vertices, one below the other; um
   std::vector<std::vector<std::size_t>> cells;  // vertices of each polygon, counter-clockwise seen from outside
+  Periods periods = {};
 };
 
 enum class PolygonSplit {
@@ -22,7 +24,8 @@ enum class PolygonSplit {
   kites
 };
 
-/// Each prism cut into so many layers. Polygons are split in the way that makes the best elements. Region "all" is set.
+/// Each prism cut into so many layers. Images of vertices hang on these: they are one node of the mechanics. Polygons
+/// are split in the way that makes the best elements. Region "all" is set.
 Tissue tissue_from_prisms(const PrismSheet& sheet, PolygonSplit split, int layers);
 
 }  // namespace plica

@@ -17,6 +17,11 @@ void Tissue::place_hanging(std::span<Vec3> vectors) const {
   for (std::size_t h = 0; h < hanging.size(); ++h) vectors[free_node_count() + h] = mean_of(hanging[h], vectors);
 }
 
+void Tissue::place_hanging_positions(std::span<Vec3> positions) const {
+  place_hanging(positions);
+  for (std::size_t h = 0; h < hanging_shifts.size(); ++h) positions[free_node_count() + h] += hanging_shifts[h];
+}
+
 void Tissue::carry_hanging(std::span<Vec3> forces) const {
   for (std::size_t h = 0; h < hanging.size(); ++h) {
     Vec3& force = forces[free_node_count() + h];

@@ -125,8 +125,11 @@ inline Vec3 mean_of(const NodeMean& mean, std::span<const Vec3> vectors) {
 
 struct Tissue {
   // Nodes: the free ones first, then those that hang on them. A free node keeps its number for good.
-  Vectors rest_positions;                       // nodes; um
-  std::vector<NodeMean> hanging;                // of the last nodes; where cells are polygons or have divided
+  Vectors rest_positions;         // nodes; um
+  std::vector<NodeMean> hanging;  // of the last nodes; where cells are polygons or have divided
+  // Of these, how far each is from that mean, um. Empty but in a tissue that repeats itself: there, a node at the far
+  // end of a period hangs on one node alone, of which it is the image.
+  Vectors hanging_shifts;
   std::vector<std::array<NodeId, 8>> elements;  // VTK's order
   std::vector<CellId> element_cell;             // elements
   std::vector<HexPoints> element_rest_shape;    // elements; um. A daughter's is her mother's, not where her nodes are
@@ -156,8 +159,20 @@ struct Tissue {
     for (const auto& [free, weight] : hanging[node.index() - free_node_count()]) take(free, weight);
   }
 
-  /// Puts hanging nodes where their free nodes say; a Vec3 a node: positions, or anything linear in them.
+  /// Whether it goes on at an end with what is at the other.
+  [[nodiscard]] bool is_periodic() const { return !hanging_shifts.empty(); }
+
+  /// The free node of which a node is the image; any other is its own.
+  [[nodiscard]] NodeId original(NodeId node) const {
+    if (node.index() < free_node_count()) return node;
+    const NodeMean& mean = hanging[node.index() - free_node_count()];
+    return mean.size() == 1 ? mean.front().first : node;
+  }
+
+  /// Puts hanging nodes where their free nodes say; a Vec3 a node: directions, velocities, or anything linear in them.
   void place_hanging(std::span<Vec3> vectors) const;
+  /// The same of positions: images are a period away.
+  void place_hanging_positions(std::span<Vec3> positions) const;
 
   /// Moves forces on hanging nodes to the free nodes that carry them.
   void carry_hanging(std::span<Vec3> forces) const;

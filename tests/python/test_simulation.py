@@ -81,6 +81,15 @@ def test_arrays(sim):
     assert np.array_equal(before, kept)  # outlives the simulation
 
 
+def test_a_periodic_sheet_has_six_neighbours_a_cell():
+    sheet = {"shape": "sheet", "length_um": 40, "width_um": 50, "cell_count": 60, "cell_height_um": 10, "periodic": ["x", "y"]}
+    sim = plica.Simulation({"format": 1, "embryo": sheet, "cortex": {"walls": {"region": "all", "faces": "lateral", "tension_mN_per_m": 1}}})
+    assert len(sim.neighbours) == 3 * 60  # walls: each of two cells
+    sim.step()
+    forces = sim.forces("cortex.walls")
+    assert np.allclose(forces.sum(axis=0), 0, atol=1e-9 * np.abs(forces).max())
+
+
 def test_forces_and_energies(sim):
     sim.run(until_min=0.5)
     assert "contraction.apical" in sim.laws

@@ -341,8 +341,8 @@ TEST(LoadScenario, ReportsAllErrorsAtOnceInOrderOfLines) {
             "test.toml:4: contraction.a.region: there is no region \"nowhere\"; known are: all\n"
             "test.toml:6: embryo.length_um: true is of the wrong type; give a number > 0\n"
             "test.toml:7: embryo.hue: unknown key; known are: shape, length_um, diameter_um, width_um, "
-            "cell_height_um, cells, elements_per_cell, cell_count, seed, curvature_per_um, rim, belly_sag_um, "
-            "back_sag_um, elements, least_edge_ratio, layers, points_depth_um, scale, centre, mend, "
+            "cell_height_um, cells, elements_per_cell, cell_count, seed, curvature_per_um, rim, periodic, "
+            "belly_sag_um, back_sag_um, elements, least_edge_ratio, layers, points_depth_um, scale, centre, mend, "
             "cell_height_array, mirror, file, apical_array\n"
             "--set: time.max_step_s: 0 is out of range; give a number > 0");
 }

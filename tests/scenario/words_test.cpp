@@ -42,6 +42,7 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("embryo", "mirror", words::mirror_planes);
   expect_words("embryo", "elements", words::polygon_splits);
   expect_words("embryo", "rim", words::rims);
+  expect_words("embryo", "periodic", words::periods);
   expect_words("region.*", "face", words::sides);
   expect_words("volume", "projection_surface", words::projection_surfaces);
   expect_words("volume", "projection_weights", words::projection_weights);

@@ -61,7 +61,7 @@ bool EnclosedVolume::is_closed(const Tissue& tissue) {
   const auto is_across = [&](const RimEdge& edge) {
     return std::abs(tissue.rest_positions[edge.to.index()].x() - edge.place.x()) < 1e-9;
   };
-  return !tissue.basal_facets.empty() && std::ranges::all_of(rim, is_across);
+  return !tissue.basal_facets.empty() && !tissue.is_periodic() && std::ranges::all_of(rim, is_across);
 }
 
 EnclosedVolume::EnclosedVolume(const Tissue& tissue, double target) : rim_(open_rim(tissue)), target_(target) {

@@ -94,7 +94,7 @@ void return_to_obstacles(const Model& model, const Contacts& contacts, Iterate& 
       if (way == touched.inward[0]) return;
     }
   });
-  model.tissue.place_hanging(at.positions);
+  model.tissue.place_hanging_positions(at.positions);
 }
 
 }  // namespace plica

@@ -67,7 +67,7 @@ ExtrudedSheet extrude(const PolygonSurface& polygons, std::span<const VertexBend
                       std::span<const double> heights_um) {
   check_heights(polygons, heights_um);
   const auto height_of = [&](std::size_t cell) { return heights_um[heights_um.size() == 1 ? 0 : cell]; };
-  ExtrudedSheet sheet{{polygons.vertices, polygons.vertices, polygons.polygons}, "", 0, 0, 0};
+  ExtrudedSheet sheet{{polygons.vertices, polygons.vertices, polygons.polygons, polygons.periods}, "", 0, 0, 0};
 
   // What the cells at a vertex ask for, on average.
   std::vector<double> asked(sheet.apical.size(), 0.0), cell_count(sheet.apical.size(), 0.0);

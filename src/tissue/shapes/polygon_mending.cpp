@@ -15,10 +15,11 @@ constexpr double overshoot = 1.02;  // of what is wanted, so that the passes com
 // Moves that the edges and angles of one pass ask for; they are added up, so their order does not matter.
 class Moves {
  public:
-  explicit Moves(std::size_t vertex_count) : moves_(vertex_count, Vec3::Zero()) {}
+  explicit Moves(const PolygonSurface& surface)
+      : periods_(surface.periods), moves_(surface.vertices.size(), Vec3::Zero()) {}
 
   void add(std::size_t vertex, const Vec3& move) {
-    moves_[vertex] += move;
+    moves_[periods_.original(vertex)] += move;
     any_ = true;
   }
 
@@ -26,10 +27,12 @@ class Moves {
 
   void apply(const MendingGround& ground, Vectors& vertices) const {
     for (std::size_t v = 0; v < vertices.size(); ++v)
-      if (!moves_[v].isZero(0)) vertices[v] = ground.allowed(v, vertices[v] + moves_[v]);
+      if (const Vec3& move = moves_[periods_.original(v)]; !move.isZero(0))
+        vertices[v] = ground.allowed(v, vertices[v] + move);
   }
 
  private:
+  const Periods& periods_;  // images move together
   Vectors moves_;
   bool any_ = false;
 };
@@ -102,7 +105,7 @@ MendedPolygons mend_polygons(const MendingGround& ground, const PolygonOptions& 
   const std::vector<PolygonEdge> edges = polygon_edges(surface);
   const double least_um = options.least_edge * mean_length(edges, vertices);
   for (;; ++mended.passes) {
-    Moves moves(vertices.size());
+    Moves moves(surface);
     mended.left_edges = lengthen_edges(edges, ground, least_um, vertices, moves);
     mended.left_corners = sharpen_corners(surface, ground.normals, options.largest_angle_deg, moves);
     if (mended.passes == 0) {

@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "tissue/shapes/polygon_embryo.hpp"
-#include "tissue/shapes/polygon_surface.hpp"
 
 namespace plica {
 
@@ -16,14 +15,17 @@ struct SheetShape {
   // first, the surface is part of a cylinder; with both, of a torus: a sphere where they are equal, a saddle where they
   // have different signs. Lengths along x are those of the line y = 0.
   std::array<double, 2> curvature_per_um = {0, 0};
+  // Whether it repeats itself along x and y, so that it has no rim there; it is not bent along these. Cells are those
+  // whose middles lie in one period.
+  std::array<bool, 2> is_periodic = {false, false};
 };
 
 /// Apical faces up (+z), the middle of the patch at the origin. As many cells, evenly spread; other seeds spread them
-/// otherwise. MeshError when the patch would close upon itself or narrow to less than half of its length at y = 0.
+/// otherwise. MeshError when the patch would close upon itself or narrow to less than half of its length at y = 0, and
+/// as rectangle_polygons.
 Tissue build_sheet(const SheetShape& shape, std::size_t count, std::uint64_t seed, const PolygonCells& cells);
 
-/// The polygons of all places in the rectangle, its middle at the origin, that are nearer to their point than to any
-/// other, in the plane z = 0. MeshError when two points are in one place.
-PolygonSurface rectangle_polygons(const Vectors& points, double length_um, double width_um);
+/// The same about points in the flat rectangle, a cell each.
+Tissue build_sheet(const SheetShape& shape, const Vectors& points, const PolygonCells& cells);
 
 }  // namespace plica

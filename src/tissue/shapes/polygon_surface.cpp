@@ -29,7 +29,8 @@ std::vector<Side> sorted_sides(const PolygonSurface& surface) {
   for (std::size_t p = 0; p < surface.polygons.size(); ++p) {
     const auto& polygon = surface.polygons[p];
     for (std::size_t k = 0; k < polygon.size(); ++k) {
-      const std::size_t from = polygon[k], to = polygon[(k + 1) % polygon.size()];
+      const std::size_t from = surface.periods.original(polygon[k]),
+                        to = surface.periods.original(polygon[(k + 1) % polygon.size()]);
       sides.push_back({std::min(from, to), std::max(from, to), p, k, from < to});
     }
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/vector.hpp"
+#include "tissue/periods.hpp"
 
 namespace plica {
 
@@ -12,6 +13,7 @@ namespace plica {
 struct PolygonSurface {
   Vectors vertices;                                // um
   std::vector<std::vector<std::size_t>> polygons;  // vertices of each, counter-clockwise seen from outside
+  Periods periods = {};                            // sides of images of vertices are one edge
 };
 
 /// A side of two polygons, or of one at a rim.

@@ -9,6 +9,7 @@
 
 #include "support/mesh_error.hpp"
 #include "support/whole.hpp"
+#include "tissue/division.hpp"
 #include "tissue/mesh_quality.hpp"
 
 namespace plica {
@@ -85,15 +86,82 @@ TEST(PolygonSheet, SaysWhatIsWrong) {
         build_sheet({100, 200, {0.01, 0.013}}, 50, 1, cells);
       },
       "times as long at its sides as in its middle");
-  expect_mesh_error([] { rectangle_polygons({{0, 0, 0}, {0, 0, 0}}, 10, 10); }, "points 0 and 1 are in one place");
 }
 
-TEST(RectanglePolygons, OfTwoPointsAreHalves) {
-  const PolygonSurface halves = rectangle_polygons({{-1, 0, 0}, {2, 0, 0}}, 10, 4);
-  EXPECT_EQ(halves.vertices.size(), 6U);
-  EXPECT_NEAR(polygon_areas(halves)[0], 5.5 * 4, 1e-12);
-  EXPECT_NEAR(polygon_areas(halves)[1], 4.5 * 4, 1e-12);
-  EXPECT_EQ(polygon_edges(halves).size(), 7U);
+// How many walls a tissue has, and how many of them at a rim.
+std::pair<std::size_t, std::size_t> walls_of(const Tissue& tissue) {
+  const std::vector<Face> faces = faces_of(tissue, CellSide::lateral);
+  const auto at_rim = std::ranges::count_if(faces, [](const Face& face) { return !face.beyond; });
+  return {faces.size(), static_cast<std::size_t>(at_rim)};
+}
+
+TEST(PolygonSheet, OfTwoPeriodsHasNoRim) {
+  const SheetShape shape{90, 70, {0, 0}, {true, true}};
+  for (const PolygonCells& built :
+       {cells, PolygonCells{12, PolygonSplit::diagonals, 3}, PolygonCells{12, PolygonSplit::kites, 2}}) {
+    const Tissue tissue = build_sheet(shape, 60, 1, built);
+    const std::size_t faces_a_wall =
+        static_cast<std::size_t>(built.layers) * (built.split == PolygonSplit::kites ? 2 : 1);
+    EXPECT_EQ(walls_of(tissue), (std::pair{3 * 60 * faces_a_wall, std::size_t{0}}));
+    std::size_t neighbours = 0;
+    for (const auto& of_cell : wall_neighbours(tissue)) neighbours += of_cell.size();
+    EXPECT_EQ(neighbours, 6U * 60);
+    for (const auto* facets : {&tissue.apical_facets, &tissue.basal_facets}) {
+      EXPECT_TRUE(rim_of(tissue, *facets).empty());
+      EXPECT_FALSE(encloses(tissue, *facets));
+    }
+    EXPECT_NEAR(min_scaled_jacobian(tissue, tissue.rest_positions), 0.5, 0.35);
+    EXPECT_TRUE(why_indivisible(tissue));
+    EXPECT_EQ(tissue.remarks.size(), build_sheet({90, 70}, 60, 1, built).remarks.size());
+  }
+}
+
+TEST(PolygonSheet, ImagesAreAPeriodAway) {
+  const SheetShape shape{90, 70, {0, 0}, {true, true}};
+  const Tissue tissue = build_sheet(shape, 60, 1, cells);
+  ASSERT_EQ(tissue.hanging_shifts.size(), tissue.hanging.size());
+  Vectors placed = tissue.rest_positions;
+  tissue.place_hanging_positions(placed);
+  std::size_t images = 0, middles_across = 0;
+  for (std::size_t h = 0; h < tissue.hanging.size(); ++h) {
+    const NodeId node(tissue.free_node_count() + h);
+    const Vec3& shift = tissue.hanging_shifts[h];
+    EXPECT_LT((placed[node.index()] - tissue.rest_positions[node.index()]).norm(), 1e-10);
+    if (tissue.original(node) == node) {
+      middles_across += !shift.isZero(0);
+      continue;
+    }
+    EXPECT_EQ(shift, Vec3(90 * std::round(shift.x() / 90), 70 * std::round(shift.y() / 70), 0));
+    EXPECT_FALSE(shift.isZero(0));
+    ++images;
+  }
+  EXPECT_GT(images, 30U);
+  EXPECT_GT(middles_across, 0U);
+  // A vertex has one free node on either side of the sheet, and a cell two vertices of its own.
+  EXPECT_EQ(tissue.free_node_count(), 2U * 2 * 60);
+}
+
+TEST(PolygonSheet, OfOnePeriodMayBeATrough) {
+  for (const int axis : {0, 1}) {
+    SheetShape shape{90, 90};
+    shape.is_periodic[axis] = true;
+    shape.curvature_per_um[1 - axis] = 0.01;
+    const Tissue tissue = build_sheet(shape, 80, 1, cells);
+    double rim = 0;
+    for (const Face& face : faces_of(tissue, CellSide::lateral)) {
+      if (face.beyond) continue;
+      const auto& x = tissue.rest_positions;
+      rim += std::abs(x[face.nodes[1].index()][axis] - x[face.nodes[0].index()][axis]);
+    }
+    EXPECT_NEAR(rim, 2 * 90, 1e-9);
+    for (const Cell& cell : tissue.cells)
+      for (const NodeId corner : cell.apical_corners()) {
+        const Vec3& x = tissue.rest_positions[corner.index()];
+        EXPECT_NEAR(std::hypot(x[1 - axis], x.z() + 100 - 6), 100, 1e-9);
+      }
+    shape.curvature_per_um[axis] = 0.001;
+    expect_mesh_error([&] { build_sheet(shape, 80, 1, cells); }, "does not repeat itself along a direction");
+  }
 }
 
 }  // namespace

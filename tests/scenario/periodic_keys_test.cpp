@@ -1,0 +1,108 @@
+// [embryo] periodic: what it makes, and what does not go with it.
+#include <gtest/gtest.h>
+
+#include "scenario/load.hpp"
+#include "scenario/setup.hpp"
+#include "tissue/faces.hpp"
+
+namespace plica {
+namespace {
+
+const std::string sheet = R"([embryo]
+shape = "sheet"
+length_um = 60
+width_um = 50
+cell_count = 60
+cell_height_um = 10
+)";
+
+std::vector<std::string> complaints(const std::string& text) {
+  try {
+    const Scenario scenario = load_scenario({"test", "test.toml", text});
+    (void)make_solved_side(scenario, *make_model(scenario));
+  } catch (const ScenarioError& error) {
+    std::vector<std::string> lines;
+    for (const Diagnostic& diagnostic : error.diagnostics()) lines.push_back(diagnostic.text());
+    return lines;
+  }
+  return {};
+}
+
+std::unique_ptr<Model> model_of(const std::string& text) {
+  return make_model(load_scenario({"test", "test.toml", text}));
+}
+
+TEST(PeriodicKeys, WhatDoesNotGoWithThemIsRefused) {
+  const std::string both = sheet + "periodic = [\"x\", \"y\"]\n", along = sheet + "periodic = [\"x\"]\n";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {sheet + "periodic = [\"z\"]", "test.toml:7: embryo.periodic: \"z\" is not known; give a list of: x | y"},
+      {sheet + "periodic = [\"x\", \"x\"]",
+       "test.toml:7: embryo.periodic: \"x\" stands there twice; give each direction once"},
+      {"[embryo]\nshape = \"egg\"\nperiodic = [\"x\"]",
+       "test.toml:3: embryo.periodic: has no meaning with shape \"egg\"; remove it, or choose shape sheet"},
+      {along + "curvature_per_um = [0.004, 0.004]",
+       "test.toml:8: embryo.curvature_per_um: a sheet that is bent along x does not repeat itself along x; give 0 "
+       "there, or leave \"x\" out of embryo.periodic"},
+      {both + "rim = \"held\"",
+       "test.toml:8: embryo.rim: a sheet that is periodic along x and y has no rim; remove it, or leave a direction "
+       "out of embryo.periodic"},
+      {along + "[division.a]\nregion = \"all\"\nat_s = 5",
+       "test.toml:7: embryo.periodic: cells of a periodic sheet do not divide yet; remove it, or [division]"},
+      {along + "mirror = [\"y\"]",
+       "test.toml:8: embryo.mirror: no side of a periodic sheet stands for the whole; remove it, or embryo.periodic"},
+      {along + "[volume]\nmethod = \"projection\"",
+       "test.toml:7: embryo.periodic: the paper's algorithm does not know periodic sheets; remove it, or give "
+       "time.scheme \"newton\" and volume.method \"coupled\" or \"none\""},
+      {both + "[enclosed.yolk]\nvolume = \"held\"",
+       "test.toml:8: enclosed.yolk: a sheet encloses nothing; remove it, or choose shape \"pill\" or \"sphere\""},
+  };
+  for (const auto& [text, expected] : cases) {
+    SCOPED_TRACE(text);
+    EXPECT_EQ(complaints(text), std::vector{expected});
+  }
+  const std::vector<std::string> few = complaints(
+      "[embryo]\nshape = \"sheet\"\nlength_um = 10\nwidth_um = 90\n"
+      "cell_count = 20\ncell_height_um = 9\nperiodic = [\"x\"]");
+  ASSERT_EQ(few.size(), 1U);
+  EXPECT_NE(few[0].find("across the period: give a longer period or more cells, some four along it"), std::string::npos)
+      << few[0];
+}
+
+TEST(PeriodicKeys, ThePartsOfTheRimThatAreLeftAreHeld) {
+  const auto model = model_of(sheet + "periodic = [\"x\"]\nrim = \"held\"");
+  const Tissue& tissue = model->tissue;
+  std::size_t held = 0;
+  for (std::size_t n = 0; n < tissue.free_node_count(); ++n) {
+    const bool is_at_rim = std::abs(tissue.rest_positions[n].y()) == 25;
+    EXPECT_EQ(model->held[n], (std::array{is_at_rim, is_at_rim, is_at_rim})) << n;
+    held += is_at_rim;
+  }
+  EXPECT_GT(held, 20U);
+}
+
+// A hold that has only the far end of a period in its range holds what this is an image of.
+TEST(PeriodicKeys, AHoldOfAnImageHolds) {
+  const auto model = model_of(sheet + "periodic = [\"x\", \"y\"]\n[hold.end]\nregion = \"all\"\nx_um = [30, 40]\n");
+  std::size_t held = 0;
+  for (std::size_t n = 0; n < model->tissue.free_node_count(); ++n)
+    if (model->held[n][0]) {
+      const double x = model->tissue.rest_positions[n].x();
+      EXPECT_TRUE(x >= 30 - 1e-9 || x + 60 >= 30 - 1e-9) << x;
+      held += x < 0;
+    }
+  EXPECT_GT(held, 4U);
+}
+
+TEST(PeriodicKeys, RegionsReachAcrossTheEnd) {
+  const auto model = model_of(sheet +
+                              "periodic = [\"x\", \"y\"]\n[region.end]\nx_um = [24, 30]\n[region.beside]\n"
+                              "neighbours_of = \"end\"\n");
+  const CellSet& beside = model->tissue.regions.at("beside");
+  std::size_t far = 0;
+  for (std::size_t c = 0; c < beside.size(); ++c)
+    far += beside[c] && cell_centre(model->tissue.cells[c], model->tissue.rest_positions).x() < -20;
+  EXPECT_GT(far, 3U);
+}
+
+}  // namespace
+}  // namespace plica
