@@ -45,6 +45,16 @@ void check_is_one_layer(const Scenario& scenario, const Tissue& tissue, std::vec
                                  "give \"coupled\" or \"none\", or one layer of cells"));
 }
 
+// Corners of polygons lie on edges of their neighbours: the paper's algorithm moves them by themselves, and tears the
+// tissue there.
+void check_nodes_are_free(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
+  if (tissue.hanging.empty() || !is_as_in_the_paper(scenario)) return;
+  const bool projects = method_of(scenario.volume) == VolumeMethod::projection;
+  errors.push_back(diagnostic_at(scenario, projects ? "volume.method" : "time.scheme",
+                                 "the paper's algorithm knows cells of four sides only, and this tissue has polygons",
+                                 projects ? "give \"coupled\" or \"none\"" : "give \"newton\""));
+}
+
 // What acts on faces needs cells that have them: those between two layers have none.
 void check_faces(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   const auto check = [&](const std::string& table, const char* key, const std::string& side, const CellSet& region) {
@@ -201,6 +211,7 @@ void check_tissue(const Scenario& scenario, const Tissue& tissue) {
   if (scenario.volume.projection_surface == "embryo") check_encloses(scenario, tissue, errors);
   check_encloses_yolk(scenario, tissue, errors);
   if (method_of(scenario.volume) == VolumeMethod::projection) check_is_one_layer(scenario, tissue, errors);
+  check_nodes_are_free(scenario, tissue, errors);
   if (!errors.empty()) throw ScenarioError(std::move(errors));
 }
 

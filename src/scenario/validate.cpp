@@ -109,31 +109,34 @@ void check_shell_drag(const Scenario& scenario, Input& input) {
   if (!scenario.vitelline.enabled)
     input.report(key, "has no meaning without a shell",
                  is_patch(shape_of(scenario.embryo)) ? "remove it" : "remove it, or give enabled = true");
-  else if (method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton")
+  else if (is_as_in_the_paper(scenario))
     input.report(key, "drag of the shell goes with time.scheme \"newton\" and volumes that are not projected",
                  "remove it, or choose another scheme or volume.method");
 }
 
-void check_mirror(const Scenario& scenario, Input& input) {
-  const std::vector<std::string>& mirror = scenario.embryo.mirror;
-  const std::string address = "embryo.mirror";
-  if (mirror.empty() || !input.sound(address)) return;
-  if (std::set(mirror.begin(), mirror.end()).size() < mirror.size())
-    return input.report(address, fmt::format("\"{}\" stands there twice", mirror.back()), "give each plane once");
-  if (!scenario.divisions.empty())
-    input.report(address, "cells of which one side is solved do not divide", "remove it, or [division]");
-  if (scenario.time.scheme != "newton" || method_of(scenario.volume) == VolumeMethod::projection)
-    input.report(address, "the paper's algorithm solves whole embryos only",
+/// What goes with neither mirror planes nor periods, and that each is named once.
+void check_repeats(const Scenario& scenario, const std::vector<std::string>& named, const std::string& address,
+                   const std::string& cells, const std::string& embryos, Input& input) {
+  if (std::set(named.begin(), named.end()).size() < named.size())
+    return input.report(address, fmt::format("\"{}\" stands there twice", named.back()), "give each once");
+  if (!scenario.divisions.empty()) input.report(address, cells + " do not divide", "remove it, or [division]");
+  if (is_as_in_the_paper(scenario))
+    input.report(address, "the paper's algorithm does not know " + embryos,
                  "remove it, or give time.scheme \"newton\" and volume.method \"coupled\" or \"none\"");
+}
+
+void check_mirror(const Scenario& scenario, Input& input) {
+  const std::string address = "embryo.mirror";
+  if (scenario.embryo.mirror.empty() || !input.sound(address)) return;
+  check_repeats(scenario, scenario.embryo.mirror, address, "cells of which one side is solved", "halves of embryos",
+                input);
 }
 
 void check_periods(const Scenario& scenario, Input& input) {
   const EmbryoInput& embryo = scenario.embryo;
   const std::string address = "embryo.periodic";
   if (embryo.periodic.empty() || !input.sound(address)) return;
-  if (std::set(embryo.periodic.begin(), embryo.periodic.end()).size() < embryo.periodic.size())
-    return input.report(address, fmt::format("\"{}\" stands there twice", embryo.periodic.back()),
-                        "give each direction once");
+  check_repeats(scenario, embryo.periodic, address, "cells of a periodic sheet", "periodic sheets", input);
   for (const std::string& axis : embryo.periodic)
     if (input.sound("embryo.curvature_per_um") && embryo.curvature_per_um.size() == 2 &&
         embryo.curvature_per_um[meaning_of(words::periods, axis)] != 0)
@@ -144,11 +147,6 @@ void check_periods(const Scenario& scenario, Input& input) {
       input.sound("embryo.rim"))
     input.report("embryo.rim", "a sheet that is periodic along x and y has no rim",
                  "remove it, or leave a direction out of embryo.periodic");
-  if (!scenario.divisions.empty())
-    input.report(address, "cells of a periodic sheet do not divide yet", "remove it, or [division]");
-  if (scenario.time.scheme != "newton" || method_of(scenario.volume) == VolumeMethod::projection)
-    input.report(address, "the paper's algorithm does not know periodic sheets",
-                 "remove it, or give time.scheme \"newton\" and volume.method \"coupled\" or \"none\"");
 }
 
 void check_vitelline(Scenario& scenario, Input& input) {
@@ -187,8 +185,7 @@ void check_scheme(const Scenario& scenario, Input& input) {
     input.report("time.scheme",
                  "solves forces only, it cannot hold volumes as constraints (volume.method is \"coupled\")",
                  "give volume.method = \"projection\" or \"none\", or scheme = \"newton\"");
-  if (!scenario.divisions.empty() &&
-      (method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton"))
+  if (!scenario.divisions.empty() && is_as_in_the_paper(scenario))
     input.report(method_of(scenario.volume) == VolumeMethod::projection ? "volume.method" : "time.scheme",
                  "cells cannot divide under the paper's algorithm",
                  "give method = \"coupled\" or \"none\" and scheme = \"newton\", or no [division]");

@@ -137,7 +137,7 @@ void check_contact(const Scenario& scenario, Input& input) {
   if (contact.surface == "none") return;
   if (!scenario.divisions.empty())
     input.report("self_contact.surface", "contact does not go with division yet", "remove one of the two");
-  if (method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton")
+  if (is_as_in_the_paper(scenario))
     input.report("self_contact.surface", "contact goes with time.scheme \"newton\" and volumes that are not projected",
                  "give \"none\", or another scheme or volume.method");
   if (contact.search_um < 2 * contact.distance_um && input.sound("self_contact.search_um"))
@@ -159,8 +159,7 @@ void check_enclosed(Scenario& scenario, Input& input) {
     if (state != EnclosedState::compliant)
       drop(key, it.bulk_modulus_Pa, {}, table + ".volume", fmt::format("has no meaning with volume \"{}\"", it.volume),
            "remove it, or choose volume \"compliant\"", input);
-    if (state == EnclosedState::held &&
-        (method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton"))
+    if (state == EnclosedState::held && is_as_in_the_paper(scenario))
       input.report(table + ".volume",
                    "a held volume goes with time.scheme \"newton\" and volumes that are not projected",
                    "give \"compliant\", or another scheme or volume.method");

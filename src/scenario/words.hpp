@@ -186,5 +186,10 @@ inline bool is_patch(EmbryoShape shape) { return shape == EmbryoShape::block || 
 inline EmbryoShape shape_of(const EmbryoInput& embryo) { return meaning_of(words::embryo_shapes, embryo.shape); }
 inline ElasticModel model_of(const ElasticityInput& input) { return meaning_of(words::elastic_models, input.model); }
 inline VolumeMethod method_of(const VolumeInput& volume) { return meaning_of(words::volume_methods, volume.method); }
+/// Whether steps are solved, or volumes kept, as in the paper: not by constraints of a step that Newton's method
+/// solves.
+inline bool is_as_in_the_paper(const Scenario& scenario) {
+  return method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton";
+}
 
 }  // namespace plica

@@ -36,8 +36,7 @@ TEST(PeriodicKeys, WhatDoesNotGoWithThemIsRefused) {
   const std::string both = sheet + "periodic = [\"x\", \"y\"]\n", along = sheet + "periodic = [\"x\"]\n";
   const std::vector<std::pair<std::string, std::string>> cases = {
       {sheet + "periodic = [\"z\"]", "test.toml:7: embryo.periodic: \"z\" is not known; give a list of: x | y"},
-      {sheet + "periodic = [\"x\", \"x\"]",
-       "test.toml:7: embryo.periodic: \"x\" stands there twice; give each direction once"},
+      {sheet + "periodic = [\"x\", \"x\"]", "test.toml:7: embryo.periodic: \"x\" stands there twice; give each once"},
       {"[embryo]\nshape = \"egg\"\nperiodic = [\"x\"]",
        "test.toml:3: embryo.periodic: has no meaning with shape \"egg\"; remove it, or choose shape sheet"},
       {along + "curvature_per_um = [0.004, 0.004]",
@@ -47,7 +46,7 @@ TEST(PeriodicKeys, WhatDoesNotGoWithThemIsRefused) {
        "test.toml:8: embryo.rim: a sheet that is periodic along x and y has no rim; remove it, or leave a direction "
        "out of embryo.periodic"},
       {along + "[division.a]\nregion = \"all\"\nat_s = 5",
-       "test.toml:7: embryo.periodic: cells of a periodic sheet do not divide yet; remove it, or [division]"},
+       "test.toml:7: embryo.periodic: cells of a periodic sheet do not divide; remove it, or [division]"},
       {along + "mirror = [\"y\"]",
        "test.toml:8: embryo.mirror: no side of a periodic sheet stands for the whole; remove it, or embryo.periodic"},
       {along + "[volume]\nmethod = \"projection\"",

@@ -141,6 +141,12 @@ TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
          "contraction.c.diagonals: cell ");
   expect(egg + "elements = \"kites\"\n[division.d]\nregion = \"all\"\nat_s = 10\n",
          "made of kites, or of several layers");
+  expect(
+      egg + "[volume]\nmethod = \"projection\"\n",
+      "test.toml:9: volume.method: the paper's algorithm knows cells of four sides only, and this tissue has polygons; "
+      "give \"coupled\" or \"none\"");
+  expect(egg + "[time]\nscheme = \"linearly-implicit\"\n[volume]\nmethod = \"none\"\n",
+         "test.toml:9: time.scheme: the paper's algorithm knows cells of four sides only");
 }
 
 }  // namespace

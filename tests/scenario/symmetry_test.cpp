@@ -37,8 +37,7 @@ TEST(Symmetry, WhatHasNoImageIsRefused) {
       "embryo.mirror";
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"[embryo]\nmirror = [\"z\"]", "test.toml:2: embryo.mirror: \"z\" is not known; give a list of: x | y"},
-      {"[embryo]\nmirror = [\"y\", \"y\"]",
-       "test.toml:2: embryo.mirror: \"y\" stands there twice; give each plane once"},
+      {"[embryo]\nmirror = [\"y\", \"y\"]", "test.toml:2: embryo.mirror: \"y\" stands there twice; give each once"},
       {"[embryo]\ncells = [12, 7, 6]\nmirror = [\"y\"]",
        "test.toml:3: embryo.mirror: the plane y = 0 cuts cells in two, cell 36 for one; give an even number of cells "
        "along y"},
@@ -48,7 +47,8 @@ TEST(Symmetry, WhatHasNoImageIsRefused) {
       {pill + "[division.a]\nregion = \"all\"\nat_s = 5",
        "test.toml:6: embryo.mirror: cells of which one side is solved do not divide; remove it, or [division]"},
       {pill + "[volume]\nmethod = \"projection\"",
-       "test.toml:6: embryo.mirror: the paper's algorithm solves whole embryos only; remove it, or give time.scheme "
+       "test.toml:6: embryo.mirror: the paper's algorithm does not know halves of embryos; remove it, or give "
+       "time.scheme "
        "\"newton\" and volume.method \"coupled\" or \"none\""},
       {pill + "[contraction.a]\nregion = \"right\"\nstiffness_nN_per_um = 1",
        "test.toml:12: contraction.a.region: " + right},
