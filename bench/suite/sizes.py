@@ -35,7 +35,7 @@ class Embryo:
 
 @dataclass(frozen=True)
 class Furrow:
-    """A furrow that closes: a built-in scenario, and what is set in it."""
+    """A whole run with all its files: a built-in scenario, and what is set in it."""
     scenario: str
     settings: tuple = ()
 
@@ -44,7 +44,7 @@ class Furrow:
 
 
 FURROWS = [Furrow("furrow-slice"), Furrow("drosophila-living"), Furrow("drosophila-living", ('embryo.mirror=["y"]',)),
-           Furrow("drosophila-living", ('embryo.mirror=["x", "y"]',))]
+           Furrow("drosophila-living", ('embryo.mirror=["x", "y"]',)), Furrow("drosophila-egg"), Furrow("drosophila-atlas")]
 
 
 def by_elements(size):

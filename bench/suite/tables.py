@@ -131,7 +131,7 @@ def failures(results):
     return "".join(lines) + ("\n" if lines else "")
 
 
-TEXTS = {"runs": ("The whole Drosophila run", runs_text), "furrows": ("Furrows that close", furrows_text),
+TEXTS = {"runs": ("The whole Drosophila run", runs_text), "furrows": ("Furrows that close, and embryos of polygons", furrows_text),
          "steps": ("One step", steps_text), "kernels": ("Kernels", kernels_text)}
 
 

@@ -1,6 +1,7 @@
 #include "mechanics/obstacle.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
 
 #include "mechanics/model.hpp"
@@ -13,6 +14,7 @@ Contacts::Contacts(const Model& model) {
       nodes_.push_back(node);
       obstacles_.push_back(obstacle.get());
     }
+  last_.resize(nodes_.size());
   by_node_.resize(nodes_.size());
   std::iota(by_node_.begin(), by_node_.end(), std::size_t{0});
   std::ranges::stable_sort(by_node_, {}, [&](std::size_t contact) { return nodes_[contact]; });
@@ -22,6 +24,15 @@ Contacts::Contacts(const Model& model) {
     place_[by_node_[k]] = starts_.size() - 1;
   }
   starts_.push_back(by_node_.size());
+}
+
+Obstacle::Gap Contacts::gap(std::size_t contact, std::span<const Vec3> positions) const {
+  const Vec3& position = positions[nodes_[contact].index()];
+  std::optional<Answer>& last = last_[contact];
+  // To the bit, so that it does not matter what was asked before (0 and -0 are equal).
+  if (!last || std::memcmp(last->position.data(), position.data(), sizeof(Vec3)) != 0)
+    last = {position, obstacles_[contact]->gap(position)};
+  return last->gap;
 }
 
 }  // namespace plica

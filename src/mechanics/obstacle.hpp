@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -43,10 +44,10 @@ class Contacts {
 
   [[nodiscard]] std::size_t size() const { return nodes_.size(); }
   [[nodiscard]] NodeId node(std::size_t contact) const { return nodes_[contact]; }
-  /// The gap of that node, here among all nodes' positions.
-  [[nodiscard]] Obstacle::Gap gap(std::size_t contact, std::span<const Vec3> positions) const {
-    return obstacles_[contact]->gap(positions[nodes_[contact].index()]);
-  }
+  /// The gap of that node, here among all nodes' positions. A step asks several times for each place, and a measured
+  /// shell takes microseconds to answer: so the last answer is kept. One contact is asked about by one thread at a
+  /// time.
+  [[nodiscard]] Obstacle::Gap gap(std::size_t contact, std::span<const Vec3> positions) const;
 
   /// The contacts of each node that has any, by ascending node.
   [[nodiscard]] std::size_t node_count() const { return starts_.size() - 1; }
@@ -62,6 +63,12 @@ class Contacts {
   std::vector<std::size_t> place_;          // contacts: which of the nodes that have any
   std::vector<std::size_t> by_node_;        // contacts, sorted by node
   std::vector<std::size_t> starts_;         // node_count + 1, in by_node_
+
+  struct Answer {
+    Vec3 position;
+    Obstacle::Gap gap;
+  };
+  mutable std::vector<std::optional<Answer>> last_;  // contacts
 };
 
 }  // namespace plica

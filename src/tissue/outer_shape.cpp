@@ -24,11 +24,12 @@ OuterShape::Gap gap_of(const StarSurface& surface, const Vec3& point) {
   const double far_um = 0.2 * surface.least_radius();
   if (point.norm() < far_um) return {far_um, -Vec3::UnitZ(), Mat3::Zero()};
   const Vec3 above = surface.along_ray(point);
-  if ((above - point).norm() > far_um && above.squaredNorm() > point.squaredNorm()) {
+  const bool is_near = (above - point).norm() <= far_um;
+  if (!is_near && above.squaredNorm() > point.squaredNorm()) {
     const Vec3 outward = surface.bend(point).normal;
     return {(above - point).dot(outward), -outward, Mat3::Zero()};
   }
-  const ClosestOnSurface closest = surface.closest(point);
+  const ClosestOnSurface closest = is_near ? surface.closest_by_ray(point) : surface.closest(point);
   Mat3 hessian = Mat3::Zero();
   for (const int i : {0, 1}) {
     const Vec3& tangent = closest.bend.tangents[i];

@@ -55,6 +55,7 @@ struct StarSurface::Chart {
     return symmetric(way.dot(second[0]), way.dot(second[1]), way.dot(second[2]));
   }
   [[nodiscard]] SurfaceBend bend() const;
+  [[nodiscard]] ClosestOnSurface seen_from(const Vec3& point) const;
 
  private:
   static Eigen::Matrix2d symmetric(double aa, double ab, double bb) {
@@ -168,6 +169,8 @@ StarSurface::Chart StarSurface::nearest(const Vec3& point, Vec3 direction) const
     const Vec3 next = (direction + step[0] * c.tangents[0] + step[1] * c.tangents[1]).normalized();
     const Chart next_chart = chart(next);
     const double next_distance = (next_chart.X - point).squaredNorm();
+    // The next step would be as small as the square of this one.
+    if (step_um < 1e-6 * half_axes_.minCoeff() && shift == 0) return next_chart;
     if (step_um < 1e-10 * half_axes_.minCoeff()) return next_distance <= distance ? next_chart : c;
     if (next_distance <= distance * (1 + 1e-14)) {
       direction = next;
@@ -208,8 +211,16 @@ ClosestOnSurface StarSurface::closest(const Vec3& point) const {
     best = squared_distance;
     c = found;
   }
-  const SurfaceBend bend = c.bend();
-  return {c.X, bend.normal, std::copysign((point - c.X).norm(), (point - c.X).dot(bend.normal)), bend};
+  return c.seen_from(point);
+}
+
+ClosestOnSurface StarSurface::closest_by_ray(const Vec3& point) const {
+  return nearest(point, scaled_direction(point)).seen_from(point);
+}
+
+ClosestOnSurface StarSurface::Chart::seen_from(const Vec3& point) const {
+  const SurfaceBend here = bend();
+  return {X, here.normal, std::copysign((point - X).norm(), (point - X).dot(here.normal)), here};
 }
 
 SurfaceBend StarSurface::bend(const Vec3& point) const { return chart(scaled_direction(point)).bend(); }

@@ -55,6 +55,9 @@ class StarSurface {
   /// The nearest place, to 1e-9 of the size, from outside and from inside; where several are nearest, one of them.
   [[nodiscard]] ClosestOnSurface closest(const Vec3& point) const;
 
+  /// The same for a point that lies next to the surface, within a fifth of the least radius of curvature. Quick.
+  [[nodiscard]] ClosestOnSurface closest_by_ray(const Vec3& point) const;
+
   /// Normal and bend where the ray through the point meets the surface.
   [[nodiscard]] SurfaceBend bend(const Vec3& point) const;
 
