@@ -1,6 +1,7 @@
 // Experiments on a scenario, and what is expected of them before they are run: a file, read and checked.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,16 +35,18 @@ enum class Comparing { nothing, ratio, difference };
 /// A measured number of an experiment, and which values agree with what was observed.
 struct Outcome {
   std::string name;
-  std::string question, observed, source, because;  // those of the experiment, where it has none of its own
+  std::string question, observed, source, because;  // those of the experiment where it has no question of its own
   Role role = Role::predicted;
   std::optional<Judgement> prediction;  // what was expected of it
   std::string quantity;                 // a number of summary.json
   Comparing comparing = Comparing::nothing;
-  std::size_t other = 0;     // the experiment that it is compared with
-  double low = 0, high = 0;  // a hit within; infinite where there is no bound
-  double margin = 0;         // undecided so far outside of these
-  bool hit_if_none = false;  // the number does not exist, such as the time of what never happens: a hit, else a miss
-  int line = 0;              // of the file
+  std::size_t other = 0;  // the experiment that it is compared with
+  // A hit within; infinite where there is no bound, and from inf to -inf where no number is a hit.
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  double margin = 0;         // undecided so far outside
+  bool hit_if_none = false;  // a number that does not exist, as the time of what never happens, is a hit, else a miss
+  [[nodiscard]] bool has_band() const { return low <= high; }
+  int line = 0;  // of the file
 };
 
 /// A scenario with some keys changed, run once with each draw.

@@ -48,7 +48,8 @@ Figure outcome_figure(const ExperimentResults& results, std::size_t experiment, 
                                results.experiments().experiments[outcome.other].name)},
             {},
             {},
-            {{"hit", outcome.low, outcome.high}}};
+            {}};
+  if (outcome.has_band()) plot.horizontal.push_back({"hit", outcome.low, outcome.high});
   for (const Judgement judgement : {Judgement::hit, Judgement::miss, Judgement::undecided}) {
     Curve curve{word_of(judgement), {}, {}, true, false};
     for (std::size_t d = 0; d < results.draws(experiment); ++d) {
@@ -57,7 +58,7 @@ Figure outcome_figure(const ExperimentResults& results, std::size_t experiment, 
       curve.x.push_back(static_cast<double>(d) + 1);
       curve.y.push_back(*result.number);
     }
-    if (!curve.x.empty()) plot.curves.push_back(std::move(curve));
+    plot.curves.push_back(std::move(curve));
   }
   return chart(
       fmt::format("{}-{}", name, outcome.name), plot,

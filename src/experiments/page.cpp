@@ -174,7 +174,7 @@ void add_experiment(ExperimentsPage& page, const ExperimentResults& results, std
     const std::string source = outcome.source.empty() ? "" : fmt::format(" ({})", outcome.source);
     std::string text = fmt::format("**{}.** {}", outcome.name, outcome.question);
     if (!outcome.observed.empty()) text += fmt::format(" Observed: {}{}", outcome.observed, source);
-    text += fmt::format(" Measured: {} is a hit.", criterion_text(outcome, results.experiments()));
+    text += fmt::format(" A hit: {}.", criterion_text(outcome, results.experiments()));
     if (outcome.prediction) text += fmt::format(" Expected before it was run: {}.", word_of(*outcome.prediction));
     if (!outcome.because.empty()) text += " Because: " + outcome.because;
     document.blocks.emplace_back(Paragraph{std::move(text)});
@@ -210,6 +210,7 @@ std::string criterion_text(const Outcome& outcome, const Experiments& experiment
   if (outcome.comparing != Comparing::nothing)
     text += fmt::format(" {} that of {}", outcome.comparing == Comparing::ratio ? "over" : "minus",
                         experiments.experiments[outcome.other].name);
+  if (!outcome.has_band()) return text + ": none";
   if (std::isfinite(outcome.low) && std::isfinite(outcome.high))
     text += fmt::format(", {} to {}", bound(outcome.low), bound(outcome.high));
   else if (std::isfinite(outcome.low))

@@ -128,8 +128,10 @@ class Reader : TomlReader {
     }
   }
 
-  // `told`, where the table does not say otherwise.
-  Outcome told_of(const toml::table& given, const std::string& before, Outcome told) {
+  // Of an experiment, or of an outcome: what is not told of it is `usual`. What else is told belongs to a question.
+  Outcome told_of(const toml::table& given, const std::string& before, const Outcome& usual) {
+    Outcome told = usual;
+    if (given.contains("question")) told = Outcome(), told.role = usual.role;
     const auto take = [&](const char* key, std::string& text) {
       if (auto own = get<std::string>(given, key, before, "a text")) text = std::move(*own);
     };
@@ -169,6 +171,7 @@ class Reader : TomlReader {
     outcome.margin = get<double>(given, "undecided", before, "a number").value_or(0);
     if (outcome.margin < 0) report(*given.get("undecided"), before + "undecided", "is below 0", "give 0 or more");
     const toml::node* hit = given.get("hit");
+    if (hit == nullptr && outcome.hit_if_none) return;
     if (hit == nullptr) return report(node, before + "hit", "is missing", "give [from, to]; -inf or inf is no bound");
     const toml::array* bounds = hit->as_array();
     const bool is_pair =
