@@ -8,9 +8,9 @@
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
 #include "app/runs_progress.hpp"
-#include "app/words.hpp"
 #include "core/errors.hpp"
 #include "core/threads.hpp"
+#include "core/words.hpp"
 #include "experiments/page.hpp"
 #include "paper/reproduce.hpp"
 
@@ -79,6 +79,8 @@ int reproduce_experiments(const ReproduceCommand& command) {
   begin_experiments(out, experiments, command.overwrite);
   ExperimentResults results(experiments, out, command.quick);
   catch_interruptions();
+  if (!command.quiet)
+    fmt::print(stderr, "{}: {}, of which {} ended\n", experiments.name, plural(results.runs(), "run"), results.ended());
   RunsProgress progress(results.ended(), results.runs(), command.quiet);
   const auto on_run = [&] { progress.show(results.ended(), results.not_solved().size()); };
   run_experiments(results, command.at_a_time, {on_run, interrupted});

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "app/words.hpp"
+#include "core/words.hpp"
 
 namespace plica {
 

@@ -65,7 +65,7 @@ struct Experiments {
   StudyDesign draws;
   std::vector<Experiment> experiments;
 
-  /// What a run says otherwise than its experiment's scenario, as of --set.
+  /// What a run says otherwise than its experiment's scenario, as of --set: its draw, then what the experiment changes.
   [[nodiscard]] std::vector<std::string> overrides(std::size_t experiment, std::size_t draw) const;
   /// ScenarioError, in the lines of the files that it comes from.
   [[nodiscard]] Scenario scenario(std::size_t experiment, std::size_t draw) const;

@@ -10,6 +10,7 @@
 
 #include "core/errors.hpp"
 #include "core/version.hpp"
+#include "core/words.hpp"
 #include "show/chart.hpp"
 #include "show/named.hpp"
 #include "show/run_pictures.hpp"
@@ -20,10 +21,6 @@ namespace {
 constexpr std::array roles_in_order = {Role::predicted, Role::selected, Role::seen, Role::fitted};
 
 std::string number(std::optional<double> value) { return value ? fmt::format("{:.4g}", *value + 0.0) : "none"; }
-
-std::string plural(std::size_t count, const std::string& noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
 
 // Its verdict stands out; the role of what was predicted, too.
 std::string marked(Judgement judgement) { return fmt::format("*{}*", word_of(judgement)); }

@@ -45,15 +45,18 @@ class Reader : TomlReader {
   explicit Reader(Experiments& result) : TomlReader(result.file), result_(result) {}
 
   void read(const toml::table& document) {
+    if (!document.contains("experiment"))
+      throw ScenarioError({{result_.file, 0, "", "holds no experiments", "write [experiment.NAME] and its outcomes"}});
     refuse_unknown(document, "", {"format", "title", "scenario", "draws", "experiment"});
     if (const toml::node* format = document.get("format"); format && format->value<int>() != 1)
       report(*format, "format", "is not one that this plica reads", "write format = 1");
     result_.title = get<std::string>(document, "title", "", "a text").value_or(result_.name);
+    has_usual_scenario_ = document.contains("scenario");
     usual_scenario_ = scenario_beside(document, "");
     read_draws(document);
     const toml::table* all = table(document, "experiment");
-    if (all == nullptr || all->empty())
-      report_at(0, "experiment", "is missing", "write [experiment.NAME] and what is to be measured");
+    if (all != nullptr && all->empty())
+      report_at(0, "experiment", "is empty", "write [experiment.NAME] and its outcomes");
     if (all != nullptr) {
       for (const auto& [name, node] : in_order(*all)) names_.push_back(name);
       for (const auto& [name, node] : in_order(*all)) read_experiment(name, *node);
@@ -89,9 +92,14 @@ class Reader : TomlReader {
     }
   }
 
+  // Files have these names.
+  void require_name(const toml::node& node, const std::string& name, const std::string& place) {
+    if (!is_plain_name(name)) report(node, place, "is no name", "use letters, digits, \"_\" and \"-\"");
+  }
+
   void read_experiment(const std::string& name, const toml::node& node) {
     const std::string before = "experiment." + name + ".";
-    if (!is_plain_name(name)) report(node, "experiment." + name, "is no name", "use letters, digits, \"_\" and \"-\"");
+    require_name(node, name, "experiment." + name);
     const toml::table* given = node.as_table();
     if (given == nullptr)
       return report(node, "experiment." + name, "is not a table", fmt::format("write [experiment.{}]", name));
@@ -118,7 +126,7 @@ class Reader : TomlReader {
     std::optional<ScenarioSource> found = given.contains("scenario") ? scenario_beside(given, before) : usual_scenario_;
     if (found)
       study.scenario = std::move(*found);
-    else if (!given.contains("scenario") && diagnostics_.empty())
+    else if (!given.contains("scenario") && !has_usual_scenario_)
       report(given, before + "scenario", "is missing", "name a built-in one, or a file beside this one");
     if (const toml::table* set = table(given, "set", before))
       read_overrides(*set, study.overrides, study.override_lines);
@@ -149,6 +157,7 @@ class Reader : TomlReader {
     if (given == nullptr)
       return report(node, place, "is not a table",
                     fmt::format("outcomes have names: write [{}outcome.NAME]", of_experiment));
+    require_name(node, name, place);
     refuse_unknown(*given, before, with_told_keys({"quantity", "over", "minus", "hit", "undecided", "hit_if_none"}));
     Outcome outcome = told_of(*given, before, usual);
     outcome.name = name, outcome.line = static_cast<int>(node.source().begin.line);
@@ -219,6 +228,7 @@ class Reader : TomlReader {
   }
 
   Experiments& result_;
+  bool has_usual_scenario_ = false;
   std::optional<ScenarioSource> usual_scenario_;
   std::vector<std::string> names_;
 };
@@ -243,8 +253,8 @@ Experiments read_experiments(const std::string& name_or_file) {
     return parse_experiments(name_or_file, std::string(file->path), std::string(file->text));
   std::error_code error;
   if (!fs::exists(name_or_file, error))
-    throw UsageError(fmt::format("\"{}\" is neither built in nor a file; give paper, living, or a file of experiments",
-                                 name_or_file));
+    throw UsageError(fmt::format(
+        "\"{}\" is no file and no built-in experiments; give paper, living, or a file of experiments", name_or_file));
   return parse_experiments(fs::path(name_or_file).stem().string(), name_or_file, read_file(name_or_file));
 }
 

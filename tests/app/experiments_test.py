@@ -196,7 +196,7 @@ hit = [0.4, 0.6]
         self.assertIn("*undecided* |", page.split("## block")[0])
 
     def test_what_cannot_be_done_says_so_and_leaves_nothing(self):
-        for what, words in (("livign", "neither built in nor a file"), (self.folder, "Is a directory")):
+        for what, words in (("livign", "no file and no built-in experiments"), (self.folder, "Is a directory")):
             result = plica("reproduce", what, "--out", self.out)
             self.assertIn(result.returncode, (2, 4))
             self.assertIn(words, self.assert_messages(result)[0])

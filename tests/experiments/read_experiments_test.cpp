@@ -100,10 +100,17 @@ TEST_F(ReadExperiments, TakesWhatTheFileSays) {
   EXPECT_EQ(rest.observed, "");  // which is told of another question
   EXPECT_TRUE(rest.hit_if_none && !rest.has_band());
   EXPECT_EQ(experiments.overrides(1, 1),
-            (std::vector<std::string>{"contraction.all.across_ratio=0.5", "contraction.all.stiffness_nN_per_um=2",
-                                      "time.end_s=5"}));
+            (std::vector<std::string>{"contraction.all.stiffness_nN_per_um=2", "time.end_s=5",
+                                      "contraction.all.across_ratio=0.5"}));
   EXPECT_EQ(experiments.scenario(0, 2).contractions.begin()->second.stiffness_nN_per_um, 3);
   check_experiments(experiments);
+}
+
+TEST_F(ReadExperiments, ChangeWhatADrawSets) {
+  std::string text = good;
+  text.replace(text.find("across_ratio\" = 0.5"), 19, "stiffness_nN_per_um\" = 9");
+  for (std::size_t draw = 0; draw < 2; ++draw)
+    EXPECT_EQ(parsed(text).scenario(1, draw).contractions.begin()->second.stiffness_nN_per_um, 9);
 }
 
 TEST_F(ReadExperiments, WithoutDrawsRunOnce) {
@@ -197,11 +204,16 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
     refused += one.complaint.empty() ? 0 : 1;
   }
   EXPECT_GE(refused, 25);
+  EXPECT_NE(complaint("[experiment.a.outcome.\"../b\"]\n").find("experiment.a.outcome.../b: is no name"),
+            std::string::npos);
+  EXPECT_NE(complaint("[experiment.a.outcome.b]\n").find("experiment.a.scenario: is missing"), std::string::npos);
   std::string slow = good;
   slow.erase(slow.find("slow = true\n"), 12);
   slow.insert(slow.find("[experiment.reference.outcome.end]"), "[experiment.reference]\nslow = true\n");
   EXPECT_NE(complaint(slow).find("is compared with reference, which is slow"), std::string::npos);
-  EXPECT_NE(complaint("").find("experiment: is missing; write [experiment.NAME]"), std::string::npos);
+  EXPECT_NE(complaint("").find("mine.toml: holds no experiments; write [experiment.NAME]"), std::string::npos);
+  EXPECT_NE(complaint(support::pulled_block().text).find("holds no experiments"), std::string::npos);
+  EXPECT_NE(complaint("[experiment]\n").find("experiment: is empty"), std::string::npos);
   EXPECT_NE(complaint("[experiment.a]\nscenario = \"block.toml\"\n").find("experiment.a.outcome: is missing"),
             std::string::npos);
 }

@@ -47,7 +47,7 @@ def test_the_table(file: Path, tmp_path: Path) -> None:
 
 
 def test_errors(file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(ValueError, match="neither built in nor a file"):
+    with pytest.raises(ValueError, match="no file and no built-in experiments"):
         plica.reproduce("livign", tmp_path / "out")
     with pytest.raises(ValueError, match="on the command line"):
         plica.reproduce("paper", tmp_path / "out")
