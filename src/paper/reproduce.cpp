@@ -8,6 +8,7 @@ ReproduceOutcome reproduce(const ReproduceOptions& options,
                            const std::function<void(std::size_t done, std::size_t count)>& tell,
                            const std::function<bool()>& interrupted) {
   const Plan plan = make_plan(options.quick);
+  tell(0, plan.runs.size());
   const std::vector<BatchOutcome> ends = run_batch(
       options.directory, plan.runs, options.at_a_time,
       [&](std::size_t done, const BatchRun&) { tell(done, plan.runs.size()); }, interrupted);
