@@ -12,6 +12,7 @@
 #include "core/threads.hpp"
 #include "record/archive.hpp"
 #include "record/results.hpp"
+#include "record/run_directory.hpp"
 #include "record/series_rows.hpp"
 #include "scenario/differences.hpp"
 #include "scenario/print.hpp"
@@ -55,6 +56,14 @@ void write_short(const fs::path& folder, const Scenario& scenario, const RunSumm
   write_file(folder / "scenario.toml", resolved_toml(scenario));
   write_file(folder / "series.csv", series);
   write_file(folder / "summary.json", run.summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+}
+
+// Whether there is what experiments that were killed as they began do not leave.
+bool holds_something_else(const fs::path& directory) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error))
+    if (name_when_whole(entry.path().filename()) != "experiments.toml") return true;
+  return fs::exists(directory, error) && !fs::is_directory(directory, error);
 }
 
 std::string number(std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; }
@@ -127,6 +136,7 @@ void ExperimentResults::take(const Run& run, const std::string& status, const st
   result = {};
   if (!status.empty()) {
     result.status = status, result.reason = reason;
+    std::ranges::replace(result.reason, '\n', ' ');  // it is told in a row
     return;
   }
   const Json summary = read_summary(folder(run.experiment, run.draw));
@@ -177,7 +187,7 @@ std::string ExperimentResults::csv() const {
 void begin_experiments(const fs::path& directory, const Experiments& experiments, bool overwrite) {
   std::error_code error;
   const bool holds_them = is_there(directory / "experiments.toml");
-  if (!holds_them && is_there(directory) && !fs::is_empty(directory, error))
+  if (!holds_them && holds_something_else(directory))
     throw UsageError(directory.string() + ": is there already and holds no experiments; give another --out");
   if (holds_them && overwrite) {
     for (const char* name : {"runs", "unfinished", "figures"}) fs::remove_all(directory / name, error);

@@ -166,6 +166,8 @@ class Experiments(CommandLine):
             self.assert_whole(run)
 
     def test_quick_is_the_first_draw_without_slow_experiments(self):
+        self.out.mkdir()
+        (self.out / "experiments.toml.17-0.part").write_text("ti")  # killed as it began
         self.reproduce("--quick", "--quiet")
         self.assertEqual([(row["experiment"], row["draw"]) for row in self.rows()], [("reference", "1"), ("half", "1"), ("half", "1")])
         self.assertIn("A quick run", (self.out / "mine.md").read_text())
