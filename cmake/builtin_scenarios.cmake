@@ -1,5 +1,5 @@
-# Puts the files of scenarios/ into the program, so that `plica run drosophila` needs no files beside it; and the tables
-# of scenarios/data/, as bytes, since compilers limit the length of a text.
+# Puts the files of scenarios/ into the program, so that `plica run drosophila` needs no files beside it; the tables of
+# scenarios/data/, as bytes, since compilers limit the length of a text; and the experiments of scenarios/living/.
 file(GLOB scenario_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scenarios/*.toml)
 set(builtin_scenarios_cpp ${CMAKE_BINARY_DIR}/generated/builtin_scenarios.cpp)
 set(entries "")
@@ -19,6 +19,15 @@ foreach(file ${table_files})
   string(APPEND table_bytes "const char ${name}[] = {${bytes}};\n")
   string(APPEND tables "    {\"${name}\", {${name}, sizeof ${name}}},\n")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+endforeach()
+# Experiments, with the scenarios and draws that lie beside them.
+file(GLOB experiment_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/scenarios
+  ${PROJECT_SOURCE_DIR}/scenarios/living/*.toml ${PROJECT_SOURCE_DIR}/scenarios/living/*.csv)
+set(files "")
+foreach(path ${experiment_files})
+  file(READ ${PROJECT_SOURCE_DIR}/scenarios/${path} text)
+  string(APPEND files "    {\"${path}\", R\"FILE(${text})FILE\"},\n")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scenarios/${path})
 endforeach()
 file(CONFIGURE OUTPUT ${builtin_scenarios_cpp} CONTENT [[
 // Generated from scenarios/*.toml by cmake/builtin_scenarios.cmake.
@@ -40,6 +49,12 @@ const std::vector<BuiltinScenario>& builtin_scenarios() {
   static const std::vector<BuiltinScenario> scenarios = {
 @entries@  };
   return scenarios;
+}
+
+const std::vector<BuiltinFile>& builtin_experiment_files() {
+  static const std::vector<BuiltinFile> files = {
+@files@  };
+  return files;
 }
 
 }  // namespace plica

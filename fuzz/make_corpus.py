@@ -91,6 +91,9 @@ def studies():
     write("study", "drawn.toml", b'scenario = "xenopus"\n[set]\ntime.end_min = 1\n[vary]\ncontraction.apical.stiffness_nN_per_um = '
           b'{ mean = 5, sd = 1, low = 3 }\ntime.tolerance_um = { low = 0.01, high = 1, scale = "log" }\nembryo.cells = '
           b'{ values = [[5, 5, 4], [7, 7, 4]] }\n[design]\nkind = "latin-hypercube"\npoints = 7\nseed = 3\n[keep]\neach = "full"\n')
+    write("study", "experiments.toml", b'title = "t"\nscenario = "xenopus"\n[experiment.a.outcome.depth]\nquestion = "How deep?"\nrole = "fitted"\n'
+          b'quantity = "furrow_depth_um"\nhit = [1, inf]\nundecided = 0.5\n[experiment.b]\nquestion = "Deeper?"\nprediction = "hit"\ndraws = 3\n'
+          b'slow = true\nset = { "time.end_min" = 2 }\n[experiment.b.outcome.depth]\nquantity = "furrow_depth_um"\nover = "a"\nhit_if_none = true\n')
     write("study", "points.csv", b'run,point,replicate,a.b,c,seeds\n0,1,1,"[1, 2]",3.5,a.seed=1 b.seed=2\n1,2,1,"""x""",1e9,\n')
 
 

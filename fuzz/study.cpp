@@ -1,6 +1,7 @@
 #include <string>
 
 #include "core/errors.hpp"
+#include "experiments/experiments.hpp"
 #include "study/csv_fields.hpp"
 #include "study/design.hpp"
 #include "targets.hpp"
@@ -20,11 +21,31 @@ void check_points(const std::string& text) try {
 } catch (const FileError&) {
 }
 
+void check_messages(const ScenarioError& error) {
+  require(!error.diagnostics().empty());
+  for (const Diagnostic& diagnostic : error.diagnostics())
+    require(!diagnostic.problem.empty() && diagnostic.text().find('\n') == std::string::npos);
+}
+
+// Experiments that are some have outcomes, and each of these a question, a quantity and what it is compared with.
+void check_as_experiments(const std::string& text) try {
+  const Experiments all = parse_experiments("fuzzed", "/nowhere/fuzzed.toml", text);
+  require(!all.experiments.empty());
+  for (const Experiment& experiment : all.experiments) {
+    require(!experiment.outcomes.empty() && experiment.draws >= 1);
+    for (const Outcome& outcome : experiment.outcomes)
+      require(!outcome.question.empty() && !outcome.quantity.empty() && outcome.other < all.experiments.size());
+  }
+} catch (const ScenarioError& error) {
+  check_messages(error);
+}
+
 }  // namespace
 
 bool fuzz_study(std::string_view bytes) try {
   const std::string text(bytes);
   check_points(text);
+  check_as_experiments(text);
   const StudyInput study = parse_study("fuzzed", "/nowhere/fuzzed.toml", text);
   require(!study.keys.empty() || study.kind == DesignKind::file);
   // Designs that need no scenario, of a size that is made at once.
@@ -35,9 +56,7 @@ bool fuzz_study(std::string_view bytes) try {
   for (const StudyPoint& run : design.runs) require(run.values.size() == study.keys.size());
   return true;
 } catch (const ScenarioError& error) {
-  require(!error.diagnostics().empty());
-  for (const Diagnostic& diagnostic : error.diagnostics())
-    require(!diagnostic.problem.empty() && diagnostic.text().find('\n') == std::string::npos);
+  check_messages(error);
   return false;
 }
 

@@ -22,7 +22,7 @@ bool fuzz_polygons(std::string_view bytes);
 /// the right checksum is added, so that damage gets beyond it.
 bool fuzz_checkpoint(std::string_view bytes);
 
-/// A study's text, its design where that is small, and the same bytes as a list of points.
+/// A study's text, its design where that is small, and the same bytes as a list of points and as experiments.
 bool fuzz_study(std::string_view bytes);
 
 }  // namespace plica

@@ -12,6 +12,7 @@ from ._core import version as __version__
 from .answers import verdict
 from .emulator import Emulator
 from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaError, ScenarioError
+from .experiments import reproduce
 from .indices import SobolIndices
 from .polygons import Polygons, polygons_of_labels
 from .posteriors import Posterior, posterior
@@ -53,5 +54,6 @@ __all__ = [
     "polygons_of_labels",
     "posterior",
     "render",
+    "reproduce",
     "verdict",
 ]

@@ -1,20 +1,24 @@
 #include <fmt/format.h>
-#include <unistd.h>
+#include <fmt/ranges.h>
 
-#include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
+#include "app/runs_progress.hpp"
 #include "core/errors.hpp"
+#include "core/threads.hpp"
+#include "core/words.hpp"
+#include "experiments/page.hpp"
 #include "paper/reproduce.hpp"
 
 namespace plica {
 namespace {
 
 struct ReproduceCommand {
-  std::string out;
+  std::string what = "paper", out;
   bool quick = false, overwrite = false, quiet = false;
   int at_a_time = 2;
 };
@@ -31,37 +35,18 @@ void require_no_results(const std::filesystem::path& out, bool overwrite) {
       throw FileError(out.string() + ": holds results already; give another --out, or --overwrite to replace them");
 }
 
-// A line that changes on a terminal; when piped, one every ten seconds.
-class BatchProgress {
- public:
-  explicit BatchProgress(bool quiet) : quiet_(quiet), on_terminal_(::isatty(STDERR_FILENO) != 0) {}
-
-  void show(std::size_t done, std::size_t count, const std::string& id) {
-    if (quiet_) return;
-    const auto now = Clock::now();
-    const auto seconds = [&](Clock::time_point since) { return std::chrono::duration<double>(now - since).count(); };
-    if (!on_terminal_ && done < count && seconds(last_) < 10) return;
-    last_ = now;
-    const std::string line = fmt::format("{} of {} runs done in {:.0f} s; last: {}", done, count, seconds(start_), id);
-    if (on_terminal_)
-      fmt::print(stderr, "\r{:<78}{}", line, done == count ? "\n" : "");
-    else
-      fmt::print(stderr, "{}\n", line);
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  bool quiet_, on_terminal_;
-  Clock::time_point start_ = Clock::now(), last_ = start_;
-};
-
 int reproduce_paper(const ReproduceCommand& command) {
   require_no_results(command.out, command.overwrite);
   catch_interruptions();
-  BatchProgress progress(command.quiet);
+  std::optional<RunsProgress> progress;
   const ReproduceOutcome outcome = reproduce(
       {command.out, command.quick, command.at_a_time},
-      [&](std::size_t done, std::size_t count, const std::string& id) { progress.show(done, count, id); }, interrupted);
+      [&](std::size_t done, std::size_t count) {
+        if (!progress) progress.emplace(0, count, command.quiet);
+        progress->show(done);
+      },
+      interrupted);
+  if (progress) progress->finish();
   if (outcome.interrupted) return interrupted_status();
   for (const std::string& run : outcome.failed_runs) fmt::print(stderr, "plica: a run failed: {}\n", run);
   for (const std::string& figure : outcome.missing_figures) fmt::print(stderr, "plica: missing: {}\n", figure);
@@ -73,23 +58,70 @@ int reproduce_paper(const ReproduceCommand& command) {
   return outcome.failed_runs.empty() ? exit_done : exit_gave_up;
 }
 
+// What the page says, in a few lines.
+void print_verdicts(const ExperimentResults& results, const ExperimentsPage& page, const std::string& file) {
+  std::vector<std::string> texts;
+  std::size_t outcomes = 0;
+  for (const auto& [verdict, count] : page.verdicts) {
+    texts.push_back(fmt::format("{} {}", count, word_of(verdict)));
+    outcomes += count;
+  }
+  fmt::print("{}: {}: {}\n  {}\n", results.experiments().name, plural(outcomes, "outcome"), fmt::join(texts, ", "),
+             file);
+}
+
+int reproduce_experiments(const ReproduceCommand& command) {
+  if (command.out.empty()) throw UsageError("--out is empty; give the directory for the results");
+  const std::filesystem::path out = command.out;
+  const ThreadCount one(1);
+  const Experiments experiments = read_experiments(command.what);
+  check_experiments(experiments);
+  begin_experiments(out, experiments, command.overwrite);
+  ExperimentResults results(experiments, out, command.quick);
+  catch_interruptions();
+  if (!command.quiet)
+    fmt::print(stderr, "{}: {}, of which {} ended\n", experiments.name, plural(results.runs(), "run"), results.ended());
+  RunsProgress progress(results.ended(), results.runs(), command.quiet);
+  const auto on_run = [&] { progress.show(results.ended(), results.not_solved().size()); };
+  run_experiments(results, command.at_a_time, {on_run, interrupted});
+  progress.finish();
+  if (interrupted()) {
+    fmt::print(stderr, "plica: interrupted; the same command goes on\n");
+    return interrupted_status();
+  }
+  const ExperimentsPage page = experiments_page(results);
+  write_document(out, experiments.name, page.document);
+  for (const std::string& run : results.not_solved()) fmt::print(stderr, "plica: not solved: {}\n", run);
+  for (const std::string& picture : page.missing_pictures) fmt::print(stderr, "plica: missing: {}\n", picture);
+  if (!command.quiet) print_verdicts(results, page, (out / (experiments.name + ".html")).string());
+  return exit_done;
+}
+
 }  // namespace
 
 void add_reproduce_command(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("reproduce", "run every experiment of the paper; its figures beside ours");
+  CLI::App* command =
+      app.add_subcommand("reproduce", "run experiments, and hold what comes out against what was observed");
   auto options = std::make_shared<ReproduceCommand>();
+  command->add_option("WHAT", options->what, "paper; living, the living embryo; or a file of experiments")
+      ->capture_default_str();
   command->add_option("--out,--output,-o", options->out, "directory for the page, its figures and all runs")
       ->required();
   command->add_option("--jobs", options->at_a_time, "runs at a time, each on one thread")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  command->add_flag("--quick", options->quick, "a few runs, coarse steps: to see that it works");
+  command->add_flag("--quick", options->quick,
+                    "paper: a few runs, coarse steps; else the first draw only, nothing slow");
   command->add_flag("--overwrite", options->overwrite, "replace the results in DIR");
   command->add_flag("--quiet", options->quiet, "no progress and no result on the terminal");
   command->footer(
-      "Writes DIR/reproduction.html and DIR/reproduction.md. Takes a few minutes.\n"
-      "Example: plica reproduce --out results/reproduction");
-  command->callback([options, &status] { status = reproduce_paper(*options); });
+      "Writes a page, DIR/reproduction.html of the paper (some minutes) or DIR/WHAT.html of experiments (some hours).\n"
+      "Experiments that are interrupted or killed go on by the same command.\n"
+      "Examples: plica reproduce --out results/reproduction\n"
+      "          plica reproduce living --out results/living --jobs 2");
+  command->callback([options, &status] {
+    status = options->what == "paper" ? reproduce_paper(*options) : reproduce_experiments(*options);
+  });
 }
 
 }  // namespace plica

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <memory>
@@ -8,9 +7,10 @@
 
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
-#include "app/words.hpp"
+#include "app/runs_progress.hpp"
 #include "core/errors.hpp"
 #include "core/threads.hpp"
+#include "core/words.hpp"
 #include "show/report.hpp"
 #include "study/run_study.hpp"
 #include "study/slurm.hpp"
@@ -26,38 +26,6 @@ struct StudyOptions {
   int jobs = 0;
   bool resume = false, overwrite = false, quiet = false, wait = false;
   std::vector<std::string> sbatch;
-};
-
-// How many runs have ended, and how long the rest will take: a live line on a terminal, a line now and then in a file.
-class StudyProgress {
- public:
-  /// `before`: the runs that had ended when the study was begun or gone on with.
-  StudyProgress(std::size_t before, std::size_t runs, bool quiet) : before_(before), runs_(runs), quiet_(quiet) {}
-
-  void show(const StudyStatus& now) {
-    const std::size_t done = now.ended();
-    const auto time = Clock::now();
-    const auto pause = std::chrono::milliseconds(on_terminal_ ? 100 : 10'000);
-    if (quiet_ || done <= before_ || (time - last_ < pause && done < runs_)) return;
-    last_ = time;
-    const double elapsed_s = std::chrono::duration<double>(time - start_).count();
-    const double left_s = elapsed_s * static_cast<double>(runs_ - done) / static_cast<double>(done - before_);
-    constexpr std::size_t width = 24;
-    const std::size_t filled = width * done / runs_, lost = now.without_result();
-    fmt::print(stderr, "{}[{}{}] {} of {} runs{}, {} left{}", on_terminal_ ? "\r" : "", std::string(filled, '#'),
-               std::string(width - filled, '.'), done, runs_,
-               lost > 0 ? fmt::format(", {} without a result", lost) : "", duration(left_s),
-               on_terminal_ ? "\033[K" : "\n");
-    std::fflush(stderr);
-  }
-  void finish() const {
-    if (!quiet_ && on_terminal_) fmt::print(stderr, "\r\033[K");
-  }
-
- private:
-  std::size_t before_, runs_;
-  bool quiet_, on_terminal_ = isatty(STDERR_FILENO) != 0;
-  Clock::time_point start_ = Clock::now(), last_ = start_;
 };
 
 std::string by_status(const StudyStatus& status) {
@@ -102,10 +70,10 @@ int run_here(const Study& study, StudyDirectory& directory, const StudyOptions& 
   const int jobs =
       options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   StudyStatus status = status_of(directory, study);
-  StudyProgress progress(status.ended(), study.runs(), options.quiet);
+  RunsProgress progress(status.ended(), study.runs(), options.quiet);
   const auto on_row = [&](std::size_t, const std::string& row) {
     status.add(row, study);
-    progress.show(status);
+    progress.show(status.ended(), status.without_result());
   };
   run_study(study, directory, jobs, {}, {on_row, interrupted});
   progress.finish();
@@ -124,9 +92,10 @@ int run_on_slurm(const Study& study, StudyDirectory& directory, const StudyOptio
         study.input().name, plural(plan.runs, "run"), plural(plan.tasks, "task"), plan.runs_a_task, plan.array,
         plan.gather, duration(plan.run_s), plan.limit_min, plan.memory_MB, options.out, options.out);
   if (!options.wait) return exit_done;
-  StudyProgress progress(status_of(directory, study).ended(), study.runs(), options.quiet);
+  RunsProgress progress(status_of(directory, study).ended(), study.runs(), options.quiet);
   while (!slurm_has_ended(directory) && !interrupted()) {
-    progress.show(status_of(directory, study));
+    const StudyStatus now = status_of(directory, study);
+    progress.show(now.ended(), now.without_result());
     std::this_thread::sleep_for(std::chrono::seconds(1));
   }
   progress.finish();

@@ -6,23 +6,10 @@
 #include "paper/mechanism.hpp"
 #include "paper/pictures.hpp"
 #include "paper/reproduce.hpp"
-#include "record/results.hpp"
-#include "show/plot.hpp"
+#include "show/chart.hpp"
 
 namespace plica {
 namespace {
-
-Figure chart(const std::string& name, const Plot& plot, const std::string& caption) {
-  return {name, draw(plot).file(plot.title), caption, plot_csv(plot)};
-}
-
-Curve column_of(const Series& series, const std::string& name, const std::string& column) {
-  Curve curve{name, {}, {}};
-  const std::size_t place = series.column(column).value();
-  for (const auto& row : series.rows)
-    if (row[place]) curve.x.push_back(*row.front()), curve.y.push_back(*row[place]);
-  return curve;
-}
 
 // Fig. 8: speeds of the two barycentres.
 Figure speeds(const Results& results, const std::string& embryo, const std::string& name, const std::string& caption) {

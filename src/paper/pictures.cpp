@@ -41,26 +41,14 @@ Frame without_cell(const Frame& frame, double cell) {
 }  // namespace
 
 RunPictures ReproductionPictures::run_pictures(const std::string& run, const std::vector<std::string>& names) {
-  (void)painter();
+  (void)*painter_;  // where nothing can be drawn, that is the reason to give
   PictureOptions options;
   for (const std::string& name : names) options.views.push_back(named(views(), name));
   return {results_.folder(run), options};
 }
 
-// Asked for before frames are read: where nothing can be drawn, that is the reason to give.
-Painter& ReproductionPictures::painter() {
-  if (!no_painter_.empty()) throw FileError(no_painter_);
-  try {
-    if (!painter_) painter_.emplace();
-  } catch (const FileError& error) {
-    no_painter_ = error.what();
-    throw;
-  }
-  return *painter_;
-}
-
 Figure ReproductionPictures::drawn(const std::string& name, const Picture& picture, const std::string& caption) {
-  return {name, "", caption, "", painter().png(picture)};
+  return {name, "", caption, "", (*painter_).png(picture)};
 }
 
 Figure ReproductionPictures::moments(const std::string& run, const std::vector<std::string>& names,
@@ -85,7 +73,7 @@ Figure ReproductionPictures::moments(const std::string& run, const std::vector<s
 
 // Fig. 4: the steps of the paper, (a) to (f).
 Figure ReproductionPictures::division_demo() {
-  (void)painter();
+  (void)*painter_;
   const ReferenceRun run(results_.folder("division-demo"));
   const auto at = [&](double time_s) {
     const std::optional<Frame> frame = run.frame_at(time_s);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "paper/runs.hpp"
-#include "show/document.hpp"
+#include "show/chart.hpp"
 #include "show/run_pictures.hpp"
 
 namespace plica {
@@ -25,12 +25,10 @@ class ReproductionPictures {
 
  private:
   [[nodiscard]] RunPictures run_pictures(const std::string& run, const std::vector<std::string>& views);
-  Painter& painter();
   Figure drawn(const std::string& name, const Picture& picture, const std::string& caption);
 
   const Results& results_;
-  std::optional<Painter> painter_;
-  std::string no_painter_;                   // why there is none
+  LazyPainter painter_;
   std::optional<ColourRange> displacement_;  // one scale for the pill and the sphere
 };
 

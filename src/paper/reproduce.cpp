@@ -5,12 +5,13 @@
 namespace plica {
 
 ReproduceOutcome reproduce(const ReproduceOptions& options,
-                           const std::function<void(std::size_t done, std::size_t count, const std::string& id)>& tell,
+                           const std::function<void(std::size_t done, std::size_t count)>& tell,
                            const std::function<bool()>& interrupted) {
   const Plan plan = make_plan(options.quick);
+  tell(0, plan.runs.size());
   const std::vector<BatchOutcome> ends = run_batch(
       options.directory, plan.runs, options.at_a_time,
-      [&](std::size_t done, const BatchRun& run) { tell(done, plan.runs.size(), run.id); }, interrupted);
+      [&](std::size_t done, const BatchRun&) { tell(done, plan.runs.size()); }, interrupted);
   ReproduceOutcome outcome;
   outcome.interrupted = interrupted();
   if (outcome.interrupted) return outcome;

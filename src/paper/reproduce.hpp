@@ -24,9 +24,10 @@ struct ReproduceOutcome {
 };
 
 /// Makes the runs (DIR/runs, over those that lie there) and writes DIR/reproduction.md and .html with DIR/figures.
-/// `tell` hears of each run that ends: how many have, of how many, and which. FileError when DIR cannot be written.
+/// `tell` hears of it when it begins and of each run that ends: how many have, of how many. FileError when DIR cannot
+/// be written.
 ReproduceOutcome reproduce(const ReproduceOptions& options,
-                           const std::function<void(std::size_t done, std::size_t count, const std::string& id)>& tell,
+                           const std::function<void(std::size_t done, std::size_t count)>& tell,
                            const std::function<bool()>& interrupted);
 
 /// The page, from what was measured; counts its verdicts in `outcome`.

@@ -3,6 +3,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace plica {
 namespace {
@@ -28,6 +30,14 @@ std::string csv_rows(std::span<const double> values, std::size_t columns) {
       text.append(number.data(), put_number(number.data(), number.data() + number.size(), values[i]));
   }
   return text;
+}
+
+std::string csv_row(std::span<const std::optional<double>> values) {
+  std::vector<double> numbers;
+  numbers.reserve(values.size());
+  for (const std::optional<double>& value : values)
+    numbers.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+  return csv_rows(numbers, numbers.size());
 }
 
 }  // namespace plica

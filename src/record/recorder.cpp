@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 #include <omp.h>
 
-#include <limits>
-
 #include "core/errors.hpp"
 #include "core/version.hpp"
 #include "measure/reference_run.hpp"
@@ -13,6 +11,7 @@
 #include "record/csv.hpp"
 #include "record/mesh_writer.hpp"
 #include "record/run_directory.hpp"
+#include "record/series_rows.hpp"
 #include "scenario/print.hpp"
 
 namespace plica {
@@ -21,14 +20,6 @@ namespace {
 
 constexpr std::size_t most_cells_by_default = 2000;  // with a row a cell a frame in cells.csv
 constexpr std::size_t most_waiting = 1;              // frames and steps, beside the one being written
-
-std::string row_of(const std::vector<std::optional<double>>& values) {
-  std::vector<double> numbers;
-  numbers.reserve(values.size());
-  for (const std::optional<double>& value : values)
-    numbers.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
-  return csv_rows(numbers, numbers.size());
-}
 
 // A table that begins with its header, whole or not at all; or one cut back to what it had.
 RowFile table(const fs::path& file, const std::vector<std::string>& names, std::uint64_t keep_bytes) {
@@ -39,12 +30,6 @@ RowFile table(const fs::path& file, const std::vector<std::string>& names, std::
 }
 
 std::uint64_t bytes_of(const std::optional<RowFile>& table) { return table ? table->size_bytes() : 0; }
-
-std::vector<std::string> all_series_names(const Observer& observer) {
-  std::vector<std::string> names = series_names();
-  for (const Monitor& monitor : observer.monitors()) names.push_back(monitor.column());
-  return names;
-}
 
 }  // namespace
 
@@ -73,7 +58,7 @@ WallTimes Recorder::wall() const {
 }
 
 void Recorder::open_tables(const RecordMemory& memory) {
-  series_ = table(directory_ / "series.csv", all_series_names(simulation_.observer()), memory.series_bytes);
+  series_ = table(directory_ / "series.csv", series_header(simulation_.observer().monitors()), memory.series_bytes);
   midline_ = table(directory_ / "midline.csv", names_of(midline_columns()), memory.midline_bytes);
   section_ = table(directory_ / "cross_section.csv", names_of(section_columns()), memory.section_bytes);
   if (frame_taker_.with_cell_rows()) cells_ = table(directory_ / "cells.csv", cells_csv_names(), memory.cells_bytes);
@@ -175,13 +160,7 @@ nlohmann::ordered_json Recorder::finish() {
   return summary;
 }
 
-void Recorder::append_series(const Observation& row) {
-  std::vector<std::optional<double>> values;
-  for (std::size_t c = 0; c < columns().size(); ++c)
-    if (columns()[c].in_series) values.push_back(row.values[c]);
-  values.insert(values.end(), row.monitors.begin(), row.monitors.end());
-  series_->append(row_of(values));
-}
+void Recorder::append_series(const Observation& row) { series_->append(series_row(row)); }
 
 void Recorder::save_frame() {
   last_frame_s_ = simulation_.time_s();
@@ -211,7 +190,7 @@ void Recorder::append_lineage(const Division& division) {
       const Lineage& lineage = simulation_.model().tissue.cells[daughter.index()].lineage;
       std::vector<std::optional<double>> values;
       for (const LineageColumn& column : lineage_columns()) values.emplace_back(column.values(lineage));
-      lineage_->append(row_of(values));
+      lineage_->append(csv_row(values));
     }
 }
 

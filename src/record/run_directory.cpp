@@ -35,11 +35,15 @@ bool holds_results(const fs::path& directory) {
 
 std::string frame_file(std::size_t number) { return fmt::format("frames/frame_{:05}.vtu", number); }
 
+fs::path name_when_whole(const fs::path& name) {
+  return name.extension() == ".part" ? name.stem().stem() : name;  // without .PROCESS-NUMBER.part
+}
+
 void remove_half_written(const fs::path& directory) {
   std::error_code error;
   const auto is_half_written = [](const fs::path& file) {
-    if (file.extension() != ".part") return false;
-    const fs::path own = file.stem().stem();  // without .PROCESS-NUMBER.part
+    const fs::path own = name_when_whole(file);
+    if (own == file) return false;
     return is_frame(own) || is_checkpoint(own) || std::ranges::find(own_files, own.string()) != own_files.end();
   };
   for (const fs::path& folder : {directory, directory / "frames"})

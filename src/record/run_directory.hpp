@@ -19,6 +19,9 @@ bool holds_steps(const std::filesystem::path& directory);
 /// Whether everything is there that the end of a run leaves.
 bool holds_ending(const std::filesystem::path& directory, bool with_report);
 
+/// The name of the file that was being written under a temporary name (see write_beside); any other name as it is.
+std::filesystem::path name_when_whole(const std::filesystem::path& name);
+
 /// What was being written when a run was killed. Only temporary names of plica's own files (see write_beside).
 void remove_half_written(const std::filesystem::path& directory);
 

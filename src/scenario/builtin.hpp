@@ -16,11 +16,19 @@ struct BuiltinTable {
   std::string_view csv;
 };
 
+struct BuiltinFile {
+  std::string_view path;
+  std::string_view text;
+};
+
 const std::vector<BuiltinScenario>& builtin_scenarios();
 
 /// Measured tables that they build on: the files of scenarios/data/. A scenario names one builtin:NAME in place of a
 /// path.
 const std::vector<BuiltinTable>& builtin_tables();
+
+/// Experiments and what lies beside them: scenarios/living/experiments.toml has the path living/experiments.toml.
+const std::vector<BuiltinFile>& builtin_experiment_files();
 
 inline constexpr std::string_view builtin_table_mark = "builtin:";
 inline bool is_builtin_table(std::string_view path) { return path.starts_with(builtin_table_mark); }

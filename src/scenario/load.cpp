@@ -63,9 +63,13 @@ std::vector<Document> read_documents(const ScenarioSource& source, std::vector<D
     }
     try {
       chain.push_back({*next, toml::parse(next->text)});
-      if (const toml::table& table = chain.back().table; table.contains("vary") && table.contains("design")) {
-        diagnostics.push_back({next->file, 0, "", "is a study and no scenario",
-                               fmt::format("run it by plica study {} --out DIR", next->file)});
+      const toml::table& table = chain.back().table;
+      const bool is_study = table.contains("vary") && table.contains("design");
+      if (is_study || table.contains("experiment")) {
+        diagnostics.push_back({next->file, 0, "",
+                               is_study ? "is a study and no scenario" : "holds experiments and is no scenario",
+                               fmt::format("run {} by plica {} {} --out DIR", is_study ? "it" : "them",
+                                           is_study ? "study" : "reproduce", next->file)});
         chain.clear();
         break;
       }

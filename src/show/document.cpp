@@ -78,13 +78,13 @@ constexpr const char* style =
     ".5rem;text-align:left;vertical-align:top}th{background:#f3f3f3}tbody tr:nth-child(even){background:#fafafa}"
     "figure{margin:2rem 0}figure svg,figure "
     "img{max-width:100%;height:auto}figcaption{max-width:60rem}.yes{background:#dcefe6}"
-    ".reading{background:#f5ecc8}.no{background:#f6dcd2}";
+    ".open{background:#f5ecc8}.no{background:#f6dcd2}";
 
 // Verdicts carry a colour, beside the word.
 std::string cell_class(const std::string& cell) {
-  if (cell == "*reproduced*") return " class=\"yes\"";
-  if (cell == "*reproduced under this reading*") return " class=\"reading\"";
-  if (cell == "*not reproduced*") return " class=\"no\"";
+  if (cell == "*reproduced*" || cell == "*hit*") return " class=\"yes\"";
+  if (cell == "*reproduced under this reading*" || cell == "*undecided*") return " class=\"open\"";
+  if (cell == "*not reproduced*" || cell == "*miss*") return " class=\"no\"";
   return "";
 }
 

@@ -52,13 +52,13 @@ Scale scale_of(const PlotAxis& axis, const std::vector<const std::vector<double>
 std::string tick_label(double value) { return fmt::format("{:.4g}", std::abs(value) < 1e-12 ? 0.0 : value); }
 
 void draw_axes(Svg& svg, const Plot& plot, const Scale& x, const Scale& y) {
-  for (const double tick : axis_ticks(x.low, x.high, x.logarithmic)) {
+  for (const double tick : axis_ticks(x.low, x.high, x.logarithmic, plot.x.whole)) {
     const double at = x.pixel(tick);
     svg.polyline({{at, height - bottom}, {at, top}}, "#e4e4e4", 0.7);
     svg.polyline({{at, height - bottom}, {at, height - bottom + 5}}, "#111", 1);
     svg.text({at, height - bottom + 18}, tick_label(tick), {.anchor = "middle"});
   }
-  for (const double tick : axis_ticks(y.low, y.high, y.logarithmic)) {
+  for (const double tick : axis_ticks(y.low, y.high, y.logarithmic, plot.y.whole)) {
     const double at = y.pixel(tick);
     svg.polyline({{left, at}, {width - right, at}}, "#e4e4e4", 0.7);
     svg.polyline({{left - 5, at}, {left, at}}, "#111", 1);
@@ -73,11 +73,12 @@ void draw_axes(Svg& svg, const Plot& plot, const Scale& x, const Scale& y) {
 void draw_guides(Svg& svg, const Plot& plot, const Scale& x, const Scale& y) {
   for (const Guide& guide : plot.horizontal) {
     const double at = y.pixel(guide.at);
+    const double upper = std::max(y.pixel(guide.high.value_or(guide.at)), top);
     if (guide.high)
-      svg.rectangle({left, y.pixel(*guide.high)}, width - right - left, at - y.pixel(*guide.high), "#f1e9c9");
+      svg.rectangle({left, upper}, width - right - left, std::min(at, height - bottom) - upper, "#f1e9c9");
     else
       svg.polyline({{left, at}, {width - right, at}}, "#777", 1, "3 3");
-    svg.text({left + 4, guide.high ? y.pixel(*guide.high) + 12 : at - 4}, guide.label, {.size = 11});
+    svg.text({left + 4, guide.high ? upper + 12 : at - 4}, guide.label, {.size = 11});
   }
   int row = 0;
   for (const Guide& guide : plot.vertical) {
@@ -92,7 +93,8 @@ void draw_guides(Svg& svg, const Plot& plot, const Scale& x, const Scale& y) {
 void draw_curve(Svg& svg, const Curve& curve, std::size_t number, const Scale& x, const Scale& y) {
   std::vector<Pixel> points;
   const auto flush = [&] {
-    if (points.size() > 1) svg.polyline(points, colours[number % colours.size()], 2, dashes[number % dashes.size()]);
+    if (points.size() > 1 && curve.line)
+      svg.polyline(points, colours[number % colours.size()], 2, dashes[number % dashes.size()]);
     points.clear();
   };
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -113,7 +115,8 @@ void draw_legend(Svg& svg, const Plot& plot) {
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const std::size_t row = i / 2;
     const double x = left + (i % 2) * (width - left - right) / 2.0, y = height + 12 + 18.0 * static_cast<double>(row);
-    svg.polyline({{x, y}, {x + 30, y}}, colours[i % colours.size()], 2, dashes[i % dashes.size()]);
+    if (plot.curves[i].line)
+      svg.polyline({{x, y}, {x + 30, y}}, colours[i % colours.size()], 2, dashes[i % dashes.size()]);
     if (plot.curves[i].marks) svg.circle({x + 15, y}, 3.5, colours[i % colours.size()]);
     svg.text({x + 36, y + 4}, plot.curves[i].name);
   }
@@ -121,7 +124,7 @@ void draw_legend(Svg& svg, const Plot& plot) {
 
 }  // namespace
 
-std::vector<double> axis_ticks(double low, double high, bool logarithmic) {
+std::vector<double> axis_ticks(double low, double high, bool logarithmic, bool whole) {
   std::vector<double> ticks;
   if (logarithmic) {
     const int decades = static_cast<int>(std::ceil(std::log10(high / low)));
@@ -137,6 +140,7 @@ std::vector<double> axis_ticks(double low, double high, bool logarithmic) {
   double step = 10 * unit;
   for (const double digit : {5.0, 2.0, 1.0})
     if (digit * unit >= raw * (1 - 1e-9)) step = digit * unit;
+  if (whole) step = std::max(step, 1.0);
   for (double number = std::ceil(low / step - 1e-9); number * step <= high + 1e-9 * step; ++number)
     ticks.push_back(number * step);
   return ticks;

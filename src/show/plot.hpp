@@ -13,15 +13,17 @@ struct PlotAxis {
   std::string label;  // with its unit
   bool logarithmic = false;
   std::optional<double> low = {}, high = {};  // empty: of the data
+  bool whole = false;                         // ticks at whole numbers only
 };
 
 struct Curve {
   std::string name;
-  std::vector<double> x, y;  // as long as each other; what is not finite, or not > 0 on a logarithmic axis, is left out
+  std::vector<double> x, y;  // as long as each other; what is not finite, or not > 0 on a logarithmic axis, is a gap
   bool marks = false;        // a dot at each point
+  bool line = true;          // from point to point
 };
 
-/// A value, or with `high` a band, to hold the curves against.
+/// A value, or with `high` a band, to hold the curves against. A band may have no end: infinite.
 struct Guide {
   std::string label;
   double at = 0;
@@ -42,8 +44,8 @@ Svg draw(const Plot& plot);
 /// The curves as a table: curve, x, y.
 std::string plot_csv(const Plot& plot);
 
-/// Round values from `low` to `high` for an axis: steps of 1, 2 or 5 times a power of ten; powers of ten (and 2 and 5
-/// times these where there are few) on a logarithmic one.
-std::vector<double> axis_ticks(double low, double high, bool logarithmic);
+/// Round values from `low` to `high` for an axis: steps of 1, 2 or 5 times a power of ten, or of 1 and more where they
+/// are to be `whole`; powers of ten (and 2 and 5 times these where there are few) on a logarithmic one.
+std::vector<double> axis_ticks(double low, double high, bool logarithmic, bool whole = false);
 
 }  // namespace plica

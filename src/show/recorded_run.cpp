@@ -5,6 +5,7 @@
 #include "core/errors.hpp"
 #include "core/version.hpp"
 #include "record/archive.hpp"
+#include "record/results.hpp"
 #include "record/run_directory.hpp"
 #include "scenario/print.hpp"
 #include "show/report.hpp"
@@ -116,6 +117,18 @@ bool RecordedRun::begin() {
 nlohmann::ordered_json RecordedRun::finish() {
   simulation_.stop_listening(*recorder_);
   return recorder_->finish();
+}
+
+nlohmann::ordered_json run_recorded(const fs::path& out, const Scenario& scenario, const ScenarioSource& source,
+                                    const std::function<bool()>& stop) {
+  Simulation simulation(scenario);
+  RecordedRun record(out, scenario, source, simulation, RecordedRun::Start::resumed);
+  if (record.is_finished()) return read_summary(out);
+  record.begin();
+  simulation.stop_when([&] { return stop() || record.has_failed(); });
+  while (!stop() && simulation.step()) {
+  }
+  return record.finish();
 }
 
 }  // namespace plica

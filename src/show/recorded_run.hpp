@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -66,5 +67,10 @@ class RecordedRun {
   ReportWriter report_;
   std::unique_ptr<Recorder> recorder_;
 };
+
+/// Runs a scenario into a directory of its own, to its end or until `stop`; goes on with what was begun there, and with
+/// what has ended does nothing. The summary. Errors as above.
+nlohmann::ordered_json run_recorded(const std::filesystem::path& out, const Scenario& scenario,
+                                    const ScenarioSource& source, const std::function<bool()>& stop);
 
 }  // namespace plica

@@ -208,23 +208,6 @@ std::string in_toml_or_word(const std::string& field) {
   return in_toml(field);
 }
 
-StudyDesign of_file(const StudyInput& study) {
-  const std::string& file = study.points_file;
-  const std::vector<std::vector<std::string>> rows = csv_fields(read_file(file));
-  if (rows.size() < 2 || rows.front().empty())
-    throw ScenarioError({{file, 0, "", "holds no points", "give a row of keys, and a row of values for each point"}});
-  StudyDesign design{rows.front(), {}};
-  for (std::size_t r = 1; r < rows.size(); ++r) {
-    if (rows[r].size() != design.keys.size())
-      throw ScenarioError({{file, static_cast<int>(r) + 1, "", fmt::format("has {} values", rows[r].size()),
-                            fmt::format("give {}, one for each key of the first line", design.keys.size())}});
-    StudyPoint point;
-    for (const std::string& field : rows[r]) point.values.push_back(in_toml_or_word(field));
-    design.runs.push_back(std::move(point));
-  }
-  return design;
-}
-
 // Points of which nothing is random, since their values make every spread 0: their replicates are one run.
 std::size_t points_without_spread(const StudyDesign& design, std::map<std::string, double> spreads) {
   return static_cast<std::size_t>(std::ranges::count_if(design.runs, [&](const StudyPoint& point) {
@@ -264,10 +247,26 @@ std::vector<std::pair<std::string, std::int64_t>> seeds_of(const StudyInput& stu
 
 }  // namespace
 
+StudyDesign design_of_points(const std::string& file, const std::string& text) {
+  const std::vector<std::vector<std::string>> rows = csv_fields(text);
+  if (rows.size() < 2 || rows.front().empty())
+    throw ScenarioError({{file, 0, "", "holds no points", "give a row of keys, and a row of values for each point"}});
+  StudyDesign design{rows.front(), {}};
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    if (rows[r].size() != design.keys.size())
+      throw ScenarioError({{file, static_cast<int>(r) + 1, "", fmt::format("has {} values", rows[r].size()),
+                            fmt::format("give {}, one for each key of the first line", design.keys.size())}});
+    StudyPoint point{static_cast<int>(r), 1, {}, {}};
+    for (const std::string& field : rows[r]) point.values.push_back(in_toml_or_word(field));
+    design.runs.push_back(std::move(point));
+  }
+  return design;
+}
+
 StudyDesign design_of(const StudyInput& study) {
   StudyDesign design;
   if (study.kind == DesignKind::file) {
-    design = of_file(study);
+    design = design_of_points(study.points_file, read_file(study.points_file));
   } else {
     for (const StudyKey& key : study.keys) design.keys.push_back(key.key);
     for (auto& values : study.kind == DesignKind::grid            ? grid(study)

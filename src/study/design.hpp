@@ -25,6 +25,10 @@ struct StudyDesign {
 /// The same for the same study, on any machine. FileError or ScenarioError for a file of points that is none.
 StudyDesign design_of(const StudyInput& study);
 
+/// The points of a CSV table that messages call `file`: a first line of keys, then a line a point. ScenarioError where
+/// it is none.
+StudyDesign design_of_points(const std::string& file, const std::string& text);
+
 /// What a run says otherwise than the study's scenario: [set], its values, and its seeds. As of --set.
 std::vector<std::string> overrides_of(const StudyInput& study, const StudyDesign& design, const StudyPoint& run);
 

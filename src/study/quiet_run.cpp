@@ -3,6 +3,7 @@
 #include <chrono>
 #include <optional>
 
+#include "record/series_rows.hpp"
 #include "record/summary.hpp"
 #include "study/unfinished_run.hpp"
 
@@ -11,7 +12,8 @@ namespace {
 
 RunSummary ended(const Scenario& scenario, const Simulation& simulation, std::vector<Observation> rows,
                  const WallTimes& wall) {
-  return {make_summary(scenario, simulation, rows, wall), std::move(rows), simulation.state()};
+  return {make_summary(scenario, simulation, rows, wall), std::move(rows), simulation.state(),
+          series_header(simulation.observer().monitors())};
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ struct RunSummary {
   nlohmann::ordered_json summary;  // as summary.json; "status" is "failed" where the numerics gave up
   std::vector<Observation> rows;   // as series.csv, the one at rest first
   State state;                     // where the run ended
+  std::vector<std::string> series_columns;
 };
 
 /// What somebody may want while it runs.

@@ -61,18 +61,6 @@ bool is_taken(const fs::path& directory) {
   }
 }
 
-Json recorded(const Scenario& scenario, const ScenarioSource& source, const fs::path& directory,
-              const std::function<bool()>& stop) {
-  Simulation simulation(scenario);
-  RecordedRun record(directory, scenario, source, simulation, RecordedRun::Start::resumed);
-  if (record.is_finished()) return Json::parse(read_file(directory / "summary.json"));
-  record.begin();
-  simulation.stop_when([&] { return stop() || record.has_failed(); });
-  while (!stop() && simulation.step()) {
-  }
-  return record.finish();
-}
-
 }  // namespace
 
 Study::Study(StudyInput input) : input_(std::move(input)) {
@@ -133,7 +121,7 @@ std::optional<RunRow> Study::run(std::size_t run, const fs::path& directory, con
     const bool is_recorded = input_.each == KeptOfRun::full;
     const fs::path place = directory / "points" / name_of(run), unfinished = directory / "unfinished" / name_of(run);
     if (is_taken(is_recorded ? place : unfinished)) return {};
-    const Json summary = is_recorded ? recorded(scenario, input_.scenario, place, is_stopped)
+    const Json summary = is_recorded ? run_recorded(place, scenario, input_.scenario, is_stopped)
                                      : quiet_run(scenario, {is_stopped, {}, not_kept, unfinished}).summary;
     row = row_of(summary, measures_);
     if (row.status == "interrupted") return {};

@@ -12,6 +12,7 @@
 #include "core/errors.hpp"
 #include "core/numbers.hpp"
 #include "core/version.hpp"
+#include "record/run_directory.hpp"
 #include "record/summary.hpp"
 #include "scenario/differences.hpp"
 #include "scenario/print.hpp"
@@ -77,10 +78,10 @@ void require_same_scenario(const fs::path& directory, const StudyInput& input) {
 
 // Whether there is what a study that was killed as it began does not leave.
 bool holds_something_else(const fs::path& directory) {
-  constexpr std::array<std::string_view, 4> own = {"rows", "study.toml", "scenario.toml", "points.csv"};
+  constexpr std::array<std::string_view, 5> own = {"rows", "study.toml", "scenario.toml", "points.csv", "study.json"};
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(directory, error))
-    if (std::ranges::find(own, entry.path().filename().string()) == own.end()) return true;
+    if (std::ranges::find(own, name_when_whole(entry.path().filename()).string()) == own.end()) return true;
   return fs::exists(directory, error) && !fs::is_directory(directory, error);
 }
 

@@ -1,7 +1,6 @@
 #include "study/study_input.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -17,11 +16,9 @@
 #include "core/files.hpp"
 #include "core/names.hpp"
 #include "scenario/builtin.hpp"
-#include "scenario/nesting.hpp"
-#include "scenario/print.hpp"
 #include "scenario/schema.hpp"
 #include "scenario/suggest.hpp"
-#include "scenario/syntax.hpp"
+#include "scenario/toml_reader.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;
@@ -42,34 +39,15 @@ constexpr Words<DesignKind, 7> kinds = {{{"grid", DesignKind::grid},
 constexpr Words<KeptOfRun, 3> kept = {
     {{"row", KeptOfRun::row}, {"summary", KeptOfRun::summary}, {"full", KeptOfRun::full}}};
 
-// A value in TOML, on one line.
-std::string text_of(const toml::node& node) {
-  if (const auto* number = node.as_floating_point()) return float_in_toml(number->get());
-  if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
-  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
-  if (const auto* text = node.as_string()) return in_toml(text->get());
-  std::vector<std::string> parts;
-  if (const auto* array = node.as_array()) {
-    for (const toml::node& part : *array) parts.push_back(text_of(part));
-    return fmt::format("[{}]", fmt::join(parts, ", "));
-  }
-  if (const auto* table = node.as_table()) {
-    for (const auto& [key, part] : *table)
-      parts.push_back(fmt::format("{} = {}", in_toml(std::string(key.str())), text_of(part)));
-    return fmt::format("{{{}}}", fmt::join(parts, ", "));
-  }
-  return "";  // dates: no key of a scenario has one
-}
-
 // The keys of each table; those of [set] and [vary] are the scenario's.
 const std::map<std::string, std::vector<std::string>, std::less<>> known_keys = {
     {"", {"format", "scenario", "set", "vary", "design", "keep"}},
     {"design", {"kind", "points", "seed", "replicates", "file"}},
     {"keep", {"measures", "each"}}};
 
-class Reader {
+class Reader : TomlReader {
  public:
-  Reader(StudyInput& study, const toml::table& document) : study_(study), document_(document) {}
+  Reader(StudyInput& study, const toml::table& document) : TomlReader(study.file), study_(study), document_(document) {}
 
   void read() {
     if (std::ranges::none_of(std::array{"scenario", "vary", "design"},
@@ -81,29 +59,16 @@ class Reader {
     if (const toml::node* format = document_.get("format"); format && format->value<int>() != 1)
       report(*format, "format", "is not one that this plica reads", "write format = 1");
     read_scenario();
-    if (const toml::table* set = table("set")) read_overrides(*set, "");
-    if (const toml::table* vary = table("vary")) read_keys(*vary, "");
+    if (const toml::table* set = table(document_, "set")) read_overrides(*set, study_.overrides, study_.override_lines);
+    if (const toml::table* vary = table(document_, "vary")) read_keys(*vary, "");
     read_design();
     read_kept();
     if (diagnostics_.empty()) check_design();
-    if (!diagnostics_.empty()) throw ScenarioError(std::move(diagnostics_));
+    throw_what_is_wrong();
   }
 
  private:
-  void report_at(int line, std::string key, std::string problem, std::string remedy) {
-    diagnostics_.push_back({study_.file, line, std::move(key), std::move(problem), std::move(remedy)});
-  }
-  void report(const toml::node& node, std::string key, std::string problem, std::string remedy) {
-    report_at(static_cast<int>(node.source().begin.line), std::move(key), std::move(problem), std::move(remedy));
-  }
-
-  void refuse_unknown(const toml::table& table, const std::string& before, const std::vector<std::string>& known,
-                      const std::function<std::string(std::string_view)>& remedy_of) {
-    for (const auto& [key, node] : table)
-      if (std::ranges::count(known, key.str()) == 0)
-        report_at(static_cast<int>(key.source().begin.line), before + std::string(key.str()),
-                  node.is_table() ? "unknown table" : "unknown key", remedy_of(key.str()));
-  }
+  using TomlReader::refuse_unknown;
 
   // Of a table of the document. A key that another table has is most likely in the wrong place.
   void refuse_unknown(const toml::table& table, const std::string& name) {
@@ -116,87 +81,14 @@ class Reader {
     });
   }
 
-  // A table of the document; nothing where it is not there.
-  const toml::table* table(const char* name) {
-    const toml::node* node = document_.get(name);
-    if (node == nullptr) return nullptr;
-    if (!node->is_table()) report(*node, name, "is not a table", fmt::format("write [{}]", name));
-    return node->as_table();
-  }
-
-  template <class Value>
-  std::optional<Value> get(const toml::table& table, const char* key, const std::string& path, const char* what) {
-    const toml::node* node = table.get(key);
-    if (node == nullptr) return {};
-    std::optional<Value> value = node->value_exact<Value>();
-    if constexpr (std::is_same_v<Value, double>) {
-      const std::optional<double> number = node->is_number() ? node->value<double>() : std::nullopt;
-      if (number && std::isfinite(*number)) return number;
-    } else if (value) {
-      return value;
-    }
-    report(*node, path + key, "is not " + std::string(what), fmt::format("give {}", what));
-    return {};
-  }
-
-  // A whole number from 1 on, that is.
-  std::optional<int> count(const toml::table& table, const char* key, const std::string& path) {
-    const auto number = get<std::int64_t>(table, key, path, "a whole number");
-    if (number && *number >= 1 && *number <= 10'000'000) return static_cast<int>(*number);
-    if (number) report(*table.get(key), path + key, fmt::format("is {}", *number), "give 1 to 10 000 000");
-    return {};
-  }
-
-  template <class Choices>
-  auto word(const toml::table& table, const char* key, const std::string& path, const Choices& choices,
-            decltype(choices[0].second) usual) {
-    const auto text = get<std::string>(table, key, path, "a text");
-    if (!text) return usual;
-    std::vector<std::string> known;
-    for (const auto& [name, value] : choices) {
-      if (name == *text) return value;
-      known.emplace_back(name);
-    }
-    report(*table.get(key), path + key, fmt::format("\"{}\" is no known word", *text), did_you_mean(*text, known));
-    return usual;
-  }
-
   void read_scenario() {
-    const auto name = get<std::string>(document_, "scenario", "", "a text");
     if (!document_.contains("scenario")) report_at(0, "scenario", "is missing", "name a built-in one, or a file");
-    if (!name) return;
-    const toml::node& node = *document_.get("scenario");
-    try {
-      const fs::path folder = fs::path(study_.file).parent_path();
-      std::error_code unknown;
-      const bool is_file = fs::is_regular_file(folder / *name, unknown);
-      study_.scenario = find_scenario(is_file ? (folder / *name).string() : *name, folder);
-    } catch (const std::runtime_error& error) {
-      report(node, "scenario", error.what(), "files are relative to this one");
-    }
-  }
-
-  void read_overrides(const toml::table& table, const std::string& before) {
-    for (const auto& [key, node] : table) {
-      const std::string path = before + std::string(key.str());
-      const bool is_nested = node.is_table() && !node.as_table()->is_inline();
-      if (is_nested)
-        read_overrides(*node.as_table(), path + ".");
-      else
-        study_.overrides.push_back(path + "=" + text_of(node)),
-            study_.override_lines.push_back(static_cast<int>(key.source().begin.line));
-    }
+    if (auto found = scenario(document_, "scenario")) study_.scenario = std::move(*found);
   }
 
   // Keys in their order in the file.
   void read_keys(const toml::table& table, const std::string& before) {
-    std::vector<std::pair<std::string, const toml::node*>> rows;
-    for (const auto& [key, node] : table) rows.emplace_back(key.str(), &node);
-    std::ranges::stable_sort(rows, {}, [](const auto& row) {
-      const auto& begin = row.second->source().begin;
-      return std::pair(begin.line, begin.column);
-    });
-    for (const auto& [name, node] : rows) {
+    for (const auto& [name, node] : in_order(table)) {
       const std::string path = before + name;
       if (node->is_table() && !node->as_table()->is_inline())
         read_keys(*node->as_table(), path + ".");
@@ -215,14 +107,14 @@ class Reader {
     if (given == nullptr)
       return report(node, place, "does not say how it varies", "give { low = 1, high = 2 } or { values = [1, 2] }");
     const std::vector<std::string> known = {"values", "low", "high", "scale", "step", "count", "mean", "sd"};
-    refuse_unknown(*given, place + ".", known, [&](std::string_view word) { return did_you_mean(word, known); });
+    refuse_unknown(*given, place + ".", known);
     if (const toml::node* values = given->get("values")) {
       const toml::array* list = values->as_array();
       if (list == nullptr || list->empty())
         return report(*values, place + ".values", list == nullptr ? "is no list" : "is empty", "give [1, 2, 3]");
       if (given->size() > 1)
         return report(node, place, "has values and more", "give either values, or low and high, or mean and sd");
-      for (const toml::node& value : *list) key.values.push_back(text_of(value));
+      for (const toml::node& value : *list) key.values.push_back(value_in_toml(value));
       study_.keys.push_back(std::move(key));
       return;
     }
@@ -264,7 +156,7 @@ class Reader {
   }
 
   void read_design() {
-    const toml::table* design = table("design");
+    const toml::table* design = table(document_, "design");
     if (design == nullptr) {
       if (!document_.contains("design")) report_at(0, "design", "is missing", "write [design] and kind = \"grid\"");
       return;
@@ -272,7 +164,7 @@ class Reader {
     refuse_unknown(*design, "design");
     if (!design->contains("kind"))
       report(*design, "design.kind", "is missing", "give grid, list, one-at-a-time, sobol, latin-hypercube or file");
-    study_.kind = word(*design, "kind", "design.", kinds, DesignKind::grid);
+    study_.kind = word(*design, "kind", "design.", kinds).value_or(DesignKind::grid);
     study_.points = count(*design, "points", "design.").value_or(0);
     study_.replicates = count(*design, "replicates", "design.").value_or(1);
     const auto seed = get<std::int64_t>(*design, "seed", "design.", "a whole number");
@@ -283,10 +175,10 @@ class Reader {
   }
 
   void read_kept() {
-    const toml::table* keep = table("keep");
+    const toml::table* keep = table(document_, "keep");
     if (keep == nullptr) return;
     refuse_unknown(*keep, "keep");
-    study_.each = word(*keep, "each", "keep.", kept, KeptOfRun::row);
+    study_.each = word(*keep, "each", "keep.", kept).value_or(KeptOfRun::row);
     const toml::node* measures = keep->get("measures");
     if (measures == nullptr) return;
     const toml::array* list = measures->as_array();
@@ -346,7 +238,6 @@ class Reader {
 
   StudyInput& study_;
   const toml::table& document_;
-  std::vector<Diagnostic> diagnostics_;
 };
 
 }  // namespace
@@ -367,14 +258,8 @@ bool is_study(const std::string& text) {
 StudyInput parse_study(const std::string& name, const std::string& file, const std::string& text) {
   StudyInput study;
   study.name = name, study.file = file, study.text = text;
-  if (const int line = line_of_too_deep_key(text); line > 0)
-    throw ScenarioError({{file, line, "", "a key has too many parts", "a scenario's keys have at most four"}});
-  try {
-    const toml::table document = toml::parse(text);
-    Reader(study, document).read();
-  } catch (const toml::parse_error& error) {
-    throw ScenarioError({syntax_diagnostic(file, text, error)});
-  }
+  const toml::table document = parse_toml(file, text);
+  Reader(study, document).read();
   return study;
 }
 

@@ -22,7 +22,7 @@ class Reproduce(CommandLine):
     def test_a_quick_reproduction(self):
         result = plica("reproduce", "--out", self.out, "--quick", timeout=280)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        self.assertRegex(result.stderr, r"\d+ of \d+ runs done")
+        self.assertRegex(result.stderr, r"\d+ of \d+ runs")
         page, html = (self.out / "reproduction.md").read_text(), (self.out / "reproduction.html").read_text()
 
         claims = self.rows(page, "Claims")

@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/errors.hpp"
+#include "experiments/experiments.hpp"
+#include "scenario/schema.hpp"
+#include "scenario/suggest.hpp"
+#include "study/quiet_run.hpp"
+#include "study/study_errors.hpp"
+
+namespace plica {
+namespace {
+
+// The line of a draw in its file.
+int line_of(std::size_t draw) { return static_cast<int>(draw) + 2; }
+
+// What is wrong with the draws by themselves: keys that no scenario has, values that are none of their keys.
+void check_draws(const Experiments& experiments, std::vector<Diagnostic>& diagnostics) {
+  const StudyDesign& draws = experiments.draws;
+  for (std::size_t k = 0; k < draws.keys.size(); ++k) {
+    const std::string& key = draws.keys[k];
+    const bool is_known = row_of_key(key) != nullptr;
+    for (std::size_t d = 0; d < (is_known ? draws.runs.size() : 1); ++d)
+      for (const Diagnostic& problem : problems_of_override(key + "=" + draws.runs[d].values[k]))
+        diagnostics.push_back({experiments.draws_file, is_known ? line_of(d) : 1,
+                               fmt::format("column {} ({})", k + 1, key), problem.problem, problem.remedy});
+  }
+}
+
+ScenarioError in_experiments(const ScenarioError& error, const Experiments& experiments, const Experiment& experiment,
+                             std::size_t draw) {
+  const ScenarioError in_study = plica::in_study(error, experiment.study);
+  std::vector<Diagnostic> diagnostics = in_study.diagnostics();
+  for (Diagnostic& one : diagnostics) {
+    if (one.file != experiments.file && one.file != "--set") continue;
+    const bool is_of_draw = one.key.starts_with("vary.");
+    const std::string key = one.key.substr(is_of_draw ? std::string("vary.").size() : 0);
+    if (is_of_draw)
+      one = {experiments.draws_file, line_of(draw), key, one.problem, one.remedy};
+    else
+      one.file = experiments.file, one.key = fmt::format("experiment.{}.{}", experiment.name, key);
+  }
+  return ScenarioError(std::move(diagnostics));
+}
+
+void check_quantities(const Experiments& experiments, const std::vector<std::vector<std::string>>& known,
+                      std::vector<Diagnostic>& diagnostics) {
+  for (std::size_t e = 0; e < experiments.experiments.size(); ++e)
+    for (const Outcome& outcome : experiments.experiments[e].outcomes) {
+      const bool is_compared = outcome.comparing != Comparing::nothing;
+      for (const std::size_t which : {e, is_compared ? outcome.other : e}) {
+        if (known[which].empty() || std::ranges::count(known[which], outcome.quantity) > 0) continue;
+        const std::string of = which == e ? "" : " of " + experiments.experiments[which].name;
+        diagnostics.push_back(
+            {experiments.file, outcome.line,
+             fmt::format("experiment.{}.outcome.{}.quantity", experiments.experiments[e].name, outcome.name),
+             fmt::format("\"{}\" is no number of summary.json{}", outcome.quantity, of),
+             did_you_mean(outcome.quantity, known[which])});
+        break;
+      }
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> Experiments::overrides(std::size_t experiment, std::size_t draw) const {
+  std::vector<std::string> all;
+  for (std::size_t k = 0; k < draws.keys.size(); ++k) all.push_back(draws.keys[k] + "=" + draws.runs[draw].values[k]);
+  const std::vector<std::string>& set = experiments[experiment].study.overrides;
+  all.insert(all.end(), set.begin(), set.end());
+  return all;
+}
+
+Scenario Experiments::scenario(std::size_t experiment, std::size_t draw) const {
+  try {
+    return load_scenario(experiments[experiment].study.scenario, overrides(experiment, draw));
+  } catch (const ScenarioError& error) {
+    throw in_experiments(error, *this, experiments[experiment], draw);
+  }
+}
+
+void check_experiments(const Experiments& experiments) {
+  std::vector<Diagnostic> diagnostics;
+  check_draws(experiments, diagnostics);
+  if (!diagnostics.empty()) throw ScenarioError(std::move(diagnostics));
+
+  // Once each, however many draws and experiments they come from.
+  std::set<std::string> told;
+  const auto tell = [&](const ScenarioError& error) {
+    for (const Diagnostic& one : error.diagnostics())
+      if (told.insert(one.text()).second) diagnostics.push_back(one);
+  };
+  std::vector<std::vector<std::string>> known(experiments.experiments.size());
+  for (std::size_t e = 0; e < experiments.experiments.size(); ++e) try {
+      for (std::size_t d = 0; d < experiments.experiments[e].draws; ++d) {
+        const Scenario scenario = experiments.scenario(e, d);
+        if (d == 0) known[e] = result_names(run_at_rest(scenario).summary);
+      }
+    } catch (const ScenarioError& error) {
+      tell(error);
+    }
+  check_quantities(experiments, known, diagnostics);
+  if (!diagnostics.empty()) throw ScenarioError(std::move(diagnostics));
+}
+
+}  // namespace plica

@@ -1,0 +1,41 @@
+#include "experiments/judgement.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/beta.hpp>
+
+namespace plica {
+
+std::optional<double> compared(const Outcome& outcome, std::optional<double> own, std::optional<double> other) {
+  if (outcome.comparing == Comparing::nothing || !own) return own;
+  if (!other || (outcome.comparing == Comparing::ratio && *other == 0)) return std::nullopt;
+  return outcome.comparing == Comparing::ratio ? *own / *other : *own - *other;
+}
+
+Judgement judge(const Outcome& outcome, std::optional<double> own, std::optional<double> other) {
+  if (!own) return outcome.hit_if_none ? Judgement::hit : Judgement::miss;
+  const std::optional<double> number = compared(outcome, own, other);
+  if (!number) return Judgement::undecided;
+  if (*number >= outcome.low && *number <= outcome.high) return Judgement::hit;
+  const bool is_near = *number >= outcome.low - outcome.margin && *number <= outcome.high + outcome.margin;
+  return is_near ? Judgement::undecided : Judgement::miss;
+}
+
+Interval probability_of_hit(std::size_t hits, std::size_t draws) {
+  const boost::math::beta_distribution<> known(1 + static_cast<double>(hits), 1 + static_cast<double>(draws - hits));
+  return {boost::math::quantile(known, 0.05), boost::math::quantile(known, 0.95)};
+}
+
+Judgement Tally::verdict() const {
+  constexpr double most = 0.8;
+  const double needed = most * static_cast<double>(draws) - 1e-9;
+  if (draws > 0 && static_cast<double>(hits) >= needed) return Judgement::hit;
+  if (draws > 0 && static_cast<double>(misses) >= needed) return Judgement::miss;
+  return Judgement::undecided;
+}
+
+Tally tally_of(std::span<const Judgement> draws) {
+  const auto count = [&](Judgement which) { return static_cast<std::size_t>(std::ranges::count(draws, which)); };
+  return {draws.size(), count(Judgement::hit), count(Judgement::miss), count(Judgement::not_solved)};
+}
+
+}  // namespace plica

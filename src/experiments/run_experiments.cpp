@@ -1,0 +1,224 @@
+#include "experiments/run_experiments.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <new>
+#include <numeric>
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/threads.hpp"
+#include "record/archive.hpp"
+#include "record/results.hpp"
+#include "record/run_directory.hpp"
+#include "record/series_rows.hpp"
+#include "scenario/differences.hpp"
+#include "scenario/print.hpp"
+#include "show/recorded_run.hpp"
+#include "study/csv_fields.hpp"
+#include "study/quiet_run.hpp"
+#include "study/worker_pool.hpp"
+
+namespace plica {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string draw_name(std::size_t draw) { return fmt::format("draw-{}", draw + 1); }
+
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+// Runs that have ended, or begun, are not those of another scenario.
+void require_same_scenario(const fs::path& folder, const Scenario& scenario) {
+  if (!is_there(folder / "scenario.toml")) return;
+  const auto differences = scenario_differences(read_file(folder / "scenario.toml"), resolved_toml(scenario));
+  if (differences.empty()) return;
+  const auto shown = [](const std::string& value) { return value.empty() ? "not there" : value; };
+  throw UsageError(fmt::format(
+      "{}: was run with another scenario: {} was {}, and is {}; change it back, remove {} to run it again, or give "
+      "another --out",
+      folder.string(), differences.front().key, shown(differences.front().a), shown(differences.front().b),
+      folder.parent_path().string()));
+}
+
+// What a run leaves that is not the first draw.
+void write_short(const fs::path& folder, const Scenario& scenario, const RunSummary& run) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  std::string series = fmt::format("{}\n", fmt::join(run.series_columns, ","));
+  for (const Observation& row : run.rows) series += series_row(row) + '\n';
+  write_file(folder / "scenario.toml", resolved_toml(scenario));
+  write_file(folder / "series.csv", series);
+  write_file(folder / "summary.json", run.summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+}
+
+// Whether there is what experiments that were killed as they began do not leave.
+bool holds_something_else(const fs::path& directory) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error))
+    if (name_when_whole(entry.path().filename()) != "experiments.toml") return true;
+  return fs::exists(directory, error) && !fs::is_directory(directory, error);
+}
+
+std::string number(std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; }
+
+}  // namespace
+
+ExperimentResults::ExperimentResults(const Experiments& experiments, fs::path directory, bool quick)
+    : experiments_(experiments), directory_(std::move(directory)), quick_(quick) {
+  for (std::size_t e = 0; e < experiments.experiments.size(); ++e) {
+    const Experiment& experiment = experiments.experiments[e];
+    results_.emplace_back(!quick ? experiment.draws : experiment.slow ? 0 : 1);
+    for (std::size_t d = 0; d < results_[e].size(); ++d) {
+      require_same_scenario(folder(e, d), experiments.scenario(e, d));
+      take({e, d});
+    }
+  }
+}
+
+fs::path ExperimentResults::folder(std::size_t experiment, std::size_t draw) const {
+  return directory_ / "runs" / experiments_.experiments[experiment].name / draw_name(draw);
+}
+
+std::size_t ExperimentResults::runs() const {
+  return std::accumulate(results_.begin(), results_.end(), std::size_t{0},
+                         [](std::size_t sum, const auto& draws) { return sum + draws.size(); });
+}
+
+std::vector<ExperimentResults::Run> ExperimentResults::open_runs() const {
+  std::vector<Run> open;
+  for (std::size_t d = 0; open.size() < runs() && d < experiments_.draws.runs.size(); ++d)
+    for (std::size_t e = 0; e < results_.size(); ++e)
+      if (d < draws(e) && !of(e, d).has_ended()) open.push_back({e, d});
+  return open;
+}
+
+std::vector<std::string> ExperimentResults::not_solved() const {
+  std::vector<std::string> texts;
+  for (std::size_t e = 0; e < results_.size(); ++e)
+    for (std::size_t d = 0; d < draws(e); ++d)
+      if (const DrawResult& run = of(e, d); run.has_ended() && !run.is_solved())
+        texts.push_back(
+            fmt::format("{}, draw {}: {}: {}", experiments_.experiments[e].name, d + 1, run.status, run.reason));
+  return texts;
+}
+
+std::optional<std::string> ExperimentResults::make(const Run& run, const std::function<bool()>& stop) const {
+  const auto& [e, d] = run;
+  try {
+    const Scenario scenario = experiments_.scenario(e, d);
+    if (d == 0 && can_archive()) {
+      const Json summary = run_recorded(folder(e, d), scenario, experiments_.experiments[e].study.scenario, stop);
+      return summary.at("status") == "interrupted" ? std::nullopt : std::optional<std::string>("");
+    }
+    const std::string name = experiments_.experiments[e].name + "-" + draw_name(d);
+    const RunSummary ran = quiet_run(scenario, {stop, {}, {}, directory_ / "unfinished" / name});
+    if (ran.summary.at("status") == "interrupted") return std::nullopt;
+    write_short(folder(e, d), scenario, ran);
+    return "";
+  } catch (const ScenarioError& error) {
+    return error.what();
+  } catch (const UsageError& error) {
+    throw FileError(error.what());
+  } catch (const std::bad_alloc&) {
+    return "out of memory";
+  }
+}
+
+void ExperimentResults::take(const Run& run, const std::string& status, const std::string& reason) {
+  DrawResult& result = results_[run.experiment][run.draw];
+  result = {};
+  if (!status.empty()) {
+    result.status = status, result.reason = reason;
+    std::ranges::replace(result.reason, '\n', ' ');  // it is told in a row
+    return;
+  }
+  const Json summary = read_summary(folder(run.experiment, run.draw));
+  if (summary.is_null() || summary.value("status", "interrupted") == "interrupted") return;
+  result.status = summary.value("status", "");
+  if (const auto failure = summary.find("failure"); failure != summary.end() && failure->is_string())
+    result.reason = failure->get<std::string>();
+  result.summary = summary;
+}
+
+DrawOutcome ExperimentResults::outcome(std::size_t experiment, const Outcome& outcome, std::size_t draw) const {
+  const bool is_compared = outcome.comparing != Comparing::nothing;
+  DrawOutcome result;
+  for (const std::size_t e : {experiment, is_compared ? outcome.other : experiment}) {
+    const DrawResult& run = of(e, draw);
+    if (!run.has_ended()) return {};
+    if (!run.is_solved()) result.judgement = Judgement::not_solved;
+  }
+  if (result.judgement) return result;
+  result.own = number_of(of(experiment, draw).summary, outcome.quantity);
+  if (is_compared) result.other = number_of(of(outcome.other, draw).summary, outcome.quantity);
+  result.number = compared(outcome, result.own, result.other);
+  result.judgement = judge(outcome, result.own, result.other);
+  return result;
+}
+
+Tally ExperimentResults::tally(std::size_t experiment, const Outcome& outcome) const {
+  std::vector<Judgement> judgements;
+  for (std::size_t d = 0; d < draws(experiment); ++d)
+    if (const auto judgement = this->outcome(experiment, outcome, d).judgement) judgements.push_back(*judgement);
+  return tally_of(judgements);
+}
+
+std::string ExperimentResults::csv() const {
+  std::string text = "experiment,outcome,draw,status,quantity,own,other,number,judgement,reason\n";
+  for (std::size_t e = 0; e < results_.size(); ++e)
+    for (const Outcome& one : experiments_.experiments[e].outcomes)
+      for (std::size_t d = 0; d < draws(e); ++d) {
+        const DrawOutcome result = outcome(e, one, d);
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", experiments_.experiments[e].name, one.name, d + 1,
+                            of(e, d).status, csv_field(one.quantity), number(result.own), number(result.other),
+                            number(result.number), result.judgement ? word_of(*result.judgement) : "",
+                            csv_field(of(e, d).reason));
+      }
+  return text;
+}
+
+void begin_experiments(const fs::path& directory, const Experiments& experiments, bool overwrite) {
+  std::error_code error;
+  const bool holds_them = is_there(directory / "experiments.toml");
+  if (!holds_them && holds_something_else(directory))
+    throw UsageError(directory.string() + ": is there already and holds no experiments; give another --out");
+  if (holds_them && overwrite) {
+    for (const char* name : {"runs", "unfinished", "figures"}) fs::remove_all(directory / name, error);
+    fs::remove(directory / "experiments.csv", error);
+  }
+  fs::create_directories(directory, error);
+  if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
+  write_file(directory / "experiments.toml", experiments.text);
+}
+
+void run_experiments(ExperimentResults& results, int jobs, const ExperimentHooks& hooks) {
+  const ThreadCount one(1);
+  const std::vector<ExperimentResults::Run> open = results.open_runs();
+  std::vector<std::size_t> pieces(open.size());
+  std::iota(pieces.begin(), pieces.end(), 0);
+  // What a worker answers: nothing where it was stopped, "ended", or "refused" and why.
+  constexpr const char* ended = "ended";
+  const auto make = [&](std::size_t piece) -> std::string {
+    const auto reason = results.make(open[piece], worker_is_to_stop);
+    return !reason ? "" : reason->empty() ? ended : *reason;
+  };
+  const auto take = [&](std::size_t piece, const std::string& answer, const std::string& crash) {
+    if (crash.empty() && answer.empty()) return;
+    if (answer == ended)
+      results.take(open[piece]);
+    else
+      results.take(open[piece], crash.empty() ? "refused" : "crashed", crash.empty() ? answer : crash);
+    if (hooks.on_run) hooks.on_run();
+  };
+  work_in_processes(jobs, pieces, make, {take, hooks.stop_requested});
+  write_file(results.directory() / "experiments.csv", results.csv());
+}
+
+}  // namespace plica

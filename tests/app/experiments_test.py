@@ -1,0 +1,219 @@
+"""plica reproduce with a file of experiments: verdicts, the page, and the same table whatever is killed."""
+import csv
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import time
+
+import support
+from support import BLOCK, CommandLine, plica, start
+
+EXPERIMENTS = """\
+format = 1
+title = "A small furrow"
+scenario = "drosophila"
+draws = "draws.csv"
+
+[experiment.reference]
+question = "Does it bend inward?"
+role = "fitted"
+set = { "time.end_min" = 0.2, "output.frame_every_min" = 0.1 }
+[experiment.reference.outcome.depth]
+observed = "It does."
+source = "A book, 2020"
+quantity = "furrow_depth_um"
+hit = [0.1, 100]
+
+[experiment.half]
+question = "Half of the time: how deep?"
+prediction = "miss"
+because = "Half of the time is not enough."
+set = { "time.end_min" = 0.1, "output.frame_every_min" = 0.1 }
+[experiment.half.outcome.depth]
+quantity = "furrow_depth_um"
+over = "reference"
+hit = [0.9, 1.1]
+[experiment.half.outcome.lips]
+question = "Do the lips meet?"
+role = "seen"
+quantity = "lips_closed_time_s"
+hit_if_none = true
+
+[experiment.long]
+slow = true
+draws = 2
+question = "A little longer: deeper?"
+prediction = "hit"
+set = { "time.end_min" = 0.3, "output.frame_every_min" = 0.1 }
+[experiment.long.outcome.depth]
+quantity = "furrow_depth_um"
+minus = "reference"
+hit = [0, inf]
+"""
+DRAWS = "contraction.apical.stiffness_nN_per_um\n4\n5\n6\n7\n"
+KILLS = int(os.environ.get("PLICA_STUDY_KILLS", "5"))
+
+
+class Experiments(CommandLine):
+    def setUp(self):
+        super().setUp()
+        self.file = self.write(EXPERIMENTS, "mine.toml")
+        self.write(DRAWS, "draws.csv")
+
+    def reproduce(self, *arguments, status=0, out=None):
+        result = plica("reproduce", self.file, "--out", out or self.out, *arguments)
+        self.assertEqual(result.returncode, status, f"{result.args}\n{result.stdout}{result.stderr}")
+        return result
+
+    def rows(self):
+        with open(self.out / "experiments.csv", newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def summaries(self):
+        """When each run ended."""
+        return {path: path.stat().st_mtime_ns for path in self.out.glob("runs/*/*/summary.json")}
+
+    def test_the_table_and_the_page(self):
+        result = self.reproduce("--jobs", 2)
+        self.assertRegex(result.stdout, r"^mine: 4 outcomes: 3 hit, 1 miss\n  .*mine\.html\n$")
+        self.assertRegex(result.stderr, r"10 of 10 runs, 0.0 s left")
+        rows = self.rows()
+        self.assertEqual([(row["experiment"], row["outcome"], row["draw"]) for row in rows],
+                         [(experiment, outcome, str(draw)) for experiment, outcome, draws in
+                          (("reference", "depth", 4), ("half", "depth", 4), ("half", "lips", 4), ("long", "depth", 2))
+                          for draw in range(1, draws + 1)])
+        for row in rows:
+            self.assertEqual(row["status"], "end_time")
+            if row["experiment"] == "half" and row["outcome"] == "depth":
+                self.assertAlmostEqual(float(row["number"]), float(row["own"]) / float(row["other"]), places=12)
+                self.assertEqual(row["judgement"], "miss")
+            if row["outcome"] == "lips":
+                self.assertEqual((row["own"], row["number"], row["judgement"]), ("", "", "hit"))
+        # The same numbers as of plica run.
+        alone = self.folder / "alone"
+        plica("run", "drosophila", "--set", "time.end_min=0.2", "--set", "output.frame_every_min=0.1", "--set",
+              "contraction.apical.stiffness_nN_per_um=6", "--out", alone, "--quiet")
+        self.assertEqual(float(rows[2]["own"]), self.summary(alone)["furrow_depth_um"])
+        short = self.out / "runs/reference/draw-3"
+        self.assertEqual((short / "series.csv").read_bytes(), (alone / "series.csv").read_bytes())
+        self.assertEqual((short / "scenario.toml").read_bytes(), (alone / "scenario.toml").read_bytes())
+
+        page, html = (self.out / "mine.md").read_text(), (self.out / "mine.html").read_text()
+        table = [[cell.strip() for cell in line.strip("|").split("|")]
+                 for line in page.split("## All outcomes")[1].split("\n## ")[0].splitlines() if line.startswith("|")][2:]
+        self.assertEqual([(row[0], row[1], row[5], row[-1]) for row in table],
+                         [("**predicted**", "half, depth", "miss", "*miss*"), ("**predicted**", "long, depth", "hit", "*hit*"),
+                          ("seen", "half, lips", "–", "*hit*"), ("fitted", "reference, depth", "–", "*hit*")])
+        self.assertEqual(table[0][7], "0 of 4 (1–45 %)")
+        self.assertEqual(table[1][7], "2 of 2 (37–98 %)")
+        self.assertIn("It does. (A book, 2020)", table[3])
+        self.assertIn("Of 2 outcomes predicted, 1 hit, 1 miss and 0 undecided; 2 of 2 as expected before.", page)
+        for text in (page, re.sub(r' src="data:image/png;base64,[^"]*"', "", html)):
+            self.assertIsNone(re.search(r"(?i)\bnan\b|\binf\b", text))
+        self.assertIn('<td class="no"><em>miss</em></td>', html)
+        figures = re.findall(r"!\[.*?\]\(figures/(.*?)\)", page)
+        self.assertEqual(html.count("<figure>"), len(figures))
+        for name in ("half-depth.svg", "half-course.svg", "reference-depth.svg", "long-course.svg"):
+            self.assertIn(name, figures)
+        for name in figures:
+            self.assertTrue((self.out / "figures" / name).exists(), name)
+
+        # Nothing is left to do; a criterion may change without a run.
+        before = self.summaries()
+        self.assertEqual(len(before), 10)
+        self.file.write_text(EXPERIMENTS.replace("[0.9, 1.1]", "[0.1, 1.1]"))
+        self.assertIn("4 hit", self.reproduce().stdout)
+        self.assertEqual(self.summaries(), before)
+        # Not so a scenario.
+        self.file.write_text(EXPERIMENTS.replace('"time.end_min" = 0.1', '"time.end_min" = 0.15'))
+        message = self.assert_messages(self.reproduce("--quiet", status=2))[0]
+        self.assertIn("runs/half/draw-1: was run with another scenario: time.end_s was 6, and is 9", message)
+        self.assertEqual(self.summaries(), before)
+        shutil.rmtree(self.out / "runs/half")
+        self.reproduce("--quiet")
+        self.assertEqual({path: time for path, time in self.summaries().items() if "half" not in str(path)},
+                         {path: time for path, time in before.items() if "half" not in str(path)})
+        self.reproduce("--quiet", "--quick", "--overwrite")
+        self.assertEqual(len(self.summaries()), 2)
+
+    def test_any_number_of_jobs_and_any_kill_leave_the_same_table(self):
+        self.reproduce("--jobs", 1, "--quiet")
+        truth, page = (self.out / "experiments.csv").read_bytes(), (self.out / "mine.md").read_bytes()
+        shutil.rmtree(self.out)
+        chance = random.Random(7)
+        for _ in range(KILLS):
+            process = start("reproduce", self.file, "--out", self.out, "--jobs", 3, stdout=subprocess.DEVNULL)
+            support.count_case()
+            time.sleep(chance.uniform(0.1, 0.6))
+            with_grace = chance.choice([True, False])
+            process.send_signal(signal.SIGINT if with_grace else signal.SIGKILL)
+            _, errors = process.communicate(timeout=60)
+            if process.returncode == 130:
+                self.assertIn("interrupted; the same command goes on", errors)
+                self.assertLessEqual({row["status"] for row in self.rows()}, {"end_time", "not_run"})
+            time.sleep(0.2)  # its workers end with it, and let go of their directories
+        self.reproduce("--jobs", 2, "--quiet")
+        self.assertEqual((self.out / "experiments.csv").read_bytes(), truth)
+        self.assertEqual((self.out / "mine.md").read_bytes(), page)
+        self.assertFalse((self.out / "unfinished").exists())
+        self.assert_whole_frames()
+
+    def assert_whole_frames(self):
+        for run in self.out.glob("runs/*/draw-1"):
+            self.assert_whole(run)
+
+    def test_quick_is_the_first_draw_without_slow_experiments(self):
+        self.out.mkdir()
+        (self.out / "experiments.toml.17-0.part").write_text("ti")  # killed as it began
+        self.reproduce("--quick", "--quiet")
+        self.assertEqual([(row["experiment"], row["draw"]) for row in self.rows()], [("reference", "1"), ("half", "1"), ("half", "1")])
+        self.assertIn("A quick run", (self.out / "mine.md").read_text())
+        before = self.summaries()
+        self.reproduce("--quiet")  # and goes on to the others
+        self.assertEqual(len(self.rows()), 14)
+        self.assertEqual({path: time for path, time in self.summaries().items() if path in before}, before)
+
+    def test_a_run_that_gives_up_is_no_miss(self):
+        self.write(BLOCK, "block.toml")
+        self.write("contraction.all.preload_nN\n0\n-1e6\n", "draws.csv")
+        self.file.write_text("""\
+scenario = "block.toml"
+draws = "draws.csv"
+[experiment.block]
+question = "Does it live?"
+prediction = "hit"
+[experiment.block.outcome.time]
+quantity = "time_s"
+hit = [0.4, 0.6]
+""")
+        result = self.reproduce("--quiet")
+        self.assertRegex(self.assert_messages(result)[0], "not solved: block, draw 2: failed: .*cell")
+        self.assertEqual([(row["status"], row["own"], row["judgement"]) for row in self.rows()],
+                         [("end_time", "0.5", "hit"), ("failed", "", "not solved")])
+        page = (self.out / "mine.md").read_text()
+        self.assertIn("1 of 2 (14–86 %); 1 not solved", page)
+        self.assertIn("*undecided* |", page.split("## block")[0])
+
+    def test_what_cannot_be_done_says_so_and_leaves_nothing(self):
+        for what, words in (("livign", "no file and no built-in experiments"), (self.folder, "Is a directory")):
+            result = plica("reproduce", what, "--out", self.out)
+            self.assertIn(result.returncode, (2, 4))
+            self.assertIn(words, self.assert_messages(result)[0])
+        self.write("contraction.apical.stiffness_nN_per_um\n4\n-5\n", "draws.csv")
+        message = self.assert_messages(self.reproduce(status=2))[0]
+        self.assertRegex(message, r"draws.csv:3: column 1 \(contraction.apical.stiffness_nN_per_um\): .*; give")
+        self.assertFalse(self.out.exists())
+        self.write(DRAWS, "draws.csv")
+        self.out.mkdir()
+        (self.out / "mine.txt").write_text("of somebody")
+        for more in ((), ("--overwrite",)):
+            message = self.assert_messages(self.reproduce(*more, status=2))[0]
+            self.assertIn("holds no experiments; give another --out", message)
+        self.assertEqual([path.name for path in self.out.iterdir()], ["mine.txt"])
+
+
+if __name__ == "__main__":
+    support.main()

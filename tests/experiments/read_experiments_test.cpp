@@ -1,0 +1,250 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "experiments/experiments.hpp"
+#include "support/block_scenario.hpp"
+
+namespace plica {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file of experiments, with a scenario and a table of draws beside it.
+class ReadExperiments : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("plica_experiments_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    write_file(folder_ / "block.toml", support::pulled_block().text);
+    write_file(folder_ / "draws.csv", "contraction.all.stiffness_nN_per_um,time.end_s\n1,5\n2,5\n3,4\n");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] Experiments parsed(const std::string& text) const {
+    return parse_experiments("mine", (folder_ / "mine.toml").string(), text);
+  }
+  // All that is wrong, without the folder.
+  [[nodiscard]] std::string complaint(const std::string& text) const {
+    try {
+      check_experiments(parsed(text));
+      return "";
+    } catch (const ScenarioError& error) {
+      std::string what = error.what();
+      for (std::size_t at = what.find(folder_.string()); at != std::string::npos; at = what.find(folder_.string()))
+        what.erase(at, folder_.string().size() + 1);
+      return what;
+    }
+  }
+
+  fs::path folder_;
+};
+
+const std::string good = R"(title = "Blocks"
+scenario = "block.toml"
+draws = "draws.csv"
+[experiment.reference.outcome.end]
+question = "How long is it?"
+role = "fitted"
+quantity = "end.position_um"
+hit = [20, 30]
+[experiment.stiff]
+question = "Is it shorter when it pulls more?"
+observed = "It is."
+prediction = "hit"
+set = { "contraction.all.across_ratio" = 0.5 }
+draws = 2
+slow = true
+[experiment.stiff.outcome.end]
+quantity = "end.position_um"
+minus = "reference"
+hit = [-inf, 0]
+undecided = 0.5
+[experiment.stiff.outcome.rest]
+role = "seen"
+question = "Does it come to rest?"
+quantity = "equilibrium_time_s"
+hit_if_none = true
+)";
+
+TEST_F(ReadExperiments, TakesWhatTheFileSays) {
+  const Experiments experiments = parsed(good);
+  EXPECT_EQ(experiments.title, "Blocks");
+  ASSERT_EQ(experiments.experiments.size(), 2U);
+  EXPECT_EQ(experiments.draws.runs.size(), 3U);
+  const Experiment &reference = experiments.experiments[0], &stiff = experiments.experiments[1];
+  EXPECT_EQ(reference.name, "reference");
+  EXPECT_EQ(reference.draws, 3U);
+  EXPECT_EQ(stiff.draws, 2U);
+  EXPECT_TRUE(stiff.slow && !reference.slow);
+  ASSERT_EQ(stiff.outcomes.size(), 2U);
+  const Outcome &end = stiff.outcomes[0], &rest = stiff.outcomes[1];
+  EXPECT_EQ(reference.outcomes[0].role, Role::fitted);
+  EXPECT_EQ(end.role, Role::predicted);
+  EXPECT_EQ(end.question, "Is it shorter when it pulls more?");
+  EXPECT_EQ(end.observed, "It is.");
+  EXPECT_EQ(end.prediction, Judgement::hit);
+  EXPECT_FALSE(rest.prediction);
+  EXPECT_EQ(end.comparing, Comparing::difference);
+  EXPECT_EQ(end.other, 0U);
+  EXPECT_TRUE(std::isinf(end.low) && end.low < 0);
+  EXPECT_EQ(end.high, 0);
+  EXPECT_EQ(end.margin, 0.5);
+  EXPECT_EQ(rest.role, Role::seen);
+  EXPECT_EQ(rest.question, "Does it come to rest?");
+  EXPECT_EQ(rest.observed, "");  // which is told of another question
+  EXPECT_TRUE(rest.hit_if_none && !rest.has_band());
+  EXPECT_EQ(experiments.overrides(1, 1),
+            (std::vector<std::string>{"contraction.all.stiffness_nN_per_um=2", "time.end_s=5",
+                                      "contraction.all.across_ratio=0.5"}));
+  EXPECT_EQ(experiments.scenario(0, 2).contractions.begin()->second.stiffness_nN_per_um, 3);
+  check_experiments(experiments);
+}
+
+TEST_F(ReadExperiments, ChangeWhatADrawSets) {
+  std::string text = good;
+  text.replace(text.find("across_ratio\" = 0.5"), 19, "stiffness_nN_per_um\" = 9");
+  for (std::size_t draw = 0; draw < 2; ++draw)
+    EXPECT_EQ(parsed(text).scenario(1, draw).contractions.begin()->second.stiffness_nN_per_um, 9);
+}
+
+TEST_F(ReadExperiments, WithoutDrawsRunOnce) {
+  std::string text = good;
+  text.erase(text.find("draws = \"draws.csv\"\n"), 20);
+  const Experiments experiments = parsed(text);
+  EXPECT_EQ(experiments.draws.runs.size(), 1U);
+  EXPECT_EQ(experiments.experiments[1].draws, 1U);
+  EXPECT_TRUE(experiments.overrides(0, 0).empty());
+  check_experiments(experiments);
+}
+
+TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
+  struct Case {
+    std::string from, to;                // in `good`
+    std::vector<std::string> complaint;  // has all of these
+  };
+  const std::vector<Case> cases = {
+      {"title = \"Blocks\"", "titel = 1", {"mine.toml:1: titel: unknown key; did you mean \"title\"?"}},
+      {"title = \"Blocks\"", "format = 2", {"mine.toml:1: format: is not one"}},
+      {"draws = 2", "draw = 2", {"mine.toml:14: experiment.stiff.draw: unknown key; did you mean \"draws\"?"}},
+      {"draws = 2", "draws = 0", {"mine.toml:14: experiment.stiff.draws: is 0; give 1"}},
+      {"slow = true", "slow = \"no\"", {"mine.toml:15: experiment.stiff.slow: is not true or false"}},
+      {"\"block.toml\"", "\"blok.toml\"", {"mine.toml:2: scenario: ", "did you mean \"block.toml\"?"}},
+      {"\"draws.csv\"", "\"drawn.csv\"", {"mine.toml:3: draws: ", "name a CSV file"}},
+      {"role = \"fitted\"",
+       "role = \"fited\"",
+       {"mine.toml:6: ", "role: \"fited\" is no known word; did you mean \"fitted\"?"}},
+      {"prediction = \"hit\"\n",
+       "",
+       {"mine.toml:", "experiment.stiff.outcome.end.prediction: is missing; say what you expect"}},
+      {"prediction = \"hit\"",
+       "prediction = \"yes\"",
+       {"mine.toml:12: experiment.stiff.prediction: \"yes\" is no known word"}},
+      {"question = \"How long is it?\"\n", "", {"experiment.reference.outcome.end.question: is missing; ask it"}},
+      {"quantity = \"end.position_um\"\nhit", "hit", {"experiment.reference.outcome.end.quantity: is missing"}},
+      {"hit = [20, 30]\n", "", {"mine.toml:4: experiment.reference.outcome.end.hit: is missing; give [from, to]"}},
+      {"hit = [20, 30]", "hit = [30, 20]", {"mine.toml:8: ", "is an empty range; give the smaller number first"}},
+      {"hit = [20, 30]", "hit = 20", {"mine.toml:8: ", "is no pair of numbers"}},
+      {"undecided = 0.5", "undecided = -1", {"mine.toml:20: ", "undecided: is below 0; give 0 or more"}},
+      {"undecided = 0.5", "undecided = inf", {"mine.toml:20: ", "undecided: is not a number"}},
+      {"minus = \"reference\"",
+       "minus = \"referense\"",
+       {"mine.toml:18: ", "is no experiment of this file; did you mean \"reference\"?"}},
+      {"minus = \"reference\"", "minus = \"stiff\"", {"mine.toml:18: ", "is the experiment itself"}},
+      {"undecided = 0.5", "over = \"reference\"", {"mine.toml:18: ", "minus: stands beside over; give one"}},
+      {"[experiment.stiff.outcome.rest]",
+       "[experiment.\"st iff\".outcome.rest]",
+       {"experiment.st iff: is no name; use letters"}},
+      {"[experiment.reference.outcome.end]\n",
+       "[experiment.reference]\noutcome = 3\n",
+       {"mine.toml:5: experiment.reference.outcome: is not a table"}},
+      {"[experiment.reference.outcome.end]\n",
+       "[experiment.reference.outcome]\n",
+       {"experiment.reference.outcome.hit: is not a table; outcomes have names: write "
+        "[experiment.reference.outcome.NAME]"}},
+      {"[experiment.reference.outcome.end]\n",
+       "[experiment.reference]\ndraws = 1\n[experiment.reference.outcome.end]\n",
+       {"is compared with reference, which has 1 draws of its 2; give reference as many draws"}},
+      {"slow = true", "", {}},
+      {"draws = 2\nslow = true", "", {}},
+      {"[experiment.reference.outcome.end]\n",
+       "[experiment.reference]\nslow = true\n[experiment.reference.outcome.end]\n",
+       {}},
+      {"quantity = \"end.position_um\"\nhit",
+       "quantity = \"end.positon_um\"\nhit",
+       {"mine.toml:4: experiment.reference.outcome.end.quantity: \"end.positon_um\" is no number of summary.json; did "
+        "you mean \"end.position_um\"?"}},
+      {"across_ratio\" = 0.5",
+       "acros_ratio\" = 0.5",
+       {"mine.toml:13: experiment.stiff.set.contraction.all.acros_ratio: unknown key; did you mean \"across_ratio\"?"}},
+      {"across_ratio\" = 0.5",
+       "across_ratio\" = \"x\"",
+       {"mine.toml:13: experiment.stiff.set.contraction.all.across_ratio: \"x\" is of the wrong type; give a number"}},
+      {"contraction.all.across_ratio",
+       "contraction.al.across_ratio",
+       {"mine.toml:13: experiment.stiff.set.contraction.al.across_ratio: the scenario has no contraction.al; did you "
+        "mean \"all\"?"}},
+      {"title = \"Blocks\"", "title = \"Blocks", {"mine.toml:1:"}},
+  };
+  int refused = 0;
+  for (const Case& one : cases) {
+    std::string text = good;
+    const std::size_t at = text.find(one.from);
+    ASSERT_NE(at, std::string::npos) << one.from;
+    text.replace(at, one.from.size(), one.to);
+    const std::string found = complaint(text);
+    for (const std::string& part : one.complaint)
+      EXPECT_NE(found.find(part), std::string::npos) << part << "\n" << found;
+    EXPECT_EQ(found.empty(), one.complaint.empty()) << one.to << "\n" << found;
+    refused += one.complaint.empty() ? 0 : 1;
+  }
+  EXPECT_GE(refused, 25);
+  EXPECT_NE(complaint("[experiment.a.outcome.\"../b\"]\n").find("experiment.a.outcome.../b: is no name"),
+            std::string::npos);
+  EXPECT_NE(complaint("[experiment.a.outcome.b]\n").find("experiment.a.scenario: is missing"), std::string::npos);
+  std::string slow = good;
+  slow.erase(slow.find("slow = true\n"), 12);
+  slow.insert(slow.find("[experiment.reference.outcome.end]"), "[experiment.reference]\nslow = true\n");
+  EXPECT_NE(complaint(slow).find("is compared with reference, which is slow"), std::string::npos);
+  EXPECT_NE(complaint("").find("mine.toml: holds no experiments; write [experiment.NAME]"), std::string::npos);
+  EXPECT_NE(complaint(support::pulled_block().text).find("holds no experiments"), std::string::npos);
+  EXPECT_NE(complaint("[experiment]\n").find("experiment: is empty"), std::string::npos);
+  EXPECT_NE(complaint("[experiment.a]\nscenario = \"block.toml\"\n").find("experiment.a.outcome: is missing"),
+            std::string::npos);
+}
+
+TEST_F(ReadExperiments, RefuseDrawsWithFileLineAndColumn) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", "draws.csv: holds no points"},
+      {"time.end_s\n", "draws.csv: holds no points"},
+      {"time.end_s,contraction.all.stiffness_nN_per_um\n5,1\n5\n", "draws.csv:3: has 1 values; give 2"},
+      {"time.ends\n5\n4\n", "draws.csv:1: column 1 (time.ends): unknown key"},
+      {"time.end_s,contraction.all.stiffness_nN_per_um\n5,1\n5,soft\n",
+       "draws.csv:3: column 2 (contraction.all.stiffness_nN_per_um): \"soft\" is of the wrong type; give a number"},
+      {"time.end_s\n5\n-4\n", "draws.csv:3: column 1 (time.end_s): "},
+      {"contraction.al.stiffness_nN_per_um\n5\n",
+       "draws.csv:2: contraction.al.stiffness_nN_per_um: the scenario has no contraction.al; did you mean \"all\"?"},
+  };
+  for (const auto& [draws, expected] : cases) {
+    write_file(folder_ / "draws.csv", draws);
+    EXPECT_NE(complaint(good).find(expected), std::string::npos) << expected << "\n" << complaint(good);
+  }
+}
+
+TEST_F(ReadExperiments, BuiltInOnesAreWhole) {
+  const Experiments living = read_experiments("living");
+  EXPECT_EQ(living.name, "living");
+  ASSERT_GE(living.experiments.size(), 2U);
+  EXPECT_EQ(living.experiments[0].name, "reference");
+  for (std::size_t e = 0; e < living.experiments.size(); ++e)
+    for (std::size_t d = 0; d < living.experiments[e].draws; ++d) (void)living.scenario(e, d);
+  EXPECT_THROW((void)read_experiments("livign"), UsageError);
+}
+
+}  // namespace
+}  // namespace plica
