@@ -198,7 +198,7 @@ std::vector<Vec3> rest_apical_normals(const Tissue& tissue, std::span<const Cell
   return normals;
 }
 
-Vec3 mean_apical(const Cell& cell, const Vectors& vectors) {
+Vec3 mean_apical(const Cell& cell, std::span<const Vec3> vectors) {
   Vec3 sum = Vec3::Zero();
   for (const NodeId corner : cell.apical_corners()) sum += vectors[corner.index()] / static_cast<double>(cell.sides());
   return sum;

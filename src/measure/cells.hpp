@@ -70,7 +70,7 @@ std::vector<std::pair<std::string, double>> mean_tensions(const Model& model, co
 /// Unit normals of the cells' apical surfaces at rest, outward.
 std::vector<Vec3> rest_apical_normals(const Tissue& tissue, std::span<const CellId> cells);
 
-/// Mean of the vectors at a cell's four apical corners.
-Vec3 mean_apical(const Cell& cell, const Vectors& vectors);
+/// Mean of the vectors at a cell's apical corners.
+Vec3 mean_apical(const Cell& cell, std::span<const Vec3> vectors);
 
 }  // namespace plica

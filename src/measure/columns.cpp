@@ -342,6 +342,11 @@ std::span<const Column> columns() {
            "change neighbours there, which plica's do not. Of an edge of 7 µm that is 0.7 µm, where a microscope no "
            "longer tells two vertices from one.",
            [](const M& m) { return static_cast<double>(short_edges(m.model.tissue, m.state.positions)); }})),
+      {"midline_waviness_um", series, last,
+       "How much the furrow's floor goes up and down along its length, as it does where the sheet buckles: of the "
+       "midline's contractile cells on the middle half of their length, how far their depths are from a polynomial of "
+       "the fourth degree (root mean square). None where fewer than ten cells lie there.",
+       [](const M& m) { return midline_waviness_um(m.model.tissue, m.sites, m.state.positions); }},
   };
   return all;
 }

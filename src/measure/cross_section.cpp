@@ -60,14 +60,14 @@ struct Moments {
   [[nodiscard]] FaceShape shape() const {
     const Vec3 n = normal.normalized(), sideways = n.cross(Vec3::UnitX());
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    if (!(area > 0) || !(sideways.norm() > 1e-3)) return {none, none, none, none};
+    if (!(area > 0) || !(sideways.norm() > 1e-3)) return {none, none, none, none, none};
     const Vec3 across = sideways.normalized(), along = across.cross(n), middle = first / area;
     const Mat3 spread = second / area - middle * middle.transpose();
     const double aa = along.dot(spread * along), ac = along.dot(spread * across), cc = across.dot(spread * across);
     const double mean = 0.5 * (aa + cc), half = std::hypot(0.5 * (aa - cc), ac);
     const auto length = [](double moment) { return std::sqrt(12 * std::max(0.0, moment)); };  // of a rectangle's side
     const double angle = 0.5 * std::atan2(2 * ac, aa - cc);
-    return {length(mean + half), length(mean - half), std::abs(angle) * 180 / std::numbers::pi, length(cc)};
+    return {length(mean + half), length(mean - half), std::abs(angle) * 180 / std::numbers::pi, length(aa), length(cc)};
   }
 };
 
@@ -93,15 +93,16 @@ std::vector<SectionCell> section_cells(const Tissue& tissue, const Vec3& outward
   return cells;
 }
 
-std::vector<FaceShape> apical_shapes(const Tissue& tissue, std::span<const SectionCell> cells,
+std::vector<FaceShape> apical_shapes(const Tissue& tissue, std::span<const CellId> cells,
                                      std::span<const Vec3> positions) {
   std::map<CellId, Moments> moments;
-  for (const SectionCell& one : cells) moments[one.cell];
+  for (const CellId cell : cells) moments[cell];
   for (const Facet& facet : tissue.apical_facets)
     if (const auto found = moments.find(facet.cell); found != moments.end())
       found->second.take(gather(positions, facet));
   std::vector<FaceShape> shapes;
-  for (const SectionCell& one : cells) shapes.push_back(moments.at(one.cell).shape());
+  shapes.reserve(cells.size());
+  for (const CellId cell : cells) shapes.push_back(moments.at(cell).shape());
   return shapes;
 }
 

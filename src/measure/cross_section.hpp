@@ -24,11 +24,12 @@ std::vector<SectionCell> section_cells(const Tissue& tissue, const Vec3& outward
 struct FaceShape {
   double long_axis_um = 0, short_axis_um = 0;
   double direction_deg = 0;    // of the long axis: 0 along the embryo's axis, 90 across
-  double width_across_um = 0;  // across the embryo's axis
+  double length_along_um = 0;  // along the embryo's axis
+  double width_across_um = 0;  // across it
 };
 
 /// Of each of these cells. NaN where the apex is flat on the embryo's axis (at a pole) or gone.
-std::vector<FaceShape> apical_shapes(const Tissue& tissue, std::span<const SectionCell> cells,
+std::vector<FaceShape> apical_shapes(const Tissue& tissue, std::span<const CellId> cells,
                                      std::span<const Vec3> positions);
 
 }  // namespace plica

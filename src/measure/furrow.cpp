@@ -1,9 +1,13 @@
 #include "measure/furrow.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <set>
+
+#include "measure/cells.hpp"
 
 namespace plica {
 namespace {
@@ -48,11 +52,14 @@ std::vector<bool> outward_facets(const Tissue& tissue, const Vec3& outward) {
 }
 
 // How far a material point lies inside the shell, less the same at rest. Without a shell: how far it has gone in.
-double depth_of(const Tissue& tissue, const MaterialPoint& point, const Vec3& outward,
-                std::span<const Vec3> positions) {
-  const Vec3 now = point.at(positions), rest = point.at(tissue.rest_positions);
+double depth_of(const Tissue& tissue, const Vec3& rest, const Vec3& now, const Vec3& outward) {
   if (!tissue.outer_shape) return (rest - now).dot(outward);
   return tissue.outer_shape->depth(now, outward) - tissue.outer_shape->depth(rest, outward);
+}
+
+double depth_of(const Tissue& tissue, const MaterialPoint& point, const Vec3& outward,
+                std::span<const Vec3> positions) {
+  return depth_of(tissue, point.at(tissue.rest_positions), point.at(positions), outward);
 }
 
 // Cells with an apical facet that meets y = 0 at rest.
@@ -192,6 +199,34 @@ std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, const Fu
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (const auto sum = sums.find(cells[i]); sum != sums.end()) depths[i] = sum->second.depth / sum->second.points;
   return depths;
+}
+
+std::optional<double> midline_waviness_um(const Tissue& tissue, const FurrowSites& sites,
+                                          std::span<const Vec3> positions) {
+  constexpr int terms = 5, fewest_cells = 10;
+  std::vector<std::pair<double, double>> points;  // x at rest, depth
+  for (const CellId id : sites.midline) {
+    if (!sites.contractile[id.index()]) continue;
+    const Cell& cell = tissue.cells[id.index()];
+    const Vec3 rest = mean_apical(cell, tissue.rest_positions);
+    points.emplace_back(rest.x(), depth_of(tissue, rest, mean_apical(cell, positions), sites.outward));
+  }
+  if (points.empty()) return std::nullopt;
+  const auto [first, last] = std::ranges::minmax(points | std::views::keys);
+  const double middle = 0.5 * (first + last), reach = 0.25 * (last - first);
+  std::erase_if(points, [&](const auto& point) { return std::abs(point.first - middle) > reach; });
+  if (points.size() < fewest_cells) return std::nullopt;
+
+  const auto count = static_cast<Eigen::Index>(points.size());
+  Eigen::MatrixXd powers(count, terms);
+  Eigen::VectorXd depths(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto& [x, depth] = points[static_cast<std::size_t>(i)];
+    for (int k = 0; k < terms; ++k) powers(i, k) = std::pow((x - middle) / reach, k);
+    depths[i] = depth;
+  }
+  const Eigen::VectorXd smooth = powers.householderQr().solve(depths);
+  return (powers * smooth - depths).norm() / std::sqrt(static_cast<double>(count));
 }
 
 }  // namespace plica

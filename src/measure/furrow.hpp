@@ -49,4 +49,10 @@ FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::sp
 std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, const FurrowSites& sites,
                                                   std::span<const CellId> cells, std::span<const Vec3> positions);
 
+/// How much the midline goes up and down along the furrow: the root mean square of how far its contractile cells'
+/// depths are from a polynomial of the fourth degree in x at rest, over the middle half of their length. Empty where
+/// fewer than ten cells lie there.
+std::optional<double> midline_waviness_um(const Tissue& tissue, const FurrowSites& sites,
+                                          std::span<const Vec3> positions);
+
 }  // namespace plica

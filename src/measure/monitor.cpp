@@ -8,6 +8,7 @@
 
 #include "core/units.hpp"
 #include "measure/cells.hpp"
+#include "measure/cross_section.hpp"
 #include "measure/energy_norm.hpp"
 #include "tissue/part.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 using Info = QuantityInfo;
 constexpr auto may = Info::Axis::may_have, must = Info::Axis::must_have, no_axis = Info::Axis::none;
 
-constexpr std::array<Info, 15> table = {{
+constexpr std::array<Info, 16> table = {{
     {Quantity::position, "position", "um", Info::Of::node, "Coordinate along `axis`.", must},
     {Quantity::displacement, "displacement", "um", Info::Of::node, "From its place at rest: norm, or component.", may},
     {Quantity::speed, "speed", "um_per_s", Info::Of::node,
@@ -46,6 +47,10 @@ constexpr std::array<Info, 15> table = {{
      "Of the apical facets, or basal with `face = \"basal\"`; as in `cells.csv`."},
     {Quantity::area_ratio, "area_ratio", "", Info::Of::cell,
      "Of the apical facets, over that at rest; as in `cells.csv`. A mean is over cells, small and large ones alike."},
+    {Quantity::apical_elongation, "apical_elongation", "", Info::Of::cell,
+     "How many times longer a cell's apex is along the x axis than across it: the sides of the rectangle whose area "
+     "has "
+     "the same second moments. A cell at a pole, and one whose apex is gone, has none."},
     {Quantity::pressure, "pressure", "Pa", Info::Of::cell, "What holds the cell's volume; positive in compression."},
     {Quantity::kinetic_energy, "kinetic_energy", "nN_um", Info::Of::region,
      "$\\tfrac12\\sum m v^2$, an eighth of each element's mass at each of its nodes. Refused without a density."},
@@ -166,7 +171,18 @@ std::vector<double> node_values(const Monitor& monitor, const Moment& moment) {
   }
 }
 
+std::vector<double> elongations(const Monitor& monitor, const Moment& moment) {
+  const Tissue& tissue = moment.model.tissue;
+  std::vector<double> values;
+  for (const FaceShape& apex : apical_shapes(tissue, monitored_cells(monitor, tissue), moment.state.positions)) {
+    const double value = apex.length_along_um / apex.width_across_um;
+    if (std::isfinite(value)) values.push_back(value);
+  }
+  return values;
+}
+
 std::vector<double> cell_values(const Monitor& monitor, const Moment& moment) {
+  if (monitor.quantity == Quantity::apical_elongation) return elongations(monitor, moment);
   const Tissue& tissue = moment.model.tissue;
   std::vector<double> of_all;
   if (monitor.quantity == Quantity::volume) of_all = moment.model.volumes().volumes(moment.state.positions);
@@ -237,7 +253,8 @@ std::vector<NodeId> monitored_nodes(const Monitor& monitor, const Tissue& tissue
 
 std::vector<CellId> monitored_cells(const Monitor& monitor, const Tissue& tissue) {
   CellSet chosen = tissue.regions.at(monitor.region);
-  if (monitor.quantity == Quantity::area || monitor.quantity == Quantity::area_ratio) {
+  if (monitor.quantity == Quantity::area || monitor.quantity == Quantity::area_ratio ||
+      monitor.quantity == Quantity::apical_elongation) {
     CellSet has_side(chosen.size(), false);
     for (const Facet& facet : monitor.face == Monitor::Face::basal ? tissue.basal_facets : tissue.apical_facets)
       has_side[facet.cell.index()] = chosen[facet.cell.index()];

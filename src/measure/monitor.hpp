@@ -27,6 +27,7 @@ enum class Quantity {
   volume,
   area,
   area_ratio,
+  apical_elongation,
   pressure,
   kinetic_energy,
   time,

@@ -48,7 +48,8 @@ void drop_unfit_selectors(Scenario& scenario, Input& input) {
   if (!is_of_grid(shape)) unfit = {"face", "cells_along", "cells_across"};
   if (!is_from_file(shape)) unfit.insert({"array", "above", "below"});
   const std::vector<const Row*> rows = rows_of("region.*");
-  for (const auto& [name, region] : scenario.regions) {
+  for (const auto& named : scenario.regions) {
+    const std::string& name = named.first;
     const auto is_new = [&](const Row* row) {
       return input.given_with(fmt::format("region.{}.{}", name, row->key), "embryo.shape");
     };

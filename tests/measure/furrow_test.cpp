@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "tissue/shapes/embryo.hpp"
@@ -195,6 +196,30 @@ TEST(Furrow, DepthIsAgainstTheRegionsApices) {
   const FurrowShape furrow = furrow_shape(block, sheet, bent);
   EXPECT_NEAR(furrow.depth_um.value(), 16.86, 1e-10);
   EXPECT_GT(furrow.depth_below_lips_um.value(), 5);
+}
+
+// A furrow that is deepest in the middle is straight; one that goes up and down by 3 um is wavy by 3 / sqrt(2).
+TEST(Furrow, WavinessIsWhatASmoothFloorLeaves) {
+  const Tissue block = build_block({400, 90, 10, {80, 9, 1}, {1, 1, 1}});
+  CellSet middle(block.cells.size());
+  for (std::size_t c = 0; c < middle.size(); ++c)
+    middle[c] = std::abs(cell_centre(block.cells[c], block.rest_positions).x()) < 160;  // 64 cells, of which 32 count
+  const FurrowSites sites = choose_furrow_sites(block, middle, 1);
+  const auto waviness = [&](const auto& depth) {
+    Vectors positions = block.rest_positions;
+    for (Vec3& x : positions) x.z() -= depth(x.x());
+    return midline_waviness_um(block, sites, positions);
+  };
+  const auto dome = [](double x) { return 40 - 1e-3 * x * x + 1e-8 * std::pow(x, 4) + 0.02 * x; };
+  EXPECT_NEAR(waviness(dome).value(), 0, 1e-10);
+  const auto waves = [&](double x) { return dome(x) + 3 * std::cos(2 * std::numbers::pi * x / 20); };
+  // A cell's apex, 5 um long, has the mean of its ends.
+  EXPECT_NEAR(waviness(waves).value(), 3 * std::cos(std::numbers::pi * 5 / 20) / std::sqrt(2), 0.05);
+
+  CellSet few = middle;
+  for (std::size_t c = 0; c < few.size(); ++c)
+    few[c] = std::abs(cell_centre(block.cells[c], block.rest_positions).x()) < 40;  // 16, of which 8 count
+  EXPECT_FALSE(midline_waviness_um(block, choose_furrow_sites(block, few, 1), block.rest_positions));
 }
 
 // From the shell along any direction in y = 0: a sphere's chord, a pill's straight side and caps.

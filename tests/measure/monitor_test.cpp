@@ -120,6 +120,20 @@ TEST(Monitor, AreaOfEitherSide) {
   EXPECT_NEAR(number(monitor_of(Quantity::area_ratio, "all"), model, state), 0.5, 1e-12);
 }
 
+// Stretched along x by 3, and narrowed to a half: six times as long as wide. An apex that stands on its end has no
+// elongation, and the mean is of the others.
+TEST(Monitor, ElongationIsLengthAlongTheAxisOverWidthAcross) {
+  const Model model = row_of_three();
+  State state = rest_state(model);
+  const Monitor monitor = monitor_of(Quantity::apical_elongation, "all");
+  const double at_rest = number(monitor, model, state);
+  for (Vec3& x : state.positions) x.x() *= 3, x.y() *= 0.5;
+  EXPECT_NEAR(number(monitor, model, state), 6 * at_rest, 1e-12);
+  for (const NodeId node : model.tissue.cells[0].apical_corners())
+    state.positions[node.index()].x() = state.positions[model.tissue.cells[0].corners[4].index()].x();
+  EXPECT_LT(read_monitor(monitor, {model, state}).values.size(), 3U);
+}
+
 TEST(Monitor, CellsOfALowerLayerHaveNoApicalArea) {
   const Model model(build_block({.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 2}}));
   Monitor monitor = monitor_of(Quantity::area, "all");

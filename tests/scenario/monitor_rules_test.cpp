@@ -29,11 +29,11 @@ TEST(MonitorRules, EveryErrorIsOneLineWithARemedy) {
       {"[monitor.a]",
        "test.toml:1: monitor.a.quantity: is missing; give one of: position | displacement | speed | "
        "velocity | deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | "
-       "pressure | kinetic_energy | time | wall"},
+       "apical_elongation | pressure | kinetic_energy | time | wall"},
       {"[monitor.a]\nquantity = \"displacment\"",
        "test.toml:2: monitor.a.quantity: \"displacment\" is not known; give one of: position | displacement | speed | "
        "velocity | deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | "
-       "pressure | kinetic_energy | time | wall (did you mean \"displacement\"?)"},
+       "apical_elongation | pressure | kinetic_energy | time | wall (did you mean \"displacement\"?)"},
       {"[monitor.a]\nquantity = \"speed\"\nregion = \"al\"",
        "test.toml:3: monitor.a.region: there is no region \"al\"; did you mean \"all\"?"},
       {"[monitor.a]\nquantity = \"position\"", "test.toml:1: monitor.a.axis: is missing; give \"x\", \"y\" or \"z\""},
