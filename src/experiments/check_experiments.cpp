@@ -67,7 +67,8 @@ void check_quantities(const Experiments& experiments, const std::vector<std::vec
 
 std::vector<std::string> Experiments::overrides(std::size_t experiment, std::size_t draw) const {
   std::vector<std::string> all;
-  for (std::size_t k = 0; k < draws.keys.size(); ++k) all.push_back(draws.keys[k] + "=" + draws.runs[draw].values[k]);
+  if (experiments[experiment].drawn)
+    for (std::size_t k = 0; k < draws.keys.size(); ++k) all.push_back(draws.keys[k] + "=" + draws.runs[draw].values[k]);
   const std::vector<std::string>& set = experiments[experiment].study.overrides;
   all.insert(all.end(), set.begin(), set.end());
   return all;

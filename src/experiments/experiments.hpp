@@ -49,11 +49,12 @@ struct Outcome {
   int line = 0;  // of the file
 };
 
-/// A scenario with some keys changed, run once with each draw.
+/// A scenario with some keys changed, run once with each draw; or once as it is.
 struct Experiment {
   std::string name;
   StudyInput study;       // scenario, and what `set` changes
   std::size_t draws = 0;  // the first so many
+  bool drawn = true;      // false: no draw sets anything
   bool slow = false;
   std::vector<Outcome> outcomes;
 };

@@ -103,11 +103,15 @@ class Reader : TomlReader {
     const toml::table* given = node.as_table();
     if (given == nullptr)
       return report(node, "experiment." + name, "is not a table", fmt::format("write [experiment.{}]", name));
-    refuse_unknown(*given, before, with_told_keys({"scenario", "set", "draws", "slow", "outcome"}));
+    refuse_unknown(*given, before, with_told_keys({"scenario", "set", "draws", "drawn", "slow", "outcome"}));
     Experiment experiment;
     experiment.name = name;
-    read_scenario(*given, before, experiment.study);
-    experiment.draws = result_.draws.runs.size();
+    experiment.drawn = get<bool>(*given, "drawn", before, "true or false").value_or(true);
+    if (!experiment.drawn && given->contains("draws"))
+      report(*given->get("draws"), before + "draws", "stands beside drawn = false, with which there is one run",
+             "remove it");
+    read_scenario(*given, before, experiment);
+    experiment.draws = experiment.drawn ? result_.draws.runs.size() : 1;
     if (const auto most = count(*given, "draws", before))
       experiment.draws = std::min(experiment.draws, static_cast<std::size_t>(*most));
     experiment.slow = get<bool>(*given, "slow", before, "true or false").value_or(false);
@@ -121,7 +125,8 @@ class Reader : TomlReader {
     result_.experiments.push_back(std::move(experiment));
   }
 
-  void read_scenario(const toml::table& given, const std::string& before, StudyInput& study) {
+  void read_scenario(const toml::table& given, const std::string& before, Experiment& experiment) {
+    StudyInput& study = experiment.study;
     study.file = result_.file;
     std::optional<ScenarioSource> found = given.contains("scenario") ? scenario_beside(given, before) : usual_scenario_;
     if (found)
@@ -130,6 +135,7 @@ class Reader : TomlReader {
       report(given, before + "scenario", "is missing", "name a built-in one, or a file beside this one");
     if (const toml::table* set = table(given, "set", before))
       read_overrides(*set, study.overrides, study.override_lines);
+    if (!experiment.drawn) return;
     for (const std::string& key : result_.draws.keys) {
       study.keys.emplace_back();
       study.keys.back().key = key;

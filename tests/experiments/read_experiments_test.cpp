@@ -132,6 +132,9 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
       {"title = \"Blocks\"", "titel = 1", {"mine.toml:1: titel: unknown key; did you mean \"title\"?"}},
       {"title = \"Blocks\"", "format = 2", {"mine.toml:1: format: is not one"}},
       {"draws = 2", "draw = 2", {"mine.toml:14: experiment.stiff.draw: unknown key; did you mean \"draws\"?"}},
+      {"draws = 2",
+       "draws = 2\ndrawn = false",
+       {"mine.toml:14: experiment.stiff.draws: stands beside drawn = false, with which there is one run; remove it"}},
       {"draws = 2", "draws = 0", {"mine.toml:14: experiment.stiff.draws: is 0; give 1"}},
       {"slow = true", "slow = \"no\"", {"mine.toml:15: experiment.stiff.slow: is not true or false"}},
       {"\"block.toml\"", "\"blok.toml\"", {"mine.toml:2: scenario: ", "did you mean \"block.toml\"?"}},
@@ -244,6 +247,16 @@ TEST_F(ReadExperiments, BuiltInOnesAreWhole) {
   for (std::size_t e = 0; e < living.experiments.size(); ++e)
     for (std::size_t d = 0; d < living.experiments[e].draws; ++d) (void)living.scenario(e, d);
   EXPECT_THROW((void)read_experiments("livign"), UsageError);
+}
+
+// What the draws set may have no meaning in a scenario of its own.
+TEST_F(ReadExperiments, NotDrawnRunOnceAsTheirScenarioIs) {
+  std::string text = good;
+  text.replace(text.find("draws = 2"), 9, "drawn = false");
+  const Experiments experiments = parsed(text);
+  EXPECT_EQ(experiments.experiments[1].draws, 1U);
+  EXPECT_EQ(experiments.overrides(1, 0), (std::vector<std::string>{"contraction.all.across_ratio=0.5"}));
+  check_experiments(experiments);
 }
 
 }  // namespace
