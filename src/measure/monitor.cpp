@@ -48,8 +48,7 @@ constexpr std::array<Info, 16> table = {{
     {Quantity::area_ratio, "area_ratio", "", Info::Of::cell,
      "Of the apical facets, over that at rest; as in `cells.csv`. A mean is over cells, small and large ones alike."},
     {Quantity::apical_elongation, "apical_elongation", "", Info::Of::cell,
-     "How many times longer a cell's apex is along the x axis than across it: the sides of the rectangle whose area "
-     "has "
+     "How many times longer a cell's apex is along the x axis than across: the sides of the rectangle whose area has "
      "the same second moments. A cell at a pole, and one whose apex is gone, has none."},
     {Quantity::pressure, "pressure", "Pa", Info::Of::cell, "What holds the cell's volume; positive in compression."},
     {Quantity::kinetic_energy, "kinetic_energy", "nN_um", Info::Of::region,

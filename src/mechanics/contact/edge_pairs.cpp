@@ -53,6 +53,11 @@ bool are_neighbours(const Segment& a, const Segment& b) {
   for (int i = 0; i < a.count; ++i)
     for (int k = 0; k < b.count; ++k)
       if (a.nodes[i] == b.nodes[k]) return true;
+  const auto ends_on = [](const Segment& one, const Segment& other) {
+    return std::any_of(one.nodes.begin(), one.nodes.begin() + one.count,
+                       [&](NodeId node) { return other.lying.contains(node); });
+  };
+  if (ends_on(a, b) || ends_on(b, a)) return true;
   for (const std::size_t of_a : a.triangles)
     for (const std::size_t of_b : b.triangles)
       if (of_a / 4 == of_b / 4) return true;
@@ -158,7 +163,8 @@ SurfacePlace Segment::at(double part) const {
   return {nodes, {1 - 0.75 * part, 0.25 * part, 0.25 * part, 0.25 * part}, 4};
 }
 
-EdgePairs::EdgePairs(std::span<const std::array<NodeId, 4>> facets, std::span<const double> areas) {
+EdgePairs::EdgePairs(std::span<const std::array<NodeId, 4>> facets, std::span<const double> areas,
+                     const std::map<std::pair<NodeId, NodeId>, std::set<NodeId>>& lying) {
   // A facet's triangles have a quarter of its area each, and three segments.
   std::map<std::pair<NodeId, NodeId>, std::size_t> edges;
   for (std::size_t f = 0; f < facets.size(); ++f)
@@ -170,6 +176,8 @@ EdgePairs::EdgePairs(std::span<const std::array<NodeId, 4>> facets, std::span<co
       const auto [known, is_new] = edges.try_emplace(std::minmax(from, to), segments_.size());
       if (is_new) {
         segments_.push_back({{from, to}, 2, {triangle, triangle}, areas[f] / 12});
+        if (const auto found = lying.find(std::minmax(from, to)); found != lying.end())
+          segments_.back().lying = found->second;
       } else {
         segments_[known->second].triangles[1] = triangle;
         segments_[known->second].area += areas[f] / 12;

@@ -7,7 +7,10 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mechanics/contact/contact_pair.hpp"
@@ -21,6 +24,7 @@ struct Segment {
   int count;                             // of the nodes: 2 or 4
   std::array<std::size_t, 2> triangles;  // that it bounds, twice the same where it bounds one
   double area;                           // um^2, at rest: a third of each of its triangles
+  std::set<NodeId> lying = {};           // nodes of others that hang on it
 
   /// A part of the way along it.
   [[nodiscard]] SurfacePlace at(double part) const;
@@ -34,7 +38,9 @@ class EdgePairs {
 
   EdgePairs() = default;
   /// Of facets of the whole, and their areas at rest, 0 of images. Triangle 4 f + i is the one at edge i of facet f.
-  EdgePairs(std::span<const std::array<NodeId, 4>> facets, std::span<const double> areas);
+  /// `lying`: nodes that hang on an edge, which has the smaller node first.
+  EdgePairs(std::span<const std::array<NodeId, 4>> facets, std::span<const double> areas,
+            const std::map<std::pair<NodeId, NodeId>, std::set<NodeId>>& lying = {});
 
   struct Surface {
     std::span<const Vec3> positions;       // nodes of the whole

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "mechanics/contact/box_grid.hpp"
 #include "mechanics/contact/closest_point.hpp"
@@ -39,6 +40,70 @@ std::vector<Triangle> triangles_of(const std::vector<std::array<NodeId, 4>>& fac
   return triangles;
 }
 
+using Edge = std::pair<NodeId, NodeId>;  // as its facet has it
+
+// Where nodes hang on edges, those of two facets that meet are not the same, but parts of one line between free nodes.
+class Seams {
+ public:
+  Seams(const Tissue& tissue, const std::map<Edge, std::size_t>& edges) {
+    for (const auto& [edge, facet] : edges)
+      if (!edges.contains({edge.second, edge.first}))
+        if (const std::optional<Part> part = part_of(tissue, edge, facet)) lines_[part->line].push_back(*part);
+    for (const auto& [line, parts] : lines_)
+      for (const Part& part : parts)
+        for (const Part& other : parts) {
+          if (part.is_forward() == other.is_forward()) continue;
+          inner_.insert(part.edge);
+          add_end(part, other.edge.first, other.from);
+          add_end(part, other.edge.second, other.to);
+        }
+  }
+  /// Of an edge that no other facet has the other way round: whether a facet lies beyond it all the same.
+  [[nodiscard]] bool is_inner(const Edge& edge) const { return inner_.contains(edge); }
+  /// The facets on whose edges a node lies that they do not have.
+  [[nodiscard]] std::set<std::size_t> across(NodeId node) const {
+    const auto found = across_.find(node);
+    return found == across_.end() ? std::set<std::size_t>() : found->second;
+  }
+  /// By edges, the smaller node first: the nodes of others that lie on them.
+  [[nodiscard]] const std::map<Edge, std::set<NodeId>>& lying() const { return lying_; }
+  [[nodiscard]] std::set<NodeId> lying_on(const Edge& edge) const {
+    const auto found = lying_.find(std::minmax(edge.first, edge.second));
+    return found == lying_.end() ? std::set<NodeId>() : found->second;
+  }
+
+ private:
+  struct Part {
+    Edge line;        // its ends, the smaller one first
+    double from, to;  // parts of the way along it
+    Edge edge;
+    std::size_t facet;
+    [[nodiscard]] bool is_forward() const { return from < to; }
+    [[nodiscard]] bool holds(double place) const {
+      constexpr double rounding = 1e-9;
+      return place > std::min(from, to) + rounding && place < std::max(from, to) - rounding;
+    }
+  };
+  void add_end(const Part& part, NodeId node, double place) {
+    if (!part.holds(place)) return;
+    across_[node].insert(part.facet);
+    lying_[std::minmax(part.edge.first, part.edge.second)].insert(node);
+  }
+  static std::optional<Part> part_of(const Tissue& tissue, const Edge& edge, std::size_t facet) {
+    std::map<NodeId, std::array<double, 2>> weights;  // of free nodes in both ends
+    tissue.for_free_nodes(edge.first, [&](NodeId node, double weight) { weights[node][0] += weight; });
+    tissue.for_free_nodes(edge.second, [&](NodeId node, double weight) { weights[node][1] += weight; });
+    if (weights.size() != 2) return std::nullopt;
+    const auto& [end, of_end] = *weights.rbegin();
+    return Part{{weights.begin()->first, end}, of_end[0], of_end[1], edge, facet};
+  }
+
+  std::map<Edge, std::vector<Part>> lines_;
+  std::set<Edge> inner_;
+  std::map<NodeId, std::set<std::size_t>> across_;
+  std::map<Edge, std::set<NodeId>> lying_;
+};
+
 bool have_common_node(std::span<const NodeId> some, std::span<const NodeId> others) {
   return std::ranges::any_of(some, [&](NodeId node) { return std::ranges::find(others, node) != others.end(); });
 }
@@ -69,32 +134,31 @@ SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirro
   std::map<std::pair<NodeId, NodeId>, std::size_t> edges;
   for (std::size_t f = 0; f < facets_.size(); ++f)
     for (int i = 0; i < 4; ++i) edges[{facets_[f][i], facets_[f][(i + 1) % 4]}] = f;
+  const Seams seams(whole, edges);
   for (const auto& [edge, facet] : edges)
-    if (!edges.contains({edge.second, edge.first})) rim_.push_back({edge.first, edge.second, facet});
-  const auto add_mean = [&](const std::array<NodeId, 4>& nodes, int count, double area) {
+    if (!edges.contains({edge.second, edge.first}) && !seams.is_inner(edge))
+      rim_.push_back({edge.first, edge.second, facet});
+  // A node, or the mean of the nodes of an edge or a facet.
+  const auto add_point = [&](const std::array<NodeId, 4>& nodes, int count, double area) {
     if (area == 0) return;
     SurfacePlace place{nodes, {}, count};
     for (int i = 0; i < count; ++i) place.weights[i] = 1.0 / count;
     points_.push_back({place, area});
-    std::vector<std::size_t> around;
-    for (int i = 0; i < count; ++i) around.insert(around.end(), of_node[nodes[i]].begin(), of_node[nodes[i]].end());
-    std::ranges::sort(around);
-    around.erase(std::unique(around.begin(), around.end()), around.end());
-    neighbours_.push_back(std::move(around));
+    std::set<std::size_t> around = count == 1 ? seams.across(nodes[0]) : std::set<std::size_t>();
+    std::set<NodeId> at = count == 2 ? seams.lying_on({nodes[0], nodes[1]}) : std::set<NodeId>();
+    at.insert(nodes.begin(), nodes.begin() + count);
+    for (const NodeId node : at) around.insert(of_node[node].begin(), of_node[node].end());
+    neighbours_.emplace_back(around.begin(), around.end());
   };
-  for (const auto& [node, facets] : of_node) {
-    if (area_of_node[node] == 0) continue;
-    points_.push_back({{{node}, {1}, 1}, area_of_node[node]});
-    neighbours_.push_back(facets);
-  }
-  for (std::size_t f = 0; f < facets_.size(); ++f) add_mean(facets_[f], 4, areas[f] / 4);
+  for (const auto& [node, facets] : of_node) add_point({node}, 1, area_of_node[node]);
+  for (std::size_t f = 0; f < facets_.size(); ++f) add_point(facets_[f], 4, areas[f] / 4);
   for (const auto& [edge, facet] : edges) {
     const auto other = edges.find({edge.second, edge.first});
     const bool on_rim = other == edges.end();
     if (!on_rim && edge.second < edge.first) continue;
-    add_mean({edge.first, edge.second}, 2, (areas[facet] + (on_rim ? 0 : areas[other->second])) / 8);
+    add_point({edge.first, edge.second}, 2, (areas[facet] + (on_rim ? 0 : areas[other->second])) / 8);
   }
-  if (rule.with_edges) edges_ = EdgePairs(facets_, areas);
+  if (rule.with_edges) edges_ = EdgePairs(facets_, areas, seams.lying());
 }
 
 // Where it is when a step begins.

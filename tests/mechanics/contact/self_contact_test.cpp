@@ -8,6 +8,7 @@
 #include "support/bodies.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
+#include "support/prisms.hpp"
 
 namespace plica {
 namespace {
@@ -50,6 +51,30 @@ TEST(SelfContact, PairsFaceEachOtherAndAreNoNeighbours) {
   EXPECT_TRUE(SelfContact(folded(30), {.search = 4}).pairs(folded(30).rest_positions).empty());
   const Tissue flat = build_block({.length_um = 60, .width_um = 60, .cell_height_um = 10, .cells = {6, 6, 1}});
   EXPECT_TRUE(SelfContact(flat, {.search = 40}).pairs(flat.rest_positions).empty());
+}
+
+// Where the surface creases sharply, places that lie on the edge of the facet beyond it touch that, and are no pair
+// with it; there is no rim either, beyond which something would lie.
+TEST(SelfContact, NodesThatHangOnAnEdgeAreNeighboursOfItsFacet) {
+  const PrismSheet flat = irregular_polygons(9, 9, 7, 12, 0.2, 5);
+  int hanging = 0, pairs_in_all = 0;
+  for (double crease = -20; crease < 20; crease += 1.7) {
+    const Tissue tissue = tissue_from_prisms(flat, PolygonSplit::diagonals, 1);
+    Vectors positions = tissue.rest_positions;
+    const double slope = 70 * M_PI / 180;
+    for (Vec3& x : positions) {
+      const double way = x.x() - crease;
+      x = {way * std::cos(slope) - std::copysign(x.z() * std::sin(slope), way), x.y(), std::abs(way) * std::sin(slope)};
+    }
+    tissue.place_hanging_positions(positions);
+    hanging += static_cast<int>(tissue.hanging.size());
+    for (const auto& pair : SelfContact(tissue, {.search = 3}).pairs(positions)) {
+      EXPECT_GT(pair.apart(positions).norm(), 1e-6);
+      ++pairs_in_all;
+    }
+  }
+  EXPECT_GT(hanging, 100);
+  EXPECT_GT(pairs_in_all, 100);
 }
 
 TEST(SelfContact, DerivativesAgreeWithFiniteDifferences) {
