@@ -63,8 +63,6 @@ FrameTaker::FrameTaker(const Model& model, const FurrowSites& sites, bool with_c
 void FrameTaker::follow_division() {
   cells_ = std::make_shared<const FrameCells>(model_.tissue);
   section_cells_ = section_cells(model_.tissue, sites_.outward);
-  in_sections_.clear();
-  for (const SectionCell& one : section_cells_) in_sections_.push_back(one.cell);
 }
 
 FrameRecord FrameTaker::take(const State& state) const {
@@ -96,7 +94,9 @@ void FrameTaker::add_midline(const MeasuredCells& measured, FrameRecord& frame) 
 }
 
 void FrameTaker::add_sections(const MeasuredCells& measured, FrameRecord& frame) const {
-  const std::vector<FaceShape> shapes = apical_shapes(measured.model.tissue, in_sections_, measured.state.positions);
+  std::vector<CellId> cells;
+  for (const SectionCell& one : section_cells_) cells.push_back(one.cell);
+  const std::vector<FaceShape> shapes = apical_shapes(measured.model.tissue, cells, measured.state.positions);
   Columns of_csv;
   for (const SectionColumn& column : section_columns())
     of_csv.push_back(column.values({measured, section_cells_, shapes}));

@@ -64,7 +64,6 @@ class FrameTaker {
   bool with_cell_rows_;
   std::shared_ptr<const FrameCells> cells_;
   std::vector<SectionCell> section_cells_;
-  std::vector<CellId> in_sections_;  // their cells
 };
 
 }  // namespace plica

@@ -109,8 +109,8 @@ class SelfContact final : public Law {
   std::vector<RimEdge> rim_;  // edges of one facet only, counter-clockwise about it
   // Of the side: nodes of the surface, then means of its facets and edges.
   std::vector<Point> points_;
-  std::vector<std::vector<std::size_t>>
-      neighbours_;  // points: facets that share a node with theirs, or on which it hangs, sorted
+  // Of points, sorted: facets that share a node with theirs, or on whose edge a node of theirs hangs.
+  std::vector<std::vector<std::size_t>> neighbours_;
   EdgePairs edges_;
 };
 

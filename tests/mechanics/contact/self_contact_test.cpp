@@ -54,7 +54,7 @@ TEST(SelfContact, PairsFaceEachOtherAndAreNoNeighbours) {
 }
 
 // Where the surface creases sharply, places that lie on the edge of the facet beyond it touch that, and are no pair
-// with it; there is no rim either, beyond which something would lie.
+// with it.
 TEST(SelfContact, NodesThatHangOnAnEdgeAreNeighboursOfItsFacet) {
   const PrismSheet flat = irregular_polygons(9, 9, 7, 12, 0.2, 5);
   int hanging = 0, pairs_in_all = 0;
