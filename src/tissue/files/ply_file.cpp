@@ -99,6 +99,8 @@ class Header {
     const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
     if (error != std::errc() || end != words[2].data() + words[2].size())
       complain(fmt::format("\"{}\" is no number of elements", words[2]));
+    if (std::ranges::find(elements, element.name, &Element::name) != elements.end())
+      complain(fmt::format("the header has two elements \"{}\"; give one another name", element.name));
     elements.push_back(std::move(element));
   }
 
@@ -108,7 +110,11 @@ class Header {
     if (!is_list && words.size() != 3) complain("a property should have a type and a name");
     const std::optional<Type> type = type_of(words[words.size() - 2]), count = is_list ? type_of(words[2]) : Type::int8;
     if (!type || !count) complain(fmt::format("\"{}\": there is no such type", fmt::join(words, " ")));
-    elements.back().properties.push_back({std::string(words.back()), *type, is_list ? count : std::optional<Type>()});
+    Element& element = elements.back();
+    if (std::ranges::find(element.properties, words.back(), &Property::name) != element.properties.end())
+      complain(
+          fmt::format("element \"{}\" has two properties \"{}\"; give one another name", element.name, words.back()));
+    element.properties.push_back({std::string(words.back()), *type, is_list ? count : std::optional<Type>()});
   }
 
   std::string_view& bytes_;

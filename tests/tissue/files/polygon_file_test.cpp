@@ -119,6 +119,9 @@ TEST(PolygonFile, SaysWhatIsWrongAndWhere) {
   ply(start + "property float x\nend_header\n", "line 3: a property stands before the first element");
   ply(start + "element vertex many\nend_header\n", "line 3: \"many\" is no number of elements");
   ply(start + "element vertex 1\nproperty half x\nend_header\n", "line 4: \"property half x\": there is no such type");
+  ply(start + "element face 1\nelement face 2\nend_header\n", "line 4: the header has two elements \"face\"");
+  ply(start + "element face 1\nproperty int a\nproperty float a\nend_header\n",
+      "line 5: element \"face\" has two properties \"a\"; give one another name");
   ply(start + "element vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
       "vertices should have x, y and z");
   ply(start + "element face 1\nproperty int a\nend_header\n0\n",
