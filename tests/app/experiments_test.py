@@ -7,6 +7,8 @@ import shutil
 import signal
 import subprocess
 import time
+import tomllib
+from pathlib import Path
 
 import support
 from support import BLOCK, CommandLine, plica, start
@@ -213,6 +215,20 @@ hit = [0.4, 0.6]
             message = self.assert_messages(self.reproduce(*more, status=2))[0]
             self.assertIn("holds no experiments; give another --out", message)
         self.assertEqual([path.name for path in self.out.iterdir()], ["mine.txt"])
+
+    def test_the_living_embryo_has_one_frozen_set(self):
+        """Its values stand in two scenarios, too, which people read and change."""
+        scenarios = Path(__file__).resolve().parents[2] / "scenarios"
+        frozen = next(csv.DictReader((scenarios / "living/draws.csv").open()))
+        for file, not_in in (("living/embryo.toml", []),
+                             ("drosophila-atlas-living.toml", ["cortex.apical.profile.sigma_cells"])):
+            with (scenarios / file).open("rb") as stream:
+                scenario = tomllib.load(stream)
+            for key, value in frozen.items():
+                table = scenario
+                for part in key.split("."):
+                    table = table.get(part, {})
+                self.assertEqual(table, {} if key in not_in else float(value), f"{file}: {key}")
 
 
 if __name__ == "__main__":
