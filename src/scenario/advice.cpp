@@ -208,6 +208,12 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   if (!measured.empty() && !regions.empty() && std::ranges::find(regions, measured) == regions.end())
     warn(fmt::format("the furrow is measured on region {} (furrow.region), and what contracts its apices is {}",
                      measured, fmt::join(regions, ", ")));
+  if (!measured.empty() || !regions.empty())
+    if (make_furrow_sites(scenario, model.tissue).vml.empty())
+      warn(fmt::format(
+          "region {} does not meet the plane y = 0, where a furrow is measured: its depth, its lips and VML "
+          "have no value; a [monitor.NAME] measures any region",
+          measured.empty() ? regions.front() : measured));
 
   const MeshQuality quality = mesh_quality(model.tissue, model.tissue.rest_positions);
   note(fmt::format(

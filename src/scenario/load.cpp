@@ -126,7 +126,8 @@ void read_overrides(const std::vector<std::string>& overrides, int layer, Scenar
     const auto table = parse_override(text);
     if (!table) {
       input.diagnostics.push_back(
-          {"--set", 0, key, "is not understood", "give dotted.key=value, the value as in TOML"});
+          {"--set", 0, key, "is not understood",
+           "give dotted.key=value, the value as in TOML: a number with a point and without its unit, or a word"});
     } else if (table->contains("base")) {
       input.diagnostics.push_back({"--set", 0, "base", "a base cannot be set here", "write it in the scenario's file"});
     } else {

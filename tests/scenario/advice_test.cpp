@@ -65,6 +65,20 @@ TEST(Advice, WhatDoesNothingIsTold) {
   EXPECT_TRUE(lines_with("region.furrow: nothing", lines).empty());
 }
 
+// A fold beside the midline has none of the furrow's numbers.
+TEST(Advice, AFurrowBesideTheMidlineIsTold) {
+  const std::string flank =
+      "base = \"drosophila\"\n[region.flank]\nangle_deg = [60, 120]\n[contraction.apical]\nregion = ";
+  const auto told = [&](const std::string& region) {
+    const Scenario scenario = load_scenario({"side", "side.toml", flank + region});
+    return lines_with("does not meet the plane y = 0", advice(scenario, *make_model(scenario)));
+  };
+  ASSERT_EQ(told("\"flank\"").size(), 1U);
+  EXPECT_TRUE(told("\"flank\"")[0].starts_with("warning: region flank does not meet"));
+  EXPECT_TRUE(told("\"furrow\"").empty());
+  EXPECT_TRUE(told("\"all\"").empty());
+}
+
 TEST(Advice, AProgramThatTheRunCutsOffIsTold) {
   const Scenario scenario = load_scenario(find_scenario("furrow-slice"), {"time.end_min=15"});
   const auto warnings = lines_with("its program goes on", advice(scenario, *make_model(scenario)));
