@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace plica {
@@ -85,6 +86,46 @@ bool cross(const Fan& a, const Fan& b) {
   return false;
 }
 
+// The boxes of facets, in the order in which they begin along the axis in which the surface is longest.
+struct SortedBoxes {
+  SortedBoxes(std::span<const Facet> facets, std::span<const Vec3> positions) : facet(facets.size()) {
+    std::vector<Box> boxes;
+    boxes.reserve(facets.size());
+    Eigen::AlignedBox3d whole;
+    for (const Facet& of : facets) {
+      std::array<Vec3, 4> corners;  // their mean lies among them
+      for (int i = 0; i < 4; ++i) corners[i] = positions[of.nodes[i].index()];
+      boxes.push_back(box_of(corners));
+      whole.extend(boxes.back().low).extend(boxes.back().high);
+    }
+    int longest = 0;
+    if (!facets.empty()) whole.sizes().maxCoeff(&longest);
+    std::iota(facet.begin(), facet.end(), std::size_t{0});
+    std::ranges::sort(facet, {}, [&](std::size_t f) { return boxes[f].low[longest]; });
+    for (int axis = 0; axis < 3; ++axis)
+      for (const std::size_t f : facet) {
+        low[axis].push_back(boxes[f].low[(longest + axis) % 3]);
+        high[axis].push_back(boxes[f].high[(longest + axis) % 3]);
+      }
+  }
+
+  /// The later boxes that overlap one, in a part of `found`, which has room for all. Nearly all that begin before it
+  /// ends lie beside it, so a number is written for each, and kept by counting on: faster than to decide.
+  [[nodiscard]] std::span<const std::size_t> overlapping(std::size_t i, std::span<std::size_t> found) const {
+    const auto end = std::upper_bound(low[0].begin() + static_cast<std::ptrdiff_t>(i), low[0].end(), high[0][i]);
+    std::size_t count = 0;
+    for (std::size_t k = i + 1; k < static_cast<std::size_t>(end - low[0].begin()); ++k) {
+      found[count] = k;
+      count += static_cast<std::size_t>((low[1][k] <= high[1][i]) & (low[1][i] <= high[1][k]) &
+                                        (low[2][k] <= high[2][i]) & (low[2][i] <= high[2][k]));
+    }
+    return found.first(count);
+  }
+
+  std::vector<std::size_t> facet;
+  std::array<std::vector<double>, 3> low, high;
+};
+
 bool have_common_node(const Facet& a, const Facet& b) {
   return std::ranges::any_of(a.nodes, [&](NodeId node) { return std::ranges::find(b.nodes, node) != b.nodes.end(); });
 }
@@ -94,38 +135,14 @@ bool have_common_node(const Facet& a, const Facet& b) {
 std::vector<std::pair<std::size_t, std::size_t>> crossing_facets(std::span<const Facet> facets,
                                                                  std::span<const Vec3> positions) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  if (facets.empty()) return pairs;
-  struct Place {
-    Box box;
-    std::size_t facet;
-  };
-  std::vector<Place> places;
-  places.reserve(facets.size());
-  Box whole{positions[facets[0].nodes[0].index()], positions[facets[0].nodes[0].index()]};
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    std::array<Vec3, 4> corners;  // their mean lies among them
-    for (int i = 0; i < 4; ++i) corners[i] = positions[facets[f].nodes[i].index()];
-    places.push_back({box_of(corners), f});
-    whole = {whole.low.cwiseMin(places.back().box.low), whole.high.cwiseMax(places.back().box.high)};
-  }
-
-  // Along the axis in which the surface is longest, each box with those that begin before it ends.
-  int x = 0;
-  (whole.high - whole.low).maxCoeff(&x);
-  const int y = (x + 1) % 3, z = (x + 2) % 3;
-  std::ranges::sort(places, {}, [&](const Place& place) { return place.box.low[x]; });
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const Box& box = places[i].box;
-    for (std::size_t k = i + 1; k < places.size() && places[k].box.low[x] <= box.high[x]; ++k) {
-      const Box& other = places[k].box;
-      if (other.low[y] > box.high[y] || box.low[y] > other.high[y] || other.low[z] > box.high[z] ||
-          box.low[z] > other.high[z])
-        continue;
-      const auto [a, b] = std::minmax(places[i].facet, places[k].facet);
+  const SortedBoxes boxes(facets, positions);
+  std::vector<std::size_t> found(facets.size());
+  for (std::size_t i = 0; i < facets.size(); ++i)
+    for (const std::size_t k : boxes.overlapping(i, found)) {
+      const auto [a, b] = std::minmax(boxes.facet[i], boxes.facet[k]);
       if (!have_common_node(facets[a], facets[b]) && cross(fan_of(facets[a], positions), fan_of(facets[b], positions)))
         pairs.emplace_back(a, b);
     }
-  }
   std::ranges::sort(pairs);
   return pairs;
 }
