@@ -26,7 +26,9 @@ points = 24
 [keep]
 measures = ["furrow_depth_um", "max_volume_error"]
 """
+# A longer trial: PLICA_STUDY_KILLS=100 PLICA_STUDY_POINTS=200.
 KILLS = int(os.environ.get("PLICA_STUDY_KILLS", "5"))
+POINTS = int(os.environ.get("PLICA_STUDY_POINTS", "24"))
 
 
 def children(process):
@@ -75,7 +77,7 @@ class Study(CommandLine):
         self.assertEqual(float(rows[0]["furrow_depth_um"]), summary["furrow_depth_um"])
 
     def test_any_number_of_jobs_and_any_kill_leave_the_same_table(self):
-        self.study("--jobs", 1, "--quiet")
+        self.study("--jobs", 1, "--quiet", text=STUDY.replace("points = 24", f"points = {POINTS}"))
         truth = self.table()
         chance = random.Random(5)
         shutil.rmtree(self.out)
@@ -100,7 +102,7 @@ class Study(CommandLine):
                 time.sleep(0.05)
             else:
                 self.fail("a worker outlives its study")
-        self.study("--resume", "--jobs", 2, "--quiet")
+        self.study("--resume", "--jobs", 2, "--quiet", text=self.file.read_text())
         self.assertEqual(self.table(), truth)
         self.assertEqual(self.rows_written(), len(truth))  # none was run again that had a row
 
