@@ -23,13 +23,18 @@ for k, key in enumerate(study.keys):
     low, high = table[key].min(), table[key].max()
     print(f"{key:42} {mean[k]:7.3f} ± {spread[k]:6.3f}, {spread[k] / (high - low) * 12**0.5:.2f} of the prior's")
 
-# In logarithms, in units of the prior's spread: products of powers of keys, the best known first.
+# Products of powers of keys, the best known first. They are found with each key's logarithm in units of its prior's spread;
+# of each, the keys that count are kept, and how well that product is known is measured anew.
 logs, prior = np.log(values), np.log(table[study.keys])
-fixed, powers = np.linalg.eigh(np.cov(((logs - prior.mean()) / prior.std()).T, aweights=weights))
+_, directions = np.linalg.eigh(np.cov(((logs - prior.mean()) / prior.std()).T, aweights=weights))
 print()
-for spread, power in list(zip(fixed**0.5, powers.T))[:3]:
-    most = sorted(zip(power / np.abs(power).max(), study.keys), key=lambda one: -abs(one[0]))[:5]
-    print(f"{spread:.2f} of the prior's:", ", ".join(f"{key} ^ {one:.1f}" for one, key in most))
+for direction in directions.T[:3]:
+    counts = np.abs(direction) > 0.3 * np.abs(direction).max()
+    powers = np.where(counts, direction / prior.std(), 0)
+    powers /= powers[np.abs(direction).argmax()]
+    known = np.cov(logs @ powers, aweights=weights) ** 0.5 / (prior @ powers).std()
+    order = [k for k in np.argsort(-np.abs(direction)) if counts[k]]
+    print(f"{known:.2f} of the prior's:", ", ".join(f"{study.keys[k]} ^ {powers[k]:.2f}" for k in order))
 
 draws = found.samples.sample(50, weights="weight", random_state=33)
 draws[study.keys].to_csv(sys.argv[2], index=False, float_format="%.4g")
