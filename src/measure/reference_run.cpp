@@ -11,7 +11,7 @@ ReferenceRun::ReferenceRun(std::filesystem::path directory) : directory_(std::mo
   const std::string name = directory_.string();
   if (!std::filesystem::exists(directory_, error)) throw FileError(name + ": there is no such directory");
   if (!std::filesystem::is_directory(directory_, error))
-    throw FileError(name + ": is a file; give the --out directory of a `plica run`");
+    throw FileError(name + ": is no directory of results; give the --out directory of a `plica run`");
   if (!std::filesystem::exists(directory_ / "frames.pvd", error))
     throw FileError(name + ": holds no run: there is no frames.pvd; give the --out directory of a `plica run`");
   frames_ = read_collection(directory_ / "frames.pvd");

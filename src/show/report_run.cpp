@@ -47,7 +47,7 @@ ReportRun read_report_run(const fs::path& directory, double most_bytes) {
   std::error_code error;
   if (!fs::exists(directory, error)) throw FileError(directory.string() + ": there is no such directory");
   if (!fs::is_directory(directory, error))
-    throw FileError(directory.string() + ": is a file; give the --out directory of a `plica run`");
+    throw FileError(directory.string() + ": is no directory of results; give the --out directory of a `plica run`");
   const bool has_frames = fs::exists(directory / "frames.pvd", error);
   if (!has_frames && text_of(directory / "series.csv").empty())
     throw FileError(directory.string() + ": holds no results; give the --out directory of a `plica run`");
