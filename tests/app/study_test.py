@@ -77,7 +77,8 @@ class Study(CommandLine):
         self.assertEqual(float(rows[0]["furrow_depth_um"]), summary["furrow_depth_um"])
 
     def test_any_number_of_jobs_and_any_kill_leave_the_same_table(self):
-        self.study("--jobs", 1, "--quiet", text=STUDY.replace("points = 24", f"points = {POINTS}"))
+        text = STUDY.replace("points = 24", f"points = {POINTS}")
+        self.study("--jobs", 1, "--quiet", text=text)
         truth = self.table()
         chance = random.Random(5)
         shutil.rmtree(self.out)
@@ -102,7 +103,7 @@ class Study(CommandLine):
                 time.sleep(0.05)
             else:
                 self.fail("a worker outlives its study")
-        self.study("--resume", "--jobs", 2, "--quiet", text=self.file.read_text())
+        self.study("--resume", "--jobs", 2, "--quiet", text=text)
         self.assertEqual(self.table(), truth)
         self.assertEqual(self.rows_written(), len(truth))  # none was run again that had a row
 
