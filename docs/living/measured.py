@@ -1,0 +1,54 @@
+"""Numbers of the measured embryo, as docs/living-embryo.md tells them: its cells by rows, its furrow's length, and how apices pull.
+
+Usage: measured.py MEASURED, where `plica reproduce scenarios/living/measured.toml --out MEASURED` has left its results.
+"""
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import plica
+from plica.results import Frame
+
+PROGRAM, SCENARIO = "build/release/plica", "drosophila-atlas-living"
+PROFILES = {
+    "twist from 0.65 to 0.95": {"from": 0.65, "to": 0.95},
+    "twist from 0.72 to 0.97": {},
+    "twist from 0.80 to 0.97": {"from": 0.80, "to": 0.97},
+    "the Gaussian": {"shape": "gaussian", "sigma_cells": 3.436},
+}
+ANGLES = (0, 10, 20, 25, 30)  # from the ventral midline, degrees
+MIDDLE_UM, ROWS = 125, 12
+
+run = plica.open(Path(sys.argv[1], "runs/atlas/draw-1"))
+
+scenario = plica.Scenario(SCENARIO)
+scenario.update({f"region.rows-{n}.{key}": value for n in range(1, ROWS + 1)
+                 for key, value in (("rows", 2 * n), ("x_um", [-MIDDLE_UM, MIDDLE_UM]))})
+regions = plica.Simulation(scenario).regions
+cells = run.cells[run.cells.time_s == 540].set_index("cell_id")
+print(f"At 9 min, means of the cells up to {MIDDLE_UM} µm from the middle, by row from the midline:")
+for n in range(1, ROWS + 1):
+    row = regions[f"rows-{n}"] & ~regions[f"rows-{n - 1}"] if n > 1 else regions["rows-1"]
+    of_row = cells.loc[np.flatnonzero(row)]
+    print(f"{n:3}: apical area {of_row.apical_area_ratio.mean():.2f} of that at rest, height {of_row.height_um.mean():.1f} µm")
+
+midline = run.midline
+deep = midline[(midline.time_s == 1200) & (midline.depth_um > 20)]
+print(f"\nAt 20 min deeper than 20 µm from x = {deep.ap_um.min():.0f} to {deep.ap_um.max():.0f} µm,",
+      f"{np.ptp(deep.ap_um):.0f} µm long; depth there:")
+print(deep[["ap_um", "depth_um"]].round(0).astype(int).to_string(index=False))
+
+print("\nPull of apices up to 50 µm from the middle, by degrees from the ventral midline:")
+with tempfile.TemporaryDirectory() as folder:
+    for number, (name, profile) in enumerate(PROFILES.items()):
+        mesh = Path(folder, f"{number}.vtu")
+        sets = [word for key, value in profile.items() for word in ("--set", f"cortex.apical.profile.{key}={value}")]
+        subprocess.run([PROGRAM, "mesh", SCENARIO, "--out", mesh, *sets], check=True, capture_output=True)
+        frame = Frame(mesh, 0)
+        x, y, z = frame.points[frame.hexahedra].mean(axis=1).T
+        angle, strength = np.degrees(np.arctan2(np.abs(y), -z)), frame.cell_data["strength_cortex.apical"]
+        pulls = [strength[(np.abs(x) < 50) & (np.abs(angle - at) < 2.5)].mean() for at in ANGLES]
+        print(f"{name}:", ", ".join(f"{at}° {pull:.2f}" for at, pull in zip(ANGLES, pulls)))

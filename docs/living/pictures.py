@@ -1,0 +1,74 @@
+"""Draws the pictures of docs/living-embryo.md from what its experiments have left.
+
+Usage: pictures.py RESULTS MEASURED IMAGES, where RESULTS and MEASURED are of `plica reproduce living` and of `plica reproduce
+scenarios/living/measured.toml`: cuts.png, atlas.png and closing.gif in IMAGES.
+"""
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+from PIL import Image  # noqa: E402
+
+results, measured, images = map(Path, sys.argv[1:])
+CUTS = {
+    "reference": "undisturbed",
+    "cut-out": "apical cuts in front and behind",
+    "walls-cut": "walls of the middle cut",
+    "cut-out-and-walls-cut": "both",
+    "block": "middle in the light",
+    "floor-kept": "floor kept stiff",
+}
+
+
+def run_of(folder, experiment):
+    return folder / "runs" / experiment / "draw-1"
+
+
+def render(run, picture, *words):
+    subprocess.run(["build/release/plica", "render", run, "--out", picture, "--overwrite", "--quiet", *words], check=True,
+                   stdout=subprocess.DEVNULL)
+    return picture
+
+
+def few_colours(picture):
+    """The picture in 64 colours: a fifth of its bytes."""
+    return picture.convert("RGB").quantize(64, dither=Image.Dither.NONE)
+
+
+images.mkdir(parents=True, exist_ok=True)
+with tempfile.TemporaryDirectory() as name:
+    folder = Path(name)
+
+    figure, panels = plt.subplots(3, 2, figsize=(11, 7.2))
+    for panel, (experiment, title) in zip(panels.flat, CUTS.items()):
+        panel.imshow(plt.imread(render(run_of(results, experiment), folder / "cut.png", "--view", "sagittal-section")))
+        panel.set_title(title, fontsize=12)
+        panel.axis("off")
+    figure.tight_layout(pad=0.3)
+    figure.savefig(folder / "cuts.png", dpi=90)
+    few_colours(Image.open(folder / "cuts.png")).save(images / "cuts.png", optimize=True)
+
+    atlas = run_of(measured, "atlas")
+    render(atlas, folder / "atlas.png", "--view", "ventral,sagittal-section,cross-section", "--at-x-um=30",
+           "--time", "9min,14min,17min,20min", "--size", "1500x824")
+    few_colours(Image.open(folder / "atlas.png")).save(images / "atlas.png", optimize=True)
+
+    # The movie: from below, and beside it cut across, without legends.
+    render(atlas, folder / "below.png", "--movie", "--view", "ventral,sagittal-section", "--size", "700x560")
+    render(atlas, folder / "across.png", "--movie", "--at-x-um=30", "--size", "560x560")
+    frames = []
+    for below, across in zip(sorted(folder.glob("below_*.png"))[3:], sorted(folder.glob("across_*.png"))[3:]):
+        frame = Image.new("RGB", (780, 260), "white")
+        frame.paste(Image.open(below).crop((25, 20, 572, 270)), (0, 5))
+        frame.paste(Image.open(across).crop((0, 50, 475, 540)).resize((232, 240), Image.Resampling.LANCZOS), (548, 10))
+        frames.append(frame.resize((696, 232), Image.Resampling.LANCZOS))
+    palette = few_colours(frames[-1])  # one for all frames, so that what stands still costs nothing
+    frames = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    times = [300] * (len(frames) - 1) + [2000]
+    frames[0].save(images / "closing.gif", save_all=True, append_images=frames[1:], duration=times, loop=0)
+print("\n".join(f"drawn: {images / picture}" for picture in ("cuts.png", "atlas.png", "closing.gif")))
