@@ -15,15 +15,11 @@ import matplotlib.pyplot as plt  # noqa: E402
 import plica  # noqa: E402
 from targets import TARGETS, score  # noqa: E402
 
-MINUTES = 16
-CORTICES = ("apical", "shortening", "floor", "floor-elsewhere")  # those that fade towards the ends
-
-# Of a slice, a short embryo, not mirrored, whose cells pull by 20 % more or less than the next.
-SHORT = {
-    "embryo.shape": "pill", "embryo.length_um": 320, "embryo.cells": [38, 22, 20], "furrow.vce_cell": 2,
-    "cortex.apical.variation.spread": 0.2, "cortex.apical.variation.by": "place", "cortex.apical.variation.seed": 1,
-    **{f"cortex.{name}.profile.full_length_um": 210 for name in CORTICES}, "time.end_min": MINUTES,
-}
+# What makes a slice a short embryo, not mirrored, whose cells pull by 20 % more or less than the next: as in short.toml.
+HERE = Path(__file__).resolve().parent
+changed = plica.Scenario(HERE / "short.toml").diff(plica.Scenario(HERE / "../../scenarios/living/embryo.toml"))
+SHORT = {"embryo.shape": "pill", "furrow.vce_cell": 2}
+SHORT.update({key: short for key, (short, _) in changed.items() if short is not None and key != "title"})
 
 parser = argparse.ArgumentParser()
 parser.add_argument("studied", type=Path)
@@ -51,7 +47,7 @@ for panel, hypothesis in zip(panels, ("clock", "floor", "own")):
             panel.plot(end.ap_um, end.depth_um, ".-", linewidth=1, markersize=3)
     print(hypothesis)
     print(table.assign(point=best.point.to_numpy())[["point", "status", "midline_waviness_um", "self_intersections"]].round(2).to_string())
-    panel.set_title(f"{hypothesis}: floor of the furrow at {MINUTES} min", loc="left")
+    panel.set_title(f"{hypothesis}: floor of the furrow at {SHORT['time.end_s'] / 60:.0f} min", loc="left")
     panel.set_ylabel("depth, µm")
 panels[-1].set_xlim(-115, 115)
 panels[-1].set_xlabel("along the axis, µm (anterior to the left)")
