@@ -17,6 +17,7 @@
 #include "scenario/differences.hpp"
 #include "scenario/print.hpp"
 #include "show/recorded_run.hpp"
+#include "show/report.hpp"
 #include "study/csv_fields.hpp"
 #include "study/quiet_run.hpp"
 #include "study/worker_pool.hpp"
@@ -66,6 +67,9 @@ bool holds_something_else(const fs::path& directory) {
   return fs::exists(directory, error) && !fs::is_directory(directory, error);
 }
 
+// The first draw's runs are recorded, to look at; of others only numbers are kept.
+bool is_recorded(std::size_t draw) { return draw == 0 && can_archive(); }
+
 std::string number(std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; }
 
 }  // namespace
@@ -113,7 +117,7 @@ std::optional<std::string> ExperimentResults::make(const Run& run, const std::fu
   const auto& [e, d] = run;
   try {
     const Scenario scenario = experiments_.scenario(e, d);
-    if (d == 0 && can_archive()) {
+    if (is_recorded(d)) {
       const Json summary = run_recorded(folder(e, d), scenario, experiments_.experiments[e].study.scenario, stop);
       return summary.at("status") == "interrupted" ? std::nullopt : std::optional<std::string>("");
     }
@@ -139,7 +143,9 @@ void ExperimentResults::take(const Run& run, const std::string& status, const st
     std::ranges::replace(result.reason, '\n', ' ');  // it is told in a row
     return;
   }
-  const Json summary = read_summary(folder(run.experiment, run.draw));
+  const fs::path made = folder(run.experiment, run.draw);
+  if (is_recorded(run.draw) && !holds_ending(made, can_report())) return;  // killed while it wrote what comes last
+  const Json summary = read_summary(made);
   if (summary.is_null() || summary.value("status", "interrupted") == "interrupted") return;
   result.status = summary.value("status", "");
   if (const auto failure = summary.find("failure"); failure != summary.end() && failure->is_string())

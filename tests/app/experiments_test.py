@@ -178,6 +178,15 @@ class Experiments(CommandLine):
         self.assertEqual(len(self.rows()), 14)
         self.assertEqual({path: time for path, time in self.summaries().items() if path in before}, before)
 
+    def test_a_run_killed_over_its_report_gets_one(self):
+        self.reproduce("--quick", "--quiet")
+        before, run = self.summaries(), self.out / "runs/half/draw-1"
+        (run / "report.html").rename(run / "report.html.17-0.part")
+        self.reproduce("--quick", "--quiet")
+        self.assert_whole(run)
+        self.assertTrue((run / "report.html").exists())
+        self.assertEqual([path.parts[-3] for path, time in self.summaries().items() if time != before[path]], ["half"])
+
     def test_a_run_that_gives_up_is_no_miss(self):
         self.write(BLOCK, "block.toml")
         self.write("contraction.all.preload_nN\n0\n-1e6\n", "draws.csv")
@@ -219,7 +228,8 @@ hit = [0.4, 0.6]
     def test_the_living_embryo_has_one_frozen_set(self):
         """Its values stand in two scenarios, too, which people read and change."""
         scenarios = Path(__file__).resolve().parents[2] / "scenarios"
-        frozen = next(csv.DictReader((scenarios / "living/draws.csv").open()))
+        with (scenarios / "living/draws.csv").open(newline="") as stream:
+            frozen = next(csv.DictReader(stream))
         for file, not_in in (("living/embryo.toml", []),
                              ("drosophila-atlas-living.toml", ["cortex.apical.profile.sigma_cells"])):
             with (scenarios / file).open("rb") as stream:
