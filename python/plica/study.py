@@ -343,14 +343,18 @@ class _Processes:
                 self.done.put((run, self.study.crashed(run, f"its process ended twice, the second time by {how}") if row is None else row))
         except BaseException as error:
             self.done.put(error)
+        self._end(worker)
+
+    def _end(self, worker: int) -> None:
         process = self.processes[worker]
-        if process is not None and process.stdin is not None:
-            process.stdin.close()
-            process.wait()
+        if process is not None:
+            with process:  # closes its pipes, and waits for it
+                pass
 
     def _row(self, worker: int, run: int) -> tuple[Optional[str], str]:
         process = self.processes[worker]
         if process is None or process.poll() is not None:
+            self._end(worker)
             path = os.pathsep.join(entry for entry in sys.path if entry)
             process = subprocess.Popen(
                 [sys.executable, "-c", "from plica.study import _work; _work()"],

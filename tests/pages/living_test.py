@@ -1,0 +1,70 @@
+"""The scripts of docs/living, on studies that are much smaller than those of docs/living-embryo.md. Needs the Python package."""
+import csv
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+from pathlib import Path
+
+import plica
+
+ROOT = Path(__file__).resolve().parents[2]
+LIVING = ROOT / "docs/living"
+
+
+def run(script, *arguments):
+    done = subprocess.run([sys.executable, LIVING / script, *arguments], capture_output=True, text=True, cwd=ROOT, check=False)
+    if done.returncode != 0:
+        raise AssertionError(f"{script}: {done.stdout}{done.stderr}")
+    return done.stdout
+
+
+class Living(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="plica_living_")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def study(self, name, out, **design):
+        """Of that file, with another design."""
+        with (LIVING / name).open("rb") as file:
+            study = tomllib.load(file)
+        study["scenario"] = str(LIVING / study["scenario"])
+        study["design"].update(design)
+        plica.Study(study).run(out=self.folder / out, jobs=2)
+        return self.folder / out
+
+    def test_draws_from_the_posterior_are_frozen(self):
+        slices, drawn = self.study("posterior.toml", "posterior", points=120), self.folder / "draws50.csv"
+        self.assertIn("of the prior's: ", run("posterior.py", slices, drawn))
+        # Slices stand for embryos, which take half a minute each: they differ from themselves by nothing.
+        with (LIVING / "slow-start.toml").open("rb") as file:
+            keep = tomllib.load(file)["keep"]
+        plica.Study({"format": 1, "scenario": str(LIVING / "chosen.toml"), "design": {"kind": "file", "file": str(drawn)},
+                     "keep": {"measures": [*keep["measures"], "closed_length_ratio", "self_intersections"]}}).run(
+                         out=self.folder / "confirm", jobs=2)
+        frozen = self.folder / "draws.csv"
+        text = run("freeze.py", slices, self.folder / "confirm", frozen)
+        self.assertIn("deeper than its slice by 0.0 ± ", text.replace("-0.0", "0.0"))
+        self.assertIn("Close: 50 of 50; pass through themselves: 0;", text)
+        with frozen.open(newline="") as file:
+            rows = list(csv.reader(file))
+        self.assertEqual(len(rows), 1 + 10)
+        with (ROOT / "scenarios/living/draws.csv").open(newline="") as file:
+            self.assertEqual(rows[0], next(csv.reader(file)))
+
+    def test_slices_are_lit_and_made_embryos(self):
+        for name in ("clock", "floor", "own"):
+            self.study(f"fit-{name}.toml", name, points=16)
+        self.assertIn("lit from 8 min on: ", run("light.py", self.folder / "floor", "--best", "3"))
+        text = run("straight.py", self.folder, self.folder / "straight.png", "--best", "1")
+        self.assertEqual(text.count("end_time"), 3, text)
+        self.assertGreater((self.folder / "straight.png").stat().st_size, 10_000)
+
+    def test_a_wound_recoils(self):
+        self.assertIn("µm wider (its sides recoil)", run("wound.py"))
+
+
+if __name__ == "__main__":
+    unittest.main()
