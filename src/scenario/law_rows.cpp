@@ -194,8 +194,8 @@ std::vector<Row> law_rows() {
                "theirs. A wall keeps the half that a neighbour outside the region gives it."),
       ablation("only", &A::only, anything,
                "Names of tables, such as [\"cortex.apical\"], where others on these faces keep their strength; [] for "
-               "all: a "
-               "laser cuts all of a cortex, light switches off its myosin."),
+               "all: a laser cuts all of a cortex, light switches off its myosin.",
+               {.may_be_empty = true}),
       ablation("at_s", &A::at_s, not_negative, "When (s); 0: from the beginning."),
       ablation("at_min", &A::at_s, not_negative, "The same in minutes.", {.instead_of = "at_s", .scale = 60}),
       ablation("until_s", &A::until_s, {.low = 0, .low_included = false, .word_for_none = "none"},

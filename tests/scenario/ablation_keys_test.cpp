@@ -64,6 +64,10 @@ TEST(AblationKeys, FacesTimesAndRegionsAreThoseGiven) {
       make_model(loaded(sheet + "[ablation.cut]\nregion = \"first\"\nonly = [\"cortex.top\"]\nat_s = 0"));
   EXPECT_TRUE(cortex_of(*other, "walls").pattern().ablations.empty());
   EXPECT_EQ(*cortex_of(*other, "top").activity_of(CellId(0), 1, {}), 0);
+
+  const std::unique_ptr<Model> all =
+      make_model(loaded(sheet + "[ablation.cut]\nregion = \"first\"\nonly = []\nat_s = 0"));
+  EXPECT_EQ(*cortex_of(*all, "walls").activity_of(CellId(0), 1, {}), 0);
 }
 
 TEST(AblationKeys, WhatIsWrongIsSaid) {
