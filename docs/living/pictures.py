@@ -46,7 +46,7 @@ with tempfile.TemporaryDirectory() as name:
 
     figure, panels = plt.subplots(3, 2, figsize=(11, 7.2))
     for panel, (experiment, title) in zip(panels.flat, CUTS.items()):
-        panel.imshow(plt.imread(render(run_of(results, experiment), folder / "cut.png", "--view", "sagittal-section")))
+        panel.imshow(plt.imread(render(run_of(results, experiment), folder / "cut.png", "--view", "sagittal-section", "--range", "0:60")))
         panel.set_title(title, fontsize=12)
         panel.axis("off")
     figure.tight_layout(pad=0.3)

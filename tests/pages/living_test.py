@@ -58,7 +58,7 @@ class Living(unittest.TestCase):
         for name in ("clock", "floor", "own"):
             self.study(f"fit-{name}.toml", name, points=16)
         self.assertIn("lit from 8 min on: ", run("light.py", self.folder / "floor", "--best", "3"))
-        text = run("straight.py", self.folder, self.folder / "straight.png", "--best", "1")
+        text = run("straight.py", self.folder, self.folder / "short", self.folder / "straight.png", "--best", "1")
         self.assertEqual(text.count("end_time"), 3, text)
         self.assertGreater((self.folder / "straight.png").stat().st_size, 10_000)
 
