@@ -1,6 +1,7 @@
 """Numbers of the measured embryo, as docs/living-embryo.md tells them: its cells by rows, its furrow's length, and how apices pull.
 
-Usage: measured.py MEASURED, where `plica reproduce scenarios/living/measured.toml --out MEASURED` has left its results.
+Usage: measured.py RUN, the folder of a run: of `plica reproduce scenarios/living/measured.toml --out MEASURED`,
+MEASURED/runs/atlas/draw-1, or of docs/living/gradient.toml.
 """
 import subprocess
 import sys
@@ -17,12 +18,13 @@ PROFILES = {
     "twist from 0.65 to 0.95": {"from": 0.65, "to": 0.95},
     "twist from 0.72 to 0.97": {},
     "twist from 0.80 to 0.97": {"from": 0.80, "to": 0.97},
-    "the Gaussian": {"shape": "gaussian", "sigma_cells": 3.436},
+    "the Gaussian, in cells": {"shape": "gaussian", "sigma_cells": 3.436},
+    "a Gaussian of 15°": {"shape": "gaussian", "axis": "angle", "sigma_deg": 15},
 }
 ANGLES = (0, 10, 20, 25, 30)  # from the ventral midline, degrees
 MIDDLE_UM, ROWS = 125, 12
 
-run = plica.open(Path(sys.argv[1], "runs/atlas/draw-1"))
+run = plica.open(sys.argv[1])
 
 scenario = plica.Scenario(SCENARIO)
 scenario.update({f"region.rows-{n}.{key}": value for n in range(1, ROWS + 1)
@@ -49,6 +51,12 @@ with tempfile.TemporaryDirectory() as folder:
         subprocess.run([PROGRAM, "mesh", SCENARIO, "--out", mesh, *sets], check=True, capture_output=True)
         frame = Frame(mesh, 0)
         x, y, z = frame.points[frame.hexahedra].mean(axis=1).T
-        angle, strength = np.degrees(np.arctan2(np.abs(y), -z)), frame.cell_data["strength_cortex.apical"]
-        pulls = [strength[(np.abs(x) < 50) & (np.abs(angle - at) < 2.5)].mean() for at in ANGLES]
-        print(f"{name}:", ", ".join(f"{at}° {pull:.2f}" for at, pull in zip(ANGLES, pulls)))
+        angle = np.degrees(np.arctan2(np.abs(y), -z))
+
+        def across(values):
+            return ", ".join(f"{at}° {values[(np.abs(x) < 50) & (np.abs(angle - at) < 2.5)].mean():.2f}" for at in ANGLES)
+
+        print(f"{name}:", across(frame.cell_data["strength_cortex.apical"]))
+print("twist itself:", across(frame.cell_data["twi"]))
+print("and along the midline:", ", ".join(
+    f"{at} µm {frame.cell_data['twi'][(np.abs(x - at) < 12.5) & (angle < 10)].mean():.2f}" for at in range(-200, 201, 25)))

@@ -1,7 +1,8 @@
 """Draws the pictures of docs/living-embryo.md from what its experiments have left.
 
-Usage: pictures.py RESULTS MEASURED IMAGES, where RESULTS and MEASURED are of `plica reproduce living` and of `plica reproduce
-scenarios/living/measured.toml`: cuts.png, atlas.png and closing.gif in IMAGES.
+Usage: pictures.py RESULTS MEASURED GRADIENT IMAGES, where RESULTS and MEASURED are of `plica reproduce living` and of `plica
+reproduce scenarios/living/measured.toml`, GRADIENT of `plica run docs/living/gradient.toml`: cuts.png, atlas.png, gradient.png
+and closing.gif in IMAGES.
 """
 import subprocess
 import sys
@@ -14,7 +15,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from PIL import Image  # noqa: E402
 
-results, measured, images = map(Path, sys.argv[1:])
+results, measured, gradient, images = map(Path, sys.argv[1:])
 CUTS = {
     "reference": "undisturbed",
     "cut-out": "apical cuts in front and behind",
@@ -23,6 +24,7 @@ CUTS = {
     "block": "middle in the light",
     "floor-kept": "floor kept stiff",
 }
+BESIDE_UM = {"atlas.png": 30, "gradient.png": -60}  # where they are cut across, too: where each closes first
 
 
 def run_of(folder, experiment):
@@ -53,14 +55,15 @@ with tempfile.TemporaryDirectory() as name:
     figure.savefig(folder / "cuts.png", dpi=90)
     few_colours(Image.open(folder / "cuts.png")).save(images / "cuts.png", optimize=True)
 
-    atlas = run_of(measured, "atlas")
-    render(atlas, folder / "atlas.png", "--view", "ventral,sagittal-section,cross-section", "--at-x-um=30",
-           "--time", "9min,14min,17min,20min", "--size", "1500x824")
-    few_colours(Image.open(folder / "atlas.png")).save(images / "atlas.png", optimize=True)
+    for name, run, times in (("atlas.png", run_of(measured, "atlas"), "9min,14min,17min,20min"),
+                             ("gradient.png", gradient, "9min,14min,20min,24min")):
+        render(run, folder / name, "--view", "ventral,sagittal-section,cross-section", f"--at-x-um={BESIDE_UM[name]}",
+               "--time", times, "--size", "1500x824")
+        few_colours(Image.open(folder / name)).save(images / name, optimize=True)
 
     # The movie: from below, and beside it cut across, without legends.
-    render(atlas, folder / "below.png", "--movie", "--view", "ventral,sagittal-section", "--size", "700x560")
-    render(atlas, folder / "across.png", "--movie", "--at-x-um=30", "--size", "560x560")
+    render(gradient, folder / "below.png", "--movie", "--view", "ventral,sagittal-section", "--size", "700x560")
+    render(gradient, folder / "across.png", "--movie", f"--at-x-um={BESIDE_UM['gradient.png']}", "--size", "560x560")
     frames = []
     for below, across in zip(sorted(folder.glob("below_*.png"))[3:], sorted(folder.glob("across_*.png"))[3:]):
         frame = Image.new("RGB", (780, 260), "white")
@@ -71,4 +74,4 @@ with tempfile.TemporaryDirectory() as name:
     frames = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     times = [300] * (len(frames) - 1) + [2000]
     frames[0].save(images / "closing.gif", save_all=True, append_images=frames[1:], duration=times, loop=0)
-print("\n".join(f"drawn: {images / picture}" for picture in ("cuts.png", "atlas.png", "closing.gif")))
+print("\n".join(f"drawn: {images / picture}" for picture in ("cuts.png", "atlas.png", "gradient.png", "closing.gif")))

@@ -74,3 +74,4 @@ for (drawn, plotted), hypothesis in zip(panels, ("clock", "floor", "own")):
     drawn.axis("off")
 panels[-1][1].set_xlabel("along the axis, µm (anterior to the left)")
 figure.savefig(options.picture, dpi=90)
+Image.open(options.picture).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(options.picture, optimize=True)
