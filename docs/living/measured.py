@@ -23,6 +23,7 @@ PROFILES = {
 }
 ANGLES = (0, 10, 20, 25, 30)  # from the ventral midline, degrees
 MIDDLE_UM, ROWS = 125, 12
+MINUTES = (14, 16, 18, 20, 24)
 
 run = plica.open(sys.argv[1])
 
@@ -37,26 +38,35 @@ for n in range(1, ROWS + 1):
     of_row = cells.loc[np.flatnonzero(row)]
     print(f"{n:3}: apical area {of_row.apical_area_ratio.mean():.2f} of that at rest, height {of_row.height_um.mean():.1f} µm")
 
-midline = run.midline
-deep = midline[(midline.time_s == 1200) & (midline.depth_um > 20)]
-print(f"\nAt 20 min deeper than 20 µm from x = {deep.ap_um.min():.0f} to {deep.ap_um.max():.0f} µm,",
-      f"{np.ptp(deep.ap_um):.0f} µm long; depth there:")
-print(deep[["ap_um", "depth_um"]].round(0).astype(int).to_string(index=False))
+print("\nOver time (series.csv):")
+shown = {"furrow_depth_um": "depth, µm", "closed_length_ratio": "closed, of the length", "lips_closed": "closed in the middle",
+         "flank_section_area_ratio": "flank's section", "flank.displacement_um": "flank moves, µm", "midline_waviness_um": "uneven, µm"}
+series = run.series[run.series.time_s.isin([60 * minute for minute in MINUTES])]
+print(series.assign(min=series.time_s / 60).set_index("min")[[*shown]].rename(columns=shown).round(3).to_string())
+steps = run.series.time_s.diff()[(run.series.time_s > 840) & (run.series.time_s <= 1200)]
+print(f"Steps from 14 to 20 min: {steps.median():.1f} s (median)")
 
-print("\nPull of apices up to 50 µm from the middle, by degrees from the ventral midline:")
+print("\nDepth of the midline, µm, means of stretches of 40 µm by their middle (midline.csv):")
+midline = run.midline[run.midline.time_s.isin([60 * minute for minute in MINUTES])].dropna()
+stretch = (midline.ap_um // 40 * 40 + 20).astype(int)
+depths = midline.groupby([midline.time_s / 60, stretch]).depth_um.mean().unstack()
+print(depths.rename_axis(index="min", columns="x").round(0).to_string())
+for minute, deep in midline[midline.depth_um > 20].groupby(midline.time_s / 60):
+    print(f"At {minute:.0f} min deeper than 20 µm on {np.ptp(deep.ap_um):.0f} µm:",
+          ", ".join(f"{x:.0f}:{depth:.0f}" for x, depth in zip(deep.ap_um, deep.depth_um)))
+
+print("\nUp to 50 µm from the middle, by degrees from the ventral midline:")
 with tempfile.TemporaryDirectory() as folder:
+    frames = {}
     for number, (name, profile) in enumerate(PROFILES.items()):
         mesh = Path(folder, f"{number}.vtu")
         sets = [word for key, value in profile.items() for word in ("--set", f"cortex.apical.profile.{key}={value}")]
         subprocess.run([PROGRAM, "mesh", SCENARIO, "--out", mesh, *sets], check=True, capture_output=True)
-        frame = Frame(mesh, 0)
-        x, y, z = frame.points[frame.hexahedra].mean(axis=1).T
-        angle = np.degrees(np.arctan2(np.abs(y), -z))
-
-        def across(values):
-            return ", ".join(f"{at}° {values[(np.abs(x) < 50) & (np.abs(angle - at) < 2.5)].mean():.2f}" for at in ANGLES)
-
-        print(f"{name}:", across(frame.cell_data["strength_cortex.apical"]))
-print("twist itself:", across(frame.cell_data["twi"]))
-print("and along the midline:", ", ".join(
-    f"{at} µm {frame.cell_data['twi'][(np.abs(x - at) < 12.5) & (angle < 10)].mean():.2f}" for at in range(-200, 201, 25)))
+        frames[name] = Frame(mesh, 0)
+shown = {f"pull, {name}": frame.cell_data["strength_cortex.apical"] for name, frame in frames.items()}
+frame = next(iter(frames.values()))  # all have the same cells
+shown["twist itself"] = frame.cell_data["twi"]
+x, y, z = frame.points[frame.hexahedra].mean(axis=1).T
+angle = np.degrees(np.arctan2(np.abs(y), -z))
+for name, values in shown.items():
+    print(f"{name}:", ", ".join(f"{at}° {values[(np.abs(x) < 50) & (np.abs(angle - at) < 2.5)].mean():.2f}" for at in ANGLES))

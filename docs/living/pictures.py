@@ -4,7 +4,6 @@ Usage: pictures.py RESULTS MEASURED GRADIENT IMAGES, where RESULTS and MEASURED 
 reproduce scenarios/living/measured.toml`, GRADIENT of `plica run docs/living/gradient.toml`: cuts.png, atlas.png, gradient.png
 and closing.gif in IMAGES.
 """
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -15,6 +14,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from PIL import Image  # noqa: E402
 
+from drawing import few_colours, render  # noqa: E402
+
 results, measured, gradient, images = map(Path, sys.argv[1:])
 CUTS = {
     "reference": "undisturbed",
@@ -24,22 +25,11 @@ CUTS = {
     "block": "middle in the light",
     "floor-kept": "floor kept stiff",
 }
-BESIDE_UM = {"atlas.png": 30, "gradient.png": -60}  # where they are cut across, too: where each closes first
+GRADIENT_AT = "--at-x-um=-60"  # the gradient's embryo is cut across there, too
 
 
 def run_of(folder, experiment):
     return folder / "runs" / experiment / "draw-1"
-
-
-def render(run, picture, *words):
-    subprocess.run(["build/release/plica", "render", run, "--out", picture, "--overwrite", "--quiet", *words], check=True,
-                   stdout=subprocess.DEVNULL)
-    return picture
-
-
-def few_colours(picture):
-    """The picture in 64 colours: a fifth of its bytes."""
-    return picture.convert("RGB").quantize(64, dither=Image.Dither.NONE)
 
 
 images.mkdir(parents=True, exist_ok=True)
@@ -55,15 +45,14 @@ with tempfile.TemporaryDirectory() as name:
     figure.savefig(folder / "cuts.png", dpi=90)
     few_colours(Image.open(folder / "cuts.png")).save(images / "cuts.png", optimize=True)
 
-    for name, run, times in (("atlas.png", run_of(measured, "atlas"), "9min,14min,17min,20min"),
-                             ("gradient.png", gradient, "9min,14min,20min,24min")):
-        render(run, folder / name, "--view", "ventral,sagittal-section,cross-section", f"--at-x-um={BESIDE_UM[name]}",
-               "--time", times, "--size", "1500x824")
-        few_colours(Image.open(folder / name)).save(images / name, optimize=True)
+    for picture, run, at, times in (("atlas.png", run_of(measured, "atlas"), "--at-x-um=30", "9min,14min,17min,20min"),
+                                    ("gradient.png", gradient, GRADIENT_AT, "9min,14min,20min,24min")):
+        render(run, folder / picture, "--view", "ventral,sagittal-section,cross-section", at, "--time", times, "--size", "1500x824")
+        few_colours(Image.open(folder / picture)).save(images / picture, optimize=True)
 
     # The movie: from below, and beside it cut across, without legends.
     render(gradient, folder / "below.png", "--movie", "--view", "ventral,sagittal-section", "--size", "700x560")
-    render(gradient, folder / "across.png", "--movie", f"--at-x-um={BESIDE_UM['gradient.png']}", "--size", "560x560")
+    render(gradient, folder / "across.png", "--movie", GRADIENT_AT, "--size", "560x560")
     frames = []
     for below, across in zip(sorted(folder.glob("below_*.png"))[3:], sorted(folder.glob("across_*.png"))[3:]):
         frame = Image.new("RGB", (780, 260), "white")

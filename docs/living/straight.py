@@ -5,7 +5,6 @@ docs/living/fit-clock.toml --out STUDIED/clock` has left it. Leaves the embryos 
 is not run again. Prints how uneven their floors are, and draws them, the best of each in a section along its midline.
 """
 import argparse
-import subprocess
 import tempfile
 from pathlib import Path
 
@@ -16,6 +15,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 from PIL import Image  # noqa: E402
 
 import plica  # noqa: E402
+from drawing import few_colours, render  # noqa: E402
 from targets import TARGETS, score  # noqa: E402
 
 # What makes a slice a short embryo, not mirrored, whose cells pull by 20 % more or less than the next: as in short.toml.
@@ -35,10 +35,8 @@ options = parser.parse_args()
 def section_of(run):
     """Its embryo at the end, cut along the midline, without legends."""
     with tempfile.TemporaryDirectory() as folder:
-        file = f"{folder}/section.png"
-        subprocess.run(["build/release/plica", "render", run, "--view", "sagittal-section", "--range", "0:60", "--size", "800x520",
-                        "--out", file, "--quiet"], check=True)
-        return Image.open(file).convert("RGB").crop((50, 50, 650, 440))
+        section = render(run, f"{folder}/section.png", "--view", "sagittal-section", "--range", "0:60", "--size", "800x520")
+        return Image.open(section).convert("RGB").crop((50, 50, 650, 440))
 
 
 figure, panels = plt.subplots(3, 2, figsize=(10, 7.5), sharex="col", width_ratios=[1, 1.4], layout="constrained")
@@ -74,4 +72,4 @@ for (drawn, plotted), hypothesis in zip(panels, ("clock", "floor", "own")):
     drawn.axis("off")
 panels[-1][1].set_xlabel("along the axis, µm (anterior to the left)")
 figure.savefig(options.picture, dpi=90)
-Image.open(options.picture).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(options.picture, optimize=True)
+few_colours(Image.open(options.picture)).save(options.picture, optimize=True)

@@ -24,10 +24,21 @@ BLOCK = re.compile(r"^<!-- run first: (?P<first>.+?) -->$|"
                    re.M)
 NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 SEPARATOR = "==== block of the page: "
+# | what | 28.9 µm | `furrow_depth_um` |, or 0.74 to 0.78.
+STATED = re.compile(r"^\|[^|]+\| (?P<least>-?[\d.]+)(?: to (?P<most>-?[\d.]+))?(?: (?P<unit>\S+))? \| `(?P<key>\w+)` \|$", re.M)
 
 
 class PageError(Exception):
     """What is wrong with the page, in a sentence."""
+
+
+def stated_numbers(text):
+    """What a page's table says of keys of summary.json: (least, most) of each, minutes as seconds."""
+    stated = {}
+    for row in STATED.finditer(text):
+        unit = 60 if row["unit"] == "min" else 1
+        stated[row["key"]] = (float(row["least"]) * unit, float(row["most"] or row["least"]) * unit)
+    return stated
 
 
 def prepare(place, program):

@@ -6,7 +6,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from page import PageError, run_page
+from page import PageError, run_page, stated_numbers
 
 
 class Runner(unittest.TestCase):
@@ -36,6 +36,11 @@ class Runner(unittest.TestCase):
         for shown in ("depth 28.5 um", "depth -28.9 um", "width 28.9 um", "depth 28.9 um\nfirst"):
             self.refused(f"```sh\necho first\necho 'depth 28.903 um'\n```\n```text\n{shown}\n```\n")
         self.refused("```sh\necho a\n```\n```toml output\nb = 1\n```\n")
+
+    def test_stated_numbers(self):
+        self.assertEqual(stated_numbers("| depth | 28.9 µm | `depth_um` |\n| end | 1.5 min | `time_s` |\n| part | 0.74 to 0.78 | `ratio` |\n"
+                                        "| rows | 3 | in `words` |\n"),
+                         {"depth_um": (28.9, 28.9), "time_s": (90, 90), "ratio": (0.74, 0.78)})
 
     def test_marks(self):
         self.assertEqual(self.run_text("<!-- not run: it fails -->\n```sh\nfalse\n```\n```text\nx\n```\n"), 0)
