@@ -15,7 +15,7 @@ tissue to turn and cut, pictures, and tables of depths, areas and speeds.")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS libopenblas0-serial)  # the variant without threads: docs/dependencies.md
+set(CPACK_DEBIAN_PACKAGE_DEPENDS libopenblas0-serial)  # the variant without threads: docs/developers/dependencies.md
 # Pictures where there is no screen.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "xvfb, libgl1-mesa-dri")
 set(CPACK_STRIP_FILES ON)

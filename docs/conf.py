@@ -1,4 +1,4 @@
-"""How Sphinx makes the site of these pages; docs/build calls it, docs/site.md explains it."""
+"""How Sphinx makes the site of these pages; docs/build calls it, docs/developers/site.md explains it."""
 import os
 import re
 import sys

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints docs/cli.md: what the program and each of its commands print for --help. Usage: make_cli.py PLICA"""
+"""Prints docs/reference/cli.md: what the program and each of its commands print for --help. Usage: make_cli.py PLICA"""
 import re
 import subprocess
 import sys

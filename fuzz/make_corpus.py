@@ -86,7 +86,7 @@ def scenarios():
 
 
 def studies():
-    for file in sorted((root.parent / "docs/studies").glob("*.toml")):
+    for file in sorted((root.parent / "docs/science/studies").glob("*.toml")):
         write("study", file.name, file.read_bytes())
     write("study", "drawn.toml", b'scenario = "xenopus"\n[set]\ntime.end_min = 1\n[vary]\ncontraction.apical.stiffness_nN_per_um = '
           b'{ mean = 5, sd = 1, low = 3 }\ntime.tolerance_um = { low = 0.01, high = 1, scale = "log" }\nembryo.cells = '

@@ -1,6 +1,6 @@
 // What the fuzzers feed: each takes any bytes to one of plica's readers, and returns whether the reader took them as
 // whole. Whatever else happens (a crash, another exception than a reader may throw, a result that breaks its promise)
-// is a finding. docs/hostile_input.md.
+// is a finding. docs/developers/hostile_input.md.
 #pragma once
 
 #include <string_view>

@@ -63,7 +63,7 @@ with tempfile.TemporaryDirectory() as folder:
     assert "### One step" in results and "### The whole Drosophila run" in results and "### Kernels" not in results
     assert "### One step" not in notebook and ("### Kernels" in notebook or not figures["kernels"])
     tables.update(folder, figures | {"steps": [], "runs": [], "kernels": [], "furrows": []}, " --only nothing")
-    assert results == (Path(folder) / "docs/performance.md").read_text()
+    assert results == (Path(folder) / "docs/how-to/performance.md").read_text()
     # How the cost grows, what more threads gain, and whether they change anything.
     grown = [steps[0] | {"elements": 756 * k * k, "step_s": 0.001 * k**3, "embryo": f"{k}", "refined_by": "more cells"} for k in (4, 16)]
     text = tables.page(figures | {"steps": grown}, "")

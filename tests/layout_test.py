@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Holds the layout of the sources: who includes whom, where VTK may be, headers, file lengths, theory pages, links.
 
-Usage: layout_test.py ROOT [PLICA]; with the program, docs/scenario.md and the end of docs/measures.md are compared with
-what `plica reference` prints, and docs/cli.md with the help of the commands.
+Usage: layout_test.py ROOT [PLICA]; with the program, docs/reference/scenario.md and the end of docs/reference/measures.md are compared with
+what `plica reference` prints, and docs/reference/cli.md with the help of the commands.
 Prints what it counted; on a breach, a line each, and exit status 1.
 """
 import re
@@ -132,18 +132,18 @@ def printed(*arguments):
 
 def check_measures():
     """Every column of the program is on the page, with the meaning that its table says."""
-    page = root / "docs/measures.md"
+    page = root / "docs/reference/measures.md"
     expected = printed("reference", "--measures")
     count("columns of results", len(re.findall(r"^\| `", expected, re.MULTILINE)))
     _, mark, found = page.read_text(encoding="utf-8").partition(MEASURES_MARK)
     if not mark or found != expected:
-        breach(page, "does not end with what the program prints; run: sed -i '/^<!-- Below/q' docs/measures.md && "
-                     "plica reference --measures >> docs/measures.md")
+        breach(page, "does not end with what the program prints; run: sed -i '/^<!-- Below/q' docs/reference/measures.md && "
+                     "plica reference --measures >> docs/reference/measures.md")
 
 
 def check_units():
-    """Every column has its unit at the end of its name, or is among the pure numbers that docs/measures.md lists."""
-    page = root / "docs/measures.md"
+    """Every column has its unit at the end of its name, or is among the pure numbers that docs/reference/measures.md lists."""
+    page = root / "docs/reference/measures.md"
     pure = set(re.findall(r"`(\w+)`", page.read_text(encoding="utf-8").partition("## Which speed")[0].
                           partition("pure numbers:\n")[2]))
     columns, quantities = printed("reference", "--measures").split("### Quantities of monitors")
@@ -159,19 +159,19 @@ def check_units():
 
 
 def check_reference():
-    page = root / "docs/scenario.md"
+    page = root / "docs/reference/scenario.md"
     expected = printed("reference")
     count("lines of the scenario reference", len(expected.splitlines()))
     if not page.is_file() or page.read_text(encoding="utf-8") != expected:
-        breach(page, "is not what the program prints; run: plica reference > docs/scenario.md")
+        breach(page, "is not what the program prints; run: plica reference > docs/reference/scenario.md")
 
 
 def check_command_line():
-    page, maker = root / "docs/cli.md", root / "docs/make_cli.py"
+    page, maker = root / "docs/reference/cli.md", root / "docs/make_cli.py"
     expected = subprocess.run([sys.executable, maker, program], capture_output=True, text=True, check=True).stdout
     count("commands", expected.count("\n## "))
     if not page.is_file() or page.read_text(encoding="utf-8") != expected:
-        breach(page, "is not what the program prints; run: docs/make_cli.py build/release/plica > docs/cli.md")
+        breach(page, "is not what the program prints; run: docs/make_cli.py build/release/plica > docs/reference/cli.md")
 
 
 check_includes()

@@ -53,7 +53,7 @@ def can_run():
 def main():
     run = Path(sys.argv[1])
     if not can_run():
-        print("skipped: ParaView with its Python, or xvfb-run, is missing (docs/paraview.md)")
+        print("skipped: ParaView with its Python, or xvfb-run, is missing (docs/how-to/paraview.md)")
         sys.exit(77)
     with tempfile.TemporaryDirectory() as folder:
         picture, state_file = Path(folder) / "fold.png", Path(folder) / "fold.pvsm"

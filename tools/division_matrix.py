@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Which divisions close the furrow's lips: runs drosophila with different cells dividing, prints the table of docs/division.md.
+"""Which divisions close the furrow's lips: runs drosophila with different cells dividing, prints the table of docs/how-to/division.md.
 
 Every row is `plica run` of scenarios/drosophila.toml to 40 min with one division at 15 min (a second one at 25 min where
 it says so), grown in 5 min. Takes some minutes on two cores; runs that are there already are not made again.

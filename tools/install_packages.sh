@@ -4,7 +4,7 @@
 # pictures site fuzz slurm. Without a group: all of them but slurm.
 set -euo pipefail
 
-# The one list of packages. docs/dependencies.md says why each library is here.
+# The one list of packages. docs/developers/dependencies.md says why each library is here.
 declare -A packages=(
   [build]="cmake ninja-build g++"
   # OpenBLAS in its serial variant: one thread, so that results are the same to the bit.

@@ -4,7 +4,7 @@
   tools/paper_algorithm_study.py run --out results/paper_algorithm    about 25 minutes on one core; finished runs are kept
   tools/paper_algorithm_study.py plot results/paper_algorithm/study.csv --out docs/images/paper_algorithm.png
 
-docs/paper-algorithm.md says what comes out.
+docs/developers/paper-algorithm.md says what comes out.
 """
 import argparse
 import csv

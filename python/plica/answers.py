@@ -24,7 +24,7 @@ __all__ = ["verdict"]
 
 FINISHED = ("equilibrium", "end_time")  # the status of a run that has results
 VERDICT_COLUMNS = ("self_intersections", "lips_closed_time_s", "furrow_depth_below_lips_um", "furrow_depth_um")
-FURROWED_UM = 1.0  # below its lips (docs/measures.md)
+FURROWED_UM = 1.0  # below its lips (docs/reference/measures.md)
 DEEP_UM = 15.0  # below where it was at rest: furrowed, too, for its lips have gone in as well
 NO_RESULT = ("failed", "refused", "not run", "no verdict")
 DRAWN_KINDS = ("sobol", "latin-hypercube", "sobol-indices", "one-at-a-time")  # none of them has a point for each pair of values

@@ -35,7 +35,7 @@ def reproduce(
     Parameters
     ----------
     what : str or path
-        ``"living"``, the living embryo, or a file of experiments (docs/predictions.md).
+        ``"living"``, the living embryo, or a file of experiments (docs/how-to/predictions.md).
     out : str or path
         A directory for the runs, the table ``experiments.csv``, and the page: ``living.html``, or with the file's name.
     jobs : int, optional

@@ -1,7 +1,7 @@
 """Which values of keys explain what was measured: not one set of them, but all, each with its weight.
 
 Targets are taken as measured with normal errors, so the likelihood is known, and importance sampling needs no distance and no
-tolerance, as approximate Bayesian computation does. pyABC was tried, and comes to the same posterior (docs/dependencies.md).
+tolerance, as approximate Bayesian computation does. pyABC was tried, and comes to the same posterior (docs/developers/dependencies.md).
 """
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ class Study:
     ----------
     source : str, path or mapping
         A study's TOML file, TOML text (of several lines), or the same as a dict: ``scenario``, ``vary``, ``design``, and
-        ``set`` and ``keep`` if need be (docs/studies.md). Or the directory of a study that has been run, or is running.
+        ``set`` and ``keep`` if need be (docs/how-to/studies.md). Or the directory of a study that has been run, or is running.
 
     Raises
     ------

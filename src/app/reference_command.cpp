@@ -10,7 +10,7 @@ void add_reference_command(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand("reference", "print the reference of all scenario keys, in Markdown");
   const CLI::Option* measures =
       command->add_flag("--measures")->description("that of all columns of the results instead");
-  command->footer("Example: plica reference > docs/scenario.md");
+  command->footer("Example: plica reference > docs/reference/scenario.md");
   command->callback([=] { fmt::print("{}", measures->count() > 0 ? measures_markdown() : reference_markdown()); });
 }
 

@@ -1,5 +1,5 @@
 // What is measured of single cells and nodes at a moment: one table each for the cells of cells.csv and of frames, the
-// nodes of frames, midline.csv and lineage.csv. Headers, rows, arrays and the tables in docs/measures.md come from
+// nodes of frames, midline.csv and lineage.csv. Headers, rows, arrays and the tables in docs/reference/measures.md come from
 // them.
 #pragma once
 
@@ -36,7 +36,7 @@ struct CellColumn {
   std::string_view name;  // with its unit
   bool in_csv;            // cells.csv
   InFrames in_frames;
-  std::string_view meaning;  // for docs/measures.md, in Markdown
+  std::string_view meaning;  // for docs/reference/measures.md, in Markdown
   std::function<std::vector<double>(const MeasuredCells&)> values;
   std::optional<double> none_in_frames = {};  // what stands for none in a frame, which holds numbers only
 };

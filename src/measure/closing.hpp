@@ -1,5 +1,5 @@
 // A furrow that closes: where its lips touch, what is inside the sheet and under its shell, and when it turned. What
-// every word means stands in docs/measures.md.
+// every word means stands in docs/reference/measures.md.
 #pragma once
 
 #include <optional>

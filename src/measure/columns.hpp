@@ -1,6 +1,6 @@
 // The measures of a step and of a run, one row of a table each: name, meaning, who computes it, where it goes. The
 // header and rows of series.csv, the rows of a checkpoint, the values of summary.json, the names that [expect] knows
-// and the table in docs/measures.md come from it: a new measure is a new row, and the function that the row names.
+// and the table in docs/reference/measures.md come from it: a new measure is a new row, and the function that the row names.
 #pragma once
 
 #include <functional>
@@ -52,7 +52,7 @@ struct Column {
   std::string_view name;  // with its unit
   bool in_series;
   InSummary in_summary;
-  std::string_view meaning;    // for docs/measures.md, in Markdown
+  std::string_view meaning;    // for docs/reference/measures.md, in Markdown
   OfStep of_step;              // its value after a step; or
   OfRun of_run = {};           // its value in the summary, of the run as a whole
   bool is_count = false;       // a whole number
@@ -75,7 +75,7 @@ std::vector<const Column*> summary_columns();
 /// What the summary has of each of those, of the rows of a whole run (the one at rest first).
 std::vector<std::pair<const Column*, std::optional<double>>> summary_values(std::span<const Observation> rows);
 
-/// The tables of docs/measures.md, in Markdown.
+/// The tables of docs/reference/measures.md, in Markdown.
 std::string measures_markdown();
 
 }  // namespace plica

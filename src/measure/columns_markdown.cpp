@@ -1,4 +1,4 @@
-// The tables of docs/measures.md.
+// The tables of docs/reference/measures.md.
 #include <fmt/format.h>
 
 #include <array>

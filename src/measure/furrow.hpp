@@ -1,5 +1,5 @@
 // The furrow, measured: depth, lips, and the cells at the middle (VML) and near the ends (VCE) of the ventral midline.
-// Pure functions of tissue and positions; what every word means stands in docs/measures.md.
+// Pure functions of tissue and positions; what every word means stands in docs/reference/measures.md.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // [monitor.NAME]: one number a step about a region, as the paper's monitoring language has them. Pure functions of
-// Model and State; docs/measures.md says what each quantity means.
+// Model and State; docs/reference/measures.md says what each quantity means.
 #pragma once
 
 #include <memory>
@@ -43,7 +43,7 @@ struct QuantityInfo {
   std::string_view name;
   std::string_view unit;  // as in a column's name; empty for a ratio
   Of of;
-  std::string_view meaning;  // for docs/measures.md, in Markdown
+  std::string_view meaning;  // for docs/reference/measures.md, in Markdown
   Axis axis = Axis::none;
   Reference reference = Reference::none;
 

@@ -86,7 +86,7 @@ const std::vector<Claim> table = {
      "nN",
      Basis::measured,
      "they push the borders apart, 3 times as hard as without division, and before that up to 4.8 times; the borders "
-     "lean on the shell, the floor buckles inward, and the lips turn over (docs/division.md)",
+     "lean on the shell, the floor buckles inward, and the lips turn over (docs/how-to/division.md)",
      "at the end"},
     {"4, thesis",
      "Without division the furrow stays open (lips apart, over the distance at rest)",

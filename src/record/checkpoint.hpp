@@ -1,4 +1,4 @@
-// What is in checkpoint.h5: everything that a run needs to go on to the same bits. docs/reliability.md says what is
+// What is in checkpoint.h5: everything that a run needs to go on to the same bits. docs/how-to/reliability.md says what is
 // promised of it.
 #pragma once
 

@@ -16,7 +16,7 @@ std::string in_toml(const std::string& text);
 /// A number in TOML that is floating-point also where it is whole, so that a key that wants an integer says so.
 std::string float_in_toml(double value);
 
-/// The page docs/scenario.md: for each table its keys, types, defaults, what is allowed, and meaning.
+/// The page docs/reference/scenario.md: for each table its keys, types, defaults, what is allowed, and meaning.
 std::string reference_markdown();
 
 }  // namespace plica

@@ -1,5 +1,5 @@
 // report.html: one page with a run, or several side by side, that opens by double click without a network. The page
-// itself is viewer/, bundled when plica is built; here its data are put in. docs/report.md describes both.
+// itself is viewer/, bundled when plica is built; here its data are put in. docs/how-to/report.md describes both.
 #pragma once
 
 #include <filesystem>

@@ -8,7 +8,7 @@
 
 namespace plica {
 
-/// The keys stand in docs/compare.md; what has no value is null.
+/// The keys stand in docs/how-to/compare.md; what has no value is null.
 nlohmann::ordered_json comparison_json(const Comparison& comparison);
 
 /// A table for the terminal. Numbers that are the same in both runs are counted, not listed.

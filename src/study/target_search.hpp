@@ -5,7 +5,7 @@
 // places and steps to where the largest of them is least, within a radius that shrinks. So with several keys and
 // targets it does what Newton's method does, without derivatives and within bounds. Rejected: BOBYQA on the sum of
 // squares of the misses, which must learn the curvature of that sum first, and Nelder-Mead: both need three to four
-// times as many runs (docs/calibrate.md).
+// times as many runs (docs/how-to/calibrate.md).
 #pragma once
 
 #include <functional>

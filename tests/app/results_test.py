@@ -53,7 +53,7 @@ class Outcomes(CommandLine):
         self.assertEqual(self.summary()["status"], "equilibrium")
 
     def test_every_column_is_in_the_documentation(self):
-        page = (Path(__file__).resolve().parents[2] / "docs" / "measures.md").read_text(encoding="utf-8")
+        page = (Path(__file__).resolve().parents[2] / "docs" / "reference" / "measures.md").read_text(encoding="utf-8")
         self.run_scenario(BLOCK + '[division.d]\nregion = "all"\nat_s = 0.2\n')
         frame = read_vtu(sorted((self.out / "frames").iterdir())[-1])
         arrays = {name for name, (section, _) in frame.items() if section in ("PointData", "CellData")}

@@ -1,4 +1,4 @@
-"""The extremes of docs/hostile_input.md one by one: each run ends, or says where, when and why it cannot go on."""
+"""The extremes of docs/developers/hostile_input.md one by one: each run ends, or says where, when and why it cannot go on."""
 import support
 from support import SPHERE, CommandLine
 

@@ -1,4 +1,4 @@
-"""The scripts of docs/living, on studies that are much smaller than those of docs/living-embryo.md. Needs the Python package."""
+"""The scripts of docs/science/living, on studies that are much smaller than those of docs/science/living-embryo.md. Needs the Python package."""
 import csv
 import subprocess
 import sys
@@ -10,7 +10,7 @@ from pathlib import Path
 import plica
 
 ROOT = Path(__file__).resolve().parents[2]
-LIVING = ROOT / "docs/living"
+LIVING = ROOT / "docs/science/living"
 
 
 def run(script, *arguments):

@@ -18,7 +18,7 @@ def run_blocks(page):
 
 def test_python_page(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    run_blocks("docs/python.md")
+    run_blocks("docs/start/python.md")
     whole, half = map(float, capsys.readouterr().out.split())
     assert whole > 10 and half > 10 and abs(whole - half) > 0.1
 
@@ -26,10 +26,10 @@ def test_python_page(tmp_path, monkeypatch, capsys):
 def test_studies_page(tmp_path, monkeypatch):
     pytest.importorskip("xarray")
     monkeypatch.chdir(tmp_path)
-    page = (ROOT / "docs/studies.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/how-to/studies.md").read_text(encoding="utf-8")
     (text,) = re.findall(r"^```toml\n# stiffness.toml\n(.*?)^```", page, re.M | re.S)
     (tmp_path / "stiffness.toml").write_text(text.replace("[vary]", '[set]\n"time.end_min" = 0.2\n[vary]'))
-    names = run_blocks("docs/studies.md")
+    names = run_blocks("docs/how-to/studies.md")
     assert dict(names["depths"].sizes) == {"contraction.apical.stiffness_nN_per_um": 4, "region.furrow.cells_across": 3}
 
 
@@ -49,7 +49,7 @@ def test_answers_page(tmp_path, monkeypatch):
     import plica
 
     monkeypatch.chdir(tmp_path)
-    page = (ROOT / "docs/answers.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/how-to/answers.md").read_text(encoding="utf-8")
     for name, text in re.findall(r"^```toml\n# (\w+.toml)\n(.*?)^```", page, re.M | re.S):
         (tmp_path / name).write_text(text)
 
@@ -63,7 +63,7 @@ def test_answers_page(tmp_path, monkeypatch):
     monkeypatch.setattr(plica.Study, "run", made_up)
     of_grid = plica.Study.phase_diagram
     monkeypatch.setattr(plica.Study, "phase_diagram", lambda self, *, thumbnails=0, **how: of_grid(self, **how))
-    names = run_blocks("docs/answers.md")
+    names = run_blocks("docs/how-to/answers.md")
     assert names["found"].effective_size > 100 and names["mean"].shape == (3, 3)
     for name in re.findall(r"images/answers/(\w+.png)", page):
         assert (tmp_path / name).stat().st_size > 1000

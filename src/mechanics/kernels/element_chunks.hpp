@@ -2,7 +2,7 @@
 // colour have no node in common, nor one that theirs hang on. Colours follow each other, the chunks of one colour are
 // shared out among the threads. So elements add to their nodes without more ado, and what a node gets is added up in
 // the same order whoever does it. Chunks are as long as they can be while there are enough of them to share out
-// (docs/performance-notebook.md).
+// (docs/developers/performance-notebook.md).
 #pragma once
 
 #include <omp.h>

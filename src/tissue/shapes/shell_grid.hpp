@@ -1,5 +1,5 @@
 // Where the corners of a shell's cells lie: a surface grid laid on the middle surface of the sheet, its squares as even
-// as they get. docs/embryos.md says how even that is.
+// as they get. docs/how-to/embryos.md says how even that is.
 #pragma once
 
 #include "core/vector.hpp"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws depths and heights over time in both programs, the picture of docs/furrow2d.md.
+"""Draws depths and heights over time in both programs, the picture of docs/developers/furrow2d.md.
 
     furrow2d_plot.py PLICA PNG
 """

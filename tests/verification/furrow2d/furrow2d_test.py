@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A closing furrow in plane strain, ablations and shut-offs, against another program (docs/furrow2d.md).
+"""A closing furrow in plane strain, ablations and shut-offs, against another program (docs/developers/furrow2d.md).
 
     furrow2d_test.py PLICA    runs the cases and prints a table; exit status 1 where one misses that is not known to
 

@@ -1,4 +1,4 @@
-// What became of an embryo, in a word: the rules of plica.verdict (docs/answers.md).
+// What became of an embryo, in a word: the rules of plica.verdict (docs/how-to/answers.md).
 import { Column } from "./study_data";
 
 const furrowed_um = 1; // below its lips

@@ -1,0 +1,20 @@
+"""What the living embryo was fitted to: value and width of each measure of a slice, as docs/science/living-embryo.md tells them."""
+
+TARGETS = {
+    "furrow_depth_um": (50, 6),  # an embryo is deeper; some 10 um was expected, 4 um came
+    "knee_depth_um": (6, 1.5),
+    "knee_time_s": (534, 60),
+    "lips_closed_time_s": (1080, 90),
+    "vml_height_um": (55, 4),
+    "flank_section_area_ratio": (0.94, 0.015),
+    "inner5.area_ratio": (0.8, 0.1),
+    "inner9.area_ratio": (0.5, 0.12),
+    "outer9.area_ratio": (1.3, 0.2),
+}
+
+OF_EMBRYO = {**TARGETS, "furrow_depth_um": (60, 6)}
+
+
+def score(table, targets):
+    """Of each row, the sum of squares of how far its measures are from the targets, in units of their widths."""
+    return sum(((table[measure] - value) / width) ** 2 for measure, (value, width) in targets.items())
