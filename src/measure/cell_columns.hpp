@@ -1,6 +1,6 @@
 // What is measured of single cells and nodes at a moment: one table each for the cells of cells.csv and of frames, the
-// nodes of frames, midline.csv and lineage.csv. Headers, rows, arrays and the tables in docs/reference/measures.md come from
-// them.
+// nodes of frames, midline.csv and lineage.csv. Headers, rows, arrays and the tables in docs/reference/measures.md come
+// from them.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,7 @@
 // The measures of a step and of a run, one row of a table each: name, meaning, who computes it, where it goes. The
 // header and rows of series.csv, the rows of a checkpoint, the values of summary.json, the names that [expect] knows
-// and the table in docs/reference/measures.md come from it: a new measure is a new row, and the function that the row names.
+// and the table in docs/reference/measures.md come from it: a new measure is a new row, and the function that the row
+// names.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-// What is in checkpoint.h5: everything that a run needs to go on to the same bits. docs/how-to/reliability.md says what is
-// promised of it.
+// What is in checkpoint.h5: everything that a run needs to go on to the same bits. docs/how-to/reliability.md says what
+// is promised of it.
 #pragma once
 
 #include <cstdint>
