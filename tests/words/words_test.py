@@ -91,6 +91,7 @@ def tracked():
 
 def sentences(text):
     """(line, sentence) of Markdown's paragraphs, list items and cells of tables."""
+    text = re.sub(r"^```.*?^```$", lambda found: blank(found[0]), text, flags=re.M | re.S)
     text = re.sub(r"(?<!`)(`+)(?!`)(?:(?!\n\n).)+?(?<!`)\1(?!`)", lambda found: "code" + blank(found[0])[4:], text, flags=re.S)
     for pattern in (r"^(:?:::+|```).*?$", r"^:[\w-]+:.*$", r"^#.*$", r"!\[[^\]]*\]"):
         text = re.sub(pattern, lambda found: blank(found[0]), text, flags=re.M)
