@@ -34,11 +34,11 @@ const std::vector<Claim> table = {
     {"2.3", "Contraction brings the apical area of a VML cell down by 30 %", "30", "pill.vml_area_loss_percent", 25, 35,
      30, "%", Basis::measured, "", "springs chosen for the depth, not for this; within 5 points"},
     {"2.3",
-     "Where contraction goes back to zero, the cell returns to its shape (largest displacement left, but for a rigid "
+     "Where contraction goes back to zero, the cell returns to its shape (largest displacement left, except a rigid "
      "motion)",
      "0", "off.left_um", 0, 1e-6, 0, "um", Basis::fixed,
      "what is left decays, but has not gone below 1e-6 um by the run's end",
-     "next to no drag, a minute after switching off"},
+     "negligible drag, a minute after switching off"},
     {"2.7", "Every node is slower than 0.2 um/s for the first time at the end, 15 min", "15 min",
      "pill.slower_than_printed_s", 14.25 * minute, 15.75 * minute, 900, "s", Basis::measured,
      "a furrow 29 um deep that forms in 15 min moves at 0.03 um/s on average; the printed stop would end the run at "
@@ -48,11 +48,11 @@ const std::vector<Claim> table = {
     {"2.6, Fig. 4", "One of three cells divides: four cells", "4", "demo.cells", 4, 4, 4, "", Basis::fixed},
     {"2.6, Fig. 4", "The daughters are of equal size at the cut (ratio of volumes)", "1", "demo.cut_ratio", 0.999,
      1.001, 1, "", Basis::fixed},
-    {"2.6, Fig. 4", "A daughter ends with her mother's volume", "1", "demo.volume_ratio", 1 - 1e-9, 1 + 1e-9, 1, "",
+    {"2.6, Fig. 4", "A daughter ends with the volume of its mother", "1", "demo.volume_ratio", 1 - 1e-9, 1 + 1e-9, 1, "",
      Basis::fixed},
-    {"2.6, Fig. 4", "and with her height", "1", "demo.height_ratio", 0.99, 1.01, 1, "", Basis::fixed, "",
+    {"2.6, Fig. 4", "and with the height of its mother", "1", "demo.height_ratio", 0.99, 1.01, 1, "", Basis::fixed, "",
      "free ends; within 1 %"},
-    {"2.6, Fig. 4", "and with her apical area", "1", "demo.area_ratio", 0.99, 1.01, 1, "", Basis::fixed, "",
+    {"2.6, Fig. 4", "and with the apical area of its mother", "1", "demo.area_ratio", 0.99, 1.01, 1, "", Basis::fixed, "",
      "within 1 %"},
     {"2.6, Fig. 5",
      "The lips are closer where cells have divided: fixed material pair, with over without",
@@ -162,7 +162,7 @@ const std::vector<Claim> table = {
      "equal speeds and rest at 15 min cannot be had together: both scale with the drag, and rest comes over 20 times "
      "later"},
     {"3.1, Fig. 8a", "Speeds are equal at 15 min (ratio then)", "1", "pill.ratio_at_15min", 0.85, 1.15, 1, "",
-     Basis::measured, "after the crossing the middle, which is softer, goes on longer than the ends"},
+     Basis::measured, "after the crossing the middle, which is softer, keeps moving longer than the ends"},
     {"3.1", "The pill is at rest after 15 min (stop read as 0.2 um/min)", "15", "pill.rest_min", 14.25, 15.75, 15,
      "min", Basis::calibrated, "", "the drag is chosen for it; within 5 %"},
     {"3.1, 4, Figs. 9, 10", "VML is displaced by 7-10 um at 15 min", "7-10", "pill.vml_at_15min_um", 7, 10, 8.5, "um",
