@@ -1,0 +1,585 @@
+"""Draws what pulls on what: one function per force law, and one each for a step and for its energies (docs/images/theory).
+
+Usage: laws.py [NAME...]; without names all. Curves are the formulas of docs/theory with the numbers given here.
+"""
+import sys
+
+import numpy as np
+from matplotlib.patches import Arc, FancyBboxPatch, Polygon, Wedge
+
+from style import (APICAL, BASAL, CELL, FAINT, FORCE, LATERAL, TEXT, VITELLINE, WHITE, YOLK, arrow, canvas, label, leader, plt,
+                   save)
+
+BIG = 20  # formulas
+
+
+def inset(figure, box, across, up):
+    """Axes of a curve in the box (left, bottom, width, height), in pixels, with the names of both axes."""
+    width, height = figure.get_size_inches() * 72
+    axes = figure.add_axes((box[0] / width, box[1] / height, box[2] / width, box[3] / height))
+    axes.set_xlabel(across)
+    axes.set_ylabel(up)
+    axes.set_xticks([])
+    axes.set_yticks([])
+    return axes
+
+
+def polygon(axes, points, fill=CELL, edge=TEXT, width=2, **how):
+    axes.add_patch(Polygon(points, closed=True, facecolor=fill, edgecolor=edge, linewidth=width, joinstyle="round", **how))
+
+
+def line(axes, *points, color=TEXT, width=2, **how):
+    axes.plot(*zip(*points), color=color, linewidth=width, **{"solid_capstyle": "round", **how})
+
+
+def dots(axes, points, color=TEXT, size=9, **how):
+    axes.plot(*zip(*points), "o", color=color, markersize=size, **{"zorder": 9, **how})
+
+
+def spring(axes, start, end, color=APICAL, turns=6, sway=8, width=2.5):
+    start, end = np.array(start, float), np.array(end, float)
+    along = end - start
+    across = np.array([-along[1], along[0]]) / np.hypot(*along) * sway
+    places = [0, 0.15, *(0.15 + 0.7 * (np.arange(2 * turns) + 0.5) / (2 * turns)), 0.85, 1]
+    signs = [0, 0, *(np.tile([1, -1], turns)), 0, 0]
+    line(axes, *(start + p * along + s * across for p, s in zip(places, signs)), color=color, width=width, zorder=6)
+
+
+def cell(axes, apex_left, apex_right, base_right, base_left, width=5):
+    """Section of a cell with coloured apical, basal and lateral faces."""
+    polygon(axes, [apex_left, apex_right, base_right, base_left], edge="none")
+    line(axes, apex_left, base_left, color=LATERAL, width=width)
+    line(axes, apex_right, base_right, color=LATERAL, width=width)
+    line(axes, base_left, base_right, color=BASAL, width=width)
+    line(axes, apex_left, apex_right, color=APICAL, width=width)
+
+
+def turned(points, degrees, about=(0, 0)):
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return (np.array(points, float) - about) @ np.array([[c, s], [-s, c]]) + about
+
+
+def ring(axes, centre, inner, outer, begin=0, end=360, cells=24, alpha=1.0):
+    """Section of an embryo, apical side outside; angles in degrees from the right, counter-clockwise."""
+    for a, b in zip(*(lambda e: (e[:-1], e[1:]))(np.radians(np.linspace(begin, end, cells + 1)))):
+        at = [(centre[0] + r * np.cos(w), centre[1] + r * np.sin(w)) for r, w in
+              ((outer, a), (outer, b), (inner, b), (inner, a))]
+        polygon(axes, at, edge="none", alpha=alpha)
+        for one, other, color in ((0, 3, LATERAL), (1, 2, LATERAL), (2, 3, BASAL), (0, 1, APICAL)):
+            line(axes, at[one], at[other], color=color, width=2.5, alpha=alpha)
+
+
+def contraction():
+    figure, axes = canvas(760, 320)
+    front, depth = np.array([(50, 40), (220, 40), (220, 200), (50, 200)]), np.array((95, 62))
+    polygon(axes, [front[3], front[2], front[2] + depth, front[3] + depth], edge="none")
+    polygon(axes, front, fill="#efe1c4", edge="none")
+    polygon(axes, [front[1], front[1] + depth, front[2] + depth, front[2]], fill="#e5d4b0", edge="none")
+    for a, b in ((0, 1), (0, 3), (1, 2)):
+        line(axes, front[a], front[b], color=LATERAL if a != 0 or b != 1 else BASAL, width=2)
+    line(axes, front[1], front[1] + depth, color=BASAL)
+    line(axes, front[1] + depth, front[2] + depth, color=LATERAL)
+    corners = [front[3], front[2], front[2] + depth, front[3] + depth]
+    for a, b in ((0, 1), (1, 2), (2, 3), (3, 0)):
+        spring(axes, corners[a], corners[b])
+    dots(axes, corners)
+    for here, there in ((corners[0], corners[1]), (corners[1], corners[0])):
+        way = (there - here) / np.hypot(*(there - here))
+        arrow(axes, here + (0, -16), here + way * 62 + (0, -16))
+    label(axes, (135, 182), "$T$", FORCE, BIG)
+    label(axes, (182, 300), "apical face", APICAL)
+    label(axes, (135, 100), "edge of\nlength $\\ell$")
+    curve = inset(figure, (470, 62, 270, 238), "edge length $\\ell$", "tension $T$")
+    length = np.linspace(0, 3, 200)
+    for a in (1, 0.5):
+        curve.plot(length, a * (np.maximum(0, length - 1) + 0.7), color=APICAL, alpha=0.4 + 0.6 * (a == 1))
+    curve.set(xlim=(0, 3.3), ylim=(0, 3))
+    curve.set_xticks([1], ["$U$"])
+    curve.set_yticks([0.35, 0.7], ["$P/2$", "$P$"])
+    label(curve, (2.3, 2.45), "$a=1$", APICAL)
+    label(curve, (2.75, 0.85), "$a=0.5$", APICAL)
+    save(figure, "theory/contraction.svg")
+
+
+def cortex():
+    figure, axes = canvas(760, 320)
+    tops, bottoms = [(30, 240), (115, 252), (205, 252), (290, 240)], [(20, 60), (110, 52), (210, 52), (300, 60)]
+    for k in range(3):
+        cell(axes, tops[k], tops[k + 1], bottoms[k + 1], bottoms[k], width=7)
+    for (a, b), color in (((tops[1], tops[2]), APICAL), ((bottoms[1], bottoms[2]), BASAL), ((tops[1], bottoms[1]), LATERAL),
+                          ((tops[2], bottoms[2]), LATERAL)):
+        a, b = np.array(a, float), np.array(b, float)
+        way = (b - a) / np.hypot(*(b - a))
+        inside = np.array((160, 152)) - (a + b) / 2
+        inside = inside / np.hypot(*inside) * 14
+        skip = 36 if color == LATERAL else 14
+        arrow(axes, a + inside + skip * way, a + inside + (skip + 28) * way, color, head=13)
+        arrow(axes, b + inside - skip * way, b + inside - (skip + 28) * way, color, head=13)
+    label(axes, (160, 285), "apical", APICAL)
+    label(axes, (160, 24), "basal", BASAL)
+    label(axes, (338, 150), "lateral", LATERAL)
+    curve = inset(figure, (455, 62, 285, 245), "face area $A/A_r$", "tension $T$")
+    area = np.linspace(0.05, 1.75, 400)
+    active, elastic, crowding = area / (area + 0.25), 0.9 * (area - 1) * np.where(area < 1, 0.5, 1), -0.02 / area**2
+    curve.axhline(0, color=FAINT, linewidth=1.5)
+    for values, color, text, at in ((active, APICAL, "active", (1.45, 1.0)), (elastic, BASAL, "elastic", (1.45, 0.12)),
+                                    (crowding, LATERAL, "crowding", (0.62, -0.62))):
+        curve.plot(area, values, color=color, linewidth=2.5)
+        label(curve, at, text, color)
+    total = active + elastic + crowding
+    curve.plot(area, total, color=TEXT, linewidth=4)
+    label(curve, (1.02, 1.22), "total", TEXT)
+    curve.set(xlim=(0, 1.78), ylim=(-0.85, 1.6))
+    curve.set_xticks([0, 1], ["0", "1"])
+    curve.set_yticks([0], ["0"])
+    save(figure, "theory/cortex.svg")
+
+
+def division():
+    figure, axes = canvas(760, 340)
+    for number, title in enumerate(("mother", "cut: halves", "growth")):
+        x, wide = 125 + 255 * number, (75, 75, 95)[number]
+        low, high, bend = 110, 220, (0, 0, 8)[number]
+        walls = [[(x - wide, y + s * bend), (x, y), (x + wide, y + s * bend)] for y, s in ((low, 1), (high, -1))]
+        if number == 2:
+            walls = [[(x - 85, 106), (x, 94), (x + 85, 106)], [(x - 85, 224), (x, 236), (x + 85, 224)]]
+        lower, upper = walls
+        polygon(axes, [*lower, *upper[::-1]], fill="#f3c9bd" if number else "#eab0a0")
+        for wall, y in ((lower, 30), (upper, 300)):
+            far = [(x - 75, y), (x, y), (x + 75, y)]
+            polygon(axes, [*wall, *far[::-1]])
+            if number:
+                line(axes, wall[1], far[1], color=FAINT, width=2, linestyle=(0, (3, 3)))
+                dots(axes, [far[1]], FAINT, 10, markerfacecolor=WHITE, markeredgewidth=2)
+        if number:
+            line(axes, lower[1], upper[1], color=LATERAL, width=5)
+            dots(axes, [lower[1], upper[1]], FORCE, 11)
+        label(axes, (x, 322), title)
+    for x in (233, 488):
+        arrow(axes, (x - 24, 165), (x + 18, 165), TEXT)
+    label(axes, (468, 240), "stop", FORCE, ha="left")
+    leader(axes, (462, 238), (388, 221), FORCE, dot=False)
+    label(axes, (464, 62), "hanging", "#5a6b80", ha="left")
+    leader(axes, (459, 57), (390, 33), "#5a6b80", dot=False)
+    for x, way in ((568, -1), (702, 1)):
+        arrow(axes, (x, 165), (x + 30 * way, 165))
+    save(figure, "theory/division.svg")
+
+
+SQUARE = np.array([(-55, -75), (55, -75), (55, 75), (-55, 75)])
+
+
+def corotational():
+    figure, axes = canvas(760, 310)
+    square = 0.86 * SQUARE
+    rest, here = square + (90, 150), np.array((365, 150))
+    polygon(axes, rest)
+    dots(axes, rest)
+    label(axes, (90, 150), "rest\n$X_i$")
+    label(axes, (205, 192), "turn by $R$")
+    arrow(axes, (165, 150), (250, 150), TEXT)
+    placed = turned(square, 35) + here
+    now = turned(square * (1.25, 0.9) + [(-8, 6), (10, -12), (-4, 8), (-14, -8)], 35) + here
+    polygon(axes, now)
+    polygon(axes, placed, fill="none", edge="#5a6b80", linestyle=(0, (4, 3)))
+    for a, b in zip(placed, now):
+        arrow(axes, a, b, LATERAL, head=12)
+    dots(axes, now)
+    label(axes, here, "$u_i$", LATERAL, BIG)
+    label(axes, (380, 22), "strained by $u_i$ in the turned frame")
+    here = np.array((625, 150))
+    now = now - (365, 150) + here
+    polygon(axes, now)
+    for a, b in zip(placed - (365, 150) + here, now):
+        arrow(axes, b, b + 2.2 * (a - b) + 0.01, FORCE, head=14)
+    dots(axes, now)
+    label(axes, here, "$f_i=-R\\,g_i$", FORCE)
+    label(axes, (690, 275), "forces", FORCE)
+    arrow(axes, (472, 150), (520, 150), TEXT)
+    save(figure, "theory/corotational.svg")
+
+
+def neo_hookean():
+    figure, axes = canvas(760, 310)
+    for x, (wide, high), (rest_wide, rest_high), text in (
+            (70, (70, 110), (70, 110), "$t<0$"), (215, (125, 62), (70, 110), "$t=0$"), (392, (125, 62), (118, 66), "$t=3\\tau$")):
+        for w, h, shape in ((wide, high, {}), (rest_wide, rest_high, {"fill": "none", "edge": FORCE, "linestyle": (0, (4, 3)),
+                                                                     "width": 3})):
+            polygon(axes, np.array([(-w, -h), (w, -h), (w, h), (-w, h)]) / 2 + (x, 165), **shape)
+        label(axes, (x, 80), text)
+        if wide > 100:
+            arrow(axes, (x + wide / 2, 165), (x + wide / 2 + (24 if x < 300 else 10), 165), TEXT, head=12)
+            arrow(axes, (x - wide / 2, 165), (x - wide / 2 - (24 if x < 300 else 10), 165), TEXT, head=12)
+    label(axes, (215, 285), "cell")
+    leader(axes, (215, 272), (190, 180), TEXT)
+    label(axes, (200, 34), "rest shape $C_p$ follows the cell", FORCE)
+    curve = inset(figure, (545, 62, 195, 225), "time", "stress")
+    time = np.linspace(0, 3.4, 100)
+    curve.plot([-0.8, 0], [0, 0], color=TEXT)
+    curve.plot([0, *time], [0, *np.exp(-time)], color=TEXT)
+    curve.set(xlim=(-0.8, 3.5), ylim=(-0.02, 1.15))
+    curve.set_xticks([0, 1, 3], ["0", "$\\tau$", "$3\\tau$"])
+    label(curve, (1.75, 0.62), "$e^{-t/\\tau}$", TEXT, BIG)
+    save(figure, "theory/neo_hookean.svg")
+
+
+def shape_memory():
+    figure, axes = canvas(760, 320)
+    rest, here = SQUARE + (120, 160), np.array((400, 160))
+    polygon(axes, rest)
+    dots(axes, rest)
+    label(axes, (120, 160), "rest")
+    arrow(axes, (205, 160), (270, 160), TEXT)
+    now = turned(SQUARE * 1.05 + [(-55, -25), (45, 30), (45, 25), (-50, -38)], 20) + here
+    placed = turned(SQUARE, 20) + here + np.mean(now - turned(SQUARE, 20) - here, axis=0)
+    polygon(axes, now)
+    polygon(axes, placed, fill=WHITE, edge="#5a6b80", linestyle=(0, (4, 3)), alpha=0.65)
+    for a, b in zip(placed, now):
+        spring(axes, a, b, FORCE, turns=4, sway=7)
+    dots(axes, now)
+    dots(axes, placed, "#5a6b80", 8)
+    label(axes, np.mean(placed, axis=0), "attractor")
+    leader(axes, (590, 262), now[2], TEXT)
+    label(axes, (600, 262), "node $x_i$", ha="left")
+    leader(axes, (590, 175), (placed[2] + now[2]) / 2, FORCE)
+    label(axes, (600, 175), "spring\n$f_i=-k\\,d_i$", FORCE, ha="left")
+    label(axes, (600, 85), "rest shape at\nbest-fit centre\nand rotation", "#5a6b80", ha="left", size=17)
+    leader(axes, (590, 85), placed[1], "#5a6b80")
+    save(figure, "theory/shape_memory.svg")
+
+
+def corner_barrier():
+    figure, axes = canvas(760, 300)
+    for number, (ratio, text) in enumerate(((1, "1"), (0.15, "0.15"), (0.0, "0"))):
+        x = 25 + 140 * number
+        corner = np.array((50 + 50 * ratio, 50 + 50 * ratio)) + (x, 110)
+        points = [np.array(p) + (x, 110) for p in ((0, 0), (100, 0))] + [corner, np.array((x, 210))]
+        polygon(axes, points)
+        dots(axes, [corner], APICAL, 12)
+        if ratio < 0.5:
+            arrow(axes, corner, corner + (38, 38))
+        label(axes, (x + 52, 78), text)
+    label(axes, (217, 38), "corner Jacobian $J/J_0$")
+    label(axes, (217, 262), "a corner becomes flat", APICAL)
+    curve = inset(figure, (510, 62, 230, 225), "$J/J_0$", "energy $E$")
+    r = np.linspace(0.012, 2, 400)
+    curve.plot(0.15 * r, np.where(r < 1, -(r - 1)**2 * np.log(r), 0), color=FORCE)
+    curve.set(xlim=(0, 0.3), ylim=(-0.05, 3))
+    curve.set_xticks([0, 0.15, 0.3], ["0", "0.15", "0.3"])
+    label(curve, (0.155, 1.7), "$-(r-1)^2\\,\\ln\\,r$", FORCE)
+    save(figure, "theory/corner_barrier.svg")
+
+
+def cell_volume():
+    figure, axes = canvas(760, 330)
+    cell(axes, (75, 250), (165, 250), (165, 80), (75, 80))
+    arrow(axes, (200, 165), (275, 165), TEXT)
+    left, right = [(350, 285), (332, 89)], [(410, 285), (428, 89)]  # of the same area
+    cell(axes, left[0], right[0], right[1], left[1])
+    centre = np.array((380, 180))
+    for at, way in (((380, 285), (0, 1)), ((380, 85), (0, -1)), ((420, 185), (1, 0.1)), ((340, 185), (-1, 0.1)),
+                    ((425, 130), (1, 0.1)), ((335, 130), (-1, 0.1)), ((415, 240), (1, 0.1)), ((345, 240), (-1, 0.1))):
+        arrow(axes, np.array(at) - 2 * np.array(way), np.array(at) + 36 * np.array(way), FORCE, head=14)
+    label(axes, centre, "$\\lambda_c$", FORCE, BIG)
+    label(axes, (120, 165), "$V_c$", TEXT, BIG)
+    label(axes, (120, 35), "reference")
+    label(axes, (380, 22), "narrow apex, same volume")
+    label(axes, (520, 225), "cell pressure $\\lambda_c$", FORCE, ha="left")
+    label(axes, (520, 185), "so large that", ha="left")
+    label(axes, (520, 145), "$V_c(x)=V_c^{\\,\\mathrm{target}}$", ha="left", size=BIG)
+    save(figure, "theory/cell_volume.svg")
+
+
+def vitelline():
+    figure, axes = canvas(760, 300)
+    centre, radius = np.array((230, -438)), 680
+    places = [np.radians(90 + w) for w in (16, 9.6, 3.2, -3.2, -9.6, -16)]
+    gaps = [0, 0, 0, 30, 48, 24]
+
+    def at(w, r):
+        return centre + r * np.array((np.cos(w), np.sin(w)))
+    apex = [at(w, radius - g) for w, g in zip(places, gaps)]
+    base = [at(w, radius - 160) for w in places]
+    for k in range(5):
+        cell(axes, apex[k], apex[k + 1], base[k + 1], base[k], width=4)
+    line(axes, *(at(w, radius + 5) for w in np.radians(np.linspace(110, 70, 60))), color=VITELLINE, width=10)
+    for k in range(3):
+        arrow(axes, apex[k], at(places[k], radius - 70))
+    dots(axes, apex)
+    arrow(axes, at(places[4], radius), at(places[4], radius - 46), TEXT, head=10, arrowstyle="<|-|>,head_length=0.3,head_width=0.17")
+    label(axes, at(np.radians(77.8), radius - 25), "$g$", TEXT, BIG)
+    label(axes, (252, 165), "$\\mu$", FORCE, BIG, rim=CELL)
+    label(axes, (230, 278), "vitelline membrane", VITELLINE)
+    curve = inset(figure, (540, 62, 200, 225), "gap $g$", "contact force $\\mu$")
+    curve.plot([0, 0, 1], [1, 0, 0], color=FORCE, linewidth=6, clip_on=False, solid_capstyle="round")
+    curve.set(xlim=(0, 1), ylim=(0, 1))
+    label(curve, (0.07, 0.7), "in contact", FORCE, ha="left")
+    label(curve, (0.55, 0.12), "free", FORCE)
+    save(figure, "theory/vitelline.svg")
+
+
+def shell_drag():
+    figure, axes = canvas(760, 290)
+    polygon(axes, [(20, 232), (450, 232), (450, 258), (20, 258)], fill=VITELLINE, edge="none")
+    polygon(axes, [(20, 178), (450, 178), (450, 232), (20, 232)], fill="#dbe7f5", edge="none")
+    for x, drop in ((60, 30), (160, 22), (260, 28)):
+        cell(axes, (x, 232 - drop), (x + 100, 232 - (22 if x < 150 else 28 if x < 250 else 40)), (x + 100, 60), (x, 60), width=4)
+    dots(axes, [(260, 204)])
+    arrow(axes, (260, 204), (345, 204), TEXT)
+    label(axes, (365, 207), "$v$", TEXT, BIG)
+    arrow(axes, (260, 204), (175, 204))
+    label(axes, (235, 276), "vitelline membrane", VITELLINE)
+    label(axes, (408, 205), "film", BASAL)
+    label(axes, (235, 30), "force  $f=-c\\,A\\,\\phi(g)\\,T\\,v$", FORCE)
+    curve = inset(figure, (540, 62, 200, 205), "gap $g$", "drag factor $\\phi$")
+    curve.plot([-0.6, 0, 1, 2], [1, 1, 0, 0], color=FORCE)
+    curve.set(xlim=(-0.6, 2), ylim=(0, 1.15))
+    curve.set_xticks([0, 1], ["0", "$w$"])
+    curve.set_yticks([0, 1], ["0", "1"])
+    save(figure, "theory/shell_drag.svg")
+
+
+def coulomb():
+    figure, axes = canvas(760, 320)
+    polygon(axes, [(20, 30), (390, 30), (390, 80), (20, 80)], fill="#e2e8f0", edge="none")
+    line(axes, (20, 80), (390, 80), color=VITELLINE, width=4)
+    polygon(axes, [(110, 82), (300, 82), (300, 190), (110, 190)])
+    axes.add_patch(Wedge((205, 82), 150, 90 - 27, 90 + 27, facecolor=FORCE, alpha=0.22, edgecolor="none", zorder=5))
+    arrow(axes, (205, 82), (205, 220), FORCE)
+    label(axes, (205, 244), "$N$", FORCE, BIG)
+    arrow(axes, (205, 82), (135, 82), FORCE)
+    label(axes, (85, 108), "$\\mu N$", FORCE, BIG)
+    arrow(axes, (300, 136), (368, 136), TEXT)
+    label(axes, (380, 136), "$v$", TEXT, BIG)
+    label(axes, (345, 238), "cone of\nallowed forces", FORCE)
+    curve = inset(figure, (500, 62, 240, 240), "sliding speed $v$", "friction")
+    v = np.linspace(0, 3, 200)
+    curve.plot(v, np.where(v < 1, 2 * v - v**2, 1), color=FORCE)
+    curve.axvspan(0, 1, color="#e2e8f0")
+    curve.set(xlim=(0, 3), ylim=(0, 1.25))
+    curve.set_xticks([1], ["$s$"])
+    curve.set_yticks([0, 1], ["0", "$\\mu N$"])
+    label(curve, (0.62, 0.2), "sticks", rim="#e2e8f0")
+    label(curve, (2, 0.2), "slides")
+    save(figure, "theory/coulomb.svg")
+
+
+def self_contact():
+    figure, axes = canvas(760, 330)
+    left = [(40, 300), (120, 272), (168, 205), (178, 120), (150, 30)]
+    right = [(420, 300), (335, 275), (280, 190), (268, 110), (300, 30)]
+    polygon(axes, [(20, 300), *left, (20, 30)], edge="none")
+    polygon(axes, [(440, 300), *right, (440, 30)], edge="none")
+    line(axes, *left, color=APICAL, width=5)
+    line(axes, *right, color=APICAL, width=5)
+    dots(axes, left[1:4] + right[1:4], TEXT, 8)
+    point = np.array(right[2], float)
+    a, b = np.array(left[2], float), np.array(left[3], float)
+    way = (b - a) / np.hypot(*(b - a))
+    foot = a + way * np.dot(point - a, way)
+    line(axes, foot, point, color=TEXT, width=2, linestyle=(0, (2, 2)))
+    dots(axes, [foot], WHITE, 10, markeredgecolor=TEXT, markeredgewidth=2)
+    arrow(axes, point, point + 0.62 * (point - foot))
+    arrow(axes, foot, foot - 0.62 * (point - foot))
+    label(axes, point + (4, 28), "$p$", TEXT, BIG)
+    label(axes, foot + (-18, 26), "$q$", TEXT, BIG)
+    label(axes, (point + foot) / 2 + (0, 17), "$g$", TEXT, BIG)
+    label(axes, (75, 90), "facet")
+    leader(axes, (105, 92), (172, 145), TEXT)
+    label(axes, (372, 90), "point")
+    leader(axes, (345, 98), point + (2, -6), TEXT, dot=False)
+    label(axes, (228, 316), "two lips of a furrow", APICAL)
+    curve = inset(figure, (540, 62, 200, 240), "gap $g$", "pressure")
+    curve.plot([-0.25, 1, 1.6], [1.25, 0, 0], color=FORCE)
+    curve.plot([-0.25, 0.5, 1.6], [0.75, 0, 0], color=BASAL, linestyle=(0, (3, 2)))
+    curve.axvline(0, color=FAINT, linewidth=1.5)
+    curve.set(xlim=(-0.25, 1.6), ylim=(-0.02, 1.3))
+    curve.set_xticks([0, 0.5, 1], ["0", "$d/2$", "$d$"])
+    label(curve, (1.0, 0.85), "points:\n$k\\,(d-g)$", FORCE)
+    label(curve, (1.25, 0.24), "edges", BASAL)
+    curve.plot([0.97, 0.3], [0.24, 0.21], color=BASAL, linewidth=1.5)
+    save(figure, "theory/self_contact.svg")
+
+
+def enclosed_volume():
+    figure, axes = canvas(760, 330)
+    axes.add_patch(plt.Circle((200, 165), 105, facecolor=YOLK, edgecolor="none"))
+    ring(axes, (200, 165), 105, 150)
+    for w in np.radians(np.arange(0, 360, 45)):
+        way = np.array((np.cos(w), np.sin(w)))
+        arrow(axes, (200, 165) + 62 * way, (200, 165) + 100 * way, FORCE, head=14)
+    label(axes, (200, 165), "$V,\\ p$", TEXT, BIG, rim=YOLK)
+    for y, name, law in ((235, "held", "$V=V_0$,  $p$ is the multiplier"), (125, "compliant", "$p=K\\,(1-V/V_0)$")):
+        label(axes, (400, y), name, FORCE, ha="left")
+        label(axes, (400, y - 36), law, ha="left")
+    leader(axes, (392, 292), (250, 210), TEXT)
+    label(axes, (400, 292), "yolk or lumen", ha="left")
+    save(figure, "theory/enclosed_volume.svg")
+
+
+def surroundings():
+    figure, axes = canvas(760, 280)
+    for x, title, formula, color in ((130, "drag", "$-D_i\\,v_i$", TEXT), (380, "inertia", "$-m_i\\,\\dot v_i,\\ m_i=\\rho V_e/8$", TEXT),
+                                     (630, "pressure", "$-p\\int N_i\\,n\\,dA$", TEXT)):
+        if title == "drag":
+            polygon(axes, [(x - 105, 60), (x + 105, 60), (x + 105, 225), (x - 105, 225)], fill="#dbe7f5", edge="none")
+        cell(axes, (x - 45, 190), (x + 45, 190), (x + 45, 80), (x - 45, 80))
+        label(axes, (x, 255), title)
+        label(axes, (x, 32), formula, FORCE, 18)
+    for y in (190, 80):
+        arrow(axes, (85, y), (35, y))
+        arrow(axes, (175, y), (125, y))
+    arrow(axes, (160, 135), (222, 135), TEXT)
+    label(axes, (140, 135), "$v$", TEXT, BIG)
+    for x in (335, 425):
+        for y in (80, 190):
+            dots(axes, [(x, y)], TEXT, 20)
+    for x in (592, 630, 668):
+        arrow(axes, (x, 236), (x, 194), FORCE, head=14)
+    save(figure, "theory/surroundings.svg")
+
+
+def ties():
+    figure, axes = canvas(760, 320)
+    planes = []
+    for shift in ((0, 0), (210, 50)):
+        centre = np.array((190, 130)) + shift
+        planes.append([centre + (95 * np.cos(w), 95 * np.sin(w)) for w in np.radians(np.arange(0, 360, 30))])
+        inner = [centre + (62 * np.cos(w), 62 * np.sin(w)) for w in np.radians(np.arange(0, 360, 30))]
+        for k in range(12):
+            n = (k + 1) % 12
+            cell(axes, planes[-1][k], planes[-1][n], inner[n], inner[k], width=3)
+    for k in range(1, 12, 2):
+        spring(axes, planes[0][k], planes[1][k], FORCE, turns=7, sway=6, width=2)
+    for plane in planes:
+        dots(axes, plane[1::2], TEXT, 8)
+    label(axes, (190, 22), "first plane, $x_a$")
+    label(axes, (430, 300), "other plane, $x_b$")
+    label(axes, (640, 175), "tie: both planes\nmove alike", FORCE)
+    arrow(axes, (560, 70), (680, 98), TEXT)
+    label(axes, (640, 62), "axis $x$", ha="left")
+    save(figure, "theory/ties.svg")
+
+
+def mirror():
+    figure, axes = canvas(760, 330)
+    centre = (250, 165)
+    axes.add_patch(Wedge(centre, 100, -90, 90, facecolor=YOLK, edgecolor="none"))
+    ring(axes, centre, 100, 145, -90, 90, 12)
+    ring(axes, centre, 100, 145, 90, 270, 12, alpha=0.28)
+    line(axes, (250, 5), (250, 325), color=FORCE, width=3, linestyle=(0, (5, 3)))
+    node = np.array((centre[0] + 145 * np.cos(np.radians(30)), centre[1] + 145 * np.sin(np.radians(30))))
+    image = node * (-1, 1) + (500, 0)
+    dots(axes, [node], TEXT, 11)
+    dots(axes, [image], WHITE, 11, markeredgecolor=TEXT, markeredgewidth=2.5)
+    arrow(axes, node, node + (48, -12))
+    arrow(axes, image, image + (-48, -12), FORCE, alpha=0.5)
+    label(axes, (314, 165), "solved", rim=YOLK)
+    label(axes, (190, 165), "image", "#5a6b80")
+    label(axes, node + (34, 22), "$x$", TEXT, BIG)
+    label(axes, image + (-34, 22), "$S\\,x$", TEXT, BIG)
+    leader(axes, (455, 268), (252, 300), FORCE)
+    label(axes, (465, 268), "mirror plane:", FORCE, ha="left")
+    label(axes, (465, 234), "nodes on it stay on it", FORCE, ha="left")
+    label(axes, (465, 120), "$E_{\\mathrm{side}}(x)=2^{-m}E(Sx)$", ha="left", size=BIG)
+    label(axes, (465, 80), "for $m$ planes", ha="left")
+    save(figure, "theory/mirror.svg")
+
+
+def periodic():
+    figure, axes = canvas(760, 300)
+    size = 38
+    hexagon = np.array([(size * np.cos(w), size * np.sin(w)) for w in np.radians(np.arange(30, 390, 60))])
+    step = size * np.sqrt(3)
+    for row in range(3):
+        for column in range(-1, 9):
+            centre = (150 + step * (column + 0.5 * (row % 2)), 80 + 1.5 * size * row)
+            polygon(axes, hexagon + centre, fill=CELL if 0 <= column < 7 else "#fcfaf4",
+                    edge=LATERAL if 0 <= column < 7 else "#b9d3c5", width=3)
+    free = np.array((150 + step * -0.5, 80 - size / 2))
+    image = free + (7 * step, 0)
+    dots(axes, [free], FORCE, 13)
+    dots(axes, [image], WHITE, 13, markeredgecolor=FORCE, markeredgewidth=3)
+    arrow(axes, free + (10, -24), image + (-4, -24), FORCE)
+    label(axes, ((free + image) / 2) + (0, -44), "$p$", FORCE, BIG)
+    label(axes, free + (-6, -30), "$x_f$", FORCE, BIG)
+    label(axes, image + (8, -30), "$x_h=x_f+p$", FORCE, BIG, ha="left")
+    label(axes, (150 + 3 * step, 270), "one period")
+    arrow(axes, (150 + 2 * step, 270), (150 - 0.4 * step, 270), TEXT)
+    arrow(axes, (150 + 4 * step, 270), (150 + 6.6 * step, 270), TEXT)
+    label(axes, (60, 270), "images", "#5a6b80")
+    label(axes, (705, 270), "images", "#5a6b80")
+    save(figure, "theory/periodic.svg")
+
+
+def plain(axes, at, text, color=TEXT, size=17, **how):
+    """Text without a rim, on an even ground."""
+    axes.text(*at, text, color=color, fontsize=size, zorder=10, **{"ha": "center", "va": "center", "linespacing": 1.15, **how})
+
+
+def box(axes, at, text, color=TEXT, width=200, height=62, fill=WHITE):
+    axes.add_patch(FancyBboxPatch((at[0] - width / 2 + 8, at[1] - height / 2 + 8), width - 16, height - 16,
+                                  boxstyle="round,pad=8", facecolor=fill, edgecolor=color, linewidth=2.5, zorder=5))
+    plain(axes, at, text, color)
+
+
+def step():
+    figure, axes = canvas(760, 470)
+    axes.add_patch(FancyBboxPatch((160, 128), 440, 232, boxstyle="round,pad=8", facecolor="#f7f5fc", edgecolor=FAINT, linewidth=1.5))
+    plain(axes, (584, 345), "Newton iteration", FORCE, ha="right")
+    box(axes, (380, 425), "predictor: extrapolate positions and pressures", width=470, height=60, fill=CELL)
+    box(axes, (270, 285), "residual and\ntangent of all laws", width=206, height=74)
+    box(axes, (490, 285), "linear solve\n$dx,\\ d\\lambda$", width=176, height=74)
+    box(axes, (490, 175), "line search", width=176, height=60)
+    box(axes, (270, 175), "nodes in contact\nupdated", width=206, height=74)
+    box(axes, (150, 45), "shorter step", APICAL, 206, 60)
+    box(axes, (388, 45), "error < tolerance?", TEXT, 216, 60)
+    box(axes, (640, 45), "accept; next\nstep length", LATERAL, 196, 74)
+    arrow(axes, (270, 395), (270, 324), TEXT)
+    arrow(axes, (374, 285), (400, 285), TEXT, head=14)
+    arrow(axes, (490, 247), (490, 206), TEXT, head=14)
+    arrow(axes, (401, 175), (375, 175), TEXT, head=14)
+    arrow(axes, (270, 213), (270, 247), TEXT, head=14)
+    arrow(axes, (388, 119), (388, 76), TEXT)
+    label(axes, (404, 98), "converged", LATERAL, ha="left")
+    arrow(axes, (200, 119), (200, 76), TEXT)
+    label(axes, (188, 98), "fails", APICAL, ha="right")
+    arrow(axes, (279, 45), (254, 45), TEXT, head=14)
+    arrow(axes, (497, 45), (541, 45), TEXT, head=14)
+    line(axes, (46, 45), (24, 45), (24, 425), width=3)
+    arrow(axes, (24, 425), (144, 425), TEXT)
+    line(axes, (700, 83), (700, 425), width=3)
+    arrow(axes, (700, 425), (616, 425), TEXT)
+    save(figure, "theory/step.svg")
+
+
+def energy():
+    figure, axes = canvas(760, 330)
+
+    def band(left, right, thick, color):
+        (x0, y0), (x1, y1) = left, right
+        s = np.linspace(0, 1, 40)
+        y = y0 + (y1 - y0) * (3 * s**2 - 2 * s**3)
+        x = x0 + (x1 - x0) * s
+        axes.fill(np.r_[x, x[::-1]], np.r_[y, (y - thick)[::-1]], color=color, linewidth=0, alpha=0.55)
+    band((230, 260), (480, 310), 100, LATERAL)
+    band((230, 160), (480, 165), 84, BASAL)
+    band((230, 76), (480, 40), 14, FAINT)
+    axes.fill([20, 230, 230, 20], [260, 260, 62, 62], color=APICAL, alpha=0.6, linewidth=0)
+    plain(axes, (125, 200), "active work")
+    plain(axes, (125, 125), "contraction\ncortical tension\napplied pressure")
+    plain(axes, (490, 284), "stored", LATERAL, ha="left")
+    plain(axes, (490, 238), "elasticity, cortex,\nyolk, contact", TEXT, 16, ha="left")
+    plain(axes, (490, 143), "dissipated", BASAL, ha="left")
+    plain(axes, (490, 98), "drag, viscosity,\nrelaxation, friction", TEXT, 16, ha="left")
+    plain(axes, (490, 33), "error of the time steps", "#5a6b80", ha="left")
+    save(figure, "theory/energy.svg")
+
+
+LAWS = (contraction, cortex, division, corotational, neo_hookean, shape_memory, corner_barrier, cell_volume, vitelline, shell_drag,
+        coulomb, self_contact, enclosed_volume, surroundings, ties, mirror, periodic, step, energy)
+
+if __name__ == "__main__":
+    for law in LAWS:
+        if len(sys.argv) == 1 or law.__name__ in sys.argv[1:]:
+            law()
