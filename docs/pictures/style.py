@@ -69,10 +69,14 @@ def plot(width=760, height=400, left=90, right=20, top=20, bottom=70):
 
 
 def label(axes, at, text, color=TEXT, size=LETTERS, **how):
-    """Text at a point, centred unless `ha` and `va` say otherwise, with a white rim that keeps it readable on lines."""
+    """Text at a point, centred unless `ha` and `va` say otherwise.
+
+    rim: colour of a rim that keeps the text readable on lines. It costs about 10 kB per word.
+    """
     how = {"ha": "center", "va": "center", "zorder": 10, **how}
-    rim = [patheffects.withStroke(linewidth=4, foreground=how.pop("rim", WHITE))]
-    return axes.text(*at, text, color=color, fontsize=size, path_effects=rim, **how)
+    rim = how.pop("rim", None)
+    effects = [patheffects.withStroke(linewidth=4, foreground=rim)] if rim else None
+    return axes.text(*at, text, color=color, fontsize=size, path_effects=effects, **how)
 
 
 def key(axes, at, text, color=TEXT, size=SMALL, **how):

@@ -1,0 +1,150 @@
+"""Drawings of docs/concepts: a cell in its sheet, an embryo cut across, and what happens in a time step.
+
+Usage: cell.py [NAME...], of: sheet embryo step; without, all. The embryo is that of furrow-slice at 14 min: needs the package
+plica (PYTHONPATH=build/release/python build/venv/bin/python docs/pictures/cell.py).
+"""
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib.patches import FancyBboxPatch
+
+sys.path.insert(0, str(Path(__file__).parent))
+from style import (APICAL, BASAL, CELL, FAINT, FORCE, LATERAL, LETTERS, SMALL, TEXT, VITELLINE, WHITE, YOLK, arrow, canvas, key,  # noqa: E402
+                   label, leader, save)
+
+LEFT, RIGHT = 214, 536  # where the two columns of labels end and begin
+
+
+def named(axes, side, y, name, tables, target, color):
+    """A part's name, what acts on it below, and a leader to it."""
+    x, ha = (LEFT, "right") if side == "left" else (RIGHT, "left")
+    label(axes, (x, y), name, color, weight="bold", ha=ha)
+    for line, table in enumerate(tables):
+        key(axes, (x, y - 22 - 19 * line), table, ha=ha)
+    leader(axes, (x + (8 if side == "left" else -8), y), target, color)
+
+
+def sheet():
+    """Three columnar cells of a sheet, cut along their front, in oblique projection."""
+    figure, axes = canvas(760, 560)
+    width, height, depth = 74, 190, np.array([34, 46])
+    left, base = 250, 158
+    corners = [np.array([left + width * number, base]) for number in range(4)]
+    top = np.array([0, height])
+
+    def patch(points, color, alpha=1.0, edge="none", linewidth=0.0, zorder=2.0, **how):
+        axes.fill(*np.transpose(points), facecolor=color, alpha=alpha, edgecolor=edge, linewidth=linewidth, zorder=zorder,
+                  joinstyle="round", **how)
+
+    def line(start, end, color, linewidth=5.0, zorder=5.0, **how):
+        axes.plot(*zip(start, end), color=color, linewidth=linewidth, zorder=zorder, solid_capstyle="round", **how)
+
+    # The vitelline membrane above, the yolk below.
+    shell = base + height + depth[1] + 26
+    patch([(left - 10, shell), (left + 3 * width + 44, shell), (left + 3 * width + 44, shell + 20), (left - 10, shell + 20)], VITELLINE)
+    patch([corners[0] - (10, 4), corners[3] + (44, -4), corners[3] + (44, -64), corners[0] + (-10, -64)], YOLK, zorder=1)
+    for at in corners[:3]:
+        patch([at, at + (width, 0), at + (width, 0) + top, at + top], CELL)
+        patch([at + top, at + (width, 0) + top, at + (width, 0) + top + depth, at + top + depth], APICAL, 0.35)
+    end = corners[3]
+    patch([end, end + top, end + top + depth, end + depth], LATERAL, 0.3)
+    for at in corners:
+        line(at, at + top, LATERAL)
+        line(at + top, at + top + depth, APICAL, 3)
+    line(end + depth, end + top + depth, LATERAL, 3)
+    line(end, end + depth, BASAL, 3)
+    line(corners[0] + top, end + top, APICAL)
+    line(corners[0] + top + depth, end + top + depth, APICAL, 3)
+    line(corners[0], end, BASAL)
+
+    # Contraction of the middle cell's apical edges.
+    middle = corners[1] + top + (width / 2, 0) + depth / 2
+    for shift in (np.array([width / 2 + 10, 0]), depth * 0.62):
+        for sign in (1, -1):
+            arrow(axes, middle + sign * shift, middle + sign * shift * 0.3, width=3, head=15)
+    # A laser's cut through the first cell's apex, and the plane in which the last divides.
+    line(corners[0] + top + (14, -14), corners[0] + top + depth + (44, 12), TEXT, 2.5, 7, linestyle=(0, (2, 2)))
+    line(corners[2] + (width / 2, 0), corners[2] + (width / 2, 0) + top, TEXT, 2.5, 7, linestyle=(0, (4, 3)))
+    # Two cells that form a region.
+    bracket = base - 90
+    axes.plot([left, left, left + 2 * width, left + 2 * width], [bracket + 12, bracket, bracket, bracket + 12], color=TEXT, linewidth=2)
+
+    named(axes, "left", 530, "vitelline membrane", ["[vitelline]"], (left + 20, shell + 12), VITELLINE)
+    named(axes, "left", 466, "laser cut", ["[ablation.NAME]"], corners[0] + top + depth + (28, -4), TEXT)
+    named(axes, "left", 396, "apical face", ["[cortex.NAME]", 'faces = "apical"'], corners[0] + top + (13, 12), APICAL)
+    named(axes, "left", 300, "lateral face", ["[cortex.NAME]", 'faces = "lateral"', "shared by 2 cells"], corners[0] + (0, 120), LATERAL)
+    named(axes, "left", 186, "basal face", ["[cortex.NAME]", 'faces = "basal"'], corners[0] + (12, 0), BASAL)
+    label(axes, corners[0] + (width / 2, 88), "neighbour", rotation=90)
+    label(axes, (left + width, bracket - 20), "set of cells", weight="bold")
+    key(axes, (left + width, bracket - 42), "[region.NAME]")
+
+    named(axes, "right", 530, "perivitelline gap", ["[vitelline] gap_um"], (left + 3 * width + 20, shell - 12), VITELLINE)
+    named(axes, "right", 466, "contraction", ["[contraction.NAME]", 'edges = "apical"'], middle + (width / 2 + 6, 0), FORCE)
+    named(axes, "right", 380, "division plane", ["[division.NAME]"], corners[2] + (width / 2, 165), TEXT)
+    named(axes, "right", 310, "cell interior", ["[elasticity]", "[volume]"], corners[1] + (50, 100), TEXT)
+    named(axes, "right", 222, "viscous drag", ["[dynamics]"], corners[3] + (4, -2), TEXT)
+    named(axes, "right", 150, "yolk or lumen", ["[enclosed.yolk]"], corners[3] + (-10, -40), "#8a6d00")
+    save(figure, "concepts/cell.svg")
+
+
+def step():
+    """What happens in a time step, as a flow."""
+    figure, axes = canvas(760, 640)
+    middle, wide = 395, 330
+
+    def box(y, lines, color=CELL, edge=TEXT, x=middle, w=wide, h=None):
+        h = h or 16 + 22 * len(lines)
+        axes.add_patch(FancyBboxPatch((x - w / 2, y - h / 2), w, h, boxstyle="round,pad=0,rounding_size=8", facecolor=color,
+                                      edgecolor=edge, linewidth=2, zorder=4))
+        for number, text in enumerate(lines):
+            label(axes, (x, y + 11 * (len(lines) - 1) - 22 * number), text, weight="bold" if number == 0 else "normal")
+        return h / 2
+
+    def down(start, end, text=""):
+        arrow(axes, (middle, start), (middle, end), TEXT, 2, 14)
+        if text:
+            label(axes, (middle + 12, (start + end) / 2 + 2), text, ha="left")
+
+    def back(x, start, end, text, color):
+        """An arrow round the side, from one box up to another."""
+        edge = middle + (wide / 2 if x > middle else -wide / 2)
+        last = edge + 20 * (end == 508)
+        axes.plot([edge, x, x], [start, start, end], color=color, linewidth=2, zorder=3)
+        arrow(axes, (x, end), (last, end), color, 2, 14)
+        for number, line in enumerate(text):
+            label(axes, (x + (10 if x > middle else -10), (start + end) / 2 + 11 * (len(text) - 1) - 22 * number), line, color,
+                  ha="left" if x > middle else "right")
+
+    question = WHITE
+    box(600, ["Forecast", "extrapolate the last steps"])
+    down(568, 540)
+    box(508, ["Sum the forces on every node", "active, elastic, drag, contact, pressure"], w=wide + 40)
+    down(476, 448)
+    box(416, ["Newton iteration", "move nodes; no element may invert"])
+    down(386, 350)
+    box(324, ["Balanced, volumes kept?"], question, FORCE, h=48)
+    down(300, 262, "yes")
+    box(238, ["Error below tolerance_um?"], question, FORCE, h=48)
+    down(214, 176, "yes")
+    box(146, ["Accept the step", "one row in series.csv"], "#d9f0e2", LATERAL)
+    down(116, 84)
+    box(60, ["Equilibrium, or end time?"], question, FORCE, h=48)
+    arrow(axes, (middle + wide / 2, 60), (middle + wide / 2 + 80, 60), TEXT, 2, 14)
+    label(axes, (middle + wide / 2 + 36, 76), "yes")
+    box(60, ["End"], x=middle + wide / 2 + 120, w=80, h=44)
+    back(middle + wide / 2 + 60, 324, 508, ["no: iterate"], FORCE)
+    back(168, 238, 590, ["no: rejected,", "shorter step"], APICAL)
+    axes.plot([168, middle - wide / 2], [324, 324], color=APICAL, linewidth=2, zorder=3)
+    label(axes, (200, 338), "fails", APICAL)
+    back(16, 60, 610, [], LATERAL)
+    label(axes, (28, 108), "no: next step,", LATERAL, ha="left")
+    label(axes, (28, 86), "length by error", LATERAL, ha="left")
+    save(figure, "concepts/step.svg")
+
+
+DRAWINGS = {"sheet": sheet, "step": step}
+
+if __name__ == "__main__":
+    for name in sys.argv[1:] or DRAWINGS:
+        DRAWINGS[name]()
