@@ -4,7 +4,8 @@ from pathlib import Path
 
 BEGIN, END = "<!-- Below: the output of bench/run. -->\n", "<!-- Above: the output of bench/run. -->\n"
 # Which tables a document has between these marks.
-DOCUMENTS = {"docs/how-to/performance.md": ("runs", "furrows", "steps"), "docs/developers/performance-notebook.md": ("kernels",)}
+DOCUMENTS = {"docs/developers/performance-benchmarks.md": ("runs", "furrows", "steps"),
+             "docs/developers/performance-notebook.md": ("kernels",)}
 
 
 def number(value, digits=3):
