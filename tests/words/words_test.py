@@ -44,12 +44,12 @@ def prose_of_markdown(text):
     return text
 
 
+TOKEN = re.compile(r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/|\'(?:\\.|[^\'\\\n])\'|#include[^\n]*|[^"\'/R#]+|.', re.S)
+
+
 def prose_of_cpp(text):
     """Comments and strings, joined where a literal or a comment is continued."""
-    def kept(found):
-        return found[0] if found[0][0] in "\"/" else blank(found[0])
-    token = re.compile(r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/|\'(?:\\.|[^\'\\\n])\'|#include[^\n]*|.', re.S)
-    text = "".join(found[0] if found[0].startswith(('"', 'R"', "//", "/*")) else blank(found[0]) for found in token.finditer(text))
+    text = "".join(found[0] if found[0].startswith(('"', 'R"', "//", "/*")) else blank(found[0]) for found in TOKEN.finditer(text))
     text = re.sub(r'"(\s*)"', lambda found: " " + found[1] + " ", text)  # "one " "literal"
     return re.sub(r"^( *)///?(?=[ \n])", lambda found: blank(found[0]), text, flags=re.M)
 
@@ -108,7 +108,7 @@ breaches, looked = [], 0
 files = [Path(one).resolve() for one in arguments[1:]] or list(tracked())
 rules = banned()
 for path in files:
-    text = prose(path)
+    text = re.sub(r" *\n[ \n]*", lambda found: "\n" * found[0].count("\n"), re.sub(r"[ \t]+", " ", prose(path)))
     looked += 1
     for pattern, instead in rules:
         for found in pattern.finditer(text):
