@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Which divisions close the furrow's lips: runs drosophila with different cells dividing, prints the table of docs/how-to/division.md.
+"""Run drosophila with different cells dividing; print the table of lip distances of docs/how-to/division.md.
 
-Every row is `plica run` of scenarios/drosophila.toml to 40 min with one division at 15 min (a second one at 25 min where
-it says so), grown in 5 min. Takes some minutes on two cores; runs that are there already are not made again.
+Every row is `plica run` of scenarios/drosophila.toml to 40 min with one division at 15 min and, in some rows, a second one
+at 25 min, each grown in 5 min. Takes a few minutes on two cores; finished runs are kept.
 
 Example: tools/division_matrix.py build/release/plica --out results/divisions
 """
@@ -44,7 +44,7 @@ at_equilibrium = false
 frame_every_s = 600
 """
 
-# (cells, plane, final volume of a daughter over her mother's) of each division, in order.
+# (cells, plane, final volume of a daughter / volume of the mother) of each division, in order.
 FLOOR = ("rows-3", "longest-axis", 1.0)
 DIVISIONS = ([()]
              + [((cells, plane, 1.0),) for cells in ("row-1", "rows-3", "furrow", "flank-rows", "lip-rows", "border-rows")
@@ -86,7 +86,7 @@ def main():
         ended = summary["status"] == "end_time"
         figures = [f"{summary[key]:.1f}" if ended else "" for key in
                    ("lip_distance_um", "highest_points_distance_um", "furrow_depth_below_lips_um")]
-        end = "40 min" if ended else f"gives up at {summary['time_s'] / 60:.1f} min: {summary['failure'].split(' at t')[0]}"
+        end = "40 min" if ended else f"fails at {summary['time_s'] / 60:.1f} min: {summary['failure'].split(' at t')[0]}"
         print("| " + " | ".join(columns + figures + [str(summary["cells"]), end]) + " |")
 
 

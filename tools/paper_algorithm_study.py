@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""How the paper's algorithm depends on the time step: runs `drosophila` to rest under each scheme, tabulates, plots.
+"""Run `drosophila` to equilibrium under each scheme and time step; tabulate and plot the depths.
 
   tools/paper_algorithm_study.py run --out results/paper_algorithm    about 25 minutes on one core; finished runs are kept
   tools/paper_algorithm_study.py plot results/paper_algorithm/study.csv --out docs/images/paper_algorithm.png
 
-docs/developers/paper-algorithm.md says what comes out.
+docs/developers/paper-algorithm.md has the results.
 """
 import argparse
 import csv
@@ -14,13 +14,13 @@ import sys
 from pathlib import Path
 
 PROGRAM = Path(__file__).resolve().parent.parent / "build/release/plica"
-# The paper's schemes are of first order in time. 2500 s: ten of the slowest time constants; equal weights never come to
-# rest entirely (the embryo slides in its shell).
+# The paper's schemes are of first order in time. 2500 s: ten of the slowest time constants. With equal weights there is no
+# exact equilibrium (the embryo slides in its vitelline membrane).
 COMMON = ["time.integrator=backward-euler", "stop.equilibrium_speed_um_per_min=0.001", "time.end_s=2500",
           "output.frame_every_s=0"]
 PROJECTION, LINEAR = "volume.method=projection", "time.scheme=linearly-implicit"
 MOBILITY = "volume.projection_weights=mobility"
-# What is set, and the steps that are run.
+# Settings of each scheme, and its time steps.
 SCHEMES = {
     "coupled": ([], (20, 5, 1)),
     "paper": ([LINEAR, PROJECTION], (20, 10, 5, 2, 1, 0.5)),
@@ -37,7 +37,7 @@ COLUMNS = ("scheme", "poisson_ratio", "step_s", "status", "furrow_depth_um", "vm
 
 
 def slow_at(series):
-    """When every node was first slower than the paper's limit as we read it, 0.2 um/min."""
+    """First time at which every node is slower than 0.2 um/min, the paper's stop as we read it; "" if never."""
     for row in csv.DictReader(series.read_text().splitlines()):
         if float(row["time_s"]) > 0 and float(row["max_node_speed_um_per_s"]) < 0.2 / 60:
             return row["time_s"]
@@ -90,23 +90,24 @@ def plot(table, out):
         "tissue as one volume": ("tab:green", "^", "-"),
         "no volume kept": ("0.6", "v", "-"),
     }
-    figure, axes = pyplot.subplots(figsize=(7.5, 4.5), constrained_layout=True)
+    pyplot.rcParams["font.size"] = 13  # readable at 400 pixels
+    figure, axes = pyplot.subplots(figsize=(7.5, 5.2), constrained_layout=True)
     for scheme, (colour, marker, line) in looks.items():
         points = [(float(row["step_s"]), float(row["furrow_depth_um"])) for row in rows
                   if row["scheme"] == scheme and row["poisson_ratio"] == "0.45"]
         axes.plot(*zip(*sorted(points)), color=colour, marker=marker, linestyle=line, label=scheme)
     axes.axhline(28.89, color="0.5", linewidth=0.8, linestyle=":")
-    axes.annotate("28.89, the paper", (0.5, 28.89), color="0.4", fontsize=8, va="top")
+    axes.annotate("28.89, the paper", (0.5, 28.89), color="0.4", va="top")
     axes.set_xscale("log")
     ticks = (20, 10, 5, 2, 1, 0.5)
     axes.set_xticks(ticks, [f"{step:g}" for step in ticks])
     axes.minorticks_off()
     axes.set_xlabel("time step, s")
-    axes.set_ylabel("furrow depth at rest, µm")
+    axes.set_ylabel("equilibrium depth, µm")
     axes.set_ylim(bottom=0)
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=11, loc="lower right")
     out.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(out, dpi=130)
+    figure.savefig(out, dpi=104)
 
 
 def main():

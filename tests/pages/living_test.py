@@ -27,7 +27,7 @@ class Living(unittest.TestCase):
         self.folder = Path(folder.name)
 
     def study(self, name, out, **design):
-        """Of that file, with another design."""
+        """Run the study of that file with another design."""
         with (LIVING / name).open("rb") as file:
             study = tomllib.load(file)
         study["scenario"] = str(LIVING / study["scenario"])
@@ -57,7 +57,7 @@ class Living(unittest.TestCase):
     def test_slices_are_lit_and_made_embryos(self):
         for name in ("clock", "floor", "own"):
             self.study(f"fit-{name}.toml", name, points=16)
-        self.assertIn("lit from 8 min on: ", run("light.py", self.folder / "floor", "--best", "3"))
+        self.assertIn("inhibited from 8 min on: ", run("light.py", self.folder / "floor", "--best", "3"))
         text = run("straight.py", self.folder, self.folder / "short", self.folder / "straight.png", "--best", "1")
         self.assertEqual(text.count("end_time"), 3, text)
         self.assertGreater((self.folder / "straight.png").stat().st_size, 10_000)

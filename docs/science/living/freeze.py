@@ -1,9 +1,9 @@
-"""Fifty embryos beside the slices that their sets were drawn from; and, of these sets, ten for the experiments.
+"""Compare fifty embryos with the slices that their sets were drawn from; write ten of the sets for the experiments.
 
-A set was drawn by the likelihood of its slice; here it is weighted by the likelihood of its embryo over that, so that the ten
-are a sample of what embryos allow.
+A set was drawn by the likelihood of its slice; here it is weighted by the likelihood of its embryo divided by that of its slice,
+so the ten are a sample of the posterior of embryos.
 
-Usage: freeze.py STUDIED CONFIRMED OUT.csv, where STUDIED and CONFIRMED are what `plica study` has left of posterior.toml and
+Usage: freeze.py STUDIED CONFIRMED OUT.csv, where STUDIED and CONFIRMED are the outputs of `plica study` for posterior.toml and
 confirm.toml.
 """
 import sys

@@ -1,7 +1,7 @@
-"""How well a study's slices fit, and whether they go on when light switches apical tension off: the table of a hypothesis.
+"""Print how well the slices of a hypothesis fit, and how many continue when light inhibits apical tension.
 
-Usage: light.py STUDIED [--best 30] [--points POINTS.csv]. STUDIED is what `plica study docs/science/living/fit-floor.toml --out
-STUDIED` has left, or another of those files. Light falls on its best slices, or on the points of a file. Prints both tables.
+Usage: light.py STUDIED [--best 30] [--points POINTS.csv]. STUDIED is the output of `plica study docs/science/living/fit-floor.toml
+--out STUDIED`, or of another of those files. Inhibited are its best slices, or the points of a file.
 """
 import argparse
 import tempfile
@@ -13,7 +13,7 @@ import plica
 from targets import TARGETS, score
 
 MINUTES = (5, 6, 6.5, 7, 8)
-GOES_ON_UM = 20  # deeper than this at 22 min
+CONTINUES_UM = 20  # deeper than this at 22 min
 
 parser = argparse.ArgumentParser()
 parser.add_argument("studied")
@@ -41,4 +41,4 @@ with tempfile.TemporaryDirectory() as folder:
             "design": {"kind": "file", "file": f"{folder}/points.csv"},
             "keep": {"measures": ["furrow_depth_um"]},
         }).run(jobs=2)
-        print(f"lit from {minute} min on: {(lit.furrow_depth_um > GOES_ON_UM).sum()} of {len(lit)} go on")
+        print(f"inhibited from {minute} min on: {(lit.furrow_depth_um > CONTINUES_UM).sum()} of {len(lit)} continue")

@@ -1,4 +1,4 @@
-"""Numbers of the measured embryo, as docs/science/living-embryo.md tells them: its cells by rows, its furrow's length, and how apices pull.
+"""Print the numbers of the measured embryo for docs/science/living-embryo.md: cells by rows, length of the furrow, apical tension.
 
 Usage: measured.py RUN, the folder of a run: of `plica reproduce scenarios/living/measured.toml --out MEASURED`,
 MEASURED/runs/atlas/draw-1, or of docs/science/living/gradient.toml.
@@ -13,7 +13,7 @@ import numpy as np
 import plica
 from plica.results import Frame
 
-PROGRAM, SCENARIO = "build/release/plica", "drosophila-atlas-living"
+SCENARIO = "drosophila-atlas-living"
 PROFILES = {
     "twist from 0.65 to 0.95": {"from": 0.65, "to": 0.95},
     "twist from 0.72 to 0.97": {},
@@ -36,7 +36,7 @@ print(f"At 9 min, means of the cells up to {MIDDLE_UM} µm from the middle, by r
 for n in range(1, ROWS + 1):
     row = regions[f"rows-{n}"] & ~regions[f"rows-{n - 1}"] if n > 1 else regions["rows-1"]
     of_row = cells.loc[np.flatnonzero(row)]
-    print(f"{n:3}: apical area {of_row.apical_area_ratio.mean():.2f} of that at rest, height {of_row.height_um.mean():.1f} µm")
+    print(f"{n:3}: relative apical area {of_row.apical_area_ratio.mean():.2f}, height {of_row.height_um.mean():.1f} µm")
 
 print("\nOver time (series.csv):")
 shown = {"furrow_depth_um": "depth, µm", "closed_length_ratio": "closed, of the length", "lips_closed": "closed in the middle",
@@ -61,7 +61,7 @@ with tempfile.TemporaryDirectory() as folder:
     for number, (name, profile) in enumerate(PROFILES.items()):
         mesh = Path(folder, f"{number}.vtu")
         sets = [word for key, value in profile.items() for word in ("--set", f"cortex.apical.profile.{key}={value}")]
-        subprocess.run([PROGRAM, "mesh", SCENARIO, "--out", mesh, *sets], check=True, capture_output=True)
+        subprocess.run(["plica", "mesh", SCENARIO, "--out", mesh, *sets], check=True, capture_output=True)
         frames[name] = Frame(mesh, 0)
 shown = {f"pull, {name}": frame.cell_data["strength_cortex.apical"] for name, frame in frames.items()}
 frame = next(iter(frames.values()))  # all have the same cells

@@ -1,66 +1,80 @@
-"""Draws the pictures of docs/science/living-embryo.md from what its experiments have left.
+"""Draw cuts.png and gradient.png of docs/science/living-embryo.md.
 
-Usage: pictures.py RESULTS MEASURED GRADIENT IMAGES, where RESULTS and MEASURED are of `plica reproduce living` and of `plica
-reproduce scenarios/living/measured.toml`, GRADIENT of `plica run docs/science/living/gradient.toml`: cuts.png, atlas.png, gradient.png
-and closing.gif in IMAGES.
+Usage: pictures.py RESULTS GRADIENT IMAGES [MEASURED]. RESULTS is of `plica reproduce living`, GRADIENT of `plica run
+docs/science/living/gradient.toml`. With MEASURED, of `plica reproduce scenarios/living/measured.toml`, atlas.png is drawn, too.
 """
 import sys
-import tempfile
 from pathlib import Path
 
-import matplotlib
+import matplotlib.pyplot as plt
+from matplotlib.cm import ScalarMappable
+from matplotlib.patches import Rectangle
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-from PIL import Image  # noqa: E402
+from drawing import COLOURS, SAGITTAL, SCALE, TRANSVERSE, draw_section, draw_ventral, few_colours, scale_bar
+from style import APICAL, BASAL, FORCE, LATERAL, TEXT
 
-from drawing import few_colours, render  # noqa: E402
+results, gradient, images = map(Path, sys.argv[1:4])
+measured = Path(sys.argv[4]) if len(sys.argv) > 4 else None
 
-results, measured, gradient, images = map(Path, sys.argv[1:])
+# (title, where apical surfaces are cut, (colour, from, to) of a bar) of each experiment; marks are below the belly, um along the axis.
 CUTS = {
-    "reference": "undisturbed",
-    "cut-out": "apical cuts in front and behind",
-    "walls-cut": "walls of the middle cut",
-    "cut-out-and-walls-cut": "both",
-    "block": "middle in the light",
-    "floor-kept": "floor kept stiff",
+    "reference": ("undisturbed", [], None),
+    "cut-out": ("apical cuts", [-63.5, 63.5], None),
+    "walls-cut": ("lateral faces cut", [], (LATERAL, -60, 60)),
+    "cut-out-and-walls-cut": ("both cuts", [-63.5, 63.5], (LATERAL, -60, 60)),
+    "block": ("apical tension blocked", [], (FORCE, -60, 60)),
+    "floor-kept": ("basal cortex kept stiff", [], (BASAL, -240, 240)),
 }
-GRADIENT_AT = "--at-x-um=-60"  # the gradient's embryo is cut across there, too
 
 
-def run_of(folder, experiment):
-    return folder / "runs" / experiment / "draw-1"
+def colour_bar(figure, place):
+    bar = figure.colorbar(ScalarMappable(SCALE, COLOURS), cax=figure.add_axes(place), orientation="horizontal", ticks=[0, 20, 40, 60])
+    bar.set_label("displacement, µm", labelpad=2)
+    bar.outline.set_visible(False)
+
+
+def draw_cuts(path):
+    figure, panels = plt.subplots(3, 2, figsize=(760 / 72, 590 / 72))
+    figure.subplots_adjust(left=0.01, right=0.99, top=0.95, bottom=0.12, wspace=0.03, hspace=0.2)
+    for panel, (experiment, (title, cuts, bar)) in zip(panels.flat, CUTS.items()):
+        draw_section(panel, results / "runs" / experiment / "draw-1", 20, SAGITTAL)
+        panel.set_title(title, pad=2)
+        panel.set_xlim(-255, 255)
+        panel.set_ylim(-118, 95)
+        panel.plot(cuts, [-106] * len(cuts), "^", color=APICAL, markersize=11)
+        if bar:
+            colour, start, end = bar
+            panel.add_patch(Rectangle((start, -113), end - start, 12, color=colour, linewidth=0))
+    scale_bar(panels[0, 0], -110, 20)
+    for x, letter in ((-190, "A"), (190, "P")):
+        panels[0, 0].text(x, 20, letter, ha="center", va="center", weight="bold")
+    colour_bar(figure, (0.3, 0.075, 0.4, 0.025))
+    figure.savefig(path, dpi=144)
+    few_colours(path)
+
+
+def draw_embryo(path, folder, times, at):
+    """Ventral view, sagittal section and cross-section at each time, min; the last is cut at a place along the axis, um."""
+    figure, panels = plt.subplots(3, len(times), figsize=(760 / 72, 560 / 72), height_ratios=[1, 1, 1.5])
+    figure.subplots_adjust(left=0.045, right=0.995, top=0.94, bottom=0.14, wspace=0.03, hspace=0.04)
+    for column, minute in zip(panels.T, times):
+        draw_ventral(column[0], folder, minute)
+        draw_section(column[1], folder, minute, SAGITTAL)
+        draw_section(column[2], folder, minute, TRANSVERSE, at)
+        column[0].set_title(f"{minute} min", pad=2)
+    for panel, name in zip(panels[:, 0], ("ventral", "sagittal", "cross")):
+        box = panel.get_position()
+        figure.text(0.002, (box.y0 + box.y1) / 2, name, rotation=90, va="center", color=TEXT)
+    long, across = panels[1, 0], panels[2, 0]
+    scale_bar(long, -50, long.get_ylim()[0] - 6)
+    scale_bar(across, -50, across.get_ylim()[0] - 6)
+    colour_bar(figure, (0.42, 0.085, 0.42, 0.025))
+    figure.savefig(path, dpi=144)
+    few_colours(path)
 
 
 images.mkdir(parents=True, exist_ok=True)
-with tempfile.TemporaryDirectory() as name:
-    folder = Path(name)
-
-    figure, panels = plt.subplots(3, 2, figsize=(11, 7.2))
-    for panel, (experiment, title) in zip(panels.flat, CUTS.items()):
-        panel.imshow(plt.imread(render(run_of(results, experiment), folder / "cut.png", "--view", "sagittal-section", "--range", "0:60")))
-        panel.set_title(title, fontsize=12)
-        panel.axis("off")
-    figure.tight_layout(pad=0.3)
-    figure.savefig(folder / "cuts.png", dpi=90)
-    few_colours(Image.open(folder / "cuts.png")).save(images / "cuts.png", optimize=True)
-
-    for picture, run, at, times in (("atlas.png", run_of(measured, "atlas"), "--at-x-um=30", "9min,14min,17min,20min"),
-                                    ("gradient.png", gradient, GRADIENT_AT, "9min,14min,20min,24min")):
-        render(run, folder / picture, "--view", "ventral,sagittal-section,cross-section", at, "--time", times, "--size", "1500x824")
-        few_colours(Image.open(folder / picture)).save(images / picture, optimize=True)
-
-    # The movie: from below, and beside it cut across, without legends.
-    render(gradient, folder / "below.png", "--movie", "--view", "ventral,sagittal-section", "--size", "700x560")
-    render(gradient, folder / "across.png", "--movie", GRADIENT_AT, "--size", "560x560")
-    frames = []
-    for below, across in zip(sorted(folder.glob("below_*.png"))[3:], sorted(folder.glob("across_*.png"))[3:]):
-        frame = Image.new("RGB", (780, 260), "white")
-        frame.paste(Image.open(below).crop((25, 20, 572, 270)), (0, 5))
-        frame.paste(Image.open(across).crop((0, 50, 475, 540)).resize((232, 240), Image.Resampling.LANCZOS), (548, 10))
-        frames.append(frame.resize((696, 232), Image.Resampling.LANCZOS))
-    palette = few_colours(frames[-1])  # one for all frames, so that what stands still costs nothing
-    frames = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
-    times = [300] * (len(frames) - 1) + [2000]
-    frames[0].save(images / "closing.gif", save_all=True, append_images=frames[1:], duration=times, loop=0)
-print("\n".join(f"drawn: {images / picture}" for picture in ("cuts.png", "atlas.png", "gradient.png", "closing.gif")))
+draw_cuts(images / "cuts.png")
+draw_embryo(images / "gradient.png", gradient, (9, 14, 24), -60)
+if measured:
+    draw_embryo(images / "atlas.png", measured / "runs/atlas/draw-1", (9, 14, 20), 30)

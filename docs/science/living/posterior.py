@@ -1,6 +1,6 @@
-"""The posterior of the second round of slices, and fifty draws from it.
+"""Print the posterior of the second round of slices; write fifty draws from it.
 
-Usage: posterior.py STUDIED OUT.csv, where STUDIED is what `plica study docs/science/living/posterior.toml --out STUDIED` has left.
+Usage: posterior.py STUDIED OUT.csv, where STUDIED is the output of `plica study docs/science/living/posterior.toml --out STUDIED`.
 """
 import sys
 
@@ -24,7 +24,7 @@ for k, key in enumerate(study.keys):
     print(f"{key:42} {mean[k]:7.3f} ± {spread[k]:6.3f}, {spread[k] / (high - low) * 12**0.5:.2f} of the prior's")
 
 # Products of powers of keys, the best known first. They are found with each key's logarithm in units of its prior's spread;
-# of each, the keys that count are kept, and how well that product is known is measured anew.
+# of each, the keys that count are kept, and the spread of that product is measured again.
 logs, prior = np.log(values), np.log(table[study.keys])
 _, directions = np.linalg.eigh(np.cov(((logs - prior.mean()) / prior.std()).T, aweights=weights))
 print()

@@ -1,7 +1,7 @@
-"""What the living embryo was fitted to: value and width of each measure of a slice, as docs/science/living-embryo.md tells them."""
+"""Targets of the fit of docs/science/living-embryo.md: value and width of each measure of a slice, and of an embryo."""
 
 TARGETS = {
-    "furrow_depth_um": (50, 6),  # an embryo is deeper; some 10 um was expected, 4 um came
+    "furrow_depth_um": (50, 6),  # embryos are deeper: by 10 um as expected, by 4 um as found
     "knee_depth_um": (6, 1.5),
     "knee_time_s": (534, 60),
     "lips_closed_time_s": (1080, 90),
@@ -16,5 +16,5 @@ OF_EMBRYO = {**TARGETS, "furrow_depth_um": (60, 6)}
 
 
 def score(table, targets):
-    """Of each row, the sum of squares of how far its measures are from the targets, in units of their widths."""
+    """Misfit of each row: sum of squared deviations of its measures from the targets, in units of their widths."""
     return sum(((table[measure] - value) / width) ** 2 for measure, (value, width) in targets.items())

@@ -1,5 +1,5 @@
-"""How far the edges of a wound recoil within 6 s, along the embryo's axis and across: of the patch of scenarios/living/embryo.toml,
-beside the same patch unharmed. Takes no arguments; a minute.
+"""Print how far the edges of a wound recoil within 6 s, along the embryo's axis and across: for the patch of
+scenarios/living/embryo.toml, compared with the same patch unwounded. Takes no arguments and a minute.
 """
 import numpy as np
 
@@ -27,4 +27,4 @@ for wounded in (False, True):
     sizes.append(size(sim))
 (length, width), (along, across) = sizes[0], sizes[1] - sizes[0]
 print(f"patch {length:.1f} µm long, {width:.1f} µm wide; {60 * (SEEN_MIN - WOUNDED_MIN):.0f} s after the wound")
-print(f"{along:.2f} µm longer (its ends recoil), {across:.2f} µm wider (its sides recoil) than unharmed")
+print(f"{along:.2f} µm longer (its ends recoil), {across:.2f} µm wider (its sides recoil) than unwounded")

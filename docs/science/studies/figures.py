@@ -24,7 +24,7 @@ def save(figure, name):
 print("Sobol's indices")
 sobol = plica.Study(studied / "paper-sobol")
 for measure in sobol.measures:
-    indices = sobol.sobol_indices(measure, drop_missing=measure == "equilibrium_time_s")  # some go on for an hour
+    indices = sobol.sobol_indices(measure, drop_missing=measure == "equilibrium_time_s")  # some do not reach equilibrium in an hour
     print(measure)
     print(indices.table.round(2).to_string())
     save(indices.plot(), f"sobol-{measure}")
