@@ -1,6 +1,6 @@
 """Drawings of docs/concepts: a cell in its sheet, an embryo cut across, and what happens in a time step.
 
-Usage: cell.py [NAME...], of: sheet embryo step; without, all. The embryo is that of furrow-slice at 14 min: needs the package
+Usage: cell.py [NAME...], of: sheet embryo step; without, all. The embryo is that of furrow-slice at 16 min: needs the package
 plica (PYTHONPATH=build/release/python build/venv/bin/python docs/pictures/cell.py).
 """
 import sys
@@ -88,6 +88,98 @@ def sheet():
     save(figure, "concepts/cell.svg")
 
 
+def furrow():
+    """Corners (y, z) in µm of the cells of furrow-slice at 16 min: two basal ones, then the apical ones in reverse
+    order; and which of them contract."""
+    import plica
+
+    sim = plica.Simulation("furrow-slice")
+    sim.run(until_min=16)
+    rest, now = sim.rest_positions, sim.positions
+    cells = []
+    for nodes in sim.hexahedra:
+        front = [node for node in nodes if rest[node][0] < 0]
+        basal = [node for node in front if node in nodes[:4]]
+        above = {node: nodes[list(nodes).index(node) + 4] for node in basal}
+        cells.append([now[node][[1, 2]] for node in (basal[0], basal[1], above[basal[1]], above[basal[0]])])
+    return np.array(cells), sim.regions["mesoderm"][sim.hexahedron_cell]
+
+
+def embryo():
+    """An embryo from the left with its axes, and its cross-section with a furrow."""
+    figure, axes = canvas(760, 500)
+
+    # From the left: anterior is left, dorsal is up.
+    centre, half, radius = np.array([150, 322]), 74, 50
+    turn = np.linspace(np.pi / 2, 3 * np.pi / 2, 40)
+
+    def pill(size):
+        cap = np.column_stack([-half + size * np.cos(turn), size * np.sin(turn)])
+        return centre + np.vstack([cap, -cap])
+
+    label(axes, (centre[0], 478), "from the left", weight="bold")
+    axes.fill(*pill(radius + 5).T, facecolor=WHITE, edgecolor=VITELLINE, linewidth=2.5)
+    axes.fill(*pill(radius).T, facecolor=CELL, edgecolor=APICAL, linewidth=3)
+    axes.fill(*pill(radius - 19).T, facecolor=YOLK, edgecolor=BASAL, linewidth=3)
+    axes.plot([centre[0]] * 2, [centre[1] - 72, centre[1] + 72], color=TEXT, linewidth=2, linestyle=(0, (4, 3)))
+    label(axes, centre + (0, 86), "x = 0")
+    label(axes, (18, centre[1] + 78), "anterior", ha="left")
+    label(axes, (282, centre[1] + 78), "posterior", ha="right")
+    label(axes, centre + (0, -86), "ventral")
+    origin = np.array([70, 96])
+    arrow(axes, origin, origin + (80, 0), TEXT, 2.5, 15)
+    arrow(axes, origin, origin + (0, 66), TEXT, 2.5, 15)
+    axes.plot(*origin, "o", color=WHITE, markeredgecolor=TEXT, markersize=16, markeredgewidth=2, zorder=9)
+    axes.plot(*origin, "x", color=TEXT, markersize=9, markeredgewidth=2, zorder=10)
+    label(axes, origin + (0, 82), "z: dorsal")
+    label(axes, origin + (88, 0), "x: posterior", ha="left")
+    label(axes, origin + (-14, -28), "y: right (away from you)", ha="left")
+
+    # Cut at x = 0, from the front: the embryo's right is on the left.
+    middle, scale = np.array([458, 246]), 132 / 90
+    cells, contract = furrow()
+    cells = middle + scale * cells * (-1, 1)
+    inside = {tuple(np.round(corners[0], 3)): tuple(np.round(corners[1], 3)) for corners in cells}
+    lumen = [next(iter(inside))]
+    while len(lumen) < len(inside):
+        lumen.append(inside[lumen[-1]])
+    axes.fill(*np.transpose(lumen), facecolor=YOLK, zorder=1)
+    for corners in cells:
+        axes.fill(*corners.T, facecolor=CELL, edgecolor=LATERAL, linewidth=1.2, zorder=2)
+        axes.plot(*corners[2:].T, color=APICAL, linewidth=3, zorder=4, solid_capstyle="round")
+        axes.plot(*corners[:2].T, color=BASAL, linewidth=3, zorder=4, solid_capstyle="round")
+    ring = np.linspace(0, 2 * np.pi, 200)
+    for size, part, color, width in ((133, ring, VITELLINE, 2.5), (144, np.radians(np.linspace(-30, 30, 40)), LATERAL, 4)):
+        axes.plot(middle[0] + size * np.cos(part), middle[1] + size * np.sin(part), color=color, linewidth=width, zorder=3)
+    for below, above in ((378, 400), (62, 112)):
+        axes.plot([middle[0]] * 2, [below, above], color=TEXT, linewidth=2, linestyle=(0, (4, 3)), zorder=3)
+    once = [tuple(np.round(place, 2)) for corners in cells[contract] for place in corners[2:]]
+    for lip in sorted(place for place in once if once.count(place) == 1):
+        leader(axes, (350, 96), lip, APICAL)
+    label(axes, (346, 90), "lips", APICAL, weight="bold", ha="right")
+    label(axes, (middle[0] + 40, 478), "cut at x = 0, from the front", weight="bold")
+    label(axes, middle + (0, 190), "dorsal")
+    label(axes, middle + (0, 166), "midline, y = 0")
+    label(axes, middle + (0, -198), "ventral")
+    label(axes, middle + (-150, 0), "R")
+    label(axes, middle + (0, 62), "yolk", weight="bold")
+    key(axes, middle + (0, 36), "[enclosed.yolk]")
+    column = 622
+    label(axes, (column, 300), "lateral", LATERAL, weight="bold", ha="left")
+    label(axes, (column, 278), "ectoderm", LATERAL, weight="bold", ha="left")
+    label(axes, (column, 240), "L", ha="left")
+    for y, lines, table, target, color in (
+            (196, ["furrow bottom"], "", (2, -76), APICAL),
+            (150, ["closure"], "[self_contact]", (0, -106), APICAL),
+            (84, ["vitelline", "membrane"], "[vitelline]", (22, -131), VITELLINE)):
+        for number, line in enumerate(lines):
+            label(axes, (column - 8, y - 22 * number), line, color, weight="bold", ha="left")
+        if table:
+            key(axes, (column - 8, y - 22 * len(lines)), table, ha="left")
+        leader(axes, (column - 14, y), middle + target, color)
+    save(figure, "concepts/embryo.svg")
+
+
 def step():
     """What happens in a time step, as a flow."""
     figure, axes = canvas(760, 640)
@@ -143,7 +235,7 @@ def step():
     save(figure, "concepts/step.svg")
 
 
-DRAWINGS = {"sheet": sheet, "step": step}
+DRAWINGS = {"sheet": sheet, "embryo": embryo, "step": step}
 
 if __name__ == "__main__":
     for name in sys.argv[1:] or DRAWINGS:
