@@ -1,5 +1,5 @@
-// What a cell does by its own state, not by the clock: a program that starts when the cell has become so small, tall or
-// flat, or an activity that follows it (docs/theory/cortex.md, "By the clock, or by the cell's own state").
+// What a cell does by its own state, not at prescribed times: a program that starts when the cell has become so small,
+// tall or flat, or an activity that follows it (docs/theory/cortex.md, "Time-prescribed and shape-dependent activity").
 #pragma once
 
 #include <array>
