@@ -2,6 +2,7 @@
 
 - A page with <!-- site: contents --> gets a table of contents: the pages that its list items and rows of tables link to.
 - <!-- site: python NAME... --> becomes the reference of these names, from their docstrings.
+- <!-- site: output --> stands above a kept picture of a notebook's output, which is left out where notebooks are run.
 - <!-- site: bibliography --> becomes all of references.bib, and a link to references.bib#KEY one to its entry.
 - A link to a file outside of docs/ leads to a page of the site that shows the file as it was.
 """
@@ -20,6 +21,7 @@ log = logging.getLogger(__name__)
 CODE = re.compile(r"(^```.*?^```$|(?<!`)(`+)(?!`)(?:(?!\n\n).)+?(?<!`)\2(?!`))", re.M | re.S)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 NAMED_LINK = re.compile(r"\[([\w./-]+\.md)\]\(([^)\s#:]+\.md)\)")  # called by its file's name
+OUTPUT = re.compile(r"^<!-- site: output -->\n(!\[[^\]]*\]\([^)]*\)\n)", re.M)
 MARK = re.compile(r"^<!-- site: (\w+) ?(.*?) -->$", re.M)
 
 
@@ -82,7 +84,7 @@ def read(app, docname, source):
     page = Path(app.env.doc2path(docname))
     if page.suffix != ".md":
         return
-    whole = source[0]
+    whole = OUTPUT.sub("" if app.config.nb_execution_mode != "off" else r"\1", source[0])
 
     def change(text):
         # Without a text of its own, a link to a page has the page's title.

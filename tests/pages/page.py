@@ -28,12 +28,32 @@ SEPARATOR = "==== block of the page: "
 STATED = re.compile(r"^\|[^|]+\| (?P<least>-?[\d.]+)(?: to (?P<most>-?[\d.]+))?(?: (?P<unit>\S+))? \| `(?P<key>\w+)` \|$", re.M)
 
 
+# A heading that begins with a scenario's name: ## `drosophila-paper`.
+SCENARIO = re.compile(r"^##? `(?P<name>[\w-]+)`", re.M)
+
+
 class PageError(Exception):
     """What is wrong with the page, in a sentence."""
 
 
+def scenario_sections(text):
+    """Sections of a page about scenarios, by name: each from its heading to the next scenario's."""
+    headings = list(SCENARIO.finditer(text))
+    ends = [heading.start() for heading in headings[1:]] + [len(text)]
+    return {heading["name"]: text[heading.start():end] for heading, end in zip(headings, ends)}
+
+
+def mark_of_run(name, section):
+    """The mark of the block that runs the scenario into results/NAME: "", "slow" or "not run"; PageError without one."""
+    command = f"plica run {name} --out results/{name}\n"
+    for block in BLOCK.finditer(section):
+        if block["kind"] == "sh" and command in block["text"]:
+            return block["mark"] or ""
+    raise PageError(f"does not show the command: {command.strip()}")
+
+
 def stated_numbers(text):
-    """What a page's table says of keys of summary.json: (least, most) of each, minutes as seconds."""
+    """Values of keys of summary.json in a page's tables: (least, most) of each, minutes as seconds."""
     stated = {}
     for row in STATED.finditer(text):
         unit = 60 if row["unit"] == "min" else 1

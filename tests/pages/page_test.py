@@ -4,8 +4,9 @@
 Usage: page_test.py PAGE PROGRAM [--slow] [--keep DIRECTORY]. With --slow, blocks that are marked slow are run, too. With
 --keep, what the page makes stays in DIRECTORY, which must be new. Needs Debian's python3-pandas and python3-matplotlib.
 
-A page of docs/scenarios has a table of numbers beside keys of summary.json: these are compared within 1 % with the run in
-results/NAME. "0.74 to 0.78" stands for what differs between processors.
+On a page of docs/scenarios each section about a scenario has a table of numbers beside keys of summary.json: these are
+compared within 1 % with the run in results/NAME, which must be there unless its block is marked. "0.74 to 0.78" stands for
+what differs between processors.
 """
 import argparse
 import json
@@ -13,21 +14,32 @@ import sys
 import tempfile
 from pathlib import Path
 
-from page import PageError, run_page, stated_numbers
+from page import PageError, mark_of_run, run_page, scenario_sections, stated_numbers
 
 
-def check_numbers(page, place):
-    """Compares the table of a scenario's page with its run. Returns how many numbers."""
-    summary = json.loads((place / "results" / page.stem / "summary.json").read_text(encoding="utf-8"))
-    stated = stated_numbers(page.read_text(encoding="utf-8"))
+def check_numbers(name, section, place):
+    """Compares the table of a scenario's section with its run. Returns how many numbers."""
+    path = place / "results" / name / "summary.json"
+    if not path.is_file():
+        raise PageError(f"has no results of {name}")
+    summary = json.loads(path.read_text(encoding="utf-8"))
+    stated = stated_numbers(section)
     if not stated:
-        raise PageError("has no table of numbers")
+        raise PageError(f"has no table of numbers of {name}")
     for key, (least, most) in stated.items():
         found = summary.get(key)
         allowed = max(0.01 * abs(found or 0), 1e-6)
         if found is None or not least - allowed <= found <= most + allowed:
-            raise PageError(f"says {key} = {least:g}{f' to {most:g}' if most > least else ''}; the run comes to {found}")
+            raise PageError(f"says {key} = {least:g}{f' to {most:g}' if most > least else ''} of {name}; the run has {found}")
     return len(stated)
+
+
+def check_scenarios(page, place, with_slow):
+    """Compares the tables of all scenarios that were run on a page of docs/scenarios."""
+    for name, section in scenario_sections(page.read_text(encoding="utf-8")).items():
+        mark = mark_of_run(name, section)
+        if mark == "" or (mark == "slow" and with_slow):
+            print(f"Compared {check_numbers(name, section, place)} numbers of {name}.")
 
 
 parser = argparse.ArgumentParser()
@@ -41,8 +53,7 @@ with tempfile.TemporaryDirectory() as temporary:
     try:
         number = run_page(options.page, options.program, place, options.slow)
         print(f"Ran {number} blocks of {options.page.name}.")
-        # A run that is marked slow is not there without --slow.
-        if (place / "results" / options.page.stem / "summary.json").is_file() and options.page.parent.name == "scenarios":
-            print(f"Compared {check_numbers(options.page, place)} numbers.")
+        if options.page.resolve().parent.name == "scenarios":
+            check_scenarios(options.page, place, options.slow)
     except PageError as error:
         sys.exit(f"{options.page}: {error}")

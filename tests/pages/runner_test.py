@@ -6,7 +6,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from page import PageError, run_page, stated_numbers
+from page import PageError, mark_of_run, run_page, scenario_sections, stated_numbers
 
 
 class Runner(unittest.TestCase):
@@ -41,6 +41,16 @@ class Runner(unittest.TestCase):
         self.assertEqual(stated_numbers("| depth | 28.9 µm | `depth_um` |\n| end | 1.5 min | `time_s` |\n| part | 0.74 to 0.78 | `ratio` |\n"
                                         "| rows | 3 | in `words` |\n"),
                          {"depth_um": (28.9, 28.9), "time_s": (90, 90), "ratio": (0.74, 0.78)})
+
+    def test_sections_of_scenarios(self):
+        text = ("# `a`: first\n```sh\nplica run a --out results/a\n```\n## Results\n| x | 1 | `x` |\n## `a-b`\n<!-- slow: long -->\n"
+                "```sh\nplica run a-b --out results/a-b\n```\n### Results\n| x | 2 | `x` |\n")
+        sections = scenario_sections(text)
+        self.assertEqual(list(sections), ["a", "a-b"])
+        self.assertEqual([stated_numbers(section)["x"][0] for section in sections.values()], [1, 2])
+        self.assertEqual([mark_of_run(name, section) for name, section in sections.items()], ["", "slow"])
+        with self.assertRaises(PageError):
+            mark_of_run("a", sections["a-b"])
 
     def test_marks(self):
         self.assertEqual(self.run_text("<!-- not run: it fails -->\n```sh\nfalse\n```\n```text\nx\n```\n"), 0)
