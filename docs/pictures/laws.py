@@ -250,13 +250,13 @@ def shape_memory():
 
 def corner_barrier():
     figure, axes = canvas(760, 300)
-    for number, (ratio, text) in enumerate(((1, "1"), (0.15, "0.15"), (0.0, "0"))):
+    for number, (ratio, text) in enumerate(((1, "1"), (0.05, "0.05"), (0.0, "0"))):
         x = 25 + 140 * number
         corner = np.array((50 + 50 * ratio, 50 + 50 * ratio)) + (x, 110)
         points = [np.array(p) + (x, 110) for p in ((0, 0), (100, 0))] + [corner, np.array((x, 210))]
         polygon(axes, points)
         dots(axes, [corner], APICAL, 12)
-        if ratio < 0.5:
+        if ratio < 0.15:
             arrow(axes, corner, corner + (38, 38))
         label(axes, (x + 52, 78), text)
     label(axes, (217, 38), "corner Jacobian $J/J_0$")
