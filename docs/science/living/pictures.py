@@ -66,8 +66,8 @@ def draw_embryo(path, folder, times, at):
         box = panel.get_position()
         figure.text(0.002, (box.y0 + box.y1) / 2, name, rotation=90, va="center", color=TEXT)
     long, across = panels[1, 0], panels[2, 0]
-    scale_bar(long, -50, long.get_ylim()[0] - 6)
-    scale_bar(across, -50, across.get_ylim()[0] - 6)
+    scale_bar(long, -110, 10)
+    scale_bar(across, -90, across.get_ylim()[0] - 6, 50)
     colour_bar(figure, (0.42, 0.085, 0.42, 0.025))
     figure.savefig(path, dpi=144)
     few_colours(path)
