@@ -91,7 +91,7 @@ def study_report():
     if not (RESULTS / "phases/report.html").is_file():
         (RESULTS / "phases.toml").write_text(block_of_page("answers.md", "# phases.toml").replace('each = "full"', 'each = "summary"'))
         plica("study", RESULTS / "phases.toml", "--out", RESULTS / "phases", "--quiet", "--overwrite")
-    screenshot(RESULTS / "phases/report.html", "study_report", 1020, 800, "")
+    screenshot(RESULTS / "phases/report.html", "study_report", 1020, 990, "")
 
 
 RESULTS.mkdir(parents=True, exist_ok=True)
