@@ -46,8 +46,10 @@ for panel, (hypothesis, title) in zip(panels, TITLES.items()):
     table = short.run(out=out, jobs=2, resume=out.exists())
     print(hypothesis)
     print(table.assign(point=best.point.to_numpy())[["point", "status", "midline_waviness_um", "self_intersections"]].round(2).to_string())
-    draw_section(panel, sorted((out / "points").iterdir())[0], SHORT["time.end_s"] / 60, SAGITTAL)
+    draw_section(panel, sorted((out / "points").iterdir())[0], SHORT["time.end_s"] / 60, SAGITTAL, 3)  # through the midline's cells
     panel.set_title(title, fontsize=15, pad=2)
-scale_bar(panels[0], -60, panels[0].get_ylim()[0] - 8)
+    panel.set_xlim(-165, 165)
+    panel.set_ylim(-92, 92)
+scale_bar(panels[0], -100, 20)
 figure.savefig(options.picture, dpi=144)
 few_colours(options.picture)
