@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/scenarios into docs/images: closing.png and scenarios/*.png.
+"""Draws the pictures of docs/scenarios and of docs/coming-from-tyssue.md into docs/images.
 
 Usage: scenarios.py RESULTS [NAME...], of the names in PICTURES below; without, all. RESULTS/SCENARIO holds the runs; those that
 are not there are made first (seconds; a minute or two for `drosophila-living`, which is solved with mirror planes).
@@ -236,6 +236,26 @@ def division_demo():
     write(figure, "scenarios/division-demo.png")
 
 
+def ellipsoid():
+    """The ellipsoid of docs/coming-from-tyssue.md: cut across, at three times."""
+    folder = RESULTS / "ellipsoid"
+    if not (folder / "summary.json").is_file():
+        page = (IMAGES.parent / "coming-from-tyssue.md").read_text(encoding="utf-8")
+        text = page.split("```toml\n# ellipsoid.toml\n")[1].split("```")[0]
+        path = RESULTS / "ellipsoid.toml"
+        path.write_text(text, encoding="utf-8")
+        plica.Simulation(path).run(out=folder, overwrite=True)
+    run = plica.open(folder)
+    figure, axes = canvas(WIDTH, 430)
+    for column, time in enumerate((0, run.frames[-1].time_min / 2, run.frames[-1].time_min)):
+        frame, x = run.frames.at(time), 170 + 330 * column
+        outside(axes, frame, by_area(frame), OPEN, (x, 245), 1.55, beyond_um=0.01, width=0.4)
+        label(axes, (x, 405), minutes(frame), size=LETTERS, weight="bold")
+    bar(axes, 30, 30, 50, 1.55)
+    area_bar(axes, 620, 36)
+    write(figure, "coming-from-tyssue.png")
+
+
 PICTURES = {
     "closing": closing,
     "division_strip": strip,
@@ -249,6 +269,7 @@ PICTURES = {
     "furrow-slice": partial(sections, "furrow-slice", (0, 9, 12, 15, 20), 50, 0.98),
     "wing-disc": wing_disc,
     "division-demo": division_demo,
+    "ellipsoid": ellipsoid,
 }
 
 if __name__ == "__main__":
