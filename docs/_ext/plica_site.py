@@ -118,7 +118,7 @@ def resolve(app, doctree, docname):
         elif kind == "bib":
             if target not in app.plica_keys:
                 log.warning("references.bib has no entry %s", target, location=link)
-            link["refuri"] = app.builder.get_relative_uri(docname, "references") + f"#cite-{target}"
+            link["refuri"] = app.builder.get_relative_uri(docname, "reference/references") + f"#cite-{target}"
 
 
 def shown(path, text):

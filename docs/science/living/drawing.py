@@ -22,8 +22,8 @@ SAGITTAL, TRANSVERSE = 1, 0  # axis along which a section has its normal
 
 
 def few_colours(path):
-    """Reduce the picture in a file to 128 colours."""
-    Image.open(path).convert("RGB").quantize(128, dither=Image.Dither.NONE).save(path, optimize=True)
+    """Reduce the picture in a file to 256 colours."""
+    Image.open(path).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 def cut(points, hexahedra, axis, at):
