@@ -22,7 +22,7 @@ myst_heading_anchors = 4
 myst_url_schemes = ["http", "https", "mailto", "source", "bib"]
 myst_dmath_double_inline = True
 
-# Notebooks: run only when docs/build is told to; what has not changed is not run again.
+# Notebooks: run only with `docs/build --run-notebooks`; unchanged ones are not run again.
 nb_execution_mode = os.environ.get("PLICA_NOTEBOOKS", "off")
 nb_execution_cache_path = str(ROOT / "build/site-notebooks/cache")
 nb_execution_in_temp = True

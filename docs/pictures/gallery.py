@@ -17,7 +17,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parent))
-from style import APICAL, BASAL, CELL, IMAGES, LATERAL, TEXT, VITELLINE, YOLK, canvas, label  # noqa: E402
+from style import APICAL, BASAL, CELL, IMAGES, LATERAL, TEXT, VITELLINE, canvas, label  # noqa: E402
 from tissue import Camera, cut, draw_cut, draw_half, draw_outside, fill_inside, palette_of, rings_of  # noqa: E402
 
 import plica  # noqa: E402
@@ -162,20 +162,23 @@ def closing():
 
 
 def measured():
-    """The measured embryo from the ventral side and cut across, at three times."""
+    """The measured embryo from the ventral side and cut across, at 9 min and at the end."""
     run = plica.open(RESULTS / "gradient")  # of `plica run docs/science/living/gradient.toml`
     camera = Camera(back=(0, 0, -1), up=(0, -1, 0))
-    figure, axes = new(800, 640)
-    for row, minutes in enumerate((9, 16, 24)):
-        frame, y = run.frames.at(minutes), 535 - 205 * row
+    figure, axes = new()
+    for row, minutes in enumerate((9, 24)):
+        frame, y = run.frames.at(minutes), 388 - 185 * row
         apical = frame.polygons("apical")
         colours = AREA(Normalize(0, 2)(apical.cell_data["apical_area_ratio"]))[:, :3]
-        draw_outside(axes, [apical.points[face] for face in apical.faces], colours, camera, (0, -0.3, -1), place=at_place((290, y), 0.86))
-        section(axes, frame, at_place((640, y), 0.92), at=-60, colour_of_cell=area_colours(frame), width=1.2)
-        label(axes, (30, y + 82), f"{frame.time_min:.0f} min", size=LETTERS, weight="bold", ha="left")
-    label(axes, (22, 535), "A", size=LETTERS)
-    label(axes, (560, 535), "P", size=LETTERS)
-    write(figure, "measured")
+        draw_outside(axes, [apical.points[face] for face in apical.faces], colours, camera, (0, -0.3, -1), width=0.25,
+                     place=at_place((340, y), 0.82))
+        section(axes, frame, at_place((695, y), 0.82), at=-60, colour_of_cell=area_colours(frame), width=1.2, plain=True)
+        label(axes, (10, y + 70), f"{frame.time_min:.0f} min", size=LETTERS, weight="bold", ha="left")
+        label(axes, (90, y - 30), "A", size=LETTERS - 4)
+        label(axes, (585, y - 30), "P", size=LETTERS - 4)
+    area_bar(axes, 480, 52)
+    bar(axes, 60, 48, 100, 0.82)
+    write(figure, "measured", 96, 900)
 
 
 def living():
@@ -185,7 +188,8 @@ def living():
     frame = run.frames.at(20)
     for number, at in enumerate((-125, 0, 125)):
         x = 142 + 258 * number
-        section(axes, frame, at_place((x, 265), 1.36), at=at, colour_of_cell=area_colours(frame), width=2, rest=run.frames[0], plain=True)
+        section(axes, frame, at_place((x, 265), 1.36), at=at, colour_of_cell=area_colours(frame), width=2, rest=run.frames[0],
+                plain=True)
         label(axes, (x, 435), f"x = {at} µm".replace("-", "−"), size=LETTERS - 2)
     area_bar(axes, 480, 52)
     bar(axes, 60, 48, 50, 1.36)
@@ -271,7 +275,8 @@ def endless():
     camera = Camera(back=(0.75, -0.3, 0.6), up=(0, 0, 1))
     for frame, place in ((run.frames[0], (250, 355)), (run.frames[-1], (555, 225))):
         sheet_picture(axes, frame, at_place(place, 3.4), camera)
-        label(axes, (place[0] - 220, place[1] + 60), f"{frame.time_min:.1f} min".replace(".0", ""), size=LETTERS, weight="bold", ha="left")
+        label(axes, (place[0] - 220, place[1] + 60), f"{frame.time_min:.1f} min".replace(".0", ""), size=LETTERS, weight="bold",
+              ha="left")
     area_bar(axes, 60, 52)
     bar(axes, 600, 48, 20, 3.4)
     write(figure, "endless")
@@ -282,8 +287,10 @@ def sphere():
     run = result("xenopus", "xenopus")
     figure, axes = new()
     for number, frame in enumerate((run.frames[0], run.frames[-1])):
-        scale = draw_half(axes, frame, area_colours(frame), VIEW, SUN, 0.01, (205 + 390 * number, 250, 340, 310), run.frames[0], 2.2)
-        label(axes, (30 + 390 * number, 445), f"{frame.time_min:.1f} min".replace(".0", ""), size=LETTERS, weight="bold", ha="left")
+        box = (205 + 390 * number, 262, 330, 286)
+        scale = draw_half(axes, frame, area_colours(frame), VIEW, SUN, 0.01, box, run.frames[0], 2.2)
+        time = f"{frame.time_min:.1f} min".replace(".0", "")
+        label(axes, (30 + 390 * number, 445), time, size=LETTERS, weight="bold", ha="left")
     area_bar(axes, 480, 52)
     bar(axes, 60, 48, 100, scale)
     write(figure, "sphere")
@@ -300,8 +307,8 @@ def ablation():
         x = 140 + 260 * number
         colours = AREA(Normalize(0, 2)(apical.cell_data["apical_area_ratio"]))[:, :3]
         middle = np.all(np.abs(apical.centres[:, :2]) < (48, 39), axis=1)
-        draw_outside(axes, [apical.points[face] for face, one in zip(apical.faces, middle) if one], colours[middle], camera, (0, 0, 1),
-                     width=0.8, place=at_place((x, 263), 3.15))
+        shown = [apical.points[face] for face, one in zip(apical.faces, middle) if one]
+        draw_outside(axes, shown, colours[middle], camera, (0, 0, 1), width=0.8, place=at_place((x, 263), 3.15))
         label(axes, (x, 452), text, size=LETTERS, weight="bold")
     area_bar(axes, 480, 52)
     bar(axes, 60, 48, 20, 3.15)
@@ -352,9 +359,11 @@ def feedback():
         frame, x, y = run.frames.at(minutes), 165 + 235 * number, 360 - 75 * number
         apical = frame.polygons("apical")
         colours = colormaps["YlOrRd"](Normalize(0, 1.2)(apical.cell_data["activity"]))[:, :3]
-        draw_outside(axes, [apical.points[one] for one in apical.faces], colours, camera, (-0.2, -1, 0.5), width=0.8, place=at_place((x, y), 0.58))
+        draw_outside(axes, [apical.points[one] for one in apical.faces], colours, camera, (-0.2, -1, 0.5), width=0.8,
+                     place=at_place((x, y), 0.58))
         label(axes, (x, y + 100), f"{minutes} min", size=LETTERS, weight="bold")
-    colour_bar(axes, 60, 52, LinearSegmentedColormap.from_list("activity", colormaps["YlOrRd"](np.linspace(0, 1 / 1.2, 64))), 0, 1, "activity", 260, (0, 0.5, 1))
+    shades = LinearSegmentedColormap.from_list("activity", colormaps["YlOrRd"](np.linspace(0, 1 / 1.2, 64)))
+    colour_bar(axes, 60, 52, shades, 0, 1, "activity", 260, (0, 0.5, 1))
     bar(axes, 620, 48, 100, 0.58)
     write(figure, "feedback")
 
@@ -419,7 +428,8 @@ def phases():
     for _, row in table.iterrows():
         word = plica.verdict(row)
         column, line = xs.index(row[first]), ys.index(row[second])
-        axes.add_patch(plt.Rectangle((left + wide * column, low + high * line), wide, high, facecolor=VERDICTS[word], edgecolor="white", linewidth=2))
+        axes.add_patch(plt.Rectangle((left + wide * column, low + high * line), wide, high, facecolor=VERDICTS[word],
+                                     edgecolor="white", linewidth=2))
         chosen.setdefault(word, []).append(int(row["point"]))
     for column in range(0, len(xs), 2):
         label(axes, (left + wide * (column + 0.5), low - 20), f"{xs[column]:g}", size=LETTERS - 6)
@@ -439,9 +449,9 @@ def report():
     """The report of a run as a narrow browser window shows it. Needs Chromium."""
     run = result("deep", "drosophila-deep")
     path = RESULTS / "report.png"
-    subprocess.run(["chromium", "--headless", "--no-sandbox", "--hide-scrollbars", "--window-size=720,690", "--virtual-time-budget=20000",
-                    "--force-device-scale-factor=2", f"--screenshot={path}", (run.directory / "report.html").resolve().as_uri()],
-                   check=True, stderr=subprocess.DEVNULL)
+    subprocess.run(["chromium", "--headless", "--no-sandbox", "--hide-scrollbars", "--window-size=720,690",
+                    "--virtual-time-budget=20000", "--force-device-scale-factor=2", f"--screenshot={path}",
+                    (run.directory / "report.html").resolve().as_uri()], check=True, stderr=subprocess.DEVNULL)
     image = Image.open(path).convert("RGB").resize((1000, 958), Image.Resampling.LANCZOS)
     image.quantize(160, dither=Image.Dither.NONE).save(FOLDER / "report.png", optimize=True)
     print(f"{FOLDER / 'report.png'}: {(FOLDER / 'report.png').stat().st_size / 1000:.0f} kB")
@@ -489,7 +499,8 @@ def readme():
     (block,) = re.findall(r"^```python\n(.*?)^```", (ROOT / "README.md").read_text(encoding="utf-8"), re.M | re.S)
     names = {}
     with plt.rc_context(rcParamsDefault):
-        exec(compile(block.replace('"furrow.png"', "'/dev/null', format='png'").replace('"slice"', f'"{RESULTS}/readme"'), "README.md", "exec"), names)
+        block = block.replace('"furrow.png"', "'/dev/null', format='png'").replace('"slice"', f'"{RESULTS}/readme"')
+        exec(compile(block, "README.md", "exec"), names)
         write(names["figure"], "readme", 64)
 
 

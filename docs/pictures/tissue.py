@@ -1,4 +1,4 @@
-"""Tissue of a saved frame, drawn with Matplotlib: cells in a plane cut, and cells from outside, with a scale bar in µm."""
+"""Tissue of a saved frame, drawn with Matplotlib: cells in a plane cut, and cells from outside."""
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
