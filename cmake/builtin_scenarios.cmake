@@ -1,5 +1,5 @@
-# Puts the files of scenarios/ into the program, so that `plica run drosophila` needs no files beside it; the tables of
-# scenarios/data/, as bytes, since compilers limit the length of a text; and the experiments of scenarios/living/.
+# Compiles scenarios/ into the program, so that `plica run drosophila` needs no other files: scenarios as text, tables of
+# scenarios/data/ as bytes (compilers limit the length of a string), and experiments of scenarios/living/.
 file(GLOB scenario_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scenarios/*.toml)
 set(builtin_scenarios_cpp ${CMAKE_BINARY_DIR}/generated/builtin_scenarios.cpp)
 set(entries "")
@@ -20,7 +20,7 @@ foreach(file ${table_files})
   string(APPEND tables "    {\"${name}\", {${name}, sizeof ${name}}},\n")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
 endforeach()
-# Experiments, with the scenarios and draws that lie beside them.
+# Experiments with their scenarios and parameter samples.
 file(GLOB experiment_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/scenarios
   ${PROJECT_SOURCE_DIR}/scenarios/living/*.toml ${PROJECT_SOURCE_DIR}/scenarios/living/*.csv)
 set(files "")

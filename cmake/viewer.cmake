@@ -1,4 +1,4 @@
-# Bundles viewer/ into two pages, of runs and of a study, with npm's packages (viewer/package-lock.json) and puts them into plica_core.
+# Bundles viewer/ with npm's packages (viewer/package-lock.json) into two pages, of runs and of a study, for plica_core.
 set(viewer_dir ${PROJECT_SOURCE_DIR}/viewer)
 set(report_template ${CMAKE_BINARY_DIR}/generated/report_template.html)
 set(study_template ${CMAKE_BINARY_DIR}/generated/study_template.html)
@@ -9,7 +9,7 @@ if(NOT PLICA_NPM OR NOT PLICA_NODE)
 endif()
 file(GLOB_RECURSE viewer_sources CONFIGURE_DEPENDS ${viewer_dir}/src/*)
 
-# npm's own record of what it installed. The packages need no scripts of theirs to run.
+# npm's record of what it installed. The packages' own scripts are not needed.
 set(installed ${viewer_dir}/node_modules/.package-lock.json)
 add_custom_command(OUTPUT ${installed}
   COMMAND ${PLICA_NPM} ci --ignore-scripts --no-audit --no-fund --loglevel=error

@@ -1,5 +1,5 @@
-# The image in which .github/workflows/wheels.yml builds wheels: Debian 12 with plica's libraries, and Python 3.11 where
-# cibuildwheel looks for it. Not built by us yet: the machine of this project has no Docker.
+# Image in which .github/workflows/wheels.yml builds wheels: Debian 12 with plica's libraries, and Python 3.11 where
+# cibuildwheel expects it. Not built by ./test, which has no Docker.
 FROM debian:12
 COPY tools/install_packages.sh /tmp/
 RUN apt-get update && /tmp/install_packages.sh build libraries viewer python && apt-get install --yes git

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Holds the layout of the sources: who includes whom, where VTK may be, headers, file lengths, theory pages, links.
+"""Checks the layout of the sources: includes, VTK's place, headers, file lengths, theory pages, links, version and authors.
 
 Usage: layout_test.py ROOT [PLICA]; with the program, docs/reference/scenario.md and the end of docs/reference/measures.md are compared with
 what `plica reference` prints, and docs/reference/cli.md with the help of the commands.
@@ -8,6 +8,7 @@ Prints what it counted; on a breach, a line each, and exit status 1.
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 # A folder of src/ includes itself and the folders before it.
@@ -16,7 +17,7 @@ FOLDERS = ("core", "tissue", "mechanics", "solver", "measure", "scenario", "simu
 # Inside solver/, too, a folder includes itself and those before it.
 ROOMS_OF_SOLVER = ("algebra", "multigrid", "linear", "step", "projection")
 MOST_LINES = 500
-# The files of src/mechanics that are none, beside those of kernels/.
+# Headers of src/mechanics that define no law, beside those of kernels/.
 NOT_A_LAW = {"law", "constraint", "obstacle", "model", "program", "turning_elements", "cell_pattern", "own_state", "given_activities",
              "hexahedron_stiffness", "of_elements", "closest_point", "contact_pair", "edge_pairs", "box_grid"}
 MEASURES_MARK = "<!-- Below: what plica reference --measures prints. -->\n"
@@ -51,7 +52,7 @@ def rank_in_solver(room):
 
 
 def check_includes():
-    """Includes run one way; VTK only where the name says so."""
+    """Includes run one way; VTK only in files named *_vtk.cpp."""
     for path in files("src", ".hpp", ".cpp"):
         folder = path.relative_to(root / "src").parts[0]
         if folder not in FOLDERS:
@@ -82,7 +83,7 @@ def check_headers():
             count("headers")
             text = lines_of(path)
             if not text or not text[0].startswith("// "):
-                breach(path, "does not begin with a comment that says what it is for", 1)
+                breach(path, "does not begin with a comment on its purpose", 1)
             if "#pragma once" not in text:
                 breach(path, "has no #pragma once")
 
@@ -124,6 +125,25 @@ def check_links():
                     breach(path, f"links to {target}, which is not there", number)
     if not (root / "README.md").is_file():
         breach(root / "README.md", "is missing")
+
+
+def check_release():
+    """Files that name the version and the authors agree."""
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    author = ", ".join(one["name"] for one in project["authors"])
+    for name, pattern, expected in (
+            ("CMakeLists.txt", r"^project\(plica VERSION ([\d.]+)", project["version"]),
+            ("CITATION.cff", r"^version: (.+)$", project["version"]),
+            ("CITATION.cff", r"^authors:\n  - name: (.+)$", author),
+            ("CITATION.cff", r"^abstract: (.+)\.$", project["description"]),
+            ("CHANGELOG.md", r"^## (\S+)", project["version"]),
+            ("packaging/conda/recipe.yaml", r'^  version: "(.+)"$', project["version"]),
+            ("cmake/package.cmake", r'CPACK_PACKAGE_CONTACT "(.+) <', author),
+            ("docs/conf.py", r'^author = "(.+)"$', author)):
+        count("names of version and authors")
+        found = re.search(pattern, (root / name).read_text(encoding="utf-8"), re.MULTILINE)
+        if not found or found[1] != expected:
+            breach(root / name, f"names {found[1] if found else 'nothing'}, where pyproject.toml has: {expected}")
 
 
 def printed(*arguments):
@@ -179,6 +199,7 @@ check_headers()
 check_lengths()
 check_laws()
 check_links()
+check_release()
 if program:
     check_reference()
     check_measures()

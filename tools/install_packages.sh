@@ -1,13 +1,13 @@
 #!/bin/bash
-# Installs the packages of Debian (12 or 13) that plica needs: with root or sudo, and only when some are missing.
+# Installs missing packages of Debian (12 or 13) that plica requires, with root or sudo.
 # Usage: tools/install_packages.sh [GROUP...], of: build libraries viewer browser firefox python tests checks tidy
-# pictures site fuzz slurm. Without a group: all of them but slurm.
+# pictures site fuzz slurm. Without a group: all except slurm.
 set -euo pipefail
 
-# The one list of packages. docs/developers/dependencies.md says why each library is here.
+# The list of packages; docs/developers/dependencies.md explains each library.
 declare -A packages=(
   [build]="cmake ninja-build g++"
-  # OpenBLAS in its serial variant: one thread, so that results are the same to the bit.
+  # Serial OpenBLAS: one thread, so that results are bitwise identical.
   [libraries]="libeigen3-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
                libmumps-seq-dev libmetis-dev libopenblas-serial-dev libdeflate-dev libhdf5-dev libvtk9-dev libx11-dev libnlopt-cxx-dev libboost-dev
                libqhull-dev"

@@ -1,11 +1,11 @@
 #!/usr/bin/pvpython
-"""Opens a run of plica in ParaView with the colours and views of its pictures, or draws or saves that state.
+"""Open a run of plica in ParaView with the colours and views of its pictures, or draw or save that state.
 
-    PLICA_RUN=results/drosophila paraview --script=tools/paraview_state.py      # the program, ready to turn and play
+    PLICA_RUN=results/drosophila paraview --script=tools/paraview_state.py      # interactive
     pvbatch tools/paraview_state.py results/drosophila --picture fold.png      # a picture; needs a screen or xvfb-run
     pvbatch tools/paraview_state.py results/drosophila --save fold.pvsm        # a state for File > Load State
 
-Coloured by displacement; the other arrays have their colours and ranges set, so that choosing one is enough.
+Colour: displacement; colours and ranges of the other arrays are set as well.
 """
 import argparse
 import math

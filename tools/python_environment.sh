@@ -1,5 +1,5 @@
 #!/bin/bash
-# Makes build/venv, in which the Python package is built and tested, with Debian's Python. Needs the network the first
+# Makes build/venv, in which the Python package is built and tested, with Debian's Python. Requires the network the first
 # time. Usage: tools/python_environment.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
