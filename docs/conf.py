@@ -1,4 +1,4 @@
-"""How Sphinx makes the site of these pages; docs/build calls it, docs/developers/site.md explains it."""
+"""Configuration of Sphinx for the site (docs/developers/site.md); docs/build calls it."""
 import os
 import re
 import sys
@@ -16,7 +16,7 @@ extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ex
               "sphinx_copybutton", "sphinxcontrib.bibtex", "plica_site"]
 exclude_patterns = ["requirements.txt", "_ext", "_static"]
 
-# Pages: Markdown as code hosts read it.
+# Pages: Markdown as on code hosts.
 myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "html_image"]
 myst_heading_anchors = 4
 myst_url_schemes = ["http", "https", "mailto", "source", "bib"]

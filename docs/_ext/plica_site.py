@@ -1,10 +1,10 @@
-"""Makes a site of pages that read as they stand on a code host: what Markdown there cannot say is added here.
+"""Sphinx extension that makes a site of pages written for code hosts, by markers in comments.
 
-- A page with <!-- site: contents --> gets a table of contents: the pages that its list items and rows of tables link to.
-- <!-- site: python NAME... --> becomes the reference of these names, from their docstrings.
-- <!-- site: output --> stands above a kept picture of a notebook's output, which is left out where notebooks are run.
-- <!-- site: bibliography --> becomes all of references.bib, and a link to references.bib#KEY one to its entry.
-- A link to a file outside of docs/ leads to a page of the site that shows the file as it was.
+- <!-- site: contents -->: a table of contents of the pages that list items and rows of tables link to.
+- <!-- site: python NAME... -->: the reference of these names, from their docstrings.
+- <!-- site: output --> above a picture: a notebook's saved output, left out where notebooks are run.
+- <!-- site: bibliography -->: all of references.bib; a link to references.bib#KEY leads to its entry.
+- A link to a file outside docs/ leads to a page that shows this file.
 """
 import inspect
 import re
@@ -20,13 +20,13 @@ from sphinx.util import logging
 log = logging.getLogger(__name__)
 CODE = re.compile(r"(^```.*?^```$|(?<!`)(`+)(?!`)(?:(?!\n\n).)+?(?<!`)\2(?!`))", re.M | re.S)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-NAMED_LINK = re.compile(r"\[([\w./-]+\.md)\]\(([^)\s#:]+\.md)\)")  # called by its file's name
+NAMED_LINK = re.compile(r"\[([\w./-]+\.md)\]\(([^)\s#:]+\.md)\)")  # text = file name
 OUTPUT = re.compile(r"^<!-- site: output -->\n(!\[[^\]]*\]\([^)]*\)\n)", re.M)
 MARK = re.compile(r"^<!-- site: (\w+) ?(.*?) -->$", re.M)
 
 
 def outside_code(change, text):
-    """The text with a change made to what stands in no code."""
+    """Return the text with a change made outside code."""
     parts, end = [], 0
     for code in CODE.finditer(text):
         parts += [change(text[end:code.start()]), code.group()]
@@ -35,7 +35,7 @@ def outside_code(change, text):
 
 
 def rewrite_link(app, page, target):
-    """Where a page's link leads on the site."""
+    """Return the target of a page's link on the site."""
     if re.match(r"[a-z]+:", target) or target.startswith("#"):
         return target
     name, mark, anchor = target.partition("#")
@@ -57,7 +57,7 @@ def in_docs(app, page, name):
 
 
 def contents(page_text):
-    """A hidden table of contents of what the list items and rows link to first."""
+    """Return a hidden table of contents of the first link of each list item and row."""
     found = []
     for line in page_text.splitlines():
         links = [target.split("#")[0] for target in LINK.findall(line) if re.search(r"\.md(#|$)", target)]
@@ -103,10 +103,12 @@ def read(app, docname, source):
         return found.group()
 
     source[0] = MARK.sub(mark, outside_code(change, whole))
+    if page.parent.name == "notebooks" and "\n  language:" not in whole:  # colours of code, where notebooks are not run
+        source[0] = source[0].replace("\nkernelspec:\n", "\nkernelspec:\n  language: python\n", 1)
 
 
 def resolve(app, doctree, docname):
-    """Links to sources and to entries of the bibliography."""
+    """Resolve links to sources and to entries of the bibliography."""
     for link in doctree.findall(nodes.reference):
         kind, _, target = link.get("refuri", "").partition(":")
         if kind == "source":

@@ -404,7 +404,7 @@ def labels():
     label(axes, (590, 430), "folded sheet", size=LETTERS, weight="bold")
     start = plica.open(RESULTS / "labels").frames[0].polygons()
     camera = Camera(back=(-0.45, -0.75, 0.62), up=(0, 0, 1))
-    sheet_picture(axes, frame, at_place((580, 262), 2.3), camera, start.centres[:, 0] > -25)
+    sheet_picture(axes, frame, at_place((568, 262), 2.3), camera, start.centres[:, 0] > -25)
     bar(axes, 20, 48, 50, 350 / (um * columns))
     area_bar(axes, 480, 52)
     write(figure, "labels")
