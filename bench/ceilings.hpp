@@ -1,6 +1,5 @@
-// What the machine can do at best, measured: the ceilings that kernels are held against; and the clock that all are
-// timed by. One round a call, a millisecond or so: rounds of kernels and of ceilings are to take turns, so that what
-// else runs on the machine slows both.
+// Measured performance limits of the machine, to compare kernels with, and the common clock. One round per call, about
+// a millisecond: rounds of kernels and limits should alternate, so that other load slows both.
 #pragma once
 
 #include <cstddef>
@@ -10,20 +9,19 @@
 
 namespace plica::bench {
 
-/// Seconds that `work()` takes: of one thread by its processor time, of several by the wall clock.
+/// Duration of `work()`, s: processor time for one thread, wall time for several.
 template <class Work>
 double seconds(int threads, const Work& work);
 
-/// Floating-point operations a second of independent chains of a * b + c in registers, `threads` threads at once; fused
-/// and so two operations each, where the instruction set has that.
+/// Floating-point operations per second of independent chains a * b + c in registers on `threads` threads; fused, so
+/// two operations each, if the instruction set has that.
 double multiply_add_rate(Kernels kernels, int threads = 1);
 
-/// Reading from memory and adding up: an array of `bytes`, again and again; each thread reads its part. What fits a
-/// cache stays there.
+/// Repeated reading and summation of an array of `bytes`, each thread its part; arrays that fit a cache stay there.
 class Reading {
  public:
   Reading(Kernels kernels, std::size_t bytes, int threads = 1);
-  /// Bytes a second.
+  /// Bytes per second.
   [[nodiscard]] double rate() const;
 
  private:
@@ -36,7 +34,7 @@ class Reading {
   std::vector<Line> values_;
 };
 
-/// The clock of `seconds`, s.
+/// Clock used by `seconds`, s.
 double now(int threads);
 
 template <class Work>

@@ -1,5 +1,4 @@
-// The kernels of src/mechanics/kernels/ once more, with numbers that count: how many floating-point operations they
-// take.
+// Kernels of src/mechanics/kernels/ compiled with counting numbers, to count their floating-point operations.
 #pragma once
 
 #include "mechanics/kernels/corotational_kernels.hpp"
@@ -10,7 +9,7 @@ namespace plica::counted {
 const CorotationalKernels& corotational();
 const VolumeKernels& volumes();
 
-/// Operations of the two's kernels since the last call, by this thread. A fused multiply-add is two.
+/// Operations of both kernels since the last call on this thread; a fused multiply-add counts as two.
 long take_count();
 
 }  // namespace plica::counted

@@ -1,5 +1,5 @@
-// A number that counts what is done with it, in place of the lanes that kernel sources calculate with. To be included
-// before such a source, which is then compiled once more, an element at a time.
+// Number that counts operations, in place of the SIMD lanes of kernel sources. Include it before such a source, which
+// is then compiled again for one element at a time.
 #pragma once
 
 #define PLICA_KERNELS counted
@@ -7,7 +7,7 @@
 
 namespace plica::counted {
 
-/// Additions, subtractions, multiplications and divisions so far, by this thread. A fused multiply-add is two.
+/// Additions, subtractions, multiplications and divisions so far on this thread; a fused multiply-add counts as two.
 inline thread_local long operations = 0;
 
 struct Mask {

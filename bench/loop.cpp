@@ -1,5 +1,5 @@
-// Takes a built-in scenario to its end with the loop that src/simulation/simulation.hpp shows, and says how much
-// processor time the loop took. Prints JSON. bench/python_step.py compares Python's loop with it.
+// Runs a built-in scenario with the loop of src/simulation/simulation.hpp and prints its processor time as JSON.
+// bench/python_step.py compares Python's loop with it.
 #include <fmt/format.h>
 #include <omp.h>
 

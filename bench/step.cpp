@@ -1,5 +1,5 @@
-// Takes the first step of the Drosophila contraction, from rest to motion, in an embryo of a given size, and says what
-// it took. Prints JSON. bench/run calls it.
+// Takes the first step of the Drosophila contraction in an embryo of a given size and prints its cost as JSON; called
+// by bench/run.
 #include <fmt/format.h>
 #include <omp.h>
 #include <sys/resource.h>
@@ -82,7 +82,7 @@ double lap() {
   return seconds;
 }
 
-/// FNV-1a of the positions' bytes: the same bits, the same sum.
+/// FNV-1a hash of the positions; equal for bitwise identical results.
 std::string checksum(const Vectors& positions) {
   std::uint64_t sum = 14695981039346656037U;
   for (const Vec3& position : positions) {
@@ -93,7 +93,7 @@ std::string checksum(const Vectors& positions) {
   return fmt::format("{:016x}", sum);
 }
 
-/// Apart and never inlined: bench/run counts its instructions by this name.
+/// Separate and never inlined: bench/run counts its instructions by this name.
 [[gnu::noinline]] StepReport take_step(const Scenario& scenario, const Model& model, const State& rest,
                                        double duration_s, State& next) {
   return make_stepper(model, make_controls(scenario).scheme)->advance(rest, duration_s, true, next);

@@ -1,4 +1,4 @@
-// Where the time of a step goes, on the pill of 756 cells with the first step of the Drosophila contraction ahead.
+// Time profile of a step: pill of 756 cells, first step of the Drosophila contraction.
 #include <benchmark/benchmark.h>
 
 #include "mechanics/elasticity/corotational.hpp"

@@ -15,7 +15,7 @@ void require(bool holds) {
   if (!holds) __builtin_trap();
 }
 
-/// The HDF5 file with the end of a checkpoint behind it: docs/how-to/reliability.md.
+/// HDF5 file followed by the trailer of a checkpoint (docs/how-to/reliability.md).
 std::string with_checksum(std::string_view image) {
   std::string end = fmt::format("\nplica checkpoint {} bytes {} crc32 {:08x}", checkpoint_format, image.size(),
                                 libdeflate_crc32(0, image.data(), image.size()));

@@ -1,4 +1,4 @@
-// libFuzzer's way in, compiled once a target.
+// Entry point of libFuzzer, compiled once per target.
 #include <sanitizer/common_interface_defs.h>
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 
 #include "targets.hpp"
 
-/// A child process whose time is up tells where it was.
+/// Report the position of a child process at its time limit.
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
   std::signal(SIGXCPU, [](int) {
     __sanitizer_print_stack_trace();

@@ -1,4 +1,4 @@
-"""Makes the seeds of fuzz/corpus anew: small scenarios, meshes and checkpoints from which the fuzzers start.
+"""Recreate the seeds of fuzz/corpus: small scenarios, meshes and checkpoints from which the fuzzers start.
 
 Usage: make_corpus.py PROGRAM. Needed when a format has changed: checkpoints of another format are refused at once, and
 tests/hostile/corpus_test.cpp says so. What a fuzzer found is put into
@@ -102,7 +102,7 @@ def items(form, values):
 
 
 def mesh(points, cells, faces, arrays=(), groups=((), (), (), (), ())):
-    """As tissue/files/mesh_bytes.cpp writes it."""
+    """Encode as tissue/files/mesh_bytes.cpp."""
     data = items("3d", points) + items("8i", cells)
     for numbers in (faces, *groups):
         data += items("i", [(number,) for number in numbers])

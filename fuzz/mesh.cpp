@@ -1,6 +1,6 @@
 #include "targets.hpp"
-#include "tissue/hexahedral_mesh.hpp"
 #include "tissue/files/mesh_bytes.hpp"
+#include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
 namespace {
@@ -9,7 +9,7 @@ void require(bool holds) {
   if (!holds) __builtin_trap();
 }
 
-/// What tissue_from_mesh promises of what it returns.
+/// Guarantees of tissue_from_mesh.
 void check(const Tissue& tissue) {
   require(!tissue.cells.empty() && tissue.element_cell.size() == tissue.elements.size());
   for (const Vec3& position : tissue.rest_positions) require(position.allFinite());

@@ -12,7 +12,7 @@ void require(bool holds) {
   if (!holds) __builtin_trap();
 }
 
-/// What build_under_surface promises.
+/// Guarantees of build_under_surface.
 void check(const Tissue& tissue, const PolygonFile& file) {
   require(tissue.cells.size() == file.surface.polygons.size());
   for (const Vec3& position : tissue.rest_positions) require(position.allFinite());
@@ -30,7 +30,7 @@ bool fuzz_polygons(std::string_view bytes) try {
                            : kind == 'f' ? polygons_in_off(bytes)
                                          : polygons_in_ply(bytes);
   for (const auto& [name, values] : file.arrays) require(values.size() == file.surface.polygons.size());
-  // Repeated corners of a few bytes make surfaces that take long.
+  // Few bytes with repeated corners can make surfaces that take long.
   if (file.surface.polygons.size() > 500 || file.surface.vertices.size() > 2000) return true;
   check(build_under_surface({.surface = file.surface}, {.height_um = 0.2}).tissue, file);
   return true;

@@ -13,7 +13,7 @@ void require(bool holds) {
   if (!holds) __builtin_trap();
 }
 
-// A list of points that is one is written as it was read, but for quotes.
+// A valid list of points is written as it was read, except for quotes.
 void check_points(const std::string& text) try {
   const StudyDesign design = points_of_csv(text);
   const std::string written = points_csv(design);
@@ -27,7 +27,7 @@ void check_messages(const ScenarioError& error) {
     require(!diagnostic.problem.empty() && diagnostic.text().find('\n') == std::string::npos);
 }
 
-// Experiments that are some have outcomes, and each of these a question, a quantity and what it is compared with.
+// Valid experiments have outcomes, each with a question, a quantity and a comparison.
 void check_as_experiments(const std::string& text) try {
   const Experiments all = parse_experiments("fuzzed", "/nowhere/fuzzed.toml", text);
   require(!all.experiments.empty());
@@ -48,7 +48,7 @@ bool fuzz_study(std::string_view bytes) try {
   check_as_experiments(text);
   const StudyInput study = parse_study("fuzzed", "/nowhere/fuzzed.toml", text);
   require(!study.keys.empty() || study.kind == DesignKind::file);
-  // Designs that need no scenario, of a size that is made at once.
+  // Small designs that need no scenario.
   if (study.replicates > 1 || study.points > 1000 || study.keys.size() > 4) return true;
   if (study.kind != DesignKind::sobol && study.kind != DesignKind::latin_hypercube) return true;
   const StudyDesign design = design_of(study);

@@ -4,10 +4,10 @@
 # pictures site fuzz slurm. Without a group: all except slurm.
 set -euo pipefail
 
-# The list of packages; docs/developers/dependencies.md explains each library.
+# The one list of packages. docs/developers/dependencies.md explains each library.
 declare -A packages=(
   [build]="cmake ninja-build g++"
-  # Serial OpenBLAS: one thread, so that results are bitwise identical.
+  # OpenBLAS in its serial variant: one thread, so that results are bitwise identical.
   [libraries]="libeigen3-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
                libmumps-seq-dev libmetis-dev libopenblas-serial-dev libdeflate-dev libhdf5-dev libvtk9-dev libx11-dev libnlopt-cxx-dev libboost-dev
                libqhull-dev"

@@ -1,6 +1,6 @@
-// How many iterations of conjugate gradients the multigrid leaves of systems of plica's own steps, and how long they
-// take: refined elements, and more cells, of about 10 000, 50 000 and 200 000 elements; with --million a sheet of that
-// many cells. docs/decisions/0007-multigrid.md.
+// Iterations and time of conjugate gradients with the multigrid preconditioner on systems of plica's own steps: refined
+// elements, and more cells, of about 10 000, 50 000 and 200 000 elements; with --million a sheet of that many cells.
+// docs/decisions/0007-multigrid.md.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

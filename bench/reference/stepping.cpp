@@ -11,7 +11,7 @@ constexpr int most_iterations = 2000;
 constexpr double update_cost = 8;      // of making a preconditioner, in applications of it, about
 constexpr std::size_t remembered = 2;  // a line; one or three cost up to an eighth more iterations
 
-// Sums in lanes, in an order that a build fixes.
+// Sums in lanes, in an order fixed by the build.
 double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
 #pragma omp simd reduction(+ : sum)
@@ -19,7 +19,7 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-// As plica::Preconditioner has it.
+// Interface as plica::Preconditioner.
 std::vector<float> rigid_motions(const std::vector<double>& nodes) {
   const double count = static_cast<double>(nodes.size() / 3);
   double middle[3] = {}, squares = 0;
@@ -72,7 +72,7 @@ void Stepper::precondition() {
   std::copy(single_.begin(), single_.end(), z_.begin());
 }
 
-// What the last steps' dv lead to, if they go on along a line.
+// Linear extrapolation of dv from the last steps.
 void Stepper::guess() {
   constexpr double weights[remembered][remembered] = {{1, 0}, {2, -1}};
   std::fill(dv_.begin(), dv_.end(), 0.0);
@@ -107,8 +107,8 @@ void Stepper::step() {
   }
 }
 
-// Conjugate gradients with the preconditioner's rounding allowed for (Polak-Ribiere); where the recurrence is done, the
-// residual is computed anew, and iterations go on from there should it be too large.
+// Conjugate gradients tolerant of rounding in the preconditioner (Polak-Ribiere). At the end of the recurrence the
+// residual is recomputed, and iterations continue if it is too large.
 SolveReport Stepper::solve() {
   SolveReport report;
   const double size = std::sqrt(dot(b_, b_));

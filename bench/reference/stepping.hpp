@@ -10,7 +10,7 @@ namespace plica::reference {
 
 struct SolveReport {
   int iterations = 0;
-  double residual = 0;  // |b - A x| / |b|, computed anew in double precision
+  double residual = 0;  // |b - A x| / |b|, recomputed in double precision
 };
 
 struct RunReport {
@@ -23,7 +23,7 @@ class Stepper {
  public:
   Stepper(const Mesh& mesh, const Settings& settings, double tolerance);
 
-  /// v += dv, x += h v. Throws std::runtime_error when the system cannot be solved to the tolerance.
+  /// Step: v += dv, x += h v. Throws std::runtime_error if the system is not solved to the tolerance.
   void step();
 
   [[nodiscard]] const std::vector<double>& positions() const { return x_; }

@@ -1,4 +1,4 @@
-"""Runs the programs that measure, and reads what they print."""
+"""Run the measuring programs and read their output."""
 import csv
 import json
 import os
@@ -15,11 +15,11 @@ BYTES_PER_ELEMENT_AT_LEAST = 6_000  # in memory; what would not fit is left out
 
 
 class Missing(Exception):
-    """Something that the suite needs is not there. The text says what to do."""
+    """Missing prerequisite of the suite, with a remedy."""
 
 
 class Failed(Exception):
-    """A measurement that could not be made. The text is what the table gets."""
+    """Failed measurement, with the text for the table."""
 
 
 def say(text):
@@ -102,7 +102,7 @@ class Suite:
         return json.loads(text) | {"embryo": str(embryo)}
 
     def measure_step(self, embryo, threads, repeats):
-        """The first step; medians of times. The same bits every time, or else a fault."""
+        """Measure the first step; medians of times. Results must be bitwise identical each time."""
         self.require_memory(embryo)
         results = [json.loads(self.run(self.step, *embryo.options, "--threads", threads, threads=threads)[0])
                    for _ in range(repeats)]
@@ -153,7 +153,7 @@ class Suite:
                         threads=threads, under=under, good=(0, 1))  # 1: another depth than the paper's cells have
 
     def count_instructions(self, what, embryo):
-        """By valgrind's callgrind, which emulates: some fifty times slower, and without AVX-512."""
+        """By valgrind's callgrind, which emulates: about fifty times slower, and without AVX-512."""
         valgrind = shutil.which("valgrind")
         if not valgrind:
             raise Missing("--instructions needs valgrind: apt-get install valgrind")

@@ -32,7 +32,7 @@ struct CalibrateOptions {
   bool overwrite = false;
 };
 
-// Now, and not after an hour of runs.
+// Check --out before the runs rather than after.
 void refuse_out(const CalibrateOptions& options, const ScenarioSource& source) {
   if (options.out.empty()) return;
   if (!options.out.ends_with(".toml")) throw UsageError("--out " + options.out + ": the file's name must end in .toml");
@@ -41,10 +41,10 @@ void refuse_out(const CalibrateOptions& options, const ScenarioSource& source) {
     throw UsageError("--out " + options.out + ": is the scenario itself; give another name");
   require_free(options.out, options.overwrite);
   if (fs::path folder = fs::absolute(options.out).parent_path(); !fs::is_directory(folder, error))
-    throw FileError(options.out + ": its folder is not there; make it, or give another --out");
+    throw FileError(options.out + ": its folder does not exist; create it, or give another --out");
 }
 
-// How far the found value is off, as a share of the target where that is not 0.
+// Deviation of the found value, relative to the target unless that is 0.
 std::string miss_text(const Target& target, double found) {
   if (target.value == 0) return fmt::format("{:+.3g}", found);
   return fmt::format("{:+.2f} %", 100 * (found - target.value) / std::abs(target.value));
@@ -68,7 +68,7 @@ std::string results_text(const CalibrationProblem& problem, const Trial& trial) 
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-// A row a trial; on a terminal, below it also what the one under way is at.
+// Table with one row per trial; on a terminal also a live line for the trial under way.
 class TrialTable {
  public:
   explicit TrialTable(const CalibrationProblem& problem)
@@ -95,7 +95,7 @@ class TrialTable {
       line += fmt::format("  {:>{}}  {:>10}", found ? fmt::format("{:.6g}", *found) : "none", width(target.name),
                           found ? miss_text(target, *found) : "none");
     }
-    line += fmt::format("  {:>6.1f}  {}", trial.wall_s, trial.worst_miss <= 1 ? "met" : best ? "nearest so far" : "");
+    line += fmt::format("  {:>6.1f}  {}", trial.wall_s, trial.worst_miss <= 1 ? "met" : best ? "best so far" : "");
     fmt::print("{}{}\n", line.substr(0, line.find_last_not_of(' ') + 1),
                trial.failure.empty() ? "" : "  no value: " + trial.failure);
     std::fflush(stdout);
@@ -112,7 +112,7 @@ class TrialTable {
     std::string line = "trial";
     for (const VariedKey& key : problem_.keys) line += fmt::format("  {:>{}}", key.key, width(key.key));
     for (const Target& target : problem_.targets)
-      line += fmt::format("  {:>{}}  {:>10}", target.name, width(target.name), "off by");
+      line += fmt::format("  {:>{}}  {:>10}", target.name, width(target.name), "deviation");
     return line + "   run s";
   }
 
@@ -129,7 +129,7 @@ CalibrationProblem problem_of(const CalibrateOptions& options) {
   return problem;
 }
 
-// Why the targets were not met, and what the nearest is.
+// Print why the targets were not met, and the best trial.
 void print_missed(const CalibrationProblem& problem, const Calibration& calibration) {
   const int trials = calibration.trials;
   const std::string runs = fmt::format("{} run{}", trials, trials == 1 ? "" : "s");
@@ -137,27 +137,27 @@ void print_missed(const CalibrationProblem& problem, const Calibration& calibrat
     case CalibrationEnd::met:
       return;
     case CalibrationEnd::not_met:
-      fmt::print(stderr, "plica: not met: no values within the bounds were found that meet all targets ({})\n", runs);
+      fmt::print(stderr, "plica: not met: no values within the bounds meet all targets ({})\n", runs);
       break;
     case CalibrationEnd::trials_spent:
-      fmt::print(stderr, "plica: not met in {}; give more --trials, or nearer bounds\n", runs);
+      fmt::print(stderr, "plica: not met in {}; allow more --trials, or narrow the bounds\n", runs);
       break;
     case CalibrationEnd::interrupted:
       fmt::print(stderr, "plica: interrupted after {}\n", runs);
       break;
   }
   if (!calibration.best) {
-    fmt::print(stderr, "plica: no run gave values of all targets\n");
+    fmt::print(stderr, "plica: no run has values of all targets\n");
     return;
   }
-  fmt::print(stderr, "  nearest: {}\n", values_text(problem, calibration.best->values));
-  fmt::print(stderr, "  there: {}\n", results_text(problem, *calibration.best));
+  fmt::print(stderr, "  best: {}\n", values_text(problem, calibration.best->values));
+  fmt::print(stderr, "  results: {}\n", results_text(problem, *calibration.best));
   for (std::size_t k = 0; k < problem.keys.size(); ++k) {
     const VariedKey& key = problem.keys[k];
     const double value = calibration.best->values[k];
     const bool at_bound = value == key.low || value == key.high;
     if (calibration.end == CalibrationEnd::not_met && at_bound)
-      fmt::print(stderr, "  {} is at its bound {}; another bound may help\n", key.key, value);
+      fmt::print(stderr, "  {} is at its bound {}; widen the bounds\n", key.key, value);
   }
 }
 
@@ -186,7 +186,7 @@ int calibrate_scenario(const CalibrateOptions& options) {
   print_missed(problem, calibration);
   if (calibration.best && !options.out.empty()) {
     write_file(options.out, calibrated_toml(problem, calibration, options.out));
-    fmt::print("{} in {}\n", calibration.end == CalibrationEnd::met ? "The scenario is" : "The nearest scenario is",
+    fmt::print("{} in {}\n", calibration.end == CalibrationEnd::met ? "The scenario is" : "The best scenario is",
                options.out);
   }
   return exit_status(calibration.end);
@@ -195,23 +195,24 @@ int calibrate_scenario(const CalibrateOptions& options) {
 }  // namespace
 
 void add_calibrate_command(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("calibrate", "find the values of keys with which a scenario meets targets");
+  CLI::App* command = app.add_subcommand("calibrate", "fit keys of a scenario to targets");
   auto options = std::make_shared<CalibrateOptions>();
   options->scenario.add_to(*command);
-  command->add_option("--vary", options->vary, "KEY=LOW:HIGH: a key that may take any number in between; repeatable")
+  command->add_option("--vary", options->vary, "KEY=LOW:HIGH: key to fit, with bounds; repeatable")
       ->required()
       ->allow_extra_args(false);
   command
-      ->add_option("--target", options->targets,
-                   "NAME=VALUE[~WITHIN]: what a number of summary.json is to be, give or take WITHIN (in its unit, or "
-                   "as 2%; without it, 0.5%); repeatable")
+      ->add_option(
+          "--target", options->targets,
+          "NAME=VALUE[~WITHIN]: target for a number of summary.json; WITHIN in its unit or as 2% (default: 0.5%); "
+          "repeatable")
       ->required()
       ->allow_extra_args(false);
-  command->add_option("--out,--output,-o", options->out, "FILE.toml to write: the calibrated scenario");
-  command->add_option("--trials", options->trials, "runs to make at most (40)")->check(CLI::Range(1, 100000));
-  command->add_option("--threads", options->threads, "threads to use; results do not depend on it")
+  command->add_option("--out,--output,-o", options->out, "FILE.toml to write: the fitted scenario");
+  command->add_option("--trials", options->trials, "maximum number of runs (40)")->check(CLI::Range(1, 100000));
+  command->add_option("--threads", options->threads, "number of threads; results do not depend on it")
       ->check(CLI::Range(1, 1024));
-  command->add_flag("--overwrite", options->overwrite, "replace FILE.toml where it is there");
+  command->add_flag("--overwrite", options->overwrite, "replace an existing file");
   command->footer(
       "Example: plica calibrate drosophila --vary contraction.apical.stiffness_nN_per_um=3:7 --target "
       "furrow_depth_um=28.89~0.1 --out mine.toml");

@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "app/commands.hpp"
+#include "app/delayed_notice.hpp"
 #include "app/interruption.hpp"
 #include "app/scenario_options.hpp"
-#include "app/slow_word.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/threads.hpp"
@@ -22,13 +22,13 @@
 namespace plica {
 namespace {
 
-// The study that a file holds; nothing where it is a scenario's, or there is none.
+// Read the study in a file; empty for a scenario or a missing file.
 std::optional<StudyInput> study_in(const ScenarioOptions& options) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(options.name_or_path, error)) return {};
   if (!is_study(read_file(options.name_or_path))) return {};
   if (!options.overrides.empty())
-    throw UsageError("--set does not go with a study; write it into [set] of " + options.name_or_path);
+    throw UsageError("--set: not available for a study; write the key into [set] of " + options.name_or_path);
   return read_study(options.name_or_path);
 }
 
@@ -41,7 +41,7 @@ void check_study(const StudyInput& input) {
   const ThreadCount one(1);
   const Study study(input);
   for (const Diagnostic& note : study.notes()) fmt::print(stderr, "note: {}\n", note.text());
-  fmt::print(stderr, "running the first point to see how long it takes (Ctrl-C: without)\n");
+  fmt::print(stderr, "running the first point to estimate the cost (Ctrl-C skips this)\n");
   catch_interruptions();
   const StudyForecast found = forecast(study, interrupted);
   fmt::print("{}: {}, {} of {}\n", study.input().name, plural(found.points, "point"), plural(found.runs, "run"),
@@ -49,13 +49,13 @@ void check_study(const StudyInput& input) {
   for (const std::string& key : study.design().keys) fmt::print("  varies {}\n", key);
   for (const std::string& name : study.measures()) fmt::print("  measures {}\n", name);
   if (!found.refused.empty())
-    fmt::print("{} no valid scenario, to stand in the table as refused; the first:\n  {}\n",
+    fmt::print("{} invalid; each has status refused in the table; the first:\n  {}\n",
                found.refused.size() == 1 ? "1 point is" : fmt::format("{} points are", found.refused.size()),
                found.refused.front());
   if (found.first.status.empty()) return;
   const auto cores = std::max(1U, std::thread::hardware_concurrency());
   const auto runs = static_cast<double>(found.runs - found.refused.size() * found.runs / found.points);
-  fmt::print("point {}: {} after {} steps, in {}; all of them some {} on {} if none takes longer, and {} on the disk\n",
+  fmt::print("point {}: {} after {} steps, in {}; estimate for all runs: {} on {}, {} on disk\n",
              study.design().runs[found.first_run].point, found.first.status, found.first.steps,
              duration(found.first.wall_s), duration(found.first.wall_s * runs / cores), plural(cores, "core"),
              bytes_text(found.bytes_a_run * runs));
@@ -65,19 +65,19 @@ void check_study(const StudyInput& input) {
 
 void add_check_command(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
-      "check", "validate a scenario, and print it with every default filled in; or a study, and say what it takes");
+      "check", "validate a scenario and print it with all defaults; or validate a study and estimate its cost");
   auto options = std::make_shared<ScenarioOptions>();
   options->add_to(*command);
   command->footer("Example: plica check my.toml --set embryo.elements_per_cell=[2,2,2]");
   command->callback([options] {
     if (const std::optional<StudyInput> study = study_in(*options)) return check_study(*study);
     const Scenario scenario = options->load();
-    std::optional<SlowWord> word(std::in_place);
+    std::optional<DelayedNotice> notice(std::in_place);
     const auto model = make_model(scenario);
     (void)make_watch(scenario, model->tissue);
     (void)make_furrow_sites(scenario, model->tissue);
     (void)make_solved_side(scenario, *model);
-    word.reset();
+    notice.reset();
     fmt::print("{}", resolved_toml(scenario));
     for (const std::string& line : advice(scenario, *model)) fmt::print(stderr, "{}\n", line);
   });

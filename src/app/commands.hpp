@@ -1,17 +1,17 @@
-// The subcommands of plica, a file each. Each adds itself to the command line; when chosen, its callback does the work
-// and sets the exit status.
+// Subcommands of plica, one file each. Each registers itself on the command line; its callback does the work and sets
+// the exit status.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace plica {
 
-/// Exit statuses of the contract.
+/// Exit statuses; part of the public interface.
 enum ExitStatus : int {
   exit_done = 0,
-  exit_missed = 1,   // an [expect] was missed
+  exit_missed = 1,   // an [expect] value was missed
   exit_usage = 2,    // bad usage or scenario
-  exit_gave_up = 3,  // the numerics gave up; state saved
+  exit_gave_up = 3,  // the solver failed; state saved
   exit_files = 4,
   exit_interrupted = 130,
   exit_terminated = 143,

@@ -35,17 +35,16 @@ void compare(const CompareOptions& options) {
 }  // namespace
 
 void add_compare_command(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("compare", "hold the results of two runs beside each other");
+  CLI::App* command = app.add_subcommand("compare", "compare the results of two runs");
   auto options = std::make_shared<CompareOptions>();
   command->add_option("DIR_A", options->a, "results of a run")->required();
-  command->add_option("DIR_B", options->b, "results of another, the reference")->required();
-  command->add_option("--time_s", options->time_s, "compare the frames of this time; without it, the last ones");
-  command->add_option("--out,--output,-o", options->out,
-                      "FILE.vtu to write: the mesh of A, coloured by its distance from B");
+  command->add_option("DIR_B", options->b, "results of the reference run")->required();
+  command->add_option("--time_s", options->time_s, "time of the snapshots to compare (default: the last)");
+  command->add_option("--out,--output,-o", options->out, "FILE.vtu to write: the mesh of A with its distance from B");
   command->add_flag("--json", options->json, "print JSON instead of a table");
-  command->add_flag("--overwrite", options->overwrite, "replace FILE.vtu where it is there");
+  command->add_flag("--overwrite", options->overwrite, "replace an existing file");
   command->footer(
-      "Distances of different meshes are from surface to surface; of the same mesh, from node to node as well.\n"
+      "Different meshes: surface-to-surface distances. Equal meshes: node-to-node distances, too.\n"
       "Example: plica compare results/isotropic results/drosophila --out distances.vtu");
   command->callback([options] { compare(*options); });
 }

@@ -23,13 +23,14 @@ struct ExportCommand {
   bool overwrite = false, quiet = false;
 };
 
-/// The place of the frame that is nearest to a time; of the last one, where that is asked for.
+/// Index of the snapshot nearest to a time; the last one for "last".
 std::size_t place_of(const std::string& text, const std::vector<double>& times_s) {
   const auto wanted_s = seconds_in(text);
   if (!wanted_s) return times_s.size() - 1;
   const double last_gap = times_s.size() > 1 ? times_s.back() - times_s[times_s.size() - 2] : 0;
   if (*wanted_s < times_s.front() - 1e-6 || *wanted_s > times_s.back() + last_gap / 2 + 1e-6)
-    throw UsageError(fmt::format("--time {}: the frames go from {} s to {} s", text, times_s.front(), times_s.back()));
+    throw UsageError(fmt::format("--time {}: the run has snapshots from {} s to {} s; give a time in this range", text,
+                                 times_s.front(), times_s.back()));
   return static_cast<std::size_t>(
       std::ranges::min_element(times_s, {}, [&](double time_s) { return std::abs(time_s - *wanted_s); }) -
       times_s.begin());
@@ -50,7 +51,7 @@ void export_frame(const ExportCommand& command) {
   const bool as_surface = command.out.ends_with(".vtp");
   if (const fs::path file = command.out; !as_surface && file.has_extension())
     throw UsageError(
-        fmt::format("--out {}: give FILE.vtp for a surface, or the name of a directory for tables", command.out));
+        fmt::format("--out {}: neither FILE.vtp (surface) nor a directory (tables); give one of these", command.out));
   if (as_surface) require_free(command.out, command.overwrite);
   const ReferenceRun run(command.directory);
   const std::vector<double> times_s = run.times_s();
@@ -67,19 +68,19 @@ void export_frame(const ExportCommand& command) {
 
 void add_export_command(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
-      "export", "a moment of a run as polygons, a cell each: a surface for VTK, or tables for vertex models");
+      "export", "export a snapshot as one polygon per cell: a VTK surface, or tables for vertex models");
   auto options = std::make_shared<ExportCommand>();
   command->add_option("DIR", options->directory, "results of a run")->required();
   command
       ->add_option("--out,--output,-o", options->out,
-                   "FILE.vtp to write; or a directory, for vert.csv, edge.csv and face.csv")
+                   "FILE.vtp to write; or directory for vert.csv, edge.csv, face.csv")
       ->required();
-  command->add_option("--time", options->time, "the moment, as 5min, 300s, 300 or last")->capture_default_str();
-  command->add_option("--side", options->side, "which polygons: apical or basal")
+  command->add_option("--time", options->time, "time of the snapshot: 5min, 300s, 300 or last")->capture_default_str();
+  command->add_option("--side", options->side, "surface to export")
       ->check(CLI::IsMember({"apical", "basal"}))
       ->capture_default_str();
-  command->add_flag("--overwrite", options->overwrite, "replace files that are there");
-  command->add_flag("--quiet", options->quiet, "say nothing but errors");
+  command->add_flag("--overwrite", options->overwrite, "replace existing files");
+  command->add_flag("--quiet", options->quiet, "print only errors");
   command->footer(
       "Examples: plica export results/drosophila --out apices.vtp\n"
       "          plica export results/drosophila --time 2min --out tables");

@@ -1,21 +1,21 @@
-// Ctrl-C and SIGTERM, for commands that then stop in good order.
+// Ctrl-C and SIGTERM, for commands that stop in good order.
 #pragma once
 
 #include "app/commands.hpp"
 
 namespace plica {
 
-/// From now on SIGINT and SIGTERM are noted and do not end the program.
+/// Record SIGINT and SIGTERM instead of ending the program.
 void catch_interruptions();
 
-/// One of them has come.
+/// Whether a signal has arrived.
 bool interrupted();
 
-/// The same, that many seconds after this has first been asked since: asked often, it leaves work under way the time to
-/// end well.
+/// Whether a signal has arrived and `seconds` have passed since the first call after it. Called often, it gives work
+/// under way time to finish.
 bool interrupted_for(double seconds);
 
-/// The exit status for the one that came last.
+/// Exit status for the last signal.
 ExitStatus interrupted_status();
 
 }  // namespace plica

@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include "app/commands.hpp"
+#include "app/delayed_notice.hpp"
 #include "app/output_file.hpp"
 #include "app/scenario_options.hpp"
-#include "app/slow_word.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/names.hpp"
@@ -25,7 +25,7 @@
 namespace plica {
 namespace {
 
-// How many cells have how many, as a line: "corners   5: 26 %  6: 49 %".
+// Print a distribution as one line: "corners   5: 26 %  6: 49 %".
 void print_shares(const char* name, const std::vector<std::size_t>& counts) {
   fmt::print("{:<24}", name);
   const double all = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
@@ -75,8 +75,9 @@ void draw(const MeshCommand& command, Frame frame, bool is_embryo) {
   const std::vector<std::string> colours = colours_of_mesh(frame);
   if (std::ranges::find(colours, command.colour) == colours.end()) {
     const auto nearest = nearest_name(command.colour, colours);
-    throw UsageError(fmt::format("--colour {}: the mesh has no such array; {}there are: {}", command.colour,
-                                 nearest ? fmt::format("did you mean {}? ", *nearest) : "", fmt::join(colours, ", ")));
+    throw UsageError(fmt::format("--color {}: not an array of the mesh; {}available: {}", command.colour,
+                                 nearest ? fmt::format("use {} (nearest match); ", *nearest) : "",
+                                 fmt::join(colours, ", ")));
   }
   std::vector<View> wanted;
   const std::vector<View> known = views_of(frame);
@@ -93,7 +94,7 @@ void mesh(const MeshCommand& command) {
   require_free(command.out, command.overwrite);
   const Scenario scenario = command.scenario.load();
   const Tissue tissue = [&] {
-    const SlowWord word;
+    const DelayedNotice notice;
     return make_tissue(scenario);
   }();
   const RestArrays at_rest = rest_arrays(scenario, tissue);
@@ -124,27 +125,26 @@ void mesh(const MeshCommand& command) {
 
 void add_mesh_command(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
-      "mesh",
-      "write the mesh at rest with its regions, arrays, strengths and moduli, or a picture of them; print how "
-      "even its cells are");
+      "mesh", "write the undeformed mesh with its cell data, or a picture of it; print the mesh quality");
   auto options = std::make_shared<MeshCommand>();
   options->scenario.add_to(*command);
   command->add_option("--out,--output,-o", options->out, "FILE.vtu to write, or FILE.png")->required();
   command
-      ->add_option("--colour,--color", options->colour,
-                   "array that colours the picture: region, strength_contraction.NAME, young_modulus_Pa, ...")
+      ->add_option("--color", options->colour,
+                   "cell array to colour by: region, strength_contraction.NAME, young_modulus_Pa, ...")
       ->type_name("NAME")
       ->capture_default_str();
+  command->add_option("--colour", options->colour)->group("");  // British spelling, not shown in the help
   command
       ->add_option("--view", options->views,
-                   fmt::format("from where: {}; several, a row each (default: antero-ventral, of an open sheet apical)",
+                   fmt::format("views, one row each: {} (default: antero-ventral; open sheets: apical)",
                                fmt::join(names_of(views()), ", ")))
       ->delimiter(',')
       ->type_name("NAME,...");
-  command->add_flag("--overwrite", options->overwrite, "replace the file where it is there");
+  command->add_flag("--overwrite", options->overwrite, "replace an existing file");
   command->footer(
       "Examples: plica mesh drosophila --out rest.vtu\n"
-      "          plica mesh drosophila-atlas --out sna.png --colour sna --view ventral");
+      "          plica mesh drosophila-atlas --out sna.png --color sna --view ventral");
   command->callback([options] { mesh(*options); });
 }
 

@@ -1,4 +1,4 @@
-// How far a run is: a live line on a terminal, a line now and then in a file.
+// Progress of a run: a live line on a terminal, or a line every 10 s in a file.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@ class Progress {
  public:
   Progress(const RunControls& controls, bool quiet);
   void show(const Observation& row);
-  /// Ends the live line.
+  /// Erase the live line.
   void finish();
 
  private:

@@ -7,9 +7,9 @@
 namespace plica {
 
 void add_reference_command(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("reference", "print the reference of all scenario keys, in Markdown");
+  CLI::App* command = app.add_subcommand("reference", "print the reference of all scenario keys in Markdown");
   const CLI::Option* measures =
-      command->add_flag("--measures")->description("that of all columns of the results instead");
+      command->add_flag("--measures")->description("print the reference of all output variables instead");
   command->footer("Example: plica reference > docs/reference/scenario.md");
   command->callback([=] { fmt::print("{}", measures->count() > 0 ? measures_markdown() : reference_markdown()); });
 }

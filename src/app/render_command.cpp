@@ -30,7 +30,7 @@ struct RenderCommand {
 double place_in(const std::string& text) {
   const auto place = number_in(text);
   if (!place)
-    throw UsageError(fmt::format("--at-x-um {}: is no place; give µm along the embryo's axis, as in 0,125", text));
+    throw UsageError(fmt::format("--at-x-um {}: not a number (x position in µm); write, for example, 0,125", text));
   return *place;
 }
 
@@ -39,7 +39,8 @@ ColourRange range_in(const std::string& text) {
   const auto low = number_in(std::string_view(text).substr(0, colon));
   const auto high = colon == std::string::npos ? std::nullopt : number_in(std::string_view(text).substr(colon + 1));
   if (!low || !high || *low >= *high)
-    throw UsageError(fmt::format("--range {}: is no range; give LOW:HIGH, as in 0:30 or --range=-2:2", text));
+    throw UsageError(
+        fmt::format("--range {}: not LOW:HIGH with LOW < HIGH; write, for example, 0:30 or --range=-2:2", text));
   return {*low, *high};
 }
 
@@ -49,8 +50,9 @@ void read_size(const std::string& text, PictureOptions& options) {
   const auto height = by == std::string::npos ? std::nullopt : number_in(std::string_view(text).substr(by + 1));
   for (const auto side : {width, height})
     if (!side || *side != std::floor(*side) || *side < smallest_picture_px || *side > largest_picture_px)
-      throw UsageError(fmt::format("--size {}: is no size; give WIDTHxHEIGHT in pixels, {} to {} each, as in 1200x800",
-                                   text, smallest_picture_px, largest_picture_px));
+      throw UsageError(
+          fmt::format("--size {}: not WIDTHxHEIGHT in whole pixels from {} to {}; write, for example, 1200x800", text,
+                      smallest_picture_px, largest_picture_px));
   options.width_px = static_cast<int>(*width);
   options.height_px = static_cast<int>(*height);
 }
@@ -82,8 +84,9 @@ std::vector<double> times_of(const RenderCommand& command, const RunPictures& ru
     const auto wanted_s = seconds_in(text);
     const auto time_s = wanted_s ? run.nearest_time_s(*wanted_s) : run.times_s().back();
     if (!time_s)
-      throw UsageError(fmt::format("--time {}: the frames of {} go from {} to {}", text, command.directory,
-                                   run.time_text(run.times_s().front()), run.time_text(run.times_s().back())));
+      throw UsageError(fmt::format("--time {}: {} has snapshots from {} to {}; give a time in this range", text,
+                                   command.directory, run.time_text(run.times_s().front()),
+                                   run.time_text(run.times_s().back())));
     times.push_back(*time_s);
   }
   return times;
@@ -113,7 +116,7 @@ std::string quoted(const std::string& name) {
   return text + "'";
 }
 
-/// A command that makes a movie of the pictures.
+/// Command that makes a movie of the pictures.
 std::string movie_command(const std::string& stem, std::size_t count, bool even) {
   std::string pattern;  // ffmpeg's: % is doubled
   for (const char letter : stem) pattern += letter == '%' ? "%%" : std::string(1, letter);
@@ -121,7 +124,7 @@ std::string movie_command(const std::string& stem, std::size_t count, bool even)
                      count, even ? "" : " -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white'", quoted(stem + ".mp4"));
 }
 
-/// All frames, numbered; on a terminal with a line that changes.
+/// Draw all frames into numbered files; on a terminal with a live progress line.
 int draw_movie(const RenderCommand& command, const RunPictures& run, bool even) {
   const std::vector<double>& times_s = run.times_s();
   const std::string stem = command.out.substr(0, command.out.size() - 4);  // without .png
@@ -139,7 +142,7 @@ int draw_movie(const RenderCommand& command, const RunPictures& run, bool even) 
     if (interrupted()) return interrupted_status();
   }
   if (!command.quiet)
-    fmt::print("{}_00000.png to {}\nTo make a movie of them:\n  {}\n", stem, file_of(times_s.size() - 1).string(),
+    fmt::print("{}_00000.png to {}\nMake a movie of them with:\n  {}\n", stem, file_of(times_s.size() - 1).string(),
                movie_command(stem, times_s.size(), even));
   return exit_done;
 }
@@ -148,7 +151,7 @@ int render(const RenderCommand& command) {
   if (!command.out.ends_with(".png") || fs::path(command.out).stem().empty())
     throw UsageError("--out " + command.out + ": the file's name must end in .png");
   if (command.movie && (command.strip || !command.times.empty()))
-    throw UsageError("--movie draws all frames; leave out --strip and --time");
+    throw UsageError("--movie: conflicts with --strip and --time, since it draws all snapshots; remove these");
   const PictureOptions options = options_of(command);
   for (const std::string& time : command.times) (void)seconds_in(time);
   if (!command.movie) require_free(command.out, command.overwrite);
@@ -160,50 +163,51 @@ int render(const RenderCommand& command) {
 }  // namespace
 
 void add_render_command(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("render", "a picture of a run without a screen: one moment, several, or all");
+  CLI::App* command =
+      app.add_subcommand("render", "draw pictures of a run (no screen needed): one time, several, or all");
   auto options = std::make_shared<RenderCommand>();
   command->add_option("DIR", options->directory, "results of a run")->required();
-  command->add_option("--out,--output,-o", options->out, "FILE.png to write; with --movie FILE_00000.png and so on")
+  command->add_option("--out,--output,-o", options->out, "FILE.png to write; with --movie FILE_00000.png, ...")
       ->required();
   command
       ->add_option("--view", options->views,
-                   fmt::format("from where: {}; several, a row each (default: antero-ventral, of an open sheet apical)",
+                   fmt::format("views, one row each: {} (default: antero-ventral; open sheets: apical)",
                                fmt::join(names_of(views()), ", ")))
       ->delimiter(',')
       ->type_name("NAME,...");
   command
       ->add_option("--at-x-um", options->at_x_um,
-                   "cross-sections at these places along the embryo; several, a row each; a negative first one needs =")
+                   "cross-sections at these x, one row each; write --at-x-um=-100 for a negative first")
       ->delimiter(',')
       ->type_name("X,...");
-  command->add_flag(
-      "--sections", options->sections,
-      "cross-sections at a quarter, half and three quarters of the length, at five moments or as --time says");
-  command->add_option("--time", options->times, "moments as 5min, 300s, 300 or last (default); several, a column each")
+  command->add_flag("--sections", options->sections,
+                    "cross-sections at 25, 50 and 75 % of the length, at five times or those of --time");
+  command->add_option("--time", options->times, "times, one column each: 5min, 300s, 300 or last (default)")
       ->delimiter(',')
       ->type_name("TIME,...");
   command->add_flag("--strip", options->strip,
-                    "five moments from 0 to the end, from outside and cut across; --time and --view change that");
-  command->add_flag("--movie", options->movie, "every frame, a file each; says how to make a movie of them");
+                    "five times, outside view and cross-section; --time and --view override these");
+  command->add_flag("--movie", options->movie, "draw every snapshot; print the command that makes a movie of them");
   command
-      ->add_option("--colour,--color", options->colour,
-                   fmt::format("coloured by: {}, or an array that the cells' file has",
+      ->add_option("--color", options->colour,
+                   fmt::format("quantity to colour by: {}, or a cell array of the mesh file",
                                fmt::join(names_of(colour_fields()), ", ")))
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_option("--range", options->range, "ends of the colour scale (default: what all frames of the run need)")
+  command->add_option("--colour", options->colour)->group("");  // British spelling, not shown in the help
+  command->add_option("--range", options->range, "ends of the colour scale (default: range over the run)")
       ->type_name("LOW:HIGH");
-  command->add_option("--size", options->size, "in pixels (default: 1000 or more wide, as high as the content)")
+  command->add_option("--size", options->size, "size in pixels (default: at least 1000 wide, height as needed)")
       ->type_name("WxH");
-  command->add_flag("--no-edges", options->no_edges, "without the outlines of cells");
-  command->add_flag("--shell", options->shell, "with the vitelline shell, where the run has one");
-  command->add_flag("--overwrite", options->overwrite, "replace FILE.png where it is there");
-  command->add_flag("--quiet", options->quiet, "say nothing but errors");
+  command->add_flag("--no-edges", options->no_edges, "do not draw cell outlines");
+  command->add_flag("--shell", options->shell, "draw the vitelline membrane of the run");
+  command->add_flag("--overwrite", options->overwrite, "replace an existing file");
+  command->add_flag("--quiet", options->quiet, "print only errors");
   command->footer(
       "Examples: plica render results/drosophila --out fold.png\n"
       "          plica render results/drosophila --out strip.png --strip\n"
       "          plica render results/drosophila --out rows.png --view ventral,side --time 30s,2min,last \\\n"
-      "            --colour pressure --range=-200:200\n"
+      "            --color pressure --range=-200:200\n"
       "          plica render results/drosophila --out sections.png --sections\n"
       "          plica render results/drosophila --out cuts.png --at-x-um=-100,0,100 --time last");
   command->callback([options, &status] { status = render(*options); });

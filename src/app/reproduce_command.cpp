@@ -23,16 +23,16 @@ struct ReproduceCommand {
   int at_a_time = 2;
 };
 
-// Results are written over with --overwrite only; nothing is removed.
+// Refuse a directory with results unless --overwrite; nothing is removed.
 void require_no_results(const std::filesystem::path& out, bool overwrite) {
   namespace fs = std::filesystem;
-  if (out.empty()) throw UsageError("--out is empty; give the directory for the results");
+  if (out.empty()) throw UsageError("--out: empty; give the directory for the results");
   std::error_code error;
   if (fs::exists(out, error) && !fs::is_directory(out, error))
     throw FileError(out.string() + ": is a file, not a directory; give another --out");
   for (const char* name : {"reproduction.md", "reproduction.html", "runs", "figures"})
     if (!overwrite && fs::exists(out / name, error))
-      throw FileError(out.string() + ": holds results already; give another --out, or --overwrite to replace them");
+      throw FileError(out.string() + ": already contains results; give another --out, or --overwrite to replace them");
 }
 
 int reproduce_paper(const ReproduceCommand& command) {
@@ -58,7 +58,7 @@ int reproduce_paper(const ReproduceCommand& command) {
   return outcome.failed_runs.empty() ? exit_done : exit_gave_up;
 }
 
-// What the page says, in a few lines.
+// Print the verdicts of the page in a few lines.
 void print_verdicts(const ExperimentResults& results, const ExperimentsPage& page, const std::string& file) {
   std::vector<std::string> texts;
   std::size_t outcomes = 0;
@@ -71,7 +71,7 @@ void print_verdicts(const ExperimentResults& results, const ExperimentsPage& pag
 }
 
 int reproduce_experiments(const ReproduceCommand& command) {
-  if (command.out.empty()) throw UsageError("--out is empty; give the directory for the results");
+  if (command.out.empty()) throw UsageError("--out: empty; give the directory for the results");
   const std::filesystem::path out = command.out;
   const ThreadCount one(1);
   const Experiments experiments = read_experiments(command.what);
@@ -80,13 +80,13 @@ int reproduce_experiments(const ReproduceCommand& command) {
   ExperimentResults results(experiments, out, command.quick);
   catch_interruptions();
   if (!command.quiet)
-    fmt::print(stderr, "{}: {}, of which {} ended\n", experiments.name, plural(results.runs(), "run"), results.ended());
+    fmt::print(stderr, "{}: {}, {} complete\n", experiments.name, plural(results.runs(), "run"), results.ended());
   RunsProgress progress(results.ended(), results.runs(), command.quiet);
   const auto on_run = [&] { progress.show(results.ended(), results.not_solved().size()); };
   run_experiments(results, command.at_a_time, {on_run, interrupted});
   progress.finish();
   if (interrupted()) {
-    fmt::print(stderr, "plica: interrupted; the same command goes on\n");
+    fmt::print(stderr, "plica: interrupted; to continue, repeat the command\n");
     return interrupted_status();
   }
   const ExperimentsPage page = experiments_page(results);
@@ -100,23 +100,21 @@ int reproduce_experiments(const ReproduceCommand& command) {
 }  // namespace
 
 void add_reproduce_command(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("reproduce", "run experiments, and hold what comes out against what was observed");
+  CLI::App* command = app.add_subcommand("reproduce", "run experiments and compare results with observations");
   auto options = std::make_shared<ReproduceCommand>();
-  command->add_option("WHAT", options->what, "paper; living, the living embryo; or a file of experiments")
+  command->add_option("WHAT", options->what, "paper, living (the living embryo), or a file of experiments")
       ->capture_default_str();
-  command->add_option("--out,--output,-o", options->out, "directory for the page, its figures and all runs")
-      ->required();
-  command->add_option("--jobs", options->at_a_time, "runs at a time, each on one thread")
+  command->add_option("--out,--output,-o", options->out, "directory for the page, figures and runs")->required();
+  command->add_option("--jobs", options->at_a_time, "simultaneous runs, one thread each")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->add_flag("--quick", options->quick,
-                    "paper: a few runs, coarse steps; else the first draw only, nothing slow");
+                    "paper: few runs, coarse steps; experiments: first draw only, none marked slow");
   command->add_flag("--overwrite", options->overwrite, "replace the results in DIR");
-  command->add_flag("--quiet", options->quiet, "no progress and no result on the terminal");
+  command->add_flag("--quiet", options->quiet, "print only warnings and errors");
   command->footer(
-      "Writes a page, DIR/reproduction.html of the paper (some minutes) or DIR/WHAT.html of experiments (some hours).\n"
-      "Experiments that are interrupted or killed go on by the same command.\n"
+      "Writes DIR/reproduction.html (paper, minutes) or DIR/WHAT.html (experiments, hours).\n"
+      "Interrupted experiments continue when the command is repeated.\n"
       "Examples: plica reproduce --out results/reproduction\n"
       "          plica reproduce living --out results/living --jobs 2");
   command->callback([options, &status] {

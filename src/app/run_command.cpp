@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "app/commands.hpp"
+#include "app/delayed_notice.hpp"
 #include "app/interruption.hpp"
 #include "app/progress.hpp"
 #include "app/scenario_options.hpp"
-#include "app/slow_word.hpp"
 #include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
@@ -45,9 +45,9 @@ void print_result(const nlohmann::ordered_json& summary, const std::string& out)
                                ? fmt::format(", lips {} at {:.2f} min", closed == 1 ? "closed" : "open again, closed",
                                              closed_s.get<double>() / units::minute)
                                : ", lips open";
-  fmt::print("  furrow depth {}, apical area ratio {} (VML), peak speed ratio {}{}\n", value("furrow_depth_um", " um"),
-             value("vml_apical_area_ratio", ""), value("peak_speed_ratio", ""), lips);
-  fmt::print("  results in {0}{1}\n", out, can_report() ? fmt::format("; to look at: {}/report.html", out) : "");
+  fmt::print("  furrow depth {}, apical area ratio {} (midline centre), peak speed ratio {} (centre/end){}\n",
+             value("furrow_depth_um", " um"), value("vml_apical_area_ratio", ""), value("peak_speed_ratio", ""), lips);
+  fmt::print("  results in {0}{1}\n", out, can_report() ? fmt::format("; open {}/report.html in a browser", out) : "");
 }
 
 int exit_status(RunStatus status, bool missed) {
@@ -56,11 +56,11 @@ int exit_status(RunStatus status, bool missed) {
   return missed ? exit_missed : exit_done;
 }
 
-// A step under way at an interruption is finished if it can be within this. What ends processes (Docker, Slurm) waits
-// for 10 s and more.
+// Time that a step under way at an interruption is given to finish. Docker and Slurm wait at least 10 s before they
+// kill.
 constexpr double step_patience_s = 3;
 
-// To the end, or an interruption.
+// Run to the end, or until an interruption.
 nlohmann::ordered_json simulate(Simulation& simulation, RecordedRun& record, bool quiet) {
   Progress progress(simulation.controls(), quiet);
   simulation.stop_when([&] { return interrupted_for(step_patience_s) || record.has_failed(); });
@@ -78,10 +78,10 @@ nlohmann::ordered_json simulate(Simulation& simulation, RecordedRun& record, boo
   return record.finish();
 }
 
-// Once a run has begun, what ends it can be mended, and nothing is lost.
+// Add to errors of a run under way how to resume it: nothing accepted is lost.
 template <class Work>
 auto with_a_way_on(const Work& work) {
-  const std::string way_on = can_archive() ? "; once there is a remedy, the same command with --resume goes on" : "";
+  const std::string way_on = can_archive() ? "; correct the cause and repeat the command with --resume" : "";
   try {
     return work();
   } catch (const FileError& error) {
@@ -97,16 +97,17 @@ void report_ending(const Simulation& simulation, const nlohmann::ordered_json& s
   if (!simulation.failure().empty())
     fmt::print(
         stderr,
-        "plica: gave up: {0}; the last good state is in {1}, seen by: plica render {1} --time last --out last.png\n",
+        "plica: solver failed: {0}; last accepted state saved in {1}; view it with: plica render {1} --time last --out "
+        "last.png\n",
         simulation.failure(), options.out);
   if (simulation.status() == RunStatus::equilibrium && summary.at("steps") == 1)
     fmt::print(
         stderr,
-        "warning: at rest after the first step: nothing is faster than stop.equilibrium_speed_um_per_min ({:g}); "
-        "lower it, or give more force or less drag\n",
+        "warning: equilibrium after the first step: no node is faster than stop.equilibrium_speed_um_per_min ({:g}); "
+        "lower it, increase the forces or reduce the drag\n",
         simulation.controls().equilibrium_speed_um_per_s * units::minute);
   if (simulation.status() == RunStatus::under_way && can_archive())
-    fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");
+    fmt::print(stderr, "plica: interrupted; to continue, repeat the command with --resume\n");
   if (!options.quiet) print_result(summary, options.out);
 }
 
@@ -114,10 +115,10 @@ int run_scenario(const RunOptions& options) {
   const Recorder::Clock::time_point start = Recorder::Clock::now();
   const ScenarioSource source = find_scenario(options.scenario.name_or_path);
   const Scenario scenario = load_scenario(source, options.scenario.overrides);
-  std::optional<SlowWord> word;
-  if (!options.quiet) word.emplace();
+  std::optional<DelayedNotice> notice;
+  if (!options.quiet) notice.emplace();
   Simulation simulation(scenario);
-  word.reset();
+  notice.reset();
   use_threads(options.threads, simulation.model().tissue.elements.size(), options.scenario.name_or_path);
 
   if (!options.quiet)
@@ -132,13 +133,13 @@ int run_scenario(const RunOptions& options) {
                      start);
   for (const std::string& note : record.notes()) fmt::print(stderr, "plica: {}\n", note);
   if (record.is_finished()) {
-    if (!options.quiet) fmt::print("{}: the run is finished; nothing is left to do\n", options.out);
+    if (!options.quiet) fmt::print("{}: the run is already complete\n", options.out);
     return exit_done;
   }
   catch_interruptions();
   const nlohmann::ordered_json summary = with_a_way_on([&] {
     if (record.begin() && !options.quiet)
-      fmt::print("going on after step {}, t = {:g} s\n", simulation.steps(), simulation.time_s());
+      fmt::print("resuming after step {}, t = {:g} s\n", simulation.steps(), simulation.time_s());
     return simulate(simulation, record, options.quiet);
   });
   std::vector<std::string> missed;
@@ -155,11 +156,11 @@ void add_run_command(CLI::App& app, int& status) {
   auto options = std::make_shared<RunOptions>();
   options->scenario.add_to(*command);
   command->add_option("--out,--output,-o", options->out, "directory for the results")->required();
-  command->add_option("--threads", options->threads, "threads to use; results do not depend on it")
+  command->add_option("--threads", options->threads, "number of threads; results do not depend on it")
       ->check(CLI::Range(1, 1024));
-  command->add_flag("--quiet", options->quiet, "no progress and no result on the terminal");
+  command->add_flag("--quiet", options->quiet, "print only warnings and errors");
   auto* overwrite = command->add_flag("--overwrite", options->overwrite, "replace the results in DIR");
-  command->add_flag("--resume", options->resume, "go on from the checkpoint in DIR; begin where there is none")
+  command->add_flag("--resume", options->resume, "continue from the checkpoint in DIR; without one, start")
       ->excludes(overwrite);
   command->footer("Example: plica run drosophila --out results --set contraction.apical.across_ratio=1");
   command->callback([options, &status] { status = run_scenario(*options); });

@@ -22,7 +22,7 @@ void RunsProgress::show(std::size_t done, std::size_t lost) {
   constexpr std::size_t width = 24;
   const std::size_t filled = width * done / runs_;
   fmt::print(stderr, "{}[{}{}] {} of {} runs{}, {} left{}", on_terminal_ ? "\r" : "", std::string(filled, '#'),
-             std::string(width - filled, '.'), done, runs_, lost > 0 ? fmt::format(", {} without a result", lost) : "",
+             std::string(width - filled, '.'), done, runs_, lost > 0 ? fmt::format(", {} without result", lost) : "",
              duration(left_s), on_terminal_ ? "\033[K" : "\n");
   std::fflush(stderr);
 }

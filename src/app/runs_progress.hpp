@@ -1,4 +1,4 @@
-// The progress of many runs.
+// Progress of many runs.
 #pragma once
 
 #include <chrono>
@@ -6,13 +6,13 @@
 
 namespace plica {
 
-/// How many runs have ended, and how long the rest will take: a live line on a terminal, a line now and then in a file.
+/// Number of finished runs and remaining time: a live line on a terminal, or a line every 10 s in a file.
 class RunsProgress {
  public:
-  /// `before`: the runs that had ended when the work was begun or gone on with.
+  /// `before`: runs that were complete at the start or resumption.
   RunsProgress(std::size_t before, std::size_t runs, bool quiet);
 
-  /// `lost`: those that have ended without a result.
+  /// `lost`: runs that ended without a result.
   void show(std::size_t done, std::size_t lost = 0);
   void finish() const;
 

@@ -1,4 +1,4 @@
-// What every command that takes a scenario has in common.
+// Options shared by all commands that take a scenario.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,7 +14,7 @@ struct ScenarioOptions {
   std::vector<std::string> overrides;
 
   void add_to(CLI::App& command) {
-    command.add_option("SCENARIO", name_or_path, "a TOML file or a built-in name (see `plica scenarios`)")->required();
+    command.add_option("SCENARIO", name_or_path, "TOML file, or built-in name (`plica scenarios`)")->required();
     command.add_option("--set", overrides, "KEY=VALUE: override a key of the scenario; repeatable")
         ->allow_extra_args(false);
   }

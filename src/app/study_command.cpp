@@ -44,25 +44,25 @@ void print_reasons(const StudyStatus& status) {
   if (reasons.size() > 10) fmt::print("  and {} other reasons\n", reasons.size() - 10);
 }
 
-// What is to be read and looked at, of the rows that there are.
+// Write the table and the report of the existing rows.
 void write_table(const Study& study, const StudyDirectory& directory) {
   directory.gather(study);
   if (can_report()) write_study_report(directory.path());
 }
 
-// Prints how it ended; the command's status.
+// Print the result; return the exit status.
 int ended(const Study& study, const StudyDirectory& directory, const StudyOptions& options, Clock::time_point start) {
   write_table(study, directory);
   if (!options.quiet) {
     const StudyStatus status = status_of(directory, study);
-    fmt::print("{}: {} in {}; {} of runs, one after the other\n", study.input().name, by_status(status),
+    fmt::print("{}: {} in {}; sum of run times {}\n", study.input().name, by_status(status),
                duration(std::chrono::duration<double>(Clock::now() - start).count()), duration(status.run_s));
     print_reasons(status);
     fmt::print("  table in {0}/runs.csv{1}\n", options.out,
-               can_report() ? fmt::format("; to look at: {}/report.html", options.out) : "");
+               can_report() ? fmt::format("; open {}/report.html in a browser", options.out) : "");
   }
   if (!interrupted()) return exit_done;
-  fmt::print(stderr, "plica: interrupted; to go on, give the same command with --resume\n");
+  fmt::print(stderr, "plica: interrupted; to continue, repeat the command with --resume\n");
   return interrupted_status();
 }
 
@@ -81,14 +81,14 @@ int run_here(const Study& study, StudyDirectory& directory, const StudyOptions& 
 }
 
 int run_on_slurm(const Study& study, StudyDirectory& directory, const StudyOptions& options, Clock::time_point start) {
-  if (!options.quiet) fmt::print(stderr, "running the first point here, to see what a run takes\n");
+  if (!options.quiet) fmt::print(stderr, "running the first point on this machine to estimate the cost\n");
   const SlurmSubmission plan = submit_to_slurm(study, directory, {options.sbatch, 2}, interrupted);
   if (interrupted() || plan.tasks == 0) return ended(study, directory, options, start);
   if (!options.quiet)
     fmt::print(
-        "{}: {} in {} of {}, submitted as job {}; job {} gathers them\n"
-        "  a run takes {}; a task may take {} min and {} MB\n"
-        "  how far it is: plica study status {}; to stop it: plica study cancel {}\n",
+        "{}: {} in {} of {}, submitted as job {}; job {} collects the results\n"
+        "  run time {}; limits of a task: {} min, {} MB\n"
+        "  see progress with: plica study status {}; stop it with: plica study cancel {}\n",
         study.input().name, plural(plan.runs, "run"), plural(plan.tasks, "task"), plan.runs_a_task, plan.array,
         plan.gather, duration(plan.run_s), plan.limit_min, plan.memory_MB, options.out, options.out);
   if (!options.wait) return exit_done;
@@ -100,13 +100,13 @@ int run_on_slurm(const Study& study, StudyDirectory& directory, const StudyOptio
   }
   progress.finish();
   if (!interrupted()) return ended(study, directory, options, start);
-  fmt::print(stderr, "plica: no longer waiting; the jobs go on\n");
+  fmt::print(stderr, "plica: stopped waiting; the jobs continue\n");
   return interrupted_status();
 }
 
 int run(const StudyOptions& options) {
-  if (options.study.empty()) throw UsageError("which study? give STUDY.toml, or see plica study --help");
-  if (options.out.empty()) throw UsageError("--out DIR is missing: where is the table to go?");
+  if (options.study.empty()) throw UsageError("STUDY: missing; give STUDY.toml, or see plica study --help");
+  if (options.out.empty()) throw UsageError("--out: missing; give the directory for the results");
   const auto start = Clock::now();
   const ThreadCount one(1);
   const Study study(read_study(options.study));
@@ -118,12 +118,12 @@ int run(const StudyOptions& options) {
                                                    : options.overwrite ? Start::over
                                                                        : Start::fresh);
   catch_interruptions();
-  if (options.resume) write_table(study, directory);  // a study that was killed has left none
+  if (options.resume) write_table(study, directory);  // a killed study left none
   return options.engine == "slurm" ? run_on_slurm(study, directory, options, start)
                                    : run_here(study, directory, options, start);
 }
 
-// What a task of an array does.
+// Run one task of a job array.
 int work(const std::string& out, int task) {
   const ThreadCount one(1);
   auto [directory, study] = StudyDirectory::open_to_run(out);
@@ -142,14 +142,13 @@ void gather(const std::string& out) {
 void print_status(const std::string& out) {
   const auto [directory, study] = StudyDirectory::open(out);
   const StudyStatus status = status_of(directory, study);
-  fmt::print("{}: {}; {} of runs, one after the other, so far\n", study.input().name, by_status(status),
-             duration(status.run_s));
+  fmt::print("{}: {}; sum of run times so far {}\n", study.input().name, by_status(status), duration(status.run_s));
   print_reasons(status);
   if (was_submitted(directory)) {
     fmt::print("  {}\n", jobs_on_slurm(directory));
   } else if (status.ended() < status.runs) {
-    fmt::print("  to go on, where it is not running: plica study {0} --out {1} --resume\n", study.input().file, out);
-    fmt::print("  a table of what has run: plica study gather {}\n", out);
+    fmt::print("  if it is not running, continue with: plica study {0} --out {1} --resume\n", study.input().file, out);
+    fmt::print("  write a table of the finished runs with: plica study gather {}\n", out);
   }
 }
 
@@ -158,40 +157,40 @@ void cancel(const std::string& out) { cancel_on_slurm(StudyDirectory::open(out).
 }  // namespace
 
 void add_study_command(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("study", "run a scenario many times, with keys that vary");
+  CLI::App* command = app.add_subcommand("study", "run a scenario many times with varied keys");
   auto options = std::make_shared<StudyOptions>();
-  command->add_option("STUDY", options->study, "a TOML file: scenario, keys that vary, design");
+  command->add_option("STUDY", options->study, "TOML file: scenario, varied keys, design");
   command->add_option("--out,--output,-o", options->out, "directory for the table, runs.csv");
-  command->add_option("--jobs,-j", options->jobs, "runs at a time; by default one a core")->check(CLI::Range(1, 4096));
+  command->add_option("--jobs,-j", options->jobs, "simultaneous runs (default: one per core)")
+      ->check(CLI::Range(1, 4096));
   auto* overwrite = command->add_flag("--overwrite", options->overwrite, "replace the study in DIR");
-  command->add_flag("--resume", options->resume, "go on with the study in DIR; begin where there is none")
-      ->excludes(overwrite);
-  command->add_flag("--quiet", options->quiet, "no progress and no result on the terminal");
-  command->add_option("--engine", options->engine, "local: processes of this machine; slurm: an array of jobs")
+  command->add_flag("--resume", options->resume, "continue the study in DIR; without one, start")->excludes(overwrite);
+  command->add_flag("--quiet", options->quiet, "print only warnings and errors");
+  command->add_option("--engine", options->engine, "local processes, or a Slurm job array")
       ->check(CLI::IsMember({"local", "slurm"}));
-  command
-      ->add_option("--sbatch", options->sbatch, "slurm: an option for sbatch, as --sbatch=--partition=long; repeatable")
+  command->add_option("--sbatch", options->sbatch, "slurm: option for sbatch, as --sbatch=--partition=long; repeatable")
       ->allow_extra_args(false);
-  command->add_flag("--wait", options->wait, "slurm: wait until the jobs have ended");
+  command->add_flag("--wait", options->wait, "slurm: wait for the jobs to end");
   command->footer(
       "Examples: plica study stiffness.toml --out results/stiffness\n          plica study status results/stiffness");
 
   const auto of_directory = [command](const char* name, const char* what) {
     CLI::App* one = command->add_subcommand(name, what);
     auto out = std::make_shared<std::string>();
-    one->add_option("DIR", *out, "the directory of a study")->required();
+    one->add_option("DIR", *out, "directory of a study")->required();
+    one->footer(fmt::format("Example: plica study {} results/stiffness{}", name,
+                            std::string_view(name) == "work" ? " --task 0" : ""));
     return std::pair(one, out);
   };
-  const auto [of_status, status_out] = of_directory("status", "how far a study is, and what failed");
+  const auto [of_status, status_out] = of_directory("status", "print the progress of a study and its failures");
   of_status->callback([out = status_out] { print_status(*out); });
-  const auto [of_cancel, cancel_out] = of_directory("cancel", "cancel its jobs on Slurm; rows that there are stay");
+  const auto [of_cancel, cancel_out] = of_directory("cancel", "cancel its Slurm jobs; finished rows are kept");
   of_cancel->callback([out = cancel_out] { cancel(*out); });
-  const auto [of_gather, gather_out] =
-      of_directory("gather", "write runs.csv and report.html from the rows that there are");
+  const auto [of_gather, gather_out] = of_directory("gather", "write runs.csv and report.html from the finished rows");
   of_gather->callback([out = gather_out] { gather(*out); });
-  const auto [of_work, work_out] = of_directory("work", "run what a task of an array is to run");
+  const auto [of_work, work_out] = of_directory("work", "run one task of a job array");
   auto task = std::make_shared<int>(0);
-  of_work->add_option("--task", *task, "its number, from 0")->required();
+  of_work->add_option("--task", *task, "task number, from 0")->required();
   of_work->callback([out = work_out, task, &status] { status = work(*out, *task); });
 
   command->callback([options, command, &status] {

@@ -14,9 +14,9 @@
 namespace plica {
 namespace {
 
-// The same program with the same arguments, unless the user has said how threads wait. Returns where it cannot be
-// begun.
-void begin_anew_with_short_waits(const std::string& scenario) {
+// Restart the program with the same arguments and short waits of threads, unless the user has set these. Returns if it
+// cannot restart.
+void restart_with_short_waits(const std::string& scenario) {
 #if defined(__linux__) && !defined(__clang__)  // whose OpenMP has another name for it
   if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr) return;
   std::error_code unknown;
@@ -39,7 +39,7 @@ void begin_anew_with_short_waits(const std::string& scenario) {
 
 void use_threads(int asked, std::size_t elements, const std::string& scenario) {
   const int threads = threads_for(asked, elements);
-  if (threads > 1) begin_anew_with_short_waits(scenario);
+  if (threads > 1) restart_with_short_waits(scenario);
   omp_set_num_threads(threads);
 }
 

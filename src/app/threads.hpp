@@ -1,4 +1,4 @@
-// How many threads a run is given.
+// Number of threads of a run.
 #pragma once
 
 #include <cstddef>
@@ -6,14 +6,13 @@
 
 namespace plica {
 
-/// From now on as many threads as asked; else as OMP_NUM_THREADS says; else as many as the mesh can keep busy. Results
-/// do not depend on it.
+/// Set the number of threads: `asked`, else OMP_NUM_THREADS, else as many as the mesh can keep busy. Results do not
+/// depend on it.
 ///
-/// May begin the program anew, to the same end: to be called before anything is printed or written. GCC's OpenMP has
-/// threads look for work for milliseconds before they sleep. Where other programs want the cores, those that have work
-/// wait for them: a run took 251 s instead of 19 (docs/developers/performance-notebook.md). How long they look is read
-/// from the environment before main() begins. `scenario` is the file that has been read, or a name: a pipe cannot be
-/// read twice, so then the program goes on as it is.
+/// May restart the program, so call it before anything is printed or written. GCC's OpenMP lets idle threads spin for
+/// milliseconds before they sleep; on a busy machine threads with work wait for these (251 s instead of 19 s,
+/// docs/developers/performance-notebook.md). The spin time is read from the environment before main(). `scenario`: file
+/// that has been read, or name; no restart for a pipe, which cannot be read twice.
 void use_threads(int asked, std::size_t elements, const std::string& scenario);
 
 }  // namespace plica

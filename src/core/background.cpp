@@ -16,7 +16,7 @@ Background::Background(std::size_t most_waiting) : most_waiting_(most_waiting) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return started_; });
   } catch (const std::system_error&) {
-    // No thread to be had: jobs are done at once.
+    // No thread is available: jobs run immediately.
   }
 }
 
@@ -95,7 +95,7 @@ void Background::work() {
     } catch (...) {
       fault = std::current_exception();
     }
-    job = {};  // what it holds is freed before the next one is taken
+    job = {};  // free its memory before taking the next
     lock.lock();
     at_work_ = false;
     if (fault) {

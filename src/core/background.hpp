@@ -1,4 +1,4 @@
-// Work beside the computation: writing and compressing while the next step is solved.
+// Background thread: compresses and writes files while the next step is solved.
 #pragma once
 
 #include <condition_variable>
@@ -10,32 +10,32 @@
 
 namespace plica {
 
-/// Does jobs one after another, in the order given, on a thread of its own. (Where no thread can be had, each is done
-/// at once.) No job may start a child process (child_process.hpp). What a job throws is thrown again by the next `add`,
-/// `check` or `finish`, once; jobs after it are not done.
+/// Queue of jobs, done in order on one background thread, or immediately if none is available. Jobs must not start a
+/// child process (child_process.hpp). An exception of a job is rethrown once by the next `add`, `check` or `finish`;
+/// later jobs are dropped.
 class Background {
  public:
-  /// At most `most_waiting` jobs wait beside the one being done: memory stays bounded.
+  /// `most_waiting`: largest number of queued jobs, which bounds the memory.
   explicit Background(std::size_t most_waiting);
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
 
-  /// Does what still waits, unless a job failed. Call `finish` before, to hear of that.
+  /// Finishes queued jobs unless one failed. Call `finish` before to receive its exception.
   ~Background();
 
-  /// Waits for a place, then hands the job over.
+  /// Queue a job; waits while the queue is full.
   void add(std::function<void()> job);
 
-  /// Whether a job failed and nobody has been told.
+  /// Whether a job failed and its exception is still to be rethrown.
   [[nodiscard]] bool has_failed() const;
 
-  /// Throws what a job threw.
+  /// Rethrow the exception of a failed job, if any.
   void check();
 
-  /// Waits until every job is done.
+  /// Wait until all jobs are done.
   void finish();
 
-  /// Processor time that the jobs have taken so far, s.
+  /// Processor time of the jobs so far, s.
   [[nodiscard]] double processor_s();
 
  private:
@@ -47,7 +47,7 @@ class Background {
   std::condition_variable changed_;
   std::deque<std::function<void()>> waiting_;
   bool started_ = false, at_work_ = false, ending_ = false, failed_ = false;
-  std::exception_ptr fault_;  // not yet told
+  std::exception_ptr fault_;  // not yet rethrown
   std::thread thread_;
 };
 

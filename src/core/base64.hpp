@@ -1,4 +1,4 @@
-// Bytes as text.
+// Base64 encoding.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace plica {
 
-/// RFC 4648.
+/// Encode bytes by RFC 4648.
 std::string base64(std::string_view bytes);
 
 }  // namespace plica

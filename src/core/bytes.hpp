@@ -1,4 +1,4 @@
-// Lists as a string of bytes, to hand them from one process to another on the same machine.
+// Serialization of lists, for processes on the same machine.
 #pragma once
 
 #include <cstring>
@@ -8,13 +8,13 @@
 
 namespace plica {
 
-/// The bytes end before what was put into them.
+/// Error: the bytes end before the expected content.
 class BytesEndEarly : public std::runtime_error {
  public:
   BytesEndEarly() : std::runtime_error("the bytes end early") {}
 };
 
-/// Appends the length and the items of a vector or string; items are copied as they lie in memory.
+/// Append length and items of a vector or string; items are copied as in memory.
 template <class Items>
 void put(const Items& items, std::string& bytes) {
   const std::size_t count = items.size();
@@ -22,7 +22,7 @@ void put(const Items& items, std::string& bytes) {
   bytes.append(reinterpret_cast<const char*>(items.data()), count * sizeof(typename Items::value_type));
 }
 
-/// Takes what `put` appended off the front. BytesEndEarly when it is not all there.
+/// Remove the content appended by `put` from the front and return it. Throws BytesEndEarly.
 template <class Items>
 Items take(std::string_view& bytes) {
   std::size_t count = 0;

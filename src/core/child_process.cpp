@@ -22,15 +22,15 @@ namespace plica {
 namespace {
 
 [[noreturn]] void throw_unstarted(int error) {
-  throw FileError("no process can be started: " + std::generic_category().message(error));
+  throw FileError("cannot start a process: " + std::generic_category().message(error));
 }
 
 [[noreturn]] void run_child(const std::function<std::string()>& work, int pipe_end) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with the parent, however that ends
-  // The C library and the sanitizers tell of a crash on stderr; the parent says it better.
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // end with the parent, however it ends
+  // The C library and sanitizers report crashes on stderr; the parent gives a better message.
   const int nowhere = ::open("/dev/null", O_WRONLY);
   ::dup2(nowhere, STDERR_FILENO);
-#ifndef PLICA_FUZZED  // where a fuzzer's handlers are to tell
+#ifndef PLICA_FUZZED  // fuzzers need their own handlers
   for (const int fatal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(fatal, SIG_DFL);
 #endif
   int status = 1;
@@ -43,12 +43,12 @@ namespace {
       if (written > 0) rest.remove_prefix(static_cast<std::size_t>(written));
     }
     if (rest.empty()) status = 0;
-  } catch (...) {  // says itself by the status
+  } catch (...) {  // reported by the exit status
   }
   ::_exit(status);  // without destructors and buffers, which are the parent's
 }
 
-// What the kernel says of a process: its state (a letter) and its processor time, in ticks.
+// State (a letter) and processor time (ticks) of a process, from the kernel.
 struct Activity {
   char state = 'R';
   unsigned long long ticks = 0;
@@ -67,7 +67,7 @@ Activity activity_of(pid_t process) {
   return now;
 }
 
-/// Everything up to the end; empty on an error. Stalled: no answer, and the process has slept for that long.
+/// Read to the end; empty on an error. Stalled: no output while the process sleeps for `stall_s`.
 struct Answer {
   std::optional<std::string> output;
   bool stalled = false;
@@ -113,7 +113,7 @@ std::optional<std::string> output_of_child(const std::string& what, const std::f
     throw_unstarted(error);
   }
   if (child == 0) {
-    ::close(ends[0]);  // else writing would wait for ever for a parent that is gone
+    ::close(ends[0]);  // otherwise writing would wait forever once the parent is gone
     run_child(work, ends[1]);
   }
   nobody_works.unlock();
@@ -126,8 +126,8 @@ std::optional<std::string> output_of_child(const std::string& what, const std::f
     if (errno != EINTR) return {};
   if (answer.stalled)
     throw FileError(
-        fmt::format("{} stood still for {:.0f} s without using the processor, in a process of its own, which "
-                    "was ended; try again, and tell us if it happens again",
+        fmt::format("{} made no progress for {:.0f} s; its process "
+                    "was terminated; retry, and open an issue if it recurs",
                     what, stall_s));
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return {};
   return std::move(answer.output);

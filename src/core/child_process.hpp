@@ -1,4 +1,4 @@
-// Work that may crash, in a process of its own.
+// Work that may crash, in a child process.
 #pragma once
 
 #include <functional>
@@ -8,16 +8,16 @@
 
 namespace plica {
 
-/// What `work` returns when it runs in a copy of this process (fork), so that nothing it does to memory matters here;
-/// empty when that process crashed, was killed or `work` threw. What it says on stderr is not shown. The process
-/// ends with this one, even when that is killed. `work` must not use threads that this process has started (OpenMP).
-/// FileError when no process can be started, or when the other one stands still for `stall_s`: it is asleep and uses no
-/// processor time (one that waits for a disk is not asleep). The error says `what` it was to do. It is ended then.
+/// Run `work` in a fork of this process and return its result; empty if the child crashed, was killed or `work` threw.
+/// Memory of this process is not affected, and stderr of the child is discarded. The child ends with this process, even
+/// if that is killed. `work` must not use threads started by this process (OpenMP). Throws FileError if no process can
+/// be started, or if the child sleeps for `stall_s` without using the processor (waiting for a disk does not count); it
+/// is then killed. `what`: name of the work in messages.
 std::optional<std::string> output_of_child(const std::string& what, const std::function<std::string()>& work,
                                            double stall_s = 120);
 
-/// Held, shared, by each thread of this process's own while it works: a child process starts when none does. It would
-/// inherit whatever lock such a thread is holding, for ever.
+/// Mutex that threads started by this process hold shared while they work. A child process starts only when none does,
+/// since it would inherit a held lock permanently.
 std::shared_mutex& work_beside();
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// Other programs, run and listened to.
+// Execution of other programs.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 namespace plica {
 
 struct CommandResult {
-  int status = -1;     // -1: could not be started, or was killed
-  std::string output;  // what it printed, on stdout and stderr
+  int status = -1;     // -1: not started, or killed
+  std::string output;  // its stdout and stderr
 };
 
-/// Runs a program that is found by PATH, without a shell, and waits for it.
+/// Run a program found on PATH, without a shell, and wait for it.
 CommandResult run_command(const std::vector<std::string>& words);
 
 }  // namespace plica

@@ -1,15 +1,15 @@
-// One process at a time writes into a directory.
+// Lock that lets one process at a time write into a directory.
 #pragma once
 
 #include <filesystem>
 
 namespace plica {
 
-/// Holds a directory until it goes; the system lets go of it when the process ends, however it does. Where there is no
-/// directory, or its file system has no locks, it holds nothing.
+/// Lock of a directory, released by the destructor or, however the process ends, by the system. Does nothing if the
+/// directory does not exist or its file system has no locks.
 class DirectoryLock {
  public:
-  /// FileError when another process holds it.
+  /// Throws FileError if another process holds the lock.
   explicit DirectoryLock(const std::filesystem::path& directory);
   ~DirectoryLock();
   DirectoryLock(const DirectoryLock&) = delete;

@@ -24,7 +24,7 @@ std::string printable(const std::string& text) {
       line += "\\n";
     } else if (code < 0x20 || code == 0x7f) {
       line += fmt::format("\\u{:04X}", code);
-    } else if (code == 0xc2 && next >= 0x80 && next < 0xa0) {  // the second set of control characters, in UTF-8
+    } else if (code == 0xc2 && next >= 0x80 && next < 0xa0) {  // C1 control characters in UTF-8
       line += fmt::format("\\u{:04X}", next);
       ++i;
     } else {

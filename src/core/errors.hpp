@@ -1,4 +1,4 @@
-// What can be wrong with input, and with files. Numerical outcomes are values (solver/step_report.hpp), not exceptions.
+// Errors of input and files. Failures of the solver are values (StepReport), not exceptions.
 #pragma once
 
 #include <stdexcept>
@@ -7,22 +7,21 @@
 
 namespace plica {
 
-/// Text for one line of a terminal: control characters, which a scenario may hold in its texts and names, as in TOML
-/// ("\\n", "\\u001B").
+/// Escape control characters, which texts and names of a scenario may contain, as in TOML ("\\n", "\\u001B").
 std::string printable(const std::string& text);
 
-/// One thing that is wrong in a scenario, printed as `FILE:LINE: key: problem; remedy`.
+/// Problem of a scenario, printed as `FILE:LINE: key: problem; remedy`.
 struct Diagnostic {
   std::string file;     // path, built-in name, or "--set" for the command line
-  int line = 0;         // 1-based; 0 where there is none
+  int line = 0;         // 1-based; 0 if unknown
   std::string key;      // dotted key, or empty
-  std::string problem;  // what is wrong
-  std::string remedy;   // what would be right
+  std::string problem;  // what was found
+  std::string remedy;   // how to correct it
 
   [[nodiscard]] std::string text() const;  // one line
 };
 
-/// Everything that is wrong with a scenario, all at once. Exit status 2.
+/// Error with all problems of a scenario. Exit status 2.
 class ScenarioError : public std::runtime_error {
  public:
   explicit ScenarioError(std::vector<Diagnostic> diagnostics);
@@ -32,13 +31,13 @@ class ScenarioError : public std::runtime_error {
   std::vector<Diagnostic> diagnostics_;
 };
 
-/// The program was called wrongly. Exit status 2.
+/// Error in the arguments of a call. Exit status 2.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A file cannot be read or written. Exit status 4.
+/// Error while reading or writing a file. Exit status 4.
 class FileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

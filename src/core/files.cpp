@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t file_mode = 0666;  // less the umask
+constexpr mode_t file_mode = 0666;  // minus the umask
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
@@ -36,7 +36,7 @@ int open_file(const fs::path& path, int flags) {
   return descriptor;
 }
 
-/// Writes everything; a short write is followed by one of the rest, which says what is wrong. Returns 0 or the error.
+/// Write everything; after a short write the rest is written, which reveals the error. Returns 0 or the error.
 int write_all(int descriptor, std::string_view content) {
   while (!content.empty()) {
     const ssize_t written = ::write(descriptor, content.data(), content.size());
@@ -50,7 +50,7 @@ int write_all(int descriptor, std::string_view content) {
   return 0;
 }
 
-/// fsync, 0 or the error. Pipes, devices and some folders cannot be synced: that is no error.
+/// Call fsync. Returns 0 or the error; unsupported for pipes, devices and some folders, which is not an error.
 int sync_descriptor(int descriptor) {
   while (::fsync(descriptor) != 0) {
     if (errno == EINTR) continue;
@@ -59,7 +59,7 @@ int sync_descriptor(int descriptor) {
   return 0;
 }
 
-/// Writes, syncs and closes; a full disk may show in any of the three. Returns 0 or the first error.
+/// Write, sync and close; a full disk may show in any of the three. Returns 0 or the first error.
 int write_and_close(int descriptor, std::string_view content, Sync sync = Sync::now) {
   int error = write_all(descriptor, content);
   if (error == 0 && sync == Sync::now) error = sync_descriptor(descriptor);
@@ -67,7 +67,7 @@ int write_and_close(int descriptor, std::string_view content, Sync sync = Sync::
   return error;
 }
 
-/// Opens, syncs and closes a file or a folder. Returns 0 or the error.
+/// Open, sync and close a file or folder. Returns 0 or the error.
 int sync_path(const fs::path& path, int flags) {
   const int descriptor = open_file(path, O_RDONLY | flags);
   if (descriptor < 0) return errno;
@@ -79,7 +79,7 @@ int sync_path(const fs::path& path, int flags) {
   throw_unwritten(path, reason(error));
 }
 
-/// The file that `path` stands for: a link is followed, so that it stays a link.
+/// Resolve links, so that a link stays a link.
 fs::path link_target(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_symlink(path, ignored)) return path;
@@ -95,7 +95,7 @@ bool exists_and_is_no_regular_file(const fs::path& path) {
 
 fs::path temporary_beside(const fs::path& path) {
   static std::atomic<unsigned> count = 0;
-  // The process and a number, so that two that write the same file do not write the same temporary one.
+  // Process and counter, so that two writers of one file have different temporary files.
   fs::path temporary = path;
   temporary += fmt::format(".{}-{}.part", ::getpid(), count++);
   return temporary;
@@ -107,7 +107,7 @@ void rename_file(const fs::path& temporary, const fs::path& path, Sync sync) {
   if (::rename(temporary.c_str(), path.c_str()) != 0) remove_and_throw(temporary, path, errno);
   if (sync == Sync::later) return;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  // A folder that may be written but not read cannot be opened; the file is there all the same.
+  // A folder with write but no read permission cannot be opened; the file exists nevertheless.
   const int error = sync_path(folder, O_DIRECTORY);
   if (error != 0 && error != EACCES) throw_unwritten(path, reason(error));
 }
@@ -129,7 +129,7 @@ std::string read_file(const fs::path& path, std::uintmax_t most_bytes) {
   if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0 &&
       static_cast<std::uintmax_t>(status.st_size) <= most_bytes)
     content.reserve(static_cast<std::size_t>(status.st_size));
-  // The limit holds for what is read, not for the size in the folder: a device has none.
+  // Limit the bytes read rather than the reported size: a device has none.
   std::string block(1 << 16, '\0');
   while (why.empty()) {
     const ssize_t count = ::read(descriptor, block.data(), block.size());
@@ -174,9 +174,9 @@ RowFile::RowFile(fs::path path, std::uint64_t keep_bytes) : path_(std::move(path
   if (::fstat(descriptor_, &status) != 0)
     why = reason(errno);
   else if (static_cast<std::uint64_t>(status.st_size) < keep_bytes)
-    why = fmt::format("it has {} bytes, fewer than the {} to go on from", status.st_size, keep_bytes);
+    why = fmt::format("it has {} bytes, fewer than the {} to continue from", status.st_size, keep_bytes);
   else if (keep_bytes > 0 && (::pread(descriptor_, &last, 1, static_cast<off_t>(keep_bytes) - 1) != 1 || last != '\n'))
-    why = fmt::format("its first {} bytes do not end with a whole row", keep_bytes);
+    why = fmt::format("its first {} bytes do not end with a complete row", keep_bytes);
   else if (S_ISREG(status.st_mode) && ::ftruncate(descriptor_, static_cast<off_t>(keep_bytes)) != 0)
     why = reason(errno);
   if (why.empty()) return;
@@ -211,7 +211,7 @@ void RowFile::append(std::string_view row) {
   line.append(row).push_back('\n');
   const int error = write_all(descriptor_, line);
   if (error != 0) {
-    // Part of the row may be there. If cutting it off fails too, the first error is the one to tell.
+    // Cut off a partial row. If that fails too, report the first error.
     if (::ftruncate(descriptor_, static_cast<off_t>(size_bytes_)) != 0) errno = 0;
     throw_unwritten(path_, reason(error));
   }

@@ -1,4 +1,4 @@
-// Indices that cannot be mixed up: a NodeId is not a CellId, and neither is an int by accident.
+// Type-safe indices: a NodeId is neither a CellId nor an int.
 #pragma once
 
 #include <compare>
@@ -7,7 +7,7 @@
 
 namespace plica {
 
-/// The place of something in its flat array. `index()` is for subscripts.
+/// Index of an item in its flat array. `index()` is for subscripts.
 template <class Tag>
 class Id {
  public:

@@ -1,11 +1,11 @@
-// Text inside XML and HTML.
+// Escaping of text in XML and HTML.
 #pragma once
 
 #include <string>
 
 namespace plica {
 
-/// Text with &, <, > and quotes as XML and HTML want them.
+/// Escape &, <, > and double quotes.
 std::string xml_escaped(const std::string& text);
 
 }  // namespace plica

@@ -11,14 +11,14 @@
 namespace plica {
 
 void make_sure_of_memory(std::size_t bytes) {
-  void* volatile block = std::malloc(bytes);  // volatile: else the compiler leaves out what is not used
+  void* volatile block = std::malloc(bytes);  // volatile: the compiler must not remove it
   if (block == nullptr) throw std::bad_alloc();
   std::free(block);
 }
 
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  mallopt(M_MMAP_MAX, 0);         // no pages of their own for large arrays
+  mallopt(M_MMAP_MAX, 0);         // no separate pages for large arrays
   mallopt(M_TRIM_THRESHOLD, -1);  // never given back
 #endif
 }

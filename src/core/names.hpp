@@ -9,7 +9,7 @@ namespace plica {
 
 inline constexpr auto every_row = [](const auto&) { return true; };
 
-/// Names in the table's order: of all rows, or of those for which `which` (a member, or a function) is true.
+/// Names in the order of the table: all rows, or those for which `which` (member or function) is true.
 template <class Rows, class Which = decltype(every_row)>
 std::vector<std::string> names_of(const Rows& rows, Which which = every_row) {
   std::vector<std::string> names;

@@ -1,4 +1,4 @@
-// Numbers in texts.
+// Parsing of numbers.
 #pragma once
 
 #include <charconv>
@@ -8,7 +8,7 @@
 
 namespace plica {
 
-/// The finite number that `text` is and nothing else.
+/// Parse a finite number; empty unless it is the whole text.
 inline std::optional<double> number_in(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

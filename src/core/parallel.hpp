@@ -1,5 +1,5 @@
-// Loops over threads whose results do not depend on how many there are: every iteration writes only what is its own,
-// and sums are taken afterwards in a fixed order.
+// Parallel loops whose results do not depend on the number of threads: each iteration writes only its own data, and
+// sums are formed afterwards in a fixed order.
 #pragma once
 
 #include <omp.h>
@@ -17,10 +17,10 @@
 
 namespace plica {
 
-/// Takes an exception out of a parallel region, which none may leave by itself: one that memory runs out, say.
+/// Carrier of an exception (such as bad_alloc) out of a parallel region, which exceptions must not leave.
 class FirstError {
  public:
-  /// body(), on any thread. What it throws is kept, the first of all.
+  /// Call body() on any thread and keep the first exception of all.
   template <class Body>
   void take(const Body& body) {
     try {
@@ -29,7 +29,7 @@ class FirstError {
       if (!has_one_.exchange(true)) error_ = std::current_exception();
     }
   }
-  /// After the region.
+  /// Rethrow the kept exception; call after the region.
   void rethrow() const {
     if (error_) std::rethrow_exception(error_);
   }
@@ -39,13 +39,12 @@ class FirstError {
   std::exception_ptr error_;
 };
 
-/// For parallel_for's `worth_sharing`: of iterations that take microseconds.
+/// Value of `worth_sharing` of parallel_for for iterations that take microseconds.
 inline constexpr std::size_t long_bodies = 256;
 
-/// Calls body(i) for i in [0, count). Iterations must not write to the same place. What one throws comes out; a
-/// thread's later ones are left out then. Loops shorter than `worth_sharing` stay on one thread: waking the others
-/// costs more than they save, and on a machine that has other work, where one may have to wait for its turn, a hundred
-/// times as much.
+/// Call body(i) for i in [0, count). Iterations must not write to the same place. An exception is rethrown after its
+/// thread skips its remaining iterations. Loops shorter than `worth_sharing` stay on one thread: waking others costs
+/// more than they save, and a hundred times as much on a busy machine.
 template <class Body>
 void parallel_for(std::size_t count, const Body& body, std::size_t worth_sharing = 8192) {
   if (count < worth_sharing || omp_get_max_threads() == 1) {
@@ -61,7 +60,7 @@ void parallel_for(std::size_t count, const Body& body, std::size_t worth_sharing
   error.rethrow();
 }
 
-/// The least i in [0, count) for which is_one(i) holds; `count` when there is none.
+/// Least i in [0, count) with is_one(i); `count` if there is none.
 template <class Predicate>
 std::size_t parallel_find(std::size_t count, const Predicate& is_one) {
   std::atomic<std::size_t> least = count;
@@ -73,11 +72,11 @@ std::size_t parallel_find(std::size_t count, const Predicate& is_one) {
   return least;
 }
 
-/// The scalar product of two vectors, summed in parts whose bounds do not depend on the threads.
+/// Scalar product of two vectors, summed in parts whose bounds do not depend on the threads.
 inline double parallel_dot(std::span<const double> a, std::span<const double> b) {
   constexpr std::size_t part = 4096;
   const auto sum = [&](std::size_t first, std::size_t last) {
-    // Four pairs of lanes, so that sums need not wait for each other, in registers.
+    // Four independent pairs of lanes in registers, so that additions do not wait for each other.
     using Pair = double __attribute__((vector_size(16)));
     const auto pair = [](const double* numbers) {
       Pair two;
@@ -104,7 +103,7 @@ inline double parallel_dot(std::span<const double> a, std::span<const double> b)
   return total;
 }
 
-/// The sum of the vectors' squared lengths, in the same way.
+/// Sum of squared lengths, summed as parallel_dot does.
 inline double parallel_squared_norm(std::span<const Vec3> vectors) {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
   const std::span numbers(reinterpret_cast<const double*>(vectors.data()), 3 * vectors.size());

@@ -1,4 +1,4 @@
-// How many threads work.
+// Number of threads.
 #pragma once
 
 #include <omp.h>
@@ -7,7 +7,7 @@
 
 namespace plica {
 
-/// So many, while it lives; before and after it as many as before.
+/// Sets the number of threads for its lifetime.
 class ThreadCount {
  public:
   explicit ThreadCount(int threads) : before_(omp_get_max_threads()) { omp_set_num_threads(threads); }
@@ -19,7 +19,8 @@ class ThreadCount {
   int before_;
 };
 
-/// `asked`, if over 0; else what OMP_NUM_THREADS says; else one for every 5000 elements, up to what the machine has.
+/// Number of threads to use: `asked` if above 0; else OMP_NUM_THREADS; else one per 5000 elements, up to the processors
+/// of the machine.
 int threads_for(int asked, std::size_t elements);
 
 }  // namespace plica

@@ -1,5 +1,5 @@
-// Vectors whose new elements are left as memory is: for large arrays that are written as a whole, by several threads,
-// right after. Zeros first would go through all of their memory once more, on one thread.
+// Vectors with uninitialised new elements, for large arrays that several threads fill right after allocation. Zeroing
+// would pass through their memory once more on one thread.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ struct UninitialisedAllocator : std::allocator<T> {
   }
 };
 
-/// resize() and the constructor with a size leave numbers unset.
+/// Vector whose resize() and sized constructor leave numbers unset.
 template <class T>
 using UninitialisedVector = std::vector<T, UninitialisedAllocator<T>>;
 

@@ -1,4 +1,4 @@
-// Which plica this is.
+// Version of this build.
 #pragma once
 
 namespace plica {

@@ -1,4 +1,4 @@
-// Numbers as people read them.
+// Numbers in words.
 #pragma once
 
 #include <fmt/format.h>

@@ -13,10 +13,10 @@
 namespace plica {
 namespace {
 
-// The line of a draw in its file.
+// Line of a draw in its file.
 int line_of(std::size_t draw) { return static_cast<int>(draw) + 2; }
 
-// What is wrong with the draws by themselves: keys that no scenario has, values that are none of their keys.
+// Check the draws by themselves: unknown keys and invalid values.
 void check_draws(const Experiments& experiments, std::vector<Diagnostic>& diagnostics) {
   const StudyDesign& draws = experiments.draws;
   for (std::size_t k = 0; k < draws.keys.size(); ++k) {
@@ -56,7 +56,7 @@ void check_quantities(const Experiments& experiments, const std::vector<std::vec
         diagnostics.push_back(
             {experiments.file, outcome.line,
              fmt::format("experiment.{}.outcome.{}.quantity", experiments.experiments[e].name, outcome.name),
-             fmt::format("\"{}\" is no number of summary.json{}", outcome.quantity, of),
+             fmt::format("\"{}\" is not a number of summary.json{}", outcome.quantity, of),
              did_you_mean(outcome.quantity, known[which])});
         break;
       }
@@ -87,7 +87,7 @@ void check_experiments(const Experiments& experiments) {
   check_draws(experiments, diagnostics);
   if (!diagnostics.empty()) throw ScenarioError(std::move(diagnostics));
 
-  // Once each, however many draws and experiments they come from.
+  // Report each problem once, whatever the number of draws and experiments that have it.
   std::set<std::string> told;
   const auto tell = [&](const ScenarioError& error) {
     for (const Diagnostic& one : error.diagnostics())

@@ -1,4 +1,4 @@
-// Experiments on a scenario, and what is expected of them before they are run: a file, read and checked.
+// Simulated experiments with predictions made before they run: input file, parsed and checked.
 #pragma once
 
 #include <limits>
@@ -11,75 +11,75 @@
 
 namespace plica {
 
-/// What an outcome was to the model when the experiment was written down.
+/// Role of an observation in building the model.
 enum class Role {
-  predicted,  // nothing was known of it, or used
-  selected,   // one model was chosen before another by it
-  seen,       // known before, and not used
-  fitted      // parameters were chosen by it
+  predicted,  // held-out test: not used to build or fit the model
+  selected,   // used for model selection
+  seen,       // known beforehand, not used
+  fitted      // parameters were fitted to it
 };
 const char* word_of(Role role);
 
-/// What a measured number says about what was observed; of one run, or of many.
+/// Agreement of a measured number with the observation, for one run or many.
 enum class Judgement {
   hit,
   miss,
   undecided,
-  not_solved,  // of one run: it has no result
+  not_solved,  // one run without a result
 };
 const char* word_of(Judgement judgement);
 
-/// The number that is asked for: a run's own, or compared with the same number of another experiment, draw by draw.
+/// Number to judge: of the run itself, or relative to another experiment with the same draw.
 enum class Comparing { nothing, ratio, difference };
 
-/// A measured number of an experiment, and which values agree with what was observed.
+/// Outcome measure of an experiment with the range of values that agree with the observation.
 struct Outcome {
   std::string name;
-  std::string question, observed, source, because;  // those of the experiment where it has no question of its own
+  std::string question, observed, source, because;  // those of the experiment unless it has its own question
   Role role = Role::predicted;
-  std::optional<Judgement> prediction;  // what was expected of it
-  std::string quantity;                 // a number of summary.json
+  std::optional<Judgement> prediction;  // predicted judgement
+  std::string quantity;                 // number of summary.json
   Comparing comparing = Comparing::nothing;
-  std::size_t other = 0;  // the experiment that it is compared with
-  // A hit within; infinite where there is no bound, and from inf to -inf where no number is a hit.
+  std::size_t other = 0;  // index of the experiment it is compared with
+  // Range of hits; infinite if unbounded, and from inf to -inf if no number is a hit.
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
-  double margin = 0;         // undecided so far outside
-  bool hit_if_none = false;  // a number that does not exist, as the time of what never happens, is a hit, else a miss
+  double margin = 0;         // width of the undecided range outside
+  bool hit_if_none = false;  // a missing number (time of an event that never happens) is a hit; else a miss
   [[nodiscard]] bool has_band() const { return low <= high; }
-  int line = 0;  // of the file
+  int line = 0;  // in the file
 };
 
-/// A scenario with some keys changed, run once with each draw; or once as it is.
+/// Experiment: scenario with some keys changed, run once per draw, or once as it is.
 struct Experiment {
   std::string name;
-  StudyInput study;       // scenario, and what `set` changes
-  std::size_t draws = 0;  // the first so many
-  bool drawn = true;      // false: no draw sets anything
+  StudyInput study;       // scenario and overrides of `set`
+  std::size_t draws = 0;  // number of draws used, from the first
+  bool drawn = true;      // false: draws are not applied
   bool slow = false;
   std::vector<Outcome> outcomes;
 };
 
 struct Experiments {
-  std::string name, file, text;  // of the file; `name` is that of the page
+  std::string name, file, text;  // of the file; `name` is also that of the page
   std::string title;
-  std::string draws_file;  // empty: one draw, which sets nothing
+  std::string draws_file;  // empty: one draw without values
   StudyDesign draws;
   std::vector<Experiment> experiments;
 
-  /// What a run says otherwise than its experiment's scenario, as of --set: its draw, then what the experiment changes.
+  /// Overrides of a run in the form of --set: values of the draw, then those of the experiment.
   [[nodiscard]] std::vector<std::string> overrides(std::size_t experiment, std::size_t draw) const;
-  /// ScenarioError, in the lines of the files that it comes from.
+  /// Load the scenario of a run. Throws ScenarioError, located in the source files.
   [[nodiscard]] Scenario scenario(std::size_t experiment, std::size_t draw) const;
 };
 
-/// Reads a file of experiments, or built-in ones by their name (living). Throws FileError, UsageError where there are
-/// none of that name, or ScenarioError with all that is wrong in the file.
+/// Read a file of experiments, or built-in ones by name (living). Throws FileError, UsageError for an unknown name, or
+/// ScenarioError with all problems of the file.
 Experiments read_experiments(const std::string& name_or_file);
-/// The same of a text; `file` is what messages call it, and where paths start.
+/// Parse the text of experiments. `file`: name in messages and base of relative paths.
 Experiments parse_experiments(const std::string& name, const std::string& file, const std::string& text);
 
-/// Looks at every scenario with every draw, builds each experiment's tissue once, and looks for the numbers that are to
-/// be measured. ScenarioError with all that is wrong.
+/// Check every scenario with every draw, build the tissue of each experiment once, and check that its outcome measures
+/// exist. Throws ScenarioError with all problems.
 void check_experiments(const Experiments& experiments);
 
 }  // namespace plica

@@ -13,14 +13,14 @@ namespace {
 
 constexpr double min_per_s = 1.0 / 60;
 
-// The experiment that another is shown beside.
+// Experiment shown beside another in its figure.
 std::optional<std::size_t> shown_beside(const Experiments& experiments, std::size_t e) {
   for (const Outcome& outcome : experiments.experiments[e].outcomes)
     if (outcome.comparing != Comparing::nothing) return outcome.other;
   return e > 0 ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-// A column over time, all draws of an experiment as one curve with gaps between them.
+// Column over time: all draws of an experiment as one curve with gaps between them.
 Curve all_draws(const ExperimentResults& results, std::size_t e, const std::string& column) {
   Curve curve{results.experiments().experiments[e].name, {}, {}};
   for (std::size_t d = 0; d < results.draws(e); ++d) {
@@ -62,7 +62,8 @@ Figure outcome_figure(const ExperimentResults& results, std::size_t experiment, 
   }
   return chart(
       fmt::format("{}-{}", name, outcome.name), plot,
-      fmt::format("**{}** of {} by draw; shaded: a hit. A draw without a number has no dot.", outcome.name, name));
+      fmt::format("**{}** of {} by draw (dots); shaded: range that counts as a hit. Draws without a value are omitted.",
+                  outcome.name, name));
 }
 
 std::optional<Figure> course_figure(const ExperimentResults& results, std::size_t experiment) {
@@ -78,7 +79,7 @@ std::optional<Figure> course_figure(const ExperimentResults& results, std::size_
     plot.curves.push_back(curve);
     return chart(own.name + "-course", plot,
                  plot.curves.size() > 1
-                     ? fmt::format("`{}` over time, all draws, beside {}.", column, plot.curves.front().name)
+                     ? fmt::format("`{}` over time, all draws, compared with {}.", column, plot.curves.front().name)
                      : fmt::format("`{}` over time, all draws.", column));
   }
   return {};

@@ -22,11 +22,11 @@ constexpr std::array roles_in_order = {Role::predicted, Role::selected, Role::se
 
 std::string number(std::optional<double> value) { return value ? fmt::format("{:.4g}", *value + 0.0) : "none"; }
 
-// Its verdict stands out; the role of what was predicted, too.
+// Emphasize verdicts, and the role of held-out tests.
 std::string marked(Judgement judgement) { return fmt::format("*{}*", word_of(judgement)); }
 std::string marked(Role role) { return role == Role::predicted ? "**predicted**" : word_of(role); }
 
-// An outcome, and what is to be told of it.
+// Outcome with its position and results.
 struct Row {
   std::size_t experiment;
   const Outcome* outcome;
@@ -50,7 +50,7 @@ std::string share_text(const Tally& tally) {
   return text;
 }
 
-// The first draw's number, and the range of all where there are more.
+// Number of the first draw, and the range over all draws if there are more.
 std::string numbers_text(const ExperimentResults& results, const Row& row) {
   std::vector<double> all;
   for (std::size_t d = 0; d < results.draws(row.experiment); ++d)
@@ -64,8 +64,8 @@ std::string numbers_text(const ExperimentResults& results, const Row& row) {
 
 void add_summary(ExperimentsPage& page, const ExperimentResults& results) {
   const std::vector<Row> rows = rows_of(results);
-  Table table{{"role", "experiment", "question", "observed", "measured", "expected before", "first draw (all draws)",
-               "draws that hit (probability)", "verdict"},
+  Table table{{"role", "experiment", "question", "observed", "measured", "prediction", "first draw (all draws)",
+               "draws that hit (90 % interval)", "verdict"},
               {}};
   for (const Row& row : rows) {
     const Outcome& outcome = *row.outcome;
@@ -91,20 +91,17 @@ void add_summary(ExperimentsPage& page, const ExperimentResults& results) {
     if (count == 0) continue;
     text += fmt::format("Of {} {}, {} hit, {} miss and {} undecided", plural(count, "outcome"), word_of(role),
                         verdicts[Judgement::hit], verdicts[Judgement::miss], verdicts[Judgement::undecided]);
-    text += expected > 0 ? fmt::format("; {} of {} as expected before. ", as_expected, expected) : ". ";
+    text += expected > 0 ? fmt::format("; {} of {} as predicted. ", as_expected, expected) : ". ";
   }
   page.document.blocks.emplace_back(Heading{2, "All outcomes"});
-  page.document.blocks.emplace_back(Paragraph{text.empty() ? "Nothing has run." : text.substr(0, text.size() - 1)});
+  page.document.blocks.emplace_back(Paragraph{text.empty() ? "No run has ended." : text.substr(0, text.size() - 1)});
   page.document.blocks.emplace_back(std::move(table));
   page.document.blocks.emplace_back(Paragraph{
-      "**predicted**: nothing was known of it, or used, when the model was made. *selected*: one model was chosen "
-      "before "
-      "another by it. *seen*: known before, and not used. *fitted*: parameters were chosen by it. A draw hits where "
-      "its "
-      "number agrees with what was observed. In brackets, what the draws say of the probability that a draw hits: 90 % "
-      "of it, when all values were as likely before. The verdict is hit where at least 80 % of the draws hit, miss "
-      "where "
-      "at least 80 % miss, and undecided else. A run that the numerics gave up is *not solved*, and no miss."});
+      "**predicted**: held-out test, not used to build or fit the model. *selected*: used for model selection. "
+      "*seen*: known beforehand, not used. *fitted*: parameters were fitted to it. A draw hits if its number agrees "
+      "with the observation. In brackets: 90 % credible interval of the probability that a draw hits (uniform prior). "
+      "The verdict is hit if at least 80 % of the draws hit, miss if at least 80 % miss, else undecided. *not solved*: "
+      "the solver failed; this does not count as a miss."});
 }
 
 std::string changes_text(const Experiment& experiment) {
@@ -135,9 +132,9 @@ void add_numbers(Document& page, const ExperimentResults& results, std::size_t e
   page.blocks.emplace_back(std::move(table));
 }
 
-// The mid cross-section where the first draw ended, beside that of the experiment that it is compared with.
+// Mid cross-section at the end of the first draw, beside that of the experiment it is compared with.
 Figure section_figure(const ExperimentResults& results, std::size_t e, LazyPainter& painter) {
-  (void)*painter;  // where nothing can be drawn, that is the reason to give
+  (void)*painter;  // throws the reason if nothing can be drawn
   const auto& experiments = results.experiments().experiments;
   std::vector<std::size_t> shown = {e};
   for (const Outcome& outcome : experiments[e].outcomes)
@@ -156,9 +153,8 @@ Figure section_figure(const ExperimentResults& results, std::size_t e, LazyPaint
     picture->columns.push_back(std::move(one.columns.front()));
     picture->range.high = std::max(picture->range.high, one.range.high);
   }
-  return {experiments[e].name + "-section", "",
-          "The mid cross-section at the end of the first draw, coloured by how far nodes have moved.", "",
-          (*painter).png(picture.value())};
+  return {experiments[e].name + "-section", "", "Mid cross-section at the end of the first draw. Colour: displacement.",
+          "", (*painter).png(picture.value())};
 }
 
 void add_experiment(ExperimentsPage& page, const ExperimentResults& results, std::size_t e, LazyPainter& painter) {
@@ -171,8 +167,8 @@ void add_experiment(ExperimentsPage& page, const ExperimentResults& results, std
     const std::string source = outcome.source.empty() ? "" : fmt::format(" ({})", outcome.source);
     std::string text = fmt::format("**{}.** {}", outcome.name, outcome.question);
     if (!outcome.observed.empty()) text += fmt::format(" Observed: {}{}", outcome.observed, source);
-    text += fmt::format(" A hit: {}.", criterion_text(outcome, results.experiments()));
-    if (outcome.prediction) text += fmt::format(" Expected before it was run: {}.", word_of(*outcome.prediction));
+    text += fmt::format(" Hit: {}.", criterion_text(outcome, results.experiments()));
+    if (outcome.prediction) text += fmt::format(" Prediction: {}.", word_of(*outcome.prediction));
     if (!outcome.because.empty()) text += " Because: " + outcome.because;
     document.blocks.emplace_back(Paragraph{std::move(text)});
   }
@@ -188,7 +184,7 @@ void add_experiment(ExperimentsPage& page, const ExperimentResults& results, std
   }
 }
 
-// The programs that made the runs: of a directory that was gone on with, there may be several.
+// Programs that made the runs; several if the directory was continued with another version.
 std::string made_by(const ExperimentResults& results) {
   std::set<std::string> programs;
   for (std::size_t e = 0; e < results.experiments().experiments.size(); ++e)
@@ -205,7 +201,7 @@ std::string criterion_text(const Outcome& outcome, const Experiments& experiment
   const auto bound = [](double value) { return fmt::format("{:g}", value); };
   std::string text = fmt::format("`{}`", outcome.quantity);
   if (outcome.comparing != Comparing::nothing)
-    text += fmt::format(" {} that of {}", outcome.comparing == Comparing::ratio ? "over" : "minus",
+    text += fmt::format(" {} that of {}", outcome.comparing == Comparing::ratio ? "divided by" : "minus",
                         experiments.experiments[outcome.other].name);
   if (!outcome.has_band()) return text + ": none";
   if (std::isfinite(outcome.low) && std::isfinite(outcome.high))
@@ -223,10 +219,10 @@ ExperimentsPage experiments_page(const ExperimentResults& results) {
   ExperimentsPage page{{experiments.title, {}}, {}, {}};
   const std::string by = made_by(results);
   page.document.blocks.emplace_back(Paragraph{fmt::format(
-      "{}, {}, by plica {}. Runs lie in `runs/`, all numbers in `experiments.csv`, the data of each plot in "
-      "`figures/`, the experiments as they were given in `experiments.toml`.{}",
+      "{}, {}, by plica {}. Runs are in `runs/`, all numbers in `experiments.csv`, plot data in `figures/`, and the "
+      "experiments as given in `experiments.toml`.{}",
       plural(experiments.experiments.size(), "experiment"), plural(results.runs(), "run"), by.empty() ? version() : by,
-      results.quick() ? " **A quick run: the first draw only, and no slow experiments.**" : "")});
+      results.quick() ? " **Quick run: first draw only, no slow experiments.**" : "")});
   add_summary(page, results);
   LazyPainter painter;
   for (std::size_t e = 0; e < experiments.experiments.size(); ++e)

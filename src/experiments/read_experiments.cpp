@@ -26,7 +26,7 @@ constexpr std::array<std::pair<const char*, Judgement>, 4> judgements = {{{"hit"
                                                                           {"not solved", Judgement::not_solved}}};
 constexpr std::array predictions = {judgements[0], judgements[1], judgements[2]};
 
-// What is told of an experiment, and of an outcome where that has its own.
+// Descriptive keys of an experiment, and of an outcome that has its own.
 const std::vector<std::string> told_keys = {"question", "observed", "source", "role", "prediction", "because"};
 
 std::vector<std::string> with_told_keys(std::vector<std::string> keys) {
@@ -46,10 +46,10 @@ class Reader : TomlReader {
 
   void read(const toml::table& document) {
     if (!document.contains("experiment"))
-      throw ScenarioError({{result_.file, 0, "", "holds no experiments", "write [experiment.NAME] and its outcomes"}});
+      throw ScenarioError({{result_.file, 0, "", "no experiments", "write [experiment.NAME] and its outcomes"}});
     refuse_unknown(document, "", {"format", "title", "scenario", "draws", "experiment"});
     if (const toml::node* format = document.get("format"); format && format->value<int>() != 1)
-      report(*format, "format", "is not one that this plica reads", "write format = 1");
+      report(*format, "format", "is unknown to this version", "write format = 1");
     result_.title = get<std::string>(document, "title", "", "a text").value_or(result_.name);
     has_usual_scenario_ = document.contains("scenario");
     usual_scenario_ = scenario_beside(document, "");
@@ -66,7 +66,7 @@ class Reader : TomlReader {
   }
 
  private:
-  // What lies beside built-in experiments is built in, too.
+  // Files beside built-in experiments are built in, too.
   std::optional<ScenarioSource> scenario_beside(const toml::table& in, const std::string& before) {
     const auto name = in["scenario"].value_exact<std::string>();
     const fs::path path = fs::path(result_.file).parent_path() / name.value_or("");
@@ -88,13 +88,13 @@ class Reader : TomlReader {
       diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
     } catch (const FileError& error) {
       report(*document.get("draws"), "draws", error.what(),
-             "name a CSV file beside this one: keys, then a line a draw");
+             "name a CSV file beside this one: keys, then one line per draw");
     }
   }
 
-  // Files have these names.
+  // Names become file names.
   void require_name(const toml::node& node, const std::string& name, const std::string& place) {
-    if (!is_plain_name(name)) report(node, place, "is no name", "use letters, digits, \"_\" and \"-\"");
+    if (!is_plain_name(name)) report(node, place, "is not a valid name", "use letters, digits, \"_\" and \"-\"");
   }
 
   void read_experiment(const std::string& name, const toml::node& node) {
@@ -108,8 +108,7 @@ class Reader : TomlReader {
     experiment.name = name;
     experiment.drawn = get<bool>(*given, "drawn", before, "true or false").value_or(true);
     if (!experiment.drawn && given->contains("draws"))
-      report(*given->get("draws"), before + "draws", "stands beside drawn = false, with which there is one run",
-             "remove it");
+      report(*given->get("draws"), before + "draws", "conflicts with drawn = false, which makes one run", "remove it");
     read_scenario(*given, before, experiment);
     experiment.draws = experiment.drawn ? result_.draws.runs.size() : 1;
     if (const auto most = count(*given, "draws", before))
@@ -132,7 +131,7 @@ class Reader : TomlReader {
     if (found)
       study.scenario = std::move(*found);
     else if (!given.contains("scenario") && !has_usual_scenario_)
-      report(given, before + "scenario", "is missing", "name a built-in one, or a file beside this one");
+      report(given, before + "scenario", "is missing", "give a built-in name or a file beside this one");
     if (const toml::table* set = table(given, "set", before))
       read_overrides(*set, study.overrides, study.override_lines);
     if (!experiment.drawn) return;
@@ -142,7 +141,7 @@ class Reader : TomlReader {
     }
   }
 
-  // Of an experiment, or of an outcome: what is not told of it is `usual`. What else is told belongs to a question.
+  // Read the descriptive keys of an experiment or outcome; `usual` supplies missing ones. All belong to a question.
   Outcome told_of(const toml::table& given, const std::string& before, const Outcome& usual) {
     Outcome told = usual;
     if (given.contains("question")) told = Outcome(), told.role = usual.role;
@@ -168,14 +167,14 @@ class Reader : TomlReader {
     Outcome outcome = told_of(*given, before, usual);
     outcome.name = name, outcome.line = static_cast<int>(node.source().begin.line);
     if (outcome.question.empty())
-      report(node, before + "question", "is missing", "ask it in a sentence, here or of the whole experiment");
+      report(node, before + "question", "is missing", "give it as a sentence, here or for the whole experiment");
     if (outcome.role == Role::predicted && !outcome.prediction)
       report(node, before + "prediction", "is missing",
-             "say what you expect before it is run: hit, miss or undecided; or give another role");
+             "give the result you predict before the run: hit, miss or undecided; or another role");
     if (auto quantity = get<std::string>(*given, "quantity", before, "a text"))
       outcome.quantity = *quantity;
     else if (!given->contains("quantity"))
-      report(node, before + "quantity", "is missing", "name a number of summary.json, as \"furrow_depth_um\"");
+      report(node, before + "quantity", "is missing", "give a number of summary.json, as \"furrow_depth_um\"");
     read_hit(node, *given, before, outcome);
     read_comparison(*given, before, outcome);
     experiment.outcomes.push_back(std::move(outcome));
@@ -184,15 +183,16 @@ class Reader : TomlReader {
   void read_hit(const toml::node& node, const toml::table& given, const std::string& before, Outcome& outcome) {
     outcome.hit_if_none = get<bool>(given, "hit_if_none", before, "true or false").value_or(false);
     outcome.margin = get<double>(given, "undecided", before, "a number").value_or(0);
-    if (outcome.margin < 0) report(*given.get("undecided"), before + "undecided", "is below 0", "give 0 or more");
+    if (outcome.margin < 0) report(*given.get("undecided"), before + "undecided", "is negative", "give 0 or more");
     const toml::node* hit = given.get("hit");
     if (hit == nullptr && outcome.hit_if_none) return;
-    if (hit == nullptr) return report(node, before + "hit", "is missing", "give [from, to]; -inf or inf is no bound");
+    if (hit == nullptr)
+      return report(node, before + "hit", "is missing", "give [from, to]; -inf and inf mean unbounded");
     const toml::array* bounds = hit->as_array();
     const bool is_pair =
         bounds != nullptr && bounds->size() == 2 && bounds->get(0)->is_number() && bounds->get(1)->is_number();
     if (!is_pair)
-      return report(*hit, before + "hit", "is no pair of numbers", "give [from, to]; -inf or inf is no bound");
+      return report(*hit, before + "hit", "is not a pair of numbers", "give [from, to]; -inf and inf mean unbounded");
     outcome.low = bounds->get(0)->value<double>().value_or(0);
     outcome.high = bounds->get(1)->value<double>().value_or(0);
     if (!(outcome.low <= outcome.high))
@@ -201,20 +201,20 @@ class Reader : TomlReader {
 
   void read_comparison(const toml::table& given, const std::string& before, Outcome& outcome) {
     if (given.contains("over") && given.contains("minus"))
-      return report(*given.get("minus"), before + "minus", "stands beside over", "give one of the two");
+      return report(*given.get("minus"), before + "minus", "conflicts with over", "remove one of the two");
     const char* key = given.contains("over") ? "over" : "minus";
     const auto name = get<std::string>(given, key, before, "a text");
     if (!name) return;
     outcome.comparing = key == std::string("over") ? Comparing::ratio : Comparing::difference;
     outcome.other = static_cast<std::size_t>(std::ranges::find(names_, *name) - names_.begin());
     if (outcome.other == names_.size())
-      report(*given.get(key), before + key, fmt::format("\"{}\" is no experiment of this file", *name),
+      report(*given.get(key), before + key, fmt::format("\"{}\" is not an experiment of this file", *name),
              did_you_mean(*name, names_));
     else if (outcome.other == result_.experiments.size())
-      report(*given.get(key), before + key, "is the experiment itself", "name another one");
+      report(*given.get(key), before + key, "is the experiment itself", "name another");
   }
 
-  // Draw by draw, whenever the one is run the other is, too.
+  // Check that for every draw of an experiment the one it is compared with is run, too.
   void check_comparisons() {
     for (const Experiment& experiment : result_.experiments)
       for (const Outcome& outcome : experiment.outcomes) {
@@ -223,12 +223,12 @@ class Reader : TomlReader {
         const std::string key = fmt::format("experiment.{}.outcome.{}", experiment.name, outcome.name);
         if (other.draws < experiment.draws)
           report_at(outcome.line, key,
-                    fmt::format("is compared with {}, which has {} draws of its {}", other.name, other.draws,
+                    fmt::format("is compared with {}, which has {} draws instead of {}", other.name, other.draws,
                                 experiment.draws),
                     fmt::format("give {} as many draws", other.name));
         if (other.slow && !experiment.slow)
           report_at(outcome.line, key,
-                    fmt::format("is compared with {}, which is slow, and is not slow itself", other.name),
+                    fmt::format("is compared with {}, which is slow, but is not slow itself", other.name),
                     "mark both as slow, or neither");
       }
   }
@@ -260,7 +260,7 @@ Experiments read_experiments(const std::string& name_or_file) {
   std::error_code error;
   if (!fs::exists(name_or_file, error))
     throw UsageError(fmt::format(
-        "\"{}\" is no file and no built-in experiments; give paper, living, or a file of experiments", name_or_file));
+        "\"{}\": not a file or built-in experiments; give paper, living, or a file of experiments", name_or_file));
   return parse_experiments(fs::path(name_or_file).stem().string(), name_or_file, read_file(name_or_file));
 }
 

@@ -35,20 +35,20 @@ bool is_there(const fs::path& path) {
   return fs::exists(path, error);
 }
 
-// Runs that have ended, or begun, are not those of another scenario.
+// Refuse existing runs of another scenario.
 void require_same_scenario(const fs::path& folder, const Scenario& scenario) {
   if (!is_there(folder / "scenario.toml")) return;
   const auto differences = scenario_differences(read_file(folder / "scenario.toml"), resolved_toml(scenario));
   if (differences.empty()) return;
-  const auto shown = [](const std::string& value) { return value.empty() ? "not there" : value; };
+  const auto shown = [](const std::string& value) { return value.empty() ? "missing" : value; };
   throw UsageError(fmt::format(
-      "{}: was run with another scenario: {} was {}, and is {}; change it back, remove {} to run it again, or give "
+      "{}: was run with another scenario: {} was {} and is now {}; revert the change, remove {} to rerun it, or give "
       "another --out",
       folder.string(), differences.front().key, shown(differences.front().a), shown(differences.front().b),
       folder.parent_path().string()));
 }
 
-// What a run leaves that is not the first draw.
+// Write the files of a run other than the first draw.
 void write_short(const fs::path& folder, const Scenario& scenario, const RunSummary& run) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -59,7 +59,7 @@ void write_short(const fs::path& folder, const Scenario& scenario, const RunSumm
   write_file(folder / "summary.json", run.summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
-// Whether there is what experiments that were killed as they began do not leave.
+// Whether the directory contains files other than those of experiments killed at their start.
 bool holds_something_else(const fs::path& directory) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(directory, error))
@@ -67,7 +67,7 @@ bool holds_something_else(const fs::path& directory) {
   return fs::exists(directory, error) && !fs::is_directory(directory, error);
 }
 
-// The first draw's runs are recorded, to look at; of others only numbers are kept.
+// Runs of the first draw are recorded in full; others keep only numbers.
 bool is_recorded(std::size_t draw) { return draw == 0 && can_archive(); }
 
 std::string number(std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; }
@@ -140,11 +140,11 @@ void ExperimentResults::take(const Run& run, const std::string& status, const st
   result = {};
   if (!status.empty()) {
     result.status = status, result.reason = reason;
-    std::ranges::replace(result.reason, '\n', ' ');  // it is told in a row
+    std::ranges::replace(result.reason, '\n', ' ');  // it becomes a CSV field
     return;
   }
   const fs::path made = folder(run.experiment, run.draw);
-  if (is_recorded(run.draw) && !holds_ending(made, can_report())) return;  // killed while it wrote what comes last
+  if (is_recorded(run.draw) && !holds_ending(made, can_report())) return;  // killed while it wrote its last files
   const Json summary = read_summary(made);
   if (summary.is_null() || summary.value("status", "interrupted") == "interrupted") return;
   result.status = summary.value("status", "");
@@ -194,13 +194,13 @@ void begin_experiments(const fs::path& directory, const Experiments& experiments
   std::error_code error;
   const bool holds_them = is_there(directory / "experiments.toml");
   if (!holds_them && holds_something_else(directory))
-    throw UsageError(directory.string() + ": is there already and holds no experiments; give another --out");
+    throw UsageError(directory.string() + ": exists and contains no experiments; give another --out");
   if (holds_them && overwrite) {
     for (const char* name : {"runs", "unfinished", "figures"}) fs::remove_all(directory / name, error);
     fs::remove(directory / "experiments.csv", error);
   }
   fs::create_directories(directory, error);
-  if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
+  if (error) throw FileError(directory.string() + ": cannot be created: " + error.message());
   write_file(directory / "experiments.toml", experiments.text);
 }
 
@@ -209,7 +209,7 @@ void run_experiments(ExperimentResults& results, int jobs, const ExperimentHooks
   const std::vector<ExperimentResults::Run> open = results.open_runs();
   std::vector<std::size_t> pieces(open.size());
   std::iota(pieces.begin(), pieces.end(), 0);
-  // What a worker answers: nothing where it was stopped, "ended", or "refused" and why.
+  // Answers of a worker: empty if stopped, "ended", or the reason of a refusal.
   constexpr const char* ended = "ended";
   const auto make = [&](std::size_t piece) -> std::string {
     const auto reason = results.make(open[piece], worker_is_to_stop);

@@ -1,12 +1,11 @@
-// The runs of experiments, each with its draw, and what they came to. A directory has
+// Runs of experiments, each with its draw, and their results. Directory:
 //
-//   experiments.toml      the file, as given         runs/NAME/draw-1/   all that `plica run` leaves
-//   experiments.csv       a row an outcome and draw   runs/NAME/draw-2/   scenario.toml, series.csv, summary.json
-//   NAME.md, .html        the page, with figures/     unfinished/         runs that take long, from half minute to half
-//                                                                         minute
+//   experiments.toml   the file as given             runs/NAME/draw-1/   all files of `plica run`
+//   experiments.csv    one row per outcome and draw  runs/NAME/draw-2/   scenario.toml, series.csv, summary.json
+//   NAME.md, .html     the page, with figures/       unfinished/         state of long runs, saved every 30 s
 //
-// A run that has ended has a summary.json, and is not made again: whatever is interrupted or killed, the same command
-// goes on. Runs are the same to the bit whoever makes them.
+// A finished run has a summary.json and is not repeated: after an interruption or a kill, the same command continues.
+// Results are bitwise identical, whichever process makes them.
 #pragma once
 
 #include <filesystem>
@@ -21,34 +20,34 @@
 
 namespace plica {
 
-/// How a run ended.
+/// Result of a run.
 struct DrawResult {
-  nlohmann::ordered_json summary;  // null where it has none
-  std::string status = "not_run";  // that of its summary; refused: no valid scenario; crashed: its process ended twice
-  std::string reason;              // of what is refused, failed or crashed
+  nlohmann::ordered_json summary;  // null if missing
+  std::string status = "not_run";  // of its summary; refused: invalid scenario; crashed: its process ended twice
+  std::string reason;              // why it was refused, failed or crashed
 
   [[nodiscard]] bool has_ended() const { return status != "not_run"; }
-  /// Whether its numbers are those of its scenario: not where the numerics gave up on the way.
+  /// Whether the run reached its planned end; false if the solver failed.
   [[nodiscard]] bool is_solved() const { return status == "equilibrium" || status == "end_time"; }
 };
 
-/// What an outcome came to with one draw.
+/// Outcome with one draw.
 struct DrawOutcome {
-  std::optional<double> own, other, number;  // the quantity; of the experiment that it is compared with; what is judged
-  std::optional<Judgement> judgement;        // none: has not run
+  std::optional<double> own, other, number;  // the quantity; that of the other experiment; the number judged
+  std::optional<Judgement> judgement;        // empty: not run
 };
 
-/// The runs of experiments in a directory.
+/// Runs of experiments in a directory.
 class ExperimentResults {
  public:
-  /// `quick`: the first draw only, without slow experiments. Reads what has ended. FileError where that is damaged,
-  /// UsageError where a run is of another scenario than it would be now.
+  /// Read the finished runs. `quick`: first draw only, without slow experiments. Throws FileError for a damaged file,
+  /// UsageError if a run was made with another scenario.
   ExperimentResults(const Experiments& experiments, std::filesystem::path directory, bool quick);
 
   [[nodiscard]] const Experiments& experiments() const { return experiments_; }
   [[nodiscard]] const std::filesystem::path& directory() const { return directory_; }
   [[nodiscard]] bool quick() const { return quick_; }
-  /// How many draws of an experiment are planned; none of one that is left out.
+  /// Number of planned draws of an experiment; 0 if it is skipped.
   [[nodiscard]] std::size_t draws(std::size_t experiment) const { return results_[experiment].size(); }
   [[nodiscard]] std::filesystem::path folder(std::size_t experiment, std::size_t draw) const;
   [[nodiscard]] const DrawResult& of(std::size_t experiment, std::size_t draw) const {
@@ -58,24 +57,23 @@ class ExperimentResults {
   struct Run {
     std::size_t experiment, draw;
   };
-  /// All that have not ended: of every experiment the first draw, then of each the second, and so on.
+  /// Unfinished runs: the first draw of every experiment, then the second of each, and so on.
   [[nodiscard]] std::vector<Run> open_runs() const;
   [[nodiscard]] std::size_t runs() const;
   [[nodiscard]] std::size_t ended() const { return runs() - open_runs().size(); }
-  /// Runs that have ended without a result: which, and why.
+  /// Descriptions of the runs that ended without a result, with reasons.
   [[nodiscard]] std::vector<std::string> not_solved() const;
 
-  /// Makes a run on one thread, into its folder. Nothing is returned when it was stopped; else the reason why it left
-  /// nothing, or an empty text.
+  /// Make a run on one thread in its folder. Returns empty if stopped, else the reason of a missing result or "".
   [[nodiscard]] std::optional<std::string> make(const Run& run, const std::function<bool()>& stop) const;
-  /// Reads what a run has left; with a reason, why it has left nothing.
+  /// Read the result of a run, or record the status and reason of a missing one.
   void take(const Run& run, const std::string& status = "", const std::string& reason = "");
 
   [[nodiscard]] DrawOutcome outcome(std::size_t experiment, const Outcome& outcome, std::size_t draw) const;
-  /// Of all draws that have ended.
+  /// Count the finished draws.
   [[nodiscard]] Tally tally(std::size_t experiment, const Outcome& outcome) const;
 
-  /// A row an outcome and draw; nothing in it depends on the machine or its clock.
+  /// Table with one row per outcome and draw; independent of the machine and its clock.
   [[nodiscard]] std::string csv() const;
 
  private:
@@ -86,15 +84,15 @@ class ExperimentResults {
 };
 
 struct ExperimentHooks {
-  std::function<void()> on_run = {};          // after each run that has ended
-  std::function<bool()> stop_requested = {};  // asked often; once true, what runs is given up
+  std::function<void()> on_run = {};          // after each finished run
+  std::function<bool()> stop_requested = {};  // polled often; once true, runs are abandoned
 };
 
-/// Makes a directory ready: begun anew with `overwrite`, and gone on with where it holds experiments. UsageError where
-/// it holds anything else.
+/// Prepare a directory: emptied with `overwrite`, else continued if it contains experiments. Throws UsageError if it
+/// contains other files.
 void begin_experiments(const std::filesystem::path& directory, const Experiments& experiments, bool overwrite);
 
-/// Makes the runs that have not ended, `jobs` at a time, and writes experiments.csv, also when it is stopped.
+/// Make the unfinished runs, `jobs` at a time, and write experiments.csv, also when stopped.
 void run_experiments(ExperimentResults& results, int jobs, const ExperimentHooks& hooks);
 
 }  // namespace plica

@@ -16,7 +16,7 @@ using C = MeasuredCells;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr bool csv = true, no_csv = false;
 
-// The values of all cells by a function of one.
+// Values of all cells, by a function of one cell.
 template <class OfCell>
 auto of_each(OfCell of_cell) {
   return [of_cell](const C& c) {
@@ -75,65 +75,65 @@ std::vector<double> MeasuredCells::apical_area_ratios() const {
 std::span<const CellColumn> cell_columns() {
   using enum InFrames;
   static const std::vector<CellColumn> table = {
-      {"time_s", csv, nothing, "Of the frame.", of_each([](const Cell&, const State& state) { return state.time_s; })},
-      {"cell_id", csv, integers,
-       "Number of the cell, for life. A daughter has a new one, the mother's is not used again.",
+      {"time_s", csv, nothing, "Time of the snapshot.",
+       of_each([](const Cell&, const State& state) { return state.time_s; })},
+      {"cell_id", csv, integers, "Permanent number of the cell; daughters get new ones.",
        of_each([](const Cell& cell, const State&) { return cell.lineage.id; })},
-      {"mother_id", csv, integers,
-       "Number of the cell that it is a daughter of; none (−1 in frames) in the first generation.",
+      {"mother_id", csv, integers, "Number of the mother cell; none (−1 in snapshots) in the first generation.",
        of_each([](const Cell& cell, const State&) { return cell.lineage.mother >= 0 ? cell.lineage.mother : none; }),
        -1},
-      {"generation", csv, integers, "How many divisions lie before it.",
+      {"generation", csv, integers, "Number of divisions since the first generation.",
        of_each([](const Cell& cell, const State&) { return cell.lineage.generation; })},
-      {"x_um", csv, nothing, "Barycentre: mean of the cell's eight corners.", centre_along(0)},
-      {"y_um", csv, nothing, "The same along y.", centre_along(1)},
-      {"z_um", csv, nothing, "The same along z.", centre_along(2)},
-      {"volume_um3", csv, numbers, "Volume.", [](const C& c) { return c.model.volumes().volumes(c.state.positions); }},
-      {"volume_error", no_csv, numbers, "$V/V_{target}-1$.",
+      {"x_um", csv, nothing, "Barycentre (mean of eight corners), x.", centre_along(0)},
+      {"y_um", csv, nothing, "Barycentre, y.", centre_along(1)},
+      {"z_um", csv, nothing, "Barycentre, z.", centre_along(2)},
+      {"volume_um3", csv, numbers, "Cell volume.",
+       [](const C& c) { return c.model.volumes().volumes(c.state.positions); }},
+      {"volume_error", no_csv, numbers, "Relative volume error, $V/V_{target}-1$.",
        [](const C& c) { return c.model.volumes().relative_errors(c.state.positions); }},
-      {"apical_area_um2", csv, nothing, "Area of the bilinear apical facets by 2 × 2 Gauss points.",
+      {"apical_area_um2", csv, nothing, "Apical area: bilinear facets, 2 × 2 Gauss points.",
        [](const C& c) { return c.apical_areas; }},
-      {"basal_area_um2", csv, nothing, "The same of the basal ones.",
+      {"basal_area_um2", csv, nothing, "Basal area.",
        [](const C& c) { return basal_areas(c.model.tissue, c.state.positions); }},
-      {"height_um", csv, nothing, "Mean length of the four edges from basal to apical.",
+      {"height_um", csv, nothing, "Cell height: mean length of the apicobasal edges.",
        of_each([](const Cell& cell, const State& state) { return cell_height(cell, state.positions); })},
-      {"apical_area_ratio", csv, numbers, "Apical area over that at rest; none (1 in frames) without an apical face.",
+      {"apical_area_ratio", csv, numbers, "Apical area / reference area; none (1 in snapshots) without an apical face.",
        [](const C& c) { return c.apical_area_ratios(); }, 1},
-      {"speed_um_per_s", csv, nothing, "Of the barycentre.",
+      {"speed_um_per_s", csv, nothing, "Speed of the barycentre.",
        of_each([](const Cell& cell, const State& state) { return cell_centre(cell, state.velocities).norm(); })},
-      {"pressure_Pa", csv, numbers, "What holds the cell's volume; positive in compression.", pressures_Pa},
+      {"pressure_Pa", csv, numbers, "Cell pressure (Lagrange multiplier of the volume); positive in compression.",
+       pressures_Pa},
       {"activity", csv, numbers,
-       "Of the cell's program, delay included, in the first contraction by name that it belongs to; 0 outside. Profile "
-       "and variation are no part of it.",
+       "Activity time course with delay, in the first contraction (by name) of the cell; 0 outside. Excludes profile "
+       "and "
+       "variation.",
        [](const C& c) { return activities(c.model, c.state); }},
-      {"strength", no_csv, numbers,
-       "Factor that profile and variation put on the cell in the same contraction; 0 outside.",
+      {"strength", no_csv, numbers, "Factor from spatial profile and variation in the same contraction; 0 outside.",
        [](const C& c) { return strengths(c.model); }},
       {"self_intersecting", csv, integers,
-       "1 where an apical or a basal facet of the cell passes through another of the same surface.", crossing}};
+       "1 if an apical or basal facet of the cell crosses another of the same surface.", crossing}};
   return table;
 }
 
 std::span<const NodeColumn> node_columns() {
   static const std::vector<NodeColumn> table = {
-      {"displacement_um", "From the node's place at rest.",
+      {"displacement_um", "Displacement from the reference state.",
        [](const Model& model, const State& state) {
          Vectors displacements = state.positions;
          for (std::size_t n = 0; n < displacements.size(); ++n) displacements[n] -= model.tissue.rest_positions[n];
          return displacements;
        }},
-      {"velocity_um_per_s", "At the step's end; with backward Euler the mean over the step.",
+      {"velocity_um_per_s", "Velocity at the end of the step (`backward-euler`: mean over the step).",
        [](const Model&, const State& state) { return state.velocities; }},
-      {"force_nN", "The contractions' force on the node, without their dampers.", active_forces}};
+      {"force_nN", "Force of contractions on the node, without their dampers.", active_forces}};
   return table;
 }
 
 std::span<const MidlineColumn> midline_columns() {
   static const std::vector<MidlineColumn> table = {
-      {"time_s", "Of the frame.",
+      {"time_s", "Time of the snapshot.",
        [](const C& c, const FurrowSites& sites) { return Values(sites.midline.size(), c.state.time_s); }},
-      {"ap_um",
-       "The cell's x at rest, from anterior to posterior. Where two cells meet on the midline, the right one is there.",
+      {"ap_um", "Reference x of the cell, anterior to posterior; of two cells meeting at the midline, the right one.",
        [](const C& c, const FurrowSites& sites) {
          Values values;
          for (const CellId id : sites.midline)
@@ -141,11 +141,11 @@ std::span<const MidlineColumn> midline_columns() {
          return values;
        }},
       {"depth_um",
-       "Mean depth of the cell's points on the cut; as `furrow_depth_um`. Inward is the same direction everywhere, so "
-       "near the poles, where the shell runs along it, a little shift counts for much.",
+       "Mean depth of the cell's apical midline, as `furrow_depth_um`. The inward direction is constant, so near the "
+       "poles small shifts change it much.",
        depths_um},
-      {"normal_speed_um_per_s", "Inward speed of its apical corners along the normal at rest.", inward_speeds},
-      {"apical_area_ratio", "Apical area over that at rest.", [](const C& c, const FurrowSites& sites) {
+      {"normal_speed_um_per_s", "Inward speed of the apical corners along the reference normal.", inward_speeds},
+      {"apical_area_ratio", "Apical area / reference area.", [](const C& c, const FurrowSites& sites) {
          const Values ratios = c.apical_area_ratios();
          Values values;
          for (const CellId id : sites.midline) values.push_back(ratios[id.index()]);
@@ -156,7 +156,7 @@ std::span<const MidlineColumn> midline_columns() {
 
 std::span<const SectionColumn> section_columns() {
   using S = MeasuredSections;
-  // Of each cell, by its place among them.
+  // Column of a value per cell, by its index in the section.
   const auto of_place = [](auto value) {
     return [value](const S& s) {
       Values values;
@@ -170,29 +170,30 @@ std::span<const SectionColumn> section_columns() {
     });
   };
   static const std::vector<SectionColumn> table = {
-      {"time_s", "Of the frame.", of_cell([](const Cell&, const C& c) { return c.state.time_s; })},
-      {"place_percent", "Where the section is at rest: 25, 50 or 75 % of the embryo's length from its anterior end.",
+      {"time_s", "Time of the snapshot.", of_cell([](const Cell&, const C& c) { return c.state.time_s; })},
+      {"place_percent", "Reference position of the section: 25, 50 or 75 % of the length from the anterior end.",
        of_place([](const S& s, std::size_t i) { return s.cells[i].place_percent; })},
       {"from_midline",
-       "Number of the cell from the midline at rest: 1, 2, ... to the right, −1, −2, ... to the left; 0 is a cell that "
-       "lies on the midline, where a row of cells does. Daughters count, too.",
+       "Cell number from the midline in the reference state: 1, 2, ... to the right, −1, −2, ... to the left, 0 on it. "
+       "Includes daughters.",
        of_place([](const S& s, std::size_t i) { return s.cells[i].from_midline; })},
-      {"cell_id", "As in `cells.csv`.", of_cell([](const Cell& cell, const C&) { return cell.lineage.id; })},
-      {"height_um", "Mean length of the four edges from basal to apical.",
+      {"cell_id", "Number of the cell, as in `cells.csv`.",
+       of_cell([](const Cell& cell, const C&) { return cell.lineage.id; })},
+      {"height_um", "Cell height: mean length of the apicobasal edges.",
        of_cell([](const Cell& cell, const C& c) { return cell_height(cell, c.state.positions); })},
-      {"apical_width_um", "Width of the apex across the embryo's axis, as its long axis is taken.",
+      {"apical_width_um", "Width of the apical surface across the embryo's axis, from the same rectangle.",
        of_place([](const S& s, std::size_t i) { return s.apices[i].width_across_um; })},
-      {"volume_um3", "Volume.",
+      {"volume_um3", "Cell volume.",
        of_cell([](const Cell& cell, const C& c) { return cell_volume(c.model.tissue, cell, c.state.positions); })},
-      {"apical_area_ratio", "Apical area over that at rest.", of_place([](const S& s, std::size_t i) {
+      {"apical_area_ratio", "Apical area / reference area.", of_place([](const S& s, std::size_t i) {
          const std::size_t cell = s.cells[i].cell.index();
          return s.measured.apical_areas[cell] / s.measured.rest_apical_areas[cell];
        })},
-      {"apical_long_axis_um", "Long side of the rectangle whose area has the second moments of the apex.",
+      {"apical_long_axis_um", "Long side of the rectangle with the second moments of the apical surface.",
        of_place([](const S& s, std::size_t i) { return s.apices[i].long_axis_um; })},
-      {"apical_direction_deg", "Angle of that side to the embryo's axis in the plane of the apex: 0 along, 90 across.",
+      {"apical_direction_deg", "Angle of that side to the embryo's axis: 0 along, 90 across.",
        of_place([](const S& s, std::size_t i) { return s.apices[i].direction_deg; })},
-      {"apical_anisotropy_ratio", "Its long side over its short one.",
+      {"apical_anisotropy_ratio", "Long / short side of that rectangle.",
        of_place([](const S& s, std::size_t i) { return s.apices[i].long_axis_um / s.apices[i].short_axis_um; })}};
   return table;
 }
@@ -200,9 +201,10 @@ std::span<const SectionColumn> section_columns() {
 std::span<const LineageColumn> lineage_columns() {
   static const std::vector<LineageColumn> table = {
       {"cell_id", "Number of the daughter.", [](const Lineage& lineage) { return lineage.id; }},
-      {"mother_id", "Number of her mother.", [](const Lineage& lineage) { return lineage.mother; }},
-      {"generation", "How many divisions lie before her.", [](const Lineage& lineage) { return lineage.generation; }},
-      {"birth_s", "When her mother divided.", [](const Lineage& lineage) { return lineage.birth_s; }}};
+      {"mother_id", "Number of the mother.", [](const Lineage& lineage) { return lineage.mother; }},
+      {"generation", "Number of divisions since the first generation.",
+       [](const Lineage& lineage) { return lineage.generation; }},
+      {"birth_s", "Time of the division of the mother.", [](const Lineage& lineage) { return lineage.birth_s; }}};
   return table;
 }
 

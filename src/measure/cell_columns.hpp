@@ -1,6 +1,6 @@
-// What is measured of single cells and nodes at a moment: one table each for the cells of cells.csv and of frames, the
-// nodes of frames, midline.csv and lineage.csv. Headers, rows, arrays and the tables in docs/reference/measures.md come
-// from them.
+// Output variables of cells and nodes, one table per file: cells.csv and snapshots, nodes of snapshots, midline.csv,
+// cross_section.csv and lineage.csv. Headers, rows, arrays and the tables of docs/reference/measures.md follow from
+// them.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@
 
 namespace plica {
 
-/// What the values of cells are made from. What several of them need is made once.
+/// Data shared by the variables of cells, computed once.
 struct MeasuredCells {
   MeasuredCells(const Model& of_model, const State& at_state);
 
@@ -24,32 +24,32 @@ struct MeasuredCells {
   const State& state;
   std::vector<double> apical_areas, rest_apical_areas;  // cells
 
-  /// Of every cell its apical area over that at rest; NaN where it has no apical face.
+  /// Apical area / reference area; cells. NaN without an apical face.
   [[nodiscard]] std::vector<double> apical_area_ratios() const;
 };
 
-/// What a frame has of a column.
+/// Type of a column in snapshots.
 enum class InFrames { nothing, numbers, integers };
 
-/// A value of each cell. NaN: it has none.
+/// Variable with one value per cell; NaN if missing.
 struct CellColumn {
   std::string_view name;  // with its unit
   bool in_csv;            // cells.csv
   InFrames in_frames;
   std::string_view meaning;  // for docs/reference/measures.md, in Markdown
   std::function<std::vector<double>(const MeasuredCells&)> values;
-  std::optional<double> none_in_frames = {};  // what stands for none in a frame, which holds numbers only
+  std::optional<double> none_in_frames = {};  // replacement of missing values in snapshots
 };
 
-/// In the order of cells.csv; those that it has.
+/// All variables of cells, and the names of those in cells.csv, in its order.
 std::span<const CellColumn> cell_columns();
 std::vector<std::string> cells_csv_names();
 
-/// Whether cell data of frames have this name: of these columns, or a region's. What a file has measured in its cells
-/// stands beside them under its own names; of these, it is left out.
+/// Whether plica writes cell data of this name to snapshots (a column or a region). Measured data of an input file with
+/// such a name are not copied to snapshots.
 bool is_plicas(std::string_view cell_array);
 
-/// A column that goes to one place only.
+/// Variable of a single file.
 template <class Values>
 struct PlainColumn {
   std::string_view name;
@@ -57,26 +57,26 @@ struct PlainColumn {
   std::function<Values> values;
 };
 
-/// A vector of each node, in frames.
+/// Variable with one vector per node, in snapshots.
 using NodeColumn = PlainColumn<Vectors(const Model&, const State&)>;
 std::span<const NodeColumn> node_columns();
 
-/// A value of each cell of the midline (FurrowSites::midline), in the order of midline.csv. NaN: it has none.
+/// Variable with one value per midline cell (FurrowSites::midline), in the order of midline.csv; NaN if missing.
 using MidlineColumn = PlainColumn<std::vector<double>(const MeasuredCells&, const FurrowSites&)>;
 std::span<const MidlineColumn> midline_columns();
 
-/// What the values of cells in cross-sections are made from.
+/// Data shared by the variables of cells in cross-sections.
 struct MeasuredSections {
   const MeasuredCells& measured;
   std::span<const SectionCell> cells;
-  std::span<const FaceShape> apices;  // theirs
+  std::span<const FaceShape> apices;  // of these cells
 };
 
-/// A value of each of these cells, in the order of cross_section.csv. NaN: it has none.
+/// Variable with one value per cell of the sections, in the order of cross_section.csv; NaN if missing.
 using SectionColumn = PlainColumn<std::vector<double>(const MeasuredSections&)>;
 std::span<const SectionColumn> section_columns();
 
-/// A value of a daughter when she is born, in lineage.csv.
+/// Variable of a daughter cell at birth, in lineage.csv.
 using LineageColumn = PlainColumn<double(const Lineage&)>;
 std::span<const LineageColumn> lineage_columns();
 

@@ -58,7 +58,7 @@ std::optional<double> min_apical_area_ratio(const Tissue& tissue, std::span<cons
 
 std::size_t short_edges(const Tissue& tissue, std::span<const Vec3> positions) {
   constexpr double short_ratio = 0.1;
-  std::vector<std::pair<NodeId, NodeId>> found;  // an edge of two cells comes twice
+  std::vector<std::pair<NodeId, NodeId>> found;  // a shared edge occurs twice
   for (const Cell& cell : tissue.cells)
     for (const CellEdge& edge : cell.edges) {
       if (edge.side != CellSide::apical) continue;
@@ -101,13 +101,13 @@ const CellPattern* pattern_of(const Law& law) {
 
 namespace {
 
-// Volume inside facets that look outward; empty when they do not close.
+// Volume inside outward-oriented facets; empty for an open surface.
 std::optional<double> volume_inside(std::span<const Facet> facets, std::span<const Vec3> positions) {
   Vec3 area_vector = Vec3::Zero();
   double volume = 0, area = 0;
   for (const Facet& facet : facets) {
     const auto [a, b, c, d] = gather(positions, facet);
-    // The cone from the origin, as in hex_volume.
+    // Cone from the origin, as in hex_volume.
     volume += (a.dot(b.cross(c)) + a.dot(c.cross(d)) + a.dot(b.cross(d)) + b.dot(c.cross(d))) / 12;
     const Vec3 of_facet = facet_area_vector({a, b, c, d});
     area_vector += of_facet;
@@ -120,7 +120,7 @@ std::optional<double> volume_inside(std::span<const Facet> facets, std::span<con
 }  // namespace
 
 std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> positions) {
-  // Basal facets look into the lumen.
+  // Basal facets are oriented into the lumen.
   const std::optional<double> volume = volume_inside(tissue.basal_facets, positions);
   return volume ? std::optional(-*volume) : std::nullopt;
 }
@@ -144,7 +144,7 @@ double max_volume_error(const Model& model, std::span<const Vec3> positions) {
 
 namespace {
 
-// Of a body that stands still.
+// Step without motion, for static forces.
 template <class Counts>
 Vectors forces_of_laws(const Model& model, const State& state, const Counts& counts) {
   Vectors forces(state.positions.size(), Vec3::Zero());

@@ -29,7 +29,7 @@ Interval length_of(const Tissue& tissue) {
   return length;
 }
 
-// How long intervals are together, where they overlap once; in any order.
+// Length of the union of intervals.
 double covered(std::vector<Interval> intervals) {
   std::ranges::sort(intervals, {}, &Interval::low);
   double sum = 0, end = -std::numeric_limits<double>::infinity();
@@ -42,8 +42,8 @@ double covered(std::vector<Interval> intervals) {
 
 }  // namespace
 
-std::optional<Touching> touching(const Model& model, const State& state) {
-  std::optional<Touching> result;
+std::optional<ContactState> contact_state(const Model& model, const State& state) {
+  std::optional<ContactState> result;
   std::vector<Interval> closed;
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
     const auto* law = dynamic_cast<const SelfContact*>(model.laws[l].get());
@@ -56,7 +56,7 @@ std::optional<Touching> touching(const Model& model, const State& state) {
       ++result->pairs;
       if (law->side() != CellSide::apical) continue;
       const Vectors& at_rest = model.tissue.rest_positions;
-      if (pair.p.at(at_rest).y() * pair.q.at(at_rest).y() >= 0) continue;  // both of one side
+      if (pair.p.at(at_rest).y() * pair.q.at(at_rest).y() >= 0) continue;  // both on one side
       Interval reach;
       for (const SurfacePlace* place : {&pair.p, &pair.q})
         for (const NodeId node : place->all_nodes()) reach.take(state.positions[node.index()].x());
@@ -97,11 +97,11 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180, flank_from = 60 * degree, flank_to = 120 * degree;
 
-// What a surface cut at x = 0 encloses with the axis on the flanks: the triangles between each piece of the cut and the
-// axis, counted by the way the surface looks, as far as they lie there.
+// Area between the cut of a surface at x = 0 and the axis on the flanks: signed triangles between each piece of the cut
+// and the axis, clipped to the flanks.
 double area_to_axis(std::span<const Facet> facets, std::span<const Vec3> positions) {
   using Place = Eigen::Vector2d;  // outward from the middle of the flank (y, on either side), upward (z)
-  // The part of a piece on one side of the line through the axis, at this angle from the flank's middle.
+  // Clip a piece by the line through the axis at this angle from the middle of the flank.
   const auto clip = [](Place& a, Place& b, const Place& inward) {
     const double of_a = inward.dot(a), of_b = inward.dot(b);
     if (of_a < 0 && of_b < 0) return false;
@@ -112,7 +112,7 @@ double area_to_axis(std::span<const Facet> facets, std::span<const Vec3> positio
   const double half = 0.5 * (flank_to - flank_from);
   double sum = 0;
   const auto take = [&](const std::array<Vec3, 3>& corners) {
-    std::array<Place, 2> ends;  // where the triangle's border goes to x >= 0, and where it leaves it
+    std::array<Place, 2> ends;  // where the border of the triangle enters and leaves x >= 0
     int crossings = 0;
     for (int i = 0; i < 3; ++i) {
       const Vec3 &a = corners[i], &b = corners[(i + 1) % 3];
@@ -140,7 +140,7 @@ double area_to_axis(std::span<const Facet> facets, std::span<const Vec3> positio
 
 std::optional<double> flank_section_area(const Tissue& tissue, std::span<const Vec3> positions) {
   if (!tissue.outer_shape) return std::nullopt;
-  // Basal facets look into the embryo, and take away.
+  // Basal facets are oriented inward, so their area is subtracted.
   return std::abs(area_to_axis(tissue.apical_facets, positions) + area_to_axis(tissue.basal_facets, positions));
 }
 
@@ -152,7 +152,7 @@ std::optional<double> flank_volume(const Tissue& tissue, std::span<const Vec3> p
   double sum = 0;
   for (const Cell& cell : tissue.cells) {
     if (std::abs(cell_centre(cell, tissue.rest_positions).x() - middle) > quarter) continue;
-    // From the belly: of the middles of the edges from base to apex, the lower and the upper half.
+    // Angles from the ventral midline: lower and upper half of the midpoints of apicobasal edges.
     const std::size_t sides = cell.sides(), half = sides / 2;
     std::vector<double> angles;
     for (std::size_t i = 0; i < sides; ++i) {
@@ -173,11 +173,11 @@ std::optional<Knee> knee(std::span<const double> times_s, std::span<const double
   std::size_t count = 0;
   while (count < depths_um.size() && depths_um[count] < knee_up_to_um) ++count;
   if (count == depths_um.size() || ++count < 8) return std::nullopt;
-  // Half of the time to either neighbour.
+  // Weight: half of the time to either neighbour.
   const auto weight = [&](std::size_t i) {
     return 0.5 * (times_s[std::min(i + 1, count - 1)] - times_s[i == 0 ? 0 : i - 1]);
   };
-  // depth = a + b t + c max(0, t - break), of the break that leaves the least.
+  // Fit depth = a + b t + c max(0, t - break) with the break of least residual.
   std::optional<Knee> best;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t at = 2; at + 2 < count; ++at) {

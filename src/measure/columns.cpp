@@ -15,7 +15,7 @@ namespace {
 constexpr bool series = true, no_series = false;
 using enum InSummary;
 
-// Of the speeds and displacements: none where no furrow is measured, and speeds only of a step.
+// Speeds and displacements of the furrow; empty without a furrow, speeds only for steps.
 SpeedRow speeds_of(const Tissue& tissue, const FurrowSites& sites, const State& state, bool at_rest) {
   SpeedRow row;
   row.time_s = state.time_s;
@@ -39,12 +39,12 @@ std::optional<double> lumen_ratio(const MeasuredStep& m) {
   return volume ? std::optional(*volume / *m.rest.lumen_volume_um3) : std::nullopt;
 }
 
-// A number of the solver's report; 0 at rest.
+// Column of a number of the solver's report; 0 in the reference state.
 Column::OfStep reported(int StepReport::*number) {
   return [=](const MeasuredStep& m) { return m.step != nullptr ? m.step->report.*number : 0; };
 }
 
-// Of all steps so far; 0 at rest.
+// Column of an energy summed over all steps so far; 0 in the reference state.
 Column::OfStep energy(double EnergyFlow::*number) {
   return [=](const MeasuredStep& m) { return m.step != nullptr ? m.step->energy.*number : 0; };
 }
@@ -79,7 +79,7 @@ Column of_run(std::string_view name, std::string_view meaning, std::optional<dou
             return history_of(rows).*number; }};
 }
 
-// A column's values over time, where it has any.
+// Time series of a column, without missing values.
 struct Course {
   std::vector<double> times_s, values;
 };
@@ -99,7 +99,7 @@ std::optional<Knee> knee_of(std::span<const Observation> rows) {
   return knee(depth.times_s, depth.values);
 }
 
-// When a column reaches a level for the first time.
+// Column of the first time at which another column reaches a level.
 Column::OfRun reaching(std::string_view column, double level) {
   return [=](std::span<const Observation> rows) {
     const Course course = course_of(rows, column);
@@ -142,102 +142,99 @@ MeasuredStep::MeasuredStep(const Model& of_model, const FurrowSites& at_sites, c
       step(accepted),
       furrow(furrow_shape(model.tissue, sites, state.positions)),
       speeds(speeds_of(model.tissue, sites, state, step == nullptr)),
-      touching(plica::touching(model, state)),
+      contact_state(plica::contact_state(model, state)),
       enclosed(plica::enclosed(model, state)) {}
 
 std::span<const Column> columns() {
   using M = MeasuredStep;
   static const std::vector<Column> all = {
-      {"time_s", series, nothing, "End of the step; 0 at rest.", [](const M& m) { return m.state.time_s; }},
+      {"time_s", series, nothing, "Time at the end of the step; 0 in the reference state.",
+       [](const M& m) { return m.state.time_s; }},
       {"furrow_depth_um", series, last,
-       "The apical surface of the furrow's cells cut by the plane y = 0; of all points on the cut, the largest "
-       "distance inside the shell, less the same of the same material point at rest (flat facets lie a little inside "
-       "a round shell; negative where it has gone out). Inward is against the mean apical normal of these cells at "
-       "rest: up for a belly, down for a sheet whose apices are on top. Without a shell's shape (a block): how far the "
-       "point has gone in.",
+       "Furrow depth: largest inward distance from the vitelline membrane over the apical midline (plane y = 0) of the "
+       "furrow cells, minus the reference value of the same material point. Inward: against the mean reference apical "
+       "normal of these cells. Without an embryo shape (a block): inward displacement.",
        [](const M& m) { return m.furrow.depth_um; }},
       {"furrow_depth_below_lips_um", series, last,
-       "In the mid cross-section (x = 0): height of the floor (the cut at y = 0) over the mean height of the two lips, "
-       "positive when the floor lies inside. Under 1 µm the belly is flattened and not furrowed; at rest it is "
-       "negative, the belly being convex.",
+       "Depth of the furrow bottom (apical surface at x = y = 0) below the mean of both lips, positive inward. "
+       "Negative "
+       "for the convex reference shape; below 1 µm the ventral side is flat, not furrowed.",
        [](const M& m) { return m.furrow.depth_below_lips_um; }},
       {"lip_distance_um", series, last,
-       "Between the lips: the two points where the mid cross-section left the contractile cells at rest. Material "
-       "points, fixed for the run: borders of a region, not where a furrow closes (`lips_closed`).",
+       "Distance between the furrow lips: the material points that bound the contractile region at x = 0 in the "
+       "reference state. For contact, see `lips_closed`.",
        [](const M& m) { return m.furrow.lip_distance_um; }},
       {"highest_points_distance_um", no_series, last,
-       "The paper's pair beside it: between the outermost points of the mid cross-section left and right of the "
-       "midline. They may jump.",
+       "Distance between the outermost points left and right of the midline at x = 0 (the paper's definition); may "
+       "jump.",
        [](const M& m) { return m.furrow.highest_points_distance_um; }},
       {"vml_speed_um_per_s", series, nothing,
-       "Speed of the VML's barycentre (the mean of its eight corners, as in the paper, 3.1), not of its nodes: at the "
-       "step's end with bdf2, the mean over the step with backward Euler. None at rest.",
+       "Speed of the barycentre (mean of eight corners) of the central midline cell (VML): at the end of the step "
+       "with `bdf2`, mean over the step with `backward-euler`.",
        [](const M& m) { return m.speeds.vml_speed_um_per_s; }},
-      {"vce_speed_um_per_s", series, nothing, "The same of the VCE.",
+      {"vce_speed_um_per_s", series, nothing, "Speed of the barycentre of the near-end midline cell (VCE).",
        [](const M& m) { return m.speeds.vce_speed_um_per_s; }},
-      {"speed_ratio", series, nothing, "$v_c/v_m$: the speed of the VCE over that of the VML.",
+      {"speed_ratio", series, nothing, "Speed of VCE / speed of VML, $v_c/v_m$.",
        [](const M& m) { return m.speeds.speed_ratio(); }},
       {"vml_displacement_um", series, last,
-       "Mean length of the displacements of the VML's eight corner nodes from rest, not that of its barycentre: the "
-       "paper gives displacements of *nodes* (section 4, Figs. 9 and 10).",
+       "Mean displacement of the eight corner nodes of VML from the reference state (mean of lengths, as in the "
+       "paper).",
        [](const M& m) { return m.speeds.vml_displacement_um; }},
-      {"vce_displacement_um", series, last, "The same of the VCE.",
+      {"vce_displacement_um", series, last, "Mean displacement of the corner nodes of VCE.",
        [](const M& m) { return m.speeds.vce_displacement_um; }},
       {"vml_apical_area_ratio", series, last,
-       "Apical area of the VML over that at rest; area of the bilinear facet by 2 × 2 Gauss points.",
+       "Apical area of VML / reference area; bilinear facets, 2 × 2 Gauss points.",
        [](const M& m) { return area_ratio(m, m.sites.vml); }},
-      {"vce_apical_area_ratio", series, last, "The same of the VCE.",
+      {"vce_apical_area_ratio", series, last, "Apical area of VCE / reference area.",
        [](const M& m) { return area_ratio(m, m.sites.vce); }},
-      of_run(
-          "peak_speed_ratio",
-          "`speed_ratio` of the step for which $v_c-v_m$ (VCE's speed less VML's) is largest, among steps with $v_m$ "
-          "over 1 % of its peak. Not the largest `speed_ratio`.",
-          &SpeedHistory::peak_ratio),
+      of_run("peak_speed_ratio",
+             "`speed_ratio` at the step with the largest difference $v_c-v_m$, among steps with $v_m$ above 1 % of its "
+             "peak. Not the largest `speed_ratio`.",
+             &SpeedHistory::peak_ratio),
       of_run("peak_speed_ratio_time_s", "End of that step.", &SpeedHistory::peak_ratio_time_s),
       of_run("ends_lead_until_s",
-             "First time after that when $v_c\\le v_m$, linear between steps; null where the ends never lead.",
+             "First time after that step with $v_c\\le v_m$, interpolated; null if the ends never lead.",
              &SpeedHistory::ends_lead_until_s),
       of_run("vml_displacement_at_equal_speed_um", "`vml_displacement_um` at that time.",
              &SpeedHistory::vml_displacement_at_equal_speed_um),
-      of_run("vce_displacement_at_equal_speed_um", "The same of the VCE.",
+      of_run("vce_displacement_at_equal_speed_um", "`vce_displacement_um` at that time.",
              &SpeedHistory::vce_displacement_at_equal_speed_um),
-      {"max_node_speed_um_per_s", series, last,
-       "Speed of the fastest node of the body, taken as that of the VML; 0 at rest. Equilibrium goes by it.",
+      {"max_node_speed_um_per_s", series, last, "Largest speed of a node; decides equilibrium.",
        [](const M& m) { return m.step != nullptr ? m.step->max_node_speed_um_per_s : 0; }},
-      {"max_volume_error", series, largest, "Largest $\\lvert V/V_{target}-1\\rvert$ over cells.",
+      {"max_volume_error", series, largest, "Largest relative volume error of a cell, $\\lvert V/V_{target}-1\\rvert$.",
        [](const M& m) { return max_volume_error(m.model, m.state.positions); }},
-      {"max_shell_penetration_um", no_series, largest, "Deepest place of any apical node outside the shell.",
+      {"max_shell_penetration_um", no_series, largest, "Largest distance of a node outside the vitelline membrane.",
        [](const M& m) { return shell_penetration(m.model, m.state.positions); }},
-      costly({"min_scaled_jacobian", no_series, least, "Worst corner of an element: 1 is a brick, 0 is flat.",
+      costly({"min_scaled_jacobian", no_series, least,
+              "Smallest scaled Jacobian of an element corner: 1 for a cuboid, <= 0 if inverted.",
               [](const M& m) { return min_scaled_jacobian(m.model.tissue, m.state.positions); }}),
       costly({"lumen_volume_ratio", series, last,
-              "Volume inside the basal surface over that at rest; none where that surface is not closed.",
-              lumen_ratio}),
-      count({"cells", series, nothing, "Number of cells, before those divide that are due at the step's end.",
+              "Volume inside the basal surface / reference volume; none for an open surface.", lumen_ratio}),
+      count({"cells", series, nothing, "Number of cells, before divisions due at the end of the step.",
              [](const M& m) { return static_cast<double>(m.model.tissue.cells.size()); }}),
-      {"step_s", series, nothing, "Length of the step; 0 at rest.",
+      {"step_s", series, nothing, "Length of the time step; 0 in the reference state.",
        [](const M& m) { return m.step != nullptr ? m.step->duration_s : 0; }},
-      count({"newton_iterations", series, sum,
-             "Iterations of Newton's method, those of attempts that were rejected included.",
+      count({"newton_iterations", series, sum, "Newton iterations, including rejected steps.",
              reported(&StepReport::newton_iterations)}),
       count({"linear_iterations", series, sum,
-             "Newton: solves with a factor. Linearly implicit: iterations of conjugate gradients.",
+             "Linear solves (Newton), or conjugate-gradient iterations (linearly implicit).",
              reported(&StepReport::linear_solves)}),
-      costly(count(
-          {"self_intersections", series, largest,
-           "Pairs of facets of the apical surface, or of the basal one, that pass through each other. Nothing stops "
-           "that: what comes after the first is no tissue any more.",
-           [](const M& m) { return self_intersections(m.model.tissue, m.state.positions); }})),
+      costly(count({"self_intersections", series, largest,
+                    "Pairs of apical or of basal facets that cross (self-intersection). Only `[self_contact]` prevents "
+                    "it; results "
+                    "after the first are unphysical.",
+                    [](const M& m) { return self_intersections(m.model.tissue, m.state.positions); }})),
       of_projection({"projection_sweeps", no_series, sum,
-                     "With `volume.method = \"projection\"` only: sweeps over the volumes "
-                     "([theory/paper_algorithm.md](theory/paper_algorithm.md)).",
+                     "Sweeps of the volume projection (`volume.method = \"projection\"`; "
+                     "[paper algorithm](../theory/paper_algorithm.md)).",
                      reported(&StepReport::projection_sweeps)}),
-      of_projection({"cubic_solves", no_series, sum, "Cubics solved in them.", reported(&StepReport::cubics)}),
-      of_projection({"cubic_three_real_roots", no_series, sum, "How many of those had three different real roots.",
+      of_projection(
+          {"cubic_solves", no_series, sum, "Cubic equations solved in these sweeps.", reported(&StepReport::cubics)}),
+      of_projection({"cubic_three_real_roots", no_series, sum, "Cubic equations with three distinct real roots.",
                      reported(&StepReport::cubics_with_three_roots)}),
-      count({"refused_steps", series, sum, "Steps that were tried before this one was accepted, and were too long.",
+      count({"refused_steps", series, sum, "Rejected steps: longer attempts before this step was accepted.",
              reported(&StepReport::refused)}),
-      {"vml_height_um", series, largest, "Mean height of the VML's cells.",
+      {"vml_height_um", series, largest, "Height of VML: mean length of its apicobasal edges.",
        [](const M& m) -> std::optional<double> {
          if (m.sites.vml.empty()) return std::nullopt;
          double sum = 0;
@@ -245,107 +242,103 @@ std::span<const Column> columns() {
            sum += cell_height(m.model.tissue.cells[cell.index()], m.state.positions);
          return sum / static_cast<double>(m.sites.vml.size());
        }},
-      costly({"min_apical_area_ratio", series, least, "The smallest of all cells' apical areas over those at rest.",
+      costly({"min_apical_area_ratio", series, least, "Smallest apical area / reference area of a cell.",
               [](const M& m) { return min_apical_area_ratio(m.model.tissue, m.state.positions); }}),
       costly({"min_corner_jacobian_ratio", series, least,
-              "Smallest Jacobian of an element's corner over that at rest: 0 is a corner that is flat.",
+              "Smallest corner Jacobian / reference value: 0 for a flat corner.",
               [](const M& m) { return min_corner_jacobian_ratio(m.model.tissue, m.state.positions); }}),
-      {"enclosed_volume_ratio", series, last,
-       "Of a volume that `[enclosed.NAME]` keeps, the yolk's: over what it is kept at.",
+      {"enclosed_volume_ratio", series, last, "Enclosed volume (yolk or lumen, `[enclosed.NAME]`) / target volume.",
        [](const M& m) { return part(m.enclosed, &Enclosed::volume_ratio); }},
-      {"yolk_pressure_Pa", series, last, "The pressure in it, over that of the fluid under the shell.",
+      {"yolk_pressure_Pa", series, last, "Pressure of the enclosed volume, relative to the perivitelline fluid.",
        [](const M& m) -> std::optional<double> {
          if (!m.enclosed) return std::nullopt;
          return m.enclosed->pressure_kPa / units::pascal;
        }},
-      costly({"shell_fluid_um3", series, last,
-              "Volume between the apical surface and the shell; the fluid has no pressure. None of a slice.",
-              [](const M& m) -> std::optional<double> {
-                if (!m.rest.lumen_volume_um3) return std::nullopt;  // the shell's caps are not the sheet's
-                return fluid_under_shell_um3(m.model, m.state.positions);
-              }}),
+      costly(
+          {"shell_fluid_um3", series, last,
+           "Perivitelline volume, between apical surface and vitelline membrane; its pressure is 0. None for a slice.",
+           [](const M& m) -> std::optional<double> {
+             if (!m.rest.lumen_volume_um3) return std::nullopt;  // the shell's caps are not the sheet's
+             return fluid_under_shell_um3(m.model, m.state.positions);
+           }}),
       costly({"flank_volume_ratio", series, last,
-              "Volume of the cells at 60° to 120° from the belly, on the middle half of the length, over that at rest; "
-              "a cell "
-              "counts by the part of its angle that lies there. What the furrow takes from the lateral ectoderm.",
+              "Volume of the lateral ectoderm / reference volume: cells at 60–120° from the ventral midline, middle "
+              "half of "
+              "the length, weighted by their part of the angle.",
               [](const M& m) -> std::optional<double> {
                 if (m.rest.flank_volume_um3.value_or(0) <= 0) return std::nullopt;
                 return *flank_volume(m.model.tissue, m.state.positions) / *m.rest.flank_volume_um3;
               }}),
-      count({"contact_pairs", series, largest,
-             "With `[self_contact]`: places of a surface that press on another place of it.",
-             [](const M& m) { return part(m.touching, &Touching::pairs); }}),
+      count({"contact_pairs", series, largest, "Contact pairs under pressure, with `[self_contact]`.",
+             [](const M& m) { return part(m.contact_state, &ContactState::pairs); }}),
       {"min_contact_distance_um", series, least,
-       "The nearest that two places of a surface come that look at each other; below 0 one is beyond the other.",
-       [](const M& m) -> std::optional<double> { return m.touching ? m.touching->least_gap_um : std::nullopt; }},
+       "Smallest gap between facing places of a surface; negative for penetration.",
+       [](const M& m) -> std::optional<double> {
+         return m.contact_state ? m.contact_state->least_gap_um : std::nullopt;
+       }},
       {"closed_length_ratio", series, last,
-       "Part of the embryo's length along which the apical surfaces of both sides of the midline press on each other.",
-       [](const M& m) { return part(m.touching, &Touching::closed_length_ratio); }},
+       "Fraction of the embryo's length with furrow closure: apical surfaces left and right of the midline in contact.",
+       [](const M& m) { return part(m.contact_state, &ContactState::closed_length_ratio); }},
       count({"lips_closed", series, last,
-             "1 where they do so in the mid cross-section (x = 0), whichever cells meet; the points of "
-             "`lip_distance_um` may be far apart then.",
-             [](const M& m) { return part(m.touching, &Touching::middle_is_closed); }}),
-      {"lips_closed_time_s", no_series, whole_run, "When they did first.", {}, reaching("lips_closed", 1)},
+             "Furrow closure at x = 0: 1 if apical surfaces of both sides are in contact there, whichever cells meet.",
+             [](const M& m) { return part(m.contact_state, &ContactState::middle_is_closed); }}),
+      {"lips_closed_time_s",
+       no_series,
+       whole_run,
+       "First time with `lips_closed` = 1.",
+       {},
+       reaching("lips_closed", 1)},
       {"depth_20um_time_s",
        no_series,
        whole_run,
-       "When `furrow_depth_um` passed 20 µm.",
+       "Time at which `furrow_depth_um` reaches 20 µm.",
        {},
        reaching("furrow_depth_um", 20)},
       {"knee_depth_um",
        no_series,
        whole_run,
-       "Depth at which slow turns into fast: at the break of the line of two straight pieces that is nearest to "
-       "`furrow_depth_um` over time (least squares, each row by the time it stands for), up to 20 µm; none for a "
-       "furrow that does not get so deep.",
+       "Depth at the onset of fast invagination: breakpoint of a two-segment fit to `furrow_depth_um` over time up to "
+       "20 µm (least squares, weighted by time); none if 20 µm are not reached.",
        {},
        [](std::span<const Observation> rows) { return part(knee_of(rows), &Knee::depth_um); }},
       {"knee_time_s",
        no_series,
        whole_run,
-       "When that is.",
+       "Time of the onset of fast invagination.",
        {},
        [](std::span<const Observation> rows) { return part(knee_of(rows), &Knee::time_s); }},
       {"active_work_nN_um", series, last,
-       "What cells have put in so far: work of their tensions and contractions, of programs that stiffen something, of "
-       "applied pressures ([theory/energy.md](theory/energy.md)). 1 nN µm is 1 fJ.",
+       "Active work so far: by tensions and contractions, imposed stiffening, applied pressures "
+       "([energy](../theory/energy.md)). 1 nN µm = 1 fJ.",
        energy(&EnergyFlow::active)},
-      {"stored_energy_nN_um", series, last,
-       "What the tissue has stored of it so far: elastic energies less those at the beginning.",
-       energy(&EnergyFlow::stored)},
+      {"stored_energy_nN_um", series, last, "Elastic energy stored since the start.", energy(&EnergyFlow::stored)},
       {"dissipated_energy_nN_um", series, last,
-       "What has been lost so far: to drag and viscosity, to rest areas that flow, to programs that let go of "
-       "something, to contacts that change.",
+       "Energy dissipated so far: drag, viscosity, relaxation of stress-free shapes, imposed softening, contact "
+       "changes.",
        energy(&EnergyFlow::dissipated)},
       {"energy_imbalance_ratio", series, last,
-       "What is missing of the active work so far: the work, less what is stored and dissipated, over the work. The "
-       "error of finite steps, of first or second order as `time.integrator` is; large in the first steps, when hardly "
-       "any work has been done. None without active work.",
+       "(Active work − stored − dissipated) / active work: error of finite time steps, of the order of "
+       "`time.integrator`; large in the first steps. None without active work.",
        [](const M& m) -> std::optional<double> {
          if (m.step == nullptr || m.step->energy.active <= 0) return std::nullopt;
          const auto& [active, stored, dissipated] = m.step->energy;
          return (active - stored - dissipated) / active;
        }},
       costly({"flank_section_area_ratio", series, last,
-              "Area of the tissue cut at x = 0, between its basal and its apical surface, at 60° to 120° from the "
-              "belly on "
-              "both sides, over that at rest: what a cross-section under the microscope, or a model in two dimensions, "
-              "shows "
-              "of the lateral ectoderm. `flank_volume_ratio` is the same of a volume.",
+              "Cross-sectional area of the lateral ectoderm at x = 0 (60–120° from the ventral midline, both sides) / "
+              "reference area; comparable with micrographs and two-dimensional models.",
               [](const M& m) -> std::optional<double> {
                 if (m.rest.flank_section_um2.value_or(0) <= 0) return std::nullopt;
                 return *flank_section_area(m.model.tissue, m.state.positions) / *m.rest.flank_section_um2;
               }}),
-      costly(count(
-          {"short_edges", series, largest,
-           "Apical edges of cells that are shorter than a tenth of their length at rest: cells of a tissue would "
-           "change neighbours there, which plica's do not. Of an edge of 7 µm that is 0.7 µm, where a microscope no "
-           "longer tells two vertices from one.",
-           [](const M& m) { return static_cast<double>(short_edges(m.model.tissue, m.state.positions)); }})),
+      costly(count({"short_edges", series, largest,
+                    "Apical cell edges shorter than 10 % of their reference length; a tissue would exchange neighbours "
+                    "(T1) there, "
+                    "plica does not.",
+                    [](const M& m) { return static_cast<double>(short_edges(m.model.tissue, m.state.positions)); }})),
       {"midline_waviness_um", series, last,
-       "How much the furrow's floor goes up and down along its length, as it does where the sheet buckles: of the "
-       "midline's contractile cells on the middle half of their length, how far their depths are from a polynomial of "
-       "the fourth degree (root mean square). None where fewer than ten cells lie there.",
+       "Waviness (buckling) of the furrow bottom along its length: root-mean-square deviation of the depths of "
+       "contractile midline cells, middle half, from a quartic polynomial. None with fewer than ten cells.",
        [](const M& m) { return midline_waviness_um(m.model.tissue, m.sites, m.state.positions); }},
   };
   return all;
@@ -353,7 +346,7 @@ std::span<const Column> columns() {
 
 std::size_t column_index(std::string_view name) {
   const auto found = std::ranges::find(columns(), name, &Column::name);
-  if (found == columns().end()) throw std::logic_error("there is no column " + std::string(name));
+  if (found == columns().end()) throw std::logic_error("unknown column " + std::string(name));
   return static_cast<std::size_t>(found - columns().begin());
 }
 
@@ -363,7 +356,7 @@ std::vector<const Column*> summary_columns() {
   std::vector<const Column*> found;
   for (const Column& column : columns())
     if (column.in_summary != nothing) found.push_back(&column);
-  // There, areas stand before displacements: a contract that is older than this table.
+  // summary.json lists areas before displacements; this order predates the table.
   const auto at = [&](std::string_view name) { return std::ranges::find(found, name, &Column::name); };
   std::rotate(at("vml_displacement_um"), at("vml_apical_area_ratio"), at("peak_speed_ratio"));
   return found;

@@ -1,7 +1,6 @@
-// The measures of a step and of a run, one row of a table each: name, meaning, who computes it, where it goes. The
-// header and rows of series.csv, the rows of a checkpoint, the values of summary.json, the names that [expect] knows
-// and the table in docs/reference/measures.md come from it: a new measure is a new row, and the function that the row
-// names.
+// Output variables of steps and runs, one table row each: name, meaning, function, destination. The header and rows of
+// series.csv, checkpoints, summary.json, names of [expect] and the table of docs/reference/measures.md follow from it;
+// a new variable is a new row and its function.
 #pragma once
 
 #include <functional>
@@ -22,12 +21,12 @@ namespace plica {
 struct AcceptedStep;
 struct Observation;
 
-/// What is measured of the body at rest, once.
+/// Measures of the reference state, computed once.
 struct RestMeasures {
   std::optional<double> lumen_volume_um3, flank_volume_um3, flank_section_um2;
 };
 
-/// What the measures of a step are made from. What several of them need is made once.
+/// Data shared by the variables of a step, computed once.
 struct MeasuredStep {
   MeasuredStep(const Model& of_model, const FurrowSites& at_sites, const RestMeasures& at_rest, const State& at_its_end,
                const AcceptedStep* accepted);
@@ -35,15 +34,15 @@ struct MeasuredStep {
   const Model& model;
   const FurrowSites& sites;
   const RestMeasures& rest;
-  const State& state;        // at its end
-  const AcceptedStep* step;  // null for the body at rest, before the first
+  const State& state;        // at the end of the step
+  const AcceptedStep* step;  // null for the reference state
   FurrowShape furrow;
   SpeedRow speeds;
-  std::optional<Touching> touching;
+  std::optional<ContactState> contact_state;
   std::optional<Enclosed> enclosed;
 };
 
-/// What summary.json has of a column.
+/// Value of a column in summary.json.
 enum class InSummary { nothing, last, largest, least, sum, whole_run };
 
 struct Column {
@@ -54,29 +53,29 @@ struct Column {
   bool in_series;
   InSummary in_summary;
   std::string_view meaning;    // for docs/reference/measures.md, in Markdown
-  OfStep of_step;              // its value after a step; or
-  OfRun of_run = {};           // its value in the summary, of the run as a whole
-  bool is_count = false;       // a whole number
-  bool of_projection = false;  // null in the summary of a run that does not project volumes
-  bool is_costly = false;      // takes more than a hundredth of a step; nothing else is made from it
+  OfStep of_step;              // value after a step; or
+  OfRun of_run = {};           // value of the whole run, for the summary
+  bool is_count = false;       // integer
+  bool of_projection = false;  // null in the summary unless the run projects volumes
+  bool is_costly = false;      // takes over 1 % of a step; not used by other columns
 };
 
-/// All of them, in the order of series.csv.
+/// All columns, in the order of series.csv.
 std::span<const Column> columns();
 
-/// The place of a column in the table. std::logic_error when there is none of that name.
+/// Index of a column. Throws std::logic_error for an unknown name.
 std::size_t column_index(std::string_view name);
 
-/// Those of series.csv, monitors apart.
+/// Names of the columns of series.csv, without monitors.
 std::vector<std::string> series_names();
 
-/// The columns that summary.json has, in its order.
+/// Columns of summary.json, in its order.
 std::vector<const Column*> summary_columns();
 
-/// What the summary has of each of those, of the rows of a whole run (the one at rest first).
+/// Values of these columns from the rows of a whole run (reference state first).
 std::vector<std::pair<const Column*, std::optional<double>>> summary_values(std::span<const Observation> rows);
 
-/// The tables of docs/reference/measures.md, in Markdown.
+/// Tables of docs/reference/measures.md, in Markdown.
 std::string measures_markdown();
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// The tables of docs/reference/measures.md.
+// Tables of docs/reference/measures.md.
 #include <fmt/format.h>
 
 #include <array>
@@ -24,9 +24,9 @@ const char* owner(QuantityInfo::Of of) {
 std::string step_table() {
   std::string text =
       "### Each step: series.csv and summary.json\n\n"
-      "`series.csv` has a row for the body at rest and one for every step. `summary.json` has one number of them: the "
-      "last,\nlargest or smallest one, their sum, or one that only the whole run has.\n\n"
-      "| measure | series | summary | meaning |\n|---|---|---|---|\n";
+      "`series.csv` has one row for the reference state and one per accepted step. `summary.json` has one number per "
+      "variable: the\nlast, largest or smallest value, the sum, or a number of the whole run.\n\n"
+      "| variable | series | summary | meaning |\n|---|---|---|---|\n";
   for (const Column& column : columns())
     text += fmt::format("| `{}` | {} | {} | {} |\n", column.name, mark(column.in_series), in_summary(column),
                         column.meaning);
@@ -36,24 +36,24 @@ std::string step_table() {
 std::string cell_table() {
   std::string text =
       "\n### Each cell: cells.csv and frames\n\n"
-      "`cells.csv` has a row for every cell in every frame, up to 2000 cells (`output.cells_csv`).\n\n"
-      "| measure | cells.csv | frames | meaning |\n|---|---|---|---|\n";
+      "`cells.csv` has one row per cell and snapshot, up to 2000 cells (`output.cells_csv`).\n\n"
+      "| variable | cells.csv | frames | meaning |\n|---|---|---|---|\n";
   for (const CellColumn& column : cell_columns())
     text += fmt::format("| `{}` | {} | {} | {} |\n", column.name, mark(column.in_csv),
                         mark(column.in_frames != InFrames::nothing), column.meaning);
-  return text + "| `region_NAME` |  | x | 1 in cells of the region, 0 in others. |\n";
+  return text + "| `region_NAME` |  | x | 1 in cells of the region, else 0. |\n";
 }
 
-// Of columns that all go to one place.
+// Table of columns that go to one file only.
 template <class Columns>
 std::string plain_table(const char* heading, const Columns& columns) {
-  std::string text = fmt::format("\n### {}\n\n| measure | meaning |\n|---|---|\n", heading);
+  std::string text = fmt::format("\n### {}\n\n| variable | meaning |\n|---|---|\n", heading);
   for (const auto& column : columns) text += fmt::format("| `{}` | {} |\n", column.name, column.meaning);
   return text;
 }
 
 std::string quantity_table() {
-  std::string text = "\n### Quantities of monitors\n\n| quantity | of each | unit | meaning |\n|---|---|---|---|\n";
+  std::string text = "\n### Quantities of monitors\n\n| quantity | per | unit | meaning |\n|---|---|---|---|\n";
   for (const QuantityInfo& info : quantities())
     text += fmt::format("| `{}` | {} | {} | {} |\n", info.name, owner(info.of),
                         info.unit.empty() ? "" : fmt::format("`{}`", info.unit), info.meaning);

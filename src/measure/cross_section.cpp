@@ -11,9 +11,9 @@
 namespace plica {
 namespace {
 
-constexpr double nothing_um = 1e-6;  // shorter than that is rounding
+constexpr double nothing_um = 1e-6;  // below this: rounding error
 
-// Cells whose apical faces the plane at x meets at rest, by their angles from the midline, left to right.
+// Cells whose reference apical faces meet the plane at x, ordered by angle from the midline, left to right.
 std::vector<std::pair<double, CellId>> ring_at(const Tissue& tissue, double x, const Vec3& outward) {
   std::map<CellId, double> angles;
   for (const Facet& facet : tissue.apical_facets) {
@@ -24,7 +24,7 @@ std::vector<std::pair<double, CellId>> ring_at(const Tissue& tissue, double x, c
     }
     if (low > x || high <= x) continue;
     Vec3 centre = mean_apical(tissue.cells[facet.cell.index()], tissue.rest_positions);
-    if (std::abs(centre.y()) < nothing_um) centre.y() = 0;  // one opposite to the midline counts as right
+    if (std::abs(centre.y()) < nothing_um) centre.y() = 0;  // a cell opposite the midline counts as right
     angles[facet.cell] = std::atan2(centre.y(), centre.dot(outward));
   }
   std::vector<std::pair<double, CellId>> ring;
@@ -34,7 +34,7 @@ std::vector<std::pair<double, CellId>> ring_at(const Tissue& tissue, double x, c
   return ring;
 }
 
-// The second moments of the area of a cell's facets, per area, about their mean; and which way they face.
+// Second moments of area of a cell's facets, per area, about their mean; and their normal.
 struct Moments {
   double area = 0;
   Vec3 normal = Vec3::Zero(), first = Vec3::Zero();
@@ -65,7 +65,7 @@ struct Moments {
     const Mat3 spread = second / area - middle * middle.transpose();
     const double aa = along.dot(spread * along), ac = along.dot(spread * across), cc = across.dot(spread * across);
     const double mean = 0.5 * (aa + cc), half = std::hypot(0.5 * (aa - cc), ac);
-    const auto length = [](double moment) { return std::sqrt(12 * std::max(0.0, moment)); };  // of a rectangle's side
+    const auto length = [](double moment) { return std::sqrt(12 * std::max(0.0, moment)); };  // side of the rectangle
     const double angle = 0.5 * std::atan2(2 * ac, aa - cc);
     return {length(mean + half), length(mean - half), std::abs(angle) * 180 / std::numbers::pi, length(aa), length(cc)};
   }
@@ -86,7 +86,7 @@ std::vector<SectionCell> section_cells(const Tissue& tissue, const Vec3& outward
     const auto left = std::ranges::count_if(ring, is_left);
     const bool on_midline = std::ranges::count(ring, 0.0, &std::pair<double, CellId>::first) > 0;
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      const int place = static_cast<int>(i) - static_cast<int>(left);  // from the first that is not left
+      const int place = static_cast<int>(i) - static_cast<int>(left);  // from the first that is not on the left
       cells.push_back({ring[i].second, percent, place < 0 || on_midline ? place : place + 1});
     }
   }

@@ -1,4 +1,4 @@
-// Rings of cells around the embryo, each cell by its number from the midline, and the shapes of their apices.
+// Cross-sections: rings of cells numbered from the midline, and shapes of their apical surfaces.
 #pragma once
 
 #include <span>
@@ -8,27 +8,27 @@
 
 namespace plica {
 
-/// A cell of a cross-section.
+/// Cell of a cross-section.
 struct SectionCell {
   CellId cell;
-  int place_percent = 50;  // where the section is, of the embryo's length at rest, from its anterior end
-  int from_midline = 0;    // 1, 2, ... to the right (y > 0), -1, -2, ... to the left; 0 lies on the midline
+  int place_percent = 50;  // reference position of the section, % of the length from the anterior end
+  int from_midline = 0;    // 1, 2, ... to the right (y > 0), -1, -2, ... to the left; 0 on the midline
 };
 
-/// Those of the sections at 25, 50 and 75 % of the length, the middle first, each from left to right: the cells whose
-/// apical faces a plane just behind the place meets at rest, in the order of their angles about the axis, from the
-/// midline of the side towards `outward`. Of a tissue so short that sections are the same, the first of them.
+/// Cells of the sections at 50, 25 and 75 % of the length, each from left to right: cells whose reference apical faces
+/// meet a plane just behind the position, ordered by angle about the axis from the midline on the side of `outward`.
+/// Equal sections of a short tissue are listed once.
 std::vector<SectionCell> section_cells(const Tissue& tissue, const Vec3& outward);
 
-/// The shape of a cell's apex: of the rectangle whose area has the same second moments.
+/// Shape of an apical surface: rectangle with the same second moments of area.
 struct FaceShape {
   double long_axis_um = 0, short_axis_um = 0;
   double direction_deg = 0;    // of the long axis: 0 along the embryo's axis, 90 across
   double length_along_um = 0;  // along the embryo's axis
-  double width_across_um = 0;  // across it
+  double width_across_um = 0;  // across the axis
 };
 
-/// Of each of these cells. NaN where the apex is flat on the embryo's axis (at a pole) or gone.
+/// Shapes of the apical surfaces; cells. NaN at a pole or for a vanished apical surface.
 std::vector<FaceShape> apical_shapes(const Tissue& tissue, std::span<const CellId> cells,
                                      std::span<const Vec3> positions);
 

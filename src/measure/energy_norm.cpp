@@ -25,7 +25,7 @@ std::optional<double> relative_energy_norm(const RestMesh& mesh, double poisson_
     reference += of_b.dot(stiffness * of_b);
     rounding += 1e-13 * stiffness.trace() / 24 * of_b.squaredNorm();
   }
-  if (!(reference > rounding)) return std::nullopt;  // at rest, or moved as a whole
+  if (!(reference > rounding)) return std::nullopt;  // undeformed, or moved rigidly
   return std::sqrt(std::max(0.0, difference) / reference);
 }
 

@@ -1,4 +1,4 @@
-// How far two deformations of one mesh lie apart, weighed by stiffness.
+// Relative energy norm of the difference between two deformations of a mesh.
 #pragma once
 
 #include <optional>
@@ -9,16 +9,16 @@
 
 namespace plica {
 
-/// Elements of one mesh at rest: what the stiffness K of the energy norm is made from.
+/// Undeformed elements, which define the stiffness K of the energy norm.
 struct RestMesh {
   std::span<const std::array<NodeId, 8>> elements;
   std::span<const HexPoints> rest_shapes;  // elements; um
-  std::vector<bool> chosen;                // elements that count; empty: all
+  std::vector<bool> chosen;                // elements included; empty: all
 };
 
-/// sqrt((a - b)^T K (a - b)) / sqrt(b^T K b) of displacements a and b from rest (nodes; um). K is the linear stiffness
-/// of the elements' rest shapes, incompatible modes condensed, at this Poisson's ratio; Young's modulus cancels. In the
-/// fixed frame, so turns of the whole body count. Empty where b has no energy: nothing is relative to it.
+/// Compute sqrt((a - b)^T K (a - b)) / sqrt(b^T K b) for displacements a and b (nodes; um). K: linear stiffness of the
+/// undeformed elements with condensed incompatible modes for this Poisson's ratio; Young's modulus cancels. Includes
+/// rigid rotations. Empty if b has no energy.
 std::optional<double> relative_energy_norm(const RestMesh& mesh, double poisson_ratio, std::span<const Vec3> a,
                                            std::span<const Vec3> b);
 

@@ -13,7 +13,7 @@ namespace plica {
 namespace {
 
 constexpr int axis_x = 0, axis_y = 1;
-constexpr double same_place_um = 1e-6;  // closer than this, two places at rest are mirror images of one
+constexpr double same_place_um = 1e-6;  // tolerance for mirror images in the reference state
 
 // Facets of the given cells.
 std::vector<bool> facets_of(const Tissue& tissue, const CellSet& cells) {
@@ -26,7 +26,7 @@ Vec3 rest_area_vector(const Tissue& tissue, const Facet& facet) {
   return facet_area_vector(gather(tissue.rest_positions, facet));
 }
 
-// The mean apical normal of cells at rest, in the plane y = 0; towards the belly where they face every way.
+// Mean reference apical normal of cells, in the plane y = 0; ventral if the normals cancel.
 Vec3 mean_outward(const Tissue& tissue, const CellSet& cells) {
   Vec3 sum = Vec3::Zero();
   double area = 0;
@@ -38,20 +38,20 @@ Vec3 mean_outward(const Tissue& tissue, const CellSet& cells) {
   }
   sum.y() = 0;
   if (sum.norm() <= 1e-6 * area) return -Vec3::UnitZ();
-  // Of cells that lie evenly about an axis, just along it.
+  // Exactly along the axis for cells distributed evenly about it.
   for (double& component : sum)
     if (std::abs(component) < 1e-6 * sum.norm()) component = 0;
   return sum.normalized();
 }
 
-// Facets that face outward at rest.
+// Facets oriented outward in the reference state.
 std::vector<bool> outward_facets(const Tissue& tissue, const Vec3& outward) {
   std::vector<bool> wanted;
   for (const Facet& facet : tissue.apical_facets) wanted.push_back(rest_area_vector(tissue, facet).dot(outward) > 0);
   return wanted;
 }
 
-// How far a material point lies inside the shell, less the same at rest. Without a shell: how far it has gone in.
+// Distance of a material point inside the shell, minus the reference value. Without a shell: inward displacement.
 double depth_of(const Tissue& tissue, const Vec3& rest, const Vec3& now, const Vec3& outward) {
   if (!tissue.outer_shape) return (rest - now).dot(outward);
   return tissue.outer_shape->depth(now, outward) - tissue.outer_shape->depth(rest, outward);
@@ -62,7 +62,7 @@ double depth_of(const Tissue& tissue, const MaterialPoint& point, const Vec3& ou
   return depth_of(tissue, point.at(tissue.rest_positions), point.at(positions), outward);
 }
 
-// Cells with an apical facet that meets y = 0 at rest.
+// Cells with an apical facet that meets y = 0 in the reference state.
 std::vector<CellId> cells_on_midline(const Tissue& tissue, const std::vector<bool>& facets) {
   std::set<CellId> cells;
   for (const SurfacePoint& point : cut_apical_surface(tissue, tissue.rest_positions, axis_y, facets))
@@ -70,9 +70,9 @@ std::vector<CellId> cells_on_midline(const Tissue& tissue, const std::vector<boo
   return {cells.begin(), cells.end()};
 }
 
-// The two points where the plane x = 0 leaves the contractile cells at rest: left (y < 0) and right.
+// Lips: points where the plane x = 0 leaves the contractile cells in the reference state, left (y < 0) and right.
 bool find_lips(const Tissue& tissue, FurrowSites& sites) {
-  // Edges of contractile facets that no other contractile facet has.
+  // Boundary edges of the contractile facets.
   std::map<std::pair<NodeId, NodeId>, int> uses;
   const auto edge = [&](const Facet& facet, int i) { return std::minmax(facet.nodes[i], facet.nodes[(i + 1) % 4]); };
   for (const Facet& facet : tissue.apical_facets)
@@ -93,8 +93,8 @@ bool find_lips(const Tissue& tissue, FurrowSites& sites) {
   return left < 0 && right > 0;
 }
 
-// Cells on the midline of the furrow's side at rest, anterior to posterior. Where two meet there, the one on the right
-// (y > 0) stands for both.
+// Reference midline cells on the side of the furrow, anterior to posterior. Of two that meet there, the right one (y >
+// 0) represents both.
 std::vector<CellId> midline_of(const Tissue& tissue, const Vec3& outward) {
   std::vector<CellId> midline = cells_on_midline(tissue, outward_facets(tissue, outward));
   std::erase_if(midline, [&](CellId cell) {
@@ -114,7 +114,7 @@ FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile
   sites.midline = midline_of(tissue, sites.outward);
   const auto rest_x = [&](CellId cell) { return cell_centre(tissue.cells[cell.index()], tissue.rest_positions).x(); };
 
-  // Distances from the middle that contractile midline cells have, each once, with the cells that have it.
+  // Distinct distances of contractile midline cells from the centre, each with its cells.
   std::vector<std::pair<double, MonitoredCells>> by_distance;
   for (const CellId cell : cells_on_midline(tissue, facets_of(tissue, contractile))) {
     const double distance = std::abs(rest_x(cell));
@@ -155,7 +155,7 @@ FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::sp
 
   const Vec3 left = sites.lips[0].at(positions), right = sites.lips[1].at(positions);
   shape.lip_distance_um = (right - left).norm();
-  // The floor: the cross-section's height at y = 0, between the nearest points on either side.
+  // Furrow bottom: height of the cross-section at y = 0, between the nearest points on either side.
   const auto height = [&](const Vec3& p) { return p.dot(sites.outward); };
   Vec3 before(0, -1e300, 0), after(0, 1e300, 0);
   Vec3 highest_left = -1e300 * sites.outward, highest_right = highest_left;
@@ -184,7 +184,7 @@ std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, const Fu
     double depth = 0;
     int points = 0;
   };
-  // A cell that begins at the plane is cut there, though its nodes have come to lie a little beside it.
+  // A cell that borders the plane counts as cut there, even if its nodes have moved slightly off it.
   constexpr double at_plane_um = 0.05;
   Vectors snapped(positions.begin(), positions.end());
   for (Vec3& x : snapped)
@@ -204,7 +204,7 @@ std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, const Fu
 std::optional<double> midline_waviness_um(const Tissue& tissue, const FurrowSites& sites,
                                           std::span<const Vec3> positions) {
   constexpr int terms = 5, fewest_cells = 10;
-  std::vector<std::pair<double, double>> points;  // x at rest, depth
+  std::vector<std::pair<double, double>> points;  // reference x, depth
   for (const CellId id : sites.midline) {
     if (!sites.contractile[id.index()]) continue;
     const Cell& cell = tissue.cells[id.index()];

@@ -1,5 +1,5 @@
-// The furrow, measured: depth, lips, and the cells at the middle (VML) and near the ends (VCE) of the ventral midline.
-// Pure functions of tissue and positions; what every word means stands in docs/reference/measures.md.
+// Furrow measures: depth, lips, central (VML) and near-end (VCE) cells of the ventral midline. Pure functions of tissue
+// and positions; definitions: docs/reference/measures.md.
 #pragma once
 
 #include <array>
@@ -13,45 +13,44 @@
 
 namespace plica {
 
-/// A monitored cell together with its mirror images: values are their means.
+/// Cell with its mirror images; values are means over them.
 using MonitoredCells = std::vector<CellId>;
 
-/// What is measured, chosen once from the tissue at rest.
+/// Cells and points to measure, chosen from the reference state.
 struct FurrowSites {
-  CellSet contractile;                // the cells whose furrow is measured
-  Vec3 outward = -Vec3::UnitZ();      // their mean apical normal at rest, in the plane y = 0; depth is against it
+  CellSet contractile;                // cells of the furrow
+  Vec3 outward = -Vec3::UnitZ();      // mean reference apical normal, in the plane y = 0; depth is opposite
   MonitoredCells vml;                 // centre of the midline
   MonitoredCells vce;                 // near its ends
-  int midline_pairs = 0;              // contractile midline cells from an end to the middle
-  std::vector<CellId> midline;        // cells on y = 0 whose apices face outward, anterior to posterior
-  std::array<MaterialPoint, 2> lips;  // left, right: where the mid cross-section leaves the contractile cells
+  int midline_pairs = 0;              // contractile midline cells from an end to the centre
+  std::vector<CellId> midline;        // cells on y = 0 with outward apical surfaces, anterior to posterior
+  std::array<MaterialPoint, 2> lips;  // left, right: borders of the contractile cells at x = 0
   bool has_lips = false;
 };
 
-/// `vce_from_end`: VCE is this cell of the contractile midline counted from its ends, 1 the last.
+/// Choose the sites. `vce_from_end`: position of VCE in the contractile midline from its ends, 1 the last.
 FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile, int vce_from_end);
 
-/// The same sites after a division: of a monitored cell both daughters. Lips are nodes and stay.
+/// Update the sites after a division: both daughters replace a cell; lips are material points and remain.
 void follow_division(FurrowSites& sites, const Tissue& tissue, const Division& division);
 
-/// Everything about the furrow at one moment. What has no value is empty.
+/// Furrow geometry at one time; missing values are empty.
 struct FurrowShape {
-  std::optional<double> depth_um;             // from the shell to the midline, less what flat facets have at rest
-  std::optional<double> depth_below_lips_um;  // from the lips' mean height down to the floor in the mid cross-section
-  std::optional<double> lip_distance_um;      // between the material lips
+  std::optional<double> depth_um;                    // from the shell to the midline, minus the reference value
+  std::optional<double> depth_below_lips_um;         // from the mean of the lips to the furrow bottom at x = 0
+  std::optional<double> lip_distance_um;             // between the material lips
   std::optional<double> highest_points_distance_um;  // between the outermost points left and right of the midline
 };
 
 FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions);
 
-/// Depth of each cell's apical midline, mean over its points on y = 0; as furrow_shape's for the whole furrow. Empty
-/// where a cell has none.
+/// Depth of the apical midline of each cell, mean over its points on y = 0, defined as in furrow_shape; cells, empty
+/// without points.
 std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, const FurrowSites& sites,
                                                   std::span<const CellId> cells, std::span<const Vec3> positions);
 
-/// How much the midline goes up and down along the furrow: the root mean square of how far its contractile cells'
-/// depths are from a polynomial of the fourth degree in x at rest, over the middle half of their length. Empty where
-/// fewer than ten cells lie there.
+/// Waviness of the midline: root-mean-square deviation of the depths of contractile cells from a quartic polynomial in
+/// reference x, over the middle half of their length. Empty with fewer than ten cells.
 std::optional<double> midline_waviness_um(const Tissue& tissue, const FurrowSites& sites,
                                           std::span<const Vec3> positions);
 

@@ -20,43 +20,37 @@ constexpr auto may = Info::Axis::may_have, must = Info::Axis::must_have, no_axis
 
 constexpr std::array<Info, 16> table = {{
     {Quantity::position, "position", "um", Info::Of::node, "Coordinate along `axis`.", must},
-    {Quantity::displacement, "displacement", "um", Info::Of::node, "From its place at rest: norm, or component.", may},
+    {Quantity::displacement, "displacement", "um", Info::Of::node,
+     "Displacement from the reference state: norm, or component.", may},
     {Quantity::speed, "speed", "um_per_s", Info::Of::node,
-     "Norm of the velocity at the step's end (with backward Euler the mean over the step); 0 before the first."},
-    {Quantity::velocity, "velocity", "um_per_s", Info::Of::node, "Component of that velocity along `axis`.", must},
+     "Norm of the velocity at the end of the step (`backward-euler`: mean over the step)."},
+    {Quantity::velocity, "velocity", "um_per_s", Info::Of::node, "Component of the velocity along `axis`.", must},
     {Quantity::deviation, "deviation", "um", Info::Of::node,
-     "From the same node of the run in the directory `reference`: norm, or component.", may, Info::Reference::run},
+     "Displacement from the same node of the run `reference`: norm, or component.", may, Info::Reference::run},
     {Quantity::relative_energy_norm, "relative_energy_norm", "", Info::Of::region,
-     "$\\sqrt{(u-u_r)^TK(u-u_r)}\\,/\\sqrt{u_r^TKu_r}$ of displacements $u$ from rest, $u_r$ those of `reference`. "
-     "$K$: linear stiffness of the region's elements at rest (nine incompatible modes, the scenario's Poisson's ratio; "
-     "Young's modulus cancels). In the fixed frame: turning as a whole counts. No value while the reference is at "
-     "rest.",
+     "$\\sqrt{(u-u_r)^TK(u-u_r)}\\,/\\sqrt{u_r^TKu_r}$ of displacements $u$, $u_r$ those of `reference`; $K$: linear "
+     "stiffness of the region's undeformed elements. Includes rigid rotation. No value for an undeformed reference.",
      no_axis, Info::Reference::run},
     {Quantity::surface_distance, "surface_distance", "um", Info::Of::node,
-     "To the nearest triangle of the mesh file `reference` (VTK, STL, PLY, OBJ; of a volume mesh its boundary, both "
-     "sides of a layer); never negative. Faces of more corners are split into triangles.",
+     "Distance to the surface in the mesh file `reference` (VTK, STL, PLY, OBJ; boundary of a volume mesh); >= 0.",
      no_axis, Info::Reference::surface},
     {Quantity::force, "force", "nN", Info::Of::node,
-     "What elasticity, contractions and applied pressures exert on the node of a body that stands still: no drag, "
-     "dampers or inertia. Volumes and shell, which balance it at rest, are not in it. With `from = \"REGION\"` it is "
-     "what the cells of that region exert, the pressures that hold their volumes included: on a node that they share "
-     "with others, the push across the boundary.",
+     "Static force of elasticity, contractions and applied pressures on the node, without cell pressures and shell "
+     "contact, which balance it at equilibrium. With `from = \"REGION\"`: force of the cells of this region, including "
+     "their cell pressures.",
      may},
-    {Quantity::volume, "volume", "um3", Info::Of::cell, "Signed: negative in a cell that is inside out."},
-    {Quantity::area, "area", "um2", Info::Of::cell,
-     "Of the apical facets, or basal with `face = \"basal\"`; as in `cells.csv`."},
+    {Quantity::volume, "volume", "um3", Info::Of::cell, "Cell volume; negative if inverted."},
+    {Quantity::area, "area", "um2", Info::Of::cell, "Apical area, or basal with `face = \"basal\"`."},
     {Quantity::area_ratio, "area_ratio", "", Info::Of::cell,
-     "Of the apical facets, over that at rest; as in `cells.csv`. A mean is over cells, small and large ones alike."},
+     "Apical area / reference area; means are over cells, not weighted by area."},
     {Quantity::apical_elongation, "apical_elongation", "", Info::Of::cell,
-     "How many times longer a cell's apex is along the x axis than across: the sides of the rectangle whose area has "
-     "the same second moments. A cell at a pole, and one whose apex is gone, has none."},
-    {Quantity::pressure, "pressure", "Pa", Info::Of::cell, "What holds the cell's volume; positive in compression."},
+     "Length of the apical surface along x / width across, of the rectangle with its second moments. None at a pole."},
+    {Quantity::pressure, "pressure", "Pa", Info::Of::cell, "Cell pressure; positive in compression."},
     {Quantity::kinetic_energy, "kinetic_energy", "nN_um", Info::Of::region,
-     "$\\tfrac12\\sum m v^2$, an eighth of each element's mass at each of its nodes. Refused without a density."},
-    {Quantity::time, "time", "s", Info::Of::region, "Of the run; for criteria."},
+     "$\\tfrac12\\sum m v^2$ with lumped masses; requires a density."},
+    {Quantity::time, "time", "s", Info::Of::region, "Simulated time; for stop criteria."},
     {Quantity::wall, "wall", "s", Info::Of::region,
-     "Computing time of all steps so far. The one quantity that differs from run to run: results are the same to the "
-     "bit but for `wall_*`, here the columns whose name goes on with `wall_` after the dot."},
+     "Computing time of all steps so far; the only quantity that differs between repeated runs."},
 }};
 
 }  // namespace
@@ -86,7 +80,7 @@ Vectors forces_of_cells(const Model& model, const State& state, const CellSet& c
 
 namespace {
 
-/// The frame to measure against, where there is one of this mesh.
+/// Reference snapshot with this mesh; empty if there is none.
 std::optional<Frame> reference_frame(const Monitor& monitor, const Moment& moment) {
   std::optional<Frame> frame =
       monitor.reference_frame ? monitor.reference_frame : monitor.reference_run->frame_at(moment.state.time_s);
@@ -110,7 +104,7 @@ std::vector<double> energy_norm_values(const Monitor& monitor, const Moment& mom
   return norm ? std::vector<double>{*norm} : std::vector<double>{};
 }
 
-/// Each element's mass moves an eighth with each of its nodes, as Inertia lumps it. Without mass there is none.
+/// Kinetic energy with an eighth of each element's mass at each of its nodes, as in Inertia; empty without mass.
 std::vector<double> kinetic_energy_values(const Monitor& monitor, const Moment& moment) {
   const Tissue& tissue = moment.model.tissue;
   const CellSet& region = tissue.regions.at(monitor.region);
@@ -132,7 +126,7 @@ std::vector<double> node_values(const Monitor& monitor, const Moment& moment) {
   const Tissue& tissue = moment.model.tissue;
   const State& state = moment.state;
   const std::vector<NodeId> nodes = monitored_nodes(monitor, tissue);
-  const auto collect = [&](const auto& vector_at) {  // of each its component or its norm
+  const auto collect = [&](const auto& vector_at) {  // component or norm at each node
     std::vector<double> values;
     for (const NodeId node : nodes) {
       const Vec3 vector = vector_at(node.index());

@@ -1,5 +1,5 @@
-// [monitor.NAME]: one number a step about a region, as the paper's monitoring language has them. Pure functions of
-// Model and State; docs/reference/measures.md says what each quantity means.
+// Monitors ([monitor.NAME]): user-defined output variables, one number per step for a region. Pure functions of Model
+// and State; quantities are defined in docs/reference/measures.md.
 #pragma once
 
 #include <memory>
@@ -34,30 +34,30 @@ enum class Quantity {
   wall
 };
 
-/// What is known of a quantity, whatever it is monitored on.
+/// Properties of a quantity.
 struct QuantityInfo {
-  enum class Of { node, cell, region };           // what has a value of its own; `over` makes one number of them
+  enum class Of { node, cell, region };           // items with one value each, reduced by `over`
   enum class Axis { none, may_have, must_have };  // a component instead of the norm
-  enum class Reference { none, run, surface };    // what it is measured against
+  enum class Reference { none, run, surface };    // reference it is compared with
   Quantity quantity;
   std::string_view name;
-  std::string_view unit;  // as in a column's name; empty for a ratio
+  std::string_view unit;  // as in column names; empty for a ratio
   Of of;
   std::string_view meaning;  // for docs/reference/measures.md, in Markdown
   Axis axis = Axis::none;
   Reference reference = Reference::none;
 
-  /// Nodes, or the area, of one side of the cells.
+  /// Whether `face` selects one side of the cells.
   [[nodiscard]] bool has_face() const { return of == Of::node || quantity == Quantity::area; }
 };
 
 std::span<const QuantityInfo> quantities();
 const QuantityInfo& info_of(Quantity quantity);
-const QuantityInfo* quantity_named(std::string_view name);  // null where there is none
+const QuantityInfo* quantity_named(std::string_view name);  // null if unknown
 
 enum class Over { mean, max, min, sum, rms };
 
-/// One monitor. The region is looked up at every use, because division makes a new tissue.
+/// Monitor. The region is looked up at each use, since divisions replace the tissue.
 struct Monitor {
   enum class Face { any, apical, basal };
   enum class ReferenceAt { same_time, end };
@@ -65,47 +65,47 @@ struct Monitor {
   std::string name;
   Quantity quantity = Quantity::displacement;
   std::string region = "all";
-  Face face = Face::any;    // only nodes of this side; of the area, its side (any: apical)
-  std::optional<int> axis;  // 0 1 2: that component; empty: the norm
-  std::string from;         // of a force: only what the cells of this region exert
+  Face face = Face::any;    // only nodes of this side; for areas the side (any: apical)
+  std::optional<int> axis;  // component 0, 1 or 2; empty: norm
+  std::string from;         // for forces: region of the cells that exert them; empty: all
   Over over = Over::mean;
-  std::optional<double> at_s;  // when the value is taken that a summary has; empty: the last
-  double poisson_ratio = 0;    // of the energy norm
+  std::optional<double> at_s;  // time of the value in the summary; empty: the last
+  double poisson_ratio = 0;    // for the energy norm
   std::shared_ptr<const ReferenceRun> reference_run;
-  std::optional<Frame> reference_frame;  // the run's last one, where it is measured against its end
+  std::optional<Frame> reference_frame;  // last snapshot, for comparison with the end
   std::shared_ptr<const SurfaceDistance> reference_surface;
 
-  /// NAME.quantity_unit: its column in series.csv and its key in summary.json.
+  /// Column in series.csv and key in summary.json: NAME.quantity_unit.
   [[nodiscard]] std::string column() const;
 };
 
-/// A moment of a run.
+/// State of a run at one time.
 struct Moment {
   const Model& model;
   const State& state;
   double wall_s = 0;  // computing time of all steps so far
 };
 
-/// A monitor at a moment, in the unit of its column: a value for each node or cell of its region (or one for all of
-/// it), and the number they make. No values: the monitor has none at this moment.
+/// Reading of a monitor in the unit of its column: one value per node or cell of its region (or one in all), and their
+/// reduction. Empty without a value at this time.
 struct Reading {
   std::vector<double> values;
   std::optional<double> number;
 };
 
-/// What cells exert on nodes while the body stands still, nN: elasticity, contraction, applied pressures and the
-/// pressures that hold their volumes. The rest of the body exerts the opposite, but for drag and the shell.
+/// Static force of cells on nodes, nN; nodes: elasticity, contraction, applied and cell pressures. The other cells
+/// exert the opposite, except for drag and the shell.
 Vectors forces_of_cells(const Model& model, const State& state, const CellSet& cells);
 
 Reading read_monitor(const Monitor& monitor, const Moment& moment);
 
-/// The nodes that a monitor of nodes reads, in their order.
+/// Nodes read by a monitor, in order.
 std::vector<NodeId> monitored_nodes(const Monitor& monitor, const Tissue& tissue);
 
-/// The cells that a monitor of cells reads: those of its region, of the area only those that have that side.
+/// Cells read by a monitor: those of its region; for areas only those with that side.
 std::vector<CellId> monitored_cells(const Monitor& monitor, const Tissue& tissue);
 
-/// One number of many; nothing of none.
+/// Reduce values to one number; empty without values.
 std::optional<double> combined(Over over, std::span<const double> values);
 
 }  // namespace plica

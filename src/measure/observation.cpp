@@ -6,7 +6,7 @@
 namespace plica {
 namespace {
 
-// None of a sheet that is open, though its rims may lie so evenly that nothing seems to be missing (a slice's).
+// Lumen volume; empty for an open sheet, also for a slice, whose symmetric boundaries pass the test of closure.
 std::optional<double> rest_lumen_volume(const Tissue& tissue) {
   if (!encloses(tissue, tissue.basal_facets)) return std::nullopt;
   return lumen_volume(tissue, tissue.rest_positions);
@@ -20,7 +20,7 @@ Observer::Observer(const Model& model, FurrowSites sites, Watch watch)
       watch_(std::move(watch)),
       rest_{rest_lumen_volume(model.tissue), flank_volume(model.tissue, model.tissue.rest_positions),
             flank_section_area(model.tissue, model.tissue.rest_positions)} {
-  sites_.contractile.resize(model.tissue.cells.size(), false);  // where there are no sites
+  sites_.contractile.resize(model.tissue.cells.size(), false);  // if there are no sites
 }
 
 Observer::Observer(const Model& model, const Observer& other)

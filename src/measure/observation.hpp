@@ -1,4 +1,4 @@
-// One row of series.csv: an accepted step as it is measured.
+// Measurement of accepted steps: rows of series.csv.
 #pragma once
 
 #include <functional>
@@ -14,53 +14,53 @@
 
 namespace plica {
 
-/// A step that stands, as it is measured.
+/// Accepted step, input of its measurement.
 struct AcceptedStep {
   const State& state;     // at its end
-  const State& previous;  // at its beginning
+  const State& previous;  // at its start
   double duration_s;
-  const StepReport& report;  // of the accepted attempt, iterations of rejected ones added
+  const StepReport& report;  // of the accepted attempt, with iterations of rejected ones
   double max_node_speed_um_per_s;
   bool frame_is_due;
   bool at_equilibrium = false;
-  EnergyFlow energy = {};  // of all steps so far, this one included
+  EnergyFlow energy = {};  // summed over all steps including this one
 };
 
-/// The measures of one accepted step. Empty: has no value.
+/// Output variables of one accepted step; missing values are empty.
 struct Observation {
   std::vector<std::optional<double>> values = std::vector<std::optional<double>>(columns().size());  // by column
-  std::vector<std::optional<double>> monitors;  // in the order of the scenario's
+  std::vector<std::optional<double>> monitors;  // in the order of the scenario
   std::vector<std::string> criteria_met;        // of [stop]
-  bool is_over = false;                         // the criteria say so
+  bool is_over = false;                         // the criteria end the run
 
-  /// By the column's name, as in row["furrow_depth_um"]. std::logic_error when there is none.
+  /// Value by column name, as in row["furrow_depth_um"]. Throws std::logic_error for an unknown name.
   [[nodiscard]] std::optional<double> operator[](std::string_view column) const { return values[column_index(column)]; }
   [[nodiscard]] double time_s() const { return (*this)["time_s"].value_or(0); }
 };
 
-/// What a scenario asks to be watched beside the furrow.
+/// Monitors and stop criteria of a scenario.
 struct Watch {
   std::vector<Monitor> monitors;
   StopRule stop;
 };
 
-/// Measures steps of one model.
+/// Measures the steps of one model.
 class Observer {
  public:
   Observer(const Model& model, FurrowSites sites, Watch watch = {});
-  /// Measures the same of a copy of the other's model.
+  /// Copy that measures a copy of the other's model.
   Observer(const Model& model, const Observer& other);
-  /// `wall_s`: computing time of all steps so far, for the monitor of that name.
+  /// Measure a step. `wall_s`: computing time of all steps so far, for the monitor of that name.
   [[nodiscard]] Observation observe(const AcceptedStep& step, double wall_s = 0) const;
-  /// The same of the body at rest, before the first step.
+  /// Measure the reference state, before the first step.
   [[nodiscard]] Observation observe_rest(const State& state) const;
   [[nodiscard]] const FurrowSites& sites() const { return sites_; }
   [[nodiscard]] const std::vector<Monitor>& monitors() const { return watch_.monitors; }
 
-  /// From now on these have no value, and cost nothing.
+  /// Skip these columns from now on; they have no value then.
   void leave_out(const std::function<bool(const Column&)>& which);
 
-  /// The model's cells have divided.
+  /// Update after divisions of the model.
   void follow_division(const Division& division) { plica::follow_division(sites_, model_.tissue, division); }
 
  private:

@@ -9,13 +9,14 @@ namespace plica {
 ReferenceRun::ReferenceRun(std::filesystem::path directory) : directory_(std::move(directory)) {
   std::error_code error;
   const std::string name = directory_.string();
-  if (!std::filesystem::exists(directory_, error)) throw FileError(name + ": there is no such directory");
+  if (!std::filesystem::exists(directory_, error))
+    throw FileError(name + ": directory does not exist; give the --out directory of a `plica run`");
   if (!std::filesystem::is_directory(directory_, error))
-    throw FileError(name + ": is no directory of results; give the --out directory of a `plica run`");
+    throw FileError(name + ": is not a directory of results; give the --out directory of a `plica run`");
   if (!std::filesystem::exists(directory_ / "frames.pvd", error))
-    throw FileError(name + ": holds no run: there is no frames.pvd; give the --out directory of a `plica run`");
+    throw FileError(name + ": contains no run (no frames.pvd); give the --out directory of a `plica run`");
   frames_ = read_collection(directory_ / "frames.pvd");
-  if (frames_.empty()) throw FileError((directory_ / "frames.pvd").string() + ": lists no frame");
+  if (frames_.empty()) throw FileError((directory_ / "frames.pvd").string() + ": lists no snapshot");
 }
 
 std::vector<double> ReferenceRun::times_s() const {

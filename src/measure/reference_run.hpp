@@ -1,4 +1,4 @@
-// The frames of a run that was done before, read back to measure against.
+// Snapshots of an earlier run, read for comparison.
 #pragma once
 
 #include <filesystem>
@@ -11,16 +11,16 @@
 
 namespace plica {
 
-/// The frames in a directory of results, listed at once and read when asked for.
+/// Snapshots of a directory of results, listed at construction and read on demand.
 class ReferenceRun {
  public:
-  /// FileError when the directory is missing, holds no run (no frames.pvd) or no frame.
+  /// Throws FileError if the directory is missing or contains no run (frames.pvd) or snapshot.
   explicit ReferenceRun(std::filesystem::path directory);
 
   [[nodiscard]] const std::filesystem::path& directory() const { return directory_; }
-  [[nodiscard]] std::vector<double> times_s() const;  // of its frames, in their order; at least one
+  [[nodiscard]] std::vector<double> times_s() const;  // in order; at least one
 
-  /// The frame at a time, to 1e-6 s; nothing where the run has none then.
+  /// Snapshot at a time, to 1e-6 s; empty if there is none.
   [[nodiscard]] std::optional<Frame> frame_at(double time_s) const;
   [[nodiscard]] Frame last_frame() const;
   [[nodiscard]] Frame frame(std::size_t index) const;  // in the order of times_s()

@@ -28,8 +28,8 @@ Box box_of(std::span<const Vec3> points) {
 
 using Triangle = std::array<Vec3, 3>;
 
-// Where a triangle's edges cross a plane, along `line` in that plane. Nothing when it does not reach to both sides of
-// it by more than `least`.
+// Interval along `line` in which a triangle crosses a plane; empty unless it extends to both sides by more than
+// `least`.
 std::optional<std::pair<double, double>> cut(const Triangle& t, const Vec3& origin, const Vec3& normal,
                                              const Vec3& line, double least) {
   std::array<double, 3> height{};
@@ -45,8 +45,8 @@ std::optional<std::pair<double, double>> cut(const Triangle& t, const Vec3& orig
   return range;
 }
 
-// Whether two triangles pass through each other: each reaches to both sides of the other's plane, and on the line in
-// which the planes meet they have more in common than a point (Moller 1997).
+// Whether two triangles cross: each extends to both sides of the other's plane, and their intervals on the intersection
+// line of the planes overlap in more than a point (Moller 1997).
 bool cross(const Triangle& a, const Triangle& b, double least) {
   const auto normal = [](const Triangle& t) { return Vec3((t[1] - t[0]).cross(t[2] - t[0]).normalized()); };
   const Vec3 normal_a = normal(a), normal_b = normal(b), line = normal_a.cross(normal_b).normalized();
@@ -54,7 +54,7 @@ bool cross(const Triangle& a, const Triangle& b, double least) {
   return of_a && of_b && std::min(of_a->second, of_b->second) - std::max(of_a->first, of_b->first) > least;
 }
 
-// A facet's corners and their mean, and the fan of four triangles between them.
+// Corners of a facet, their mean, and the four triangles between them.
 struct Fan {
   std::array<Vec3, 5> points;
 
@@ -86,14 +86,14 @@ bool cross(const Fan& a, const Fan& b) {
   return false;
 }
 
-// The boxes of facets, in the order in which they begin along the axis in which the surface is longest.
+// Bounding boxes of facets, sorted by their start along the longest axis of the surface.
 struct SortedBoxes {
   SortedBoxes(std::span<const Facet> facets, std::span<const Vec3> positions) : facet(facets.size()) {
     std::vector<Box> boxes;
     boxes.reserve(facets.size());
     Eigen::AlignedBox3d whole;
     for (const Facet& of : facets) {
-      std::array<Vec3, 4> corners;  // their mean lies among them
+      std::array<Vec3, 4> corners;  // their mean lies within
       for (int i = 0; i < 4; ++i) corners[i] = positions[of.nodes[i].index()];
       boxes.push_back(box_of(corners));
       whole.extend(boxes.back().low).extend(boxes.back().high);
@@ -109,8 +109,8 @@ struct SortedBoxes {
       }
   }
 
-  /// The later boxes that overlap one, in a part of `found`, which has room for all. Nearly all that begin before it
-  /// ends lie beside it, so a number is written for each, and kept by counting on: faster than to decide.
+  /// Later boxes that overlap one, in a part of `found`, which has room for all. Most candidates do not overlap, so
+  /// each index is written and kept by incrementing the count: faster than branching.
   [[nodiscard]] std::span<const std::size_t> overlapping(std::size_t i, std::span<std::size_t> found) const {
     const auto end = std::upper_bound(low[0].begin() + static_cast<std::ptrdiff_t>(i), low[0].end(), high[0][i]);
     std::size_t count = 0;

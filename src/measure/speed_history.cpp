@@ -5,7 +5,7 @@
 namespace plica {
 
 std::optional<double> SpeedRow::speed_ratio() const {
-  constexpr double rounding = 1e-12;  // of the ends' speed: a middle that moves by no more stands still
+  constexpr double rounding = 1e-12;  // relative to the speed of the ends: a slower centre counts as still
   if (!vml_speed_um_per_s || !vce_speed_um_per_s || !(*vml_speed_um_per_s > rounding * *vce_speed_um_per_s))
     return std::nullopt;
   return *vce_speed_um_per_s / *vml_speed_um_per_s;

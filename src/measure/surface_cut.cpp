@@ -20,7 +20,7 @@ std::vector<SurfacePoint> cut_apical_surface(const Tissue& tissue, std::span<con
     for (int i = 0; i < 4; ++i) height[i] = positions[tissue.apical_facets[f].nodes[i].index()][axis];
     const auto [low, high] = std::minmax_element(height.begin(), height.end());
     if (*low > 0 || *high < 0) continue;
-    // The point at height 0 between two points of the facet, given by their weights and heights.
+    // Point at height 0 between two points of the facet, given by weights and heights.
     const auto cross = [&](const std::array<double, 4>& a, double height_a, const std::array<double, 4>& b,
                            double height_b) {
       if (height_a * height_b > 0 || height_a == height_b) return;

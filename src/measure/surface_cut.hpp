@@ -1,4 +1,4 @@
-// The apical surface cut by a plane: how the furrow's geometry is read, never off nearest nodes.
+// Cut of the apical surface by a plane; basis of the furrow measures (instead of nearest nodes).
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace plica {
 
-/// A point that moves with the tissue: a weighted mean of four nodes.
+/// Material point: weighted mean of four nodes.
 struct MaterialPoint {
   std::array<NodeId, 4> nodes;
   std::array<double, 4> weights = {0, 0, 0, 0};
@@ -17,13 +17,13 @@ struct MaterialPoint {
   [[nodiscard]] Vec3 at(std::span<const Vec3> positions) const;
 };
 
-/// A material point on an apical facet.
+/// Material point on an apical facet.
 struct SurfacePoint : MaterialPoint {
-  std::size_t facet = 0;  // among the apical facets
+  std::size_t facet = 0;  // index among the apical facets
 };
 
-/// Where the plane `axis` = 0 cuts the apical facets for which `wanted` is true: the points on their edges and on the
-/// lines from their corners to their middle, a facet after the other. A point on an edge of two facets comes twice.
+/// Cut the apical facets with `wanted` by the plane `axis` = 0: points on their edges and on the lines from corners to
+/// centre, facet by facet. A point on a shared edge occurs twice.
 std::vector<SurfacePoint> cut_apical_surface(const Tissue& tissue, std::span<const Vec3> positions, int axis,
                                              const std::vector<bool>& wanted);
 

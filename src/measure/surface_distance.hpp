@@ -1,4 +1,4 @@
-// How far points lie from a surface of triangles.
+// Distance of points from a triangulated surface.
 #pragma once
 
 #include <memory>
@@ -7,14 +7,13 @@
 
 namespace plica {
 
-/// Exact distances to the triangles of a surface (inside them, or to their edges and corners), found by a search tree.
-/// FileError when plica was built without VTK.
+/// Exact distances to the triangles of a surface, by a search tree. Throws FileError in builds without VTK.
 class SurfaceDistance {
  public:
   explicit SurfaceDistance(const TriangleSurface& surface);  // at least one triangle
   ~SurfaceDistance();
 
-  /// From the point to the nearest triangle, um; never negative.
+  /// Distance from a point to the nearest triangle, um; >= 0.
   [[nodiscard]] double from(const Vec3& point) const;
 
  private:

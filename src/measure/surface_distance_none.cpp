@@ -1,4 +1,4 @@
-// What stands in for surface_distance_vtk.cpp when plica is built without VTK.
+// Replacement of surface_distance_vtk.cpp for builds without VTK.
 #ifndef PLICA_WITH_VTK
 
 #include "core/errors.hpp"
@@ -9,7 +9,7 @@ namespace plica {
 struct SurfaceDistance::Search {};
 
 SurfaceDistance::SurfaceDistance(const TriangleSurface&) {
-  throw FileError("distances to a surface cannot be measured: plica was built without VTK");
+  throw FileError("distances to a surface are not available (built without VTK)");
 }
 
 SurfaceDistance::~SurfaceDistance() = default;

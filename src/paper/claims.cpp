@@ -9,7 +9,7 @@ constexpr double any = 1e300;
 constexpr double minute = 60;
 
 const std::vector<Claim> table = {
-    // Section 2: what was modelled.
+    // Section 2: model.
     {"2.1, Table 1", "The pill has 756 cells", "756", "mesh.pill_cells", 756, 756, 756, "", Basis::fixed},
     {"2.1, Table 1", "The pill's mesh has 2268 nodes", "2268", "mesh.pill_nodes", 2268, 2268, 2268, "", Basis::fixed,
      "2268 is 3 x 756. A closed single layer of Q hexahedra has Q + 2 nodes on each side: 1516, as 904 for the "

@@ -11,7 +11,7 @@
 namespace plica {
 namespace {
 
-// Fig. 8: speeds of the two barycentres.
+// Fig. 8: speeds of both barycentres.
 Figure speeds(const Results& results, const std::string& embryo, const std::string& name, const std::string& caption) {
   const Series series = read_series(results.folder("main-" + embryo) / "series.csv");
   Plot plot{"Speeds of the barycentres of VML and VCE, " + embryo,
@@ -25,7 +25,7 @@ Figure speeds(const Results& results, const std::string& embryo, const std::stri
 }
 
 Plot onset_plot(const Onsets& pill, const Onsets& sphere) {
-  return {"When midline cells set off: a tenth of their final depth",
+  return {"Onset of midline cells: a tenth of their final depth",
           {"place along the axis at rest, um"},
           {"time, s", false, 0.0, {}},
           {{"pill", pill.ap_um, pill.time_s, true}, {"sphere", sphere.ap_um, sphere.time_s, true}},
@@ -33,7 +33,7 @@ Plot onset_plot(const Onsets& pill, const Onsets& sphere) {
           {}};
 }
 
-// What the ratio of springs across to along does, each figure over its printed value.
+// Effect of the ratio of springs across to along; figures relative to printed values.
 std::optional<Plot> trade_off(const Measured& measured) {
   struct Line {
     const char *name, *figure;
@@ -84,8 +84,8 @@ Figure division_volumes(const Results& results) {
     plot.curves.push_back(std::move(curve));
   }
   return chart("fig4-volumes", plot,
-               "**Fig. 4, volumes.** The daughters begin with half of their mother's volume each and end with the "
-               "whole of it; the neighbours keep theirs.");
+               "**Fig. 4, volumes.** Each daughter grows from half to all of the mother's volume; neighbours keep "
+               "theirs.");
 }
 
 Figure division_lips(const Results& results) {
@@ -95,9 +95,10 @@ Figure division_lips(const Results& results) {
                                   {"division-twice", "with a second round at the borders"}})
     if (results.has(id))
       plot.curves.push_back(column_of(read_series(results.folder(id) / "series.csv"), words, "lip_distance_um"));
-  return chart("fig5-lips", plot,
-               "**Fig. 5, lips.** Where the two points that bound the contractile rows in the mid cross-section are, "
-               "with division and without.");
+  return chart(
+      "fig5-lips", plot,
+      "**Fig. 5, lips.** Distance between the furrow lips (borders of the contractile rows at x = 0), with and "
+      "without division.");
 }
 
 Figure division_push(const Results& results) {
@@ -107,9 +108,9 @@ Figure division_push(const Results& results) {
     if (results.has(id))
       plot.curves.push_back(column_of(read_series(results.folder(id) / "series.csv"), words, "push.force_nN"));
   return chart("fig5-push", plot,
-               "**Fig. 5, forces.** What the contractile cells exert on the row of cells beside them, across the "
-               "embryo; positive drives the borders apart. Dividing cells push outward at all times; the lips close "
-               "because the floor between them buckles inward and turns them over.");
+               "**Fig. 5, forces.** Force of the contractile cells on the adjacent row, across the embryo; positive: "
+               "outward. Dividing cells push outward at all times; the lips close because the furrow bottom buckles "
+               "inward and tilts them.");
 }
 
 }  // namespace
@@ -133,51 +134,50 @@ std::vector<Figure> reproduction_figures(const Results& results, const Measured&
   add("fig5-push", {"division", "division-without"}, [&] { return division_push(results); });
   add("fig7-pill", {"main-pill"}, [&] {
     return pictures.moments("main-pill", {"antero-ventral", "ventral"}, {0, 60, 300, 900}, "fig7-pill",
-                            "**Fig. 7.** The pill at four moments, seen from below and in front (upper row) and from "
-                            "below (lower row; anterior is on the left), coloured by how far nodes have moved.");
+                            "**Fig. 7.** Pill at four times, antero-ventral (upper row) and ventral view (lower row, "
+                            "anterior left). Colour: displacement.");
   });
   add("fig8a-speeds", {"main-pill"}, [&] {
     return speeds(results, "pill", "fig8a-speeds",
-                  "**Fig. 8a.** On the pill the end (VCE) sets off several times as fast as the middle (VML); the "
-                  "middle catches up, and overtakes. Both axes are logarithmic: the paper's are not.");
+                  "**Fig. 8a.** Pill: the end (VCE) starts several times as fast as the centre (VML), which later "
+                  "overtakes it. Logarithmic axes, unlike the paper's.");
   });
   add("fig8b-speeds", {"main-sphere"}, [&] {
     return speeds(results, "sphere", "fig8b-speeds",
-                  "**Fig. 8b.** On the sphere, with the same springs, the two are close to each other throughout.");
+                  "**Fig. 8b.** Sphere with the same springs: both speeds are similar throughout.");
   });
   add("fig9-sections", {"main-pill"}, [&] {
-    return pictures.moments("main-pill", {"cross-section", "sagittal-section"}, {900}, "fig9-sections",
-                            "**Fig. 9.** The pill at 15 min, cut across its middle and along its axis (belly down), "
-                            "coloured by how far nodes have moved. The floor has moved in as a whole; in the chosen "
-                            "reading the middle has by then overtaken the ends.");
+    return pictures.moments(
+        "main-pill", {"cross-section", "sagittal-section"}, {900}, "fig9-sections",
+        "**Fig. 9.** Pill at 15 min, cross-section and sagittal section, ventral side down. Colour: "
+        "displacement. In the chosen reading the centre has overtaken the ends by then.");
   });
   add("fig10-ventral", {"main-pill"}, [&] {
-    return pictures.moments("main-pill", {"ventral"}, {60, 300, 600, 900, 1200}, "fig10-ventral",
-                            "**Fig. 10.** The pill from below at the paper's times, and at 1 min before them, coloured "
-                            "by how far nodes have moved. At 1 min the ends of the strip have moved most; from 5 min "
-                            "on little changes but the depth of the middle.");
+    return pictures.moments(
+        "main-pill", {"ventral"}, {60, 300, 600, 900, 1200}, "fig10-ventral",
+        "**Fig. 10.** Pill at 1 min and at the paper's times, ventral view. Colour: displacement. At "
+        "1 min the ends of the strip have moved most; after 5 min mainly the centre deepens.");
   });
   add("fig11-sphere", {"main-sphere"}, [&] {
     return pictures.moments("main-sphere", {"antero-ventral", "ventral"}, {0, 60, 300, 900}, "fig11-sphere",
-                            "**Fig. 11.** The sphere at the same moments, from the same sides, in the same colours.");
+                            "**Fig. 11.** Sphere at the same times, same views and colours.");
   });
   const Mechanism why = mechanism();
   figures.push_back(
       chart("mechanism", why.plot,
-            "**Why the ends lead** (section 4). At t = 0, before anything moves, springs of the same strength "
-            "everywhere press the caps inwards harder than the cylinder, and a sphere everywhere alike, as Laplace's "
-            "law has it. On the strip of the chosen reading the last cells are drawn along the axis as well. Springs "
-            "along the axis alone do not press on the cylinder at all."));
+            "**Why the ends lead** (section 4). At t = 0 equal springs everywhere press the caps inwards more than the "
+            "cylinder, and a sphere uniformly, in agreement with Laplace's law. On the strip of the chosen reading "
+            "the last cells are also pulled along the axis. Axial springs alone do not press on the cylinder."));
   if (!measured.pill_onsets.ap_um.empty())
     figures.push_back(chart("onset", onset_plot(measured.pill_onsets, measured.sphere_onsets),
-                            "**Onset** along `midline.csv`: when each contractile cell of the midline has reached a "
-                            "tenth of its final depth below the shell."));
+                            "**Onset**: time at which each contractile midline cell reaches a tenth of its final depth "
+                            "(`midline.csv`)."));
   if (const auto plot = trade_off(measured))
-    figures.push_back(
-        chart("trade-off", *plot,
-              "**The trade-off.** The one number that is free once the pill's depth is met, the ratio of springs "
-              "across the axis to springs along it, against everything printed. Nothing far from 0.35 to 0.4 meets the "
-              "pill's speed ratio, VCE's displacement and the sphere's depth together."));
+    figures.push_back(chart(
+        "trade-off", *plot,
+        "**Trade-off.** Ratio of springs across to springs along the axis, the only free parameter at a fixed depth "
+        "of the pill, compared with all printed numbers. Only 0.35 to 0.4 meets the pill's speed ratio, VCE's "
+        "displacement and the sphere's depth together."));
   return figures;
 }
 

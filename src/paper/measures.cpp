@@ -20,7 +20,7 @@ void put(Figures& figures, const std::string& name, std::optional<double> value,
 
 std::optional<double> value_at(const Series& series, const std::string& column, double time_s) {
   const auto found = series.column(column);
-  // A run that came to rest before stays as it was.
+  // Values of a run that reached equilibrium earlier remain constant.
   return found ? series.at(*found, std::min(time_s, *series.rows.back().front())) : std::nullopt;
 }
 
@@ -30,7 +30,7 @@ std::optional<double> in_row(const Series& series, const std::vector<std::option
   return found ? row[*found] : std::nullopt;
 }
 
-// The run as speed_history wants it, with the given cell from the end as VCE.
+// Rows for speed_history, with the given cell from the end as VCE.
 std::vector<SpeedRow> speed_rows(const Series& series, int vce) {
   const std::string monitor = fmt::format("vce_{}", vce);
   std::vector<SpeedRow> rows;
@@ -79,8 +79,8 @@ std::optional<double> time_of(const Series& series, const std::string& column, d
   return std::nullopt;
 }
 
-// Leaves of a part of the way from one row to the next, 0 to 1, that on which a value that goes from a to b is in the
-// range. Nothing is left where from > to.
+// Restrict an interval in [0, 1] between two rows to the part in which a value moving from a to b is in range; empty if
+// from > to.
 void keep_in_range(std::pair<double, double>& part, double a, double b, double low, double high) {
   if (a == b) {
     if (a < low || a > high) part = {1, 0};

@@ -1,4 +1,4 @@
-// Figures taken from finished runs: all that claims, readings and error bars are made of.
+// Figures of finished runs, the basis of claims, readings and error bars.
 #pragma once
 
 #include <filesystem>
@@ -11,37 +11,38 @@
 
 namespace plica {
 
-/// Measured numbers by name; what has no value is not there. Names say the unit.
+/// Measured numbers by name, which includes the unit; missing values are absent.
 using Figures = std::map<std::string, double>;
 
-/// Every name with `prefix` before it.
+/// Add figures with `prefix` before their names.
 void add_prefixed(Figures& figures, const std::string& prefix, const Figures& more);
 
-/// Watches the last and the third-last contractile cell of the midline beside the built-in second-last. `along`: cells
-/// that contract along the midline.
+/// Add monitors of the last and third-last contractile midline cells to the built-in second-last. `along`: number of
+/// contractile cells along the midline.
 void watch_ends(Scenario& scenario, int along);
 
-/// Of one run of an embryo, from its series.csv and summary.json. States are those at rest (the paper's stop), or at
-/// the end where rest was not reached. Speeds and displacements with VCE the last, second-last, third-last cell end in
-/// _1, _2, _3; those of the second-last have no ending.
+/// Measure one run from its series.csv and summary.json, at equilibrium (the paper's stop) or, without it, at the end.
+/// Speeds and displacements with VCE as the last, second-last or third-last cell end in _1, _2, _3; those of the
+/// second-last also have no ending.
 Figures figures_of_run(const std::filesystem::path& run);
 
-/// When both displacements are in the ranges that the paper prints (both_in_range_from_s, _until_s), and when every
-/// node is slower than its 0.2 um/s for the first time (slower_than_printed_s) and how deep the furrow is then
-/// (depth_then_um). Linear between rows.
+/// Interval in which both displacements are in the printed ranges (both_in_range_from_s, _until_s), first time with
+/// every node slower than the printed 0.2 um/s (slower_than_printed_s) and furrow depth then (depth_then_um).
+/// Interpolated.
 Figures printed_times(const Series& series);
 
-/// When each contractile midline cell sets off.
+/// Onset times of contractile midline cells.
 struct Onsets {
-  std::vector<double> ap_um;   // x at rest
-  std::vector<double> time_s;  // first time at a tenth of its final depth
+  std::vector<double> ap_um;   // reference x
+  std::vector<double> time_s;  // first time at a tenth of the final depth
 };
 
-/// `early`: a run with close frames; `late`: one that comes to rest, for the final depths. `along` cells contract.
+/// Measure onsets. `early`: run with frequent snapshots; `late`: run to equilibrium, for the final depths. `along`:
+/// number of contractile cells.
 Onsets onsets(const std::filesystem::path& early, const std::filesystem::path& late, int along);
 
-/// spread_s: last less first; ends_s and middle_s; rank_correlation of time with the distance from the middle
-/// (Spearman): -1 where the ends go first and the middle last.
+/// Figures of onsets: spread_s (last minus first), ends_s, middle_s, and rank_correlation (Spearman) of time with
+/// distance from the centre: -1 if the ends are first and the centre last.
 Figures figures_of_onsets(const Onsets& onsets);
 
 }  // namespace plica

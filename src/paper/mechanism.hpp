@@ -1,5 +1,5 @@
-// What presses the sheet inwards at t = 0: the springs' force on each node of the midline over the area around it,
-// against Laplace's law (PAPER note 9), and what meshes and formulas come to before anything moves.
+// Inward pressure at t = 0: spring force per area at midline nodes compared with Laplace's law (PAPER note 9), and
+// figures of undeformed meshes.
 #pragma once
 
 #include "paper/measures.hpp"
@@ -7,8 +7,8 @@
 
 namespace plica {
 
-/// Figures laplace.*, and inward force per area along the midline: pill and sphere with the same springs on every cell
-/// and in both directions, and the pill with the chosen reading's and with axial springs on the strip.
+/// Figures laplace.* and inward force per area along the midline: pill and sphere with equal springs on every cell in
+/// both directions; pill with the springs of the chosen reading, and with axial springs, on the strip.
 struct Mechanism {
   Figures figures;
   Plot plot;
@@ -16,7 +16,7 @@ struct Mechanism {
 
 Mechanism mechanism();
 
-/// Figures mesh.*: counts, sizes and the sum of <X, grad V> over V, all of the meshes at rest.
+/// Figures mesh.* of undeformed meshes: counts, sizes and the sum of <X, grad V> / V.
 Figures mesh_figures();
 
 }  // namespace plica

@@ -12,7 +12,7 @@
 namespace plica {
 namespace {
 
-// Four digits, or as many as tell it from a whole number nearby.
+// Four digits, or more if needed to distinguish it from a nearby integer.
 std::string number(std::optional<double> value, const std::string& none = "never") {
   if (!value) return none;
   if (std::abs(*value - 1) < 1e-6 && *value != 1)
@@ -30,7 +30,7 @@ std::string with_unit(const std::string& text, const std::string& unit) {
                                                                                                 : text + " " + unit;
 }
 
-// Ids of figures' runs: the part before the first dot.
+// Ids of the runs of figures: the part before the first dot.
 std::string group_of(const std::string& figure) { return figure.substr(0, figure.find('.')); }
 
 bool group_was_measured(const Figures& figures, const std::string& group) {
@@ -69,19 +69,17 @@ void add_claims(Document& page, const Measured& measured, ReproduceOutcome& outc
       left_out.push_back(fmt::format("{} ({})", claim.text, claim.section));
   }
   page.blocks.emplace_back(Heading{2, "Claims"});
-  page.blocks.emplace_back(
-      Paragraph{"Every figure and sentence of the paper's sections 2 to 5 that asserts something measurable. A verdict "
-                "follows from our figure and the claim's tolerance: *reproduced* where it is met whatever is chosen "
-                "(counts and invariants, and outcomes that hold in every reading that is scanned below: across/along "
-                "0.2 to 1, and 3, 5 and 7 rows); *reproduced under this reading* where it is met in the chosen reading "
-                "but not in all of these, or where an open parameter was chosen for it; *not reproduced* otherwise. "
-                "Where printed is a range, the difference is to its middle."});
+  page.blocks.emplace_back(Paragraph{
+      "Measurable statements of the paper's sections 2 to 5. Verdicts follow from our figure and the tolerance of "
+      "the claim: *reproduced*: met in every scanned reading (across/along 0.2 to 1; 3, 5 and 7 rows), or a "
+      "count or invariant; *reproduced under this reading*: met in the chosen reading but not in all scanned "
+      "ones, or fitted; *not reproduced*: otherwise. For printed ranges, the difference is to the middle."});
   page.blocks.emplace_back(Paragraph{fmt::format(
       "Of {} claims, {} are reproduced, {} under this reading, and {} are not.", outcome.claims, outcome.reproduced,
       outcome.under_this_reading, outcome.claims - outcome.reproduced - outcome.under_this_reading)});
   page.blocks.emplace_back(std::move(table));
   if (left_out.empty()) return;
-  std::string text = "Not measured in this run, for want of its runs:";
+  std::string text = "Not measured, since runs are missing:";
   for (const std::string& claim : left_out) text += (&claim == &left_out.front() ? " " : "; ") + claim;
   page.blocks.emplace_back(Paragraph{text + "."});
 }
@@ -125,19 +123,23 @@ void add_readings(Document& page, const Measured& measured, const Plan& plan) {
   for (Row& row : rows) table.rows.push_back(std::move(row.cells));
   page.blocks.emplace_back(Heading{2, "Readings"});
   std::string text = fmt::format(
-      "What the text leaves open, one choice at a time against the chosen reading, best score first. The score is the "
-      "root mean square, over {} printed numbers, of the miss: the distance from the printed number over its tolerance "
-      "(a range: from its middle, over half of it), at most {:.0f}; so 1 is the edge of what is met, and 5 is nowhere "
-      "near. What never happens counts as a miss of {:.0f}. The numbers:",
+      "Readings that the text allows, each with one choice changed from the chosen reading, best score first. Score: "
+      "root "
+      "mean square over {} printed numbers of |ours - printed| / tolerance (for a range: from its middle, divided by "
+      "half "
+      "its width), each at most {:.0f}; a number is met up to 1. Events that never happen count as {:.0f}. The "
+      "numbers:",
       printed_numbers().size(), largest_miss, largest_miss);
   for (const PrintedNumber& printed : printed_numbers())
     text += (&printed == &printed_numbers().front() ? " " : "; ") + printed.text;
   page.blocks.emplace_back(Paragraph{text + "."});
-  page.blocks.emplace_back(Paragraph{fmt::format(
-      "Stiffness k (nN/um) is the one that makes the pill 28.89 um deep, where it is given; else 4.82. The preload is "
-      "60 nN for 4.82 nN/um, and in proportion to k, where no other is given. Steps have a tolerance of {} um here, "
-      "against 0.02 elsewhere: the chosen row against the headlines below shows what that does.",
-      matrix_tolerance_um)});
+  page.blocks.emplace_back(
+      Paragraph{fmt::format("Stiffness k (nN/um), where given, is fitted to a depth of the pill of 28.89 um; else "
+                            "4.82. The pre-tension is 60 nN "
+                            "for 4.82 nN/um and proportional to k, unless given. The step tolerance is {} um here and "
+                            "0.02 um elsewhere; compare "
+                            "the chosen row with the headlines below.",
+                            matrix_tolerance_um)});
   page.blocks.emplace_back(std::move(table));
   for (const std::string& one : absent) page.blocks.emplace_back(Paragraph{"Not in this build: " + one + "."});
 }
@@ -176,13 +178,12 @@ void add_error_bars(Document& page, const Measured& measured) {
     table.rows.push_back(std::move(row));
   }
   page.blocks.emplace_back(Heading{2, "Headlines with their errors"});
-  page.blocks.emplace_back(Paragraph{
-      fmt::format("Error in space: the same springs on 2 x 2 x 2 elements a cell (cells, springs and what is held "
-                  "stay), less one element a cell, both with a step tolerance of {} um: a plain difference, not "
-                  "extrapolated. Error in time: a tolerance of {} um less 0.02. The stiffness belongs to one element a "
-                  "cell, which is too soft to the squeeze of the apical side; with more elements it would be chosen "
-                  "anew, so most of the difference in depth is of the calibration.",
-                  matrix_tolerance_um, fine_tolerance_um)});
+  page.blocks.emplace_back(Paragraph{fmt::format(
+      "Error in space: 2 x 2 x 2 elements per cell minus one element per cell, with equal springs and a step "
+      "tolerance of {} um (difference, not extrapolated). Error in time: tolerance of {} um minus 0.02 um. The "
+      "stiffness was fitted with one element per cell, which is too soft in apical compression; with more "
+      "elements it would be fitted again, so most of the difference in depth is due to the calibration.",
+      matrix_tolerance_um, fine_tolerance_um)});
   page.blocks.emplace_back(std::move(table));
 }
 
@@ -197,14 +198,14 @@ void add_figures(Document& page, const Results& results, const Measured& measure
 
 Document reproduction_document(const Results& results, const Measured& measured, const Plan& plan, bool quick,
                                ReproduceOutcome& outcome) {
-  Document page{"The paper's figures beside ours", {}};
+  Document page{"Reproduction of the paper", {}};
   page.blocks.emplace_back(Paragraph{
       fmt::format("Demongeot, Lontos and Promayon, *Discrete mesh approach in morphogenesis modelling: the example of "
-                  "gastrulation*, against plica {} ({}). The chosen reading is the built-in `drosophila`, and "
+                  "gastrulation*, compared with plica {} ({}). The chosen reading is the built-in `drosophila`, and "
                   "`xenopus` with the same springs, drag and material: 5 rows, across/along 0.35, k = 4.82 nN/um and a "
-                  "preload of 60 nN, drag 131 Pa s/um. Runs lie in `runs/`, the data of each plot in `figures/`.{}",
+                  "preload of 60 nN, drag 131 Pa s/um. Runs are in `runs/`, plot data in `figures/`.{}",
                   version(), commit(),
-                  quick ? " **A quick run: few runs, coarse steps; figures are off by several per cent.**" : "")});
+                  quick ? " **Quick run: few runs, coarse steps; figures are off by several per cent.**" : "")});
   add_claims(page, measured, outcome);
   add_error_bars(page, measured);
   add_readings(page, measured, plan);

@@ -85,9 +85,9 @@ Figure ReproductionPictures::division_demo() {
   Picture picture;
   const auto minutes = [](const Frame& frame) { return fmt::format("{:.2g} min", frame.time_s.value_or(0) / 60); };
   const Frame growing = at(180), grown = run.last_frame();
-  picture.columns = {{"(a) at rest", rest},
+  picture.columns = {{"(a) reference state", rest},
                      {"(b) the cut", rest, new_places(rest, divided)},
-                     {"(c) without her", without_cell(rest, mother)},
+                     {"(c) without the mother", without_cell(rest, mother)},
                      {"(d) " + minutes(divided), divided},
                      {"(e) " + minutes(growing), growing},
                      {"(f) " + minutes(grown), grown}};
@@ -100,10 +100,11 @@ Figure ReproductionPictures::division_demo() {
   picture.field = named(colour_fields(), "generation");
   picture.range = colour_range(picture.field, 0, 1);
   picture.anatomy = false;
-  return drawn("fig4-division", picture,
-               "**Fig. 4.** The middle one of three cells divides: (a) three cells at rest; (b) the places that the "
-               "cut goes through; (c) the mother is taken out and (d) two daughters that share a facet are put in her "
-               "place (at 1 min); (e) they grow, (f) until each is what their mother was.");
+  return drawn(
+      "fig4-division", picture,
+      "**Fig. 4.** Division of the middle one of three cells: (a) reference state; (b) points of the cut; (c) the "
+      "mother removed; (d) two daughters with a common facet (1 min); (e) growth; (f) daughters of the mother's "
+      "size. Colour: generation.");
 }
 
 // Fig. 5: cross-sections with and without division.
@@ -123,9 +124,10 @@ Figure ReproductionPictures::division_sections() {
     picture->columns.push_back(std::move(one.columns.front()));
     picture->range.high = std::max(picture->range.high, one.range.high);
   }
-  return drawn("fig5-sections", picture.value(),
-               "**Fig. 5.** Cross-sections in the middle, belly down: where the cells of the floor have divided and "
-               "grown, and where they have not.");
+  return drawn(
+      "fig5-sections", picture.value(),
+      "**Fig. 5.** Mid cross-sections, ventral side down, with and without division of the cells of the furrow "
+      "bottom. Colour: displacement.");
 }
 
 }  // namespace plica

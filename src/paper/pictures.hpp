@@ -1,4 +1,4 @@
-// The embryo itself in the paper's figures 4, 5, 7 and 9 to 11, from finished runs.
+// Pictures for the paper's figures 4, 5, 7 and 9 to 11, from finished runs.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace plica {
 
-/// Each picture throws FileError where it cannot be drawn: no screen, no VTK, a frame that is missing.
+/// Pictures; each throws FileError if it cannot be drawn (no screen, no VTK, missing snapshot).
 class ReproductionPictures {
  public:
   explicit ReproductionPictures(const Results& results) : results_(results) {}
@@ -19,7 +19,7 @@ class ReproductionPictures {
   Figure division_demo();
   Figure division_sections();
 
-  /// A run at some moments, a row a view, coloured by displacement.
+  /// Picture of a run at several times, one row per view, coloured by displacement.
   Figure moments(const std::string& run, const std::vector<std::string>& views, const std::vector<double>& times_s,
                  const std::string& name, const std::string& caption);
 
@@ -29,7 +29,7 @@ class ReproductionPictures {
 
   const Results& results_;
   LazyPainter painter_;
-  std::optional<ColourRange> displacement_;  // one scale for the pill and the sphere
+  std::optional<ColourRange> displacement_;  // common scale of pill and sphere
 };
 
 }  // namespace plica

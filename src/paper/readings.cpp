@@ -14,10 +14,10 @@ const std::string preload = "contraction.apical.preload_nN=";
 const std::string rows = "region.furrow.cells_across=";
 const std::string drag = "dynamics.surface_drag_Pa_s_per_um=";
 
-// Of the chosen reading's springs: 60 nN to 4.82 nN/um.
+// Springs of the chosen reading: 60 nN to 4.82 nN/um.
 const double preload_per_stiffness_um = 60 / 4.82;
 
-// `keys`, and springs of stiffness k (nN/um) with a preload in that proportion.
+// Add springs of stiffness k (nN/um) with a proportional preload to `keys`.
 std::vector<std::string> with_springs(double k, std::vector<std::string> keys) {
   keys.push_back(fmt::format("{}{}", stiffness, k));
   keys.push_back(fmt::format("{}{:.4g}", preload, preload_per_stiffness_um * k));
@@ -33,10 +33,10 @@ std::vector<std::string> the_papers_algorithm(double step_s) {
           fmt::format("time.step_s={}", step_s)};
 }
 
-// Stiffness values k are those that make the pill 28.89 um deep at rest, with the keys of their row; as
+// Stiffness values k are fitted to a depth of 28.89 um at equilibrium with the keys of their row, by
 //   plica calibrate drosophila --set KEY=VALUE --set contraction.apical.preload_nN=60/4.82*k
 //     --vary contraction.apical.stiffness_nN_per_um=2:10 --target furrow_depth_um=28.89
-// finds them. Rows marked "springs as chosen" keep 4.82 and 60.
+// Rows marked "springs as chosen" keep 4.82 and 60.
 const std::vector<PaperReading> table = {
     {"chosen",
      "chosen",

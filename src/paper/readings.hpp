@@ -1,4 +1,4 @@
-// The readings that the paper's text leaves open, as a table, and the score that all its printed numbers give each.
+// Table of readings that the paper's text allows, and their score against all printed numbers.
 #pragma once
 
 #include <optional>
@@ -12,17 +12,17 @@ namespace plica {
 
 struct ReadingOptions {
   std::string base = "drosophila";
-  bool scanned = false;           // a claim that holds in all of these needs no choice
-  bool depth_below_lips = false;  // "total depth" means from the lips down
-  int vce = 2;                    // which cell from the end VCE is
-  std::string same_runs_as = {};  // measured otherwise, in the runs of that reading
-  bool quick = false;             // a part of --quick
+  bool scanned = false;           // claims that hold in all scanned readings need no choice
+  bool depth_below_lips = false;  // "total depth" is measured from the lips
+  int vce = 2;                    // position of VCE from the end
+  std::string same_runs_as = {};  // reading whose runs are reused with other measures
+  bool quick = false;             // part of --quick
 };
 
-/// One way to read the paper: the scenario `drosophila` with some keys changed, on the pill and on the sphere.
+/// Reading of the paper: scenario `drosophila` with some keys changed, on pill and sphere.
 struct PaperReading {
-  std::string id;                      // names its runs
-  std::string group;                   // what is varied
+  std::string id;                      // name of its runs
+  std::string group;                   // varied property
   std::string text;                    // the choice
   std::vector<std::string> overrides;  // KEY=VALUE, of both embryos
   ReadingOptions options = {};
@@ -30,12 +30,12 @@ struct PaperReading {
 
 std::span<const PaperReading> readings();
 
-/// The keys that turn a pill scenario into the sphere with the same cells.
+/// Overrides that turn a pill scenario into the sphere with the same cells.
 std::vector<std::string> sphere_overrides(const PaperReading& reading);
 
-/// A printed number: what is within centre +- half counts as met.
+/// Printed number, met within centre +- half.
 struct PrintedNumber {
-  std::string name;  // of the figure, with "pill." or "sphere." before it
+  std::string name;  // of the figure, with prefix "pill." or "sphere."
   std::string text;
   double centre = 0, half = 1;
 };
@@ -43,19 +43,19 @@ struct PrintedNumber {
 std::span<const PrintedNumber> printed_numbers();
 
 struct Score {
-  double rms = 0;  // of the misses |value - centre| / half, each at most `largest_miss`; a missing value counts as that
+  double rms = 0;  // of the misses |value - centre| / half, each at most `largest_miss`, also for missing values
   int met = 0;     // misses up to 1
 };
 
 inline constexpr double largest_miss = 5;
 
-/// `figures`: of the reading's two runs, prefixed. Nothing where there is no figure of one of the embryos.
+/// Score a reading. `figures`: prefixed figures of its two runs. Empty if an embryo has none.
 std::optional<Score> score(const PaperReading& reading, const Figures& figures);
 
-/// The figure of that name, where there is one.
+/// Figure by name; empty if missing.
 std::optional<double> figure_named(const Figures& figures, const std::string& name);
 
-/// The figure that a printed number has in a reading: depth and VCE as the reading takes them.
+/// Figure for a printed number, with depth and VCE as defined by the reading.
 std::optional<double> figure_in(const PaperReading& reading, const std::string& name, const Figures& figures);
 
 }  // namespace plica

@@ -23,7 +23,7 @@ std::vector<std::string> operator+(std::vector<std::string> a, const std::vector
 
 std::string tolerance(double um) { return fmt::format("time.tolerance_um={}", um); }
 
-// Adds a run, or the reason why there is none. What the built-in expects of itself is not for its variants.
+// Add a run, or the reason to skip it. [expect] of a built-in scenario does not apply to its variants.
 void add(Plan& plan, const std::string& id, const std::string& base, const std::vector<std::string>& overrides,
          int watch_along = 0, bool without_divisions = false) {
   try {
@@ -53,7 +53,7 @@ void plan_divisions(Plan& plan) {
   add(plan, "division-without", "drosophila-division", frames, 0, true);
 }
 
-// The chosen reading to 20 min, as Fig. 10 has it, and its first moments with close frames.
+// Chosen reading to 20 min, as in Fig. 10, and its start with frequent snapshots.
 void plan_chosen(Plan& plan, bool quick) {
   const std::vector<std::string> to_the_end = {"time.end_min=20", "stop.at_equilibrium=false",
                                                "output.frame_every_s=60", "output.cells_csv=false",
@@ -88,7 +88,7 @@ void add_ratio(Figures& figures, const std::string& name, std::optional<double> 
   if (a && b && *b != 0) figures[name] = *a / *b;
 }
 
-// The daughters of division-demo's middle cell against their mother.
+// Daughters of the middle cell of division-demo compared with their mother.
 void measure_demo(Figures& figures, const Results& results) {
   if (!results.has("division-demo")) return;
   const Series cells = read_table(results.folder("division-demo") / "cells.csv");
@@ -126,7 +126,7 @@ void measure_divisions(Figures& figures, const Results& results) {
             series.at(series.column("lip_distance_um").value(), 0));
 }
 
-// How far the apical nodes that touch the lips' cells from outside have moved towards the back, mean, um.
+// Mean inward (dorsal) displacement of the apical nodes adjacent to the lip cells from outside, um.
 std::optional<double> neighbours_inward_um(const Frame& frame) {
   const std::vector<double>& furrow = frame.element_scalars.at("region_furrow");
   const Vectors& displacement = frame.node_vectors.at("displacement_um");
@@ -147,8 +147,8 @@ std::optional<double> neighbours_inward_um(const Frame& frame) {
   return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
-// The largest small displacement, but for the rigid motion that fits them best: nothing resists a turn about the pill's
-// axis but drag.
+// Largest displacement after removal of the best-fitting rigid motion: only drag resists rotation about the pill's
+// axis.
 double change_of_shape_um(const Vectors& positions, const Vectors& displacements) {
   Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
@@ -177,7 +177,7 @@ void measure_frames(Figures& figures, const Results& results) {
       const Frame end = ReferenceRun(results.folder("switched-off")).last_frame();
       figures["off.left_um"] = change_of_shape_um(end.positions, end.node_vectors.at("displacement_um"));
     }
-  } catch (const FileError&) {  // built without VTK: rows that need frames are left out
+  } catch (const FileError&) {  // built without VTK: rows that need snapshots are left out
   }
 }
 
@@ -201,7 +201,7 @@ void measure_onsets(Measured& measured, const Results& results) {
   add_ratio(figures, "both.ratio_of_ratios", figure("pill.peak_ratio"), figure("sphere.peak_ratio"));
 }
 
-// What is easier read in other units.
+// Figures in more readable units.
 void add_minutes(Figures& figures) {
   if (figures.contains("pill.equal_speeds_s")) figures["pill.equal_speeds_min"] = figures["pill.equal_speeds_s"] / 60;
 }

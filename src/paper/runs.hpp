@@ -1,4 +1,4 @@
-// The runs that `plica reproduce` makes, and the figures taken from them.
+// Runs of `plica reproduce`, and figures measured from them.
 #pragma once
 
 #include <filesystem>
@@ -13,19 +13,19 @@
 
 namespace plica {
 
-inline constexpr double matrix_tolerance_um = 0.05;  // of a step, in the matrix of readings; the chosen reading's: 0.02
-inline constexpr double fine_tolerance_um = 0.005;   // for the error bars in time
+inline constexpr double matrix_tolerance_um = 0.05;      // of a step, in the matrix of readings; chosen reading: 0.02
+inline constexpr double fine_tolerance_um = 0.005;       // for error bars in time
 inline constexpr int pill_along = 14, sphere_along = 7;  // contractile cells on the midline
 
-/// All runs, those that take longest first. What this build of plica does not know is left out and named in `skipped`
-/// with the reason. `quick`: a few of them, coarsely.
+/// Plan of all runs, longest first. Runs that this build does not support are in `skipped` with the reason.
 struct Plan {
   std::vector<BatchRun> runs;
-  std::map<std::string, std::string> skipped;  // id: why
+  std::map<std::string, std::string> skipped;  // id: reason
 };
+/// Make the plan. `quick`: few runs with coarse steps.
 Plan make_plan(bool quick);
 
-/// The runs of a plan in DIR, as far as they came to their planned end. What else lies there is not looked at.
+/// Runs of a plan in DIR that reached their planned end; other files are ignored.
 class Results {
  public:
   Results(std::filesystem::path directory, const Plan& plan);
@@ -37,14 +37,14 @@ class Results {
   std::set<std::string> finished_;
 };
 
-/// What was measured in all.
+/// All measurements.
 struct Measured {
-  Figures figures;                          // for the claims: of the chosen reading, mesh.*, demo.*, division.*, ...
+  Figures figures;                          // for claims: chosen reading, mesh.*, demo.*, division.*, ...
   std::map<std::string, Figures> readings;  // by id: pill.* and sphere.*
   Onsets pill_onsets, sphere_onsets;
 };
 
-/// From the finished runs; of those that failed or were not made, nothing.
+/// Measure the finished runs; failed and missing ones contribute nothing.
 Measured measure(const Results& results);
 
 }  // namespace plica

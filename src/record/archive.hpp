@@ -1,4 +1,4 @@
-// Named arrays in the image of an HDF5 file: what a checkpoint is made of. Without HDF5, plica has no checkpoints.
+// Named arrays in an in-memory HDF5 file, the basis of checkpoints. Without HDF5, plica has no checkpoints.
 #pragma once
 
 #include <memory>
@@ -12,9 +12,9 @@ namespace plica {
 /// Whether this build has HDF5.
 bool can_archive();
 
-/// Puts arrays into a file that is made in memory. Names are paths: "state/positions". An array of a name that is there
-/// already takes its place: where it is as long as the one before that costs no more than copying it. FileError when
-/// HDF5 cannot (no memory), or is not there; begin anew then.
+/// Writer of arrays to an in-memory file. Names are paths: "state/positions". An array replaces an earlier one of its
+/// name; with equal length that costs only a copy. Throws FileError if HDF5 fails (no memory) or is missing; discard it
+/// then.
 class ArchiveWriter {
  public:
   ArchiveWriter();
@@ -22,12 +22,12 @@ class ArchiveWriter {
   ArchiveWriter(const ArchiveWriter&) = delete;
   ArchiveWriter& operator=(const ArchiveWriter&) = delete;
 
-  /// `columns`: 0 for a list, else the length of the rows of a table.
+  /// Add an array. `columns`: 0 for a list, else the row length of a table.
   void put(const std::string& name, std::span<const double> values, std::size_t columns = 0);
   void put(const std::string& name, std::span<const int> values);
   void put(const std::string& name, std::span<const char> bytes);
 
-  /// The file as it is now. Put once, the same arrays give the same bytes.
+  /// Bytes of the file. Equal arrays, each put once, give equal bytes.
   [[nodiscard]] std::string image();
 
  private:
@@ -35,8 +35,8 @@ class ArchiveWriter {
   std::unique_ptr<File> file_;
 };
 
-/// Reads such a file from memory. FileError, without a path, for what is no such file, an array that is missing or of
-/// another type, or numbers that are not finite.
+/// Reader of such a file. Throws FileError, without a path, for another file, an array that is missing or of another
+/// type, or numbers that are not finite.
 class ArchiveReader {
  public:
   explicit ArchiveReader(std::string_view image);

@@ -14,7 +14,7 @@
 namespace plica {
 namespace {
 
-// A handle of HDF5's, closed when it goes.
+// RAII handle of HDF5.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {
@@ -23,19 +23,19 @@ class Handle {
   ~Handle() { close_(id_); }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }  // NOLINT: it stands for the id
+  operator hid_t() const { return id_; }  // NOLINT: converts to the id
 
  private:
   hid_t id_;
   herr_t (*close_)(hid_t);
 };
 
-// HDF5 refuses to open an image under the name of a file that there is; there can be none of this name.
+// HDF5 refuses to open an image under the name of an existing file; no file can have this name.
 constexpr const char* no_file = "/dev/null/checkpoint";
 
-constexpr const char* cannot_make = "HDF5 cannot make a checkpoint; is there memory left?";
+constexpr const char* cannot_make = "HDF5 cannot create a checkpoint, probably for lack of memory";
 
-// Nor has it two files of one name open, even in memory.
+// Unique names: HDF5 cannot open two files of one name, even in memory.
 std::string new_name() {
   static std::atomic<int> count = 0;
   return fmt::format("checkpoint {}", ++count);
@@ -45,15 +45,14 @@ void must(herr_t result, const std::string& what) {
   if (result < 0) throw FileError(what);
 }
 
-// Where memory ends, HDF5 (1.10) ends the process, or crashes: it must not come to that. Room for what it needs beside
-// `bytes` of arrays.
+// Check for the memory that HDF5 needs besides `bytes` of arrays: without it HDF5 (1.10) ends the process or crashes.
 void make_sure_of_room(std::size_t bytes) {
   constexpr std::size_t own_bytes = std::size_t{8} << 20;
   make_sure_of_memory(own_bytes + 2 * bytes);
 }
 
-// HDF5 tells of errors by what its functions return; its own words on stderr are for those who wrote it. What is not
-// closed when the process ends needs no closing: its files are in memory.
+// Errors of HDF5 are read from return values, so its messages on stderr are disabled. Files need no closing at exit,
+// since they are in memory.
 void prepare_library() {
   constexpr std::size_t library_bytes = std::size_t{32} << 20;
   make_sure_of_memory(library_bytes);
@@ -61,7 +60,7 @@ void prepare_library() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-// Files in memory, of which nothing is written by HDF5 itself.
+// Access to files in memory that HDF5 never writes to disk.
 hid_t in_memory(const void* image, std::size_t size) {
   prepare_library();
   make_sure_of_room(size);
@@ -69,7 +68,7 @@ hid_t in_memory(const void* image, std::size_t size) {
   if (access < 0) return access;
   constexpr std::size_t growth = std::size_t{1} << 20;
   H5Pset_fapl_core(access, growth, false);
-  if (image != nullptr) H5Pset_file_image(access, const_cast<void*>(image), size);  // it is copied
+  if (image != nullptr) H5Pset_file_image(access, const_cast<void*>(image), size);  // copied
   return access;
 }
 
@@ -144,18 +143,18 @@ struct ArchiveReader::File {
 
   explicit File(std::string_view image)
       : size(image.size()),
-        access(in_memory(image.data(), image.size()), H5Pclose, "HDF5 cannot read it; is there memory left?"),
-        file(H5Fopen(no_file, H5F_ACC_RDONLY, access), H5Fclose, "it is no HDF5 file, or damaged") {}
+        access(in_memory(image.data(), image.size()), H5Pclose, "HDF5 cannot read it, probably for lack of memory"),
+        file(H5Fopen(no_file, H5F_ACC_RDONLY, access), H5Fclose, "it is not an HDF5 file, or damaged") {}
 
   template <class Number>
   [[nodiscard]] std::vector<Number> get(const std::string& name, H5T_class_t kind, hid_t type) const {
     make_sure_of_room(0);
-    const std::string damaged = fmt::format("it is damaged: {} is missing or not what it should be", name);
+    const std::string damaged = fmt::format("it is damaged: {} is missing or invalid", name);
     const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, damaged);
     const Handle stored(H5Dget_type(set), H5Tclose, damaged);
     const Handle space(H5Dget_space(set), H5Sclose, damaged);
     const hssize_t count = H5Sget_simple_extent_npoints(space);
-    // What it says to hold must be there: nobody makes us take more memory than the file has bytes.
+    // The claimed size must exist, so that memory use is bounded by the size of the file.
     if (H5Tget_class(stored) != kind || H5Tget_size(stored) != sizeof(Number) || count < 0 ||
         static_cast<std::size_t>(count) > size / sizeof(Number) ||
         (count > 0 && H5Dget_storage_size(set) != static_cast<std::size_t>(count) * sizeof(Number)))
@@ -172,7 +171,7 @@ ArchiveReader::~ArchiveReader() = default;
 std::vector<double> ArchiveReader::doubles(const std::string& name) const {
   std::vector<double> values = file_->get<double>(name, H5T_FLOAT, H5T_NATIVE_DOUBLE);
   if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
-    throw FileError(fmt::format("it is damaged: {} holds what is no number", name));
+    throw FileError(fmt::format("it is damaged: {} contains values that are not finite", name));
   return values;
 }
 std::vector<int> ArchiveReader::integers(const std::string& name) const {

@@ -1,4 +1,4 @@
-// What stands in for archive_hdf5.cpp when plica is built without HDF5.
+// Replacement of archive_hdf5.cpp for builds without HDF5.
 #ifndef PLICA_WITH_HDF5
 
 #include "core/errors.hpp"
@@ -7,7 +7,7 @@
 namespace plica {
 namespace {
 
-[[noreturn]] void refuse() { throw FileError("this plica was built without HDF5 and has no checkpoints"); }
+[[noreturn]] void refuse() { throw FileError("this build has no checkpoints (built without HDF5)"); }
 
 }  // namespace
 

@@ -20,7 +20,7 @@ constexpr std::size_t trailer_bytes = 64;
 
 std::uint32_t checksum(std::string_view bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }
 
-// After the HDF5 file, which readers of HDF5 do not mind.
+// Trailer after the HDF5 file; readers of HDF5 ignore it.
 std::string trailer(std::string_view image) {
   std::string text =
       fmt::format("\nplica checkpoint {} bytes {} crc32 {:08x}", checkpoint_format, image.size(), checksum(image));
@@ -28,7 +28,7 @@ std::string trailer(std::string_view image) {
   return text + "\n";
 }
 
-// One list of what is in a checkpoint, for writing and for reading: take(name, value).
+// One list of the contents of a checkpoint for writing and reading: take(name, value).
 
 class Saving {
  public:
@@ -44,7 +44,7 @@ class Saving {
   void operator()(const std::string& name, const std::vector<double>& values) { archive_.put(name, values); }
   void operator()(const std::string& name, const std::vector<int>& values) { archive_.put(name, values); }
   void operator()(const std::string& name, const std::vector<char>& values) { archive_.put(name, values); }
-  /// How long each list is, then all of them.
+  /// Lengths of the lists, then all items.
   void operator()(const std::string& name, const std::vector<std::vector<double>>& lists) {
     std::vector<int> lengths;
     std::vector<double> all;
@@ -76,7 +76,7 @@ class Loading {
   void operator()(const std::string& name, bool& value) { value = one(name, archive_.integers(name)) != 0; }
   void operator()(const std::string& name, std::uint64_t& value) {
     const double number = one(name, archive_.doubles(name));
-    constexpr double largest = 9007199254740992.0;  // up to which doubles count whole numbers
+    constexpr double largest = 9007199254740992.0;  // largest range of exact integers in doubles
     if (!(number >= 0 && number <= largest && number == std::floor(number))) refuse(name);
     value = static_cast<std::uint64_t>(number);
   }
@@ -117,7 +117,7 @@ class Loading {
   }
 
   [[noreturn]] static void refuse(const std::string& name) {
-    throw FileError(fmt::format("it is damaged: {} is not what it should be", name));
+    throw FileError(fmt::format("it is damaged: {} is invalid", name));
   }
 
  private:
@@ -201,8 +201,8 @@ std::vector<std::string> of_lines(const std::string& lines) {
   return texts;
 }
 
-// A number a column, then one a monitor, and whether the row has it. The columns' names stand beside them, so that rows
-// of another table are refused and not misread.
+// Rows: one number per column, then one per monitor, each with a flag for presence. Column names are stored, too, so
+// that rows of another table are refused instead of misread.
 void save_rows(ArchiveWriter& archive, const std::vector<Observation>& rows) {
   std::vector<double> numbers;
   std::vector<char> has;
@@ -231,7 +231,7 @@ std::vector<Observation> load_rows(const ArchiveReader& archive) {
   load("record/monitors", monitors);
   load("record/criteria_met", criteria);
   if (of_lines(names) != names_of(columns()))
-    throw FileError("another version of plica wrote it, whose rows have other columns");
+    throw FileError("it was written by another version of plica with other columns");
   const std::size_t fixed = columns().size(), width = fixed + static_cast<std::size_t>(std::max(monitors, 0));
   if (numbers.empty() || numbers.size() % width != 0 || has.size() != numbers.size()) Loading::refuse("record/rows");
   std::vector<Observation> rows(numbers.size() / width);
@@ -290,7 +290,7 @@ std::vector<std::shared_ptr<const PastDivision>> load_divisions(const ArchiveRea
   return past;
 }
 
-/// Of the processor: seconds, and a second for each 10 MB, a hundred times what it takes.
+/// Limit of processor time: some seconds, plus one per 10 MB, a hundred times the usual duration.
 void limit_time(std::size_t bytes) {
   const rlim_t seconds = 3 + bytes / 10'000'000;
   const rlimit limit{seconds, seconds + 1};
@@ -302,8 +302,8 @@ void limit_time(std::size_t bytes) {
 }  // namespace
 
 void read_on_trial(const std::function<void()>& read, std::size_t bytes) {
-  // A letter for the kind of answer, then the error.
-  const std::optional<std::string> answer = output_of_child("reading it on trial", [&]() -> std::string {
+  // Answer: a letter for its kind, then the error.
+  const std::optional<std::string> answer = output_of_child("the trial reading of a checkpoint", [&]() -> std::string {
     limit_time(bytes);
     try {
       read();
@@ -314,7 +314,7 @@ void read_on_trial(const std::function<void()>& read, std::size_t bytes) {
       return "m";
     }
   });
-  if (!answer || answer->empty()) throw FileError("it is damaged: HDF5 breaks off at it");
+  if (!answer || answer->empty()) throw FileError("it is damaged: HDF5 crashed while reading it");
   if (answer->front() == 'f') throw FileError(answer->substr(1));
   if (answer->front() == 'm') throw std::bad_alloc();
 }
@@ -331,7 +331,7 @@ std::string fingerprint(const Tissue& tissue) {
 
 std::string CheckpointBytes::operator()(const Checkpoint& checkpoint) {
   constexpr std::size_t most_kept_bytes = std::size_t{32} << 20;
-  auto archive = archive_ ? std::move(archive_) : std::make_unique<ArchiveWriter>();  // none is kept after errors
+  auto archive = archive_ ? std::move(archive_) : std::make_unique<ArchiveWriter>();  // none is reused after errors
   Saving save(*archive);
   save("format", checkpoint_format);
   visit(save, checkpoint);
@@ -345,19 +345,19 @@ std::string CheckpointBytes::operator()(const Checkpoint& checkpoint) {
 std::string checkpoint_bytes(const Checkpoint& checkpoint) { return CheckpointBytes()(checkpoint); }
 
 Checkpoint read_checkpoint_bytes(std::string_view bytes) {
-  if (bytes.size() < trailer_bytes) throw FileError("it is no checkpoint, or cut off");
+  if (bytes.size() < trailer_bytes) throw FileError("it is not a checkpoint, or truncated");
   const std::string_view image = bytes.substr(0, bytes.size() - trailer_bytes), end = bytes.substr(image.size());
   constexpr std::string_view start = "\nplica checkpoint ";
-  if (!end.starts_with(start)) throw FileError("it is no checkpoint, or cut off");
+  if (!end.starts_with(start)) throw FileError("it is not a checkpoint, or truncated");
   if (end.substr(start.size(), 2) != fmt::format("{} ", checkpoint_format))
     throw FileError(
-        fmt::format("another version of plica wrote it, in a format that is not this one's ({})", checkpoint_format));
-  if (end != trailer(image)) throw FileError("it is damaged: its checksum is not that of its bytes");
+        fmt::format("it was written by another version of plica in a format other than {}", checkpoint_format));
+  if (end != trailer(image)) throw FileError("it is damaged: its checksum does not match its content");
   const auto read = [&] {
     const ArchiveReader archive(image);
     Loading load(archive);
     Checkpoint checkpoint;
-    checkpoint.record.rows = load_rows(archive);  // first: they tell whether another version wrote it
+    checkpoint.record.rows = load_rows(archive);  // first: they reveal another version
     visit(load, checkpoint);
     checkpoint.run.past_divisions = load_divisions(archive);
     return checkpoint;
@@ -368,12 +368,12 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
 
 namespace {
 
-// Whether a resume may change that table of a scenario.
+// Whether a resumption may change this table of a scenario.
 bool may_change(std::string_view table) {
   return table == "[time]" || table == "[output]" || table == "[stop]" || table.starts_with("[stop.");
 }
 
-// The lines of a resolved scenario in the tables that `counts` says, each after the name of its table.
+// Lines of a resolved scenario in the tables selected by `counts`, each preceded by the name of its table.
 std::vector<std::string> lines_in(const std::string& scenario, const std::function<bool(std::string_view)>& counts) {
   std::vector<std::string> kept;
   std::string table;

@@ -30,7 +30,8 @@ bool CheckpointFiles::sync_is_due() {
 void CheckpointFiles::write(const Checkpoint& checkpoint, Sync sync) {
   const fs::path temporary = write_beside(newest_, bytes_of_(checkpoint), sync);
   std::error_code ignored;
-  if (newest_is_on_disk_ || !fs::exists(previous_, ignored)) fs::rename(newest_, previous_, ignored);  // none at first
+  if (newest_is_on_disk_ || !fs::exists(previous_, ignored))
+    fs::rename(newest_, previous_, ignored);  // fails without one
   rename_file(temporary, newest_, sync);
   newest_is_on_disk_ = sync == Sync::now;
 }
@@ -52,7 +53,7 @@ std::optional<Checkpoint> read_checkpoint(const fs::path& directory, std::string
                     (text.starts_with(file.string()) ? text : fmt::format("{}: {}", file.string(), text));
     }
   }
-  if (!complaints.empty()) throw FileError(complaints + "; to begin anew, give --overwrite");
+  if (!complaints.empty()) throw FileError(complaints + "; restart with --overwrite");
   return std::nullopt;
 }
 

@@ -1,5 +1,5 @@
-// checkpoint.h5 and checkpoint.previous.h5: the last two checkpoints of a run, written after every step, whole or not
-// at all.
+// Files checkpoint.h5 and checkpoint.previous.h5: the last two checkpoints of a run, written atomically after each
+// step.
 #pragma once
 
 #include <filesystem>
@@ -11,16 +11,16 @@
 
 namespace plica {
 
-/// Writes the checkpoints of one directory. The one before stays as the previous one when it is on the disk itself
-/// (Sync::now): of the two, one outlives a power cut.
+/// Writer of the checkpoints of one directory. Keeps a checkpoint synced to disk (Sync::now) as the previous one, so
+/// that one of the two survives a power cut.
 class CheckpointFiles {
  public:
   explicit CheckpointFiles(const std::filesystem::path& directory);
 
-  /// Whether the next one should go to the disk itself, and the files that go with it before it: every few seconds.
+  /// Whether the next checkpoint, after its files, should be synced to disk: every few seconds.
   [[nodiscard]] bool sync_is_due();
 
-  /// FileError when it cannot be written; the ones before are as they were.
+  /// Write a checkpoint. Throws FileError and leaves earlier ones unchanged.
   void write(const Checkpoint& checkpoint, Sync sync);
 
  private:
@@ -30,14 +30,14 @@ class CheckpointFiles {
   bool newest_is_on_disk_ = false;
 };
 
-/// The newest checkpoint of a directory that can be read; nothing when there is none. `complaint` says why it is not
-/// the last one. FileError when there are some, and none can be read.
+/// Read the newest readable checkpoint of a directory; empty if there is none. `complaint`: reason if it is not the
+/// last one. Throws FileError if checkpoints exist but none is readable.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& directory, std::string& complaint);
 
-/// Removes the checkpoints of a directory.
+/// Remove the checkpoints of a directory.
 void remove_checkpoints(const std::filesystem::path& directory);
 
-/// Whether that is what a checkpoint is called.
+/// Whether the name is that of a checkpoint.
 bool is_checkpoint(const std::filesystem::path& file_name);
 
 }  // namespace plica

@@ -10,11 +10,11 @@ namespace plica {
 namespace {
 
 constexpr int digits = 10;
-constexpr double largest_short = 1e9;  // whole numbers below it are written as they are
+constexpr double largest_short = 1e9;  // integers below it are written in full
 
 char* put_number(char* at, char* end, double value) {
   const auto whole = std::abs(value) < largest_short ? static_cast<long>(value) : 0L;
-  if (static_cast<double>(whole) == value) return std::to_chars(at, end, whole).ptr;  // -0, too
+  if (static_cast<double>(whole) == value) return std::to_chars(at, end, whole).ptr;  // includes -0
   return std::to_chars(at, end, value, std::chars_format::general, digits).ptr;
 }
 

@@ -1,4 +1,4 @@
-// Rows of numbers for CSV files.
+// Formatting of CSV rows.
 #pragma once
 
 #include <optional>
@@ -7,12 +7,11 @@
 
 namespace plica {
 
-/// The rows of a table whose values lie row after row, `columns` in each, joined by '\n'; commas between values. At
-/// most ten significant digits, as printf's %.10g gives them. A value that is not finite stands for none and leaves its
-/// place empty. No "-0".
+/// Format rows of `columns` values each, separated by commas and joined by '\n', with up to ten significant digits (as
+/// %.10g). Values that are not finite become empty fields; no "-0".
 std::string csv_rows(std::span<const double> values, std::size_t columns);
 
-/// One row; what has no value leaves its place empty.
+/// Format one row; missing values become empty fields.
 std::string csv_row(std::span<const std::optional<double>> values);
 
 }  // namespace plica

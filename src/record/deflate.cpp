@@ -16,7 +16,7 @@ std::size_t Deflater::append(std::string_view bytes, std::string& to) {
   const std::size_t before = to.size();
   to.resize(before + libdeflate_zlib_compress_bound(compressor_, bytes.size()));
   const std::size_t count = libdeflate_zlib_compress(compressor_, bytes.data(), bytes.size(), to.data() + before,
-                                                     to.size() - before);  // never 0: there is room
+                                                     to.size() - before);  // never 0: the buffer is large enough
   to.resize(before + count);
   return count;
 }

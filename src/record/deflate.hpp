@@ -1,4 +1,4 @@
-// Compression in zlib's format (RFC 1950), which browsers and readers of VTK's files inflate.
+// Compression in zlib format (RFC 1950), readable by browsers and VTK.
 #pragma once
 
 #include <string>
@@ -12,13 +12,13 @@ class Deflater {
  public:
   enum class Effort { fast, small };
 
-  /// std::bad_alloc when memory is short.
+  /// Throws std::bad_alloc without memory.
   explicit Deflater(Effort effort);
   Deflater(const Deflater&) = delete;
   Deflater& operator=(const Deflater&) = delete;
   ~Deflater();
 
-  /// Adds the bytes to `to`, compressed; returns how many they became.
+  /// Append compressed bytes to `to`; returns their number.
   std::size_t append(std::string_view bytes, std::string& to);
 
  private:

@@ -8,7 +8,7 @@ namespace {
 
 using Columns = std::vector<std::vector<double>>;
 
-// Values that lie column after column, row after row.
+// Transpose columns into rows.
 std::vector<double> rows_of(const Columns& columns) {
   std::vector<double> rows;
   const std::size_t count = columns.empty() ? 0 : columns.front().size();
@@ -48,7 +48,7 @@ MeshElements FrameRecord::mesh() const { return {cells->elements, cells->element
 
 MeshArrays FrameRecord::arrays() const {
   MeshArrays arrays{{vectors.begin(), vectors.end()}, scalars, integers};
-  // Of cells of one element each they are its faces.
+  // Polygons of single-element cells are the faces of the element.
   if (cells->elements.size() > cells->cells) arrays.polygons = &cells->polygons;
   arrays.cell_scalars.insert(arrays.cell_scalars.end(), cells->given.begin(), cells->given.end());
   arrays.cell_integers.insert(arrays.cell_integers.end(), cells->regions.begin(), cells->regions.end());

@@ -1,5 +1,4 @@
-// One moment of a run as its files will hold it: taken from model and state, so that it can be written while both go
-// on.
+// Snapshot of a run, copied from model and state so that it can be written while these change.
 #pragma once
 
 #include <memory>
@@ -14,13 +13,13 @@
 
 namespace plica {
 
-/// What only a division changes.
+/// Part of a snapshot that changes only at divisions.
 struct FrameCells {
   std::vector<std::array<NodeId, 8>> elements;
   std::vector<CellId> element_cell;
   std::size_t cells = 0, nodes = 0;
-  std::vector<std::pair<std::string, std::vector<int>>> regions;   // cells, by their arrays' names
-  std::vector<std::pair<std::string, std::vector<double>>> given;  // cells: what a file has measured in them
+  std::vector<std::pair<std::string, std::vector<int>>> regions;   // cells, by array name
+  std::vector<std::pair<std::string, std::vector<double>>> given;  // cells: measured data from an input file
   FramePolygons polygons;
 
   explicit FrameCells(const Tissue& tissue);
@@ -30,28 +29,28 @@ struct FrameRecord {
   double time_s = 0;
   std::shared_ptr<const FrameCells> cells;
   Vectors positions;                                                 // nodes
-  std::vector<std::pair<std::string, Vectors>> vectors;              // nodes, by their arrays' names, as below
+  std::vector<std::pair<std::string, Vectors>> vectors;              // nodes, by array name
   std::vector<std::pair<std::string, std::vector<double>>> scalars;  // cells
   std::vector<std::pair<std::string, std::vector<int>>> integers;    // cells
-  std::vector<double> cell_rows;                                     // of cells.csv, row after row; or none
+  std::vector<double> cell_rows;                                     // of cells.csv, row by row; or empty
   std::vector<double> midline_rows, section_rows;                    // of midline.csv and cross_section.csv
 
   [[nodiscard]] MeshElements mesh() const;
-  /// Data of the frame's file. They refer to the record.
+  /// Data of the snapshot's file; they refer to this record.
   [[nodiscard]] MeshArrays arrays() const;
 };
 
-/// Takes records of one model.
+/// Creates snapshots of one model.
 class FrameTaker {
  public:
-  /// `with_cell_rows`: the records hold those of cells.csv.
+  /// `with_cell_rows`: snapshots include the rows of cells.csv.
   FrameTaker(const Model& model, const FurrowSites& sites, bool with_cell_rows);
 
   [[nodiscard]] FrameRecord take(const State& state) const;
 
   [[nodiscard]] bool with_cell_rows() const { return with_cell_rows_; }
 
-  /// The model's cells have divided, and the sites have followed.
+  /// Update after a division of the model and the sites.
   void follow_division();
 
  private:

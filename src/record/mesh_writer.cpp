@@ -1,5 +1,6 @@
-// VTK's own writer takes three times as long for a frame as this one, and plica needs little of the format: one piece,
-// hexahedra or polygons, a few kinds of numbers, appended raw. VTK reads the files back in the tests, as ParaView does.
+// Writer of the part of VTK's XML format that plica needs: one piece, hexahedra or polygons, a few number types,
+// appended raw data. VTK's own writer takes three times as long per snapshot. Tests read the files back with VTK and
+// ParaView.
 #include "record/mesh_writer.hpp"
 
 #include <fmt/format.h>
@@ -32,7 +33,7 @@ constexpr const char* type_name() {
   if constexpr (std::is_same_v<Number, std::uint8_t>) return "UInt8";
 }
 
-/// The file as it grows: the XML that names every array, and the compressed numbers that it points to.
+/// Growing file: XML that names the arrays, and the compressed data that it refers to.
 class VtkText {
  public:
   void line(int depth, std::string_view text) { xml_ += fmt::format("{:{}}{}\n", "", 2 * depth, text); }
@@ -67,7 +68,7 @@ class VtkText {
   }
 
  private:
-  /// Number of blocks, bytes of a block, bytes of the last one if shorter; compressed bytes of each; the blocks.
+  /// Append data: number of blocks, block size, size of a shorter last block, compressed sizes, blocks.
   void append_compressed(std::string_view bytes) {
     constexpr std::size_t block_bytes = std::size_t{1} << 20;
     std::vector<std::uint64_t> header = {(bytes.size() + block_bytes - 1) / block_bytes, block_bytes,
@@ -83,7 +84,7 @@ class VtkText {
   std::string xml_, data_;
 };
 
-/// Each cell's value, repeated for its elements.
+/// Repeat the value of each cell for its elements.
 template <class Number, class Value>
 std::vector<Number> of_elements(const MeshElements& mesh, const std::vector<Value>& of_cells) {
   std::vector<Number> values;
@@ -105,10 +106,10 @@ void check_values(const std::string& name, const Values& values, std::size_t cou
 void check(const MeshElements& mesh, std::span<const Vec3> positions, const MeshArrays& arrays,
            std::optional<double> time_s) {
   const auto of_nodes = [&](const auto& name, const auto& values) {
-    check_values(name, values, mesh.nodes, "has not one value a node");
+    check_values(name, values, mesh.nodes, "does not have one value per node");
   };
   const auto of_cells = [&](const auto& name, const auto& values) {
-    check_values(name, values, mesh.cells, "has not one value a cell");
+    check_values(name, values, mesh.cells, "does not have one value per cell");
   };
   of_nodes("positions", positions);
   for (const auto& [name, values] : arrays.node_vectors) of_nodes(name, values);
@@ -116,7 +117,7 @@ void check(const MeshElements& mesh, std::span<const Vec3> positions, const Mesh
   for (const auto& [name, values] : arrays.cell_scalars) of_cells(name, values);
   for (const auto& [name, values] : arrays.cell_integers) of_cells(name, values);
   for (const auto& [name, values] : arrays.element_scalars)
-    check_values(name, values, mesh.elements.size(), "has not one value an element");
+    check_values(name, values, mesh.elements.size(), "does not have one value per element");
   require(!time_s || std::isfinite(*time_s), "the time", "is not finite");
 }
 
@@ -135,7 +136,7 @@ void put_elements(const MeshElements& mesh, VtkText& vtu) {
   vtu.line(3, "</Cells>");
 }
 
-/// Of the file as a whole.
+/// Write field data.
 void put_field_data(const FramePolygons* polygons, const std::vector<std::pair<std::string, std::vector<int>>>& lists,
                     std::optional<double> time_s, VtkText& vtk) {
   if (!time_s && polygons == nullptr && lists.empty()) return;
@@ -201,9 +202,9 @@ FramePolygons polygons_of(const Tissue& tissue) {
 void write_polygons(const std::filesystem::path& file, const SurfaceMesh& surface) {
   check_values("points", surface.points, surface.points.size(), "");
   for (const auto& [name, values] : surface.vectors)
-    check_values(name, values, surface.points.size(), "has not one value a point");
+    check_values(name, values, surface.points.size(), "does not have one value per point");
   for (const auto& [name, values] : surface.scalars)
-    check_values(name, values, surface.ends.size(), "has not one value a polygon");
+    check_values(name, values, surface.ends.size(), "does not have one value per polygon");
   VtkText vtp;
   vtp.line(1, "<PolyData>");
   put_field_data(nullptr, {}, surface.time_s, vtp);

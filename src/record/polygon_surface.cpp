@@ -14,13 +14,13 @@
 namespace plica {
 namespace {
 
-/// Those that the frame holds, or the faces of its elements, where every cell is one.
+/// Polygons stored in the frame, or the element faces if every cell is one element.
 FramePolygons polygons_of(const Frame& frame) {
   if (!frame.polygons.empty()) return frame.polygons;
   const auto ids = frame.element_scalars.find("cell_id");
   if (ids == frame.element_scalars.end() ||
       std::set(ids->second.begin(), ids->second.end()).size() < frame.elements.size())
-    throw FileError("the frame has no polygons of cells: an older version of plica wrote it; run it again");
+    throw FileError("the snapshot has no cell polygons (written by an older version of plica); repeat the run");
   FramePolygons polygons;
   for (std::size_t e = 0; e < frame.elements.size(); ++e) {
     for (int i = 0; i < 4; ++i) {
@@ -45,7 +45,7 @@ void check(const FramePolygons& polygons, const Frame& frame) {
                   below(polygons.apical, frame.positions.size()) && below(polygons.basal, frame.positions.size()) &&
                   below(polygons.elements, frame.elements.size());
   for (const int end : polygons.ends) is_sound = is_sound && end - std::exchange(before, end) > 2;
-  if (!is_sound) throw FileError("the frame's polygons are damaged");
+  if (!is_sound) throw FileError("the polygons of the snapshot are damaged");
 }
 
 }  // namespace

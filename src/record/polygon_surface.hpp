@@ -1,4 +1,4 @@
-// A frame's cells as polygons, for programs that know no hexahedra: one surface, or tables as vertex models have them.
+// Cells of a snapshot as polygons, for programs without hexahedra: a surface, or tables as in vertex models.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace plica {
 
-/// The apical or the basal polygons of a frame's cells, with their numbers. Points are those that polygons use.
-/// FileError when the frame has no polygons of cells of several elements (older versions wrote none), or damaged ones.
+/// Apical or basal polygons of the cells of a snapshot with their data, on the points that they use. Throws FileError
+/// for damaged polygons, or missing ones of cells with several elements (older versions wrote none).
 SurfaceMesh surface_of(const Frame& frame, bool apical);
 
-/// The surface as CSV texts: vertices, half-edges and faces, each by its number in the first column; columns have the
-/// names that tyssue gives them.
+/// CSV texts of a surface: vertices, half-edges and faces, with indices in the first column and the column names of
+/// tyssue.
 struct PolygonTables {
   std::string vertices;  // vert, x, y, z
   std::string edges;     // edge, srce, trgt, face, opposite (-1: none), dx, dy, dz, length
-  std::string faces;     // face, x, y, z, num_sides, area, perimeter, then the polygons' numbers
+  std::string faces;     // face, x, y, z, num_sides, area, perimeter, then the data of the polygons
 };
 
 PolygonTables tables_of(const SurfaceMesh& surface);

@@ -1,5 +1,4 @@
-// Who wants to see what a run leaves, while it leaves it: a report of it, a live view. The recorder knows no more of
-// them than this.
+// Observer of recorded output, for example a report or a live view.
 #pragma once
 
 #include "tissue/files/frame_file.hpp"
@@ -10,11 +9,10 @@ class RecordListener {
  public:
   virtual ~RecordListener() = default;
 
-  /// A frame has been written; also each of the frames of before when a run goes on. Called beside the computation, on
-  /// the thread that writes, in the order of time.
+  /// Called for each written snapshot in order of time, on the writing thread; on resumption also for earlier ones.
   virtual void add_frame(const Frame& frame, double time_s) = 0;
 
-  /// The run has ended and all its files are there.
+  /// Called at the end of the run, when all files exist.
   virtual void end() = 0;
 };
 

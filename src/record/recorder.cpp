@@ -18,10 +18,10 @@ namespace plica {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t most_cells_by_default = 2000;  // with a row a cell a frame in cells.csv
-constexpr std::size_t most_waiting = 1;              // frames and steps, beside the one being written
+constexpr std::size_t most_cells_by_default = 2000;  // with one row per cell and frame in cells.csv
+constexpr std::size_t most_waiting = 1;              // queued frames and steps, besides the one being written
 
-// A table that begins with its header, whole or not at all; or one cut back to what it had.
+// Open a table: new with its header, or truncated to its former size.
 RowFile table(const fs::path& file, const std::vector<std::string>& names, std::uint64_t keep_bytes) {
   if (keep_bytes > 0) return RowFile(file, keep_bytes);
   const std::string header = fmt::format("{}\n", fmt::join(names, ","));
@@ -34,7 +34,7 @@ std::uint64_t bytes_of(const std::optional<RowFile>& table) { return table ? tab
 }  // namespace
 
 struct Recorder::StepRecord {
-  std::shared_ptr<const FrameRecord> frame;  // or none
+  std::shared_ptr<const FrameRecord> frame;  // may be null
   Observation row;
   RunMemory run;
   std::uint64_t series_bytes, lineage_bytes;
@@ -79,13 +79,13 @@ void Recorder::begin(const std::string& input_toml) {
   append_series(rows_.back());
   save_frame();
   if (can_archive()) writing_.add([this, record = step_record()] { write(*record); });
-  writing_.finish();  // whoever cannot write hears of it before the first step
+  writing_.finish();  // report write errors before the first step
 }
 
 void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
   for (const Observation& row : memory.rows)
     if (row.monitors.size() != simulation_.observer().monitors().size())
-      throw FileError(directory_.string() + ": the checkpoint is damaged: its rows are not of these monitors");
+      throw FileError(directory_.string() + ": the checkpoint is damaged: its rows do not match the monitors");
   frame_taker_.follow_division();
   earlier_s_ = memory.wall_s;
   beside_s_ = simulation_.computing_s() - memory.solver_s;

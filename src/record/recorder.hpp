@@ -1,8 +1,8 @@
-// Everything that a run leaves in its directory, written while it goes on. Files appear whole or not at all.
+// Recorder of a run: writes all files of its directory while it proceeds, each atomically.
 //
-// series.csv and lineage.csv grow at once. A frame (its file, cells.csv, midline.csv, cross_section.csv, what listeners
-// make of it) is taken from the state at once and then compressed and written beside the computation, and after it the
-// step's checkpoint. What one step leaves is written before the next step is recorded.
+// series.csv and lineage.csv grow immediately. A snapshot (its file, cells.csv, midline.csv, cross_section.csv, output
+// of listeners) is copied from the state, then compressed and written in the background, followed by the checkpoint of
+// the step. The output of one step is written before the next step is recorded.
 #pragma once
 
 #include <chrono>
@@ -27,36 +27,35 @@ class Recorder final : public SimulationListener {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Of a simulation at rest, of which it then hears (Simulation::listen). Writes nothing: `begin` or `go_on` does.
-  /// `start`: from when wall time counts.
+  /// `simulation`: in its reference state, with this recorder as listener. `start`: start of wall time. Writes nothing
+  /// before `begin` or `go_on`.
   Recorder(std::filesystem::path directory, const Scenario& scenario, const Simulation& simulation,
            Clock::time_point start = Clock::now());
 
-  /// `listener` outlives the recorder and hears of everything that is written from now on.
+  /// Register an observer of everything written from now on; it must outlive the recorder.
   void listen(RecordListener& listener) { listeners_.push_back(&listener); }
 
-  /// Writes both scenario files (`input_toml`: as given), the frame at rest and the first checkpoint.
+  /// Write both scenario files (`input_toml`: as given), the reference snapshot and the first checkpoint.
   void begin(const std::string& input_toml);
 
-  /// After the simulation has gone on from a checkpoint: cuts every file back to what that knows of, and removes what a
-  /// killed run has left half written. FileError when one is missing or too short.
+  /// Continue after a checkpoint: truncate every file to its recorded size and remove incomplete files. Throws
+  /// FileError for a missing or short file.
   void go_on(const std::string& input_toml, RecordMemory memory);
 
-  /// A row of series.csv, a frame when one is due, and the checkpoint. Throws what went wrong with the writing of an
-  /// earlier step.
+  /// Record a row of series.csv, a snapshot if due, and the checkpoint. Rethrows write errors of earlier steps.
   void step_accepted(const AcceptedStep& step, const Observation& measures) override;
 
-  /// A frame that shows the daughters, and their lines in lineage.csv.
+  /// Record a snapshot with the daughters and their rows of lineage.csv.
   void cells_divided(const Division& division) override;
 
-  /// The last frame, summary.json, and what listeners add.
+  /// Write the last snapshot, summary.json and the output of listeners; returns the summary.
   nlohmann::ordered_json finish();
 
-  /// Whether a frame could not be written; the next call throws the reason.
+  /// Whether writing failed; the next call throws the reason.
   [[nodiscard]] bool has_failed() const { return writing_.has_failed(); }
 
  private:
-  struct StepRecord;  // what a step leaves to be written
+  struct StepRecord;  // output of a step to be written
   [[nodiscard]] std::shared_ptr<StepRecord> step_record() const;
   [[nodiscard]] WallTimes wall() const;
   void open_tables(const RecordMemory& memory);
@@ -71,21 +70,21 @@ class Recorder final : public SimulationListener {
   const Scenario& scenario_;
   const Simulation& simulation_;
   Clock::time_point start_;
-  double earlier_s_ = 0;  // wall time before `start`, of a run that went on
-  double beside_s_ = 0;   // processor time that writing took from the steps, where there is one processor only
-  double written_s_ = 0;  // and that it had taken when the last step had been recorded
+  double earlier_s_ = 0;  // wall time before `start` of a resumed run
+  double beside_s_ = 0;   // processor time that writing took from the steps on a single processor
+  double written_s_ = 0;  // its value when the last step was recorded
   FrameTaker frame_taker_;
   std::optional<RowFile> series_, lineage_;
   std::vector<Observation> rows_;
   double last_frame_s_ = 0;
 
-  // Of `write`, while frames are being written.
+  // Used by `write`, in the background.
   std::optional<RowFile> midline_, section_, cells_;
   std::vector<std::pair<double, std::string>> frames_;  // time, file
-  Checkpoint checkpoint_;                               // the last one, but for the run's memory
+  Checkpoint checkpoint_;                               // the last one, without the memory of the run
   CheckpointFiles checkpoints_;
   std::vector<RecordListener*> listeners_;
-  Background writing_;  // the last member: it ends before what it writes with
+  Background writing_;  // last member: destroyed first, since it uses the others
 };
 
 }  // namespace plica

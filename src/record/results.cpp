@@ -53,7 +53,7 @@ Series read_table(const std::filesystem::path& file, bool times_increase) {
   std::string line;
   std::getline(text, line);
   series.columns = fields(line);
-  if (series.columns.front() != "time_s") refuse(1, "is no series: its first column is not time_s");
+  if (series.columns.front() != "time_s") refuse(1, "not a time series: the first column is not time_s");
   while (std::getline(text, line)) {
     ++number;
     const std::vector<std::string> texts = fields(line);
@@ -62,11 +62,11 @@ Series read_table(const std::filesystem::path& file, bool times_increase) {
     std::vector<std::optional<double>> row;
     for (const std::string& field : texts) {
       row.push_back(number_in(field));
-      if (!row.back() && !field.empty()) refuse(number, fmt::format("\"{}\" is no number", field));
+      if (!row.back() && !field.empty()) refuse(number, fmt::format("\"{}\" is not a number", field));
     }
     const bool too_early =
         !series.rows.empty() && row.front() && times_increase && *row.front() <= *series.rows.back().front();
-    if (!row.front() || too_early) refuse(number, "its time is missing or not after the one before");
+    if (!row.front() || too_early) refuse(number, "time missing or not after the previous one");
     series.rows.push_back(std::move(row));
   }
   return series;
@@ -80,7 +80,7 @@ nlohmann::ordered_json read_summary(const std::filesystem::path& directory) {
   if (!std::filesystem::exists(file, error)) return nullptr;
   try {
     nlohmann::ordered_json summary = nlohmann::ordered_json::parse(read_file(file));
-    if (!summary.is_object()) throw FileError(file.string() + ": is no summary of a run");
+    if (!summary.is_object()) throw FileError(file.string() + ": is not the summary of a run");
     return summary;
   } catch (const nlohmann::json::exception& problem) {
     throw FileError(fmt::format("{}: is damaged: {}", file.string(), problem.what()));

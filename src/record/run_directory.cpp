@@ -18,7 +18,7 @@ const std::vector<std::string> own_files = {"summary.json",        "series.csv",
                                             "lineage.csv",         "cross_section.csv", "frames.pvd", "scenario.toml",
                                             "scenario.input.toml", "report.html"};
 
-// What frame_file names.
+// Whether a name is one of frame_file.
 bool is_frame(const fs::path& file) {
   const std::string name = file.stem().string();
   return file.extension() == ".vtu" && name.starts_with("frame_") && name.size() >= 11 &&
@@ -56,7 +56,7 @@ bool holds_steps(const fs::path& directory) {
   std::error_code error;
   if (fs::exists(directory / "summary.json", error)) return true;
   if (!fs::exists(series, error)) return false;
-  constexpr auto without_steps = 2;  // its header and the row at rest
+  constexpr auto without_steps = 2;  // header and row of the reference state
   std::ifstream rows(series);
   return std::count(std::istreambuf_iterator<char>(rows), {}, '\n') > without_steps;
 }
@@ -74,17 +74,17 @@ void prepare_directory(const fs::path& directory, bool overwrite) {
   if (holds_results(directory)) {
     if (!overwrite)
       throw FileError(directory.string() +
-                      ": holds results already; give another --out, or --overwrite to replace them");
+                      ": already contains results; give another --out, or --overwrite to replace them");
     for (const std::string& file : own_files) fs::remove(directory / file, error);
     remove_checkpoints(directory);
     remove_half_written(directory);
-    // Frames only: whatever else lies there is not ours.
+    // Remove snapshots only; other files belong to the user.
     for (const auto& entry : fs::directory_iterator(directory / "frames", error))
       if (is_frame(entry.path())) fs::remove(entry.path(), error);
   }
   error.clear();
   fs::create_directories(directory / "frames", error);
-  if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
+  if (error) throw FileError(directory.string() + ": cannot be created: " + error.message());
 }
 
 void remove_what_came_after(const fs::path& directory, std::size_t kept) {

@@ -23,7 +23,7 @@ std::optional<Capsule> shell_of_run(const Scenario& scenario, const Vectors& res
   const EmbryoInput& embryo = scenario.embryo;
   const EmbryoShape shape = shape_of(embryo);
   if (!scenario.vitelline.enabled || is_patch(shape)) return {};
-  if (!is_of_grid(shape) && shape != EmbryoShape::file) return {};  // lies on the apices
+  if (!is_of_grid(shape) && shape != EmbryoShape::file) return {};  // the shell touches the apical surface
   const double radius = embryo.diameter_um / 2,
                half_axis = shape_of(embryo) == EmbryoShape::pill    ? embryo.length_um / 2 - radius
                            : shape_of(embryo) == EmbryoShape::slice ? embryo.length_um / 2

@@ -1,4 +1,4 @@
-// The scenario of a finished run, as pictures and pages need it.
+// Scenario of a finished run, for pictures and pages.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,10 @@
 
 namespace plica {
 
-/// `directory`'s scenario.toml; nothing where the file is gone, or another version of plica wrote what this one does
-/// not read.
+/// Load scenario.toml of a run; empty if it is missing or of an incompatible version.
 std::optional<Scenario> scenario_of_run(const std::filesystem::path& directory);
 
-/// The vitelline shell that a run of the scenario has around the nodes at rest (um); nothing where it has none.
+/// Vitelline membrane of a run around the reference positions of nodes (um); empty if it has none.
 std::optional<Capsule> shell_of_run(const Scenario& scenario, const Vectors& rest_positions);
 
 }  // namespace plica

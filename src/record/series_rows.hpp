@@ -1,4 +1,4 @@
-// The rows of series.csv.
+// Rows of series.csv.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace plica {
 
-/// Names of its columns: the measures of every step, then the monitors.
+/// Column names: output variables of each step, then monitors.
 std::vector<std::string> series_header(const std::vector<Monitor>& monitors);
 
 std::string series_row(const Observation& row);

@@ -29,21 +29,21 @@ Json in_json(const Column& column, std::optional<double> value) {
   return column.is_count && value ? Json(static_cast<std::int64_t>(*value)) : number(value);
 }
 
-// FNV-1a, 64 bits: tells scenarios apart, no more.
+// FNV-1a, 64 bits: distinguishes scenarios; not cryptographic.
 std::string hash(std::string_view text) {
   std::uint64_t value = 0xcbf29ce484222325;
   for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 0x100000001b3;
   return fmt::format("{:016x}", value);
 }
 
-// What ended the run: the criteria that were met and rest, where they count; null at the end of time or a failure.
+// Criteria that ended the run, including equilibrium if enabled; null at the end time or after a failure.
 Json stopped_by(const Scenario& scenario, const Simulation& simulation, const Observation& last) {
   std::vector<std::string> names = simulation.criterion_met() ? last.criteria_met : std::vector<std::string>{};
   if (simulation.status() == RunStatus::equilibrium && scenario.stop.at_equilibrium) names.emplace_back("equilibrium");
   return names.empty() ? Json(nullptr) : Json(fmt::format("{}", fmt::join(names, ", ")));
 }
 
-// Of the laws that have done anything.
+// Energies of the laws with any contribution.
 Json energy_by_law(const Simulation& simulation) {
   const std::vector<std::string> labels = energy_labels(simulation.model());
   Json table = Json::object();
@@ -55,7 +55,7 @@ Json energy_by_law(const Simulation& simulation) {
   return table;
 }
 
-// The last value that a monitor had.
+// Last value of a monitor.
 std::optional<double> last_value(const std::vector<Observation>& rows, std::size_t monitor) {
   std::optional<double> value;
   for (const Observation& row : rows)
@@ -63,7 +63,7 @@ std::optional<double> last_value(const std::vector<Observation>& rows, std::size
   return value;
 }
 
-// Its value at a time, linear between steps; nothing where it has none at the steps around it.
+// Value at a time, interpolated linearly; empty if a neighbouring step has none.
 std::optional<double> value_at(const std::vector<Observation>& rows, std::size_t monitor, double time_s) {
   const auto after = std::ranges::find_if(rows, [&](const Observation& row) { return has_come(time_s, row.time_s()); });
   if (after == rows.end()) return std::nullopt;
@@ -83,7 +83,7 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   Json summary;
   summary["scenario"] = scenario.name;
   summary["title"] = scenario.title;
-  // Nobody records a run that goes on: this one was interrupted.
+  // A run under way is recorded only when interrupted.
   summary["status"] = simulation.status() == RunStatus::under_way ? "interrupted" : word(simulation.status());
   summary["stopped_by"] = stopped_by(scenario, simulation, last);
   summary["failure"] = simulation.failure().empty() ? Json(nullptr) : Json(simulation.failure());
@@ -134,8 +134,8 @@ std::vector<std::string> missed_expectations(const Scenario& scenario, const Jso
     const Json& found = summary.at(key);
     if (found.is_number() && std::abs(found.get<double>() - expected.value) <= margin) continue;
     const std::string value = found.is_number() ? fmt::format("{:.6g}", found.get<double>()) : "no value";
-    missed.push_back(diagnostic_at(scenario, "expect." + key, fmt::format("missed: it came to {}", value),
-                                   fmt::format("{} within {:.4g} was expected", expected.value, margin))
+    missed.push_back(diagnostic_at(scenario, "expect." + key, fmt::format("missed: result {}", value),
+                                   fmt::format("expected {} within {:.4g}", expected.value, margin))
                          .text());
   }
   return missed;

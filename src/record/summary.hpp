@@ -1,4 +1,4 @@
-// summary.json: what a run came to, flat; and whether that was expected.
+// Content of summary.json, and the check against [expect].
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,15 +16,15 @@ struct WallTimes {
   double solver_s = 0;
 };
 
-/// The keys of the contract; what never happened is null. Rows are those of the whole run, the one at rest first. Each
-/// monitor's last value stands under the name of its column.
+/// Make the summary with all documented keys; null for events that never happened. `rows`: of the whole run, the
+/// reference state first. Last values of monitors have the names of their columns.
 nlohmann::ordered_json make_summary(const Scenario& scenario, const Simulation& simulation,
                                     const std::vector<Observation>& rows, const WallTimes& wall);
 
-/// The type of this machine's processor, as it calls itself.
+/// Model name of this machine's processor.
 std::string processor_name();
 
-/// One line for each of the scenario's [expect] that the summary misses; empty when all are met.
+/// Lines for the values of [expect] that the summary misses; empty if all are met.
 std::vector<std::string> missed_expectations(const Scenario& scenario, const nlohmann::ordered_json& summary);
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// What pages of many runs show: charts with their data, curves of a run's series, pictures where they can be drawn.
+// Content of pages about many runs: charts with data, curves of time series, pictures if possible.
 #pragma once
 
 #include <optional>
@@ -11,17 +11,17 @@
 
 namespace plica {
 
-/// The plot and its data as a figure of a page.
+/// Figure with a plot and its data.
 Figure chart(const std::string& name, const Plot& plot, const std::string& caption);
 
-/// A column of a series over time, in s or, with a factor, in another unit. std::bad_optional_access when the series
-/// has no such column.
+/// Column of a series over time, in s or, with a factor, another unit. Throws std::bad_optional_access for an unknown
+/// column.
 Curve column_of(const Series& series, const std::string& name, const std::string& column, double time_factor = 1);
 
-/// A painter that starts when it is first asked for. Where nothing can be drawn, the reason is the same each time.
+/// Painter created at its first use; repeats the same error if nothing can be drawn.
 class LazyPainter {
  public:
-  /// FileError as of Painter.
+  /// Throws FileError as Painter does.
   Painter& operator*();
 
  private:

@@ -1,15 +1,15 @@
-// The X display that VTK draws on.
+// X display that VTK draws on.
 #pragma once
 
 #include <string>
 
 namespace plica {
 
-/// A display that answers: the one that DISPLAY names, or an X server of our own without a screen (Xvfb), which ends
-/// with this object, and with this process however that ends.
+/// Working display: the one of DISPLAY, or an own virtual X server (Xvfb), which ends with this object or, however it
+/// ends, this process.
 class Display {
  public:
-  /// FileError, with what to do about it, when there is neither.
+  /// Throws FileError with a remedy if there is none.
   Display();
   ~Display();
   Display(const Display&) = delete;
@@ -18,7 +18,7 @@ class Display {
   [[nodiscard]] const std::string& name() const { return name_; }  // ":99"
   [[nodiscard]] bool is_ours() const { return server_ > 0; }
 
-  /// Takes an X server of our own in the place of a display that answers and cannot draw. FileError as above.
+  /// Start an own X server instead of a display that responds but cannot draw. Throws FileError as above.
   void start_own();
 
  private:

@@ -34,13 +34,13 @@ bool answers(const std::string& name) {
   throw FileError(fmt::format("pictures need an X display: {}, and {}; apt-get install xvfb, or set DISPLAY",
                               named == nullptr || *named == '\0'
                                   ? std::string("DISPLAY is not set")
-                                  : fmt::format("DISPLAY ({}) cannot be drawn on", named),
+                                  : fmt::format("DISPLAY ({}) does not allow drawing", named),
                               why));
 }
 
-// In the child: becomes the server, which writes the number of its display to `pipe_end`.
+// Become the server, in the child process; it writes the number of its display to `pipe_end`.
 [[noreturn]] void become_server(int pipe_end, int messages, pid_t parent) {
-  ::setpgid(0, 0);  // Ctrl-C is for us, not for it
+  ::setpgid(0, 0);  // Ctrl-C must not reach the server
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (::getppid() != parent) ::_exit(1);
   for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_DFL);
@@ -49,13 +49,13 @@ bool answers(const std::string& name) {
   ::dup2(nothing, STDOUT_FILENO);
   ::dup2(messages, STDERR_FILENO);
   const std::string number = std::to_string(::dup(pipe_end));  // without O_CLOEXEC
-  // -noreset: else the server starts anew when a window closes, and the next may come too early.
+  // -noreset: otherwise the server restarts when a window closes, and the next window may come too early.
   ::execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "64x64x24", "-noreset", "-nolisten", "tcp",
            static_cast<char*>(nullptr));
   ::_exit(errno == ENOENT ? 127 : 126);
 }
 
-// The line that the server writes once it is ready; empty when it ends or takes too long.
+// Read the line that the server writes once it is ready; empty if it ends or takes too long.
 std::string read_number(int pipe_end) {
   using Clock = std::chrono::steady_clock;
   const auto last = Clock::now() + std::chrono::seconds(most_seconds_to_start);
@@ -80,13 +80,13 @@ int status_of(pid_t process) {
   return status;
 }
 
-// SIGTERM lets the server take away its socket and lock.
+// SIGTERM lets the server remove its socket and lock.
 int end_server(pid_t server) {
   ::kill(server, SIGTERM);
   return status_of(server);
 }
 
-// What Xvfb said last, in one line.
+// Last messages of Xvfb, in one line.
 std::string last_line(std::FILE* messages) {
   std::rewind(messages);
   std::string line;
@@ -116,10 +116,10 @@ void Display::start_own() {
   ::close(ends[1]);
   const std::string number = child < 0 ? "" : read_number(ends[0]);
   ::close(ends[0]);
-  if (child < 0) throw_no_screen("no process can be started");
+  if (child < 0) throw_no_screen("a process cannot be started");
   if (number.empty()) {
     const int status = end_server(child);
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 127) throw_no_screen("there is no Xvfb");
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 127) throw_no_screen("Xvfb is not installed");
     const std::string said = last_line(messages.get());
     throw_no_screen("Xvfb did not start" + (said.empty() ? said : " (" + said + ")"));
   }

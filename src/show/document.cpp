@@ -16,7 +16,7 @@ struct Overloaded : Takes... {
   using Takes::operator()...;
 };
 template <class... Takes>
-Overloaded(Takes...) -> Overloaded<Takes...>;  // C++20 needs no guide, clang-tidy 14 does
+Overloaded(Takes...) -> Overloaded<Takes...>;  // needed by clang-tidy 14, not by C++20
 
 std::string file_name(const Figure& figure) { return figure.name + (figure.png.empty() ? ".svg" : ".png"); }
 
@@ -52,7 +52,7 @@ std::string markdown(const Document& document) {
   return text;
 }
 
-// The inline marks as HTML. A mark without its partner stays as it is.
+// Convert inline marks to HTML; unpaired marks are kept.
 std::string inline_html(const std::string& text) {
   std::string html = xml_escaped(text);
   const auto turn = [&](const std::string& mark, const std::string& tag) {
@@ -80,7 +80,7 @@ constexpr const char* style =
     "img{max-width:100%;height:auto}figcaption{max-width:60rem}.yes{background:#dcefe6}"
     ".open{background:#f5ecc8}.no{background:#f6dcd2}";
 
-// Verdicts carry a colour, beside the word.
+// Verdicts have a colour in addition to the word.
 std::string cell_class(const std::string& cell) {
   if (cell == "*reproduced*" || cell == "*hit*") return " class=\"yes\"";
   if (cell == "*reproduced under this reading*" || cell == "*undecided*") return " class=\"open\"";
@@ -114,7 +114,7 @@ std::string html(const Document& document) {
                                     xml_escaped(figure.name), base64(figure.png), inline_html(figure.caption));
                                 return;
                               }
-                              // Inline SVG needs no namespace, and so the page holds no address.
+                              // Inline SVG needs no namespace, so that the page contains no URL.
                               std::string svg = figure.svg;
                               constexpr std::string_view name_space = " xmlns=\"http://www.w3.org/2000/svg\"";
                               if (const auto at = svg.find(name_space); at != std::string::npos)
@@ -135,7 +135,7 @@ std::string html(const Document& document) {
 void write_document(const fs::path& directory, const std::string& name, const Document& document) {
   std::error_code error;
   fs::create_directories(directory / "figures", error);
-  if (error) throw FileError((directory / "figures").string() + ": cannot be made: " + error.message());
+  if (error) throw FileError((directory / "figures").string() + ": cannot be created: " + error.message());
   for (const auto& block : document.blocks)
     if (const auto* figure = std::get_if<Figure>(&block)) {
       write_file(directory / "figures" / file_name(*figure), figure->png.empty() ? figure->svg : figure->png);

@@ -1,4 +1,4 @@
-// A page of text, tables and figures, written as Markdown and as HTML from one structure.
+// Page of text, tables and figures, written as Markdown and HTML from one structure.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace plica {
 
-/// Inline marks in all texts: `code`, **strong**, *emphasis*. Nothing else of Markdown.
+/// Heading. Inline marks in all texts: `code`, **strong**, *emphasis*; no other Markdown.
 struct Heading {
   int level = 2;
   std::string text;
@@ -21,11 +21,11 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 struct Figure {
-  std::string name;      // of its files in figures/
-  std::string svg;       // the whole file; empty for a picture
-  std::string caption;   // in our words
-  std::string csv;       // what is drawn; empty for a picture
-  std::string png = {};  // of a picture, the whole file
+  std::string name;      // name of its files in figures/
+  std::string svg;       // complete file; empty for a picture
+  std::string caption;   // Markdown text
+  std::string csv;       // data of the plot; empty for a picture
+  std::string png = {};  // complete file, for a picture
 };
 
 struct Document {
@@ -33,8 +33,7 @@ struct Document {
   std::vector<std::variant<Heading, Paragraph, Table, Figure>> blocks;
 };
 
-/// DIR/NAME.md, which links to figures/, DIR/NAME.html, which holds everything in itself, and the figures' files.
-/// FileError when one cannot be written.
+/// Write DIR/NAME.md (links to figures/), DIR/NAME.html (self-contained) and the files of figures. Throws FileError.
 void write_document(const std::filesystem::path& directory, const std::string& name, const Document& document);
 
 }  // namespace plica

@@ -8,7 +8,7 @@
 #include "core/errors.hpp"
 #include "core/names.hpp"
 #include "measure/cell_columns.hpp"
-#include "show/skin.hpp"
+#include "show/boundary_surface.hpp"
 #include "tissue/hexahedron.hpp"
 
 namespace plica {
@@ -36,7 +36,7 @@ Rgb srgb_of(const Lab& lab) {
   return rgb;
 }
 
-// The entry at `part` (0 to 1) of values at equal steps, linear between them.
+// Interpolate values at equal steps linearly at `part` (0 to 1).
 template <class Values>
 auto between(const Values& values, double part) {
   const double place = std::clamp(part, 0.0, 1.0) * static_cast<double>(values.size() - 1);
@@ -54,10 +54,10 @@ ColourMap lab_map(const std::string& name, const std::vector<Lab>& control) {
   return map;
 }
 
-// The smallest number of this kind (1, 1.2, 1.5, ...) times a power of ten that is not below `value`.
+// Smallest round number (1, 1.2, 1.5, ... times a power of ten) not below `value`.
 double rounded_up(double value) {
   if (!(value > 0)) return 1;
-  constexpr double slack = 1e-9;  // a value that is round but for rounding errors stays
+  constexpr double slack = 1e-9;  // values that are round up to rounding errors are kept
   const double power = std::pow(10, std::floor(std::log10(value)));
   for (const double factor : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 10.0})
     if (factor * power * (1 + slack) >= value) return factor * power;
@@ -67,7 +67,8 @@ double rounded_up(double value) {
 template <class Arrays>
 const auto& required(const Arrays& arrays, const std::string& name) {
   const auto found = arrays.find(name);
-  if (found == arrays.end()) throw FileError(fmt::format("the frame has no array {}; is it one of plica's?", name));
+  if (found == arrays.end())
+    throw FileError(fmt::format("the snapshot has no array {}; give one written by plica", name));
   return found->second;
 }
 
@@ -75,7 +76,7 @@ double size_of(const std::vector<double>& members) {
   return static_cast<double>(std::ranges::count_if(members, [](double flag) { return flag > 0; }));
 }
 
-// Of each element the smallest region that it is in, as a place in coloured_regions(), from 1; 0: none.
+// Smallest region of each element as an index into coloured_regions(), from 1; 0: none.
 std::vector<double> region_numbers(const Frame& frame) {
   std::vector<double> numbers(frame.elements.size(), 0.0), sizes(frame.elements.size(), 1e300);
   double number = 0;
@@ -92,11 +93,11 @@ std::vector<double> region_numbers(const Frame& frame) {
 }  // namespace
 
 const std::vector<ColourMap>& colour_maps() {
-  // What has not moved stays light. (viridis was tried: its yellow end turns muddy in the shade.)
+  // Cells at rest are light. Rejected: viridis, whose yellow end becomes muddy in shade.
   static const std::vector<ColourMap> maps = {
       lab_map("still", {{96, -3, 10}, {78, -18, 2}, {59, -20, -18}, {40, -4, -33}, {21, 8, -30}}),
       lab_map("about", {{25, 8, -38}, {60, -10, -32}, {95, 0, 3}, {60, 22, 42}, {25, 24, 32}}),
-      // Okabe and Ito's colours for any kind of colour vision, from their light ones.
+      // Okabe and Ito's colours for any kind of colour vision, light ones first.
       {"steps",
        {{0.90, 0.90, 0.88},
         {0.90, 0.62, 0},
@@ -113,17 +114,17 @@ std::string ColourField::title() const { return unit.empty() ? label : fmt::form
 
 const std::vector<ColourField>& colour_fields() {
   static const std::vector<ColourField> fields = {
-      {"displacement", "displacement from rest", "µm", "displacement_um", true},
+      {"displacement", "displacement", "µm", "displacement_um", true},
       {"speed", "speed", "µm/s", "velocity_um_per_s", true},
-      {"area-ratio", "apical area / at rest", "", "apical_area_ratio", false, ScaleKind::about, 1},
+      {"area-ratio", "apical area / reference area", "", "apical_area_ratio", false, ScaleKind::about, 1},
       {"pressure", "pressure", "Pa", "pressure_Pa", false, ScaleKind::about, 0},
       {"volume-error", "volume error", "", "volume_error", false, ScaleKind::about, 0},
       {"volume", "volume", "µm³", "volume_um3"},
-      {"contraction", "contraction's activity", "", "activity"},
-      {"strength", "contraction's strength", "", "strength"},
+      {"contraction", "contraction activity", "", "activity"},
+      {"strength", "contraction strength", "", "strength"},
       {"generation", "generation", "", "generation", false, ScaleKind::steps},
       {"region", "region", "", "region", false, ScaleKind::steps},
-      {"self-intersections", "passes through itself", "", "self_intersecting", false, ScaleKind::steps}};
+      {"self-intersections", "self-intersecting", "", "self_intersecting", false, ScaleKind::steps}};
   return fields;
 }
 
@@ -153,7 +154,7 @@ std::vector<std::string> coloured_regions(const Frame& frame) {
 
 std::vector<double> field_values(const Frame& frame, const ColourField& field) {
   if (field.array == "region") return region_numbers(frame);
-  // Frames of older versions have no such array, and nobody knows.
+  // Snapshots of older versions lack this array; the values are unknown.
   if ((field.array == "self_intersecting" || field.array == "strength") && !frame.element_scalars.contains(field.array))
     return std::vector<double>(frame.elements.size(), 0.0);
   if (!field.on_nodes) return required(frame.element_scalars, field.array);
@@ -173,7 +174,7 @@ std::vector<std::string> step_names(const Frame& frame, const ColourField& field
   } else {
     for (int step = 0; step <= static_cast<int>(largest); ++step) names.push_back(fmt::format("{}", step));
   }
-  // Of more than there are colours, the last one has the rest.
+  // With more steps than colours, the last colour has the rest.
   const std::size_t most = field.map().colours.size();
   if (names.size() > most) {
     names.resize(most);
@@ -188,7 +189,7 @@ ColourRange colour_range(const ColourField& field, double smallest, double large
       return {smallest < 0 ? -rounded_up(-smallest) : 0, rounded_up(largest)};
     case ScaleKind::about: {
       double reach = rounded_up(std::max(field.centre - smallest, largest - field.centre));
-      // A ratio has no values below 0; those that are more than twice the middle look like the largest.
+      // Ratios are not negative; values above twice the centre have the colour of the largest.
       if (field.centre > 0) reach = std::min(reach, field.centre);
       return {field.centre - reach, field.centre + reach};
     }
@@ -215,8 +216,7 @@ const std::vector<View>& views() {
 }
 
 std::vector<View> views_of(const Frame& rest) {
-  constexpr double least_open =
-      0.2;  // of the sum of areas, that of their vectors: 0 of a closed surface, 1 of a flat one
+  constexpr double least_open = 0.2;  // |sum of area vectors| / sum of areas: 0 for a closed surface, 1 for a flat one
   std::vector<View> views = plica::views();
   Vec3 vectors = Vec3::Zero();
   double area = 0;
@@ -228,7 +228,7 @@ std::vector<View> views_of(const Frame& rest) {
     area += vector.norm();
   }
   if (!(vectors.norm() > least_open * area)) return views;
-  // x to the right, as far as it is across the sight; where it is along it, y.
+  // x to the right, projected across the viewing direction; if parallel to it, y.
   const auto apical = std::ranges::find(views, "apical", &View::name);
   apical->sight = -vectors.normalized();
   const bool along_x = std::abs(apical->sight.x()) > 0.9;

@@ -1,5 +1,4 @@
-// Numbers as few bytes in a page of text: whole numbers coded so that they compress well.
-// viewer/src/packed.ts reads them.
+// Compact encoding of integers for report pages, read by viewer/src/packed.ts.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +10,18 @@
 
 namespace plica {
 
-/// Arrays of whole numbers under one roof. Each number is kept as its difference from the one `period` before it
-/// (modulo 2^bits), and of each array all lowest bytes come first, then the next ones: what changes little from frame
-/// to frame becomes long runs of the same byte.
+/// Collection of integer arrays that compresses well. Each number is stored as its difference from the one `period`
+/// earlier (modulo 2^bits), with all lowest bytes of an array first, then the next ones: small changes between
+/// snapshots become long runs of equal bytes.
 class PackedArrays {
  public:
   void add(std::string name, std::span<const std::uint16_t> values, std::size_t period);
   void add(std::string name, std::span<const std::uint32_t> values, std::size_t period);
 
-  /// Bytes of all arrays, not yet deflated.
+  /// Bytes of all arrays, before compression.
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
-  /// A JSON list of {name, bits, period, count, offset}: where each array begins in the bytes.
+  /// JSON list of {name, bits, period, count, offset} with the position of each array in the bytes.
   [[nodiscard]] nlohmann::ordered_json index() const;
 
  private:
@@ -38,11 +37,11 @@ class PackedArrays {
   std::string bytes_;
 };
 
-/// A range of numbers in 65536 equal steps.
+/// Quantization of a range in 65536 equal steps.
 struct Quantiser {
   double low = 0, high = 0;
   void include(double value);
-  /// The step nearest to the value.
+  /// Step nearest to a value.
   [[nodiscard]] std::uint16_t step_of(double value) const;
 
  private:

@@ -1,7 +1,7 @@
-// Pictures of frames: what is to be drawn, as plain data, and a painter that makes PNG files of it.
+// Pictures of snapshots: description as plain data, and a painter that makes PNG files of it.
 //
-// The painter is VTK, off screen. Debian's VTK draws through X, and VTK ends the process when that fails: so a child
-// process draws, and where no display answers an own X server without a screen is started (display.hpp).
+// The painter uses VTK off screen. Debian's VTK draws through X and ends the process if that fails, so a child process
+// draws, and without a working display a virtual X server is started (display.hpp).
 #pragma once
 
 #include <array>
@@ -16,47 +16,47 @@
 
 namespace plica {
 
-/// A moment, or a run: what stands below each other in a picture.
+/// Column of a picture: one time, or one run.
 struct PictureColumn {
   std::string heading;  // "5 min"
   Frame frame;
-  Vectors dots = {};  // places that are marked, um
+  Vectors dots = {};  // marked points, um
 };
 
-/// A view: what stands beside each other.
+/// Row of a picture: one view.
 struct PictureRow {
   View view;
-  std::array<double, 2> half_size_um = {0, 0};  // how far the panel reaches from the origin, to the sides and upwards
+  std::array<double, 2> half_size_um = {0, 0};  // half width and half height of the panel
 };
 
-/// A grid of panels at one scale, with a legend, a scale bar, and a heading for each column and row.
+/// Picture: grid of panels at one scale, with legend, scale bar and headings of columns and rows.
 struct Picture {
   std::vector<PictureColumn> columns;
   std::vector<PictureRow> rows;
   ColourField field;
   ColourRange range;
-  std::vector<std::string> step_names = {};  // of a field of steps: what its numbers stand for, from 0
-  std::optional<Frame> rest = {};            // its outline is drawn in sections, in grey, unless the shell is
+  std::vector<std::string> step_names = {};  // names of the integers of a field of steps, from 0
+  std::optional<Frame> rest = {};            // grey reference outline in sections, unless the shell is drawn
   std::optional<Capsule> shell = {};         // drawn around the embryo
   bool edges = true;                         // outlines of cells
-  bool anatomy = true;                       // A, P, D, V, L, R at the ends of the embryo in the first column
-  int width_px = 0, height_px = 0;           // 0: as wide as the number of columns asks for; as high as the content
+  bool anatomy = true;                       // A, P, D, V, L, R at the ends of the embryo, in the first column
+  int width_px = 0, height_px = 0;           // 0: width by the number of columns; height by the content
 };
 
 inline constexpr int smallest_picture_px = 200, largest_picture_px = 6000;  // of a side
 
-/// How far positions reach from the origin as a view shows them, to the sides and upwards, um.
+/// Half width and half height of positions in a view, about the origin, um.
 std::array<double, 2> half_size_um(const Vectors& positions, const View& view);
 
-/// Draws pictures; keeps the screen that they are drawn on from one to the next.
+/// Painter of pictures; keeps its screen between them.
 class Painter {
  public:
-  /// FileError when there is no screen and none can be started, or plica was built without VTK.
+  /// Throws FileError without a screen, or in builds without VTK.
   Painter();
   ~Painter();
 
-  /// The bytes of a PNG file; of the same picture the same bytes. FileError when VTK could not draw it, or a
-  /// frame lacks what is to be shown; UsageError when the size asked for is too small.
+  /// Draw a picture; returns the bytes of a PNG file, equal for equal pictures. Throws FileError if VTK fails or a
+  /// snapshot lacks the field, UsageError for too small a size.
   std::string png(const Picture& picture);
 
  private:

@@ -13,15 +13,15 @@ namespace {
 
 constexpr Rgb ink = {0.12, 0.12, 0.12};
 
-// Widths and heights in letters' heights ("em"): the whole layout grows with the width of the picture.
+// Widths and heights in units of the letter height ("em"), so that the layout scales with the picture.
 constexpr double font_of_width = 0.0165, smallest_font_px = 9;
-constexpr double letter_em = 0.56;  // a letter's mean width
+constexpr double letter_em = 0.56;  // mean width of a letter
 constexpr double line_em = 1.25, bar_em = 1.0, mark_em = 1.35, gap_em = 0.5;
 constexpr double heading_em = 2.2, footer_em = 2.2;
-constexpr double step_em = 1.4;  // of a legend's box
+constexpr double step_em = 1.4;  // of a legend box
 constexpr std::size_t legend_title_letters = 13;
 
-// Letters, not bytes.
+// Number of letters, not bytes.
 std::size_t letters(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }
@@ -40,14 +40,14 @@ std::string number_text(double value) {
   return text.starts_with('-') ? "\u2212" + text.substr(1) : text;
 }
 
-// A view's name as a heading: "cross-section" stays, "sagittal-section" may be broken.
+// Name of a view as a heading: "cross-section" is kept, "sagittal-section" may be broken.
 std::vector<std::string> heading_lines(const std::string& name, bool broken) {
   const std::size_t hyphen = name.find('-');
   if (!broken || hyphen == std::string::npos) return {name};
   return {name.substr(0, hyphen + 1), name.substr(hyphen + 1)};
 }
 
-// The ends of the embryo that a view shows at its border, with their directions on the screen.
+// Anatomical ends that a view shows at its border, with their directions on the screen.
 struct Mark {
   std::string text;
   std::array<double, 2> direction;  // unit
@@ -69,14 +69,14 @@ std::vector<Mark> marks_of(const View& view) {
   return marks;
 }
 
-// The layout on its way: sizes first, then from top to bottom.
+// Builder of a layout: sizes first, then from top to bottom.
 class Composer {
  public:
   explicit Composer(const Picture& picture) : picture_(picture) {
     const auto columns = static_cast<double>(picture.columns.size());
     layout_.width_px = picture.width_px > 0 ? picture.width_px : columns > 2 ? 1500 : columns > 1 ? 1200 : 1000;
     em_ = layout_.font_px = std::max(smallest_font_px, font_of_width * layout_.width_px);
-    const double extra = picture.shell ? 10 : 0;  // um, for what is drawn around the embryo
+    const double extra = picture.shell ? 10 : 0;  // um, for the shell around the embryo
     for (const PictureRow& row : picture.rows) {
       half_width_um_ = std::max(half_width_um_, row.half_size_um[0] + extra);
       half_heights_um_.push_back(row.half_size_um[1] + extra);
@@ -109,7 +109,7 @@ class Composer {
   }
 
  private:
-  // Panels begin and end at whole pixels and have a pixel's corner in their middle, so that what is symmetric stays so.
+  // Panels start and end at whole pixels, with a pixel corner at their centre, to preserve symmetry.
   [[nodiscard]] double top_px() const {
     return std::ceil((heading_em + line_em * static_cast<double>(heading_lines_ - 1)) * em_);
   }
@@ -131,7 +131,7 @@ class Composer {
     return height;
   }
 
-  // The panels' scale follows from the width, or from the height where that is given and leaves less.
+  // Scale of the panels: from the width, or from a given height if that is more restrictive.
   void set_sizes() {
     const auto columns = static_cast<double>(picture_.columns.size());
     for (const bool broken : {false, true}) {
@@ -157,7 +157,7 @@ class Composer {
   }
 
   void fit_height() {
-    // Even, as video codecs want it.
+    // Even, as video codecs require.
     layout_.height_px = 2 * static_cast<int>(std::ceil(needed_height() / 2));
     if (picture_.height_px <= 0) return;
     layout_.height_px = picture_.height_px;
@@ -167,7 +167,7 @@ class Composer {
     const double other = top_px() + std::ceil(footer_em * em_) + rows * (2 * upper_marks_ + gap_em * em_ + 2);
     const double least = other + 3 * em_ * rows;
     if (layout_.height_px < least)
-      throw UsageError(fmt::format("the picture is too low for its rows; a --size of {}x{} or more holds them",
+      throw UsageError(fmt::format("the picture is too low for its rows; give a --size of {}x{} or more",
                                    layout_.width_px, std::ceil(least)));
     layout_.um_per_px = std::max(layout_.um_per_px, content_um / (layout_.height_px - other));
   }
@@ -223,7 +223,7 @@ class Composer {
     }
   }
 
-  // The colour bar with its title above, in the middle of the rows' height.
+  // Colour bar with its title above, centred on the rows.
   void add_legend(double top, double bottom) {
     const double title = line_em * static_cast<double>(legend_title_.size()) + 0.6;
     const bool steps = !picture_.step_names.empty();
@@ -259,7 +259,7 @@ class Composer {
     }
   }
 
-  // A box for each whole number, and what it stands for.
+  // One box per integer with its name.
   void add_steps(const Box& box) {
     const double height = box.height / static_cast<double>(picture_.step_names.size());
     for (std::size_t value = 0; value < picture_.step_names.size(); ++value) {
@@ -272,7 +272,7 @@ class Composer {
     }
   }
 
-  // The scale bar, and what the lines in the panels mean.
+  // Scale bar and meaning of the lines in the panels.
   void add_footer() {
     const double length_um = round_length(0.4 * panel_px_ * layout_.um_per_px), left = left_px_ + em_;
     const double y = footer_em / 2 * em_, thickness = std::max(2.0, 0.14 * em_);
@@ -286,8 +286,8 @@ class Composer {
         std::ranges::any_of(picture_.rows, [](const PictureRow& row) { return row.view.cut_axis.has_value(); });
     std::vector<std::string> notes;
     if (picture_.rows.size() == 1) notes.push_back(picture_.rows.front().view.label);
-    if (picture_.shell) notes.emplace_back("grey band: vitelline shell");
-    if (cut && picture_.rest && !picture_.shell) notes.emplace_back("grey line: at rest");
+    if (picture_.shell) notes.emplace_back("grey band: vitelline membrane");
+    if (cut && picture_.rest && !picture_.shell) notes.emplace_back("grey line: reference state");
     while (!notes.empty()) {
       const std::string words = fmt::format("{}", fmt::join(notes, "; "));
       if (x + width_em(words) * em_ <= layout_.width_px) {
@@ -303,7 +303,7 @@ class Composer {
   double em_ = 12;
   double half_width_um_ = 0;
   std::vector<double> half_heights_um_;
-  double side_marks_ = 0, upper_marks_ = 0;  // px beside and above the embryo, for the marks
+  double side_marks_ = 0, upper_marks_ = 0;  // px beside and above the embryo, for its labels
   double left_px_ = 0, panel_px_ = 0;
   bool broken_names_ = false;
   std::vector<std::string> legend_title_;

@@ -1,4 +1,4 @@
-// What stands in for picture_vtk.cpp when plica is built without VTK.
+// Replacement of picture_vtk.cpp for builds without VTK.
 #ifndef PLICA_WITH_VTK
 
 #include "core/errors.hpp"
@@ -8,7 +8,7 @@ namespace plica {
 
 struct Painter::Screen {};
 
-Painter::Painter() { throw FileError("pictures cannot be drawn: plica was built without VTK"); }
+Painter::Painter() { throw FileError("pictures are not available (built without VTK)"); }
 Painter::~Painter() = default;
 std::string Painter::png(const Picture&) { return ""; }
 

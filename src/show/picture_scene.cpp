@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "show/skin.hpp"
+#include "show/boundary_surface.hpp"
 
 namespace plica {
 namespace {
@@ -15,7 +15,7 @@ Vec3 place_of(const Frame& frame, const CutPolygon::Corner& corner) {
          corner.part * frame.positions[corner.second.index()];
 }
 
-// A polygon as triangles around its middle, so that what is symmetric is drawn symmetric.
+// Triangulate a polygon about its centre, which preserves symmetry.
 void add_fan(const Vectors& polygon, const std::vector<double>& values, const Vec3& normal, Scene& scene) {
   Vec3 middle = Vec3::Zero();
   double mean = 0;
@@ -31,8 +31,8 @@ void add_fan(const Vectors& polygon, const std::vector<double>& values, const Ve
 
 void add_surface(const Frame& frame, const ColourField& field, Scene& scene) {
   const std::vector<double> values = field_values(frame, field);
-  const Skin skin = skin_of(frame);
-  for (const SkinFacet& facet : skin.facets) {
+  const BoundarySurface boundary = boundary_surface_of(frame);
+  for (const BoundaryFacet& facet : boundary.facets) {
     Vectors corners;
     std::vector<double> at_corners;
     for (const NodeId node : facet.nodes) {
@@ -42,17 +42,17 @@ void add_surface(const Frame& frame, const ColourField& field, Scene& scene) {
     const Vec3 normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]).normalized();
     add_fan(corners, at_corners, normal, scene);
   }
-  for (const auto& [first, second] : skin.outlines)
+  for (const auto& [first, second] : boundary.outlines)
     scene.outlines.push_back({frame.positions[first.index()], frame.positions[second.index()]});
 }
 
-// Edges of the polygons, but for those between two elements of one cell.
+// Edges of the polygons, except those between two elements of one cell.
 void add_cut_outlines(const Frame& frame, const std::vector<CutPolygon>& polygons, Scene& scene) {
-  using CutEdge = std::pair<NodeId, NodeId>;  // of the mesh: where a corner lies
+  using CutEdge = std::pair<NodeId, NodeId>;  // mesh edge on which a corner lies
   struct Side {
     Segment segment;
     double cell = 0;
-    int times = 0;  // that this cell has it
+    int times = 0;  // occurrences in this cell
   };
   std::map<std::pair<CutEdge, CutEdge>, std::vector<Side>> sides;
   const auto edge_of = [](const CutPolygon::Corner& corner) { return std::minmax(corner.first, corner.second); };
@@ -89,10 +89,10 @@ void add_section(const Frame& frame, const ColourField& field, const View& view,
   add_cut_outlines(frame, polygons, scene);
 }
 
-// Where the plane of a view cuts the outer side of the embryo.
+// Section of the boundary surface by the plane of a view.
 std::vector<Segment> cut_outer_side(const Frame& frame, int axis, double at_um) {
   std::vector<Segment> segments;
-  for (const SkinFacet& facet : skin_of(frame).facets) {
+  for (const BoundaryFacet& facet : boundary_surface_of(frame).facets) {
     if (facet.face != apical_face) continue;
     Vectors crossings;
     for (int i = 0; i < 4; ++i) {
@@ -106,7 +106,7 @@ std::vector<Segment> cut_outer_side(const Frame& frame, int axis, double at_um) 
   return segments;
 }
 
-// A band around the shell's outline as it is seen: around two half circles, where the ends of its axis appear.
+// Band along the outline of the shell in a view: two half circles about the projected ends of its axis.
 Vectors shell_band(const Capsule& shell, const View& view, double band_um) {
   constexpr int pieces = 180;  // of each half circle
   const auto [right, up] = screenwise(view);

@@ -1,4 +1,4 @@
-// What a panel of a picture shows, as triangles and lines in the embryo's own coordinates.
+// Content of a panel as triangles and lines, in coordinates of the embryo.
 #pragma once
 
 #include <array>
@@ -10,21 +10,21 @@ namespace plica {
 
 using Segment = std::array<Vec3, 2>;
 
-/// Triangles are three corners after each other; a symmetric embryo gives symmetric ones.
+/// Scene; triangles are three consecutive corners, symmetric for a symmetric embryo.
 struct Scene {
-  Vectors corners, normals;       // um; a facet's triangles have one normal
-  std::vector<double> values;     // of the field, a corner each
-  bool lit = true;                // light and shade; without them, colours are those of the legend
+  Vectors corners, normals;       // um; triangles of a facet share a normal
+  std::vector<double> values;     // of the field; corners
+  bool lit = true;                // shading; without it, colours equal the legend
   std::vector<Segment> outlines;  // of cells
-  std::vector<Segment> rest;      // outline of the embryo at rest, in sections
+  std::vector<Segment> rest;      // reference outline, in sections
   Vectors shell;                  // triangles of a band around the embryo
 };
 
-/// The outer facets of a frame, or for a view that cuts, the section alone. FileError when the frame lacks the field.
-/// `band_um`: how thick the shell is drawn.
+/// Scene of the boundary surface of a snapshot or, for a section view, the section alone. `band_um`: thickness of the
+/// shell. Throws FileError for a missing field.
 Scene make_scene(const Picture& picture, const PictureColumn& column, const View& view, double band_um);
 
-/// Unit vectors of a view: to the right and upwards in the picture.
+/// Unit vectors of a view, rightward and upward in the picture.
 struct Screenwise {
   Vec3 right, up;
 };

@@ -36,7 +36,7 @@
 #include "show/picture_layout.hpp"
 #include "show/picture_scene.hpp"
 
-// VTK finds its renderer and its fonts only when told to.
+// VTK requires explicit initialization of renderer and fonts.
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
 VTK_MODULE_INIT(vtkRenderingFreeType)
 
@@ -44,14 +44,15 @@ namespace plica {
 namespace {
 
 constexpr Rgb ink = {0.12, 0.12, 0.12}, grey = {0.55, 0.55, 0.55}, shell_grey = {0.45, 0.45, 0.5};
-constexpr double ambient = 0.55;                         // of the light; the rest comes from the eye
-constexpr int map_entries = 1024;                        // of the table of colours
-constexpr int samples = 4;                               // a pixel, by the graphics library, before pixels are averaged
-constexpr double eye_um = 3000;                          // its distance
-constexpr double in_front_px = 2, most_in_front_um = 1;  // what lines are moved by, so that facets do not hide them
+constexpr double ambient = 0.55;   // ambient part of the light; the rest comes from the viewer
+constexpr int map_entries = 1024;  // size of the colour table
+constexpr int samples = 4;         // multisamples per pixel, before pixels are averaged
+constexpr double eye_um = 3000;    // distance of the viewer
+constexpr double in_front_px = 2,
+                 most_in_front_um = 1;  // offset of lines towards the viewer, so that facets do not hide them
 constexpr double descender_em = 0.1;
-constexpr double band_em = 0.15;              // thickness of the shell, in letters' heights
-constexpr double most_pixels_averaged = 5e6;  // larger pictures are not drawn finer than they are shown
+constexpr double band_em = 0.15;              // thickness of the shell, in letter heights
+constexpr double most_pixels_averaged = 5e6;  // larger pictures are not supersampled
 
 vtkSmartPointer<vtkPolyData> poly_data(const Vectors& points, int points_a_cell, bool lines, const Vec3& move) {
   vtkNew<vtkPoints> vtk_points;
@@ -100,7 +101,7 @@ void add_facets(const Scene& scene, vtkLookupTable& table, vtkRenderer& renderer
   mapper->SetInputData(data);
   mapper->SetLookupTable(&table);
   mapper->SetUseLookupTableScalarRange(true);
-  mapper->SetInterpolateScalarsBeforeMapping(true);  // colours between nodes are those of the values between them
+  mapper->SetInterpolateScalarsBeforeMapping(true);  // interpolate values rather than colours between nodes
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
   vtkProperty& look = *actor->GetProperty();
@@ -131,7 +132,7 @@ void add_lines(const std::vector<Segment>& segments, const Vec3& move, const Rgb
   add_plain(*poly_data(ends, 2, true, move), colour, 1, line_px, renderer);
 }
 
-// Thin where cells are small.
+// Thinner lines for small cells.
 double outline_px(const Scene& scene, const Layout& layout) {
   double length_um = 0;
   for (const auto& [from, to] : scene.outlines) length_um += (to - from).norm();
@@ -140,7 +141,7 @@ double outline_px(const Scene& scene, const Layout& layout) {
   return std::min(0.06 * layout.font_px, 0.08 * mean_px);
 }
 
-// Discs towards the eye.
+// Discs facing the viewer.
 void add_dots(const Vectors& places, const View& view, double radius_um, vtkRenderer& renderer) {
   constexpr int corners = 24;
   const auto [right, up] = screenwise(view);
@@ -155,7 +156,7 @@ void add_dots(const Vectors& places, const View& view, double radius_um, vtkRend
   add_plain(*poly_data(points, corners, false, move), {0.75, 0.1, 0.1}, 1, 1, renderer);
 }
 
-/// The window and what is in it, `scale` times as fine as the picture.
+/// Render window with its content, supersampled by `scale`.
 class Stage {
  public:
   Stage(const Picture& picture, const Layout& layout, const std::vector<Scene>& scenes, int scale)
@@ -174,7 +175,7 @@ class Stage {
     for (const Label& label : layout.labels) add_label(label);
   }
 
-  /// RGB, lower row first; empty when the window cannot be drawn in.
+  /// Pixels as RGB, lower row first; empty if the window cannot be rendered.
   vtkSmartPointer<vtkImageData> draw() {
     auto* opengl = vtkOpenGLRenderWindow::SafeDownCast(window_);
     if (opengl == nullptr || opengl->SupportsOpenGL() == 0) return nullptr;
@@ -197,7 +198,7 @@ class Stage {
     renderer->SetViewport(box.left / width, std::max(0.0, box.bottom / height), (box.left + box.width) / width,
                           std::min(1.0, (box.bottom + box.height) / height));
     const Vec3 sight = view.sight.normalized();
-    // No further than that: edges behind a wall would show through it.
+    // Limited, since edges behind a face would show through it.
     const Vec3 behind = std::min(in_front_px * layout_.um_per_px, most_in_front_um) * sight;
     add_lines(scene.rest, behind, grey, 0.09 * layout_.font_px * scale_, *renderer);
     add_facets(scene, *table_, *renderer);
@@ -248,7 +249,7 @@ class Stage {
                                                          : VTK_TEXT_RIGHT);
     look.SetVerticalJustificationToCentered();
     if (label.upwards) look.SetOrientation(90);
-    // VTK has descenders in the height whose middle it takes.
+    // VTK includes descenders in the height that it centres.
     const double lower = descender_em * label.size_px;
     actor->SetPosition((label.x + (label.upwards ? lower : 0)) * scale_,
                        (label.y - (label.upwards ? 0 : lower)) * scale_);
@@ -263,7 +264,7 @@ class Stage {
   vtkNew<vtkRenderer> overlay_;
 };
 
-// The mean of each `scale` x `scale` pixels.
+// Mean of each block of `scale` x `scale` pixels.
 vtkSmartPointer<vtkImageData> averaged(vtkImageData& fine, int scale) {
   const int width = fine.GetDimensions()[0] / scale, height = fine.GetDimensions()[1] / scale;
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -294,11 +295,11 @@ std::string png_bytes(vtkImageData& image) {
   return {reinterpret_cast<const char*>(bytes->GetPointer(0)), static_cast<std::size_t>(bytes->GetNumberOfTuples())};
 }
 
-/// What the child process does.
+/// Draw a picture; runs in the child process.
 std::string draw(const Picture& picture, const Layout& layout, const std::vector<Scene>& scenes,
                  const std::string& display) {
   ::setenv("DISPLAY", display.c_str(), 1);
-  ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);  // Mesa's own drawing: the same picture on any screen
+  ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);  // software rendering: equal pictures on any screen
   const double pixels = static_cast<double>(layout.width_px) * layout.height_px;
   const int scale = pixels > most_pixels_averaged ? 1 : 2;
   Stage stage(picture, layout, scenes, scale);
@@ -327,8 +328,8 @@ std::string Painter::png(const Picture& picture) {
                                        [&] { return draw(picture, layout, scenes, display.name()); });
     if (bytes && !bytes->empty()) return *bytes;
     if (display.is_ours())
-      throw FileError("pictures cannot be drawn: VTK's OpenGL failed; apt-get install libgl1-mesa-dri");
-    display.start_own();  // a display that answers and cannot draw
+      throw FileError("pictures cannot be drawn (OpenGL failed in VTK); apt-get install libgl1-mesa-dri");
+    display.start_own();  // the display responds but cannot draw
   }
 }
 

@@ -13,7 +13,7 @@ constexpr double width = 680, height = 400, left = 72, right = 20, top = 34, bot
 constexpr std::array colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#56B4E9"};
 constexpr std::array dashes = {"", "7 3", "2 3", "9 3 2 3", "", "7 3", "2 3"};
 
-// From values to pixels along one axis.
+// Mapping of values to pixels along one axis.
 struct Scale {
   double low = 0, high = 1, from = 0, to = 1;
   bool logarithmic = false;
@@ -110,7 +110,7 @@ void draw_curve(Svg& svg, const Curve& curve, std::size_t number, const Scale& x
   flush();
 }
 
-// Names below the chart, two a row.
+// Names below the chart, two per row.
 void draw_legend(Svg& svg, const Plot& plot) {
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const std::size_t row = i / 2;

@@ -1,4 +1,4 @@
-// Line charts: axes with ticks and units, curves that differ in colour and in dashes, guides for printed values.
+// Line charts: axes with ticks and units, curves with colours and dashes, guides for reference values.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,18 @@ namespace plica {
 struct PlotAxis {
   std::string label;  // with its unit
   bool logarithmic = false;
-  std::optional<double> low = {}, high = {};  // empty: of the data
-  bool whole = false;                         // ticks at whole numbers only
+  std::optional<double> low = {}, high = {};  // empty: from the data
+  bool whole = false;                         // ticks at integers only
 };
 
 struct Curve {
   std::string name;
-  std::vector<double> x, y;  // as long as each other; what is not finite, or not > 0 on a logarithmic axis, is a gap
-  bool marks = false;        // a dot at each point
-  bool line = true;          // from point to point
+  std::vector<double> x, y;  // of equal length; values not finite, or not > 0 on a logarithmic axis, are gaps
+  bool marks = false;        // dots at points
+  bool line = true;          // lines between points
 };
 
-/// A value, or with `high` a band, to hold the curves against. A band may have no end: infinite.
+/// Reference value, or with `high` a band, to compare with the curves. Bands may be infinite.
 struct Guide {
   std::string label;
   double at = 0;
@@ -37,15 +37,14 @@ struct Plot {
   std::vector<Guide> vertical, horizontal;
 };
 
-/// The chart, 680 x 400 pixels, and more below for the legend. Colours are Okabe and Ito's, which the colour-blind tell
-/// apart.
+/// Draw the chart, 680 x 400 pixels plus the legend below, in Okabe and Ito's colour-blind-safe colours.
 Svg draw(const Plot& plot);
 
-/// The curves as a table: curve, x, y.
+/// Table of the curves: curve, x, y.
 std::string plot_csv(const Plot& plot);
 
-/// Round values from `low` to `high` for an axis: steps of 1, 2 or 5 times a power of ten, or of 1 and more where they
-/// are to be `whole`; powers of ten (and 2 and 5 times these where there are few) on a logarithmic one.
+/// Ticks from `low` to `high`: steps of 1, 2 or 5 times a power of ten, at least 1 if `whole`; on a logarithmic axis
+/// powers of ten, with 2 and 5 times these if few.
 std::vector<double> axis_ticks(double low, double high, bool logarithmic, bool whole = false);
 
 }  // namespace plica

@@ -15,22 +15,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A scenario that lies in DIR under a name that plica writes there would be lost.
+// Protect a scenario file in DIR with a name that plica writes.
 void refuse_to_replace_scenario(const std::string& scenario_file, const fs::path& out) {
-  if (out.empty()) throw UsageError("--out is empty; give the directory for the results");
+  if (out.empty()) throw UsageError("--out: empty; give the directory for the results");
   std::error_code error;
   for (const char* name : {"scenario.toml", "scenario.input.toml"})
     if (fs::equivalent(scenario_file, out / name, error))
-      throw UsageError(scenario_file + ": the results would replace it; give another --out, or move the scenario");
+      throw UsageError(scenario_file + ": would be replaced by the results; give another --out, or move the scenario");
 }
 
-// The files of a study are those of many runs.
+// Protect the directory of a study.
 void refuse_to_replace_study(const fs::path& out) {
   std::error_code error;
-  if (fs::exists(out / "study.json", error)) throw UsageError(out.string() + ": holds a study; give another --out");
+  if (fs::exists(out / "study.json", error)) throw UsageError(out.string() + ": contains a study; give another --out");
 }
 
-// Nor would there be anything to measure against.
+// Protect the reference run of a monitor.
 void refuse_to_replace_reference(const std::vector<Monitor>& monitors, const fs::path& out) {
   std::error_code error;
   for (const Monitor& monitor : monitors)
@@ -48,9 +48,9 @@ RecordedRun::RecordedRun(fs::path out, const Scenario& scenario, const ScenarioS
   refuse_to_replace_study(out_);
   refuse_to_replace_reference(simulation.observer().monitors(), out_);
   if (simulation.divisions() > 0)
-    throw UsageError("cells have divided already; a record begins before the first division");
+    throw UsageError("cells have already divided; start a record before the first division");
   if (start == Start::resumed && simulation.steps() > 0)
-    throw UsageError("the simulation has taken steps already; resume a run with one that is at rest");
+    throw UsageError("the simulation has already taken steps; resume a run with one in its reference state");
   lock_ = std::make_unique<DirectoryLock>(out_);
   if (start == Start::resumed) look_for_checkpoint(scenario);
   is_finished_ = checkpoint_ && has_ended(checkpoint_->run, simulation.controls()) && holds_ending(out_, can_report());
@@ -58,7 +58,7 @@ RecordedRun::RecordedRun(fs::path out, const Scenario& scenario, const ScenarioS
   if (!checkpoint_) {
     prepare_directory(out_, start != Start::fresh);
     lock_.reset();
-    lock_ = std::make_unique<DirectoryLock>(out_);  // it may have been made only now
+    lock_ = std::make_unique<DirectoryLock>(out_);  // it may have been created just now
   }
   recorder_ = std::make_unique<Recorder>(out_, scenario, simulation, since);
   if (can_report()) recorder_->listen(report_);
@@ -68,32 +68,33 @@ RecordedRun::~RecordedRun() {
   if (recorder_) simulation_.stop_listening(*recorder_);
 }
 
-// UsageError when it is of another run; FileError when it is damaged, or when there are results that belong to none.
+// Find a checkpoint. Throws UsageError for another run, FileError if it is damaged or results have none.
 void RecordedRun::look_for_checkpoint(const Scenario& scenario) {
-  if (!can_archive()) throw UsageError("this plica was built without HDF5: it has no checkpoints to resume from");
+  if (!can_archive()) throw UsageError("--resume: not available (built without HDF5)");
   std::string complaint;
   checkpoint_ = read_checkpoint(out_, complaint);
-  if (!complaint.empty()) notes_.push_back(complaint + "; going on from the checkpoint before it");
+  if (!complaint.empty()) notes_.push_back(complaint + "; continuing from the previous checkpoint");
   if (!checkpoint_) {
     if (holds_steps(out_))
       throw FileError(out_.string() +
-                      ": holds results without a checkpoint; begin anew with --overwrite, or give another --out");
+                      ": contains results without a checkpoint; restart with --overwrite, or give another --out");
     return;
   }
   const std::string now = resolved_toml(scenario);
   if (const auto other = other_scenario(checkpoint_->scenario, now))
     throw UsageError(
-        fmt::format("{}: the checkpoint is of another scenario: {}; only [time], [stop] and [output] may change: give "
+        fmt::format("{}: the checkpoint is of another scenario ({}); change only [time], [stop] and [output], or give "
                     "another --out",
                     out_.string(), *other));
   const std::string at_rest = fingerprint(simulation_.model().tissue);
   if (checkpoint_->at_rest != at_rest)
-    throw UsageError(fmt::format("{}: the checkpoint is of another embryo ({}; this one has {}); has its mesh changed?",
-                                 out_.string(), checkpoint_->at_rest, at_rest));
+    throw UsageError(
+        fmt::format("{}: the checkpoint is of another mesh ({}; now {}); restore the mesh, or give another --out",
+                    out_.string(), checkpoint_->at_rest, at_rest));
   if (checkpoint_->program != version())
-    notes_.push_back(fmt::format("{} was written by version {}; what follows may differ from it in the last digits",
+    notes_.push_back(fmt::format("{} was written by version {}; further results may differ in the last digits",
                                  out_.string(), checkpoint_->program));
-  // What ended the run may not end it any more: the next step is asked.
+  // The criteria that ended the run may have changed; the next step evaluates them.
   if (other_stop(checkpoint_->scenario, now)) checkpoint_->run.criterion_met = checkpoint_->run.at_equilibrium = false;
 }
 

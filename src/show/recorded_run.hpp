@@ -1,4 +1,4 @@
-// A simulation and the directory that it leaves everything in: results, checkpoints, report.
+// Simulation with a directory for its results, checkpoints and report.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace plica {
 
-/// Holds the directory, so that nobody else writes there. The simulation and the scenario outlive it.
+/// Recorded run. Locks the directory against other writers; simulation and scenario must outlive it.
 ///
 ///   RecordedRun record("results", scenario, source, simulation, RecordedRun::Start::fresh);
 ///   record.begin();
@@ -25,33 +25,33 @@ namespace plica {
 class RecordedRun {
  public:
   enum class Start {
-    fresh,   // the directory holds no results
-    over,    // those that it holds are removed
-    resumed  // goes on from its checkpoint; begins where there is none
+    fresh,   // the directory contains no results
+    over,    // existing results are removed
+    resumed  // continues from its checkpoint; starts without one
   };
 
-  /// Finds out whether that can be done, and writes nothing. The simulation is at rest or, if `start` is not resumed,
-  /// at any moment before cells have divided: then rows begin there. UsageError when its files would replace what the
-  /// run reads, or the checkpoint is of another run; FileError when the directory cannot be used.
+  /// Check the directory without writing. The simulation must be in its reference state or, unless resumed, at any time
+  /// before the first division, where rows start then. Throws UsageError if files would replace input of the run, or
+  /// the checkpoint is of another run; FileError if the directory is not usable.
   RecordedRun(std::filesystem::path out, const Scenario& scenario, const ScenarioSource& source, Simulation& simulation,
               Start start, Recorder::Clock::time_point since = Recorder::Clock::now());
   RecordedRun(const RecordedRun&) = delete;
   RecordedRun& operator=(const RecordedRun&) = delete;
   ~RecordedRun();
 
-  /// Resumed, with nothing left to do: `begin` is not to be called.
+  /// Whether a resumed run is already complete; do not call `begin` then.
   [[nodiscard]] bool is_finished() const { return is_finished_; }
-  /// What was odd about the checkpoint, for the user to read.
+  /// Notes for the user about the checkpoint.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
-  /// Writes what stands before the first step, or brings simulation and files to where the checkpoint is. From now on
-  /// steps are recorded. True when it went on from a checkpoint.
+  /// Write the initial files, or restore simulation and files from the checkpoint, and record steps from now on.
+  /// Returns true if it continues from a checkpoint.
   bool begin();
 
-  /// Whether a file could not be written; the next step, or `finish`, throws the reason.
+  /// Whether writing failed; the next step or `finish` throws the reason.
   [[nodiscard]] bool has_failed() const { return recorder_->has_failed(); }
 
-  /// The last frame, summary.json, the report. Steps that follow are not recorded.
+  /// Write the last snapshot, summary.json and the report; later steps are not recorded.
   nlohmann::ordered_json finish();
 
  private:
@@ -68,8 +68,8 @@ class RecordedRun {
   std::unique_ptr<Recorder> recorder_;
 };
 
-/// Runs a scenario into a directory of its own, to its end or until `stop`; goes on with what was begun there, and with
-/// what has ended does nothing. The summary. Errors as above.
+/// Run a scenario in a directory to its end or until `stop`, continuing an unfinished run; a finished one is left
+/// unchanged. Returns the summary. Throws as RecordedRun does.
 nlohmann::ordered_json run_recorded(const std::filesystem::path& out, const Scenario& scenario,
                                     const ScenarioSource& source, const std::function<bool()>& stop);
 

@@ -29,7 +29,7 @@ const char* name_of(ScaleKind kind) {
   return kind == ScaleKind::from_zero ? "from-zero" : kind == ScaleKind::about ? "about" : "steps";
 }
 
-// Quantities that all runs with frames have, each with one scale for all frames of all runs.
+// Quantities common to all runs with snapshots, each with one scale for all of them.
 ordered_json fields_json(const std::vector<ReportRun>& runs) {
   ordered_json fields = ordered_json::array();
   for (const ColourField& field : runs.front().colours) {
@@ -60,7 +60,7 @@ ordered_json maps_json() {
   return maps;
 }
 
-// Of several runs, those of the first.
+// Views of the first run.
 ordered_json views_json(const std::vector<ReportRun>& runs) {
   ordered_json list = ordered_json::array();
   for (const View& view : runs.front().views)
@@ -79,7 +79,7 @@ std::string title_of(const ReportRun& run) {
   return has_title ? summary["title"].get<std::string>() : run.json["name"].get<std::string>();
 }
 
-// Each title once: runs of one scenario share theirs.
+// List each title once; runs of one scenario share theirs.
 std::string title_of(const std::vector<ReportRun>& runs) {
   std::vector<std::string> titles;
   for (const ReportRun& run : runs)
@@ -88,8 +88,8 @@ std::string title_of(const std::vector<ReportRun>& runs) {
   return fmt::format("{}", fmt::join(titles, " | "));
 }
 
-// The scenario's keys that are not the same in all runs, each with a value a run, as in TOML; "" where a run has none.
-// Runs that have left no scenario are not compared.
+// Keys that differ between runs, with one value per run as in TOML; "" if missing. Runs without a scenario file are not
+// compared.
 ordered_json varied_json(const std::vector<ReportRun>& runs) {
   const auto scenario = [&](std::size_t r) { return runs[r].json["scenario"].get<std::string>(); };
   std::size_t first = 0;
@@ -109,7 +109,7 @@ ordered_json varied_json(const std::vector<ReportRun>& runs) {
   return varied;
 }
 
-// Directories of one name, as of a sweep's "young-500/run" and "young-1000/run", are told apart by those above them.
+// Prefix equal directory names by their parents: "young-500/run" and "young-1000/run".
 void make_names_unique(const std::vector<std::filesystem::path>& directories, std::vector<ReportRun>& runs) {
   std::vector<std::filesystem::path> above;
   for (const auto& directory : directories) {

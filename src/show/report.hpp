@@ -1,5 +1,5 @@
-// report.html: one page with a run, or several side by side, that opens by double click without a network. The page
-// itself is viewer/, bundled when plica is built; here its data are put in. docs/how-to/report.md describes both.
+// report.html: one page with a run, or several side by side, that works offline. The page is bundled from viewer/; this
+// module inserts its data. See docs/how-to/report.md.
 #pragma once
 
 #include <filesystem>
@@ -10,16 +10,16 @@
 
 namespace plica {
 
-/// Most bytes that the frames of all runs of a page may take before compression. Compressed and written as base64 they
-/// are at most 4/3 of it, whatever they hold: under 40 MB with the page itself.
+/// Largest size of the snapshots of all runs of a page before compression. Compressed and as base64 they are at most
+/// 4/3 of it: below 40 MB with the page itself.
 inline constexpr double most_frame_bytes = 28e6;
 
-/// The page of these runs. FileError when plica was built without its viewer.
+/// Make the page of runs. Throws FileError in builds without the viewer.
 std::string report_page(const std::vector<ReportRun>& runs);
 
-/// The page of directories that hold results of `plica run`, finished or not; what a run has not (yet) left is missing
-/// on its page. Where frames take more than most_frame_bytes, some are left out (ReportFrames); the page says so.
-/// FileError as above, and when a directory holds no results, or a file of it is damaged.
+/// Make the page of directories of `plica run`, finished or not; missing files are left out. Snapshots beyond
+/// most_frame_bytes are thinned out (ReportFrames), as stated on the page. Throws FileError as above, or without
+/// results, or for a damaged file.
 std::string report_page_of(const std::vector<std::filesystem::path>& directories);
 
 /// Whether this build has its viewer.

@@ -13,7 +13,8 @@ constexpr std::size_t most_given_arrays = 16;
 
 const std::vector<double>& cell_ids(const Frame& frame) {
   const auto found = frame.element_scalars.find("cell_id");
-  if (found == frame.element_scalars.end()) throw FileError("the frame has no array cell_id; is it one of plica's?");
+  if (found == frame.element_scalars.end())
+    throw FileError("the snapshot has no array cell_id; give one written by plica");
   return found->second;
 }
 
@@ -28,7 +29,7 @@ std::uint32_t region_bits(const Frame& frame, const std::vector<std::string>& re
 }
 
 FrameTopology topology_of(const Frame& frame, const std::vector<std::string>& regions) {
-  FrameTopology topology{frame.elements, {}, {}, {}, {}, {}, {}, skin_of(frame), {}};
+  FrameTopology topology{frame.elements, {}, {}, {}, {}, {}, {}, boundary_surface_of(frame), {}};
   const auto value = [&](const char* name, std::size_t element) {
     const auto found = frame.element_scalars.find(name);
     return found == frame.element_scalars.end() ? 0.0 : found->second[element];
@@ -89,7 +90,7 @@ void pack_structure(const FrameTopology& topology, const std::string& prefix, Pa
   add("elements", flat(topology.elements), 8);
   add("cell_of_element", topology.cell_of_element, 1);
   std::vector<std::uint32_t> nodes, elements, faces;
-  for (const SkinFacet& facet : topology.skin.facets) {
+  for (const BoundaryFacet& facet : topology.boundary.facets) {
     for (const NodeId node : facet.nodes) nodes.push_back(static_cast<std::uint32_t>(node.index()));
     elements.push_back(static_cast<std::uint32_t>(facet.element));
     faces.push_back(static_cast<std::uint32_t>(facet.face));
@@ -97,7 +98,7 @@ void pack_structure(const FrameTopology& topology, const std::string& prefix, Pa
   add("facets", nodes, 4);
   add("element_of_facet", elements, 1);
   add("face_of_facet", faces, 1);
-  add("outlines", flat(topology.skin.outlines), 2);
+  add("outlines", flat(topology.boundary.outlines), 2);
   add("cell_id", topology.cell_id, 1);
   add("mother_id", topology.mother_id, 1);
   add("generation", topology.generation, 1);
@@ -152,7 +153,7 @@ void pack_frames(const std::vector<FrameTopology>& topologies, ReportRun& run) {
   run.json["arrays"] = run.frames.index();
 }
 
-// What a frame of this size takes in the page before compression.
+// Size of a snapshot in the page before compression.
 double bytes_of(const FrameMoment& moment) {
   std::size_t numbers = 3 * moment.positions.size();
   for (const auto& field : moment.fields) numbers += field.size();
@@ -176,7 +177,7 @@ void ReportFrames::add(const Frame& frame, double time_s) {
     if (!topologies_.empty()) topologies_.back().moments.back().at_division = true;
     topologies_.push_back(topology_of(frame, regions_));
   } else {
-    // The one before is no longer the last.
+    // The previous snapshot is no longer the last.
     std::vector<FrameMoment>& moments = topologies_.back().moments;
     const FrameMoment& before = moments.back();
     if (before.number % every_ != 0 && !before.at_division) {

@@ -17,7 +17,7 @@ using nlohmann::ordered_json;
 
 constexpr std::string_view title_place = "<!--plica:title-->", data_place = "<!--plica:data-->";
 
-// JSON that may stand in a script element: "</script>" and "<!--" cannot occur. Bytes that are no UTF-8 become U+FFFD.
+// Convert to JSON for a script element, without "</script>" and "<!--". Invalid UTF-8 becomes U+FFFD.
 std::string in_script(const ordered_json& json) {
   const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   std::string result;
@@ -41,15 +41,14 @@ std::string replaced(std::string_view text, std::string_view place, const std::s
 
 std::string filled_page(std::string_view page, const std::string& title, const ordered_json& data,
                         const std::vector<PageBytes>& packed) {
-  if (page.empty())
-    throw FileError("no report can be made: plica was built without its viewer (PLICA_WITH_VIEWER=OFF)");
+  if (page.empty()) throw FileError("reports are not available (built with PLICA_WITH_VIEWER=OFF)");
   std::string elements = fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", in_script(data));
   for (const auto& [id, bytes] : packed) {
     std::string deflated;
     Deflater(Deflater::Effort::small).append(bytes, deflated);
     elements += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, base64(deflated));
   }
-  // Data first: a title that holds the mark of another place does no harm.
+  // Data first, so that a title containing the mark of another place is harmless.
   return replaced(replaced(page, data_place, elements), title_place, xml_escaped(title));
 }
 

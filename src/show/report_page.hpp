@@ -1,4 +1,4 @@
-// A page that viewer/ is bundled to, with its data put in.
+// Pages bundled from viewer/, and insertion of data.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,16 +8,16 @@
 
 namespace plica {
 
-/// Bytes that a page finds by the id of their element, deflated, as base64.
+/// Bytes for an element of the page with this id; inserted deflated, as base64.
 struct PageBytes {
   std::string id, bytes;
 };
 
-/// The bundled pages without data: of runs, and of a study. Empty when plica was built without its viewer.
+/// Bundled pages without data, for runs and studies; empty in builds without the viewer.
 std::string_view report_template();
 std::string_view study_template();
 
-/// The page with its title and data. FileError when plica was built without its viewer.
+/// Insert title and data into a page. Throws FileError in builds without the viewer.
 std::string filled_page(std::string_view page, const std::string& title, const nlohmann::ordered_json& data,
                         const std::vector<PageBytes>& packed);
 

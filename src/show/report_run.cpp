@@ -45,12 +45,13 @@ ReportRun make_report_run(const fs::path& directory, const ReportFrames& frames)
 
 ReportRun read_report_run(const fs::path& directory, double most_bytes) {
   std::error_code error;
-  if (!fs::exists(directory, error)) throw FileError(directory.string() + ": there is no such directory");
+  if (!fs::exists(directory, error))
+    throw FileError(directory.string() + ": directory does not exist; give the --out directory of a `plica run`");
   if (!fs::is_directory(directory, error))
-    throw FileError(directory.string() + ": is no directory of results; give the --out directory of a `plica run`");
+    throw FileError(directory.string() + ": is not a directory of results; give the --out directory of a `plica run`");
   const bool has_frames = fs::exists(directory / "frames.pvd", error);
   if (!has_frames && text_of(directory / "series.csv").empty())
-    throw FileError(directory.string() + ": holds no results; give the --out directory of a `plica run`");
+    throw FileError(directory.string() + ": contains no results; give the --out directory of a `plica run`");
   ReportFrames frames(most_bytes);
   if (has_frames) {
     const ReferenceRun run(directory);

@@ -1,7 +1,7 @@
 #include "show/report_page.hpp"
 
 #ifdef PLICA_REPORT_TEMPLATE
-// Put in by the assembler: the compiler takes seconds for literals of this size.
+// Included by the assembler, since the compiler takes seconds for literals of this size.
 __asm__(
     ".pushsection .rodata\n"
     "plica_report_template_begin:\n"

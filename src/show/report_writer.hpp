@@ -1,4 +1,4 @@
-// Makes the report.html of a run while it is recorded.
+// Writer of the report.html of a run, while it is recorded.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace plica {
 
-/// Writes report.html into the run's directory at its end. For a plica that can (can_report).
+/// Writes report.html into the directory of a run at its end. Requires can_report().
 class ReportWriter final : public RecordListener {
  public:
   explicit ReportWriter(std::filesystem::path directory);

@@ -1,4 +1,4 @@
-// A picture of a mesh at rest, coloured by one of its arrays.
+// Picture of an undeformed mesh, coloured by one of its arrays.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace plica {
 
-/// The names by which a mesh can be coloured: its arrays, and `region`.
+/// Names for colouring a mesh: its arrays and `region`.
 std::vector<std::string> colours_of_mesh(const Frame& frame);
 
-/// `colour`: one of these. `is_embryo`: its ends and sides have letters.
+/// Describe the picture. `colour`: one of these names. `is_embryo`: label anatomical ends.
 Picture rest_picture(Frame frame, const std::string& colour, const std::vector<View>& views, bool is_embryo);
 
 }  // namespace plica

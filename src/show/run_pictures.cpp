@@ -22,7 +22,7 @@ double farthest_displacement_um(const Frame& frame) {
   return farthest;
 }
 
-// Views look at the origin: the middle of a body that lies elsewhere, as a mesh from a file may; else the origin.
+// Point that views look at: the origin, or the centre of a body far from it (mesh from a file).
 Vec3 far_middle(const Vectors& positions) {
   Vec3 low = positions.front(), high = low;
   for (const Vec3& position : positions) {
@@ -48,12 +48,12 @@ RunPictures::RunPictures(std::filesystem::path directory, PictureOptions options
   is_embryo_ = !scenario || !is_patch(shape_of(scenario->embryo));
   if (!options_.shell) return;
   if (!scenario)
-    throw FileError(run_.directory().string() + ": holds no scenario.toml that says what the vitelline shell is");
+    throw FileError(run_.directory().string() + ": contains no scenario.toml that defines the vitelline membrane");
   shell_ = shell_of_run(*scenario, rest_.positions);
-  if (!shell_) throw FileError(run_.directory().string() + ": was run without a vitelline shell; leave out --shell");
+  if (!shell_) throw FileError(run_.directory().string() + ": was run without a vitelline membrane; remove --shell");
   const double reach = shell_->half_axis_um + shell_->radius_um;
   for (PictureRow& row : rows_) {
-    // Its two ends and its two sides are enough to make room for it.
+    // Its ends and sides determine the space it needs.
     const double radius = shell_->radius_um;
     const auto half = half_size_um({{reach, 0, 0}}, row.view);
     row.half_size_um = {std::max({row.half_size_um[0], half[0], radius}),
@@ -72,7 +72,7 @@ void RunPictures::look_through() {
     Frame frame = run_.frame(i);
     if (i == 0) middle_ = far_middle(frame.positions);
     centre(frame);
-    if (i == 0) field_ = named("--colour", options_.colour, fields_of(frame));
+    if (i == 0) field_ = named("--color", options_.colour, fields_of(frame));
     if (i == 0) add_rows(frame);
     for (const double value : field_values(frame, field_)) {
       if (!std::isfinite(value)) continue;
@@ -95,7 +95,7 @@ void RunPictures::add_rows(const Frame& rest) {
   add_cuts(rest.positions);
 }
 
-// Views look at the middle of the body; places are given as the run has them.
+// Views look at the centre of the body; positions are given in coordinates of the run.
 void RunPictures::add_cuts(const Vectors& rest) {
   const auto [first, last] = std::ranges::minmax_element(rest, {}, [](const Vec3& position) { return position.x(); });
   const double low = first->x() + middle_.x(), high = last->x() + middle_.x();
@@ -104,8 +104,8 @@ void RunPictures::add_cuts(const Vectors& rest) {
     for (const double part : {0.25, 0.5, 0.75}) places.push_back(low + part * (high - low));
   for (const double x : places) {
     if (x <= low || x >= high)
-      throw UsageError(
-          fmt::format("--at-x-um: {:g} misses the embryo, whose x goes from {:.4g} to {:.4g} at rest", x, low, high));
+      throw UsageError(fmt::format(
+          "--at-x-um: {:g} is outside the embryo; give x from {:.4g} to {:.4g} (reference state)", x, low, high));
     View view = cross_section_at(x);
     view.cut_um -= middle_.x();
     rows_.push_back({view, {0, 0}});
@@ -138,9 +138,9 @@ Picture RunPictures::picture(const std::vector<double>& times_s) const {
   Picture picture;
   for (const double time_s : times_s) {
     std::optional<Frame> frame = run_.frame_at(time_s);
-    if (!frame) throw FileError(fmt::format("{}: has no frame at {} s", run_.directory().string(), time_s));
+    if (!frame) throw FileError(fmt::format("{}: has no snapshot at {} s", run_.directory().string(), time_s));
     centre(*frame);
-    const char* mark = passes_through_itself(*frame) ? ", passes through itself" : "";
+    const char* mark = passes_through_itself(*frame) ? ", self-intersecting" : "";
     picture.columns.push_back({time_text(time_s) + mark, std::move(*frame)});
   }
   picture.rows = rows_;

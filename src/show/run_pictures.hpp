@@ -1,4 +1,4 @@
-// Pictures of a run's frames: which moments, at which scale, in which colours.
+// Pictures of the snapshots of a run: times, scale, colours.
 #pragma once
 
 #include <filesystem>
@@ -11,38 +11,37 @@
 namespace plica {
 
 struct PictureOptions {
-  bool usual_view = false;              // a row of the first of the run's views_of()
-  std::vector<View> views;              // then rows of these
-  std::vector<double> cuts_at_x_um;     // then cross-sections at these places, as the run counts x
-  bool sections = false;                // then those at a quarter, half and three quarters of the length at rest
-  std::string colour = "displacement";  // what colours the cells: of the run's fields_of()
-  std::optional<ColourRange> range;     // empty: what all frames of the run need
+  bool usual_view = false;              // first a row of the default view (views_of)
+  std::vector<View> views;              // then one row per view
+  std::vector<double> cuts_at_x_um;     // then cross-sections at these x of the run
+  bool sections = false;                // then those at 25, 50 and 75 % of the reference length
+  std::string colour = "displacement";  // quantity, one of fields_of()
+  std::optional<ColourRange> range;     // empty: range over the run
   bool edges = true;                    // outlines of cells
-  bool shell = false;                   // the vitelline shell, where the scenario has one
+  bool shell = false;                   // draw the vitelline membrane
   int width_px = 0, height_px = 0;      // as in Picture
 };
 
-/// A run whose frames have been looked through once: all its pictures have one colour scale and one size of panel.
+/// Pictures of one run, with a common colour scale and panel size from all its snapshots.
 class RunPictures {
  public:
-  /// FileError when the directory holds no frames, the frames lack the field's array, or a shell is asked for that the
-  /// run does not have. UsageError when there is no field of that name.
+  /// Throws FileError without snapshots, for a missing array, or a requested shell that the run does not have;
+  /// UsageError for an unknown quantity.
   RunPictures(std::filesystem::path directory, PictureOptions options);
 
-  [[nodiscard]] const std::vector<double>& times_s() const { return times_s_; }  // of the frames
+  [[nodiscard]] const std::vector<double>& times_s() const { return times_s_; }  // of the snapshots
 
-  /// The time of the nearest frame. Nothing for a time before the first frame, or further behind the last one than half
-  /// of the distance between the last two.
+  /// Time of the nearest snapshot; empty before the first, or beyond the last by more than half of the last interval.
   [[nodiscard]] std::optional<double> nearest_time_s(double time_s) const;
 
-  /// Moments that tell the story: when a node has first moved by 0, 1/(count - 1), ..., all of the farthest
-  /// displacement of the run. Without displacements in the frames, equal steps of time.
+  /// Representative times: when a node first reaches 0, 1/(count - 1), ..., 1 of the largest displacement of the run.
+  /// Without displacements, equal intervals.
   [[nodiscard]] std::vector<double> telling_times_s(int count) const;
 
-  /// The frames at these times (of times_s()), a column each.
+  /// Describe a picture of the snapshots at these times (of times_s()), one column each.
   [[nodiscard]] Picture picture(const std::vector<double>& times_s) const;
 
-  /// "5 min"; seconds where the run is shorter than a minute and a half.
+  /// Format a time: "5 min", or seconds for runs shorter than 90 s.
   [[nodiscard]] std::string time_text(double time_s) const;
 
  private:
@@ -54,10 +53,10 @@ class RunPictures {
   ReferenceRun run_;
   PictureOptions options_;
   ColourField field_;
-  std::vector<double> times_s_, farthest_um_;  // a frame each
-  double smallest_ = 0, largest_ = 0;          // of the field, over all frames
+  std::vector<double> times_s_, farthest_um_;  // snapshots
+  double smallest_ = 0, largest_ = 0;          // of the field, over all snapshots
   std::vector<PictureRow> rows_;
-  Vec3 middle_ = Vec3::Zero();  // of the body at rest, where it lies far from the origin
+  Vec3 middle_ = Vec3::Zero();  // centre of the undeformed body, if far from the origin
   Frame rest_;
   bool is_embryo_ = true;
   std::optional<Capsule> shell_;

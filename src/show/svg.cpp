@@ -7,7 +7,7 @@
 namespace plica {
 namespace {
 
-// Tenths of a pixel: finer is not seen and makes files large.
+// Tenths of a pixel: finer is invisible and enlarges files.
 std::string joined(const std::vector<Pixel>& points) {
   std::string text;
   for (const Pixel& point : points) text += fmt::format("{}{:.1f},{:.1f}", text.empty() ? "" : " ", point[0], point[1]);

@@ -1,4 +1,4 @@
-// Vector pictures: the few shapes that plots need, written as SVG that any browser shows.
+// SVG output of the shapes that plots need.
 #pragma once
 
 #include <array>
@@ -7,23 +7,23 @@
 
 namespace plica {
 
-/// A place in a picture: pixels from its left and upper edge.
+/// Position in a picture: pixels from its left and upper edge.
 using Pixel = std::array<double, 2>;
 
-/// How text stands at its place.
+/// Style and alignment of text.
 struct TextStyle {
   double size = 12;
   std::string anchor = "start";  // start | middle | end
   bool bold = false;
-  bool upwards = false;  // turned by a quarter, to read from below
+  bool upwards = false;  // rotated by 90 degrees
 };
 
-/// A picture on white that grows shape by shape; later ones cover earlier ones.
+/// SVG picture on white; later shapes cover earlier ones.
 class Svg {
  public:
   Svg(double width, double height) : width_(width), height_(height) {}
 
-  /// `dashes` as SVG has them ("6 3"); empty for a whole line.
+  /// Add a line. `dashes`: as in SVG ("6 3"); empty for a solid line.
   void polyline(const std::vector<Pixel>& points, const std::string& colour, double width = 1.5,
                 const std::string& dashes = "");
   void circle(const Pixel& centre, double radius, const std::string& fill);
@@ -32,7 +32,7 @@ class Svg {
 
   [[nodiscard]] double width() const { return width_; }
   [[nodiscard]] double height() const { return height_; }
-  /// The whole file. `title` is read out by screen readers.
+  /// Complete file. `title`: text for screen readers.
   [[nodiscard]] std::string file(const std::string& title) const;
 
  private:

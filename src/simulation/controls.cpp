@@ -41,7 +41,7 @@ StepScheme make_scheme(const Scenario& scenario) {
   return scheme;
 }
 
-/// Steps see pulses, however little they move; and while cells pulse nothing is at rest.
+/// Add the points of pulses: steps must resolve them, and there is no equilibrium while cells pulse.
 template <class Acting>
 void take_pulses(const std::map<std::string, Acting>& tables, RunControls& controls) {
   for (const auto& [name, input] : tables) {
@@ -63,7 +63,7 @@ RunControls make_controls(const Scenario& scenario) {
   controls.position_tolerance_um = scenario.time.tolerance_um;
   controls.end_s = scenario.time.end_s;
   controls.equilibrium_speed_um_per_s = scenario.stop.equilibrium_speed_um_per_min * units::um_per_minute;
-  // Where rest must come together with criteria, it is one of them (make_watch).
+  // Equilibrium required together with criteria is one of them (make_watch).
   const bool all_at_once = meaning_of(words::combinations, scenario.stop.combine) && !scenario.criteria.empty();
   controls.stop_at_equilibrium = scenario.stop.at_equilibrium && !all_at_once;
   controls.frame_every_s = scenario.output.frame_every_s;

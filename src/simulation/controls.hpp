@@ -1,4 +1,4 @@
-// How far a run steps, on what times its steps end, and when it is over.
+// Step control of a run: step lengths, times on which steps end, and end criteria.
 #pragma once
 
 #include <optional>
@@ -16,17 +16,17 @@ struct RunControls {
   std::optional<double> fixed_step_s;   // empty: adaptive
   double first_step_s = 0.05;           // adaptive
   double max_step_s = 30;               // adaptive
-  double position_tolerance_um = 0.05;  // adaptive: largest error of a step at any node
+  double position_tolerance_um = 0.05;  // adaptive: largest local error at any node
   double end_s = 3600;
   double equilibrium_speed_um_per_s = 0.2 / 60;
   bool stop_at_equilibrium = true;
-  double frame_every_s = 15;             // adaptive steps end on frames; 0: no frames in between
-  std::vector<double> program_points_s;  // adaptive steps end on them, too; equilibrium counts only after the last
-  std::vector<double> program_jumps_s;   // those at which forces jump: fixed steps end on them, too
-  std::vector<DivisionRule> divisions;   // their times are among the program points
+  double frame_every_s = 15;             // adaptive steps end on snapshots; 0: none in between
+  std::vector<double> program_points_s;  // adaptive steps end on them; equilibrium counts only after the last
+  std::vector<double> program_jumps_s;   // jumps of forces: fixed steps end on them, too
+  std::vector<DivisionRule> divisions;   // their times are program points
 };
 
-/// Those of a scenario. The points of its laws' programs are added by the simulation.
+/// Controls of a scenario. The simulation adds the points of the activity time courses of its laws.
 RunControls make_controls(const Scenario& scenario);
 
 }  // namespace plica

@@ -18,10 +18,10 @@ std::string crossing_warning(const Simulation& simulation) {
     for (const NodeId node : one.nodes) place += positions[node.index()] / 4;
     const auto id = [&](const Facet& facet) { return tissue.cells[facet.cell.index()].lineage.id; };
     return fmt::format(
-        "the tissue passes through itself: at t = {:.4g} min the {} faces of cells {} and {} cross, at x = "
-        "{:.1f}, y = {:.1f}, z = {:.1f} um ({} pairs in all); what comes after is no tissue any more{}",
+        "the tissue self-intersects: at t = {:.4g} min {} faces of cells {} and {} cross at x = {:.1f}, y = {:.1f}, "
+        "z = {:.1f} um ({} pairs in all); later results are unphysical{}",
         simulation.time_s() / units::minute, side, id(one), id(other), place.x(), place.y(), place.z(), pairs.size(),
-        simulation.measures()["contact_pairs"] ? "" : "; [self_contact] would hold it off");
+        simulation.measures()["contact_pairs"] ? "" : "; add [self_contact] to prevent it");
   }
   return "";
 }

@@ -1,4 +1,4 @@
-// A tissue that passes through itself is a tissue no more: to be said once, with place and time.
+// Warning about the first self-intersection of a tissue.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace plica {
 
-/// Where it does, in words; empty where it does not.
+/// Text with time and place of the self-intersection; empty if there is none.
 std::string crossing_warning(const Simulation& simulation);
 
 }  // namespace plica

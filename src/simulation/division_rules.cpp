@@ -11,7 +11,7 @@
 namespace plica {
 namespace {
 
-// The polygon of a cell at half its height.
+// Polygon of a cell at half its height.
 std::vector<Vec3> mid_polygon(const Cell& cell, const Vectors& positions) {
   std::vector<Vec3> corners;
   for (std::size_t i = 0; i < cell.sides(); ++i)
@@ -19,17 +19,17 @@ std::vector<Vec3> mid_polygon(const Cell& cell, const Vectors& positions) {
   return corners;
 }
 
-// Mean vector along u (0) or v (1) of a grid's cell.
+// Mean vector along u (0) or v (1) of a grid cell.
 Vec3 mean_side(const std::vector<Vec3>& corners, int along) {
   const Vec3 diagonal = corners[2] - corners[0], other = along == 0 ? corners[1] - corners[3] : corners[3] - corners[1];
   return 0.5 * (diagonal + other);
 }
 
-// How a polygon's area is spread about its middle, in its plane.
+// Second moments of a polygon's area about its centroid, in its plane.
 struct Spread {
   Vec3 outward;                   // of length 1
-  double longest = 0, least = 0;  // the axes of the ellipse that is as long and as wide
-  Vec3 along;                     // the longest
+  double longest = 0, least = 0;  // axes of the equivalent ellipse
+  Vec3 along;                     // direction of the longest axis
 };
 
 Spread spread_of(const std::vector<Vec3>& corners) {
@@ -69,7 +69,7 @@ double elongation(const Cell& cell, const Vectors& positions) {
   return std::max(u, v) / std::min(u, v);
 }
 
-// A tie must not be decided by rounding: mirror images divide alike.
+// Rounding must not decide ties, so that mirror images divide alike.
 constexpr double tie = 1e-9;
 
 constexpr double least_quality = 0.05;  // scaled Jacobian of a daughter's elements
@@ -85,7 +85,7 @@ CellCut cut_of_grid(DivisionPlane plane, CellId id, const std::vector<Vec3>& cor
   return {id, along_u >= along_v * (1 - tie) ? 0 : 1};
 }
 
-// How good the elements of both halves can be.
+// Element quality of both halves.
 double quality_of_halves(const CellCut& cut, const std::vector<Vec3>& corners) {
   const auto quality = [](const std::vector<Vec3>& half) {
     const PrismCorners prism = prism_of(half);
@@ -96,9 +96,8 @@ double quality_of_halves(const CellCut& cut, const std::vector<Vec3>& corners) {
   return std::min(quality(low), quality(high));
 }
 
-// Of all cuts from the middle of a wall to that of another, the one that lies best across the axis and halves the cell
-// best: the square of the sine between them, and that of six times what a half lacks. One that leaves no sound halves,
-// at rest or where the cell is, comes after all others.
+// Best cut between midpoints of two walls: minimizes the squared sine of its angle to the normal of the axis plus the
+// squared sixfold deficit of the smaller half. Cuts with poor elements, in the reference or current state, rank last.
 CellCut cut_of_polygon(DivisionPlane plane, CellId id, const std::vector<Vec3>& corners, const Tissue& tissue,
                        const Vectors& positions) {
   const Spread spread = spread_of(corners);
@@ -107,7 +106,7 @@ CellCut cut_of_polygon(DivisionPlane plane, CellId id, const std::vector<Vec3>& 
   if (plane != DivisionPlane::longest_axis) {
     const Vec3 wanted = Vec3::Unit(plane == DivisionPlane::transverse ? 0 : 1);
     const Vec3 seen = wanted - spread.outward.dot(wanted) * spread.outward;
-    if (seen.norm() > 1e-6) axis = seen.normalized();  // else it stands on the cell: any axis does
+    if (seen.norm() > 1e-6) axis = seen.normalized();  // else it is normal to the cell: any axis will do
   }
   const auto corner = [&](int i) -> const Vec3& { return corners[i % n]; };
   std::vector<std::pair<double, CellCut>> cuts;
@@ -123,7 +122,7 @@ CellCut cut_of_polygon(DivisionPlane plane, CellId id, const std::vector<Vec3>& 
       }
       part += (last.cross(to) + to.cross(from)).dot(spread.outward);
       const double sine = (to - from).normalized().dot(axis), lacks = 6 * (part / whole - 0.5);
-      // To so many digits: what only rounding tells apart stays in its order.
+      // Compare a fixed number of digits, so that ties up to rounding keep their order.
       cuts.emplace_back(std::round((sine * sine + lacks * lacks) / tie), CellCut{id, first, second});
     }
   std::ranges::stable_sort(cuts, {}, &std::pair<double, CellCut>::first);
@@ -136,7 +135,7 @@ CellCut cut_of_polygon(DivisionPlane plane, CellId id, const std::vector<Vec3>& 
   return (sound == cuts.end() ? cuts.front() : *sound).second;
 }
 
-// What the rule's threshold is about, of every cell.
+// Quantity compared with the rule's threshold, for each cell.
 std::vector<double> measured(DivisionTrigger trigger, const Model& model, const State& state) {
   switch (trigger) {
     case DivisionTrigger::apical_area:

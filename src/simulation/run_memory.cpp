@@ -19,34 +19,35 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
   };
   const State& state = run.state;
   if (state.time_s < 0 || run.steps < 0 || run.wanted_step_s < 0 || state.trend.step_s < 0 || state.trend.earlier_s < 0)
-    return "its time or its step is negative";
+    return "its time or step is negative";
   if (state.trend.step_s + state.trend.earlier_s > state.time_s * (1 + 1e-9))
     return "its steps are longer than its time";
   if (!fits(state) || state.velocities.size() != nodes || !none_or(state.trend.mean_velocities.size(), nodes) ||
       !none_or(state.trend.accelerations.size(), nodes) || !none_or(state.trend.multiplier_rates.size(), multipliers) ||
       state.internals.size() != model.laws.size() || !none_or(run.energies.size(), model.laws.size() + 1))
-    return "its state is not one of this embryo";
+    return "its state does not fit this embryo";
   const FactorMemory& factor = run.factor;
   if (factor.empty()) return std::nullopt;
   if (!fits(factor.at) || factor.internals.size() != model.laws.size() || factor.previous_positions.size() != nodes ||
       factor.previous_velocities.size() != nodes || factor.earlier_positions.size() != (factor.ahead > 0 ? nodes : 0) ||
       !(factor.rate_s > 0) || factor.ahead < 0 || factor.has_left.size() != factor.changed_contacts.size() ||
       factor.normals.size() != factor.changed_contacts.size())
-    return "its factor is not one of this embryo";
+    return "its factorization does not fit this embryo";
   for (const int contact : factor.changed_contacts)
-    if (contact < 0 || static_cast<std::size_t>(contact) >= contacts) return "its factor is not one of this embryo";
+    if (contact < 0 || static_cast<std::size_t>(contact) >= contacts)
+      return "its factorization does not fit this embryo";
   return std::nullopt;
 }
 
 std::optional<std::string> why_unfit(const PastDivision& past, const Model& model) {
-  if (past.positions.size() != model.tissue.node_count()) return "a division is not one of this embryo";
+  if (past.positions.size() != model.tissue.node_count()) return "a division does not fit this embryo";
   for (const PlannedDivision& one : past.planned) {
     const int cell = one.cut.cell.number();
     if (cell < 0 || static_cast<std::size_t>(cell) >= model.tissue.cells.size() || one.cut.first_wall < 0 ||
         one.cut.second_wall <= one.cut.first_wall ||
         static_cast<std::size_t>(one.cut.second_wall) >= model.tissue.cells[cell].walls.size() ||
         !(one.growth_s >= 0) || !(one.volume_ratio > 0))
-      return "a division is not one of this embryo";
+      return "a division does not fit this embryo";
   }
   return std::nullopt;
 }

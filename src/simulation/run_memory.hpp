@@ -1,4 +1,4 @@
-// Where a run is between two steps: what a checkpoint holds of it, and a fork in time takes along.
+// State of a run between two steps, as stored in checkpoints and copied by branches.
 #pragma once
 
 #include <memory>
@@ -13,41 +13,41 @@
 
 namespace plica {
 
-/// A division that has been made, and what the model's part in it depended on.
+/// Past division with the data that the model's part of it depended on.
 struct PastDivision {
   double time_s = 0;
   Vectors positions;  // nodes, before it; um
   std::vector<PlannedDivision> planned;
 };
 
-/// Where a run is, between two steps: with the model of the scenario, enough to go on to the same bits.
+/// State of a run between two steps. With the model of the scenario it determines the rest of the run bitwise.
 struct RunMemory {
   State state;
   int steps = 0;
-  int divisions = 0;                         // cells that divided
-  std::optional<double> equilibrium_time_s;  // first time that every node was slower than the limit
-  bool at_equilibrium = false;               // now
-  bool criterion_met = false;                // [stop] says that the run is over
+  int divisions = 0;                         // number of cells that divided
+  std::optional<double> equilibrium_time_s;  // first time with all nodes below the stop speed
+  bool at_equilibrium = false;               // at present
+  bool criterion_met = false;                // a criterion of [stop] ended the run
   double wanted_step_s = 0;                  // length of the next step; 0: no step yet
-  double computing_s = 0;                    // what its steps have taken, wall time
-  std::vector<EnergyFlow> energies;          // of all steps so far, as energy_flows lists them; none before the first
+  double computing_s = 0;                    // wall time of its steps
+  std::vector<EnergyFlow> energies;  // sums over all steps, in the order of energy_flows; empty before the first
   FactorMemory factor;
   std::vector<std::shared_ptr<const PastDivision>> past_divisions;
-  std::vector<std::vector<double>> whole_internals;  // with mirror planes: what laws of the whole remember
+  std::vector<std::vector<double>> whole_internals;  // with mirror planes: internal variables of the full model
 };
 
-/// Whether nothing is left to do.
+/// Whether the run has ended.
 bool has_ended(const RunMemory& run, const RunControls& controls);
 
-/// A memory that is not one of the model that it is given to.
+/// Error: the memory does not fit the model.
 struct UnfitMemory : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Whether it fits the model, which has the past divisions behind it: sizes, and numbers of nodes and cells. What is
-/// wrong, or nothing.
+/// Check the memory against the model after its past divisions: sizes, numbers of nodes and cells. Returns the problem,
+/// or empty.
 std::optional<std::string> why_unfit(const RunMemory& run, const Model& model);
-/// The same of a division that is to be made again.
+/// Check a past division that is to be repeated.
 std::optional<std::string> why_unfit(const PastDivision& past, const Model& model);
 
 }  // namespace plica

@@ -34,10 +34,10 @@ double last_of(const std::vector<double>& times_s) {
   return times_s.empty() ? 0 : *std::max_element(times_s.begin(), times_s.end());
 }
 
-// Users know a cell by its id, which after divisions is not its place.
+// Users identify cells by id, which differs from the index after divisions.
 int id_of(const Model& model, CellId cell) { return model.tissue.cells[cell.index()].lineage.id; }
 
-// A cell whose nodes are all held cannot take another volume.
+// Whether all nodes of a cell are fixed, so that its volume cannot change.
 std::optional<CellId> held_cell_that_grows(const Model& model, const State& state) {
   if (!model.volumes().is_held()) return std::nullopt;
   const std::vector<double> errors = model.volumes().relative_errors(state.positions);
@@ -54,8 +54,8 @@ std::string failure_text(StepReport report, const Model& model, const State& sta
       fmt::format("{} at t = {:g} s, with steps down to {:g} s", report.reason(), state.time_s, duration_s);
   if (held)
     return text + fmt::format(
-                      "; cell {} is to have another volume, and all its corners are held: hold fewer nodes, or "
-                      "let it not divide or grow",
+                      "; cell {} must change its volume, but all its corners are fixed: fix fewer nodes, or "
+                      "exclude it from division and growth",
                       id_of(model, *held));
   if (const std::string remedy = report.remedy(); !remedy.empty()) text += "; " + remedy;
   return text;
@@ -70,7 +70,7 @@ Simulation::Parts parts_of(const Scenario& scenario) {
   parts.sites = make_furrow_sites(scenario, parts.model->tissue);
   parts.watch = make_watch(scenario, parts.model->tissue);
   if (auto side = make_solved_side(scenario, *parts.model))
-    parts.whole.emplace(std::exchange(parts.model, std::move(side->model)), std::move(side->mirror));
+    parts.full_model.emplace(std::exchange(parts.model, std::move(side->model)), std::move(side->mirror));
   return parts;
 }
 
@@ -78,7 +78,7 @@ Simulation::Simulation(const Scenario& scenario) : Simulation(parts_of(scenario)
 
 Simulation::Simulation(Parts parts)
     : model_(std::move(parts.model)),
-      whole_(std::move(parts.whole)),
+      full_model_(std::move(parts.full_model)),
       controls_(std::move(parts.controls)),
       step_length_(controls_),
       observer_(std::make_unique<Observer>(model(), std::move(parts.sites), std::move(parts.watch))) {
@@ -93,7 +93,7 @@ Simulation::Simulation(Parts parts)
 
 Simulation::Simulation(const Simulation& other)
     : model_(std::make_unique<Model>(*other.model_)),
-      whole_(other.whole_),
+      full_model_(other.full_model_),
       controls_(other.controls_),
       now_(other.memory()),
       step_length_(other.step_length_),
@@ -120,7 +120,7 @@ void Simulation::renew_stepper() {
   stepper_->stop_when(stop_requested_);
 }
 
-// The stepper makes again what it kept; daughters are as grown as they were then.
+// Recompute the reused factorization with daughters grown as they were then.
 void Simulation::recall_factor() {
   if (now_.factor.empty()) return;
   grow(*model_, now_.factor.end_time_s);
@@ -138,7 +138,7 @@ RunMemory Simulation::memory() const {
   RunMemory memory = now_;
   memory.wanted_step_s = step_length_.wanted_s();
   memory.factor = stepper_->memory();
-  if (whole_) memory.whole_internals = whole_->state().internals;
+  if (full_model_) memory.whole_internals = full_model_->state().internals;
   return memory;
 }
 
@@ -146,12 +146,12 @@ void Simulation::set_activity(const std::string& label, std::vector<double> acti
   const std::size_t place = place_of_law(*model_, label, true);
   const std::size_t cells = model().tissue.cells.size();
   if (!activities.empty() && activities.size() != cells)
-    throw UsageError(fmt::format("{}: {} activities for {} cells; give one a cell", label, activities.size(), cells));
+    throw UsageError(fmt::format("{}: {} activities for {} cells; give one per cell", label, activities.size(), cells));
   for (std::size_t c = 0; c < activities.size(); ++c)
     if (activities[c] != GivenActivities::as_programmed && !(activities[c] >= 0 && std::isfinite(activities[c])))
-      throw UsageError(fmt::format("{}: the activity of cell {} is {}; give a number of 0 or more", label,
+      throw UsageError(fmt::format("{}: the activity of cell {} is {}; give a number >= 0", label,
                                    id_of(model(), CellId(c)), activities[c]));
-  if (whole_) activities = whole_->take_activities(place, activities);
+  if (full_model_) activities = full_model_->take_activities(place, activities);
   std::vector<double>& internal = now_.state.internals[place];
   internal = model_->laws[place]->with_activities(internal, activities);
   now_.at_equilibrium = false;
@@ -167,10 +167,10 @@ void Simulation::go_on_from(RunMemory memory, Observation measures) {
     (void)make_division(then, past->planned);
   }
   if (const auto why = why_unfit(memory, *model_)) throw UnfitMemory(*why);
-  if (memory.whole_internals.size() != (whole_ ? whole_->model().laws.size() : 0))
-    throw UnfitMemory("its whole is not this embryo's");
+  if (memory.whole_internals.size() != (full_model_ ? full_model_->model().laws.size() : 0))
+    throw UnfitMemory("its mirror planes do not fit this embryo");
   now_ = std::move(memory);
-  if (whole_) whole_->go_to(*model_, now_.state, std::move(now_.whole_internals));
+  if (full_model_) full_model_->go_to(*model_, now_.state, std::move(now_.whole_internals));
   measures_ = std::move(measures);
   step_length_ = StepLength(controls_, now_.wanted_step_s);
   grow(*model_, now_.state.time_s);
@@ -178,7 +178,7 @@ void Simulation::go_on_from(RunMemory memory, Observation measures) {
   recall_factor();
 }
 
-// Cells divide, and everything that goes by cells and nodes follows.
+// Divide cells and update everything indexed by cells and nodes.
 Division Simulation::make_division(State& state, const std::vector<PlannedDivision>& planned) {
   Division division = divide_cells(*model_, state, planned);
   for (const PlannedDivision& one : planned) controls_.program_points_s.push_back(state.time_s + one.growth_s);
@@ -199,8 +199,8 @@ void Simulation::divide(const std::vector<PlannedDivision>& due) {
   for (SimulationListener* listener : listeners_) listener->cells_divided(division);
 }
 
-// Where forces jump, the motion before says nothing of that to come: no forecast, no error, a short first step.
-void Simulation::begin_anew_at_a_jump() {
+// After a jump of forces the earlier motion predicts nothing: no predictor, no error estimate, a short first step.
+void Simulation::restart_at_a_jump() {
   const double now_s = now_.state.time_s;
   if (std::ranges::none_of(controls_.program_jumps_s, [&](double jump_s) { return is_same_instant(jump_s, now_s); }))
     return;
@@ -208,11 +208,12 @@ void Simulation::begin_anew_at_a_jump() {
   step_length_ = StepLength(controls_);
 }
 
-// Adds what the step did; what all steps did together. Daughters are as grown as midway, since they work on the way.
+// Add the energy flows of the step and return them. Daughters are taken as grown at mid-step, since they do work
+// meanwhile.
 EnergyFlow Simulation::account_for_energy(const State& before) {
   grow(*model_, 0.5 * (before.time_s + now_.state.time_s));
   std::vector<EnergyFlow> flows = energy_flows(*model_, before, now_.state);
-  const double copies = whole_ ? whole_->copies() : 1;
+  const double copies = full_model_ ? full_model_->copies() : 1;
   for (auto& [active, stored, dissipated] : flows) active *= copies, stored *= copies, dissipated *= copies;
   grow(*model_, now_.state.time_s);
   now_.energies.resize(flows.size());
@@ -253,7 +254,7 @@ bool Simulation::step(double until_s) {
   has_begun_ = true;
   if (status() != RunStatus::under_way) return false;
 
-  begin_anew_at_a_jump();
+  restart_at_a_jump();
   const auto start = std::chrono::steady_clock::now();
   State before;
   const std::optional<StepReport> report = take_step(until_s, before);
@@ -267,12 +268,12 @@ bool Simulation::step(double until_s) {
                         has_come(last_of(controls_.program_points_s), state.time_s) &&
                         has_come(last_of(controls_.program_jumps_s), before.time_s);
   if (now_.at_equilibrium && !now_.equilibrium_time_s) now_.equilibrium_time_s = state.time_s;
-  // At a division, the frame shows the daughters.
+  // The snapshot at a division shows the daughters.
   const bool frame_is_due = due.empty() && passes_frame(before.time_s, state.time_s, controls_.frame_every_s);
   const EnergyFlow energy = account_for_energy(before);
-  const State whole_before = whole_ ? whole_->follow(*model_, state) : State();
+  const State whole_before = full_model_ ? full_model_->follow(*model_, state) : State();
   const AcceptedStep step{this->state(),
-                          whole_ ? whole_before : before,
+                          full_model_ ? whole_before : before,
                           state.trend.step_s,
                           *report,
                           speed,
@@ -286,8 +287,7 @@ bool Simulation::step(double until_s) {
   return true;
 }
 
-// From the state to the next, which becomes it; `before` is then what it was. Nothing, and the state as it was, when
-// that fails or is stopped.
+// Advance the state by one step; `before` receives the old state. Empty, with the state unchanged, on failure or stop.
 std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
   State& next = before;
   int refused = 0, wasted_iterations = 0, wasted_solves = 0;
@@ -296,10 +296,10 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
     const double duration_s = end_s - now_.state.time_s;
     grow(*model_, end_s);
     StepReport report = stepper_->advance(now_.state, duration_s, now_.steps == 0, next);
-    if (report.outcome == StepReport::Outcome::interrupted) break;
+    if (report.status == StepReport::Status::interrupted) break;
     const bool solved = report.converged();
     if (solved) {
-      next.time_s = end_s;  // and not a sum, which rounding moves
+      next.time_s = end_s;  // exact, not a rounded sum
       report.refused = refused;
       report.newton_iterations += std::exchange(wasted_iterations, 0);
       report.linear_solves += std::exchange(wasted_solves, 0);

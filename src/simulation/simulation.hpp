@@ -1,4 +1,4 @@
-// One run: a model, where it is now, and the way on, a step after another (THE LOOP).
+// Simulation of one run: model, state, and the time-stepping loop (THE LOOP).
 #pragma once
 
 #include <functional>
@@ -12,136 +12,136 @@
 #include "mechanics/model.hpp"
 #include "scenario/scenario.hpp"
 #include "simulation/controls.hpp"
+#include "simulation/full_model.hpp"
 #include "simulation/run_memory.hpp"
 #include "simulation/step_length.hpp"
-#include "simulation/whole.hpp"
 
 namespace plica {
 
 enum class RunStatus { under_way, equilibrium, end_time, failed };
 
-/// What other programs call it.
+/// Word of a status in results and interfaces.
 const char* word(RunStatus status);
 
-/// Hears of what happens in a simulation. Outlives it, or stops listening.
+/// Observer of simulation events. Must outlive the simulation or unregister.
 class SimulationListener {
  public:
   virtual ~SimulationListener() = default;
 
-  /// A step has been accepted; what is due to divide has not divided yet.
+  /// Called after an accepted step, before the divisions due at its end.
   virtual void step_accepted(const AcceptedStep& /*step*/, const Observation& /*measures*/) {}
 
-  /// Cells have divided: the simulation's model and state are new.
+  /// Called after divisions, which change model and state of the simulation.
   virtual void cells_divided(const Division& /*division*/) {}
 };
 
-/// A run that whoever holds it takes forward. Two do not disturb each other; a copy is a fork in time, which goes on to
-/// the same bits. It prints nothing, writes no file and knows no signals.
+/// Simulation advanced by its owner. Instances are independent; a copy branches the run and continues bitwise
+/// identically. Prints nothing, writes no files and handles no signals.
 ///
 ///   Simulation simulation(load_scenario(find_scenario("drosophila")));
 ///   while (simulation.step()) fmt::print("{}\n", *simulation.measures()["furrow_depth_um"]);
 class Simulation {
  public:
-  /// At rest. Throws ScenarioError for what only the tissue shows to be wrong, FileError for files that it names.
+  /// Starts in the reference state. Throws ScenarioError for errors that only the tissue reveals, FileError for files
+  /// of the scenario.
   explicit Simulation(const Scenario& scenario);
 
-  /// What it is made of. `sites` and `watch`: what is measured beside the sheet as a whole. `whole`: that of which the
-  /// model is one side; else it is a whole by itself.
+  /// Components. `sites`, `watch`: probes and furrow cells. `full_model`: set if `model` is one side of it.
   struct Parts {
     std::unique_ptr<Model> model;
     RunControls controls;
     FurrowSites sites = {};
     Watch watch = {};
-    std::optional<Whole> whole = {};
+    std::optional<FullModel> full_model = {};
   };
   explicit Simulation(Parts parts);
 
-  /// Neither listeners nor stop_when are copied. The copy makes a factor that is kept between steps anew.
+  /// Listeners and stop_when are not copied. The copy recomputes a reused factorization.
   Simulation(const Simulation& other);
   Simulation& operator=(const Simulation& other);
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Takes the next step, shorter ones until one is accepted, which ends at `until_s` at the latest; then cells divide
-  /// that are due. False when there is no next step, when it failed or was stopped, or when that time has come.
+  /// Take the next step, shortened until it is accepted, to `until_s` at most; then make the divisions due. Returns
+  /// false if the run has ended, the step failed or was stopped, or the time is `until_s` already.
   bool step(double until_s = std::numeric_limits<double>::infinity());
 
-  /// Steps until `time_s`, on which a step ends, or until the run ends, fails or is stopped.
+  /// Take steps to exactly `time_s`, or until the run ends, fails or is stopped.
   RunStatus run_until(double time_s);
   RunStatus run() { return run_until(std::numeric_limits<double>::infinity()); }
 
   [[nodiscard]] RunStatus status() const;
-  /// What gave up, where and when; empty unless the run failed. The state is the last good one.
+  /// Cause, place and time of a solver failure; empty unless the run failed. The state is the last accepted one.
   [[nodiscard]] const std::string& failure() const { return failure_; }
-  /// The id of the cell that it gave up at, where it was one.
+  /// Id of the cell at which the solver failed, if it is one cell.
   [[nodiscard]] const std::optional<int>& failed_cell() const { return failed_cell_; }
 
-  /// Of the whole embryo, also where one side of it is solved.
-  [[nodiscard]] const Model& model() const { return whole_ ? whole_->model() : *model_; }
-  [[nodiscard]] const State& state() const { return whole_ ? whole_->state() : now_.state; }
+  /// Model and state of the whole embryo, also if one side is solved.
+  [[nodiscard]] const Model& model() const { return full_model_ ? full_model_->model() : *model_; }
+  [[nodiscard]] const State& state() const { return full_model_ ? full_model_->state() : now_.state; }
   [[nodiscard]] double time_s() const { return now_.state.time_s; }
   [[nodiscard]] int steps() const { return now_.steps; }
   [[nodiscard]] int divisions() const { return now_.divisions; }
   [[nodiscard]] bool criterion_met() const { return now_.criterion_met; }
   [[nodiscard]] const std::optional<double>& equilibrium_time_s() const { return now_.equilibrium_time_s; }
-  /// Wall time that its steps have taken, those before a checkpoint too.
+  /// Wall time of all steps, including those before a checkpoint, s.
   [[nodiscard]] double computing_s() const { return now_.computing_s; }
   [[nodiscard]] const RunControls& controls() const { return controls_; }
 
-  /// Where energy has gone in all steps so far, as energy_flows lists it; empty before the first.
+  /// Energy flows summed over all steps, in the order of energy_flows; empty before the first.
   [[nodiscard]] const std::vector<EnergyFlow>& energies() const { return now_.energies; }
 
-  /// From the next step on, measures leave these out.
+  /// Skip these columns from the next step on.
   void leave_out(const std::function<bool(const Column&)>& which) { observer_->leave_out(which); }
-  /// Measures of the last accepted step, or of the body at rest.
+  /// Measures of the last accepted step, or of the reference state.
   [[nodiscard]] const Observation& measures() const { return measures_; }
   [[nodiscard]] const Observer& observer() const { return *observer_; }
 
-  /// A checkpoint: all that the next step depends on beside the scenario.
+  /// Checkpoint: everything the next step depends on besides the scenario.
   [[nodiscard]] RunMemory memory() const;
 
-  /// Goes on from a memory of the same scenario; from rest only. `measures`: those of the memory's last step.
-  /// UnfitMemory when it cannot be one of this model. Listeners do not hear of past divisions.
+  /// Continue from a checkpoint of the same scenario; call in the reference state only. `measures`: those of its last
+  /// step. Throws UnfitMemory if it does not fit this model. Listeners are not notified of past divisions.
   void go_on_from(RunMemory memory, Observation measures);
 
-  /// From now on, cells act by the law of this label (contraction.apical) as they are told, not by their programs:
-  /// factors on what the scenario says, one a cell, >= 0 or GivenActivities::as_programmed; none: programs again. What
-  /// had come to rest goes on. UsageError for another label, number of cells, or number, and for what is not symmetric
-  /// where one side is solved.
+  /// Override the activity time course of a law (identifier: contraction.apical) with factors on the scenario's values;
+  /// cells, >= 0 or GivenActivities::as_programmed; empty: restore the time courses. A run at equilibrium continues.
+  /// Throws UsageError for an unknown identifier, a wrong size or value, and asymmetric factors if one side is solved.
   void set_activity(const std::string& label, std::vector<double> activities);
 
   void listen(SimulationListener& listener) { listeners_.push_back(&listener); }
   void stop_listening(SimulationListener& listener) { std::erase(listeners_, &listener); }
 
-  /// `stop_requested` is asked often within a step; once true, the step is given up and the last good state stays.
+  /// `stop_requested` is polled often within a step; once true, the step is abandoned and the last accepted state is
+  /// kept.
   void stop_when(std::function<bool()> stop_requested);
 
  private:
   std::optional<StepReport> take_step(double until_s, State& before);
   void divide(const std::vector<PlannedDivision>& due);
   Division make_division(State& state, const std::vector<PlannedDivision>& planned);
-  void begin_anew_at_a_jump();
+  void restart_at_a_jump();
   EnergyFlow account_for_energy(const State& before);
   void renew_stepper();
   void recall_factor();
 
-  std::unique_ptr<Model> model_;  // what is solved, and `now_` of it
-  std::optional<Whole> whole_;    // of which that is one side
+  std::unique_ptr<Model> model_;         // the solved model; `now_` is its state
+  std::optional<FullModel> full_model_;  // of which `model_` is one side, if any
   RunControls controls_;
   RunMemory now_;
   std::unique_ptr<Stepper> stepper_;
   StepLength step_length_;
   std::unique_ptr<Observer> observer_;
   Observation measures_;
-  bool has_begun_ = false;  // since it was made, or went on: whoever was due then has divided
+  bool has_begun_ = false;  // since construction or resumption: divisions due then are done
   std::string failure_;
   std::optional<int> failed_cell_;
   std::vector<SimulationListener*> listeners_;
   std::function<bool()> stop_requested_;
 };
 
-/// What a scenario's simulation is made of: for whoever adds something to it. Throws as Simulation does.
+/// Components of a scenario's simulation, for callers that add to them. Throws as Simulation does.
 Simulation::Parts parts_of(const Scenario& scenario);
 
 }  // namespace plica

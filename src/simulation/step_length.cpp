@@ -9,12 +9,12 @@
 namespace plica {
 namespace {
 
-// The first multiple of `period` after `time`, by more than `apart`.
+// First multiple of `period` that exceeds `time` by more than `apart`.
 double next_multiple(double time, double period, double apart) {
   return (std::floor((time + apart) / period + 1e-9) + 1) * period;
 }
 
-// Where an adaptive step has to end: at the last of the points that are one instant with the first to come.
+// Required end of an adaptive step: the last of the points that form one instant with the next one.
 double next_stop(const RunControls& controls, double time_s, double latest_s) {
   std::vector<double> points = {latest_s};
   if (controls.frame_every_s > 0) points.push_back(next_multiple(time_s, controls.frame_every_s, instant_s));
@@ -35,15 +35,15 @@ StepLength::StepLength(const RunControls& controls, double wanted_s)
 double StepLength::propose_end_s(const RunControls& controls, double time_s, double until_s) const {
   const double latest = std::min(controls.end_s, until_s);
   if (const auto& fixed_s = controls.fixed_step_s) {
-    // On the grid of the given step, also after a step that had to be halved.
+    // Stay on the grid of the fixed step, also after a halved step.
     double stop = std::min(latest, next_multiple(time_s, *fixed_s, 1e-6 * *fixed_s));
     for (const double jump : controls.program_jumps_s)
       if (!has_come(jump, time_s)) stop = std::min(stop, jump);
     return wanted_s_ < (stop - time_s) * (1 - 1e-9) ? time_s + wanted_s_ : stop;
   }
   const double stop = next_stop(controls, time_s, latest), left = stop - time_s;
-  // Even steps to the next stop rather than long ones and a crumb; one a quarter longer than wanted if that saves one.
-  // To second order a step that much longer than twice the last would be too long for it (possible_order).
+  // Equal steps to the next stop instead of long ones and a remainder; up to a quarter longer than wanted if that saves
+  // a step, but to second order at most twice the last (possible_order).
   const double stretch = controls.scheme.order == TimeOrder::first ? 1.25 : 1.2;
   const double steps = std::ceil(left / wanted_s_ * (1 - 1e-12));
   if (steps <= 1 || (steps == 2 && left <= std::min(stretch * wanted_s_, controls.max_step_s))) return stop;

@@ -1,4 +1,4 @@
-// How long the next step is: as long as its error on positions allows, ending on the times that are asked for.
+// Length of the next step: limited by its local error of positions, ending on requested times.
 #pragma once
 
 #include <limits>
@@ -10,18 +10,17 @@ namespace plica {
 
 class StepLength {
  public:
-  /// Goes on with steps of about `wanted_s`; 0: begins.
+  /// Continue with steps of about `wanted_s`; 0: start.
   explicit StepLength(const RunControls& controls, double wanted_s = 0);
 
-  /// When a step that starts at `time_s` ends: at `until_s` at the latest, and exactly on what it has to end on.
+  /// End time of a step from `time_s`: `until_s` at most, and exactly on the times that steps must end on.
   [[nodiscard]] double propose_end_s(const RunControls& controls, double time_s,
                                      double until_s = std::numeric_limits<double>::infinity()) const;
 
-  /// Whether the step from `before` to `after` stands. False when its error (step_error) is so large that it should
-  /// be taken again, shorter.
+  /// Whether to accept the step from `before` to `after`; false if its error (step_error) requires a shorter one.
   [[nodiscard]] bool accept(const RunControls& controls, const State& before, const State& after);
 
-  /// The step could not be solved. False when the next would be too short to be worth it.
+  /// Shorten after a failed step. Returns false if the next would be too short.
   [[nodiscard]] bool halve(const RunControls& controls, double failed_s);
 
   [[nodiscard]] double wanted_s() const { return wanted_s_; }

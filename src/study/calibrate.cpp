@@ -13,7 +13,7 @@
 namespace plica {
 namespace {
 
-// The trials of one calibration, made as the search asks for places.
+// Trials of one calibration, made at the points that the search requests.
 class Trials {
  public:
   Trials(const CalibrationProblem& problem, const CalibrationHooks& hooks) : problem_(problem), hooks_(hooks) {}
@@ -54,7 +54,7 @@ class Trials {
     if (hooks_.on_row) run_hooks.on_row = [&](const Observation& row) { hooks_.on_row(trial.number, values, row); };
     try {
       read(quiet_run(load_trial(problem_, values), run_hooks).summary, trial);
-    } catch (const ScenarioError& error) {  // values that do not go together
+    } catch (const ScenarioError& error) {  // incompatible values
       trial.failure = error.what();
     }
     const auto misses_of_all = misses(trial);
@@ -66,7 +66,7 @@ class Trials {
   void read(const nlohmann::ordered_json& summary, Trial& trial) {
     interrupted_ = summary.at("status") == "interrupted";
     if (summary.at("status") == "failed") {
-      trial.failure = summary.at("failure").is_string() ? summary.at("failure").get<std::string>() : "gave up";
+      trial.failure = summary.at("failure").is_string() ? summary.at("failure").get<std::string>() : "solver failed";
       return;
     }
     for (std::size_t t = 0; t < problem_.targets.size(); ++t) {
@@ -77,7 +77,7 @@ class Trials {
     }
   }
 
-  // Empty where a target has no value.
+  // Deviations in units of the tolerances; empty if a target has no value.
   [[nodiscard]] std::vector<double> misses(const Trial& trial) const {
     std::vector<double> all;
     if (!trial.failure.empty()) return all;

@@ -1,4 +1,4 @@
-// Calibration: which values of some keys of a scenario make its results meet given targets.
+// Calibration: fit keys of a scenario to targets.
 #pragma once
 
 #include <functional>
@@ -15,22 +15,22 @@ namespace plica {
 struct Trial {
   int number = 0;                            // from 1
   std::vector<double> values;                // keys
-  std::vector<std::optional<double>> found;  // targets; empty: has no value
-  std::string failure;                       // why there is no value; empty where all have one
+  std::vector<std::optional<double>> found;  // targets; empty: no value
+  std::string failure;                       // reason for a missing value; empty if all exist
   double worst_miss = 0;                     // largest |found - value| / within; infinite with a failure
   double wall_s = 0;
 };
 
 enum class CalibrationEnd {
   met,
-  not_met,       // no better place nearby: the targets cannot be met within the bounds, as far as the search sees
+  not_met,       // converged: the search finds no values within the bounds that meet the targets
   trials_spent,  // most_trials runs were made
   interrupted,
 };
 
 struct Calibration {
   CalibrationEnd end = CalibrationEnd::not_met;
-  std::optional<Trial> best;  // the one with the smallest worst miss; empty where none had a value
+  std::optional<Trial> best;  // smallest worst miss; empty if no trial had a value
   int trials = 0;
 };
 
@@ -40,13 +40,12 @@ struct CalibrationHooks {
   std::function<void(const Trial&, bool best_so_far)> on_trial = {};
 };
 
-/// Runs the scenario, one trial after another, where the search of target_search.hpp asks for it. Checks the problem
-/// first (check_calibration), and throws as that does.
+/// Run trials of the scenario one after another, at the points requested by search_targets. Checks the problem first
+/// and throws as check_calibration does.
 Calibration calibrate(const CalibrationProblem& problem, const CalibrationHooks& hooks = {});
 
-/// The best trial's scenario, to be saved as `file`: the problem's scenario as its base, then overrides and values, the
-/// targets under [expect] where all were met, and what was calibrated as a comment. The scenario in full where one with
-/// a base would not come to the same.
+/// Scenario of the best trial, to be saved as `file`: `base`, overrides, fitted values, a comment on the calibration
+/// and, if all targets were met, these under [expect]. Written in full if a base would not give the same scenario.
 std::string calibrated_toml(const CalibrationProblem& problem, const Calibration& calibration, const std::string& file);
 
 }  // namespace plica

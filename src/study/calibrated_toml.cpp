@@ -1,4 +1,4 @@
-// The scenario that a calibration leaves: short, readable, and loaded once to see that it is what was run.
+// Scenario written by a calibration: short, readable, and loaded once to verify that it equals what was run.
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -16,14 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What `base` must say in `file` to mean the scenario.
+// Value of `base` in `file` that refers to the scenario.
 std::string base_of(const ScenarioSource& source, const std::string& file) {
   for (const BuiltinScenario& builtin : builtin_scenarios())
     if (builtin.name == source.file) return source.file;
   return fs::proximate(fs::absolute(source.file), fs::absolute(file).parent_path()).generic_string();
 }
 
-// "key=word" of the command line, as a line of TOML.
+// Convert "key=word" of the command line to a line of TOML.
 std::string line_of(const std::string& override) {
   const std::size_t equals = override.find('=');
   const std::string key = override.substr(0, equals), value = override.substr(equals + 1);
@@ -37,19 +37,19 @@ std::string line_of(const std::string& override) {
 
 std::string comment(const CalibrationProblem& problem, const Calibration& calibration) {
   std::string text = fmt::format("# {} by plica calibrate in {} run{}.\n",
-                                 calibration.end == CalibrationEnd::met ? "Calibrated" : "The nearest that was found",
+                                 calibration.end == CalibrationEnd::met ? "Calibrated" : "Best result found",
                                  calibration.trials, calibration.trials == 1 ? "" : "s");
   for (const VariedKey& key : problem.keys)
     text += fmt::format("# Varied: {} from {} to {}.\n", key.key, key.low, key.high);
   for (std::size_t t = 0; t < problem.targets.size(); ++t) {
     const Target& target = problem.targets[t];
-    text += fmt::format("# Target: {} = {} within {:.4g}; it came to {:.6g}.\n", target.name, target.value,
-                        target.within, *calibration.best->found[t]);
+    text += fmt::format("# Target: {} = {} within {:.4g}; result {:.6g}.\n", target.name, target.value, target.within,
+                        *calibration.best->found[t]);
   }
   return text;
 }
 
-// The targets that [expect] takes: its own names, and monitors.
+// Targets that [expect] accepts: its own names and monitors.
 std::string expectations(const CalibrationProblem& problem) {
   std::string text;
   for (const Target& target : problem.targets)

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double usual_percent = 0.5;
 
-// A value as it is run and written: to a millionth of the bounds' width, so that it can be read.
+// Round a value to a millionth of the bounds' width, so that it is short to write.
 double value_at(const VariedKey& key, double place) {
   const int decimals = 6 - static_cast<int>(std::floor(std::log10(key.high - key.low)));
   const double value = key.low + place * (key.high - key.low);
@@ -34,37 +34,36 @@ void refuse_impossible_numbers(const CalibrationProblem& problem) {
     throw UsageError("nothing to calibrate; give at least one key to vary and one target");
   for (const auto& [key, low, high] : problem.keys)
     if (!std::isfinite(high - low) || !(low < high))
-      throw UsageError(fmt::format("{}: may be from {} to {}; give two numbers, the lower one first", key, low, high));
+      throw UsageError(fmt::format("{}: bounds {} and {} are not increasing finite numbers; give the lower one first",
+                                   key, low, high));
   for (const auto& [name, value, within] : problem.targets)
     if (!std::isfinite(value) || !std::isfinite(within) || !(within > 0))
       throw UsageError(
-          fmt::format("{}: is to be {} within {}; give two numbers, the tolerance over 0", name, value, within));
+          fmt::format("{}: target {} with tolerance {}; give two numbers, the tolerance above 0", name, value, within));
   if (problem.most_trials < 1)
-    throw UsageError(fmt::format("{} runs may be made; allow at least one", problem.most_trials));
+    throw UsageError(fmt::format("{} runs allowed; allow at least one", problem.most_trials));
 }
 
 void refuse_repetitions(const CalibrationProblem& problem) {
   std::set<std::string> keys, targets;
   for (const VariedKey& key : problem.keys) {
-    if (!keys.insert(key.key).second)
-      throw UsageError(fmt::format("--vary {}: is given twice; leave one out", key.key));
+    if (!keys.insert(key.key).second) throw UsageError(fmt::format("--vary {}: occurs twice; remove one", key.key));
     for (const std::string& override : problem.overrides)
       if (override.substr(0, override.find_first_of(" =")) == key.key)
-        throw UsageError(fmt::format("--vary {}: is given by --set as well; leave one out", key.key));
+        throw UsageError(fmt::format("--vary {}: conflicts with --set of the same key; remove one", key.key));
   }
   for (const Target& target : problem.targets)
     if (!targets.insert(target.name).second)
-      throw UsageError(fmt::format("--target {}: is given twice; leave one out", target.name));
+      throw UsageError(fmt::format("--target {}: occurs twice; remove one", target.name));
 }
 
 void refuse_unknown_targets(const CalibrationProblem& problem, const std::vector<std::string>& known) {
   for (const Target& target : problem.targets) {
     if (std::ranges::count(known, target.name) > 0) continue;
     if (is_a_cost(target.name))
-      throw UsageError(
-          fmt::format("--target {}: what a run costs differs from run to run; give a result", target.name));
+      throw UsageError(fmt::format("--target {}: a cost, which differs between runs; give a result", target.name));
     throw UsageError(
-        fmt::format("--target {}: is no number of summary.json; {}", target.name, did_you_mean(target.name, known)));
+        fmt::format("--target {}: not a number of summary.json; {}", target.name, did_you_mean(target.name, known)));
   }
 }
 
@@ -73,13 +72,13 @@ void refuse_unknown_targets(const CalibrationProblem& problem, const std::vector
 VariedKey parse_varied_key(const std::string& text) {
   const std::size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
   if (equals == std::string::npos || equals == 0 || colon == std::string::npos)
-    throw UsageError(fmt::format("--vary {}: is not understood; give KEY=LOW:HIGH", text));
+    throw UsageError(fmt::format("--vary {}: not KEY=LOW:HIGH; give it in this form", text));
   const auto low = number_in(std::string_view(text).substr(equals + 1, colon - equals - 1));
   const auto high = number_in(std::string_view(text).substr(colon + 1));
   if (!low || !high) throw UsageError(fmt::format("--vary {}: a bound is not a number; give KEY=LOW:HIGH", text));
   const std::string key = text.substr(0, equals);
   if (*low == *high)
-    throw UsageError(fmt::format("--vary {}: the bounds are equal; give that value by --set {}={}", text, key, *low));
+    throw UsageError(fmt::format("--vary {}: the bounds are equal; set the value with --set {}={}", text, key, *low));
   if (*low > *high)
     throw UsageError(fmt::format("--vary {}: low is above high; write {}={}:{}", text, key, *high, *low));
   return {key, *low, *high};
@@ -93,18 +92,19 @@ Target parse_target(const std::string& text) {
                          : number_in(view.substr(equals + 1, tilde == std::string::npos ? tilde : tilde - equals - 1));
   if (!value)
     throw UsageError(
-        fmt::format("--target {}: is not understood; give NAME=VALUE, NAME=VALUE~WITHIN or NAME=VALUE~PERCENT%", text));
+        fmt::format("--target {}: unknown form; give NAME=VALUE, NAME=VALUE~WITHIN or NAME=VALUE~PERCENT%", text));
   Target target{text.substr(0, equals), *value, std::abs(*value) * usual_percent / 100};
   if (tilde == std::string::npos) {
     if (target.within == 0)
-      throw UsageError(fmt::format("--target {}: no share of 0 is a tolerance; give {}=0~WITHIN", text, target.name));
+      throw UsageError(
+          fmt::format("--target {}: a target of 0 needs an absolute tolerance; give {}=0~WITHIN", text, target.name));
     return target;
   }
   const bool percent = text.ends_with('%');
   const auto within = number_in(view.substr(tilde + 1, view.size() - tilde - 1 - (percent ? 1 : 0)));
   target.within = within ? (percent ? std::abs(*value) * *within / 100 : *within) : 0;
   if (!(target.within > 0))
-    throw UsageError(fmt::format("--target {}: the tolerance must be over 0; give NAME=VALUE~0.1 or ~2%", text));
+    throw UsageError(fmt::format("--target {}: tolerance not above 0; give NAME=VALUE~0.1 or ~2%", text));
   return target;
 }
 
@@ -142,8 +142,8 @@ Scenario load_trial(const CalibrationProblem& problem, const std::vector<double>
       if (diagnostic.file != "--set" || std::ranges::none_of(problem.keys, is_it)) continue;
       diagnostic.file = "--vary";
       if (diagnostic.problem.ends_with("is not an integer"))
-        diagnostic = {"--vary", 0, diagnostic.key, "takes whole numbers only",
-                      "vary a key that takes any number, and set this one by --set"};
+        diagnostic = {"--vary", 0, diagnostic.key, "is an integer",
+                      "vary a real-valued key, and set this one with --set"};
     }
     throw ScenarioError(std::move(diagnostics));
   }

@@ -1,4 +1,4 @@
-// What is to be calibrated: keys between bounds, targets with tolerances; from the command line, and checked.
+// Calibration problem: keys with bounds and targets with tolerances; parsing and checks.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace plica {
 
-/// A key of the scenario that may take any number from low to high, in its own unit.
+/// Key of the scenario to fit between `low` and `high`, in its own unit.
 struct VariedKey {
   std::string key;  // dotted, as in --set
   double low = 0, high = 0;
 };
 
-/// A number of summary.json that is to come to `value`, give or take `within`.
+/// Target for a number of summary.json: `value` +- `within`.
 struct Target {
   std::string name;
   double value = 0, within = 0;
@@ -28,28 +28,28 @@ struct CalibrationProblem {
   int most_trials = 40;
 };
 
-/// "KEY=LOW:HIGH". UsageError where it is not, or low is not below high.
+/// Parse "KEY=LOW:HIGH". Throws UsageError for another form, or unless low < high.
 VariedKey parse_varied_key(const std::string& text);
 
-/// "NAME=VALUE", "NAME=VALUE~WITHIN" (in the unit of the value) or "NAME=VALUE~PERCENT%"; 0.5 % where nothing is said.
-/// UsageError where it is none of them, or the tolerance is not over zero.
+/// Parse "NAME=VALUE", "NAME=VALUE~WITHIN" (in the unit of the value) or "NAME=VALUE~PERCENT%"; default 0.5 %. Throws
+/// UsageError for another form or a tolerance not above 0.
 Target parse_target(const std::string& text);
 
-/// Throws, before anything is run, UsageError (bounds that are none, no tolerance, a key or target twice, a target that
-/// the summary does not have) or ScenarioError (a key that is not known, or may not take the values of its bounds).
+/// Check the problem before any run. Throws UsageError (invalid bounds or tolerance, repeated key or target, unknown
+/// target) or ScenarioError (unknown key, or bounds outside its range).
 void check_calibration(const CalibrationProblem& problem);
 
-/// A place, with a coordinate from 0 to 1 for each key, as values of the keys: to a millionth of the bounds' width, so
-/// that they are short to write and what is written is what is run.
+/// Convert a point (coordinates in [0, 1]; keys) to values of the keys, rounded to a millionth of the bounds' width, so
+/// that the values written are those run.
 std::vector<double> values_at(const CalibrationProblem& problem, const std::vector<double>& place);
 
-/// Where to begin: at the scenario's own values where they lie within the bounds, else in the middle of these.
+/// Starting point: the scenario's own values if within the bounds, else the middle of the bounds.
 std::vector<double> first_place(const CalibrationProblem& problem);
 
-/// The problem's overrides and those of the values.
+/// Overrides of the problem followed by those of the values.
 std::vector<std::string> trial_overrides(const CalibrationProblem& problem, const std::vector<double>& values);
 
-/// The scenario with these values. ScenarioError says --vary where one of them is wrong.
+/// Load the scenario with these values. Throws ScenarioError, located at --vary for an invalid value.
 Scenario load_trial(const CalibrationProblem& problem, const std::vector<double>& values);
 
 }  // namespace plica

@@ -18,7 +18,7 @@ class TemporaryDirectory {
   TemporaryDirectory() : path_(fs::temp_directory_path() / "plica-study-XXXXXX") {
     std::string name = path_.string();
     if (::mkdtemp(name.data()) == nullptr)
-      throw FileError(path_.string() + ": cannot be made: " + std::generic_category().message(errno));
+      throw FileError(path_.string() + ": cannot be created: " + std::generic_category().message(errno));
     path_ = name;
   }
   TemporaryDirectory(const TemporaryDirectory&) = delete;
@@ -51,7 +51,7 @@ StudyForecast forecast(const Study& study, const std::function<bool()>& stop) {
     }
   }
   result.points = points.size();
-  result.first_run = first.value();  // a study has one
+  result.first_run = first.value();  // exists in any valid study
   const TemporaryDirectory directory;
   if (const std::optional<RunRow> row = study.run(result.first_run, directory.path(), stop)) result.first = *row;
   result.bytes_a_run = static_cast<double>(bytes_in(directory.path())) +

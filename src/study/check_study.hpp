@@ -1,4 +1,4 @@
-// What a study will take, before it is begun.
+// Estimate of the cost of a study before it starts.
 #pragma once
 
 #include <functional>
@@ -11,14 +11,14 @@ namespace plica {
 
 struct StudyForecast {
   std::size_t runs = 0, points = 0;
-  std::vector<std::string> refused;  // of points whose values are no valid scenario: point and reason
-  std::size_t first_run = 0;         // the first that is none of these, which has been run
+  std::vector<std::string> refused;  // invalid points: point and reason
+  std::size_t first_run = 0;         // first valid run, which was made
   RunRow first;
-  double bytes_a_run = 0;  // on the disk
+  double bytes_a_run = 0;  // on disk
 };
 
-/// Looks at every point, and runs the first that is a scenario, in a directory of its own that goes again. `stop`: as
-/// of Study::run; then `first` has no status.
+/// Check every point and run the first valid one in a temporary directory. `stop`: as in Study::run; when stopped,
+/// `first` has no status.
 StudyForecast forecast(const Study& study, const std::function<bool()>& stop);
 
 }  // namespace plica

@@ -16,7 +16,7 @@
 namespace plica {
 namespace {
 
-/// Of the clock or of the solver's work, not of the tissue.
+/// Whether a number describes the clock or the solver rather than the tissue.
 bool says_nothing_of_shape(const std::string& name) {
   return name == "time_s" || name == "step_s" || name == "steps" || name == "newton_iterations" ||
          name == "linear_iterations" || name == "peak_memory_MB" || name.starts_with("wall_") ||
@@ -34,13 +34,13 @@ RunMoment moment_of(const ReferenceRun& run, const Frame& frame, const nlohmann:
           *frame.time_s,   frame.positions.size(),       frame.elements.size()};
 }
 
-/// Poisson's ratio of the run; none where its scenario is missing or not understood.
+/// Poisson's ratio of the run; empty if its scenario is missing or unreadable.
 std::optional<double> poisson_ratio_of(const ReferenceRun& run) {
   const std::optional<Scenario> scenario = scenario_of_run(run.directory());
   return scenario ? std::optional(scenario->elasticity.poisson_ratio) : std::nullopt;
 }
 
-/// With the stiffness of b's mesh at rest, which its displacements lead back to.
+/// Compute the relative energy norm with the stiffness of b's undeformed mesh.
 std::optional<double> energy_norm(const Frame& a, const Frame& b, double poisson_ratio) {
   const auto of_a = a.node_vectors.find("displacement_um"), of_b = b.node_vectors.find("displacement_um");
   if (of_a == a.node_vectors.end() || of_b == b.node_vectors.end()) return std::nullopt;
@@ -91,7 +91,7 @@ std::vector<KeyDifference> compare_scenarios(const ReferenceRun& a, const Refere
     texts.push_back(read_file(file));
   }
   std::vector<KeyDifference> differences = scenario_differences(texts[0], texts[1]);
-  // What a built-in run expects, it expects only as it is.
+  // [expect] of a built-in scenario holds only for the scenario as it is.
   std::erase_if(differences, [](const KeyDifference& difference) { return difference.key.starts_with("expect."); });
   return differences;
 }
@@ -109,7 +109,7 @@ std::vector<NumberPair> compare_summaries(const nlohmann::ordered_json& a, const
   return pairs;
 }
 
-/// Series that a killed run left may lack; then there is nothing to compare.
+/// Read series.csv; a killed run may have none, then there is nothing to compare.
 std::optional<Series> series_of(const ReferenceRun& run) {
   std::error_code error;
   const std::filesystem::path file = run.directory() / "series.csv";
@@ -152,8 +152,8 @@ Frame frame_to_compare(const ReferenceRun& run, std::optional<double> time_s) {
   if (std::optional<Frame> frame = run.frame_at(*time_s)) return *std::move(frame);
   const std::vector<double> times = run.times_s();
   const double nearest = *std::ranges::min_element(times, {}, [&](double t) { return std::abs(t - *time_s); });
-  throw UsageError(fmt::format("--time_s {}: {} has no frame then; the nearest is at {} s, the last at {} s", *time_s,
-                               run.directory().string(), nearest, times.back()));
+  throw UsageError(fmt::format("--time_s {}: {} has no snapshot at this time; give {} s (nearest) or {} s (last)",
+                               *time_s, run.directory().string(), nearest, times.back()));
 }
 
 Comparison compare_runs(const ReferenceRun& run_a, const Frame& a, const ReferenceRun& run_b, const Frame& b) {
@@ -174,7 +174,7 @@ Comparison compare_runs(const ReferenceRun& run_a, const Frame& a, const Referen
 }
 
 void write_distances(const std::filesystem::path& file, const Frame& a, const Frame& b) {
-  Tissue mesh;  // as much of one as the writer looks at: every element a cell
+  Tissue mesh;  // only what the writer needs: one element per cell
   mesh.rest_positions = a.positions;
   mesh.elements = a.elements;
   mesh.cells.resize(a.elements.size());

@@ -1,4 +1,4 @@
-// Two runs held beside each other: shape against shape at one moment, number against number.
+// Comparison of two runs: shapes at one time, and numbers.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace plica {
 
-/// One number of both runs. What a run has not is empty.
+/// One number of both runs; empty if missing.
 struct NumberPair {
   std::string name;
   std::optional<double> a, b;
@@ -23,17 +23,17 @@ struct NumberPair {
   }
 };
 
-/// A column of series.csv over the times that both runs have.
+/// Column of series.csv over the times common to both runs.
 struct ColumnPair {
-  NumberPair at_time;                        // at the moments compared
-  std::optional<double> largest_difference;  // |a - b| at a row of a, b linear between its rows; none without such
+  NumberPair at_time;                        // at the times compared
+  std::optional<double> largest_difference;  // |a - b| at rows of a, b interpolated linearly; empty without rows
   double largest_at_s = 0;
 };
 
-/// What a moment of a run is made of.
+/// Snapshot of a run: where, when and how large.
 struct RunMoment {
   std::filesystem::path directory;
-  std::string scenario, status;  // of the whole run; empty without a summary
+  std::string scenario, status;  // of the run; empty without a summary
   double time_s = 0;
   std::size_t nodes = 0, elements = 0;
 };
@@ -41,33 +41,33 @@ struct RunMoment {
 struct NodeComparison {
   Distances distances;
   NodeId farthest;
-  std::optional<double> relative_energy_norm;  // of a's displacements, relative to b
+  std::optional<double> relative_energy_norm;  // of the displacements of a, relative to b
 };
 
 struct SurfaceComparison {
   Distances a_to_b, b_to_a;
-  double hausdorff = 0;    // the larger of both maxima
-  double facet_error = 0;  // of the triangles that stand in for bilinear facets; um
+  double hausdorff = 0;    // larger of both maxima
+  double facet_error = 0;  // of the triangles that approximate bilinear facets; um
 };
 
 struct Comparison {
   RunMoment a, b;
-  std::vector<KeyDifference> scenario;  // keys that differ; none where a run has no scenario.toml
-  std::optional<NodeComparison> nodes;  // only where both meshes have the same elements
+  std::vector<KeyDifference> scenario;  // keys that differ; none if a run has no scenario.toml
+  std::optional<NodeComparison> nodes;  // only for meshes with equal elements
   SurfaceComparison apical;
-  std::vector<NumberPair> geometry;  // volume and areas at the moments compared
-  std::vector<NumberPair> summary;   // numbers of summary.json: of the runs' ends
-  std::vector<ColumnPair> series;    // columns that both have, up to the moments compared
+  std::vector<NumberPair> geometry;  // volume and areas at the times compared
+  std::vector<NumberPair> summary;   // numbers of summary.json, at the end of the runs
+  std::vector<ColumnPair> series;    // common columns, up to the times compared
 };
 
-/// The frame of a run at a time, or its last. UsageError when the run has none then.
+/// Read the snapshot of a run at a time, or its last. Throws UsageError if there is none.
 Frame frame_to_compare(const ReferenceRun& run, std::optional<double> time_s);
 
-/// Compares two frames and the numbers of their runs. FileError or MeshError when a file cannot be understood.
+/// Compare two snapshots and the numbers of their runs. Throws FileError or MeshError for an unreadable file.
 Comparison compare_runs(const ReferenceRun& run_a, const Frame& a, const ReferenceRun& run_b, const Frame& b);
 
-/// A mesh of a at its moment, for ParaView: `distance_um` of each node from b's surfaces (node_distances) and, where
-/// the meshes are the same, the vector `deviation_um` from the same node of b. FileError when it cannot be written.
+/// Write the mesh of a for ParaView with `distance_um` of each node from the surfaces of b (node_distances) and, for
+/// equal meshes, the vector `deviation_um` from the same node of b. Throws FileError.
 void write_distances(const std::filesystem::path& file, const Frame& a, const Frame& b);
 
 }  // namespace plica

@@ -63,7 +63,7 @@ std::string moment_line(char letter, const RunMoment& moment) {
 }
 
 std::string same_line(std::size_t count) {
-  return count == 0 ? "" : fmt::format("  {} more {} the same\n", count, count == 1 ? "is" : "are");
+  return count == 0 ? "" : fmt::format("  {} more {} equal\n", count, count == 1 ? "is" : "are");
 }
 
 std::string distance_text(const Comparison& comparison) {

@@ -1,4 +1,4 @@
-// A comparison for reading, and for other programs.
+// Output of a comparison as text and as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,10 +8,10 @@
 
 namespace plica {
 
-/// The keys stand in docs/how-to/compare.md; what has no value is null.
+/// Convert to JSON; keys are listed in docs/how-to/compare.md, missing values are null.
 nlohmann::ordered_json comparison_json(const Comparison& comparison);
 
-/// A table for the terminal. Numbers that are the same in both runs are counted, not listed.
+/// Convert to a table for the terminal. Equal numbers are counted, not listed.
 std::string comparison_text(const Comparison& comparison);
 
 }  // namespace plica

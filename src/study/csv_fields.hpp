@@ -1,4 +1,4 @@
-// Fields of CSV texts that may hold anything: in quotes where they need it (RFC 4180).
+// Fields of CSV texts, quoted where necessary (RFC 4180).
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace plica {
 
-/// A field as it stands in a row.
+/// Quote a field if necessary.
 std::string csv_field(std::string_view text);
 
-/// All rows of a text, empty lines left out.
+/// Parse all rows of a text; empty lines are skipped.
 std::vector<std::vector<std::string>> csv_fields(std::string_view text);
 
 }  // namespace plica

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t most_runs = 10'000'000;
 
-// Numbers from 0 to below 1, the same with every C++ library.
+// Random numbers in [0, 1), identical with every C++ library.
 class Uniform {
  public:
   explicit Uniform(std::uint64_t seed) : engine_(seed) {}
@@ -36,8 +36,8 @@ class Uniform {
 
 using Places = std::vector<std::vector<double>>;  // points, each with a coordinate from 0 to 1 for each dimension
 
-// Sobol's sequence, digitally shifted: each dimension's bits turned over where those of a random number are set. So it
-// stays evenly spread, and is another for each seed.
+// Sobol's sequence with a digital shift: bits of each dimension are flipped by those of a random number. The points
+// stay evenly spread and differ between seeds.
 Places sobol(std::size_t count, std::size_t dimensions, std::uint64_t seed) {
   boost::random::sobol sequence(dimensions);
   std::mt19937_64 random(seed);
@@ -46,13 +46,13 @@ Places sobol(std::size_t count, std::size_t dimensions, std::uint64_t seed) {
   Places places(count, std::vector<double>(dimensions));
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t d = 0; d < dimensions; ++d) {
-      const std::uint64_t bits = i == 0 ? 0 : sequence();  // Boost leaves the first out, which is 0
+      const std::uint64_t bits = i == 0 ? 0 : sequence();  // Boost omits the first, which is 0
       places[i][d] = static_cast<double>((bits ^ shift[d]) >> 11) * 0x1p-53;
     }
   return places;
 }
 
-// Each dimension is cut into as many slices as there are points, and each slice holds one.
+// Latin hypercube: each dimension has one point in each of `count` slices.
 Places latin_hypercube(std::size_t count, std::size_t dimensions, std::uint64_t seed) {
   Uniform uniform(seed);
   Places places(count, std::vector<double>(dimensions));
@@ -66,8 +66,7 @@ Places latin_hypercube(std::size_t count, std::size_t dimensions, std::uint64_t 
   return places;
 }
 
-// Saltelli's: for each of `count` pairs of places A and B, A, then A with one coordinate of B for each dimension, then
-// B.
+// Saltelli's design: for each of `count` pairs A and B the points A, A with one coordinate of B (each in turn), and B.
 Places for_sobol_indices(std::size_t count, std::size_t dimensions, std::uint64_t seed) {
   Places places;
   for (const auto& pair : sobol(count, 2 * dimensions, seed)) {
@@ -83,14 +82,14 @@ Places for_sobol_indices(std::size_t count, std::size_t dimensions, std::uint64_
   return places;
 }
 
-// Of a key that takes whole numbers, what is one but for rounding is written as one.
+// Write a value of an integer key as an integer where it is one up to rounding.
 std::string number_of(const StudyKey& key, double value) {
   const double whole = std::round(value);
   const bool is_whole = key.is_whole && std::abs(value - whole) <= 1e-9 * std::max(1.0, std::abs(value));
   return is_whole ? fmt::format("{:.0f}", whole) : float_in_toml(value);
 }
 
-// A key that takes whole numbers only has whole bounds and a whole step; its values are written without a point.
+// Values of a key with integer bounds and step are written without a decimal point.
 std::string in_steps(const StudyKey& key, double step) {
   const double value = key.low + *key.step * step;
   const auto is_whole = [](double number) { return number == std::floor(number); };
@@ -117,7 +116,7 @@ std::string value_at(const StudyKey& key, double place) {
   return number_of(key, std::clamp(value, key.low, key.high));
 }
 
-// Those of a grid.
+// Values of a grid.
 std::vector<std::string> values_of(const StudyKey& key) {
   if (!key.values.empty()) return key.values;
   const double steps = key.step ? steps_of(key) : *key.count - 1;
@@ -132,10 +131,10 @@ using Values = std::vector<std::vector<std::string>>;  // points, each with a va
 void refuse_too_many(const StudyInput& study, double runs) {
   if (runs > static_cast<double>(most_runs))
     throw ScenarioError({{study.file, 0, "design", fmt::format("has {:.0f} runs", runs),
-                          fmt::format("at most {} are taken; give fewer points, values or replicates", most_runs)}});
+                          fmt::format("give fewer points, values or replicates, for at most {} runs", most_runs)}});
 }
 
-// The last key changes first.
+// Cartesian product; the last key changes fastest.
 Values grid(const StudyInput& study) {
   Values points = {{}};
   for (const StudyKey& key : study.keys) {
@@ -159,7 +158,7 @@ Values list(const StudyInput& study) {
   return points;
 }
 
-// The scenario's own value of a key; ScenarioError where it has none.
+// Value of a key in the scenario. Throws ScenarioError if it has none.
 std::string own_value(const StudyInput& study, const toml::table& resolved, const StudyKey& key) {
   const toml::node_view<const toml::node> node = toml::at_path(resolved, key.key);
   if (const auto text = node.value<std::string>()) return in_toml(*text);
@@ -167,10 +166,10 @@ std::string own_value(const StudyInput& study, const toml::table& resolved, cons
   if (const auto* number = node.as_floating_point()) return float_in_toml(number->get());
   if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
   throw ScenarioError({{study.file, key.line, "vary." + key.key, "has no single value in the scenario to vary about",
-                        "give it one by [set], or another kind of design"}});
+                        "give one in [set], or choose another kind of design"}});
 }
 
-// The scenario itself, then one key after another through its values, the others as in the scenario.
+// The scenario itself, then each key in turn through its values, the others as in the scenario.
 Values one_at_a_time(const StudyInput& study) {
   const toml::table resolved = toml::parse(resolved_toml(load_scenario(study.scenario, study.overrides)));
   std::vector<std::string> own;
@@ -199,7 +198,7 @@ Values drawn(const StudyInput& study) {
   return points;
 }
 
-// A value in a cell of a CSV file: TOML, or a bare word.
+// Convert a CSV field (TOML, or a bare word) to TOML.
 std::string in_toml_or_word(const std::string& field) {
   try {
     if (toml::parse("v = " + field).size() == 1) return field;
@@ -208,7 +207,7 @@ std::string in_toml_or_word(const std::string& field) {
   return in_toml(field);
 }
 
-// Points of which nothing is random, since their values make every spread 0: their replicates are one run.
+// Number of points without randomness (every spread is 0): their replicates are one run.
 std::size_t points_without_spread(const StudyDesign& design, std::map<std::string, double> spreads) {
   return static_cast<std::size_t>(std::ranges::count_if(design.runs, [&](const StudyPoint& point) {
     for (std::size_t k = 0; k < design.keys.size(); ++k)
@@ -218,7 +217,7 @@ std::size_t points_without_spread(const StudyDesign& design, std::map<std::strin
   }));
 }
 
-// The keys of all seeds in the scenario, and their values.
+// Keys of all seeds in the scenario with their values.
 std::vector<std::pair<std::string, std::int64_t>> seeds_of(const StudyInput& study, StudyDesign& design) {
   std::vector<std::pair<std::string, std::int64_t>> seeds;
   std::map<std::string, double> spreads;
@@ -235,13 +234,13 @@ std::vector<std::pair<std::string, std::int64_t>> seeds_of(const StudyInput& stu
         spreads[fmt::format("{}.{}.variation.spread", group, name.str())] = variation["spread"].value_or(0.0);
       }
   if (!varies)
-    throw ScenarioError({{study.file, 0, "design.replicates", "would all be the same: nothing is random here",
-                          "give a contraction or cortex of the scenario a variation.spread, or remove replicates"}});
+    throw ScenarioError({{study.file, 0, "design.replicates", "would all be identical: nothing is random",
+                          "give a contraction or cortex a variation.spread, or remove replicates"}});
   if (const std::size_t alike = points_without_spread(design, std::move(spreads)); alike > 0)
     design.notes.push_back({study.file, 0, "design.replicates",
-                            fmt::format("{} of {} points have a spread of 0, so their {} replicates are the same run",
+                            fmt::format("{} of {} points have a spread of 0, so their {} replicates are identical",
                                         alike, design.runs.size(), study.replicates),
-                            "a study of its own without replicates saves these runs"});
+                            "to save these runs, make them a separate study without replicates"});
   return seeds;
 }
 
@@ -250,12 +249,12 @@ std::vector<std::pair<std::string, std::int64_t>> seeds_of(const StudyInput& stu
 StudyDesign design_of_points(const std::string& file, const std::string& text) {
   const std::vector<std::vector<std::string>> rows = csv_fields(text);
   if (rows.size() < 2 || rows.front().empty())
-    throw ScenarioError({{file, 0, "", "holds no points", "give a row of keys, and a row of values for each point"}});
+    throw ScenarioError({{file, 0, "", "no points", "give a row of keys, and one row of values per point"}});
   StudyDesign design{rows.front(), {}};
   for (std::size_t r = 1; r < rows.size(); ++r) {
     if (rows[r].size() != design.keys.size())
       throw ScenarioError({{file, static_cast<int>(r) + 1, "", fmt::format("has {} values", rows[r].size()),
-                            fmt::format("give {}, one for each key of the first line", design.keys.size())}});
+                            fmt::format("give {}, one per key of the first line", design.keys.size())}});
     StudyPoint point{static_cast<int>(r), 1, {}, {}};
     for (const std::string& field : rows[r]) point.values.push_back(in_toml_or_word(field));
     design.runs.push_back(std::move(point));
@@ -314,7 +313,7 @@ std::string points_csv(const StudyDesign& design) {
 
 StudyDesign points_of_csv(const std::string& text) {
   const auto rows = csv_fields(text);
-  const auto refuse = [] { throw FileError("points.csv is no list of points; start the study anew"); };
+  const auto refuse = [] { throw FileError("points.csv: not a list of points; restart the study"); };
   if (rows.empty() || rows.front().size() < 4) refuse();
   const auto whole_number = [&](const std::string& field) {
     const double number = number_in(field).value_or(0);

@@ -1,4 +1,4 @@
-// The points of a study: which values its keys take, run by run.
+// Points of a study: values of its keys for each run.
 #pragma once
 
 #include <string>
@@ -10,32 +10,31 @@ namespace plica {
 
 /// One run of a study.
 struct StudyPoint {
-  int point = 0;                    // from 1 on: the place in the design
-  int replicate = 1;                // from 1 on: the same place with other seeds
-  std::vector<std::string> values;  // of the keys, in TOML
-  std::vector<std::string> seeds;   // of replicates, as of --set
+  int point = 0;                    // number in the design, from 1
+  int replicate = 1;                // same point with other seeds, from 1
+  std::vector<std::string> values;  // keys, in TOML
+  std::vector<std::string> seeds;   // of replicates, in the form of --set
 };
 
 struct StudyDesign {
   std::vector<std::string> keys;
   std::vector<StudyPoint> runs;        // point by point, and its replicates
-  std::vector<Diagnostic> notes = {};  // what is allowed, and may not be meant
+  std::vector<Diagnostic> notes = {};  // allowed, but possibly not intended
 };
 
-/// The same for the same study, on any machine. FileError or ScenarioError for a file of points that is none.
+/// Compute the design, identical on any machine. Throws FileError or ScenarioError for an invalid file of points.
 StudyDesign design_of(const StudyInput& study);
 
-/// The points of a CSV table that messages call `file`: a first line of keys, then a line a point. ScenarioError where
-/// it is none.
+/// Parse points from CSV: a line of keys, then one line per point. `file`: name in messages. Throws ScenarioError.
 StudyDesign design_of_points(const std::string& file, const std::string& text);
 
-/// What a run says otherwise than the study's scenario: [set], its values, and its seeds. As of --set.
+/// Overrides of a run in the form of --set: [set], its values, its seeds.
 std::vector<std::string> overrides_of(const StudyInput& study, const StudyDesign& design, const StudyPoint& run);
 
-/// Names its files: "000012", or "000012_2" where points are run more than once.
+/// Name of the files of a run: "000012", or "000012_2" with replicates.
 std::string name_of_run(const StudyPoint& run, bool has_replicates);
 
-/// As points.csv, and back. FileError where a text is no such thing.
+/// Convert to points.csv and back. Throws FileError for another text.
 std::string points_csv(const StudyDesign& design);
 StudyDesign points_of_csv(const std::string& text);
 

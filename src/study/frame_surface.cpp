@@ -21,12 +21,12 @@ Corners corners_of(const Frame& frame, const std::array<NodeId, 4>& facet) {
   return corners;
 }
 
-/// The facet's point at (u, v) in [0, 1]^2.
+/// Point of the facet at (u, v) in [0, 1]^2.
 Vec3 point_at(const Corners& x, double u, double v) {
   return (1 - u) * (1 - v) * x[0] + u * (1 - v) * x[1] + u * v * x[2] + (1 - u) * v * x[3];
 }
 
-/// Area of the facet per unit of u and v there.
+/// Area density of the facet at (u, v).
 double stretch_at(const Corners& x, double u, double v) {
   const Vec3 along_u = (1 - v) * (x[1] - x[0]) + v * (x[2] - x[3]);
   const Vec3 along_v = (1 - u) * (x[3] - x[0]) + u * (x[2] - x[1]);
@@ -41,7 +41,7 @@ Quads facets_on(const Frame& frame, int face) {
   return facets;
 }
 
-/// Gives each node without a value the mean of its neighbours', from the surfaces inwards.
+/// Fill missing node values with the mean of their neighbours, from the surfaces inwards.
 void fill_between(const Frame& frame, std::vector<std::optional<double>>& values) {
   while (!std::ranges::all_of(values, [](const auto& value) { return value.has_value(); })) {
     std::vector<double> sums(values.size(), 0.0);

@@ -1,4 +1,4 @@
-// The apical and basal surfaces of a frame, and how far one surface lies from another.
+// Apical and basal surfaces of a snapshot, and distances between surfaces.
 #pragma once
 
 #include <array>
@@ -12,32 +12,32 @@ namespace plica {
 
 using Quads = std::vector<std::array<NodeId, 4>>;
 
-/// The faces of the elements' apical (nodes 4-7) or basal (nodes 0-3) side that no other element shares: outward.
-/// MeshError when the elements do not fit together.
+/// Boundary faces on the apical (nodes 4-7) or basal (nodes 0-3) side of the elements, oriented outward. Throws
+/// MeshError for an inconsistent mesh.
 Quads apical_facets(const Frame& frame);
 Quads basal_facets(const Frame& frame);
 
 /// Area of bilinear facets, um^2.
 double total_area(const Frame& frame, const Quads& facets);
 
-/// Bilinear facets, each cut into 8 x 8 pieces and these into four triangles about their middle. Corners of triangles
-/// lie on the facet; triangles lie within `facet_error` of it.
+/// Triangulate bilinear facets: 8 x 8 pieces each, with four triangles about the middle of a piece. Corners lie on the
+/// facet; triangles lie within `facet_error` of it.
 TriangleSurface fine_triangles(const Frame& frame, const Quads& facets);
 
 /// Largest distance between a facet and its triangles, um: |twist| / 1024 with twist = x0 - x1 + x2 - x3.
 double facet_error(const Frame& frame, const Quads& facets);
 
-/// How far something lies away: mean, root of the mean square, largest; um.
+/// Statistics of distances: mean, root mean square, maximum; um.
 struct Distances {
   double mean = 0, rms = 0, max = 0;
 };
 
-/// From one surface to another. Mean and rms are over the middles of 4 x 4 parts of each facet, weighed by area; the
-/// largest is over these and the parts' corners, 41 points a facet.
+/// Distances from a surface to another. Mean and rms: over the centres of 4 x 4 parts of each facet, weighted by area;
+/// maximum: over these and the corners of the parts, 41 points per facet.
 Distances distances_to(const SurfaceDistance& other, const Frame& frame, const Quads& facets);
 
-/// Each node's distance from the same side of another frame: of apical nodes from its apical surface, of basal nodes
-/// from its basal one; a node between them has the mean of its neighbours' values in its elements.
+/// Distance of each node from another snapshot: apical nodes from its apical surface, basal nodes from its basal
+/// surface; other nodes take the mean of their neighbours in their elements.
 std::vector<double> node_distances(const Frame& frame, const Frame& other);
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// A scenario run in the program itself, without files or progress: what the studies over many runs are made of.
+// Run of a scenario within the program, without files or progress; used by studies.
 #pragma once
 
 #include <filesystem>
@@ -13,32 +13,32 @@
 namespace plica {
 
 struct RunSummary {
-  nlohmann::ordered_json summary;  // as summary.json; "status" is "failed" where the numerics gave up
-  std::vector<Observation> rows;   // as series.csv, the one at rest first
-  State state;                     // where the run ended
+  nlohmann::ordered_json summary;  // as summary.json; "status" is "failed" if the solver failed
+  std::vector<Observation> rows;   // as series.csv, the reference state first
+  State state;                     // at the end of the run
   std::vector<std::string> series_columns;
 };
 
-/// What somebody may want while it runs.
+/// Hooks of a run; all optional.
 struct QuietRunHooks {
-  std::function<bool()> stop_requested = {};            // asked often; once true, the run ends as interrupted
+  std::function<bool()> stop_requested = {};            // polled often; once true, the run ends as interrupted
   std::function<void(const Observation&)> on_row = {};  // after every accepted step
-  std::function<bool(const Column&)> leave_out = {};    // what is not measured
-  std::filesystem::path keep_in = {};                   // where it keeps itself and goes on from (UnfinishedRun)
+  std::function<bool(const Column&)> leave_out = {};    // columns to skip
+  std::filesystem::path keep_in = {};                   // directory to save to and resume from (UnfinishedRun)
   double keep_every_s = 30;
 };
 
-/// Runs to equilibrium or the end of time, to the same bits as `plica run`. Threads are as set (omp_set_num_threads).
-/// Throws ScenarioError for what only the tissue shows to be wrong, FileError where it cannot keep itself.
+/// Run to equilibrium or the end time; results are bitwise identical with `plica run`. Uses the threads set by
+/// omp_set_num_threads. Throws ScenarioError for errors that only the tissue reveals, FileError if it cannot save.
 RunSummary quiet_run(const Scenario& scenario, const QuietRunHooks& hooks = {});
 
-/// The summary of a run that has not begun: every key that one of this scenario will have.
+/// Summary of a run before its first step: has every key that a run of this scenario will have.
 RunSummary run_at_rest(const Scenario& scenario);
 
-/// What the computation has cost, which differs from run to run.
+/// Whether a number is a computing cost, which differs between runs.
 bool is_a_cost(const std::string& name);
 
-/// What of a summary is a result: the names of its numbers, and of what may become one, without what it cost.
+/// Names of the results in a summary: numbers and possible numbers, without costs.
 std::vector<std::string> result_names(const nlohmann::ordered_json& summary);
 
 }  // namespace plica

@@ -22,7 +22,7 @@ fs::path error_file(const fs::path& directory, const BatchRun& run) {
   return directory / "runs" / (run.id + ".stderr.txt");
 }
 
-// Starts `plica run` on one thread. -1 when no process can be started.
+// Start `plica run` on one thread. Returns -1 if no process can be started.
 pid_t start(const fs::path& directory, const BatchRun& run) {
   const std::string program = fs::read_symlink("/proc/self/exe").string();
   std::vector<std::string> words = {"plica",
@@ -67,7 +67,7 @@ std::vector<BatchOutcome> run_batch(const fs::path& directory, const std::vector
                                     const std::function<bool()>& interrupted) {
   std::error_code error;
   fs::create_directories(directory / "runs", error);
-  if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
+  if (error) throw FileError(directory.string() + ": cannot be created: " + error.message());
   std::vector<BatchOutcome> outcomes(runs.size());
   std::map<pid_t, std::size_t> under_way;
   std::size_t next = 0, done = 0;
@@ -83,7 +83,7 @@ std::vector<BatchOutcome> run_batch(const fs::path& directory, const std::vector
       if (child > 0)
         under_way[child] = next;
       else
-        outcomes[next].message = "no process can be started";
+        outcomes[next].message = "cannot start a process";
       ++next;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

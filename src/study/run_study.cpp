@@ -14,15 +14,15 @@ namespace plica {
 namespace fs = std::filesystem;
 namespace {
 
-// By what the first run has left: before the disk is full, and not after hours.
+// Check the free disk space, from what the first run has written, rather than fail after hours.
 void require_room(const fs::path& directory, const std::string& run, std::size_t left) {
   std::error_code error;
   const auto free = static_cast<double>(fs::space(directory, error).available);
   const double needed = static_cast<double>(bytes_in(directory / "points" / run)) * static_cast<double>(left);
   if (!error && needed > free)
     throw FileError(
-        fmt::format("{}: the other {} runs will leave {:.1f} GB, and {:.1f} GB are free on the disk; keep less "
-                    "(keep.each), give another --out, or make room and go on with --resume",
+        fmt::format("{}: the other {} runs need {:.1f} GB, but only {:.1f} GB are free; keep less "
+                    "(keep.each), give another --out, or free space and continue with --resume",
                     directory.string(), left, needed / 1e9, free / 1e9));
 }
 
@@ -43,13 +43,13 @@ void run_study(const Study& study, StudyDirectory& directory, int jobs, const st
     const std::optional<RunRow> row = study.run(run, directory.path(), worker_is_to_stop);
     return row ? study.line_of(run, *row) : "";
   };
-  bool has_room = study.input().each == KeptOfRun::row;  // or has been looked at
+  bool has_room = study.input().each == KeptOfRun::row;  // or checked already
   std::size_t left = open.size();
   const auto take = [&](std::size_t run, const std::string& answer, const std::string& reason) {
     RunRow crashed = study.not_run();
     crashed.status = "crashed", crashed.reason = reason;
     const std::string row = reason.empty() ? answer : study.line_of(run, crashed);
-    if (row.empty()) return;  // another process is at it
+    if (row.empty()) return;  // another process is running it
     directory.add(run, row);
     --left;
     if (!std::exchange(has_room, true)) require_room(directory.path(), study.name_of(run), left);

@@ -1,4 +1,4 @@
-// A study on this machine, on as many processes as asked.
+// Execution of a study on this machine, in several processes.
 #pragma once
 
 #include <functional>
@@ -9,12 +9,12 @@
 namespace plica {
 
 struct StudyHooks {
-  std::function<void(std::size_t run, const std::string& row)> on_row;  // after each run that has ended
-  std::function<bool()> stop_requested;                                 // asked often; once true, what runs is given up
+  std::function<void(std::size_t run, const std::string& row)> on_row;  // after each finished run
+  std::function<bool()> stop_requested;                                 // polled often; once true, runs are abandoned
 };
 
-/// Runs what has no row yet of `runs` (all where empty), `jobs` at a time, a thread each. The directory then has their
-/// rows. FileError when a row cannot be written; nothing is lost then.
+/// Make the runs of `runs` (empty: all) that have no row yet, `jobs` at a time, one thread each, and add their rows to
+/// the directory. Throws FileError if a row cannot be written; nothing is lost then.
 void run_study(const Study& study, StudyDirectory& directory, int jobs, const std::vector<std::size_t>& runs,
                const StudyHooks& hooks);
 

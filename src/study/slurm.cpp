@@ -23,8 +23,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double task_s = 600;            // what a task is to take: long beside what Slurm needs to start it
-constexpr std::size_t least_tasks = 8;    // of short runs, too: for as many machines
+constexpr double task_s = 600;            // target duration of a task: long compared with its start by Slurm
+constexpr std::size_t least_tasks = 8;    // also for short runs: for as many machines
 constexpr std::size_t most_tasks = 1000;  // Slurm's usual largest array
 constexpr int most_restarts = 20;         // of a task that runs into its limit
 
@@ -44,7 +44,7 @@ std::vector<std::size_t> open_runs(const Study& study, const StudyDirectory& dir
   return open;
 }
 
-// Slurm's limit is near, or it wants the place back: plica ends well, and a task that has more to do is queued again.
+// When Slurm's limit is near or Slurm preempts the task, plica stops in order, and an unfinished task is queued again.
 std::string task_script(const fs::path& folder, const SlurmSubmission& plan) {
   const std::string program = in_shell(fs::read_symlink("/proc/self/exe").string());
   const std::string study = in_shell(folder.parent_path().string());
@@ -61,7 +61,7 @@ again() {{
 trap again USR1
 trap 'ended; exit 143' TERM
 export OMP_NUM_THREADS=1
-{} study work {} --task "$SLURM_ARRAY_TASK_ID" & child=$!  # bash hears of signals only while it waits
+{} study work {} --task "$SLURM_ARRAY_TASK_ID" & child=$!  # bash handles signals only while it waits
 wait "$child"
 )",
                      plan.limit_min, plan.memory_MB, most_restarts, program, study);
@@ -82,11 +82,10 @@ std::string submit(std::vector<std::string> words, const SlurmOptions& options) 
   words.insert(words.begin(), {"sbatch", "--parsable"});
   words.insert(words.begin() + 2, options.sbatch.begin(), options.sbatch.end());
   const CommandResult result = run_command(words);
-  if (result.status == -1) throw UsageError("sbatch cannot be run: is this a machine from which jobs are submitted?");
+  if (result.status == -1) throw UsageError("sbatch cannot be run; submit from a machine that has Slurm's commands");
   std::string number = result.output.substr(0, result.output.find_first_of(";\n"));
   if (result.status != 0 || !number_in(number))
-    throw UsageError("Slurm does not take the study: " +
-                     result.output.substr(0, result.output.find_last_not_of('\n') + 1));
+    throw UsageError("Slurm rejected the study: " + result.output.substr(0, result.output.find_last_not_of('\n') + 1));
   return number;
 }
 
@@ -94,7 +93,8 @@ Json jobs_in(const StudyDirectory& directory) {
   try {
     return Json::parse(read_file(folder(directory) / "jobs.json"));
   } catch (const std::exception&) {
-    throw FileError((folder(directory) / "jobs.json").string() + ": cannot be read: was the study submitted to Slurm?");
+    throw FileError((folder(directory) / "jobs.json").string() +
+                    ": cannot be read; submit the study with --engine slurm first");
   }
 }
 
@@ -131,7 +131,7 @@ SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, c
                                 const std::function<bool()>& stop) {
   std::error_code error;
   fs::create_directories(folder(directory) / "log", error);
-  if (error) throw FileError(folder(directory).string() + ": cannot be made: " + error.message());
+  if (error) throw FileError(folder(directory).string() + ": cannot be created: " + error.message());
   fs::remove(folder(directory) / "cancelled", error);
   SlurmSubmission plan;
   const std::vector<std::size_t> open = open_runs(study, directory);
@@ -162,7 +162,7 @@ std::vector<std::size_t> runs_of_task(const StudyDirectory& directory, int task)
   for (std::size_t run = 0; text >> run;) all.push_back(run);
   const std::size_t begin = static_cast<std::size_t>(task) * runs_a_task;
   if (task < 0 || runs_a_task == 0 || begin >= all.size())
-    throw UsageError(fmt::format("--task {}: the study has no such task", task));
+    throw UsageError(fmt::format("--task {}: not a task of the study; give a number of its job array", task));
   result.assign(all.begin() + static_cast<long>(begin),
                 all.begin() + static_cast<long>(std::min(begin + runs_a_task, all.size())));
   return result;
@@ -179,10 +179,10 @@ std::string go_on_on_slurm(const Study& study, const StudyDirectory& directory) 
     plan.run_s = jobs.value("run_s", 0.0), plan.memory_MB = jobs.value("memory_MB", 1000);
     submit_open(study, directory, {jobs.value("sbatch", std::vector<std::string>{}), jobs.value("retries", 0)},
                 attempt + 1, plan);
-    return fmt::format("{} runs have no row; submitted again as job {}", missing, plan.array);
+    return fmt::format("{} runs have no result; resubmitted as job {}", missing, plan.array);
   }
   write_file(folder(directory) / "ended", "");
-  return missing == 0 ? "all runs have their row" : fmt::format("{} runs have no row", missing);
+  return missing == 0 ? "all runs have a result" : fmt::format("{} runs have no result", missing);
 }
 
 bool was_submitted(const StudyDirectory& directory) {
@@ -199,23 +199,23 @@ void cancel_on_slurm(const StudyDirectory& directory) {
   const Json jobs = jobs_in(directory);
   write_file(folder(directory) / "cancelled", "");
   const CommandResult result = run_command({"scancel", jobs.value("array", ""), jobs.value("gather", "")});
-  if (result.status != 0) throw UsageError("scancel does not do it: " + result.output);
+  if (result.status != 0) throw UsageError("scancel failed: " + result.output);
   write_file(folder(directory) / "ended", "");
 }
 
 std::string jobs_on_slurm(const StudyDirectory& directory) {
   const Json jobs = jobs_in(directory);
-  if (slurm_has_ended(directory)) return "its jobs have ended";
+  if (slurm_has_ended(directory)) return "jobs have ended";
   const CommandResult result = run_command({"squeue", "--noheader", "--array", "--format=%T",
                                             "--jobs=" + jobs.value("array", "") + "," + jobs.value("gather", "")});
-  if (result.status != 0) return "what has become of its jobs Slurm does not say";
+  if (result.status != 0) return "state of the jobs unknown (squeue failed)";
   std::map<std::string, int> by_state;
   std::istringstream lines(result.output);
   for (std::string state; lines >> state;) ++by_state[state];
   std::vector<std::string> texts;
   texts.reserve(by_state.size());
   for (const auto& [state, count] : by_state) texts.push_back(fmt::format("{} {}", count, state));
-  return texts.empty() ? "none of its jobs is left"
+  return texts.empty() ? "no jobs left"
                        : fmt::format("jobs {} and {}: {}", jobs.value("array", ""), jobs.value("gather", ""),
                                      fmt::join(texts, ", "));
 }

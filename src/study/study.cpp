@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A text without its quotes, anything else as it is.
+// Remove the quotes of a TOML string; leave other values unchanged.
 std::string shown(const std::string& in_toml) {
   if (!in_toml.starts_with('"')) return in_toml;
   const toml::table document = toml::parse("v = " + in_toml);
@@ -40,7 +40,7 @@ RunRow row_of(const Json& summary, const std::vector<std::string>& measures) {
   RunRow row;
   row.status = summary.at("status").get<std::string>();
   row.steps = summary.at("steps").get<int>();
-  row.wall_s = summary.at("wall_s").get<double>();  // of processes before this one, too
+  row.wall_s = summary.at("wall_s").get<double>();  // including earlier processes
   if (summary.contains("failure") && summary.at("failure").is_string())
     row.reason = summary.at("failure").get<std::string>();
   for (const std::string& name : measures) {
@@ -77,7 +77,7 @@ Study::Study(StudyInput input) : input_(std::move(input)) {
 Study::Study(StudyInput input, StudyDesign design, std::vector<std::string> measures)
     : input_(std::move(input)), design_(std::move(design)), measures_(std::move(measures)) {}
 
-// Measures are those of the first point that is a scenario.
+// Output variables are those of the first valid point.
 void Study::check() {
   std::optional<ScenarioError> first_error;
   std::vector<std::string> known;
@@ -90,8 +90,8 @@ void Study::check() {
   std::vector<Diagnostic> diagnostics;
   for (const std::string& name : input_.measures)
     if (std::ranges::count(known, name) == 0)
-      diagnostics.push_back({input_.file, 0, "keep.measures", fmt::format("\"{}\" is no number of summary.json", name),
-                             did_you_mean(name, known)});
+      diagnostics.push_back({input_.file, 0, "keep.measures",
+                             fmt::format("\"{}\" is not a number of summary.json", name), did_you_mean(name, known)});
   if (!diagnostics.empty()) throw ScenarioError(std::move(diagnostics));
   measures_ = input_.measures.empty() ? known : input_.measures;
   std::erase(measures_, "steps");  // has a column of its own

@@ -1,4 +1,4 @@
-// A study that is ready to run: what its file says, its points, and what one of its runs comes to.
+// Study that is ready to run: its input, its points, and the result of one run.
 #pragma once
 
 #include <filesystem>
@@ -13,21 +13,21 @@
 
 namespace plica {
 
-/// What a run came to: a row of runs.csv.
+/// Result of a run: a row of runs.csv.
 struct RunRow {
-  std::string status;  // that of summary.json; refused: no valid scenario; crashed: its process ended
+  std::string status;  // of summary.json; refused: invalid scenario; crashed: its process ended
   std::vector<std::optional<double>> measures;
   int steps = 0;
   double wall_s = 0;
-  std::string reason;  // of what is refused, failed or crashed
+  std::string reason;  // why it was refused, failed or crashed
 };
 
 class Study {
  public:
-  /// Makes the design, and one run at rest to see what there is to measure. ScenarioError, in the lines of the study's
-  /// file, when no point is a valid scenario or a key or measure is not known.
+  /// Compute the design and measure one reference state to learn the output variables. Throws ScenarioError, located in
+  /// the study's file, if no point is valid or a key or output variable is unknown.
   explicit Study(StudyInput input);
-  /// One that has been looked at before.
+  /// Study whose design and output variables are known.
   Study(StudyInput input, StudyDesign design, std::vector<std::string> measures);
 
   [[nodiscard]] const StudyInput& input() const { return input_; }
@@ -35,23 +35,22 @@ class Study {
   [[nodiscard]] std::size_t runs() const { return design_.runs.size(); }
   [[nodiscard]] const std::vector<std::string>& measures() const { return measures_; }
 
-  /// What is allowed, and may not be meant.
+  /// Notes on input that is allowed, but possibly not intended.
   [[nodiscard]] std::vector<Diagnostic> notes() const;
 
-  /// ScenarioError where its values do not make a scenario.
+  /// Scenario of a run. Throws ScenarioError for invalid values.
   [[nodiscard]] Scenario scenario_of(std::size_t run) const;
-  /// Names its files.
+  /// Name of the files of a run.
   [[nodiscard]] std::string name_of(std::size_t run) const;
 
-  /// Runs it on one thread; nothing when `stop` became true on the way, or another process is at it. What the study
-  /// keeps of each run is written into `directory`/points; what takes longer than half a minute goes on where it was
-  /// broken off. FileError when that cannot be written.
+  /// Make a run on one thread; empty if `stop` became true, or another process makes it. Kept files go to
+  /// `directory`/points; a run longer than 30 s resumes where it was interrupted. Throws FileError.
   [[nodiscard]] std::optional<RunRow> run(std::size_t run, const std::filesystem::path& directory,
                                           const std::function<bool()>& stop = {}) const;
 
-  /// point, the keys, replicate, status, the measures, steps, wall_s, reason.
+  /// Header of runs.csv: point, keys, replicate, status, output variables, steps, wall_s, reason.
   [[nodiscard]] std::string header() const;
-  /// Of a run that has not ended.
+  /// Row of a run that has not ended.
   [[nodiscard]] RunRow not_run() const { return {"not_run", decltype(RunRow::measures)(measures_.size()), 0, 0, ""}; }
   [[nodiscard]] std::string line_of(std::size_t run, const RunRow& row) const;
 

@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 std::string resolved_scenario(const StudyInput& input) {
   try {
     return resolved_toml(load_scenario(input.scenario, input.overrides));
-  } catch (const ScenarioError&) {  // points mend it
+  } catch (const ScenarioError&) {  // points repair it
     return input.scenario.text;
   }
 }
@@ -38,7 +38,7 @@ Json read_json(const fs::path& file) {
   try {
     return Json::parse(read_file(file));
   } catch (const Json::exception&) {
-    throw FileError(file.string() + ": is damaged; start the study anew with --overwrite");
+    throw FileError(file.string() + ": is damaged; restart the study with --overwrite");
   }
 }
 
@@ -46,37 +46,37 @@ void require_same_plica(const fs::path& directory, const Json& begun) {
   const std::string with = begun.value("plica", "");
   if (with != this_plica())
     throw UsageError(
-        fmt::format("{}: was begun by plica {}, and this is {}; rows of two versions are not mixed: go on "
-                    "with that one, or start anew with --overwrite",
+        fmt::format("{}: begun by plica {}, but this is {}; rows of two versions are not mixed: continue "
+                    "with the former, or restart with --overwrite",
                     directory.string(), with, this_plica()));
 }
 
-// The first key that differs, before and now; nothing where comments and blanks do.
+// First key that differs, with both values; empty if only comments or blanks differ.
 std::string difference(const std::string& before, const std::string& now) {
   const std::vector<KeyDifference> all = scenario_differences(before, now);
   if (all.empty()) return "";
-  const auto shown = [](const std::string& value) { return value.empty() ? "not there" : value; };
+  const auto shown = [](const std::string& value) { return value.empty() ? "missing" : value; };
   const std::string others = all.size() > 1 ? fmt::format(" (and {} more)", all.size() - 1) : "";
-  return fmt::format("{} was {}, and is {}{}", all.front().key, shown(all.front().a), shown(all.front().b), others);
+  return fmt::format("{} was {} and is now {}{}", all.front().key, shown(all.front().a), shown(all.front().b), others);
 }
 
-constexpr const char* change_back = "change it back, start anew with --overwrite, or give another --out";
+constexpr const char* change_back = "revert the change, restart with --overwrite, or give another --out";
 
 void require_same_study(const fs::path& directory, const StudyInput& input) {
   const std::string changed = difference(read_file(directory / "study.toml"), input.text);
   if (!changed.empty())
-    throw UsageError(fmt::format("{}: the study {} has changed since it was begun: {}; {}", directory.string(),
-                                 input.file, changed, change_back));
+    throw UsageError(fmt::format("{}: the study {} has changed since its start: {}; {}", directory.string(), input.file,
+                                 changed, change_back));
 }
 
 void require_same_scenario(const fs::path& directory, const StudyInput& input) {
   const std::string changed = difference(read_file(directory / "scenario.toml"), resolved_scenario(input));
   if (!changed.empty())
-    throw UsageError(fmt::format("{}: the scenario {} has changed since the study was begun: {}; {}",
+    throw UsageError(fmt::format("{}: the scenario {} has changed since the start of the study: {}; {}",
                                  directory.string(), input.scenario.file, changed, change_back));
 }
 
-// Whether there is what a study that was killed as it began does not leave.
+// Whether the directory contains files other than those of a study killed at its start.
 bool holds_something_else(const fs::path& directory) {
   constexpr std::array<std::string_view, 5> own = {"rows", "study.toml", "scenario.toml", "points.csv", "study.json"};
   std::error_code error;
@@ -85,7 +85,7 @@ bool holds_something_else(const fs::path& directory) {
   return fs::exists(directory, error) && !fs::is_directory(directory, error);
 }
 
-// Whole rows of a file: "run,row".
+// Complete rows of a file: "run,row".
 void read_rows(const fs::path& file, StudyRows& rows, std::size_t runs) {
   const std::string text = read_file(file);
   for (std::size_t begin = 0; begin < text.size();) {
@@ -113,17 +113,18 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
     require_same_study(directory, input);
     require_same_scenario(directory, input);
     if (read_file(directory / "points.csv") != points_csv(study.design()))
-      throw UsageError(fmt::format("{}: the points of the study have changed since it was begun, or their order; {}",
+      throw UsageError(fmt::format("{}: the points of the study, or their order, have changed since its start; {}",
                                    directory.string(), change_back));
     return result;
   }
   if (holds_one && start == Start::fresh)
-    throw UsageError(directory.string() +
-                     ": holds a study; go on with it by --resume, replace it by --overwrite, or give another --out");
+    throw UsageError(
+        directory.string() +
+        ": contains a study; continue it with --resume, replace it with --overwrite, or give another --out");
   if (!holds_one && holds_something_else(directory))
-    throw UsageError(directory.string() + ": is there already and holds no study; give another --out");
+    throw UsageError(directory.string() + ": exists and contains no study; give another --out");
   fs::create_directories(directory, error);
-  if (error) throw FileError(directory.string() + ": cannot be made: " + error.message());
+  if (error) throw FileError(directory.string() + ": cannot be created: " + error.message());
   fs::remove(directory / "study.json", error);
   for (const char* name : {"rows", "points", "unfinished", "slurm"}) fs::remove_all(directory / name, error);
   for (const char* name : {"runs.csv", "report.html"}) fs::remove(directory / name, error);
@@ -146,7 +147,7 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
 StudyDirectory StudyDirectory::look(const fs::path& directory) {
   std::error_code error;
   if (!fs::exists(directory / "study.json", error))
-    throw FileError(directory.string() + ": holds no study; make one with plica study STUDY.toml --out DIR");
+    throw FileError(directory.string() + ": contains no study; create one with plica study STUDY.toml --out DIR");
   return StudyDirectory(directory);
 }
 

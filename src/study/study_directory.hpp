@@ -1,12 +1,12 @@
-// What a study leaves: DIR with
+// Directory of a study:
 //
-//   study.toml     the study, as given          study.json  what it was begun with
-//   points.csv     the runs, in their order     rows/       a file of rows for each process that ran some
-//   runs.csv       a row a run, when it ended   points/     what is kept of each run, if anything
-//   report.html    all of it, to look at        unfinished/ runs that take long, from minute to minute
+//   study.toml     study as given               study.json  versions and names at the start
+//   points.csv     runs in order                rows/       one file of rows per process
+//   runs.csv       one row per run, at the end  points/     kept files of each run, if any
+//   report.html    interactive page             unfinished/ state of long runs, saved every 30 s
 //
-// A row is written as soon as its run has ended, in one write: whatever is killed, other rows stay. Any number of
-// processes may work in a directory at once, also on several machines that share it.
+// A row is written in one write as soon as its run has ended, so a killed process loses no other row. Several processes
+// may use a directory at once, also on several machines that share it.
 #pragma once
 
 #include <filesystem>
@@ -20,29 +20,29 @@
 
 namespace plica {
 
-/// What rows there are: by the number of the run, without its line's end.
+/// Existing rows by number of the run, without line ends.
 using StudyRows = std::map<std::size_t, std::string>;
 
 class StudyDirectory {
  public:
   enum class Start { fresh, over, resumed };
 
-  /// Begins a study, or finds that it can go on with the one that is there. UsageError when there is another study, or
-  /// none to go on with, or it was begun by another plica; FileError when it cannot be written.
+  /// Start a study, or prepare to continue the existing one. Throws UsageError if the directory contains another study,
+  /// no study to continue, or one of another version; FileError if it cannot be written.
   static StudyDirectory begin(const std::filesystem::path& directory, const Study& study, Start start);
 
-  /// The study that a directory holds; to look at, or to run, which only the plica does that began it, and while the
-  /// scenario is what it was. FileError when it holds none.
+  /// Open the study in a directory to read it, or to run it, which requires the same version of plica and an unchanged
+  /// scenario. Throws FileError if there is none.
   static std::pair<StudyDirectory, Study> open(const std::filesystem::path& directory);
   static std::pair<StudyDirectory, Study> open_to_run(const std::filesystem::path& directory);
-  /// The same without the study, to look at its rows, whichever plica began it.
+  /// Open only the rows of a study, made by any version.
   static StudyDirectory look(const std::filesystem::path& directory);
 
   [[nodiscard]] const std::filesystem::path& path() const { return directory_; }
   [[nodiscard]] StudyRows rows() const;
-  /// Adds a row, in a file of this process's own.
+  /// Add a row to the file of this process.
   void add(std::size_t run, const std::string& row);
-  /// Writes runs.csv: all rows; runs that have none stand there as not_run.
+  /// Write runs.csv with all rows; runs without a row have status not_run.
   void gather(const Study& study) const;
 
  private:
@@ -52,17 +52,17 @@ class StudyDirectory {
   std::unique_ptr<RowFile> own_rows_;
 };
 
-/// How far a study is.
+/// Progress of a study.
 struct StudyStatus {
   std::size_t runs = 0;
-  std::map<std::string, std::size_t> by_status;  // of runs that have ended
-  std::map<std::string, std::size_t> by_reason;  // of those that were refused, failed or crashed
-  double run_s = 0;                              // wall time of all runs together
+  std::map<std::string, std::size_t> by_status;  // of finished runs
+  std::map<std::string, std::size_t> by_reason;  // of refused, failed and crashed runs
+  double run_s = 0;                              // sum of wall times
 
-  /// A row of one more that has ended.
+  /// Count the row of one more finished run.
   void add(const std::string& row, const Study& study);
   [[nodiscard]] std::size_t ended() const;
-  /// Refused, failed or crashed.
+  /// Number of refused, failed and crashed runs.
   [[nodiscard]] std::size_t without_result() const;
 };
 StudyStatus status_of(const StudyDirectory& directory, const Study& study);

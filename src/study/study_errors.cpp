@@ -16,7 +16,7 @@
 namespace plica {
 namespace {
 
-// A key that the study gives, and where.
+// Key given by the study, with its location.
 struct GivenKey {
   std::string table, key;  // "vary" or "set"
   int line = 0;
@@ -30,7 +30,7 @@ std::vector<GivenKey> given_keys(const StudyInput& study) {
   return keys;
 }
 
-// The table of a scenario that a key lies in: "cortex.apical", or "solver".
+// Table of the scenario that contains a key: "cortex.apical" or "solver".
 std::string table_of(const std::string& key) {
   const Row* row = row_of_key(key);
   const std::size_t first = key.find('.');
@@ -38,7 +38,7 @@ std::string table_of(const std::string& key) {
   return key.substr(0, is_named && first != std::string::npos ? key.find('.', first + 1) : first);
 }
 
-// The key that an error comes from: itself, or the one of the same table that is most like it.
+// Key of the study that causes an error: the same key, or the most similar one of the same table.
 const GivenKey* source_of(const Diagnostic& diagnostic, const std::vector<GivenKey>& given) {
   const auto likeness = [&](const GivenKey& one) {
     return std::ranges::mismatch(one.key, diagnostic.key).in1 - one.key.begin();
@@ -52,7 +52,7 @@ const GivenKey* source_of(const Diagnostic& diagnostic, const std::vector<GivenK
   return best;
 }
 
-// The scenario as it is without the study; nothing where it is wrong by itself.
+// Scenario without the study; empty if it is invalid by itself.
 std::optional<Scenario> scenario_alone(const StudyInput& study) {
   try {
     return load_scenario(study.scenario);
@@ -61,7 +61,7 @@ std::optional<Scenario> scenario_alone(const StudyInput& study) {
   }
 }
 
-// Says of a table that only the study names, as often as not by a slip, which ones there are.
+// Name the existing tables in an error about a table that only the study mentions, probably by mistake.
 void tell_of_new_table(Diagnostic& diagnostic, const std::string& key, const Scenario& scenario) {
   const std::string table = table_of(key);
   for (const TableInfo& info : schema_tables()) {
@@ -85,14 +85,14 @@ Diagnostic in_study(Diagnostic diagnostic, const StudyInput& study, const std::v
     const std::string place =
         diagnostic.line > 0 ? fmt::format("{}:{}", diagnostic.file, diagnostic.line) : diagnostic.file;
     diagnostic.problem =
-        fmt::format("does not go with {} of the scenario ({}), which {}", diagnostic.key, place, problem);
+        fmt::format("conflicts with {} of the scenario ({}), which {}", diagnostic.key, place, problem);
   } else if (alone && problem == "is missing") {
     tell_of_new_table(diagnostic, source->key, *alone);
   }
   const bool is_told = diagnostic.problem != problem || source->key.starts_with(diagnostic.key);
   if (!is_told) diagnostic.problem = fmt::format("then {} {}", diagnostic.key, problem);
   if (diagnostic.problem.ends_with("is not an integer"))
-    diagnostic.remedy = "it takes whole numbers: give values, or low and high with step = 1";
+    diagnostic.remedy = "give integers: values, or low and high with step = 1";
   return {study.file, source->line, source->table + "." + source->key, diagnostic.problem, diagnostic.remedy};
 }
 

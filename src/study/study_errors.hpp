@@ -1,4 +1,4 @@
-// What is wrong with a study's scenario, in the lines of the study's file.
+// Errors of a study's scenario, located in the study's file.
 #pragma once
 
 #include "core/errors.hpp"
@@ -7,14 +7,14 @@
 
 namespace plica {
 
-/// The same errors at the keys of [set] and [vary] that they come from.
+/// Relocate errors to the keys of [set] and [vary] that cause them.
 ScenarioError in_study(const ScenarioError& error, const StudyInput& study);
 
-/// ScenarioError where a value of the design is none of its key, whatever the others are: of a wrong type, or out of
-/// range. Of keys between bounds that holds for the bounds, too.
+/// Throw ScenarioError if a value of the design, or a bound of a key, has the wrong type or is out of range, whatever
+/// the other values.
 void require_values_of_keys(const StudyInput& study, const StudyDesign& design);
 
-/// ScenarioError where a value that the study lists makes no scenario in any run. At least one run has to be valid.
+/// Throw ScenarioError if a listed value gives no valid scenario in any run. At least one run must be valid.
 void require_usable_values(const StudyInput& study, const StudyDesign& design);
 
 }  // namespace plica

@@ -39,7 +39,7 @@ constexpr Words<DesignKind, 7> kinds = {{{"grid", DesignKind::grid},
 constexpr Words<KeptOfRun, 3> kept = {
     {{"row", KeptOfRun::row}, {"summary", KeptOfRun::summary}, {"full", KeptOfRun::full}}};
 
-// The keys of each table; those of [set] and [vary] are the scenario's.
+// Keys of each table; [set] and [vary] have those of the scenario.
 const std::map<std::string, std::vector<std::string>, std::less<>> known_keys = {
     {"", {"format", "scenario", "set", "vary", "design", "keep"}},
     {"design", {"kind", "points", "seed", "replicates", "file"}},
@@ -53,11 +53,11 @@ class Reader : TomlReader {
     if (std::ranges::none_of(std::array{"scenario", "vary", "design"},
                              [&](auto name) { return document_.contains(name); }) &&
         !document_.empty())
-      throw ScenarioError({{study_.file, 0, "", "is a scenario and no study",
-                            fmt::format("run it by plica run {} --out DIR, or name it in a study", study_.file)}});
+      throw ScenarioError({{study_.file, 0, "", "is a scenario, not a study",
+                            fmt::format("run it with plica run {} --out DIR, or name it in a study", study_.file)}});
     refuse_unknown(document_, "");
     if (const toml::node* format = document_.get("format"); format && format->value<int>() != 1)
-      report(*format, "format", "is not one that this plica reads", "write format = 1");
+      report(*format, "format", "is unknown to this version", "write format = 1");
     read_scenario();
     if (const toml::table* set = table(document_, "set")) read_overrides(*set, study_.overrides, study_.override_lines);
     if (const toml::table* vary = table(document_, "vary")) read_keys(*vary, "");
@@ -70,7 +70,7 @@ class Reader : TomlReader {
  private:
   using TomlReader::refuse_unknown;
 
-  // Of a table of the document. A key that another table has is most likely in the wrong place.
+  // Report unknown keys of a table. A key that another table has is probably misplaced.
   void refuse_unknown(const toml::table& table, const std::string& name) {
     const std::vector<std::string>& known = known_keys.at(name);
     refuse_unknown(table, name.empty() ? "" : name + ".", known, [&](std::string_view key) {
@@ -82,7 +82,7 @@ class Reader : TomlReader {
   }
 
   void read_scenario() {
-    if (!document_.contains("scenario")) report_at(0, "scenario", "is missing", "name a built-in one, or a file");
+    if (!document_.contains("scenario")) report_at(0, "scenario", "is missing", "give a built-in name or a file");
     if (auto found = scenario(document_, "scenario")) study_.scenario = std::move(*found);
   }
 
@@ -105,15 +105,16 @@ class Reader : TomlReader {
     key.is_whole = row != nullptr && row->type() == "integer";
     const toml::table* given = node.as_table();
     if (given == nullptr)
-      return report(node, place, "does not say how it varies", "give { low = 1, high = 2 } or { values = [1, 2] }");
+      return report(node, place, "no range or values", "give { low = 1, high = 2 } or { values = [1, 2] }");
     const std::vector<std::string> known = {"values", "low", "high", "scale", "step", "count", "mean", "sd"};
     refuse_unknown(*given, place + ".", known);
     if (const toml::node* values = given->get("values")) {
       const toml::array* list = values->as_array();
       if (list == nullptr || list->empty())
-        return report(*values, place + ".values", list == nullptr ? "is no list" : "is empty", "give [1, 2, 3]");
+        return report(*values, place + ".values", list == nullptr ? "is not a list" : "is empty", "give [1, 2, 3]");
       if (given->size() > 1)
-        return report(node, place, "has values and more", "give either values, or low and high, or mean and sd");
+        return report(node, place, "mixes values with other keys",
+                      "give either values, or low and high, or mean and sd");
       for (const toml::node& value : *list) key.values.push_back(value_in_toml(value));
       study_.keys.push_back(std::move(key));
       return;
@@ -130,27 +131,28 @@ class Reader : TomlReader {
     if (diagnostics_.size() > wrong) return;
 
     if (scale && *scale != "log" && *scale != "linear")
-      return report(node, place + ".scale", fmt::format("\"{}\" is no known word", *scale), "give linear or log");
+      return report(node, place + ".scale", fmt::format("\"{}\" is not a known scale", *scale), "give linear or log");
     if (is_normal && !(key.mean && key.sd && *key.sd > 0))
-      return report(node, place, "is no distribution", "give mean and sd, the latter over 0");
+      return report(node, place, "incomplete normal distribution", "give mean and sd, with sd above 0");
     if (is_normal && (key.is_log || key.step || key.count))
-      return report(node, place, "has a normal distribution and more", "give mean and sd, and low and high if need be");
+      return report(node, place, "mixes a normal distribution with other keys",
+                    "give only mean, sd, and low and high if needed");
     if (!is_normal && !(given->contains("low") && given->contains("high")))
-      return report(node, place, "has no bounds", "give low and high, or values, or mean and sd");
+      return report(node, place, "no bounds", "give low and high, or values, or mean and sd");
     if (!(key.low < key.high))
-      return report(node, place, "is an empty range", "give a low that is below high; one value only goes into [set]");
-    if (key.is_log && key.low <= 0) return report(node, place, "is logarithmic from 0", "give a low over 0");
+      return report(node, place, "empty range", "give low below high; put a single value into [set]");
+    if (key.is_log && key.low <= 0) return report(node, place, "logarithmic scale with low <= 0", "give low above 0");
     if (key.step && !(*key.step > 0 && *key.step <= key.high - key.low))
-      return report(node, place + ".step", "does not fit between low and high", "give a step over 0, up to their gap");
+      return report(node, place + ".step", "not between 0 and high - low", "give a step in this range");
     if (key.step && (key.is_log || key.count))
-      return report(node, place, "has a step and more", "give step, or count, or scale = \"log\"");
+      return report(node, place, "conflicts: step with count or scale",
+                    "give only one of step, count and scale = \"log\"");
     if (key.count == 1)
-      return report(node, place + ".count", "is 1, which leaves one value of a range",
-                    "give 2 or more, or one value in [set]");
+      return report(node, place + ".count", "is 1, a single value of a range", "give 2 or more, or one value in [set]");
     if (const double rest = key.step ? std::remainder(key.high - key.low, *key.step) : 0;
         std::abs(rest) > 1e-9 * key.high)
       study_.notes.push_back(
-          {study_.file, key.line, place + ".step", fmt::format("does not come to {:g}", key.high),
+          {study_.file, key.line, place + ".step", fmt::format("does not reach high = {:g}", key.high),
            fmt::format("the last value is {:g}", key.low + *key.step * std::floor((key.high - key.low) / *key.step))});
     study_.keys.push_back(std::move(key));
   }
@@ -168,7 +170,7 @@ class Reader : TomlReader {
     study_.points = count(*design, "points", "design.").value_or(0);
     study_.replicates = count(*design, "replicates", "design.").value_or(1);
     const auto seed = get<std::int64_t>(*design, "seed", "design.", "a whole number");
-    if (seed && *seed < 0) report(*design->get("seed"), "design.seed", "is below 0", "give 0 or more");
+    if (seed && *seed < 0) report(*design->get("seed"), "design.seed", "is negative", "give 0 or more");
     study_.seed = static_cast<std::uint64_t>(seed.value_or(1));
     if (const auto file = get<std::string>(*design, "file", "design.", "a text"))
       study_.points_file = (fs::path(study_.file).parent_path() / *file).string();
@@ -183,33 +185,34 @@ class Reader : TomlReader {
     if (measures == nullptr) return;
     const toml::array* list = measures->as_array();
     if (list == nullptr || list->empty())
-      return report(*measures, "keep.measures", "is no list of names", "give [\"furrow_depth_um\"], or leave it out");
+      return report(*measures, "keep.measures", "is not a list of names", "give [\"furrow_depth_um\"], or remove it");
     for (const toml::node& name : *list) {
-      if (!name.is_string()) return report(name, "keep.measures", "has what is no name", "give names in quotes");
+      if (!name.is_string())
+        return report(name, "keep.measures", "contains an entry that is not a name", "give names in quotes");
       study_.measures.push_back(name.as_string()->get());
     }
   }
 
-  // What the kind of design asks of keys, and what it has no use for.
+  // Check the keys that the kind of design requires or ignores.
   void check_design() {
     const toml::table& design = *document_.get("design")->as_table();
     const bool draws = study_.kind == DesignKind::sobol || study_.kind == DesignKind::latin_hypercube ||
                        study_.kind == DesignKind::sobol_indices;
     const bool is_of_file = study_.kind == DesignKind::file;
-    if (draws && study_.points == 0) report(design, "design.points", "is missing", "say how many points to draw");
+    if (draws && study_.points == 0)
+      report(design, "design.points", "is missing", "give the number of points to sample");
     if (!draws && study_.points > 0)
-      report(*design.get("points"), "design.points", "has no meaning here",
-             "remove it: the keys say how many points there are");
+      report(*design.get("points"), "design.points", "unused: the keys determine the number of points", "remove it");
     if (!draws && design.contains("seed"))
-      report(*design.get("seed"), "design.seed", "has no meaning here", "remove it: nothing is drawn");
+      report(*design.get("seed"), "design.seed", "unused: nothing is sampled", "remove it");
     if (is_of_file && study_.points_file.empty())
-      report(design, "design.file", "is missing", "name a CSV file with a column for each key");
+      report(design, "design.file", "is missing", "name a CSV file with one column per key");
     if (!is_of_file && !study_.points_file.empty())
-      report(*design.get("file"), "design.file", "has no meaning here", "remove it, or write kind = \"file\"");
+      report(*design.get("file"), "design.file", "unused by this kind", "remove it, or write kind = \"file\"");
     if (is_of_file && !study_.keys.empty())
-      report_at(study_.keys.front().line, "vary", "has no meaning here", "remove it: the file has the values");
+      report_at(study_.keys.front().line, "vary", "unused: the file has the values", "remove it");
     if (!is_of_file && study_.keys.empty())
-      report_at(0, "vary", "is empty", "name the keys that vary: [vary] \"a.key\" = { values = [1, 2] }");
+      report_at(0, "vary", "is empty", "give the keys to vary: [vary] \"a.key\" = { values = [1, 2] }");
     for (const StudyKey& key : study_.keys) check_key(key, draws);
   }
 
@@ -217,23 +220,24 @@ class Reader : TomlReader {
     const std::string place = "vary." + key.key;
     for (const std::string& override : study_.overrides)
       if (override.starts_with(key.key + "="))
-        report_at(key.line, place, "is fixed by [set] as well", "remove one of the two");
+        report_at(key.line, place, "conflicts with [set], which fixes it", "remove one of the two");
     if (draws) {
-      if (key.count) report_at(key.line, place + ".count", "has no meaning here", "remove it: values are drawn");
+      if (key.count) report_at(key.line, place + ".count", "unused: values are sampled", "remove it");
       return;
     }
     if (study_.kind == DesignKind::list) {
       const std::size_t others = study_.keys.front().values.size();
       if (key.values.empty())
-        report_at(key.line, place, "has no values", "a list needs { values = [...] } of every key");
+        report_at(key.line, place, "no values", "give { values = [...] } for every key of a list");
       else if (key.values.size() != others)
-        report_at(key.line, place,
-                  fmt::format("has {} values, and {} has {}", key.values.size(), study_.keys.front().key, others),
-                  "a list takes the first of each, then the second of each, and so on: give as many of every key");
+        report_at(
+            key.line, place,
+            fmt::format("has {} values, and {} has {}", key.values.size(), study_.keys.front().key, others),
+            "give equally many for every key: a list takes the first of each, then the second of each, and so on");
       return;
     }
     if (key.values.empty() && !key.step && !key.count)
-      report_at(key.line, place, "does not say which values to take", "give values, or low, high and count, or step");
+      report_at(key.line, place, "no values", "give values, or low and high with count or step");
   }
 
   StudyInput& study_;
@@ -265,7 +269,7 @@ StudyInput parse_study(const std::string& name, const std::string& file, const s
 
 StudyInput read_study(const std::string& file) {
   if (std::error_code error; !fs::exists(file, error) && std::ranges::count(names_of(builtin_scenarios()), file) > 0)
-    throw UsageError(fmt::format("{0} is a scenario and no study; run it by plica run {0} --out DIR", file));
+    throw UsageError(fmt::format("{0}: is a scenario, not a study; run it with plica run {0} --out DIR", file));
   return parse_study(fs::path(file).stem().string(), file, read_file(file));
 }
 

@@ -26,12 +26,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Measures of more numbers than these are kept as floats, so that a page stays a few MB.
+// Number of values above which output variables are stored as floats, to keep the page at a few MB.
 constexpr std::size_t most_doubles = 700'000;
 
 struct Column {
   std::string name, role;
-  std::vector<std::string> texts;  // "" where there is none
+  std::vector<std::string> texts;  // "" if missing
 };
 
 Json read_begun(const fs::path& directory) {
@@ -42,7 +42,7 @@ Json read_begun(const fs::path& directory) {
   }
 }
 
-// Rows as they came, and where rows/ has none, those of runs.csv.
+// Rows of rows/, else of runs.csv.
 StudyRows rows_of(const fs::path& directory) {
   StudyRows rows = StudyDirectory::look(directory).rows();
   std::error_code error;
@@ -60,7 +60,7 @@ StudyRows rows_of(const fs::path& directory) {
   return rows;
 }
 
-// point, keys as points.csv has them, in TOML; replicate, status, measures, steps, wall_s and reason as in runs.csv.
+// Columns: point; keys as in points.csv (TOML); replicate, status, outputs, steps, wall_s and reason as in runs.csv.
 std::vector<Column> columns_of(const StudyDesign& design, const std::vector<std::string>& measures,
                                const StudyRows& rows) {
   const std::size_t runs = design.runs.size(), status_at = design.keys.size() + 2;
@@ -96,7 +96,7 @@ std::vector<Column> columns_of(const StudyDesign& design, const std::vector<std:
   return columns;
 }
 
-// What there is to open of each run.
+// Column of the kept files of each run.
 Column kept_of(const fs::path& points, const StudyDesign& design) {
   Column kept{"kept", "kept", std::vector<std::string>(design.runs.size())};
   std::error_code error;
@@ -171,8 +171,8 @@ Json packed(const std::vector<Column>& columns, PackedArrays& arrays) {
   return list;
 }
 
-// What its file says, where the scenario that it names is still there; else the scenario with all its keys, which lies
-// in the directory, makes the same runs.
+// Description of the study from its file, if its scenario still exists; else from the scenario with all keys in the
+// directory, which makes the same runs.
 Json told(const fs::path& directory, const Json& begun) {
   const std::string name = begun.value("name", "study"), text = read_file(directory / "study.toml");
   Json data = {{"name", name},

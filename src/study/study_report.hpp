@@ -1,9 +1,8 @@
-// report.html of a study: one page with all its runs, to sort, filter, plot and pick, that needs no network.
+// report.html of a study: one page with all runs, to sort, filter and plot; works offline.
 //
-// Its data: what was begun (name, scenario, design, `set`), `columns` and `arrays`. Columns are those of runs.csv, and
-// `seeds` and `kept` (what points/ holds of a run). Numbers are the two halves of a double, missing ones NaN, or of a
-// float where a study is large; words are places in a column's list, from 1 on, and 0 is missing. viewer/src/study/
-// shows them.
+// Data: name, scenario, design, `set`, `columns` and `arrays`. Columns: those of runs.csv, `seeds` and `kept` (files in
+// points/). Numbers are stored as two halves of a double, or as float in large studies, missing ones as NaN; words as
+// indices into the list of a column, from 1, 0 if missing. Shown by viewer/src/study/.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +10,14 @@
 
 namespace plica {
 
-/// Whether a directory holds a study.
+/// Whether a directory contains a study.
 bool holds_study(const std::filesystem::path& directory);
 
-/// The page of a study, finished or not, for a file in `place`, from where it links to what was kept of runs. FileError
-/// when the directory holds no study, or a file of it is damaged, or plica was built without its viewer.
+/// Make the page of a study, finished or not, for a file in `place`, which determines its links to kept files. Throws
+/// FileError without a study, for a damaged file, or if plica was built without its viewer.
 std::string study_report_page(const std::filesystem::path& directory, const std::filesystem::path& place);
 
-/// Writes it as DIR/report.html. FileError as above.
+/// Write the page as DIR/report.html. Throws FileError as study_report_page does.
 void write_study_report(const std::filesystem::path& directory);
 
 }  // namespace plica

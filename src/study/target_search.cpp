@@ -12,12 +12,12 @@ namespace {
 constexpr double smallest_step = 1e-4;  // where the search has converged
 constexpr double smallest_bracket = 1e-8;
 constexpr double first_step = 0.2;
-constexpr double better = 0.98;      // of the best miss so far
-constexpr std::size_t patience = 4;  // looks without a better one, times n + 1
-constexpr double penalty = 2;        // of a place without a value, over the worst miss so far
-constexpr double unknown = 1e3;      // the worst miss before there is one
+constexpr double better = 0.98;      // relative to the best miss so far
+constexpr std::size_t patience = 4;  // evaluations without improvement, times n + 1
+constexpr double penalty = 2;        // of a point without a value, relative to the worst miss so far
+constexpr double unknown = 1e3;      // worst miss before any is known
 
-// Looks, and remembers what the two searches need of it.
+// Evaluate points and record what both searches need.
 class Looker {
  public:
   Looker(std::vector<double> start, std::size_t targets, const LookAt& look)
@@ -41,7 +41,7 @@ class Looker {
 
   [[nodiscard]] const std::vector<double>& best() const { return best_; }
   [[nodiscard]] bool over() const { return last_.over; }
-  /// It has been long since a look was notably better than all before it.
+  /// Whether no recent evaluation improved notably on all earlier ones.
   [[nodiscard]] bool gets_nowhere() const { return since_better_ > patience * (best_.size() + 1); }
 
  private:
@@ -50,10 +50,11 @@ class Looker {
   const LookAt& look_;
   Look last_;
   std::size_t since_better_ = 0;
-  double best_miss_ = std::numeric_limits<double>::infinity(), worst_miss_ = 0;  // of the looks that had a value
+  double best_miss_ = std::numeric_limits<double>::infinity(), worst_miss_ = 0;  // of evaluations with a value
 };
 
-// True where the ends bracket the target and every place between them had a value: nothing is left to search.
+// Search between the bounds. Returns true if they bracket the target and every point had a value: the search is
+// complete.
 bool search_bracket(Looker& looker) {
   bool all_have_values = true;
   const auto miss = [&](double place) {
@@ -70,7 +71,7 @@ bool search_bracket(Looker& looker) {
   return looker.over() || all_have_values;
 }
 
-// A miss is an equation, m = 0; as two inequalities, since NLopt takes no more equations than coordinates.
+// A miss is an equation, m = 0, given as two inequalities, since NLopt allows at most as many equations as coordinates.
 void misses_for_nlopt(unsigned count, double* at_most_0, unsigned dimension, const double* place, double*, void* data) {
   Looker& looker = *static_cast<Looker*>(data);
   looker.at({place, place + dimension});
@@ -93,8 +94,8 @@ void search_linear_models(Looker& looker, std::size_t targets) {
   try {
     double unused = 0;
     search.optimize(place, unused);
-  } catch (const nlopt::forced_stop&) {       // over, or nowhere to go
-  } catch (const nlopt::roundoff_limited&) {  // no better place can be told from the best
+  } catch (const nlopt::forced_stop&) {       // finished, or nowhere to go
+  } catch (const nlopt::roundoff_limited&) {  // improvements are below rounding error
   }
 }
 

@@ -1,9 +1,9 @@
-// Finds where several numbers meet their targets, when each look at them costs a whole run.
+// Search for a point where several numbers meet their targets; each evaluation costs a run.
 //
 // One number and one coordinate: a bracketing search (TOMS 748: cubic and quadratic interpolation that never leaves the
 // bracket). Otherwise COBYLA (Powell 1994) on the misses as equations: it fits each miss by a linear function on n + 1
-// places and steps to where the largest of them is least, within a radius that shrinks. So with several keys and
-// targets it does what Newton's method does, without derivatives and within bounds. Rejected: BOBYQA on the sum of
+// points and steps to the smallest largest miss within a shrinking radius. With several keys and targets it acts as
+// Newton's method without derivatives and within bounds. Rejected: BOBYQA on the sum of
 // squares of the misses, which must learn the curvature of that sum first, and Nelder-Mead: both need three to four
 // times as many runs (docs/how-to/calibrate.md).
 #pragma once
@@ -13,20 +13,20 @@
 
 namespace plica {
 
-/// What a look at a place gave.
+/// Result of one evaluation.
 struct Look {
-  std::vector<double> misses;  // a target each, in units of its tolerance: met at -1 to 1; empty: there is no value
-  bool over = false;           // the search is to end: targets met, or enough of it
+  std::vector<double> misses;  // targets, in units of their tolerances: met from -1 to 1; empty: no value
+  bool over = false;           // end the search: targets met, or limit reached
 };
 
-/// Looks at a place: a coordinate from 0 to 1 for each key.
+/// Evaluate a point: coordinates in [0, 1]; keys.
 using LookAt = std::function<Look(const std::vector<double>&)>;
 
-/// Looks at places until `look` says that it is over, or until no place nearby is better (steps below 1e-4). Starts at
-/// `start`; a single miss at the ends. Where `look` has no value, the place counts as worse than all others.
+/// Evaluate points until `look` reports `over` or no nearby point is better (steps below 1e-4). Starts at `start`; with
+/// a single target at the bounds. A point without a value counts as worse than all others.
 void search_targets(const std::vector<double>& start, std::size_t targets, const LookAt& look);
 
-/// The largest miss without its sign; infinite where there is no value.
+/// Largest absolute miss; infinite without a value.
 double worst_miss(const std::vector<double>& misses);
 
 }  // namespace plica

@@ -38,7 +38,7 @@ std::vector<Observation> UnfinishedRun::begin() {
   }
 }
 
-// Not while another process keeps the same run.
+// Lock the directory, unless another process keeps the same run.
 bool UnfinishedRun::can_lock() {
   try {
     if (!lock_) lock_ = std::make_unique<DirectoryLock>(directory_);

@@ -1,4 +1,4 @@
-// A run without results on disk that takes long, kept there all the same: whoever is killed does not begin anew.
+// Saved state of a long run without results on disk, so that a killed process does not start from the beginning.
 #pragma once
 
 #include <filesystem>
@@ -15,20 +15,20 @@ namespace plica {
 
 class UnfinishedRun {
  public:
-  /// Of a simulation at rest. `directory` is its own, and there only while there is something in it; `every_s` of wall
-  /// time what the run has come to is written.
+  /// `simulation`: in its reference state. `directory`: used by this run only, exists only while it contains something.
+  /// The state is written every `every_s` of wall time.
   UnfinishedRun(std::filesystem::path directory, double every_s, const Scenario& scenario, Simulation& simulation);
 
-  /// Goes on from what is kept, and says what the steps so far have measured; at rest only, where nothing is kept that
-  /// fits.
+  /// Resume from the saved state, if one fits, and return the measures of the steps so far; else those of the reference
+  /// state only.
   [[nodiscard]] std::vector<Observation> begin();
-  /// Wall time of the processes before this one.
+  /// Wall time of earlier processes, s.
   [[nodiscard]] double earlier_s() const { return earlier_s_; }
 
-  /// After each step that is accepted. FileError when it cannot be written.
+  /// Save when due; call after each accepted step. Throws FileError.
   void step_accepted(const std::vector<Observation>& rows, double wall_s);
 
-  /// Nothing is kept of a run that has ended.
+  /// Remove the saved state of a finished run.
   void end();
 
  private:

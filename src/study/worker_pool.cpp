@@ -55,14 +55,14 @@ bool read_all(int end, void* data, std::size_t size) {
   return true;
 }
 
-// A letter for the kind of answer (r, or f: a FileError), its length, and its text.
+// Answer: a letter for its kind (r: result, f: FileError), its length, its text.
 bool send_answer(int end, char kind, const std::string& text) {
   const std::uint64_t size = text.size();
   return write_all(end, &kind, 1) && write_all(end, &size, sizeof size) && write_all(end, text.data(), text.size());
 }
 
-// Long turns on a core, where there are more workers than cores: each turn fills the caches anew, and with the usual 3
-// ms four workers on two cores took 13 % more time than one, with these no more. Linux before 6.12 has no such choice.
+// Request long time slices for more workers than cores: each switch refills the caches. With the usual 3 ms four
+// workers on two cores took 13 % more time than one per core, with these no more. Linux before 6.12 has no such option.
 void ask_for_long_turns() {
   struct {
     std::uint32_t size = 48, policy = SCHED_OTHER;
@@ -78,7 +78,7 @@ void ask_for_long_turns() {
 [[noreturn]] void run_worker(int end, const std::function<std::string(std::size_t)>& do_work) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ask_for_long_turns();
-  std::signal(SIGINT, SIG_IGN);  // of the terminal: the parent says when to stop
+  std::signal(SIGINT, SIG_IGN);  // of the terminal: the parent decides when to stop
   struct sigaction action = {};
   action.sa_handler = note_stop;  // without SA_RESTART: one that waits for work ends
   ::sigaction(SIGTERM, &action, nullptr);
@@ -123,7 +123,7 @@ class Worker {
   void give(std::size_t piece) {
     piece_ = piece;
     const std::uint64_t number = piece;
-    write_all(end_, &number, sizeof number);  // one that has ended shows when its answer is read
+    write_all(end_, &number, sizeof number);  // a process that has ended is noticed when its answer is read
   }
   [[nodiscard]] int end() const { return end_; }
   [[nodiscard]] std::optional<std::size_t> piece() const { return piece_; }
@@ -146,7 +146,7 @@ class Worker {
 
   void stop() const { ::kill(process_, SIGTERM); }
 
-  // Waits for it, after half a minute without patience. How it ended.
+  // Wait for the process; kill it after half a minute. Returns how it ended.
   std::string ended() {
     if (process_ < 0) return "";
     ::close(end_);
@@ -164,7 +164,7 @@ class Worker {
 
  private:
   [[noreturn]] static void throw_unstarted() {
-    throw FileError("no process can be started: " + std::generic_category().message(errno));
+    throw FileError("cannot start a process: " + std::generic_category().message(errno));
   }
 
   pid_t process_ = -1;

@@ -1,5 +1,4 @@
-// Work that is spread over processes of this program, which live on from one piece of work to the next. One that
-// crashes takes no other with it.
+// Pool of worker processes of this program. Each does one piece of work after another; a crash affects no other.
 #pragma once
 
 #include <functional>
@@ -9,18 +8,18 @@
 namespace plica {
 
 struct WorkerHooks {
-  /// What a piece of work came to. Empty where its process ended twice over it; `reason` says how.
+  /// Receives the answer to a piece of work; empty if its process ended twice, with the `reason`.
   std::function<void(std::size_t work, const std::string& answer, const std::string& reason)> on_answer;
-  /// Asked often; once true, work under way is given up and the rest is not begun.
+  /// Polled often; once true, work under way is abandoned and no more starts.
   std::function<bool()> stop_requested;
 };
 
-/// Within `do_work`: this process has been told to end well, and what it returns is not used.
+/// Whether this worker was asked to stop; its return value is not used then. Call within `do_work`.
 bool worker_is_to_stop();
 
-/// Has so many processes (forks of this one, which must have no other threads) do pieces of work, in their order. They
-/// end with this process, even when that is killed. A piece whose process ends is begun once more. FileError when no
-/// process can be started, and what `do_work` throws as one.
+/// Do the pieces of work in order in `workers` forks of this process, which must have no other threads. They end with
+/// this process, even if it is killed. A piece whose process ends is repeated once. Throws FileError if no process can
+/// be started, or from `do_work`.
 void work_in_processes(int workers, std::span<const std::size_t> pieces,
                        const std::function<std::string(std::size_t)>& do_work, const WorkerHooks& hooks);
 

@@ -76,13 +76,13 @@ class Calibrate(CommandLine):
         cases = (
             (f"{STIFFNESS}=2:1", target, f"low is above high; write {STIFFNESS}=1:2"),
             (f"{STIFFNESS}=2", target, "give KEY=LOW:HIGH"),
-            ("contraction.all.stifness_nN_per_um=1:2", target, 'did you mean "stiffness_nN_per_um"?'),
+            ("contraction.all.stifness_nN_per_um=1:2", target, 'use "stiffness_nN_per_um"'),
             (f"{STIFFNESS}=-1:2", target, "out of range"),
-            ("region.first.cells_along=1:2", target, "takes whole numbers only"),
-            (vary, "end.positon_um=28", 'did you mean "end.position_um"?'),
+            ("region.first.cells_along=1:2", target, "is an integer"),
+            (vary, "end.positon_um=28", 'use "end.position_um"'),
             (vary, "end.position_um", "give NAME=VALUE"),
             (vary, "end.position_um=0", "give end.position_um=0~WITHIN"),
-            (vary, "wall_s=1", "differs from run to run"),
+            (vary, "wall_s=1", "differs between runs"),
         )
         for key, wanted, words in cases:
             with self.subTest(key=key, wanted=wanted):

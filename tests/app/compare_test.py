@@ -142,8 +142,8 @@ class Compare(CommandLine):
         no_frame_files = self.folder / "no_frame_files"
         shutil.copytree(a, no_frame_files)
         shutil.rmtree(no_frame_files / "frames")
-        cases = [(self.folder / "missing", "no such directory"), (empty, "frames.pvd"), (no_frames, "lists no frame"), (torn, last.name),
-                 (no_frame_files, "frame_"), (self.folder / "a.toml", "no directory")]
+        cases = [(self.folder / "missing", "directory does not exist"), (empty, "frames.pvd"), (no_frames, "lists no snapshot"), (torn, last.name),
+                 (no_frame_files, "frame_"), (self.folder / "a.toml", "not a directory")]
         for directory, part in cases:
             for order in ((a, directory), (directory, a)):
                 with self.subTest(f"{part} {order}"):

@@ -48,9 +48,9 @@ frame_every_min = 1
 class Crossing(CommandLine):
     def check(self, text, cells):
         result = self.run_scenario(text, "--quiet")
-        warnings = [line for line in result.stderr.splitlines() if line.startswith("warning: the tissue passes through")]
+        warnings = [line for line in result.stderr.splitlines() if line.startswith("warning: the tissue self-intersects")]
         self.assertEqual(len(warnings), 1, result.stderr)
-        self.assertRegex(warnings[0], r"at t = [\d.]+ min the \w+ faces of cells \d+ and \d+ cross, at x = .* um \(\d+ pairs")
+        self.assertRegex(warnings[0], r"at t = [\d.]+ min \w+ faces of cells \d+ and \d+ cross at x = .* um \(\d+ pairs")
         with open(self.out / "series.csv", encoding="utf-8") as file:
             pairs = [int(row["self_intersections"]) for row in csv.DictReader(file)]
         self.assertEqual(pairs[0], 0)

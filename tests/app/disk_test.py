@@ -76,7 +76,7 @@ class FailingDisk(Resuming):
                 self.assert_whole(self.out)  # nor is anything left that is half written
                 rows = rows_in(self.out)
                 resumed = self.resumed(self.scenario)
-                found = re.search(r"going on after step (\d+)", resumed.stdout)
+                found = re.search(r"resuming after step (\d+)", resumed.stdout)
                 if found:
                     self.assertIn(rows - int(found.group(1)), (0, 1), "more is lost than the step under way")
                     cut_back = max(cut_back, rows - int(found.group(1)))
@@ -135,7 +135,7 @@ class Directory(Resuming):
         self.ended(process)
         self.assertFalse(self.out.exists(), "the directory came back")
         moved.rename(self.out)
-        self.assertIn("going on after step", self.resumed(self.scenario, "--set", "time.end_s=1e3", "--set", "time.step_s=20").stdout)
+        self.assertIn("resuming after step", self.resumed(self.scenario, "--set", "time.end_s=1e3", "--set", "time.step_s=20").stdout)
         shutil.rmtree(self.out)
         self.resumed(self.scenario)
         self.assert_same(self.out, self.whole)

@@ -37,7 +37,7 @@ at_s = 1
 growth_s = 10
 """
         result = self.run_scenario(held, "--quiet", status=3)
-        self.assertRegex(result.stderr, r"cell \d+ is to have another volume, and all its corners are held: hold fewer")
+        self.assertRegex(result.stderr, r"cell \d+ must change its volume, but all its corners are fixed: fix fewer")
 
     def test_a_cell_becomes_two_with_a_lineage(self):
         self.run_scenario(ROW + CUT)

@@ -112,7 +112,7 @@ class Experiments(CommandLine):
         self.assertEqual(table[0][7], "0 of 4 (1–45 %)")
         self.assertEqual(table[1][7], "2 of 2 (37–98 %)")
         self.assertIn("It does. (A book, 2020)", table[3])
-        self.assertIn("Of 2 outcomes predicted, 1 hit, 1 miss and 0 undecided; 2 of 2 as expected before.", page)
+        self.assertIn("Of 2 outcomes predicted, 1 hit, 1 miss and 0 undecided; 2 of 2 as predicted.", page)
         for text in (page, re.sub(r' src="data:image/png;base64,[^"]*"', "", html)):
             self.assertIsNone(re.search(r"(?i)\bnan\b|\binf\b", text))
         self.assertIn('<td class="no"><em>miss</em></td>', html)
@@ -132,7 +132,7 @@ class Experiments(CommandLine):
         # Not so a scenario.
         self.file.write_text(EXPERIMENTS.replace('"time.end_min" = 0.1', '"time.end_min" = 0.15'))
         message = self.assert_messages(self.reproduce("--quiet", status=2))[0]
-        self.assertIn("runs/half/draw-1: was run with another scenario: time.end_s was 6, and is 9", message)
+        self.assertIn("runs/half/draw-1: was run with another scenario: time.end_s was 6 and is now 9", message)
         self.assertEqual(self.summaries(), before)
         shutil.rmtree(self.out / "runs/half")
         self.reproduce("--quiet")
@@ -154,7 +154,7 @@ class Experiments(CommandLine):
             process.send_signal(signal.SIGINT if with_grace else signal.SIGKILL)
             _, errors = process.communicate(timeout=60)
             if process.returncode == 130:
-                self.assertIn("interrupted; the same command goes on", errors)
+                self.assertIn("interrupted; to continue, repeat the command", errors)
                 self.assertLessEqual({row["status"] for row in self.rows()}, {"end_time", "not_run"})
             time.sleep(0.2)  # its workers end with it, and let go of their directories
         self.reproduce("--jobs", 2, "--quiet")
@@ -172,7 +172,7 @@ class Experiments(CommandLine):
         (self.out / "experiments.toml.17-0.part").write_text("ti")  # killed as it began
         self.reproduce("--quick", "--quiet")
         self.assertEqual([(row["experiment"], row["draw"]) for row in self.rows()], [("reference", "1"), ("half", "1"), ("half", "1")])
-        self.assertIn("A quick run", (self.out / "mine.md").read_text())
+        self.assertIn("Quick run", (self.out / "mine.md").read_text())
         before = self.summaries()
         self.reproduce("--quiet")  # and goes on to the others
         self.assertEqual(len(self.rows()), 14)
@@ -209,7 +209,7 @@ hit = [0.4, 0.6]
         self.assertIn("*undecided* |", page.split("## block")[0])
 
     def test_what_cannot_be_done_says_so_and_leaves_nothing(self):
-        for what, words in (("livign", "no file and no built-in experiments"), (self.folder, "Is a directory")):
+        for what, words in (("livign", "not a file or built-in experiments"), (self.folder, "Is a directory")):
             result = plica("reproduce", what, "--out", self.out)
             self.assertIn(result.returncode, (2, 4))
             self.assertIn(words, self.assert_messages(result)[0])
@@ -222,7 +222,7 @@ hit = [0.4, 0.6]
         (self.out / "mine.txt").write_text("of somebody")
         for more in ((), ("--overwrite",)):
             message = self.assert_messages(self.reproduce(*more, status=2))[0]
-            self.assertIn("holds no experiments; give another --out", message)
+            self.assertIn("contains no experiments; give another --out", message)
         self.assertEqual([path.name for path in self.out.iterdir()], ["mine.txt"])
 
     def test_the_living_embryo_has_one_frozen_set(self):

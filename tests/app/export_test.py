@@ -114,15 +114,15 @@ class Export(CommandLine):
         out = self.path("cells.vtp")
         for arguments, status, said in [
                 (("nowhere", "--out", out), 4, "nowhere"),
-                ((run, "--out", self.path("cells.stl")), 2, "give FILE.vtp for a surface, or the name of a directory"),
-                ((run, "--out", out, "--time", "soon"), 2, "--time soon: is no time; give 5min"),
+                ((run, "--out", self.path("cells.stl")), 2, "neither FILE.vtp (surface) nor a directory"),
+                ((run, "--out", out, "--time", "soon"), 2, "--time soon: not a time; give 5min"),
                 ((run, "--out", out, "--time", "9min"), 2, "--time 9min: the frames go from 0 s to 0.5 s"),
                 ((run, "--out", out, "--side", "left"), 2, "--side"),
                 ((run,), 2, "--out")]:
             self.expect(plica("export", *arguments), status, stderr=said)
         self.assertFalse(out.exists())
         out.write_text("mine")
-        self.expect(plica("export", run, "--out", out), 4, stderr="is there already")
+        self.expect(plica("export", run, "--out", out), 4, stderr="already exists")
         self.assertEqual(out.read_text(), "mine")
         self.expect(plica("export", run, "--out", out, "--overwrite"), 0)
 
@@ -142,7 +142,7 @@ class Export(CommandLine):
         self.assertFalse(any(a and b for a, b in zip(rows, beside)))
         self.assertIsNotNone(data.GetArray("pulse_phase_contraction.apical"))
         self.expect(plica("mesh", scenario, "--out", self.path("rest.png"), "--colour", "strength_contraction.apica"), 2,
-                    stderr="did you mean strength_contraction.apical? there are: region, ")
+                    stderr="use strength_contraction.apical (nearest match); available: region, ")
         self.expect(plica("mesh", scenario, "--out", self.path("rest.jpg")), 2, stderr="must end in .vtu, or in .png")
         self.expect(plica("mesh", scenario, "--out", self.path("rest.png"), "--color", "strength_contraction.apical",
                           "--view", "ventral,cross-section"), 0)

@@ -128,8 +128,8 @@ class Monitors(CommandLine):
         no_frames = self.folder / "no_frames"
         no_frames.mkdir()
         (no_frames / "frames.pvd").write_text("<VTKFile><Collection></Collection></VTKFile>")
-        for quantity, reference, part in (("deviation", "missing", "no such directory"), ("deviation", "empty", "frames.pvd"),
-                                          ("deviation", "scenario.toml", "no directory"), ("deviation", "no_frames", "no frame"),
+        for quantity, reference, part in (("deviation", "missing", "directory does not exist"), ("deviation", "empty", "frames.pvd"),
+                                          ("deviation", "scenario.toml", "not a directory"), ("deviation", "no_frames", "no snapshot"),
                                           ("surface_distance", "missing.stl", "No such file"),
                                           ("surface_distance", "text.stl", "text.stl")):
             with self.subTest(reference):

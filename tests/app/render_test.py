@@ -188,7 +188,7 @@ class Render(CommandLine):
         self.render("--colour", "sna", "--size", "400x300", "--view", "ventral")
         self.assertGreater(len({pixel for row in pixels_of(self.picture) for pixel in row}), 200)
         self.picture.unlink()
-        self.assertIn("did you mean sna?", self.refused(2, "--colour", "snaa"))
+        self.assertIn("use sna (nearest match)", self.refused(2, "--colour", "snaa"))
         self.assertIn('"name":"sna"', (self.out / "report.html").read_text(encoding="utf-8"))
 
     def test_another_range_gives_other_colours(self):
@@ -202,9 +202,9 @@ class Render(CommandLine):
 
     def test_what_it_does_not_know_is_refused(self):
         for arguments, parts in (
-            (["--view", "ventrl"], ["did you mean ventral?", "cross-section"]),
+            (["--view", "ventrl"], ["use ventral (nearest match)", "cross-section"]),
             (["--view", "zzz"], VIEWS),
-            (["--colour", "presure"], ["did you mean pressure?"]),
+            (["--colour", "presure"], ["use pressure (nearest match)"]),
             (["--time", "5h"], ["5h", "5min"]),
             (["--time", "1min"], ["1min", "from 0 s to 0.3 s"]),
             (["--time=-1"], ["-1", "from 0 s to 0.3 s"]),
@@ -215,7 +215,7 @@ class Render(CommandLine):
             (["--range", "3:3"], ["LOW:HIGH"]),
             (["--range", "0:nan"], ["LOW:HIGH"]),
             (["--movie", "--time", "0"], ["--movie"]),
-            (["--at-x-um", "100"], ["100 misses the embryo", "from -99.01 to 99.01"]),
+            (["--at-x-um", "100"], ["100 is outside the embryo", "from -99.01 to 99.01"]),
             (["--at-x-um", "here"], ["--at-x-um", "here"]),
         ):
             message = self.refused(2, *arguments)
@@ -223,7 +223,7 @@ class Render(CommandLine):
                 self.assertIn(part, message, arguments)
 
     def test_a_directory_without_frames_is_refused(self):
-        for directory, part in ((self.folder, "frames.pvd"), (self.folder / "nowhere", "no such directory")):
+        for directory, part in ((self.folder, "frames.pvd"), (self.folder / "nowhere", "directory does not exist")):
             result = plica("render", directory, "--out", self.picture)
             self.assertEqual(result.returncode, 4)
             self.assertIn(part, self.assert_messages(result)[0])

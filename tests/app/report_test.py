@@ -41,11 +41,11 @@ class Report(CommandLine):
     def test_several_runs_want_a_file_and_keep_one_that_is_there(self):
         other = self.folder / "other"
         self.run_scenario(BLOCK, out=other)
-        self.assertIn("--out is missing", self.report(self.out, other, status=2).stderr)
+        self.assertIn("--out: missing", self.report(self.out, other, status=2).stderr)
         both = self.folder / "both.html"
         self.report(self.out, other, "--out", both)
         self.assertEqual([run["name"] for run in self.data(both)["runs"]], ["out", "other"])
-        self.assertIn("is there already", self.report(self.out, "--out", both, status=4).stderr)
+        self.assertIn("already exists", self.report(self.out, "--out", both, status=4).stderr)
         self.report(self.out, "--out", both, "--overwrite")
         self.assertEqual(len(self.data(both)["runs"]), 1)
         self.assertIn(".html", self.report(self.out, "--out", self.folder / "page.pdf", status=2).stderr)
@@ -61,8 +61,8 @@ class Report(CommandLine):
     def test_what_is_no_run_or_damaged_is_refused(self):
         empty = self.folder / "empty"
         empty.mkdir()
-        self.assertIn("holds no results", self.report(empty, status=4).stderr)
-        self.assertIn("no such directory", self.report(self.folder / "nowhere", status=4).stderr)
+        self.assertIn("contains no results", self.report(empty, status=4).stderr)
+        self.assertIn("directory does not exist", self.report(self.folder / "nowhere", status=4).stderr)
         damaged = self.folder / "damaged"
         shutil.copytree(self.out, damaged)
         frame = sorted((damaged / "frames").glob("*.vtu"))[-1]
@@ -178,11 +178,11 @@ class StudyReport(CommandLine):
         self.assertEqual(columns["status"].count("end_time"), 6)
 
     def test_what_is_refused(self):
-        self.assertIn("page of its own", self.report(self.out, self.out, "--out", self.folder / "two.html", status=2).stderr)
+        self.assertIn("has its own page", self.report(self.out, self.out, "--out", self.folder / "two.html", status=2).stderr)
         elsewhere = self.folder / "elsewhere.html"
         self.report(self.out, "--out", elsewhere)
         self.assertEqual(self.columns(elsewhere)[0]["points"], "out/points")
-        self.assertIn("is there already", self.report(self.out, "--out", elsewhere, status=4).stderr)
+        self.assertIn("already exists", self.report(self.out, "--out", elsewhere, status=4).stderr)
         page = (self.out / "report.html").read_bytes()
         for file, content in (("points.csv", "run,point\n"), ("study.json", "{")):
             (self.out / file).write_text(content)

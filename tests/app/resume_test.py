@@ -59,7 +59,7 @@ class Kills(Resuming):
 
     def rows_lost(self, process, rows):
         """How many rows were cut back by a run that went on: the step whose checkpoint was being written, no more."""
-        found = re.search(r"going on after step (\d+)", process.stdout_text)
+        found = re.search(r"resuming after step (\d+)", process.stdout_text)
         if not found:
             return 0
         lost = rows - int(found.group(1))
@@ -132,7 +132,7 @@ class Directories(Resuming):
         scenario = [self.write(text, "of_mesh.toml")]
         self.resumed(scenario)
         plica("mesh", sphere, "--set", "embryo.diameter_um=210", "--out", mesh, "--overwrite")
-        self.assertIn("another embryo", self.resumed(scenario, status=2).stderr)
+        self.assertIn("another mesh", self.resumed(scenario, status=2).stderr)
 
     def test_time_stop_and_output_may_change(self):
         block = [self.write(BLOCK)]
@@ -180,7 +180,7 @@ class Directories(Resuming):
             for option in ("--resume", "--overwrite"):
                 result = plica("run", *endless, "--out", self.out, option)
                 self.assertEqual(result.returncode, 4, result.stderr)
-                self.assertIn("another plica", self.assert_messages(result)[0])
+                self.assertIn("another process of plica", self.assert_messages(result)[0])
             self.assertIsNone(process.poll())
         finally:
             process.kill()
@@ -211,7 +211,7 @@ class Directories(Resuming):
                 result = plica("run", *sphere, "--set", "time.end_s=3", "--out", self.out)
                 self.assertEqual(result.returncode, 0, result.stderr)
                 more = ("--set", "time.end_s=6", "--set", f'time.linear_solver="{solver}"')
-                self.assertIn("going on after step", self.resumed(sphere, *more).stdout)
+                self.assertIn("resuming after step", self.resumed(sphere, *more).stdout)
                 self.assertEqual(self.summary()["time_s"], 6)
 
 

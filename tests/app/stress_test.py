@@ -3,7 +3,7 @@ import support
 from support import SPHERE, CommandLine
 
 STRONG = SPHERE.replace("stiffness_nN_per_um = 8", "stiffness_nN_per_um = 80").replace("end_s = 0.3", "end_s = 600")
-GAVE_UP = r"gave up: .*cell \d+.* at t = [\d.e+-]+ s, with steps down to"
+GAVE_UP = r"solver failed: .*cell \d+.* at t = [\d.e+-]+ s, with steps down to"
 
 
 class Stress(CommandLine):

@@ -64,7 +64,7 @@ class Study(CommandLine):
 
     def test_the_table(self):
         result = self.study("--jobs", 1)
-        self.assertRegex(result.stdout, r"24 runs: 24 end_time in .*; .* s of runs, one after the other\n  table in .*runs\.csv(; to look at: .*report\.html)?\n")
+        self.assertRegex(result.stdout, r"24 runs: 24 end_time in .*; .* sum of run times .* s\n  table in .*runs\.csv(; open .*report\.html in a browser)?\n")
         rows = self.table()
         self.assertEqual(list(rows[0]), ["point", "contraction.apical.stiffness_nN_per_um", "replicate", "status",
                                          "furrow_depth_um", "max_volume_error", "steps", "reason"])
@@ -143,7 +143,7 @@ class Study(CommandLine):
         checked = plica("check", self.file)
         self.assertEqual(checked.returncode, 0, checked.stderr)
         self.assertIn("2 points are no valid scenario", checked.stdout)
-        self.assertIn("if none takes longer", checked.stdout)
+        self.assertIn("estimate for all runs", checked.stdout)
 
     def test_what_each_run_leaves(self):
         text = STUDY.replace("points = 24", "points = 3")
@@ -164,7 +164,7 @@ class Study(CommandLine):
         self.study(text=few)
         self.assertIn("--resume", self.study(text=few, status=2).stderr)
         self.study("--resume", text=few + "\n# a word\n")
-        self.assertIn("has changed since it was begun: vary.contraction.apical.stiffness_nN_per_um.high was 7, and is 8; change it back",
+        self.assertIn("has changed since its start: vary.contraction.apical.stiffness_nN_per_um.high was 7 and is now 8; revert the change",
                       self.study("--resume", text=few.replace("high = 7", "high = 8"), status=2).stderr)
         own = self.folder / "own.toml"
         own.write_text('base = "drosophila"\ntime.end_min = 0.2\n')
@@ -172,12 +172,12 @@ class Study(CommandLine):
         self.study("--overwrite", text=of_own)
         own.write_text('base = "drosophila"\ntime.end_min = 0.3\n')
         self.assertRegex(self.study("--resume", text=of_own, status=2).stderr,
-                         r"own\.toml has changed since .* time\.end_s was 12.*, and is 18.*--overwrite")
+                         r"own\.toml has changed since .* time\.end_s was 12.* and is now 18.*--overwrite")
         self.study("--overwrite", text=few)
         for flags in ([], ["--overwrite"], ["--resume"]):
             refused = plica("run", "drosophila", "--set", "time.end_min=0.1", "--out", self.out, *flags)
             self.assertEqual(refused.returncode, 2)
-            self.assertIn("holds a study; give another --out", refused.stderr)
+            self.assertIn("contains a study; give another --out", refused.stderr)
         before = (self.out / "runs.csv").read_bytes()
         begun = self.out / "study.json"
         begun.write_text(begun.read_text().replace('"plica": "', '"plica": "9.'))
@@ -195,14 +195,14 @@ class Study(CommandLine):
             self.assertEqual((refused.returncode, sorted(p.name for p in foreign.iterdir())), (2, ["points", "thesis.txt"]))
         (self.folder / "own.toml").write_text('base = "drosophila"\n')
         (self.folder / "owl.toml").write_text(STUDY.replace('"drosophila"', '"onw.toml"'))
-        for arguments, told in [(["study", self.folder / "own.toml", "--out", "x"], "is a scenario and no study; run it by plica run"),
-                                (["study", "drosophila", "--out", "x"], "is a scenario and no study; run it by plica run"),
-                                (["run", self.file, "--out", "x"], "is a study and no scenario; run it by plica study"),
-                                (["study", self.folder / "owl.toml", "--out", "x"], 'did you mean "own.toml"?')]:
+        for arguments, told in [(["study", self.folder / "own.toml", "--out", "x"], "is a scenario, not a study; run it with plica run"),
+                                (["study", "drosophila", "--out", "x"], "is a scenario, not a study; run it with plica run"),
+                                (["run", self.file, "--out", "x"], "is a study, not a scenario; run it with plica study"),
+                                (["study", self.folder / "owl.toml", "--out", "x"], 'use "own.toml"')]:
             result = plica(*arguments)
             self.assertEqual(result.returncode, 2)
             self.assertIn(told, result.stderr)
-        for arguments, told in [([], "which study"), ([self.file], "--out"), (["none.toml", "--out", "x"], "none.toml")]:
+        for arguments, told in [([], "STUDY: missing"), ([self.file], "--out"), (["none.toml", "--out", "x"], "none.toml")]:
             result = plica("study", *arguments)
             self.assertIn(result.returncode, (2, 4))
             self.assertIn(told, result.stderr)
@@ -231,7 +231,7 @@ class Study(CommandLine):
         (self.folder / "points.csv").write_text("contraction.apical.stiffness_nN_per_um\n3.5,furrow\n")
         self.assertRegex(self.study("--overwrite", text=text, status=2).stderr, r"points\.csv:2: has 2 values")
         (self.folder / "points.csv").write_text("")
-        self.assertIn("holds no points", self.study("--overwrite", text=text, status=2).stderr)
+        self.assertIn("no points", self.study("--overwrite", text=text, status=2).stderr)
 
 
 if __name__ == "__main__":

@@ -148,9 +148,9 @@ TEST_F(FilesTest, RowsGoOnWhereTheCheckpointWas) {
   EXPECT_EQ(read_file(folder / "rows"), "a\nb\nd\n");
   const std::string path = (folder / "rows").string();
   EXPECT_EQ(file_error([&] { RowFile(path, 7); }),
-            path + ": cannot be written: it has 6 bytes, fewer than the 7 to go on from");
+            path + ": cannot be written: it has 6 bytes, fewer than the 7 to continue from");
   EXPECT_EQ(file_error([&] { RowFile(path, 3); }),
-            path + ": cannot be written: its first 3 bytes do not end with a whole row");
+            path + ": cannot be written: its first 3 bytes do not end with a complete row");
   EXPECT_EQ(read_file(path), "a\nb\nd\n");
   RowFile(path).append("anew");
   EXPECT_EQ(read_file(path), "anew\n");

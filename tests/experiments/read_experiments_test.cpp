@@ -129,40 +129,42 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
     std::vector<std::string> complaint;  // has all of these
   };
   const std::vector<Case> cases = {
-      {"title = \"Blocks\"", "titel = 1", {"mine.toml:1: titel: unknown key; did you mean \"title\"?"}},
+      {"title = \"Blocks\"", "titel = 1", {"mine.toml:1: titel: unknown key; use \"title\" (nearest match)"}},
       {"title = \"Blocks\"", "format = 2", {"mine.toml:1: format: is not one"}},
-      {"draws = 2", "draw = 2", {"mine.toml:14: experiment.stiff.draw: unknown key; did you mean \"draws\"?"}},
+      {"draws = 2", "draw = 2", {"mine.toml:14: experiment.stiff.draw: unknown key; use \"draws\" (nearest match)"}},
       {"draws = 2",
        "draws = 2\ndrawn = false",
        {"mine.toml:14: experiment.stiff.draws: stands beside drawn = false, with which there is one run; remove it"}},
-      {"draws = 2", "draws = 0", {"mine.toml:14: experiment.stiff.draws: is 0; give 1"}},
+      {"draws = 2",
+       "draws = 0",
+       {"mine.toml:14: experiment.stiff.draws: 0 is out of range; set draws to a whole number from 1"}},
       {"slow = true", "slow = \"no\"", {"mine.toml:15: experiment.stiff.slow: is not true or false"}},
-      {"\"block.toml\"", "\"blok.toml\"", {"mine.toml:2: scenario: ", "did you mean \"block.toml\"?"}},
+      {"\"block.toml\"", "\"blok.toml\"", {"mine.toml:2: scenario: ", "use \"block.toml\" (nearest match)"}},
       {"\"draws.csv\"", "\"drawn.csv\"", {"mine.toml:3: draws: ", "name a CSV file"}},
       {"role = \"fitted\"",
        "role = \"fited\"",
-       {"mine.toml:6: ", "role: \"fited\" is no known word; did you mean \"fitted\"?"}},
+       {"mine.toml:6: ", "role: \"fited\" is unknown; use \"fitted\" (nearest match)"}},
       {"prediction = \"hit\"\n",
        "",
        {"mine.toml:", "experiment.stiff.outcome.end.prediction: is missing; say what you expect"}},
       {"prediction = \"hit\"",
        "prediction = \"yes\"",
-       {"mine.toml:12: experiment.stiff.prediction: \"yes\" is no known word"}},
+       {"mine.toml:12: experiment.stiff.prediction: \"yes\" is unknown"}},
       {"question = \"How long is it?\"\n", "", {"experiment.reference.outcome.end.question: is missing; ask it"}},
       {"quantity = \"end.position_um\"\nhit", "hit", {"experiment.reference.outcome.end.quantity: is missing"}},
       {"hit = [20, 30]\n", "", {"mine.toml:4: experiment.reference.outcome.end.hit: is missing; give [from, to]"}},
       {"hit = [20, 30]", "hit = [30, 20]", {"mine.toml:8: ", "is an empty range; give the smaller number first"}},
-      {"hit = [20, 30]", "hit = 20", {"mine.toml:8: ", "is no pair of numbers"}},
-      {"undecided = 0.5", "undecided = -1", {"mine.toml:20: ", "undecided: is below 0; give 0 or more"}},
+      {"hit = [20, 30]", "hit = 20", {"mine.toml:8: ", "is not a pair of numbers"}},
+      {"undecided = 0.5", "undecided = -1", {"mine.toml:20: ", "undecided: is negative; give 0 or more"}},
       {"undecided = 0.5", "undecided = inf", {"mine.toml:20: ", "undecided: is not a number"}},
       {"minus = \"reference\"",
        "minus = \"referense\"",
-       {"mine.toml:18: ", "is no experiment of this file; did you mean \"reference\"?"}},
+       {"mine.toml:18: ", "is not an experiment of this file; use \"reference\" (nearest match)"}},
       {"minus = \"reference\"", "minus = \"stiff\"", {"mine.toml:18: ", "is the experiment itself"}},
       {"undecided = 0.5", "over = \"reference\"", {"mine.toml:18: ", "minus: stands beside over; give one"}},
       {"[experiment.stiff.outcome.rest]",
        "[experiment.\"st iff\".outcome.rest]",
-       {"experiment.st iff: is no name; use letters"}},
+       {"experiment.st iff: is not a valid name; use letters"}},
       {"[experiment.reference.outcome.end]\n",
        "[experiment.reference]\noutcome = 3\n",
        {"mine.toml:5: experiment.reference.outcome: is not a table"}},
@@ -172,7 +174,7 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
         "[experiment.reference.outcome.NAME]"}},
       {"[experiment.reference.outcome.end]\n",
        "[experiment.reference]\ndraws = 1\n[experiment.reference.outcome.end]\n",
-       {"is compared with reference, which has 1 draws of its 2; give reference as many draws"}},
+       {"is compared with reference, which has 1 draws instead of 2; give reference as many draws"}},
       {"slow = true", "", {}},
       {"draws = 2\nslow = true", "", {}},
       {"[experiment.reference.outcome.end]\n",
@@ -180,18 +182,21 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
        {}},
       {"quantity = \"end.position_um\"\nhit",
        "quantity = \"end.positon_um\"\nhit",
-       {"mine.toml:4: experiment.reference.outcome.end.quantity: \"end.positon_um\" is no number of summary.json; did "
-        "you mean \"end.position_um\"?"}},
+       {"mine.toml:4: experiment.reference.outcome.end.quantity: \"end.positon_um\" is not a number of summary.json; "
+        "use "
+        "\"end.position_um\" (nearest match)"}},
       {"across_ratio\" = 0.5",
        "acros_ratio\" = 0.5",
-       {"mine.toml:13: experiment.stiff.set.contraction.all.acros_ratio: unknown key; did you mean \"across_ratio\"?"}},
+       {"mine.toml:13: experiment.stiff.set.contraction.all.acros_ratio: unknown key; use \"across_ratio\" (nearest "
+        "match)"}},
       {"across_ratio\" = 0.5",
        "across_ratio\" = \"x\"",
-       {"mine.toml:13: experiment.stiff.set.contraction.all.across_ratio: \"x\" is of the wrong type; give a number"}},
+       {"mine.toml:13: experiment.stiff.set.contraction.all.across_ratio: \"x\" has the wrong type; set across_ratio "
+        "to a number"}},
       {"contraction.all.across_ratio",
        "contraction.al.across_ratio",
-       {"mine.toml:13: experiment.stiff.set.contraction.al.across_ratio: the scenario has no contraction.al; did you "
-        "mean \"all\"?"}},
+       {"mine.toml:13: experiment.stiff.set.contraction.al.across_ratio: the scenario has no contraction.al; use "
+        "\"all\" (nearest match)"}},
       {"title = \"Blocks\"", "title = \"Blocks", {"mine.toml:1:"}},
   };
   int refused = 0;
@@ -207,15 +212,15 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
     refused += one.complaint.empty() ? 0 : 1;
   }
   EXPECT_GE(refused, 25);
-  EXPECT_NE(complaint("[experiment.a.outcome.\"../b\"]\n").find("experiment.a.outcome.../b: is no name"),
+  EXPECT_NE(complaint("[experiment.a.outcome.\"../b\"]\n").find("experiment.a.outcome.../b: is not a valid name"),
             std::string::npos);
   EXPECT_NE(complaint("[experiment.a.outcome.b]\n").find("experiment.a.scenario: is missing"), std::string::npos);
   std::string slow = good;
   slow.erase(slow.find("slow = true\n"), 12);
   slow.insert(slow.find("[experiment.reference.outcome.end]"), "[experiment.reference]\nslow = true\n");
   EXPECT_NE(complaint(slow).find("is compared with reference, which is slow"), std::string::npos);
-  EXPECT_NE(complaint("").find("mine.toml: holds no experiments; write [experiment.NAME]"), std::string::npos);
-  EXPECT_NE(complaint(support::pulled_block().text).find("holds no experiments"), std::string::npos);
+  EXPECT_NE(complaint("").find("mine.toml: no experiments; write [experiment.NAME]"), std::string::npos);
+  EXPECT_NE(complaint(support::pulled_block().text).find("no experiments"), std::string::npos);
   EXPECT_NE(complaint("[experiment]\n").find("experiment: is empty"), std::string::npos);
   EXPECT_NE(complaint("[experiment.a]\nscenario = \"block.toml\"\n").find("experiment.a.outcome: is missing"),
             std::string::npos);
@@ -223,15 +228,17 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
 
 TEST_F(ReadExperiments, RefuseDrawsWithFileLineAndColumn) {
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"", "draws.csv: holds no points"},
-      {"time.end_s\n", "draws.csv: holds no points"},
+      {"", "draws.csv: no points"},
+      {"time.end_s\n", "draws.csv: no points"},
       {"time.end_s,contraction.all.stiffness_nN_per_um\n5,1\n5\n", "draws.csv:3: has 1 values; give 2"},
       {"time.ends\n5\n4\n", "draws.csv:1: column 1 (time.ends): unknown key"},
       {"time.end_s,contraction.all.stiffness_nN_per_um\n5,1\n5,soft\n",
-       "draws.csv:3: column 2 (contraction.all.stiffness_nN_per_um): \"soft\" is of the wrong type; give a number"},
+       "draws.csv:3: column 2 (contraction.all.stiffness_nN_per_um): \"soft\" has the wrong type; set "
+       "stiffness_nN_per_um to a number"},
       {"time.end_s\n5\n-4\n", "draws.csv:3: column 1 (time.end_s): "},
       {"contraction.al.stiffness_nN_per_um\n5\n",
-       "draws.csv:2: contraction.al.stiffness_nN_per_um: the scenario has no contraction.al; did you mean \"all\"?"},
+       "draws.csv:2: contraction.al.stiffness_nN_per_um: the scenario has no contraction.al; use \"all\" (nearest "
+       "match)"},
   };
   for (const auto& [draws, expected] : cases) {
     write_file(folder_ / "draws.csv", draws);

@@ -128,7 +128,7 @@ TEST(EnclosedVolume, HasItsRatioAndPressure) {
 }
 
 // A gutter along x, 60 um long, whose two sides come nearer than the contact's distance at one end, or everywhere.
-TEST(Touching, TellsHowFarTheLipsHaveClosed) {
+TEST(ContactState, TellsHowFarTheLipsHaveClosed) {
   const auto gutter = [](double gap_um) {
     return mapped_lattice(6, 8, 1, [&](int i, int j, int k) {
       const double x = 10.0 * i - 30, out = gap_um / 2 + (k == 0 ? 10 : 0);
@@ -139,14 +139,14 @@ TEST(Touching, TellsHowFarTheLipsHaveClosed) {
     });
   };
   Model model(gutter(2));
-  EXPECT_FALSE(touching(model, rest_state(model)));
+  EXPECT_FALSE(contact_state(model, rest_state(model)));
   model.laws.push_back(std::make_unique<SelfContact>(model.tissue, SelfContactRule{.search = 3}));
   State state = rest_state(model);
-  ASSERT_TRUE(touching(model, state));
-  EXPECT_EQ(touching(model, state)->pairs, 0);
-  EXPECT_GT(*touching(model, state)->least_gap_um, 0.4);
-  EXPECT_LT(*touching(model, state)->least_gap_um, 2.1);
-  EXPECT_EQ(touching(model, state)->closed_length_ratio, 0);
+  ASSERT_TRUE(contact_state(model, state));
+  EXPECT_EQ(contact_state(model, state)->pairs, 0);
+  EXPECT_GT(*contact_state(model, state)->least_gap_um, 0.4);
+  EXPECT_LT(*contact_state(model, state)->least_gap_um, 2.1);
+  EXPECT_EQ(contact_state(model, state)->closed_length_ratio, 0);
   // The sides beyond `from_x` come nearer by 1.8 um.
   const auto closed_from = [&](double from_x) {
     State there = state;
@@ -158,10 +158,10 @@ TEST(Touching, TellsHowFarTheLipsHaveClosed) {
                     .rate_s = 1,
                     .internals = state.internals};
     there.internals = next_internals(model, step);
-    return *touching(model, there);
+    return *contact_state(model, there);
   };
-  const Touching end = closed_from(15), whole = closed_from(-100);
-  for (const Touching& found : {end, whole}) {
+  const ContactState end = closed_from(15), whole = closed_from(-100);
+  for (const ContactState& found : {end, whole}) {
     EXPECT_GT(found.pairs, 0);
     EXPECT_GT(*found.least_gap_um, 0);
     EXPECT_LT(*found.least_gap_um, 0.4);

@@ -47,16 +47,16 @@ def test_the_table(file: Path, tmp_path: Path) -> None:
 
 
 def test_errors(file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(ValueError, match="no file and no built-in experiments"):
+    with pytest.raises(ValueError, match="not a file or built-in experiments"):
         plica.reproduce("livign", tmp_path / "out")
     with pytest.raises(ValueError, match="on the command line"):
         plica.reproduce("paper", tmp_path / "out")
     file.write_text(EXPERIMENTS.replace("hit = [4, 4]", "hit = 4"))
-    with pytest.raises(ValueError, match=r"mine.toml:8: experiment.reference.outcome.cells.hit: is no pair"):
+    with pytest.raises(ValueError, match=r"mine.toml:8: experiment.reference.outcome.cells.hit: is not a pair"):
         plica.reproduce(file, tmp_path / "out")
     (tmp_path / "wrong").write_text("#!/bin/sh\necho plica 0.0.1\n")
     (tmp_path / "wrong").chmod(0o755)
-    for program, words in (("/nonexistent", "cannot be run"), (os.fspath(tmp_path / "wrong"), "is plica 0.0.1, and this is")):
+    for program, words in (("/nonexistent", "cannot be run"), (os.fspath(tmp_path / "wrong"), "is plica 0.0.1, but the package is")):
         monkeypatch.setenv("PLICA", program)
         with pytest.raises(plica.FileError, match=words):
             plica.reproduce(file, tmp_path / "out")

@@ -98,7 +98,7 @@ def test_what_is_in_a_directory_goes_on(table, tmp_path):
     # Its page, where this plica can make one.
     told = subprocess.run([os.environ["PLICA"], "report", tmp_path / "s", "--out", tmp_path / "s.html"], capture_output=True, check=False)
     assert (tmp_path / "s/report.html").exists() == (told.returncode == 0)
-    with pytest.raises(ValueError, match="holds a study; go on with it by resume=True, replace it by overwrite=True, or give another out$"):
+    with pytest.raises(ValueError, match="contains a study; continue it with resume=True, replace it with overwrite=True, or give another out$"):
         plica.Study(STUDY).run(out=tmp_path / "s")
     (rows,) = (tmp_path / "s/rows").iterdir()
     text = rows.read_text()
@@ -107,7 +107,7 @@ def test_what_is_in_a_directory_goes_on(table, tmp_path):
     assert same(again.run(out=tmp_path / "s", resume=True, progress=True), table)
     plica.Study(STUDY + "# a word\n").run(out=tmp_path / "s", resume=True)
     assert len(list((tmp_path / "s/rows").iterdir())) == 2
-    with pytest.raises(ValueError, match="has changed since it was begun: design.seed was 3, and is 4; .*overwrite=True"):
+    with pytest.raises(ValueError, match="has changed since its start: design.seed was 3 and is now 4; .*overwrite=True"):
         plica.Study(STUDY.replace("seed = 3", "seed = 4")).run(out=tmp_path / "s", resume=True)
 
 
@@ -140,12 +140,12 @@ def test_as_an_array(table):
         (("young_modulus_Pa", "young_modulus"), "young_modulus_Pa"),
         (("low = 400, high = 1200", "low = 1200, high = 400"), "empty range"),
         (("low = 400, high = 1200", "low = 400"), "bounds"),
-        (("\"sobol\"", "\"sobbol\""), "did you mean \"sobol\""),
+        (("\"sobol\"", "\"sobbol\""), "use \"sobol\""),
         (("points = 8", ""), "points"),
-        (("furrow_depth_um", "furrow_depth"), "did you mean"),
+        (("furrow_depth_um", "furrow_depth"), "nearest match"),
         (("\"drosophila\"", "\"drosophil\""), "neither"),
-        (("[design]", "[desing]"), "did you mean"),
-        (("[set]", "[set]\n\"elasticity.young_modulus_Pa\" = 3"), "fixed by"),
+        (("[design]", "[desing]"), "nearest match"),
+        (("[set]", "[set]\n\"elasticity.young_modulus_Pa\" = 3"), "conflicts with .set."),
         (("kind = \"sobol\"", "kind = \"grid\""), "points"),
         (("seed = 3", "seed = 3\nreplicates = 4"), "nothing is random"),
     ],

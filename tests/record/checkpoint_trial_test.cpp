@@ -26,7 +26,7 @@ TEST(ReadingTrial, LetsErrorsOut) {
 }
 
 TEST(ReadingTrial, OutlivesACrash) {
-  EXPECT_EQ(complaint([] { (void)std::raise(SIGKILL); }), "it is damaged: HDF5 breaks off at it");
+  EXPECT_EQ(complaint([] { (void)std::raise(SIGKILL); }), "it is damaged: HDF5 crashed while reading it");
 }
 
 // Three seconds of the processor's time: this test takes them.
@@ -35,7 +35,7 @@ TEST(ReadingTrial, OutlivesWhatNeverEnds) {
     volatile bool goes_on = true;
     while (goes_on) continue;
   };
-  EXPECT_EQ(complaint(read), "it is damaged: HDF5 breaks off at it");
+  EXPECT_EQ(complaint(read), "it is damaged: HDF5 crashed while reading it");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What is written over the picture: scale bar, marks of the axes, time; and the colour legend. Drawn on a 2D canvas, so
-// that the page and a saved picture have the same.
+// Annotations of a picture: scale bar, anatomical labels, time, colour legend. Drawn on a 2D canvas, so that the page and
+// saved pictures agree.
 import * as three from "three";
 import { colourAt, css } from "./colour";
 import { styleColour } from "./dom";
@@ -19,12 +19,12 @@ export interface Frame {
   height: number;
   camera: three.OrthographicCamera;
   centre: Vec3;
-  /** How far the embryo reaches from its centre in a direction of the picture (right, up), um. */
+  /** Extent of the embryo from its centre in a direction of the picture (right, up), um. */
   reach: (right: three.Vector3, up: three.Vector3, along: three.Vector2) => number;
   title: string; // "": none
   time: string; // "": none
   showMarks: boolean;
-  isSmall: boolean; // time is in small letters; the scale's length stands beside its bar, not above it
+  isSmall: boolean; // time in small letters; length of the scale beside its bar, not above it
 }
 
 export function annotate(context: CanvasRenderingContext2D, frame: Frame): void {
@@ -48,8 +48,8 @@ function shortened(context: CanvasRenderingContext2D, text: string, width: numbe
   return short;
 }
 
-// A mark stands outside the embryo in the direction in which its axis is seen; faint where it points away from the eye;
-// none where one looks along the axis.
+// A label lies outside the embryo in the projected direction of its axis; faint if it points away from the viewer; none
+// along the line of sight.
 function drawMarks(context: CanvasRenderingContext2D, frame: Frame): void {
   const { camera, centre, width, height, reach } = frame;
   const pixelsPerUm = (width * camera.zoom) / (camera.right - camera.left);
@@ -89,7 +89,7 @@ function drawScaleBar(context: CanvasRenderingContext2D, frame: Frame): void {
 
 export const legendHeight = 54;
 
-/** The colour scale with its title and the values at its ticks, `legendHeight` high. */
+/** Draw the colour scale with title and ticks, `legendHeight` high. */
 export function drawLegend(context: CanvasRenderingContext2D, width: number, field: Field, page: PageData): void {
   const map = page.maps[field.map];
   const [left, top, high] = [Math.max(16, (width - 460) / 2), 20, 13];
@@ -123,7 +123,7 @@ export function drawLegend(context: CanvasRenderingContext2D, width: number, fie
   }
 }
 
-// A box with its name beside it for each step, in two rows where one is too short.
+// One box with a name per step, in two rows if one is too short.
 function drawNames(context: CanvasRenderingContext2D, width: number, top: number, names: string[], map: string[]): void {
   const [box, gap, rowHeight] = [13, 5, 17];
   const room = names.length > 3 ? width / Math.ceil(names.length / 2) : width / names.length;

@@ -1,4 +1,4 @@
-// The picked cell: its values at the page's time, and their history.
+// Panel of the picked cell: values at the time of the page, and their history.
 import { Chart, type Curve } from "./charts";
 import { lineColours } from "./colour";
 import { element } from "./dom";
@@ -30,7 +30,7 @@ export class CellPanel {
     this.update();
   }
 
-  /** Curves of the picked cell, as a saved table has them. */
+  /** Curves of the picked cell, for saved tables. */
   get curves(): Curve[] {
     return this.chart?.content.curves ?? [];
   }
@@ -50,7 +50,7 @@ export class CellPanel {
   private update(): void {
     const { picked, time, shown } = this.state.now;
     if (!picked || !shown.has(picked.run)) {
-      this.content.replaceChildren(element("p", { class: "note" }, "A click on a cell shows its values here."));
+      this.content.replaceChildren(element("p", { class: "note" }, "Click a cell to see its values here."));
       this.chart?.destroy();
       this.chart = null;
       this.chartOf = "";
@@ -70,7 +70,7 @@ export class CellPanel {
       const mother = topology.motherOf(cell);
       if (mother !== null) row("mother", String(mother));
       row("regions", topology.regionsOf(cell).join(", ") || "–");
-      row("frame at", timeText(frameTime));
+      row("snapshot at", timeText(frameTime));
       for (const field of this.page.fields) {
         const value = topology.valueOfCell(field, moment, cell);
         row(titleOf(field) + (field.on_nodes ? " (mean of its nodes)" : ""),

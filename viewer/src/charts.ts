@@ -1,4 +1,4 @@
-// Plots over time by uPlot: the curves of all runs over each other, tied to the page's time.
+// Plots over time (uPlot): curves of all runs, linked to the time of the page.
 import uPlot from "uplot";
 import { lineColours } from "./colour";
 import { element, styleColour } from "./dom";
@@ -11,8 +11,8 @@ import { number, words } from "./text";
 
 const plotHeight = 190;
 const readingTime = 250; // ms
-const pointingReach = 30; // pixels from the hand to the curve that it points at
-const faded = 0.15; // of the curves that are not pointed at
+const pointingReach = 30; // pixels from the pointer to a curve
+const faded = 0.15; // opacity of other curves
 const dashes: number[][] = [[], [7, 4], [2, 3], [9, 3, 2, 3]];
 
 interface Point {
@@ -22,7 +22,7 @@ interface Point {
 
 export interface Curve {
   name: string;
-  column: string; // of series.csv, or what names it in a saved table
+  column: string; // of series.csv, or name in a saved table
   run: Run;
   points: Point[];
   look: () => LineLook;
@@ -32,7 +32,7 @@ export interface ChartContent {
   title: string;
   unit: string;
   curves: Curve[];
-  logarithmic?: boolean; // the values' axis
+  logarithmic?: boolean; // axis of values
 }
 
 /** The plots of series.csv: quantities of one unit and kind together, then the scenario's monitors by unit. Of many runs a
@@ -40,10 +40,10 @@ export interface ChartContent {
 export function seriesCharts(runs: Run[], looks: RunLooks): ChartContent[] {
   let groups: { title: string; columns: string[]; logarithmic?: boolean }[] = [
     { title: "Furrow depth and lips", columns: ["furrow_depth_um", "furrow_depth_below_lips_um", "lip_distance_um"] },
-    { title: "Speeds of the middle and the end", columns: ["vml_speed_um_per_s", "vce_speed_um_per_s"], logarithmic: true },
-    { title: "Speed ratio, end to middle", columns: ["speed_ratio"] },
-    { title: "Apical areas, to those at rest", columns: ["vml_apical_area_ratio", "vce_apical_area_ratio"] },
-    { title: "Displacements of the middle and the end", columns: ["vml_displacement_um", "vce_displacement_um"] },
+    { title: "Speeds: furrow centre (VML), near its end (VCE)", columns: ["vml_speed_um_per_s", "vce_speed_um_per_s"], logarithmic: true },
+    { title: "Speed ratio, VCE / VML", columns: ["speed_ratio"] },
+    { title: "Apical area / reference area", columns: ["vml_apical_area_ratio", "vce_apical_area_ratio"] },
+    { title: "Displacements: VML and VCE", columns: ["vml_displacement_um", "vce_displacement_um"] },
   ];
   const monitors = new Map<string, string[]>();
   for (const run of runs)
@@ -66,7 +66,7 @@ function capital(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
-// One run: a colour a column. Several: a colour a run, a dash a column.
+// One run: one colour per column. Several: one colour per run, one dash pattern per column.
 function curvesOf(runs: Run[], columns: string[], looks: RunLooks): Curve[] {
   return runs.flatMap((run) =>
     columns
@@ -104,7 +104,7 @@ export class Chart {
     this.many = new Set(content.curves.map((curve) => curve.run)).size > fewRuns;
     const unit = content.unit === "" ? "" : `, ${content.unit}`;
     this.box.append(element("figcaption", {}, content.title + unit, this.pointedValue), this.holder, this.legend);
-    this.legend.hidden = this.many; // the table of runs is one for all plots
+    this.legend.hidden = this.many; // the table of runs serves all plots
     this.sizes.observe(this.holder);
     this.forget = [
       state.on(["time", "playing"], () => this.showTime()),
@@ -115,7 +115,7 @@ export class Chart {
     this.rebuild();
   }
 
-  /** Ends the plot: it no longer follows the page. */
+  /** Remove the plot; it no longer follows the page. */
   destroy(): void {
     for (const forget of this.forget) forget();
     this.sizes.disconnect();
@@ -127,7 +127,7 @@ export class Chart {
     this.rebuild();
   }
 
-  /** Makes the plot anew: colours of the page, scales or what is shown have changed. */
+  /** Rebuild the plot after a change of colours, scales or visible runs. */
   rebuild(): void {
     this.plot?.destroy();
     this.line = null;
@@ -145,7 +145,7 @@ export class Chart {
   }
 
   private data(): uPlot.AlignedData {
-    // A logarithmic axis has no place for zero and less, nor for what only rounding leaves: it would be all of the axis.
+    // A logarithmic axis excludes zero and less, and rounding errors, which would fill it.
     let largest = 0;
     for (const { points } of this.content.curves)
       for (const point of points) largest = Math.max(largest, point.value ?? 0);
@@ -181,7 +181,7 @@ export class Chart {
     };
   }
 
-  // Each quantity with the values of its curves at the page's time: those of the nearest step.
+  // Each quantity with the values of its curves at the time of the page (nearest step).
   private fillLegend(): void {
     this.legend.replaceChildren();
     this.values = [];
@@ -201,7 +201,7 @@ export class Chart {
 
   private showTime(): void {
     this.line?.show(this.state.now.time);
-    // While time runs, numbers change as fast as they can be read.
+    // While time runs, numbers change no faster than they can be read.
     const now = performance.now();
     if (this.state.now.playing && now - this.shownAt < readingTime) return;
     this.shownAt = now;
@@ -247,7 +247,7 @@ export class Chart {
   }
 }
 
-// Times rise.
+// Times increase.
 function nearestPoint(points: Point[], time: number): Point | undefined {
   let [low, high] = [0, points.length - 1];
   while (high - low > 1) {
@@ -259,19 +259,19 @@ function nearestPoint(points: Point[], time: number): Point | undefined {
   return Math.abs(points[high].time - time) < Math.abs(points[low].time - time) ? points[high] : points[low];
 }
 
-// Powers of ten, with 2 and 5 between them where there is room.
+// Powers of ten, with 2 and 5 between them if there is space.
 function labelledPlaces(plot: uPlot, places: number[]): (number | null)[] {
   const decade = Math.abs(plot.valToPos(10, "x") - plot.valToPos(1, "x"));
   const digits = decade >= 130 ? /^[125]/ : /^1/;
-  const every = Math.ceil(40 / decade); // how many-th power
+  const every = Math.ceil(40 / decade); // interval of powers
   const power = (place: number) => Math.floor(Math.log10(place) + 1e-9);
   return places.map((place) => (digits.test(place.toExponential()) && power(place) % every === 0 ? place : null));
 }
 
-/** Room above and to the right of a plot: for the halves of labels that stand over its ends. */
+/** Padding above and to the right of a plot, for labels that extend beyond its ends. */
 export const plotPadding: uPlot.Padding = [10, 20, 0, 0];
 
-/** Time along the plot, from the first moment to the last and no further. */
+/** Time range of the plot, from the first to the last time. */
 export function timeScale(logarithmic: boolean): uPlot.Scale {
   return {
     time: false, distr: logarithmic ? 3 : 1,
@@ -279,7 +279,7 @@ export function timeScale(logarithmic: boolean): uPlot.Scale {
   };
 }
 
-// uPlot's own begin at the least time, whatever number that is.
+// uPlot's own ticks start at the least time, whatever number that is.
 function logarithmicPlaces(least: number, greatest: number): number[] {
   const places: number[] = [];
   for (let power = Math.floor(Math.log10(least)); 10 ** power <= greatest; ++power)
@@ -289,7 +289,7 @@ function logarithmicPlaces(least: number, greatest: number): number[] {
 
 const measuring = element("canvas").getContext("2d")!;
 
-/** The axis of values: as wide as its longest label needs. */
+/** Axis of values, as wide as its longest label. */
 export function valueAxis(): uPlot.Axis {
   return {
     ...timeAxis(), label: undefined, labelSize: 0,
@@ -301,7 +301,7 @@ export function valueAxis(): uPlot.Axis {
   };
 }
 
-/** A click, other than a drag, goes to its time. */
+/** Set the time by clicks that are not drags. */
 export function goToClicks(plot: uPlot, state: State): void {
   let pressed = 0;
   plot.over.addEventListener("mousedown", (event) => (pressed = event.clientX));
@@ -312,7 +312,7 @@ export function goToClicks(plot: uPlot, state: State): void {
   });
 }
 
-/** The axis of time, as all plots have it. */
+/** Time axis of all plots. */
 export function timeAxis(logarithmic = false): uPlot.Axis {
   return {
     ...(logarithmic && {
@@ -324,14 +324,14 @@ export function timeAxis(logarithmic = false): uPlot.Axis {
   };
 }
 
-// With as many digits as tell the places apart.
+// With as many digits as distinguish the ticks.
 function labelsOf(places: (number | null)[], step: number): string[] {
   const largest = Math.max(...places.map((place) => Math.abs(place ?? 0)));
   const digits = Math.ceil(Math.log10(largest / step)) + 1;
   return places.map((place) => (place === null ? "" : number(place, Math.min(Math.max(digits, 4) || 4, 14))));
 }
 
-/** A line over the plot at the page's time: an element of its own, so that it moves without the plot being drawn. */
+/** Line at the time of the page; a separate element, so that it moves without redrawing the plot. */
 export class TimeLine {
   private readonly line = element("div", { class: "time-line" });
 

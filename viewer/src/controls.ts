@@ -1,4 +1,4 @@
-// What the hand sets: view, colour, cut, what is shown; time and its flow; saved pictures and tables; keys.
+// Controls: view, colour, cut, visible parts; time and playback; saved pictures and tables; keys.
 import { download, element } from "./dom";
 import type { PageData } from "./page_data";
 import type { Run } from "./run";
@@ -14,7 +14,7 @@ export interface Actions {
   sight: () => number[];
 }
 
-/** Times of saved frames of all runs, in their order, each once. */
+/** Sorted distinct times of the snapshots of all runs. */
 export function frameTimes(runs: Run[]): number[] {
   const times = new Set(runs.flatMap((run) => run.frames.map((frame) => frame.time)));
   if (times.size === 0) for (const run of runs) for (const row of run.series.rows) times.add(row[0]!);
@@ -24,7 +24,7 @@ export function frameTimes(runs: Run[]): number[] {
 export class Controls {
   private readonly times: number[];
   private readonly slider: HTMLInputElement;
-  private readonly cutAt = element("input", { type: "range", step: "0.5", id: "cut-at", "aria-label": "Place of the cut, µm" });
+  private readonly cutAt = element("input", { type: "range", step: "0.5", id: "cut-at", "aria-label": "Position of the cut, µm" });
   private readonly cutText = element("output", { id: "cut-text" });
 
   constructor(
@@ -114,7 +114,7 @@ export class Controls {
       group.append(element("label", {}, box, ` ${text}`));
     };
     add("edges", "cell edges");
-    if (this.runs.some((run) => run.data.shell)) add("shell", "vitelline shell");
+    if (this.runs.some((run) => run.data.shell)) add("shell", "vitelline membrane");
     add("marks", "axes");
     return group;
   }

@@ -1,4 +1,4 @@
-// Elements in one expression. Text is always text: nothing here reads HTML.
+// Creation of elements in one expression. Text is never parsed as HTML.
 
 type Child = Node | string;
 
@@ -19,12 +19,12 @@ export function byId(id: string): HTMLElement {
   return found;
 }
 
-/** A colour of the page's style, which differs between dark and light. */
+/** Colour of the page's style, which depends on the theme. */
 export function styleColour(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
-/** Calls `act` once, when the element first comes near what the window shows. */
+/** Call `act` once, when the element first comes near the visible part of the page. */
 export function whenNear(target: Element, act: () => void): void {
   const observer = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
@@ -34,7 +34,7 @@ export function whenNear(target: Element, act: () => void): void {
   observer.observe(target);
 }
 
-/** Offers content as a file. */
+/** Offer content as a file download. */
 export function download(name: string, content: Blob): void {
   const link = element("a", { href: URL.createObjectURL(content), download: name });
   link.click();

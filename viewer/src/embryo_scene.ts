@@ -1,4 +1,4 @@
-// The embryo of one run as three.js draws it: its skin, the outlines of its cells, a section, the shell.
+// Scene of one run for three.js: boundary surface, outlines of cells, section, shell.
 import * as three from "three";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
@@ -13,8 +13,7 @@ const texels = 256;
 const lineColour = 0x1c1c22;
 const pickedColour = 0xe6007e;
 
-// A colour map as a texture: values become its first coordinate, so that between two nodes values are interpolated and
-// not colours.
+// Colour map as a texture: values become its first coordinate, so that values, not colours, are interpolated.
 function mapTexture(map: string[], steps: boolean): three.DataTexture {
   const count = steps ? map.length : texels;
   const data = new Uint8Array(4 * count);
@@ -44,7 +43,7 @@ export class EmbryoScene {
   });
   private readonly pickedMaterial = new LineMaterial({ color: pickedColour, linewidth: 3.5 });
 
-  private readonly skin = new three.Mesh(new three.BufferGeometry(), this.skinMaterial);
+  private readonly boundary = new three.Mesh(new three.BufferGeometry(), this.skinMaterial);
   private readonly lines = new three.LineSegments(new three.BufferGeometry(), this.lineMaterial);
   private readonly cap = new three.Mesh(new three.BufferGeometry(), this.capMaterial);
   private readonly capLines = new three.LineSegments(new three.BufferGeometry(), this.capLineMaterial);
@@ -61,13 +60,13 @@ export class EmbryoScene {
     for (const [name, map] of Object.entries(page.maps)) this.textures.set(name, mapTexture(map, name === "steps"));
     this.shell = this.makeShell();
     this.scene.add(new three.AmbientLight(0xffffff, 2.1), this.light, this.light.target);
-    for (const object of [this.skin, this.lines, this.cap, this.capLines, this.pickedLines]) {
+    for (const object of [this.boundary, this.lines, this.cap, this.capLines, this.pickedLines]) {
       object.frustumCulled = false;
       this.scene.add(object);
     }
   }
 
-  /** Light from the eye's upper left. */
+  /** Light from the upper left of the viewer. */
   lightFrom(camera: three.Camera): void {
     this.light.position.set(-0.5, 0.7, 1).applyQuaternion(camera.quaternion);
   }
@@ -83,7 +82,7 @@ export class EmbryoScene {
         material.map = texture;
         material.needsUpdate = true;
       }
-    this.fillSkin(topology, field);
+    this.fillBoundary(topology, field);
     this.fillLines(topology);
     this.fillCut(topology, field, cut);
     this.fillPicked(topology, picked);
@@ -92,11 +91,11 @@ export class EmbryoScene {
     if (this.shell) this.shell.visible = options.shell;
   }
 
-  /** The cell that a ray meets first; -1 where it meets none. */
+  /** First cell hit by a ray; -1 if none. */
   cellOn(ray: three.Raycaster, cut: Cut | null): number {
     const topology = this.topology;
     if (!topology) return -1;
-    const skinHit = ray.intersectObject(this.skin, false).find((hit) => !cut || this.plane.distanceToPoint(hit.point) > 0);
+    const skinHit = ray.intersectObject(this.boundary, false).find((hit) => !cut || this.plane.distanceToPoint(hit.point) > 0);
     const capHit = cut ? ray.intersectObject(this.cap, false)[0] : undefined;
     const element = (hit: three.Intersection) => topology.elementOfFacet[Math.floor(hit.faceIndex! / 4)];
     if (capHit && (!skinHit || capHit.distance <= skinHit.distance))
@@ -104,7 +103,7 @@ export class EmbryoScene {
     return skinHit ? topology.cellOfElement[element(skinHit)] : -1;
   }
 
-  /** How far the nodes reach from the embryo's centre in a direction of the picture (right, up), um. */
+  /** Extent of the nodes from the centre in a direction of the picture (right, up), um. */
   reach(right: three.Vector3, up: three.Vector3, along: three.Vector2): number {
     const direction = right.clone().multiplyScalar(along.x).addScaledVector(up, along.y);
     const { x, y, z } = direction;
@@ -123,8 +122,8 @@ export class EmbryoScene {
     return shell;
   }
 
-  // New cells: arrays of the right size, and which corners make a triangle. Each facet has a fifth corner in its middle,
-  // so that a symmetric body is drawn symmetric.
+  // New cells: arrays of the right size, and corners of triangles. Each facet has a fifth corner at its centre, which
+  // preserves symmetry.
   private take(topology: Topology): void {
     this.topology = topology;
     this.positions = new Float32Array(3 * topology.nodes);
@@ -133,20 +132,20 @@ export class EmbryoScene {
     const triangles = new Uint32Array(12 * facets);
     for (let f = 0; f < facets; ++f)
       for (let i = 0; i < 4; ++i) triangles.set([5 * f + i, 5 * f + ((i + 1) % 4), 5 * f + 4], 12 * f + 3 * i);
-    this.skin.geometry.dispose();
-    this.skin.geometry = new three.BufferGeometry();
-    this.skin.geometry.setIndex(new three.BufferAttribute(triangles, 1));
-    this.skin.geometry.setAttribute("position", dynamic(new Float32Array(15 * facets), 3));
-    this.skin.geometry.setAttribute("uv", dynamic(new Float32Array(10 * facets).fill(0.5), 2));
+    this.boundary.geometry.dispose();
+    this.boundary.geometry = new three.BufferGeometry();
+    this.boundary.geometry.setIndex(new three.BufferAttribute(triangles, 1));
+    this.boundary.geometry.setAttribute("position", dynamic(new Float32Array(15 * facets), 3));
+    this.boundary.geometry.setAttribute("uv", dynamic(new Float32Array(10 * facets).fill(0.5), 2));
     this.lines.geometry.dispose();
     this.lines.geometry = new three.BufferGeometry();
     this.lines.geometry.setAttribute("position", dynamic(new Float32Array(3 * topology.outlines.length), 3));
   }
 
-  private fillSkin(topology: Topology, field: Field): void {
+  private fillBoundary(topology: Topology, field: Field): void {
     const { facets, elementOfFacet, cellOfElement } = topology;
-    const points = this.skin.geometry.getAttribute("position") as three.BufferAttribute;
-    const uv = this.skin.geometry.getAttribute("uv") as three.BufferAttribute;
+    const points = this.boundary.geometry.getAttribute("position") as three.BufferAttribute;
+    const uv = this.boundary.geometry.getAttribute("uv") as three.BufferAttribute;
     const [to, parts] = [points.array as Float32Array, uv.array as Float32Array];
     for (let f = 0; f < facets.length / 4; ++f) {
       const middle = [0, 0, 0, 0];
@@ -164,10 +163,10 @@ export class EmbryoScene {
       parts[10 * f + 8] = this.texel(field, middle[3]);
     }
     points.needsUpdate = uv.needsUpdate = true;
-    this.skin.geometry.boundingSphere = null;
+    this.boundary.geometry.boundingSphere = null;
   }
 
-  // The texture's coordinate: the middles of its first and last texel are the ends of the scale.
+  // Texture coordinate: the centres of the first and last texel are the ends of the scale.
   private texel(field: Field, value: number): number {
     const count = field.scale === "steps" ? this.textures.get("steps")!.image.width : texels;
     return (0.5 + partOf(field, value) * (count - 1)) / count;

@@ -1,4 +1,4 @@
-// The pictures of all runs that are shown: cameras locked together, and how they are turned and picked.
+// Pictures of all visible runs: linked cameras, rotation and picking.
 import * as three from "three";
 import { drawLegend, legendHeight } from "./annotations";
 import { element, styleColour } from "./dom";
@@ -12,16 +12,16 @@ const clickTolerance = 4; // pixels between press and release
 const turnStep = 0.12; // rad a key press
 const settleTime = 200; // ms without a change after which a picture is drawn finely
 
-/** Throws where the browser offers no WebGL. */
+/** View of all runs. Throws without WebGL. */
 export class EmbryoViews {
   private readonly painter: Painter;
   private readonly views: RunView[];
   private readonly radius: number; // um, of a ball around every run
-  private large: RunView | null = null; // of many, the one that is shown large
+  private large: RunView | null = null; // enlarged one of many
   private isFine = false;
   private changedAt = 0; // ms
-  private shape = ""; // of the page, for which the pictures have their sizes
-  private leader: RunView | null = null; // whose camera the hand moves; the others report changes, too
+  private shape = ""; // layout of the page that determines picture sizes
+  private leader: RunView | null = null; // camera moved by the user; the others report changes, too
 
   constructor(
     runs: Run[], private readonly page: PageData, private readonly state: State, private readonly looks: RunLooks,
@@ -46,7 +46,7 @@ export class EmbryoViews {
     this.watch();
   }
 
-  /** Draws what has changed; called before each picture of the screen. */
+  /** Draw changes; called before each screen refresh. */
   draw(): void {
     const drawable = this.views.filter((view) => view.isDrawable);
     for (const view of drawable) view.controls.update();
@@ -64,19 +64,19 @@ export class EmbryoViews {
     }
   }
 
-  /** Style or size has changed. */
+  /** Update after a change of style or size. */
   refresh(): void {
     this.makeStale();
     this.views.forEach((view) => view.showCaption(this.looks));
     this.showLegend();
   }
 
-  /** The eye's direction, from the eye into the picture. */
+  /** Viewing direction, into the picture. */
   sight(): number[] {
     return this.views[0].camera.getWorldDirection(new three.Vector3()).toArray();
   }
 
-  /** All pictures as they lie on the page, above the legend, twice as fine as the screen. */
+  /** Image of all pictures as on the page, above the legend, at twice the screen resolution. */
   async picture(): Promise<Blob> {
     const finer = 2;
     const shown = this.views.filter((view) => view.isShown);
@@ -116,7 +116,7 @@ export class EmbryoViews {
     for (const view of this.views) view.stale = true;
   }
 
-  // Frames are unpacked, and drawn, where the window shows their picture.
+  // Snapshots are unpacked and drawn when their picture is visible.
   private watch(): void {
     const observer = new IntersectionObserver((entries) => {
       for (const { target, isIntersecting } of entries) {
@@ -128,7 +128,7 @@ export class EmbryoViews {
     for (const view of this.views) observer.observe(view.box);
   }
 
-  /** Unpacks a run's frames for its picture. */
+  /** Unpack the snapshots of a run for its picture. */
   async makeReady(view = this.views[0]): Promise<void> {
     view.near = true;
     if (view.run.loaded) return;
@@ -144,7 +144,7 @@ export class EmbryoViews {
     for (const view of this.views) view.order = this.state.now.order.indexOf(view.run.number);
   }
 
-  // A few pictures are large, many are small.
+  // Few pictures are large, many are small.
   private arrange(): void {
     const { shown } = this.state.now;
     for (const view of this.views) view.box.hidden = !shown.has(view.run.number);
@@ -197,8 +197,7 @@ export class EmbryoViews {
     this.fit();
   }
 
-  // One scale for all, at which the largest just fits; what is not yet unpacked is taken to be shaped like the others.
-  // The one that is large among many has its own.
+  // Common scale at which the largest fits; runs not yet unpacked are assumed similar. An enlarged picture has its own.
   private fit(): void {
     const shown = this.views.filter((view) => view.isShown && view !== this.large);
     const known = shown.flatMap((view) => {
@@ -215,7 +214,7 @@ export class EmbryoViews {
     for (const { camera } of this.views) camera.updateProjectionMatrix();
   }
 
-  // What one camera does, the others do: relative to the middle of their own run.
+  // All cameras follow one, relative to the centre of their run.
   private follow(leader: RunView): void {
     for (const view of this.views) {
       if (view === leader) continue;
@@ -264,7 +263,7 @@ export class EmbryoViews {
 
   private turnByKey(view: RunView, key: string): boolean {
     const { camera, controls } = view;
-    // The axis of the picture that is turned about (0 to the right, 1 upwards), and which way.
+    // Axis of rotation in the picture (0 rightward, 1 upward), and direction.
     const turns: Record<string, [number, number]> = {
       ArrowLeft: [1, 1], ArrowRight: [1, -1], ArrowUp: [0, 1], ArrowDown: [0, -1],
     };

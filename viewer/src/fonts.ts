@@ -1,2 +1,2 @@
-// Of what is drawn on a canvas.
+// Fonts of canvases.
 export const plotFont = "12px system-ui, sans-serif";

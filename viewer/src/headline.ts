@@ -1,4 +1,4 @@
-// What stands above all else: of what the page is, how it ended, and warnings.
+// Headline of the page: title, status, and warnings.
 import { byId } from "./dom";
 import { fewRuns, type PageData } from "./page_data";
 import type { Run } from "./run";
@@ -14,7 +14,7 @@ export function showHeadline(runs: Run[], page: PageData): void {
 function oneRun(run: Run, named: boolean): string {
   const summary = run.data.summary;
   if (!summary) return `${run.name}: not finished`;
-  const crossing = Number(summary.self_intersections ?? 0) > 0 ? ", passes through itself" : "";
+  const crossing = Number(summary.self_intersections ?? 0) > 0 ? ", self-intersecting" : "";
   const depth = typeof summary.furrow_depth_um === "number" ? `, furrow ${number(summary.furrow_depth_um)} µm deep` : "";
   return `${named ? `${run.name}: ` : ""}${summary.cells} cells, ${String(summary.status).replaceAll("_", " ")} at ${number(Number(summary.time_s) / 60)} min${depth}${crossing}`;
 }
@@ -32,7 +32,7 @@ function manyRuns(runs: Run[], page: PageData): string {
   return parts.join("; ");
 }
 
-// A tissue that has passed through itself is none any more: since when, before all else.
+// Warn first about self-intersections, with their time: later results are unphysical.
 function showCrossings(runs: Run[]): void {
   const since = runs.flatMap((run) => {
     const first = run.series.column("self_intersections").findIndex((pairs) => (pairs ?? 0) > 0);
@@ -42,20 +42,20 @@ function showCrossings(runs: Run[]): void {
   const notice = byId("crossing");
   const first = number(Math.min(...since.map(({ minutes }) => minutes)));
   const when = since.length > fewRuns
-    ? `In ${since.length} of ${runs.length} runs (their status says which), the first from ${first} min`
+    ? `In ${since.length} of ${runs.length} runs (see their status), the first from ${first} min`
     : since.map(({ name, minutes }) => `${runs.length > 1 ? `${name}: from` : "From"} ${number(minutes)} min`).join("; ");
-  notice.textContent = `${when} on, the tissue passes through itself: colour it by “passes through itself” to see where. What comes after is no tissue any more.`;
+  notice.textContent = `${when} on, the tissue self-intersects; later results are unphysical. Colour by “self-intersecting” to see where.`;
   notice.hidden = false;
 }
 
 function showThinning(runs: Run[]): void {
   const thinned = runs.filter((run) => run.data.every > 1);
   if (thinned.length === 0) return;
-  // Of many runs how many frames each has stands with its scenario.
+  // With many runs, the number of snapshots of each is listed with its scenario.
   const which = thinned.length > fewRuns
-    ? `Of ${thinned.length} of ${runs.length} runs not all saved frames are in this page`
-    : thinned.map(({ name, frames, data }) => `${name}: ${frames.length} of ${data.frames_saved} saved frames are in this page`).join("; ");
+    ? `This page shows only some snapshots of ${thinned.length} of ${runs.length} runs`
+    : thinned.map(({ name, frames, data }) => `${name}: this page has ${frames.length} of ${data.frames_saved} snapshots`).join("; ");
   const steps = [...new Set(thinned.map((run) => run.data.every))].sort((a, b) => a - b);
   byId("thinned").textContent = `${which} (every ${steps.map((every) => (every === 2 ? "2nd" : `${every}th`)).join(" or ")}, ` +
-    "the last, and those on both sides of a division), so that it stays small.";
+    "the last, and those around a division) to limit its size.";
 }

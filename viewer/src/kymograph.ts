@@ -1,4 +1,4 @@
-// The midline over place and time: where invagination starts, and how it spreads.
+// Kymograph of the midline: onset and spread of invagination.
 import uPlot from "uplot";
 import { goToClicks, plotPadding, timeAxis, TimeLine, timeScale, valueAxis } from "./charts";
 import { colourAt, css } from "./colour";
@@ -11,9 +11,9 @@ import { number } from "./text";
 
 export const midlineQuantities = ["depth_um", "normal_speed_um_per_s", "apical_area_ratio"];
 const plotHeight = 240;
-const smallHeight = 150; // of many
+const smallHeight = 150; // with many runs
 
-/** A scale that all runs share: two-sided for ratios and where both signs matter, else from the least value up. */
+/** Scale common to all runs: diverging for ratios and signed values, else from the smallest value. */
 export interface MidlineScale {
   map: string;
   low: number;
@@ -111,7 +111,7 @@ export class Kymograph {
     return this.isSmall ? smallHeight : plotHeight;
   }
 
-  // The same time for all runs, so that they can be compared.
+  // Common time axis, so that runs can be compared.
   private data(): uPlot.AlignedData {
     const times = new Set(this.allRuns.flatMap((run) => run.midline.column("time_s") as number[]));
     const shown = [...times].filter((time) => !this.logarithmicTime || time > 0).sort((a, b) => a - b);
@@ -142,8 +142,8 @@ export class Kymograph {
     };
   }
 
-  // A moment's colours reach half-way to the ones before and after it, so that the first and the last show, too; a
-  // cell's, half-way to its neighbours.
+  // The colours of a time extend half-way to the neighbouring times, so that the first and last are visible; those of a
+  // cell half-way to its neighbours.
   private paint(plot: uPlot): void {
     const { ctx, bbox } = plot;
     ctx.save();
@@ -179,7 +179,7 @@ export class Kymograph {
   }
 }
 
-/** The colours of all kymographs, `width` CSS pixels wide. */
+/** Draw the colour bar of all kymographs, `width` CSS pixels wide. */
 export function drawMidlineScale(bar: HTMLCanvasElement, width: number, scale: MidlineScale, page: PageData): void {
   const ratio = Math.min(devicePixelRatio, 2);
   const height = 30;

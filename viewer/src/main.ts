@@ -1,4 +1,4 @@
-// The page begins here: reads its data, shows the first picture, then plots, tables and texts.
+// Start of the page: reads its data, shows the first picture, then plots, tables and texts.
 import { CellPanel } from "./cell_panel";
 import { Controls, frameTimes, save } from "./controls";
 import { byId } from "./dom";
@@ -15,7 +15,7 @@ import { showTables } from "./tables";
 import { followTheme } from "./theme";
 
 const usualPlaySeconds = 10; // for a whole run
-const mostCellsWithEdges = 5000; // at first: of more, edges would hide the colours
+const mostCellsWithEdges = 5000; // initially: more edges would hide the colours
 
 function tell(problem: string): void {
   const notice = byId("problem");
@@ -38,7 +38,7 @@ function firstState(page: PageData, runs: Run[]): State {
 function startClock(state: State, end: number, draw: () => void): void {
   let before = performance.now();
   const tick = (now: number) => {
-    const seconds = Math.min((now - before) / 1000, 0.25); // a tab that slept does not jump
+    const seconds = Math.min((now - before) / 1000, 0.25); // no jump after the tab was suspended
     before = now;
     if (state.now.playing) {
       const time = Math.min(state.now.time + seconds * state.now.speed, end);
@@ -52,14 +52,14 @@ function startClock(state: State, end: number, draw: () => void): void {
 
 function makeViews(runs: Run[], page: PageData, state: State, looks: RunLooks): EmbryoViews | null {
   if (!runs.some((run) => run.hasFrames)) {
-    tell("There are no frames to show the embryo by; its numbers are below.");
+    tell("No snapshots of the embryo; its numbers are below.");
     return null;
   }
   try {
     return new EmbryoViews(runs, page, state, looks, byId("canvases"), byId("legend") as HTMLCanvasElement);
   } catch (error) {
     console.info("no picture:", error);
-    tell("This browser offers no WebGL, so the embryo cannot be drawn. Plots, tables and texts below are complete.");
+    tell("The embryo cannot be drawn, since this browser has no WebGL. Plots, tables and texts below are complete.");
     byId("canvases").hidden = byId("legend").hidden = true;
     return null;
   }
@@ -93,7 +93,7 @@ async function start(): Promise<void> {
   views?.draw();
   performance.mark("first-picture");
   document.body.dataset.picture = views ? "drawn" : "none";
-  await new Promise((resolve) => setTimeout(resolve)); // the first picture goes to the screen
+  await new Promise((resolve) => setTimeout(resolve)); // let the first picture appear
   plots = new Plots(runs, page, state, looks);
   if (views) panel = new CellPanel(byId("cell"), runs, page, state);
   else byId("cell").hidden = true;
@@ -110,6 +110,6 @@ async function start(): Promise<void> {
 }
 
 start().catch((error) => {
-  tell(`The page cannot show its data: ${error instanceof Error ? error.message : error}`);
+  tell(`Error while showing the data: ${error instanceof Error ? error.message : error}`);
   throw error;
 });

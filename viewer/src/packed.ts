@@ -1,4 +1,4 @@
-// What src/show/packing.cpp packs: whole numbers as differences, byte by byte, deflated, base64.
+// Decoder of src/show/packing.cpp: integers as differences, byte by byte, deflated, base64.
 
 export interface ArrayEntry {
   name: string;
@@ -27,7 +27,7 @@ export class PackedArrays {
 
   get(name: string): Numbers {
     const entry = this.entries.get(name);
-    if (!entry) throw new Error(`the page holds no array ${name}`);
+    if (!entry) throw new Error(`the page has no array ${name}`);
     const { bits, period, count, offset } = entry;
     const size = bits / 8;
     if (offset + count * size > this.bytes.length) throw new Error(`the array ${name} ends early`);
@@ -36,7 +36,7 @@ export class PackedArrays {
       const plane = offset + b * count;
       for (let i = 0; i < count; ++i) numbers[i] |= this.bytes[plane + i] << (8 * b);
     }
-    // Typed arrays wrap around, as the differences did.
+    // Typed arrays wrap around, as the differences do.
     for (let i = period; i < count; ++i) numbers[i] += numbers[i - period];
     return numbers;
   }

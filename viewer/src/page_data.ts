@@ -1,4 +1,4 @@
-// What plica put into the page: src/show/report.cpp and report_run.hpp.
+// Data of the page, written by src/show/report.cpp and report_run.hpp.
 import type { ArrayEntry } from "./packed";
 
 export type Vec3 = [number, number, number];
@@ -29,7 +29,7 @@ export interface Range {
 
 export type Summary = Record<string, string | number | null | object>;
 
-/** Whether a value of a summary is a table of its own: provenance, energies by law. */
+/** Whether a value of a summary is a table: provenance, energies by law. */
 export function isTable(value: unknown): boolean {
   return typeof value === "object" && value !== null;
 }
@@ -46,7 +46,7 @@ export interface RunData {
   box: { low: Vec3; high: Vec3 };
   fields: Record<string, Range>;
   regions: string[];
-  coloured_regions: string[]; // what the field "region" counts, from 1
+  coloured_regions: string[]; // values of the field "region", from 1
   topologies: { times_s: number[]; nodes: number; elements: number; cells: number }[];
   arrays: ArrayEntry[];
 }
@@ -62,34 +62,34 @@ export interface PageData {
   runs: RunData[];
 }
 
-/** A key of the scenario that is not the same in all runs; values as in TOML, "" where a run has none. */
+/** Key that differs between runs; values as in TOML, "" if missing. */
 export interface Varied {
   key: string;
   values: string[];
 }
 
-/** More runs than these are shown small beside each other. */
+/** Number of runs above which pictures are small. */
 export const fewRuns = 4;
 
 export function readPageData(): PageData {
   const data = JSON.parse(document.getElementById("data")!.textContent!) as PageData;
-  if (data.format !== 1) throw new Error(`the data are of format ${data.format}; this page reads format 1`);
+  if (data.format !== 1) throw new Error(`the data have format ${data.format}, but this page reads format 1`);
   return data;
 }
 
-/** The regions that colours stand for, over all runs; the legend and the values of the field "region" count them from 1. */
+/** Coloured regions of all runs; the legend and the field "region" count them from 1. */
 export function colouredRegions(page: PageData): string[] {
   return [...new Set(page.runs.flatMap((run) => run.coloured_regions))];
 }
 
-/** What a whole number of the field stands for; null where it stands for itself. */
+/** Name of an integer value of the field; null if it is just a number. */
 export function nameOfStep(field: Field, step: number, page: PageData): string | null {
   if (field.name === "region") return step === 0 ? "other cells" : (colouredRegions(page)[step - 1] ?? null);
   if (field.name === "self-intersections") return ["no", "yes"][step] ?? null;
   return null;
 }
 
-/** The field's title with its unit: "pressure, Pa". */
+/** Title of a field with unit: "pressure, Pa". */
 export function titleOf(field: Field): string {
   return field.unit === "" ? field.label : `${field.label}, ${field.unit}`;
 }

@@ -1,4 +1,4 @@
-// What follows the first picture: plots over time, and the midline over place and time.
+// Plots over time, and kymographs of the midline.
 import { Chart, type Curve, seriesCharts } from "./charts";
 import { byId, element } from "./dom";
 import { drawMidlineScale, Kymograph, midlineQuantities, midlineScale } from "./kymograph";
@@ -40,8 +40,7 @@ export class Plots {
     this.drawBar();
   }
 
-  /** The plotted series of the runs that are shown as one table: a row a step a run; and a row a frame of what else is
-   * plotted. */
+  /** Table of the plotted series of the visible runs: one row per step and run, and one per snapshot for other plots. */
   table(more: Curve[]): string {
     const curves = [...this.charts.flatMap((chart) => chart.content.curves), ...more]
       .filter(({ run }) => this.state.now.shown.has(run.number));
@@ -67,7 +66,7 @@ export class Plots {
       this.drawBar();
     });
     byId("midline").append(
-      element("h2", {}, "The midline's cells over place at rest and time"),
+      element("h2", {}, "Midline cells over reference position and time"),
       element("div", { class: "group" }, element("label", {}, "Colour ", this.quantity), this.bar),
       element("div", { class: grid }, ...this.kymographs.map((plot) => plot.box)),
     );

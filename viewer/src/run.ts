@@ -1,4 +1,4 @@
-// A run: its tables, and its frames as positions and values at any moment.
+// Run: its tables, and its snapshots as positions and values at any time.
 import { PackedArrays, inflate } from "./packed";
 import type { Field, RunData, Vec3 } from "./page_data";
 import { Table } from "./table";
@@ -45,7 +45,7 @@ export class Topology {
     this.cellOfElement.forEach((cell, element) => this.elementsOfCell[cell].push(element));
   }
 
-  /** The cell with this id, as a number in this topology; -1 where there is none. */
+  /** Index of the cell with this id in this topology; -1 if none. */
   cellWith(id: number): number {
     return this.cellIds.indexOf(id);
   }
@@ -62,7 +62,7 @@ export class Topology {
     return this.elementsOfCell[cell].flatMap((e) => Array.from(this.elements.subarray(8 * e, 8 * e + 8)));
   }
 
-  /** Positions at a moment of this topology, and `part` of the way to the next; um, 3 a node. */
+  /** Positions at a snapshot of this topology, interpolated by `part` to the next; um, 3 per node. */
   positions(moment: number, part: number, out: Float32Array): void {
     const { low, high } = this.data.box;
     const steps = this.array("positions");
@@ -74,7 +74,7 @@ export class Topology {
         out[n + i] = low[i] + scale[i] * (steps[at + n + i] + part * (steps[next + n + i] - steps[at + n + i]));
   }
 
-  /** The field's values, likewise: one a node or a cell. */
+  /** Values of a field, interpolated likewise; nodes or cells. */
   values(field: Field, moment: number, part: number, out: Float32Array): void {
     const range = this.data.fields[field.name];
     const steps = this.array(`field/${field.name}`);
@@ -87,7 +87,7 @@ export class Topology {
     if (field.name === "region") for (let i = 0; i < count; ++i) out[i] = this.colourOfRegion[Math.round(out[i])] ?? 0;
   }
 
-  /** The field's value of a cell; of one on nodes, the mean over the cell's. */
+  /** Value of a field in a cell; for node fields the mean over its nodes. */
   valueOfCell(field: Field, moment: number, cell: number): number {
     const { low, high } = this.data.fields[field.name];
     const steps = this.array(`field/${field.name}`);
@@ -105,7 +105,7 @@ export class Topology {
   }
 }
 
-/** A place in a run's frames: a moment of a topology, and how far it has gone to the next one. */
+/** Position in time: snapshot of a topology, and fraction of the interval to the next. */
 export interface Place {
   topology: Topology;
   moment: number;
@@ -120,7 +120,7 @@ export class Run {
   private loading: Promise<void> | null = null;
   private isLoaded = false;
 
-  /** `regions`: the names of the page's legend, which a run need not have all. */
+  /** `regions`: names of the legend; a run may lack some. */
   constructor(readonly data: RunData, readonly number: number, regions: string[]) {
     this.series = new Table(data.series);
     this.midline = new Table(data.midline);
@@ -130,7 +130,7 @@ export class Run {
       topology.times.forEach((time, moment) => this.frames.push({ topology, moment, time }));
   }
 
-  /** Unpacks the frames, which takes a while: only where they are to be seen. */
+  /** Unpack the snapshots; slow, so only for visible runs. */
   load(): Promise<void> {
     this.loading ??= this.unpack();
     return this.loading;
@@ -170,7 +170,7 @@ export class Run {
     return Math.max(this.frames.at(-1)?.time ?? 0, rows.at(-1)?.[0] ?? 0);
   }
 
-  /** The last frame at or before the time. */
+  /** Last snapshot at or before a time. */
   frameAt(time: number): number {
     let low = 0;
     for (let high = this.frames.length - 1; low < high; ) {
@@ -195,18 +195,18 @@ export class Run {
     return [0, 1, 2].map((i) => (low[i] + high[i]) / 2) as Vec3;
   }
 
-  /** Half the size of the box around all frames, um. */
+  /** Half size of the bounding box of all snapshots, um. */
   get halfSize(): Vec3 {
     const { low, high } = this.data.box;
     return [0, 1, 2].map((i) => (high[i] - low[i]) / 2) as Vec3;
   }
 
-  /** The cell itself at that frame or, where it is not yet born, the one that it comes from; -1 where it has divided. */
+  /** The cell at a snapshot or, before its birth, its ancestor; -1 after its division. */
   ancestorAt(id: number, topology: Topology): number {
     for (let t = this.topologies.length - 1, wanted: number | null = id; wanted !== null; ) {
       const here = topology.cellWith(wanted);
       if (here >= 0) return here;
-      // Its mother is known where the cell lives.
+      // The mother is known from the snapshots with the cell.
       let mother: number | null = null;
       for (let i = t; i >= 0; --i) {
         const cell = this.topologies[i].cellWith(wanted);
@@ -230,7 +230,7 @@ export class Run {
     return [...daughters];
   }
 
-  /** The field of a cell over the frames, those of its mothers before its birth; nothing after it has divided. */
+  /** Values of a cell over the snapshots, of its ancestors before its birth; missing after its division. */
   history(field: Field, id: number): { time: number; value: number }[] {
     const points: { time: number; value: number }[] = [];
     for (const { topology, moment, time } of this.frames) {

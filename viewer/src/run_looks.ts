@@ -1,4 +1,4 @@
-// Which line is which run: its colour and its dashes, in plots, tables and beside pictures.
+// Colour and dashes of each run in plots, tables and beside pictures.
 import { lineColours, rampColour } from "./colour";
 import { styleColour } from "./dom";
 import { fewRuns, type PageData, type Varied } from "./page_data";
@@ -10,24 +10,24 @@ export interface LineLook {
   dash: number[];
 }
 
-// With six colours: 36 runs.
+// Six colours: 36 runs.
 const dashes: number[][] = [[], [8, 4], [2, 3], [9, 3, 2, 3], [16, 4], [9, 3, 2, 3, 2, 3]];
 
-/** Whether the runs that have the key all have numbers there. */
+/** Whether all values of the key are numbers. */
 export function isNumeric({ values }: Varied): boolean {
   const given = values.filter((value) => value !== "");
   return new Set(given).size > 1 && given.every((value) => Number.isFinite(Number(value)));
 }
 
 export class RunLooks {
-  /** Keys that may give runs their colours. */
+  /** Keys usable for colouring runs. */
   readonly keys: Varied[];
 
   constructor(private readonly runs: Run[], page: PageData, private readonly state: State) {
     this.keys = page.varied.filter(isNumeric);
   }
 
-  /** The key by which runs are coloured at first: the one number in which many differ; else each run has its own. */
+  /** Initial key for colouring runs: the only numeric key with many values; else one colour per run. */
   static firstKey(page: PageData): string {
     const numeric = page.varied.filter(isNumeric);
     return page.runs.length > fewRuns && page.varied.length === 1 && numeric.length === 1 ? numeric[0].key : "";
@@ -39,7 +39,7 @@ export class RunLooks {
       const turn = Math.floor(run.number / lineColours.length);
       return { colour: lineColours[run.number % lineColours.length], dash: dashes[turn % dashes.length] };
     }
-    // Runs of one value share its colour and differ in dashes.
+    // Runs with equal values share a colour and differ in dashes.
     const value = key.values[run.number];
     const same = this.runs.filter((other) => key.values[other.number] === value);
     const dash = dashes[same.indexOf(run) % dashes.length];
@@ -48,13 +48,13 @@ export class RunLooks {
     return { colour: this.ramp(order.indexOf(Number(value)) / (order.length - 1)), dash };
   }
 
-  /** The ramp's colour at `part` of the way from its least value to its greatest. */
+  /** Colour of the ramp at `part`, from 0 (smallest value) to 1 (largest). */
   ramp(part: number): string {
     return rampColour(part);
   }
 }
 
-/** A short piece of the line. */
+/** Line sample for legends. */
 export function sampleOf({ colour, dash }: LineLook): SVGElement {
   const make = (tag: string, attributes: Record<string, string>) => {
     const made = document.createElementNS("http://www.w3.org/2000/svg", tag);

@@ -1,5 +1,5 @@
-// The picture of one run: its camera, its scene once that is to be seen, and how the hand turns it. One WebGL context
-// draws all runs, because browsers have few (16) and drop the oldest; each picture is copied to a canvas of its own.
+// Picture of one run: camera, scene (created when visible), and rotation by the user. One WebGL context draws all runs,
+// since browsers allow few (16) and drop the oldest; each picture is copied to its own canvas.
 import * as three from "three";
 import { TrackballControls } from "three/examples/jsm/controls/TrackballControls.js";
 import { annotate } from "./annotations";
@@ -11,8 +11,8 @@ import { type RunLooks, sampleOf } from "./run_looks";
 import type { State } from "./state";
 import { time as timeText } from "./text";
 
-// Without a graphics card the processor draws. Smoothing edges then costs it half of its time: it is left out while the
-// picture moves, and a picture that stands still is drawn with four times the pixels instead.
+// Without a graphics card the processor draws, and antialiasing takes half of the time: it is off while the picture moves;
+// a still picture is drawn with four times the pixels instead.
 function drawsInSoftware(): boolean {
   const context = document.createElement("canvas").getContext("webgl2");
   const names = context?.getExtension("WEBGL_debug_renderer_info");
@@ -21,7 +21,7 @@ function drawsInSoftware(): boolean {
   return /swiftshader|llvmpipe|software|basic render/i.test(renderer);
 }
 
-/** What draws the pictures of all runs. Throws where the browser offers no WebGL. */
+/** Renderer of the pictures of all runs. Throws without WebGL. */
 export class Painter {
   readonly inSoftware = drawsInSoftware();
   readonly canvas = element("canvas");
@@ -35,7 +35,7 @@ export class Painter {
     this.canvas.addEventListener("webglcontextrestored", redraw);
   }
 
-  /** Draws to `canvas`, which holds it until the next call. */
+  /** Draw to `canvas`, which keeps it until the next call. */
   draw(scene: three.Scene, camera: three.Camera, width: number, height: number, ratio: number): void {
     this.renderer.getSize(this.size);
     if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
@@ -54,8 +54,8 @@ export class RunView {
   readonly canvas: HTMLCanvasElement;
   readonly camera = new three.OrthographicCamera(-1, 1, 1, -1, 1, 10);
   readonly controls: TrackballControls;
-  near = false; // what the window shows
-  stale = true; // the scene does not show the state
+  near = false; // in or near the visible part of the page
+  stale = true; // the scene is out of date
   moved = true; // the camera has moved
   private scene: EmbryoScene | null = null;
 
@@ -81,12 +81,12 @@ export class RunView {
     return this.isShown && this.near && this.run.loaded;
   }
 
-  /** Whether its name stands above it: among many, small or large. */
+  /** Whether its name is shown above: with many runs, small or large. */
   get hasCaption(): boolean {
     return this.isSmall || this.box.classList.contains("large");
   }
 
-  /** Its place among the others. */
+  /** Position among the others. */
   set order(place: number) {
     this.box.style.order = String(place);
   }
@@ -95,7 +95,7 @@ export class RunView {
     return this.box.classList.contains("small");
   }
 
-  /** Small ones let the wheel and a finger's way up and down move the page, and have their name above. */
+  /** Small pictures let wheel and vertical touches scroll the page, and have their name above. */
   setSmall(small: boolean, looks: RunLooks): void {
     this.box.classList.toggle("small", small);
     this.controls.noZoom = this.controls.noPan = small;
@@ -106,7 +106,7 @@ export class RunView {
     this.caption.replaceChildren(sampleOf(looks.lookOf(this.run)), element("span", {}, this.run.name));
   }
 
-  // In small pictures time stands only where it is not the page's: the run has ended before, and this is its end.
+  // Small pictures show the time only if the run ended before the time of the page.
   private get timeShown(): string {
     const { endTime, failed, data } = this.run;
     const { time } = this.state.now;
@@ -119,7 +119,7 @@ export class RunView {
     return { width: this.canvas.clientWidth, height: this.canvas.clientHeight };
   }
 
-  /** `half`: of the picture's height at zoom 1, um. */
+  /** `half`: half of the picture height at zoom 1, um. */
   resize(half: number): void {
     const { width, height } = this.size;
     if (width === 0 || height === 0) return;
@@ -144,7 +144,7 @@ export class RunView {
     this.moved = true;
   }
 
-  /** Draws the picture; as `paint` does. */
+  /** Draw the picture as `paint` does. */
   render(ratio: number, title: string): void {
     const { width, height } = this.size;
     [this.canvas.width, this.canvas.height] = [width * screenRatio, height * screenRatio];
@@ -172,8 +172,7 @@ export class RunView {
     });
   }
 
-  /** The zoom at which the embryo, as it is and seen as now, fills the picture but for a margin for marks and bar; null
-   * where it is not yet there. */
+  /** Zoom at which the embryo, in its present state and view, fills the picture except for margins; null before loading. */
   fittingZoom(): number | null {
     const scene = this.scene;
     if (!scene) return null;

@@ -1,4 +1,4 @@
-// The runs of a page with several: which there are, in what they differ, what came out; and which of them are shown.
+// Table of the runs of a page: differences, results, and selection of visible runs.
 import { byId, element } from "./dom";
 import { matches, type Traits } from "./filter";
 import { fewRuns, isTable, type PageData } from "./page_data";
@@ -8,12 +8,12 @@ import { isNumeric, type RunLooks, sampleOf } from "./run_looks";
 import { pointWith, type State } from "./state";
 import { lastOf, number, words } from "./text";
 
-const mostKeys = 6; // as columns; the others with "all measures and keys"
+const mostKeys = 6; // initial columns; the others with "all measures and keys"
 
 interface Column {
   key: string;
   isMain: boolean;
-  values: (string | number | null)[]; // a run's by its number
+  values: (string | number | null)[]; // by run number
   head: HTMLElement;
 }
 
@@ -48,7 +48,7 @@ export class RunsTable {
     this.apply();
   }
 
-  /** Colours have changed. */
+  /** Update after a change of colours. */
   rebuild(): void {
     this.runs.forEach((run, i) => this.rows[i].querySelector(".sample")!.replaceWith(sampleOf(this.looks.lookOf(run))));
     const key = this.looks.keys.find((candidate) => candidate.key === this.state.now.colourBy);
@@ -62,10 +62,10 @@ export class RunsTable {
   }
 
   private bar(): HTMLElement[] {
-    this.text.placeholder = this.example(); // what stands in the empty field
+    this.text.placeholder = this.example(); // shown in the empty field
     this.text.addEventListener("input", () => this.apply());
     const tickAll = (on: boolean) => {
-      // Of those that the text lets through.
+      // Among the runs that match the filter.
       for (const run of this.runs) if (matches(this.traitsOf(run), this.text.value)) this.tick(run.number, on);
       this.apply();
     };
@@ -88,7 +88,7 @@ export class RunsTable {
   }
 
   private colourChoice(): HTMLElement {
-    const select = element("select", { id: "colour-by" }, element("option", { value: "" }, "each its own"));
+    const select = element("select", { id: "colour-by" }, element("option", { value: "" }, "one per run"));
     for (const { key } of this.looks.keys) select.append(element("option", { value: key }, words(lastOf(key))[0]));
     select.value = this.state.now.colourBy;
     select.addEventListener("change", () => this.state.set({ colourBy: select.value }));
@@ -96,7 +96,7 @@ export class RunsTable {
   }
 
   private keyColumns(): Column[] {
-    // First those that all runs have, numbers before words; the title is a run's name already.
+    // First columns of all runs, numbers before words; the title is already the name of a run.
     const rank = (values: string[]) => values.filter((value) => value === "").length;
     const keys = this.page.varied.filter(({ key }) => key !== "title");
     const order = [...keys].sort((a, b) => rank(a.values) - rank(b.values) || Number(isNumeric(b)) - Number(isNumeric(a)));
@@ -117,7 +117,7 @@ export class RunsTable {
     const others = [...new Set(this.runs.flatMap((run) => Object.keys(run.data.summary ?? {})))]
       .filter((key) => !main.includes(key) && key !== "title" && !this.runs.some((run) => isTable(run.data.summary?.[key])));
     const value = (run: Run, key: string) => (run.data.summary?.[key] ?? null) as string | number | null;
-    // Words after numbers: why a run has failed is a sentence or two.
+    // Words after numbers: reasons of failures are sentences.
     const isText = (key: string) => this.runs.some((run) => typeof value(run, key) === "string");
     others.sort((a, b) => Number(isText(a)) - Number(isText(b)));
     return [
@@ -180,7 +180,7 @@ export class RunsTable {
     return traits;
   }
 
-  // Shown is what is ticked and fits the text. Rows that are not ticked stay, so that they can be ticked again.
+  // Visible: runs ticked and matching the filter. Unticked rows stay, so that they can be ticked again.
   private apply(): void {
     const shown = new Set<number>();
     this.runs.forEach((run, i) => {
@@ -192,7 +192,7 @@ export class RunsTable {
     this.state.set({ shown });
   }
 
-  // At first in the order of the keys, after each other: runs that are given by a pattern come as texts, 1000 before 500.
+  // Initially sorted by the keys: runs given by a pattern come in text order, 1000 before 500.
   private sort(): void {
     const { column, down } = this.sortedBy;
     const keys = this.columns.filter(({ key }) => this.page.varied.some((varied) => varied.key === key));
@@ -214,6 +214,6 @@ export class RunsTable {
 function statusOf(run: Run): string {
   const { summary } = run.data;
   if (!summary) return "not finished";
-  const crossing = Number(summary.self_intersections ?? 0) > 0 ? ", passes through itself" : "";
+  const crossing = Number(summary.self_intersections ?? 0) > 0 ? ", self-intersecting" : "";
   return String(summary.status).replaceAll("_", " ") + crossing;
 }

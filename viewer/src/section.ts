@@ -1,4 +1,4 @@
-// What a plane shows of the inside: where it cuts the elements. The C++ of pictures has the same: src/show/skin.cpp.
+// Section of the elements by a plane, as for pictures in src/show/boundary_surface.cpp.
 import type { Cut } from "./state";
 import type { Topology } from "./run";
 
@@ -6,7 +6,7 @@ const hexEdges = [
   [0, 1], [3, 2], [4, 5], [7, 6], [0, 3], [1, 2], [4, 7], [5, 6], [0, 4], [1, 5], [2, 6], [3, 7],
 ];
 
-/** A corner of a cut lies between two nodes: (1 - part) first + part second. */
+/** Corner of a section between two nodes: (1 - part) first + part second. */
 interface Corner {
   first: number;
   second: number;
@@ -16,7 +16,7 @@ interface Corner {
 
 export interface CutPolygon {
   element: number;
-  corners: Corner[]; // around their middle
+  corners: Corner[]; // around their centre
 }
 
 export function cutByPlane(topology: Topology, positions: Float32Array, cut: Cut): CutPolygon[] {
@@ -55,7 +55,7 @@ function aroundMiddle(corners: Corner[], axis: number): Corner[] {
   return corners.sort((a, b) => angle(a) - angle(b));
 }
 
-/** The sides of the polygons that part cells: those that no two polygons of one cell share. */
+/** Sides of polygons that separate cells: not shared by polygons of one cell. */
 export function cutOutlines(topology: Topology, polygons: CutPolygon[]): [Corner, Corner][] {
   const sides = new Map<string, [Corner, Corner] | null>();
   const name = (corner: Corner) => `${Math.min(corner.first, corner.second)}-${Math.max(corner.first, corner.second)}`;

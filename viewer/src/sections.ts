@@ -1,4 +1,4 @@
-// Cuts across the embryo at a quarter, half and three quarters of its length, at the time that is shown.
+// Cross-sections at 25, 50 and 75 % of the length, at the time of the page.
 import { colourAt, css, partOf } from "./colour";
 import { byId, element, whenNear } from "./dom";
 import { fewRuns, type PageData } from "./page_data";
@@ -12,7 +12,7 @@ const margin = 6; // pixels
 
 class RunSections {
   readonly box = element("figure", { class: "sections" });
-  private readonly canvases = places.map(() => element("canvas", { role: "img", "aria-label": "Cut across the embryo" }));
+  private readonly canvases = places.map(() => element("canvas", { role: "img", "aria-label": "Cross-section of the embryo" }));
   private readonly captions = places.map(() => element("span"));
   private cuts: number[] | null = null; // um
 
@@ -44,7 +44,7 @@ class RunSections {
     return places.map((part) => low + part * (high - low));
   }
 
-  // From the front: the embryo's left is to the right.
+  // Seen from the front: the left side is to the right.
   private paint(canvas: HTMLCanvasElement, topology: Topology, positions: Float32Array, values: Float32Array, at: number): void {
     const ratio = Math.min(devicePixelRatio, 2);
     const [, halfWidth, halfHeight] = this.run.halfSize;
@@ -66,7 +66,7 @@ class RunSections {
         ? corners.reduce((sum, { first, second, part }) => sum + (1 - part) * values[first] + part * values[second], 0) / corners.length
         : values[topology.cellOfElement[e]];
       context.fillStyle = context.strokeStyle = css(colourAt(map, partOf(field, value)));
-      context.lineWidth = 0.5; // so that no paper shows between neighbours
+      context.lineWidth = 0.5; // no gaps between neighbours
       context.beginPath();
       for (const corner of corners) context.lineTo(...place(corner.point));
       context.closePath();
@@ -84,14 +84,14 @@ class RunSections {
   }
 }
 
-/** Of a few runs; of many there would be too many. Drawn where the window shows them. */
+/** Cross-sections, only for few runs; drawn when visible. */
 export function showSections(runs: Run[], page: PageData, state: State): void {
   const shown = runs.filter((run) => run.hasFrames);
   if (shown.length === 0 || shown.length > fewRuns) return;
   const all = shown.map((run) => new RunSections(run, page, state, shown.length > 1));
   const holder = byId("sections");
   holder.append(
-    element("h2", {}, "Cut across at a quarter, half and three quarters of the length, from the front"),
+    element("h2", {}, "Cross-sections at 25, 50 and 75 % of the length, from the front"),
     ...all.map(({ box }) => box),
   );
   let waits = false;

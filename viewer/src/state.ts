@@ -1,10 +1,10 @@
-// What the page shows just now. Parts of the page change it and are told when it has changed.
+// State of the page. Its parts change it and are notified of changes.
 import type { Field, View } from "./page_data";
 
 export interface Cut {
   axis: number; // 0 x, 1 y, 2 z
   at: number; // um
-  keep: 1 | -1; // which side stays: 1 that of greater coordinates
+  keep: 1 | -1; // visible side: 1 for greater coordinates
 }
 
 export interface Picked {
@@ -15,7 +15,7 @@ export interface Picked {
 export interface PageState {
   time: number; // s
   playing: boolean;
-  speed: number; // s of the embryo in a second
+  speed: number; // simulated s per second
   field: Field;
   view: View;
   cut: Cut | null;
@@ -23,10 +23,10 @@ export interface PageState {
   shell: boolean;
   marks: boolean;
   picked: Picked | null;
-  shown: ReadonlySet<number>; // numbers of the runs that are to be seen
+  shown: ReadonlySet<number>; // numbers of visible runs
   order: readonly number[]; // of the runs' numbers
-  pointed: number | null; // the run that stands out
-  colourBy: string; // what gives runs their colours: a varied key, or ""
+  pointed: number | null; // highlighted run
+  colourBy: string; // key that colours the runs, or ""
 }
 
 export type Key = keyof PageState;
@@ -46,7 +46,7 @@ export class State {
     for (const { keys, tell } of this.listeners) if (keys.some((key) => changed.includes(key))) tell();
   }
 
-  /** Calls `tell` at each change of one of these values, until what it returns is called. */
+  /** Call `tell` at each change of one of these values; returns a function that ends this. */
   on(keys: Key[], tell: () => void): () => void {
     const listener = { keys, tell };
     this.listeners.push(listener);
@@ -54,13 +54,13 @@ export class State {
   }
 }
 
-/** What points at `box` points at a run, which then stands out: a mouse while it is there, a finger's tap until the next. */
+/** Highlight a run while the mouse is over `box`, or after a tap until the next. */
 export function pointWith(box: HTMLElement, run: number | ((event: MouseEvent) => number | null), state: State): void {
   let byFinger = false;
   const point = (event: MouseEvent) => state.set({ pointed: typeof run === "number" ? run : run(event) });
   for (const kind of ["pointerenter", "pointermove", "pointerdown"] as const)
     box.addEventListener(kind, (event) => {
-      byFinger = event.pointerType === "touch"; // which may be moving the page
+      byFinger = event.pointerType === "touch"; // may scroll the page
       if (!byFinger) point(event);
     });
   box.addEventListener("pointerleave", () => !byFinger && state.set({ pointed: null }));

@@ -1,4 +1,4 @@
-// CSV tables of numbers, as plica writes them: no quotes, an empty field has no value.
+// CSV tables of numbers written by plica: no quotes, empty fields are missing values.
 
 export class Table {
   readonly columns: string[];
@@ -19,7 +19,7 @@ export class Table {
     return place < 0 ? [] : this.rows.map((row) => row[place]);
   }
 
-  /** The number of the row whose time is nearest; -1 in an empty table. */
+  /** Number of the row nearest in time; -1 in an empty table. */
   rowNear(time: number): number {
     let best = -1;
     this.rows.forEach((row, i) => {
@@ -29,7 +29,7 @@ export class Table {
   }
 }
 
-/** A field of CSV that holds text. */
+/** Quote a text for CSV. */
 export function csvText(text: string): string {
   return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 }

@@ -1,4 +1,4 @@
-// Numbers and texts of the runs: summary, provenance, scenario. Of many runs the table of runs has the summaries.
+// Summary, provenance and scenario of the runs. With many runs, the table of runs has the summaries.
 import { byId, element } from "./dom";
 import { fewRuns, isTable } from "./page_data";
 import type { Run } from "./run";
@@ -15,7 +15,7 @@ export function showTables(runs: Run[], state: State): void {
 
 type Row = [HTMLElement, string[]];
 
-// The rows in a few tables beside each other, as many as have room.
+// Split rows into several tables side by side, as space allows.
 function table(runs: Run[], rows: Row[], heads = runs.map((run) => run.name)): HTMLElement {
   const parts = Math.max(1, Math.min(Math.ceil(rows.length / 8), Math.floor(4 / (1 + runs.length)) + 1));
   const length = Math.ceil(rows.length / parts);
@@ -23,7 +23,7 @@ function table(runs: Run[], rows: Row[], heads = runs.map((run) => run.name)): H
   return element("div", { class: "tables" }, ...pieces.map((piece) => element("div", { class: "scroll" }, onePiece(heads, piece))));
 }
 
-const longestNumber = 14; // characters; what has no more of them is not broken into lines
+const longestNumber = 14; // characters; shorter texts are not broken
 
 function onePiece(heads: string[], rows: Row[]): HTMLElement {
   const look = (text: string) => (text.length <= longestNumber ? { class: "short" } : undefined);
@@ -34,7 +34,7 @@ function onePiece(heads: string[], rows: Row[]): HTMLElement {
 
 function summaryTable(runs: Run[]): HTMLElement {
   if (runs.every((run) => run.data.summary === null))
-    return element("p", { class: "note" }, "There is no summary: the run has not come to its end.");
+    return element("p", { class: "note" }, "No summary: the run has not ended.");
   const keys = [...new Set(runs.flatMap((run) => Object.keys(run.data.summary ?? {})))].filter(
     (key) => !shownElsewhere.includes(key) && !runs.some((run) => isTable(run.data.summary?.[key])),
   );
@@ -48,7 +48,7 @@ function summaryTable(runs: Run[]): HTMLElement {
   }));
 }
 
-// What each law has put in, stored and lost.
+// Active work, stored and dissipated energy of each law.
 function showEnergies(runs: Run[]): void {
   const kinds = ["active", "stored", "dissipated"];
   for (const run of runs) {
@@ -58,7 +58,7 @@ function showEnergies(runs: Run[]): void {
       element("th", { scope: "row" }, law), kinds.map((kind) => (energies[kind] ? number(energies[kind]) : "")),
     ]);
     byId("numbers").append(
-      element("h2", {}, `Where energy has gone, nN·µm${runs.length > 1 ? `: ${run.name}` : ""}`),
+      element("h2", {}, `Energy by law, nN·µm${runs.length > 1 ? `: ${run.name}` : ""}`),
       element("div", { class: "scroll" }, onePiece(kinds, rows)));
   }
 }
@@ -69,7 +69,7 @@ function provenanceOf(run: Run): Provenance {
   return (run.data.summary?.provenance ?? {}) as Provenance;
 }
 
-// Of many runs, what they share; what is a run's own stands with its scenario.
+// With many runs: common values; those of a run are listed with its scenario.
 function provenanceTable(runs: Run[]): HTMLElement {
   const keys = [...new Set(runs.flatMap((run) => Object.keys(provenanceOf(run))))];
   const columns = runs.length > fewRuns ? runs.slice(0, 1) : runs;
@@ -89,14 +89,14 @@ function scenarios(runs: Run[], state: State): HTMLElement[] {
   const details = runs.map((run) => {
     const own = Object.entries(provenanceOf(run)).filter(([key]) => runs.length > fewRuns && !isShared(runs, key));
     const parts = own.map(([key, value]) => `${key.replaceAll("_", " ")} ${value}`);
-    if (runs.length > fewRuns && run.data.every > 1) parts.push(`${run.frames.length} of ${run.data.frames_saved} saved frames are in this page`);
+    if (runs.length > fewRuns && run.data.every > 1) parts.push(`${run.frames.length} of ${run.data.frames_saved} snapshots are in this page`);
     const text = parts.join("; ");
     return element("details", { "data-run": run.name },
-      element("summary", {}, runs.length > fewRuns ? run.name : `${run.name}: as resolved, every default filled in`),
+      element("summary", {}, runs.length > fewRuns ? run.name : `${run.name}: with all defaults`),
       ...(text === "" ? [] : [element("p", { class: "note" }, text)]),
       element("pre", { class: "scenario" }, run.data.scenario));
   });
   state.on(["shown"], () => details.forEach((one, i) => (one.hidden = !state.now.shown.has(runs[i].number))));
   if (runs.length <= fewRuns) return details;
-  return [element("p", { class: "note" }, "As resolved, every default filled in:"), element("div", { class: "scenarios" }, ...details)];
+  return [element("p", { class: "note" }, "With all defaults:"), element("div", { class: "scenarios" }, ...details)];
 }

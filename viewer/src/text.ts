@@ -1,6 +1,6 @@
-// Numbers and names as people read them.
+// Formatting of numbers and names.
 
-/** Four or more significant digits, without a tail of zeros. */
+/** Format a number: four or more significant digits, without trailing zeros. */
 export function number(value: number | null | undefined, digits = 4): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
@@ -21,7 +21,7 @@ export function time(seconds: number): string {
   return seconds < 120 ? `${number(seconds)} s` : `${number(seconds / 60)} min`;
 }
 
-// Before each, those that end in it.
+// Longer endings come before their parts.
 const units: [RegExp, string][] = [
   [/_nN_s_per_um$/, "nN·s/µm"],
   [/_nN_per_um$/, "nN/µm"],
@@ -43,7 +43,7 @@ const units: [RegExp, string][] = [
   [/_s$/, "s"],
 ];
 
-/** A column or key as words and unit: "vml_speed_um_per_s" is ["VML speed", "µm/s"]. */
+/** Split a column or key into words and unit: "vml_speed_um_per_s" is ["VML speed", "µm/s"]. */
 export function words(key: string): [string, string] {
   let name = key;
   let unit = "";
@@ -54,17 +54,17 @@ export function words(key: string): [string, string] {
       break;
     }
   name = name.replaceAll("_", " ")
-    .replace(/\bvml\b/g, "VML").replace(/\bvce\b/g, "VCE").replace(/\bap\b/g, "place along the axis")
+    .replace(/\bvml\b/g, "VML").replace(/\bvce\b/g, "VCE").replace(/\bap\b/g, "position along the axis")
     .replace(/\byoung modulus\b/, "Young's modulus").replace(/\bpoisson ratio\b/, "Poisson's ratio");
   return [name, unit];
 }
 
-/** How many there are: "10 000". */
+/** Format a count: "10 000". */
 export function count(many: number): string {
   return String(many).replace(/\B(?=(\d{3})+$)/g, "\u202f");
 }
 
-/** The last part of a dotted key. */
+/** Last part of a dotted key. */
 export function lastOf(key: string): string {
   return key.slice(key.lastIndexOf(".") + 1);
 }

@@ -1,7 +1,7 @@
-// Dark or light: as the system says, until the button says otherwise.
+// Dark or light: as the system, until the button changes it.
 import { byId } from "./dom";
 
-/** Calls `redraw` after each change. */
+/** Set up the theme button; `redraw` is called after each change. */
 export function followTheme(redraw: () => void): void {
   const root = document.documentElement;
   const dark = matchMedia("(prefers-color-scheme: dark)");

@@ -338,9 +338,9 @@ test("the page is small, and its first picture quick", async () => {
 
 test("a tissue that passes through itself is announced, and none other", async () => {
   const crossing = await open("curl/report.html");
-  assert.match(await crossing.page.textContent("#crossing"), /^From [\d.]+ min on, the tissue passes through itself/);
+  assert.match(await crossing.page.textContent("#crossing"), /^From [\d.]+ min on, the tissue self-intersects/);
   assert.ok(await crossing.page.isVisible("#crossing"));
-  assert.match(await crossing.page.textContent("#headline"), /passes through itself/);
+  assert.match(await crossing.page.textContent("#headline"), /self-intersecting/);
   await crossing.done();
   const sound = await open("drosophila/report.html");
   assert.ok(!(await sound.page.isVisible("#crossing")));

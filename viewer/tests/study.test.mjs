@@ -101,7 +101,7 @@ test("the heading counts, the table holds what runs.csv holds, and sorts with wh
   const { page, done } = await open("grid/report.html");
   assert.equal(await page.title(), "grid");
   const headline = await page.textContent("#headline");
-  for (const part of ["Grid over 3 keys of drosophila", "16 runs: 4 refused, 12 end time", "of runs, one after the other", "time.end_min=0.05"])
+  for (const part of ["Grid over 3 keys of drosophila", "16 runs: 4 refused, 12 end time", "total run time", "time.end_min=0.05"])
     assert.ok(headline.includes(part), `${part} in ${headline}`);
   const rows = runsOf("grid");
   const cell = (row, key) => page.textContent(`.rows tr[data-row="${row}"] [data-key="${key}"]`);

@@ -42,10 +42,10 @@ std::vector<Triangle> triangles_of(const std::vector<std::array<NodeId, 4>>& fac
 
 using Edge = std::pair<NodeId, NodeId>;  // as its facet has it
 
-// Where nodes hang on edges, those of two facets that meet are not the same, but parts of one line between free nodes.
-class Seams {
+// Facets that meet at hanging nodes: their edges differ, but are parts of one line between free nodes.
+class NonconformingEdges {
  public:
-  Seams(const Tissue& tissue, const std::map<Edge, std::size_t>& edges) {
+  NonconformingEdges(const Tissue& tissue, const std::map<Edge, std::size_t>& edges) {
     for (const auto& [edge, facet] : edges)
       if (!edges.contains({edge.second, edge.first}))
         if (const std::optional<Part> part = part_of(tissue, edge, facet)) lines_[part->line].push_back(*part);
@@ -134,9 +134,9 @@ SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirro
   std::map<std::pair<NodeId, NodeId>, std::size_t> edges;
   for (std::size_t f = 0; f < facets_.size(); ++f)
     for (int i = 0; i < 4; ++i) edges[{facets_[f][i], facets_[f][(i + 1) % 4]}] = f;
-  const Seams seams(whole, edges);
+  const NonconformingEdges nonconforming(whole, edges);
   for (const auto& [edge, facet] : edges)
-    if (!edges.contains({edge.second, edge.first}) && !seams.is_inner(edge))
+    if (!edges.contains({edge.second, edge.first}) && !nonconforming.is_inner(edge))
       rim_.push_back({edge.first, edge.second, facet});
   // A node, or the mean of the nodes of an edge or a facet.
   const auto add_point = [&](const std::array<NodeId, 4>& nodes, int count, double area) {
@@ -144,8 +144,8 @@ SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirro
     SurfacePlace place{nodes, {}, count};
     for (int i = 0; i < count; ++i) place.weights[i] = 1.0 / count;
     points_.push_back({place, area});
-    std::set<std::size_t> around = count == 1 ? seams.across(nodes[0]) : std::set<std::size_t>();
-    std::set<NodeId> at = count == 2 ? seams.lying_on({nodes[0], nodes[1]}) : std::set<NodeId>();
+    std::set<std::size_t> around = count == 1 ? nonconforming.across(nodes[0]) : std::set<std::size_t>();
+    std::set<NodeId> at = count == 2 ? nonconforming.lying_on({nodes[0], nodes[1]}) : std::set<NodeId>();
     at.insert(nodes.begin(), nodes.begin() + count);
     for (const NodeId node : at) around.insert(of_node[node].begin(), of_node[node].end());
     neighbours_.emplace_back(around.begin(), around.end());
@@ -158,7 +158,7 @@ SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirro
     if (!on_rim && edge.second < edge.first) continue;
     add_point({edge.first, edge.second}, 2, (areas[facet] + (on_rim ? 0 : areas[other->second])) / 8);
   }
-  if (rule.with_edges) edges_ = EdgePairs(facets_, areas, seams.lying());
+  if (rule.with_edges) edges_ = EdgePairs(facets_, areas, nonconforming.lying());
 }
 
 // Where it is when a step begins.

@@ -51,17 +51,17 @@ void DirectDirections::recall(const FactorMemory& memory) {
   (void)refresh(step, memory.at);
 }
 
-NewtonDirections::Outcome DirectDirections::find(const Step& step, const Iterate& at, const Residual& residual,
-                                                 const Wish& wish, Direction& direction, Cost& cost) {
+NewtonDirections::Status DirectDirections::find(const Step& step, const Iterate& at, const Residual& residual,
+                                                const ForcingTermInput& forcing, Direction& direction, Cost& cost) {
   prepare(step);
   // A factor of a step of nearly this length converges nearly as fast; of other contacts it has the wrong unknowns.
   constexpr double alike = 0.2;
   const bool stale =
       factor_frames_.empty() || std::abs(factor_rate_s_ / step.rate_s - 1) > alike || factor_contacts_ != at.in_contact;
-  const bool slow = wish.left > 0.1;  // less than Newton's method can
+  const bool slow = forcing.residual_reduction > 0.1;  // less than Newton's method can
   if (stale || slow) {
     ++cost.factorisations;
-    if (!refresh(step, at)) return Outcome::singular;
+    if (!refresh(step, at)) return Status::singular;
   }
   ++cost.linear_solves;
 
@@ -84,7 +84,7 @@ NewtonDirections::Outcome DirectDirections::find(const Step& step, const Iterate
   model_.tissue.place_hanging(direction.positions);
   direction.multipliers.assign(at.multipliers.size(), 0.0);
   for (std::size_t row = 0; row < J.rows(); ++row) direction.multipliers[J.multiplier(row)] = of_rows[row];
-  return Outcome::found;
+  return Status::found;
 }
 
 }  // namespace plica

@@ -11,8 +11,8 @@ namespace plica {
 class DirectDirections final : public NewtonDirections {
  public:
   explicit DirectDirections(const Model& model);
-  [[nodiscard]] Outcome find(const Step& step, const Iterate& at, const Residual& residual, const Wish& wish,
-                             Direction& direction, Cost& cost) override;
+  [[nodiscard]] Status find(const Step& step, const Iterate& at, const Residual& residual,
+                            const ForcingTermInput& forcing, Direction& direction, Cost& cost) override;
   void forget_factor() override { factor_frames_.clear(); }
   [[nodiscard]] FactorMemory memory() const override { return factor_frames_.empty() ? FactorMemory{} : made_from_; }
   void recall(const FactorMemory& memory) override;

@@ -13,16 +13,16 @@ class GuardedDirections final : public NewtonDirections {
   GuardedDirections(const Model& model, std::unique_ptr<NewtonDirections> first)
       : model_(model), first_(std::move(first)) {}
 
-  Outcome find(const Step& step, const Iterate& at, const Residual& residual, const Wish& wish, Direction& direction,
-               Cost& cost) override {
+  Status find(const Step& step, const Iterate& at, const Residual& residual, const ForcingTermInput& forcing,
+              Direction& direction, Cost& cost) override {
     if (gave_up_at_s_ != step.end_time_s) {
-      const Outcome outcome = first_->find(step, at, residual, wish, direction, cost);
-      if (outcome != Outcome::singular) return outcome;
+      const Status status = first_->find(step, at, residual, forcing, direction, cost);
+      if (status != Status::singular) return status;
       gave_up_at_s_ = step.end_time_s;
       if (!second_) second_ = std::make_unique<DirectDirections>(model_);
       second_->forget_factor();
     }
-    return second_->find(step, at, residual, wish, direction, cost);
+    return second_->find(step, at, residual, forcing, direction, cost);
   }
 
   void forget_factor() override {

@@ -1,4 +1,4 @@
-// The direction of a Newton iteration: the interface of all ways to find it, and the choice between them.
+// Direction of a Newton iteration: interface of all linear solvers, and the choice between them.
 #pragma once
 
 #include <functional>
@@ -8,10 +8,10 @@
 
 namespace plica {
 
-/// Finds the direction of a Newton iteration: the solution of
+/// Solver for the direction of a Newton iteration:
 ///   [ A  -J^T ] [ dx           ]   [ forces    ]
 ///   [ -J   0  ] [ dmultipliers ] = [ -deficits ]   with dx = 0 along fixed directions;
-/// A: tangent of all laws, constraints and obstacles, J: gradients of the constraints' functions.
+/// A: tangent of all laws, constraints and obstacles; J: gradients of the constraints.
 class NewtonDirections {
  public:
   virtual ~NewtonDirections() = default;
@@ -20,25 +20,26 @@ class NewtonDirections {
     int factorisations = 0;
     int linear_solves = 0;
   };
-  struct Wish {
-    double left;      // of the residual, by the last direction; 0 before the first
-    double accuracy;  // relative, of the linear system: what would end the step
+  /// Input for the tolerance (forcing term) of an inexact Newton iteration.
+  struct ForcingTermInput {
+    double residual_reduction;  // residual after / before the last direction; 0 before the first
+    double relative_tolerance;  // of the linear system: the one that would end the step
   };
-  enum class Outcome { found, singular, interrupted };
-  [[nodiscard]] virtual Outcome find(const Step& step, const Iterate& at, const Residual& residual, const Wish& wish,
-                                     Direction& direction, Cost& cost) = 0;
+  enum class Status { found, singular, interrupted };
+  [[nodiscard]] virtual Status find(const Step& step, const Iterate& at, const Residual& residual,
+                                    const ForcingTermInput& forcing, Direction& direction, Cost& cost) = 0;
 
-  /// Forgets a factor that was kept, so that the next step does not depend on what was solved before.
+  /// Discard a reused factorization, so that the next step does not depend on earlier solves.
   virtual void forget_factor() = 0;
 
-  /// What the factor that is kept was made from; `recall` makes it again. The model must have the rest shapes that it
-  /// had then (see grow()).
+  /// Data from which the reused factorization was made; `recall` recomputes it and requires the rest shapes of that
+  /// time (see grow()).
   [[nodiscard]] virtual FactorMemory memory() const = 0;
   virtual void recall(const FactorMemory& memory) = 0;
 };
 
-/// How that system is solved: by a factor of all of it; or by Krylov's method with a factor of its positive definite
-/// part, or with multigrid; automatic: by size.
+/// Linear method: factorization of the whole system; Krylov method preconditioned by a factorization of the positive
+/// definite part (cholesky) or by multigrid; automatic: by size.
 enum class LinearMethod { automatic, direct, cholesky, multigrid };
 
 std::unique_ptr<NewtonDirections> make_directions(const Model& model, LinearMethod method,

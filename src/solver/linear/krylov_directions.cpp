@@ -12,9 +12,10 @@ constexpr double far_from_balance = 0.1;  // residual's forces, relative
 
 /// To which Newton's method can use a direction: its own error leaves a part of the residual that falls with the
 /// residual itself; more where it has been seen to converge slowly (Eisenstat and Walker 1996, choice 2).
-double useful_tolerance(const Residual& residual, const NewtonDirections::Wish& wish) {
-  const double useful = std::clamp(std::max(0.05 * residual.force, 0.5 * wish.left * wish.left), 1e-4, 1e-2);
-  return std::clamp(wish.accuracy, useful, 0.1);
+double useful_tolerance(const Residual& residual, const NewtonDirections::ForcingTermInput& forcing) {
+  const double useful = std::clamp(
+      std::max(0.05 * residual.force, 0.5 * forcing.residual_reduction * forcing.residual_reduction), 1e-4, 1e-2);
+  return std::clamp(forcing.relative_tolerance, useful, 0.1);
 }
 
 /// What accuracy of the whole system gives its forces `accuracy`. In a short step, where drag makes the system stiff,
@@ -64,8 +65,8 @@ int KrylovDirections::wasted(const KrylovReport& report) const {
   return std::max(0, report.iterations - static_cast<int>(needed));
 }
 
-NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate& at, const Residual& residual,
-                                                 const Wish& wish, Direction& direction, Cost& cost) {
+NewtonDirections::Status KrylovDirections::find(const Step& step, const Iterate& at, const Residual& residual,
+                                                const ForcingTermInput& forcing, Direction& direction, Cost& cost) {
   system_.take(at);
   constexpr KrylovReport at_beginning{.residual = 1};
   KrylovReport before_new = at_beginning;  // where the solve was when the preconditioner was made
@@ -101,10 +102,10 @@ NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate
   while (true) {
     system_.set_units(kept_->weights());  // and not on the way, should weights become others
     const KrylovVector right = system_.right_side(residual);
-    const double accuracy = accuracy_of_whole(wish.accuracy, right, at.positions.size());
+    const double accuracy = accuracy_of_whole(forcing.relative_tolerance, right, at.positions.size());
     report = solver_.solve(
         multiply, [&](const KrylovVector& r, KrylovVector& z) { kept_->apply(r, z); }, right,
-        {.tolerance = useful_tolerance(residual, {wish.left, accuracy})}, go_on, solution);
+        {.tolerance = useful_tolerance(residual, {forcing.residual_reduction, accuracy})}, go_on, solution);
     cost.linear_solves += report.iterations;
     if (report.converged) break;
     if (is_indefinite) {
@@ -117,10 +118,10 @@ NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate
       break;
     }
   }
-  if (!is_made_) return Outcome::singular;
-  if (report.interrupted) return Outcome::interrupted;
+  if (!is_made_) return Status::singular;
+  if (report.interrupted) return Status::interrupted;
   // An inexact direction is still one; the line search judges it.
-  if (!(report.residual < 0.5)) return Outcome::singular;
+  if (!(report.residual < 0.5)) return Status::singular;
   if (is_new) {
     const double share = share_of_solve(report.residual / before_new.residual);
     iterations_when_new_ = static_cast<int>(std::lround((report.iterations - before_new.iterations) / share));
@@ -129,7 +130,7 @@ NewtonDirections::Outcome KrylovDirections::find(const Step& step, const Iterate
     wasted_iterations_ += wasted(report);
   }
   direction = system_.direction_of(solution, at.multipliers.size());
-  return Outcome::found;
+  return Status::found;
 }
 
 }  // namespace plica

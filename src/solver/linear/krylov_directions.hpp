@@ -13,8 +13,8 @@ class KrylovDirections final : public NewtonDirections {
   using Inverse = KeptPreconditioner::Inverse;
 
   KrylovDirections(const Model& model, Inverse inverse, std::function<bool()> stop_requested);
-  [[nodiscard]] Outcome find(const Step& step, const Iterate& at, const Residual& residual, const Wish& wish,
-                             Direction& direction, Cost& cost) override;
+  [[nodiscard]] Status find(const Step& step, const Iterate& at, const Residual& residual,
+                            const ForcingTermInput& forcing, Direction& direction, Cost& cost) override;
   void forget_factor() override { is_made_ = false; }
   [[nodiscard]] FactorMemory memory() const override;
   void recall(const FactorMemory& memory) override;

@@ -74,9 +74,9 @@ StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool
   report.linear_solves = solved.iterations;
   report.residual = solved.residual;
   if (!solved.converged) {
-    report.outcome = solved.interrupted               ? StepReport::Outcome::interrupted
-                     : std::isfinite(solved.residual) ? StepReport::Outcome::no_linear_convergence
-                                                      : StepReport::Outcome::not_finite;
+    report.status = solved.interrupted               ? StepReport::Status::interrupted
+                    : std::isfinite(solved.residual) ? StepReport::Status::no_linear_convergence
+                                                     : StepReport::Status::not_finite;
     report.cell = cell_with_largest(model_.tissue, as_vectors(forces));
     return report;
   }
@@ -90,7 +90,7 @@ StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool
   step.positions = next.positions;
   next.internals = next_internals(model_, step);
   record_motion(state, duration_s, TimeOrder::first, next);
-  report.outcome = StepReport::Outcome::converged;
+  report.status = StepReport::Status::converged;
   return report;
 }
 

@@ -21,7 +21,7 @@ StepReport ProjectedStepper::advance(const State& state, double duration_s, bool
   projection_.apply(state, duration_s, stop_requested_, moved, report);
   if (!report.converged()) return report;
   if (const auto inverted = inverted_cell(model_.tissue, moved.positions)) {
-    report.outcome = StepReport::Outcome::inverted_element;
+    report.status = StepReport::Status::inverted_element;
     report.cell = inverted;
     return report;
   }

@@ -168,14 +168,14 @@ void VolumeProjection::apply(const State& before, double duration_s, const std::
   for (report.projection_sweeps = 0; moved && report.projection_sweeps < rule_.most_sweeps;
        ++report.projection_sweeps) {
     if (stop_requested && stop_requested()) {
-      report.outcome = StepReport::Outcome::interrupted;
+      report.status = StepReport::Status::interrupted;
       return;
     }
     moved = project_obstacles(after.positions);
     for (std::size_t k = 0; k < kept_.size(); ++k) moved = project(k, after.positions, report) || moved;
   }
   judge(after.positions, report);
-  report.outcome = moved ? StepReport::Outcome::not_projected : StepReport::Outcome::converged;
+  report.status = moved ? StepReport::Status::not_projected : StepReport::Status::converged;
   if (!moved) report.cell.reset();
   for (std::size_t k = 0; k < kept_.size(); ++k)
     if (kept_[k].cell) after.multipliers[kept_[k].cell->index()] += moved_[k] / duration_s;

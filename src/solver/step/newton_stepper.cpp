@@ -42,7 +42,7 @@ bool NewtonStepper::search_line(const Step& step, const Direction& d, Iterate& a
     if (best && best->second.merit() < (1 - 1e-4 * part) * now.merit()) break;
   }
   if (!best) {
-    report.outcome = blocking ? StepReport::Outcome::inverted_element : StepReport::Outcome::not_finite;
+    report.status = blocking ? StepReport::Status::inverted_element : StepReport::Status::not_finite;
     report.cell = blocking ? blocking : cell_with_largest(model_.tissue, now.forces);
     return false;
   }
@@ -117,51 +117,52 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
   };
   bool contacts_settled = false;
   constexpr int most_slow_iterations = 12;  // in a row, none of which halves the residual
-  double left = 0;
+  double residual_reduction = 0;            // by the last direction
   int slow_iterations = 0;
   for (;; ++report.newton_iterations) {
     report.residual = now.force;
     report.constraint_error = now.constraint;
     if (!now.finite()) {
-      report.outcome = StepReport::Outcome::not_finite;
+      report.status = StepReport::Status::not_finite;
       report.cell = cell_with_largest(model_.tissue, now.forces);
       return report;
     }
     if (balance_.is_solved(now) && (contacts_settled || settle_contacts())) break;
     if (stop_requested_ && stop_requested_()) {
-      report.outcome = StepReport::Outcome::interrupted;
+      report.status = StepReport::Status::interrupted;
       return report;
     }
     if (report.newton_iterations >= tolerances_.max_iterations || slow_iterations >= most_slow_iterations) {
-      report.outcome = StepReport::Outcome::no_convergence;
+      report.status = StepReport::Status::no_convergence;
       report.cell = cell_with_largest(model_.tissue, now.forces);
       return report;
     }
     step.positions = at.positions;
     Direction direction;
     NewtonDirections::Cost cost;
-    const double accuracy = 0.3 * std::min(tolerances_.force / now.force, tolerances_.constraint / now.constraint);
-    const auto outcome = directions_->find(step, at, now, {left, accuracy}, direction, cost);
+    const double relative_tolerance =
+        0.3 * std::min(tolerances_.force / now.force, tolerances_.constraint / now.constraint);
+    const auto status = directions_->find(step, at, now, {residual_reduction, relative_tolerance}, direction, cost);
     report.factorisations += cost.factorisations;
     report.linear_solves += cost.linear_solves;
-    if (outcome == NewtonDirections::Outcome::interrupted) {
-      report.outcome = StepReport::Outcome::interrupted;
+    if (status == NewtonDirections::Status::interrupted) {
+      report.status = StepReport::Status::interrupted;
       return report;
     }
-    if (outcome == NewtonDirections::Outcome::singular) {
-      report.outcome = StepReport::Outcome::singular_system;
+    if (status == NewtonDirections::Status::singular) {
+      report.status = StepReport::Status::singular_system;
       report.cell = cell_with_largest(model_.tissue, now.forces);
       return report;
     }
     const double before = now.merit();
     if (!search_line(step, direction, at, now, report)) return report;
-    left = now.merit() / before;
-    slow_iterations = left > 0.5 ? slow_iterations + 1 : 0;
+    residual_reduction = now.merit() / before;
+    slow_iterations = residual_reduction > 0.5 ? slow_iterations + 1 : 0;
     contacts_settled = settle_contacts();
   }
   step.positions = at.positions;
   accept(state, step, duration_s, order, std::move(at), next);
-  report.outcome = StepReport::Outcome::converged;
+  report.status = StepReport::Status::converged;
   return report;
 }
 

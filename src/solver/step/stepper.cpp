@@ -8,42 +8,47 @@ namespace plica {
 
 std::string StepReport::reason() const {
   const std::string where = cell ? fmt::format("cell {}", cell->number()) : "an unknown cell";
-  switch (outcome) {
-    case Outcome::converged:
+  switch (status) {
+    case Status::converged:
       return "converged";
-    case Outcome::inverted_element:
-      return where + " turns inside out";
-    case Outcome::no_convergence:
-      return "forces and volumes cannot be balanced (Newton's method does not converge); worst in " + where;
-    case Outcome::no_linear_convergence:
+    case Status::inverted_element:
+      return where + " is inverted";
+    case Status::no_convergence:
+      return "Newton's method does not converge; largest force residual in " + where;
+    case Status::no_linear_convergence:
       return "conjugate gradients do not converge; largest force in " + where;
-    case Outcome::singular_system:
-      return "the linear system is singular (something is held twice, or by nothing); largest force in " + where;
-    case Outcome::not_projected:
+    case Status::singular_system:
+      return "the linear system is singular (redundant constraints, or an unconstrained rigid-body motion); largest "
+             "force in " +
+             where;
+    case Status::not_projected:
       return fmt::format(
-          "volumes and shell are not met after {} sweeps of projection: the volume of {} is off by {:.1e}, a node is "
-          "{:.1e} um outside the shell",
-          projection_sweeps, cell ? where : "the whole surface", constraint_error, outside_um);
-    case Outcome::not_finite:
-      return "a force in " + where + " is not a finite number";
-    case Outcome::interrupted:
+          "the projection does not converge in {0} sweeps: relative error {:.1e} in the volume of {}, a node {:.1e} um "
+          "outside the shell",
+          projection_sweeps, constraint_error, cell ? where : "the whole surface", outside_um);
+    case Status::not_finite:
+      return "a force in " + where + " is not finite";
+    case Status::interrupted:
       return "interrupted";
   }
   return "";
 }
 
 std::string StepReport::remedy() const {
-  switch (outcome) {
-    case Outcome::inverted_element:
-      return "it is pulled or pushed more than its shape bears: lower stiffness_nN_per_um, preload_nN, "
-             "tension_mN_per_m or pressure_Pa of what acts there (by halves, say), raise elasticity.young_modulus_Pa, "
-             "or give it more elements (embryo.elements_per_cell; of polygons, embryo.elements = \"kites\")";
-    case Outcome::no_convergence:
-      return "lower the forces that act there, raise elasticity.young_modulus_Pa, or give a shorter time.max_step_s";
-    case Outcome::no_linear_convergence:
-      return "give a shorter time.step_s, or a larger time.cg_max_iterations";
-    case Outcome::not_projected:
-      return "give a shorter time.step_s";
+  switch (status) {
+    case Status::inverted_element:
+      return "set elasticity.corner_barrier_Pa (100, say), and let forces rise over minutes (`program`); only if both "
+             "fail, reduce the forces there or raise elasticity.young_modulus_Pa";
+    case Status::no_convergence:
+      return "set elasticity.corner_barrier_Pa (100, say), and let forces rise over minutes (`program`); only if both "
+             "fail, reduce the forces there or shorten time.max_step_s";
+    case Status::no_linear_convergence:
+      return "shorten time.step_s, or raise time.cg_max_iterations";
+    case Status::not_projected:
+      return "shorten time.step_s";
+    case Status::singular_system:
+      return "hold each node once (`[hold.NAME]`), or hold or drag what can move freely "
+             "(dynamics.surface_drag_Pa_s_per_um)";
     default:
       return "";
   }

@@ -1,4 +1,4 @@
-// How a step in time is taken: the interface of all schemes, and what a step reports.
+// Interface of all time-stepping schemes, and the report of a step.
 #pragma once
 
 #include <functional>
@@ -12,9 +12,9 @@
 
 namespace plica {
 
-/// How a step went. A value: a step that fails is not an exception, the caller tries a shorter one.
+/// Report of a step. A failed step is a value, not an exception; the caller retries with a shorter one.
 struct StepReport {
-  enum class Outcome {
+  enum class Status {
     converged,
     inverted_element,
     no_convergence,
@@ -24,50 +24,50 @@ struct StepReport {
     not_finite,
     interrupted
   };
-  Outcome outcome = Outcome::no_convergence;
-  int refused = 0;  // attempts before this one, which were too long
+  Status status = Status::no_convergence;
+  int refused = 0;  // rejected attempts before this one
   int newton_iterations = 0;
   int factorisations = 0;
-  int linear_solves = 0;        // back substitutions of a factor, or iterations of conjugate gradients
-  double residual = 0;          // relative: of the forces (Newton) or of the linear system (linearly implicit)
-  double constraint_error = 0;  // largest relative one
-  double outside_um = 0;        // how far a node is left beyond an obstacle by the projection
+  int linear_solves = 0;        // solves with a factorization, or conjugate-gradient iterations
+  double residual = 0;          // relative: forces (Newton) or linear system (linearly implicit)
+  double constraint_error = 0;  // largest relative error of a constraint
+  double outside_um = 0;        // largest distance of a node beyond an obstacle after the projection
   int projection_sweeps = 0;
-  int cubics = 0;                   // solved by the projection,
-  int cubics_with_three_roots = 0;  // and how many of them had three real roots
-  std::optional<CellId> cell;       // where it failed, when that is one place
+  int cubics = 0;                   // solved by the projection
+  int cubics_with_three_roots = 0;  // of these, with three real roots
+  std::optional<CellId> cell;       // cell of the failure, if it is one cell
 
-  [[nodiscard]] bool converged() const { return outcome == Outcome::converged; }
-  /// "cell 37 turns inside out" and the like.
+  [[nodiscard]] bool converged() const { return status == Status::converged; }
+  /// Cause of a failure, for example "cell 37 becomes inverted".
   [[nodiscard]] std::string reason() const;
-  /// What to try, with the keys of the scenario that matter; empty where nothing is known.
+  /// Suggested remedy with the relevant keys of the scenario; empty if unknown.
   [[nodiscard]] std::string remedy() const;
 };
 
-/// Takes steps of one model.
+/// Time stepper of one model.
 class Stepper {
  public:
   virtual ~Stepper() = default;
 
-  /// From `state` over `duration_s` to `next` (left alone when the step fails). A start may be guessed from the
-  /// velocities unless `from_rest`.
+  /// Advance `state` by `duration_s` to `next` (unchanged on failure). Unless `from_rest`, the iteration may start from
+  /// a prediction by the velocities.
   virtual StepReport advance(const State& state, double duration_s, bool from_rest, State& next) = 0;
 
-  /// A step asks this now and then; once true it ends as interrupted.
+  /// `stop_requested` is polled during a step; once true, the step ends as interrupted.
   virtual void stop_when(std::function<bool()> stop_requested) = 0;
 
-  /// Forgets a factor that was kept, so that the next step does not depend on what was solved before.
+  /// Discard a reused factorization, so that the next step does not depend on earlier solves.
   virtual void forget_factor() {}
 
-  /// What is kept between steps, and the same taken up again by a stepper that has just been made (NewtonDirections).
+  /// Data of the reused factorization, and its restoration in a new stepper (see NewtonDirections).
   [[nodiscard]] virtual FactorMemory memory() const { return {}; }
   virtual void recall(const FactorMemory& /*memory*/) {}
 };
 
-/// A cell at the node with the largest vector; one that is not finite goes before all others.
+/// Cell at the node with the largest vector; vectors that are not finite come first.
 std::optional<CellId> cell_with_largest(const Tissue& tissue, std::span<const Vec3> vectors);
 
-/// The first cell that has an element inside out or flat.
+/// First cell with an inverted or flat element.
 std::optional<CellId> inverted_cell(const Tissue& tissue, const Vectors& positions);
 
 }  // namespace plica

@@ -63,9 +63,9 @@ TEST(ChequerboardFactor, IterationsHardlyGrowWithTheNumberOfCells) {
     for (std::size_t c = 0; c < ball.model.tissue.cells.size(); ++c) residual.deficits.push_back(random.number());
     Direction direction;
     NewtonDirections::Cost cost;
-    const auto outcome = make_directions(ball.model, LinearMethod::multigrid, {})
-                             ->find(ball.step(), ball.at, residual, {false, 1e-5}, direction, cost);
-    EXPECT_EQ(outcome, NewtonDirections::Outcome::found);
+    const auto status = make_directions(ball.model, LinearMethod::multigrid, {})
+                            ->find(ball.step(), ball.at, residual, {false, 1e-5}, direction, cost);
+    EXPECT_EQ(status, NewtonDirections::Status::found);
     iterations.push_back(cost.linear_solves);
   }
   EXPECT_LE(iterations.back(), iterations.front() + 1) << testing::PrintToString(iterations);

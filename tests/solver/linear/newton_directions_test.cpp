@@ -35,8 +35,8 @@ struct Case {
   [[nodiscard]] Direction direction(LinearMethod method) const {
     Direction found;
     NewtonDirections::Cost cost;
-    const auto outcome = make_directions(model, method, {})->find(step(), at, residual, {false, 1e-5}, found, cost);
-    EXPECT_EQ(outcome, NewtonDirections::Outcome::found);
+    const auto status = make_directions(model, method, {})->find(step(), at, residual, {0, 1e-5}, found, cost);
+    EXPECT_EQ(status, NewtonDirections::Status::found);
     EXPECT_GE(cost.factorisations, 1);
     EXPECT_GE(cost.linear_solves, 1);
     return found;
@@ -88,7 +88,7 @@ TEST(NewtonDirections, AMultigridThatDragsASolveOutIsMadeAnewOnTheWay) {
     step.rate_s = rate_s;
     NewtonDirections::Cost cost;
     EXPECT_EQ(directions->find(step, given.at, given.residual, {0, 1e-5}, found, cost),
-              NewtonDirections::Outcome::found);
+              NewtonDirections::Status::found);
     return cost;
   };
   Direction found;

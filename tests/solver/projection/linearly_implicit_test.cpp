@@ -147,14 +147,14 @@ TEST(LinearlyImplicit, FailuresAreReportedAndLeaveTheStateAlone) {
   const Model model = held_sheet();
   State next;
   next.time_s = 77;
-  EXPECT_EQ(LinearlyImplicit(model, 1e-12, 2).advance(rest_state(model), 5, true, next).outcome,
-            StepReport::Outcome::no_linear_convergence);
+  EXPECT_EQ(LinearlyImplicit(model, 1e-12, 2).advance(rest_state(model), 5, true, next).status,
+            StepReport::Status::no_linear_convergence);
   State lost = rest_state(model);
   lost.positions[3].x() = NAN;
-  EXPECT_EQ(LinearlyImplicit(model, 1e-6, 100).advance(lost, 5, true, next).outcome, StepReport::Outcome::not_finite);
+  EXPECT_EQ(LinearlyImplicit(model, 1e-6, 100).advance(lost, 5, true, next).status, StepReport::Status::not_finite);
   LinearlyImplicit interrupted(model, 1e-6, 100);
   interrupted.stop_when([] { return true; });
-  EXPECT_EQ(interrupted.advance(rest_state(model), 5, true, next).outcome, StepReport::Outcome::interrupted);
+  EXPECT_EQ(interrupted.advance(rest_state(model), 5, true, next).status, StepReport::Status::interrupted);
   EXPECT_EQ(next.time_s, 77);
   EXPECT_TRUE(next.positions.empty());
 }

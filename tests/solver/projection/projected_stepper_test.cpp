@@ -222,11 +222,11 @@ TEST(ProjectedStepper, FailuresLeaveTheStateAlone) {
   State next;
   next.time_s = 77;
   const StepReport report = make_stepper(model, impatient)->advance(rest_state(model), 20, true, next);
-  EXPECT_EQ(report.outcome, StepReport::Outcome::not_projected);
+  EXPECT_EQ(report.status, StepReport::Status::not_projected);
   EXPECT_TRUE(report.cell);
   const auto interrupted = make_stepper(model, scheme(Forces::newton));
   interrupted->stop_when([] { return true; });
-  EXPECT_EQ(interrupted->advance(rest_state(model), 2, true, next).outcome, StepReport::Outcome::interrupted);
+  EXPECT_EQ(interrupted->advance(rest_state(model), 2, true, next).status, StepReport::Status::interrupted);
   EXPECT_EQ(next.time_s, 77);
   EXPECT_TRUE(next.positions.empty());
 }

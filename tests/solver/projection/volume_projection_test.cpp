@@ -140,7 +140,7 @@ TEST(VolumeProjection, ACellThatCannotMoveIsNamed) {
   positions[element[6].index()].z() += 1;
   State state = moved_to(model, positions);
   const StepReport report = project(model, {.most_sweeps = 20}, state);
-  EXPECT_EQ(report.outcome, StepReport::Outcome::not_projected);
+  EXPECT_EQ(report.status, StepReport::Status::not_projected);
   ASSERT_TRUE(report.cell);
   EXPECT_EQ(report.cell->index(), 5u);
   EXPECT_EQ(report.projection_sweeps, 20);
@@ -165,7 +165,7 @@ TEST(VolumeProjection, WholeSurfaces) {
   state = moved_to(model, swollen);
   state.positions[0] *= 0.9;
   report = project(model, {.surfaces = ProjectionRule::Surfaces::embryo, .most_sweeps = 200}, state);
-  EXPECT_EQ(report.outcome, StepReport::Outcome::not_projected);
+  EXPECT_EQ(report.status, StepReport::Status::not_projected);
   EXPECT_FALSE(report.cell);
   EXPECT_FALSE(report.reason().empty());
 }

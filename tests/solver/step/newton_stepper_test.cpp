@@ -250,7 +250,7 @@ TEST(NewtonStepper, AStepThatFailsSaysSoAndLeavesTheStateAlone) {
   State next;
   next.time_s = 77;
   const StepReport report = solver.advance(rest_state(model), 1, true, next);
-  EXPECT_EQ(report.outcome, StepReport::Outcome::not_finite);
+  EXPECT_EQ(report.status, StepReport::Status::not_finite);
   EXPECT_FALSE(report.reason().empty());
   EXPECT_EQ(next.time_s, 77);
   EXPECT_TRUE(next.positions.empty());
@@ -262,7 +262,7 @@ TEST(NewtonStepper, AStepThatIsNotSolvedInTimeIsNotTaken) {
   State next;
   next.time_s = 77;
   const StepReport report = solver.advance(rest_state(model), 60, true, next);
-  EXPECT_EQ(report.outcome, StepReport::Outcome::no_convergence);
+  EXPECT_EQ(report.status, StepReport::Status::no_convergence);
   EXPECT_EQ(report.newton_iterations, 2);
   EXPECT_TRUE(report.cell);
   EXPECT_EQ(next.time_s, 77);
@@ -280,7 +280,7 @@ TEST(NewtonStepper, AnInterruptedStepSaysSoAndLeavesTheStateAlone) {
     State next;
     next.time_s = 77;
     const StepReport report = solver.advance(rest_state(model), 2, true, next);
-    EXPECT_EQ(report.outcome, StepReport::Outcome::interrupted);
+    EXPECT_EQ(report.status, StepReport::Status::interrupted);
     EXPECT_FALSE(report.converged());
     EXPECT_FALSE(report.reason().empty());
     EXPECT_LE(report.newton_iterations, answers);

@@ -1,4 +1,4 @@
-// From values to pixels along one axis, and its ticks. Runs without a value have a lane of their own before the axis.
+// Mapping of values to pixels along one axis, and its ticks. Runs without a value have a separate lane before the axis.
 import { number } from "../text";
 import type { Column } from "./study_data";
 
@@ -16,7 +16,7 @@ export class Axis {
   readonly isLogarithmic: boolean;
   readonly hasLane: boolean;
 
-  /** From pixel `from`, where least values are, to pixel `to`. */
+  /** Axis from pixel `from` (smallest values) to pixel `to`. */
   constructor(readonly column: Column, private readonly from: number, private readonly to: number, logarithmic = column.isLogarithmic) {
     this.isLogarithmic = logarithmic && !column.words && column.low > 0;
     this.hasLane = column.missing > 0;
@@ -34,7 +34,7 @@ export class Axis {
     return this.isLogarithmic ? Math.log10(value) : value;
   }
 
-  /** Where the lane of missing values lies. */
+  /** Position of the lane of missing values. */
   get lane(): number {
     return this.from + Math.sign(this.to - this.from) * 0.35 * laneWidth;
   }
@@ -49,7 +49,7 @@ export class Axis {
     return this.isLogarithmic ? 10 ** inner : inner;
   }
 
-  /** About `most` ticks, at round values. */
+  /** About `most` ticks at round values. */
   ticks(most: number): Tick[] {
     const { words } = this.column;
     if (words) {

@@ -1,4 +1,4 @@
-// What colour a run has: by the column that was chosen, evenly from its least value to its greatest, or a colour a word.
+// Colours of runs by the chosen column: uniform from its smallest to its largest value, or one colour per word.
 import { lineColours, rampColour } from "../colour";
 import { element, styleColour } from "../dom";
 import { number } from "../text";
@@ -11,12 +11,12 @@ const statusColours: Record<string, string> = {
 };
 
 export class Colours {
-  /** Of the places that placeOf gives; the last is for runs without a value. */
+  /** Colours by placeOf; the last is for runs without a value. */
   readonly list: string[];
 
   private static last: { colours: Colours; paper: string } | null = null;
 
-  /** Made once for a column and a theme. */
+  /** Computed once per column and theme. */
   static of(column: Column): Colours {
     const paper = styleColour("paper");
     if (this.last?.paper !== paper || this.last.colours.column !== column) this.last = { colours: new Colours(column), paper };
@@ -40,7 +40,7 @@ export class Colours {
     return this.list[this.placeOf(value)];
   }
 
-  /** Where a value lies between the least and the greatest, 0 to 1. */
+  /** Position of a value between the smallest and the largest, 0 to 1. */
   private part(value: number): number {
     const { usualRange: { low, high }, isLogarithmic } = this.column;
     if (!(high > low)) return 0.5;
@@ -48,7 +48,7 @@ export class Colours {
     return Math.min(Math.max(part, 0), 1);
   }
 
-  /** The ramp with its ends; a column of words has ticks instead. */
+  /** Colour ramp with its ends; columns of words have tick boxes instead. */
   legend(): HTMLElement {
     const { column } = this;
     const box = element("span", { class: "ramp" });

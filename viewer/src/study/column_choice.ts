@@ -1,4 +1,4 @@
-// Choosing columns: one of them, or several.
+// Choice of one or several columns.
 import { element } from "../dom";
 import type { Column } from "./study_data";
 
@@ -8,7 +8,7 @@ const groupNames: [string, (column: Column) => boolean][] = [
   ["the run", ({ role }) => role !== "key" && role !== "measure"],
 ];
 
-/** A list to choose one of. */
+/** List for choosing one column. */
 export function columnSelect(id: string, columns: Column[], first: Column, chosen: (column: Column) => void): HTMLSelectElement {
   const select = element("select", { id });
   for (const [name, belongs] of groupNames) {
@@ -20,7 +20,7 @@ export function columnSelect(id: string, columns: Column[], first: Column, chose
   return select;
 }
 
-/** Ticks for several, in the order of the columns; `chosen` is told of two or more. */
+/** Tick boxes for several columns, in order; `chosen` is called with two or more. */
 export function columnTicks(id: string, columns: Column[], first: Column[], chosen: (columns: Column[]) => void): HTMLElement {
   const list = element("div", { class: "ticks" });
   const boxes = columns.map((column) => {

@@ -1,4 +1,4 @@
-// Runs without a result, by reason. A click leaves only those of a reason.
+// Runs without a result, by reason. A click keeps only the runs with that reason.
 import { element } from "../dom";
 import { count as countText } from "../text";
 import type { Selection } from "./selection";
@@ -11,9 +11,9 @@ export interface Failures {
   statuses: string[];
 }
 
-const mostReasons = 12; // at first
+const mostReasons = 12; // initially
 
-/** Runs that have a reason, those of the most common one first. Reasons that differ in numbers only are one. */
+/** Runs with a reason, most common first. Reasons that differ only in numbers count as one. */
 export function failuresOf(study: Study): Failures[] {
   const [reason, status] = [study.the("reason"), study.the("status")];
   const groups = new Map<string, Failures>();
@@ -30,7 +30,7 @@ export function failuresOf(study: Study): Failures[] {
   return [...groups.values()].sort((a, b) => b.count - a.count);
 }
 
-/** A reason with "…" for its numbers. */
+/** Reason with "…" for its numbers. */
 export function patternOf(reason: string): string {
   return reason.replace(/(?<![A-Za-z_])-?\d+(\.\d+)?(e[-+]?\d+)?/g, "…");
 }
@@ -54,7 +54,7 @@ export function showFailures(box: HTMLElement, selection: Selection): void {
   const many = failures.reduce((sum, { count }) => sum + count, 0);
   box.append(
     element("h2", {}, `${countText(many)} ${many === 1 ? "run" : "runs"} without a result, by reason`),
-    element("p", { class: "note" }, "A click on a reason leaves its runs only, here and everywhere; another click takes that back."),
+    element("p", { class: "note" }, "Click a reason to show only its runs, in all plots and tables; click again to undo."),
     element("div", { class: "scroll" }, table),
   );
   if (failures.length <= mostReasons) return;

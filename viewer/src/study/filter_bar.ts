@@ -1,4 +1,4 @@
-// What stands above all: the filter, what is left out and how to take that back, and what gives runs their colours.
+// Bar above all plots: filter, active restrictions and their removal, and choice of colours.
 import { byId, download, element } from "../dom";
 import { csvText } from "../table";
 import { count, number } from "../text";
@@ -39,7 +39,7 @@ export class FilterBar {
     this.rebuild();
   }
 
-  /** Colours have changed. */
+  /** Update after a change of colours. */
   rebuild(): void {
     const legend = Colours.of(this.selection.colour).legend();
     this.legend.replaceChildren(...legend.childNodes);
@@ -67,7 +67,7 @@ export class FilterBar {
     });
   }
 
-  // A range as numbers, for what the hand cannot draw.
+  // Range as numbers, for values that cannot be drawn.
   private makeRangeForm(): HTMLElement {
     const columns = this.selection.study.plottable.filter((column) => !column.words && column.varies);
     if (columns.length === 0) return element("span");
@@ -106,7 +106,7 @@ export class FilterBar {
     this.count.textContent = `${count(shownRows.length)} of ${count(study.runs)} shown`;
     if (this.text.value !== selection.text) this.text.value = selection.text;
     const chip = (column: Column, text: string, drop: () => void) => {
-      const made = element("button", { type: "button", class: "chip", title: "Take this back", "data-key": column.name }, `× ${text}`);
+      const made = element("button", { type: "button", class: "chip", title: "Remove this restriction", "data-key": column.name }, `× ${text}`);
       made.addEventListener("click", drop);
       return made;
     };
@@ -147,7 +147,7 @@ export function rangeText(column: Column, low: number, high: number): string {
   return `${column.label} ${number(low, 3)} to ${number(high, 3)}${unit}`;
 }
 
-/** The shown runs with all their values, as runs.csv has them. */
+/** Table of the visible runs with all values, as in runs.csv. */
 export function tableText(selection: Selection, rows: readonly number[]): string {
   const columns = selection.study.columns.filter(({ role }) => role !== "seeds" && role !== "kept" && role !== "verdict");
   const value = (column: Column, row: number) => {

@@ -1,4 +1,4 @@
-// The frame of a plot of one column over another: where it lies on its canvas, its axes, their ticks and titles.
+// Frame of a plot of one column over another: position on its canvas, axes, ticks and titles.
 import { styleColour } from "../dom";
 import { plotFont } from "../fonts";
 import type { Axis, Tick } from "./axis";
@@ -13,7 +13,7 @@ export interface Frame {
 
 const mostLabel = 96; // pixels of a tick's text at the left
 
-/** As wide at the left as its ticks need. */
+/** Compute the left margin from the ticks. */
 export function frameOf(layers: Layers, leftTexts: string[]): Frame {
   layers.base.font = plotFont;
   const widest = Math.max(20, ...leftTexts.map((text) => layers.base.measureText(text).width));
@@ -51,7 +51,7 @@ export function drawTicks(layers: Layers, frame: Frame, ticksX: Tick[], ticksY: 
   }
   base.textBaseline = "top";
   base.textAlign = "center";
-  last = -Infinity; // the right end of the text before: texts do not lie over each other
+  last = -Infinity; // right end of the previous text: texts do not overlap
   const spacing = ticksX.length > 1 ? Math.abs(ticksX[1].at - ticksX[0].at) : Infinity;
   for (const { at, text } of [...ticksX].sort((a, b) => a.at - b.at)) {
     const fitted = clipped(base, text, Math.max(spacing - 6, 44));

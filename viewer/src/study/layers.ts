@@ -1,4 +1,4 @@
-// Two canvases over each other: what is drawn seldom, and over it what follows the hand.
+// Two canvases: one drawn rarely, and above it one that follows the pointer.
 import { element } from "../dom";
 
 export class Layers {
@@ -8,7 +8,7 @@ export class Layers {
   width = 0; // CSS pixels
   height = 0;
 
-  /** `draw` is called at each change of size. */
+  /** `draw`: called at each change of size. */
   constructor(label: string, draw: () => void) {
     const [below, above] = [element("canvas", { role: "img", "aria-label": label }), element("canvas", { "aria-hidden": "true" })];
     this.box.append(below, above);
@@ -36,14 +36,14 @@ export class Layers {
     context.clearRect(0, 0, this.width, this.height);
   }
 
-  /** Where the hand is, in CSS pixels of the canvases. */
+  /** Position of the pointer, in CSS pixels of the canvases. */
   place(event: MouseEvent): { x: number; y: number } {
     const { left, top } = this.box.getBoundingClientRect();
     return { x: event.clientX - left, y: event.clientY - top };
   }
 }
 
-/** Text that ends with "…" where it would be wider. */
+/** Clip a text with "…" to a width. */
 export function clipped(context: CanvasRenderingContext2D, text: string, width: number): string {
   if (context.measureText(text).width <= width) return text;
   let length = text.length;
@@ -51,7 +51,7 @@ export function clipped(context: CanvasRenderingContext2D, text: string, width: 
   return `${text.slice(0, length).trimEnd()}…`;
 }
 
-/** Words on at most `most` lines, the last of which is clipped. */
+/** Break words into at most `most` lines, the last one clipped. */
 export function wrapped(context: CanvasRenderingContext2D, text: string, width: number, most: number): string[] {
   const lines: string[] = [];
   for (const word of text.split(" ")) {

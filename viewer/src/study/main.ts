@@ -1,4 +1,4 @@
-// The page of a study begins here: reads its data, then shows its parts, which share one selection of runs.
+// Start of the page of a study: reads its data, then shows its parts, which share one selection of runs.
 import { byId, element } from "../dom";
 import { count, time } from "../text";
 import { followTheme } from "../theme";
@@ -12,7 +12,7 @@ import { makeScatter } from "./scatter";
 import { Selection } from "./selection";
 import { type Column, readStudy, type Study } from "./study_data";
 
-const mostAxes = 10; // of the parallel coordinates, at first
+const mostAxes = 10; // of the parallel coordinates, initially
 
 function showHeadline(study: Study): void {
   const { page } = study;
@@ -27,15 +27,15 @@ function showHeadline(study: Study): void {
     `${page.design === "" ? "Points" : `${page.design.charAt(0).toUpperCase()}${page.design.slice(1)}`} over ${study.of("key").length} ` +
       `${study.of("key").length === 1 ? "key" : "keys"} of ${page.scenario}`,
     `${count(study.runs)} ${study.runs === 1 ? "run" : "runs"}: ${counts.join(", ")}`,
-    `${took >= 7200 ? `${(took / 3600).toFixed(1)} h` : time(took)} of runs, one after the other`,
+    `${took >= 7200 ? `${(took / 3600).toFixed(1)} h` : time(took)} total run time`,
   ];
   byId("headline").textContent = parts.join("; ");
   byId("made-by").textContent = `Made by ${page.made_by}; run by plica ${page.begun_by} on ${page.processor}.` +
-    (page.columns.some(({ numbers }) => numbers === "float") ? " Measures are kept to seven digits here; runs.csv has all." : "");
-  if (page.set.length > 0) byId("headline").append(`; in all: ${page.set.join(", ")}`);
+    (page.columns.some(({ numbers }) => numbers === "float") ? " Output variables have seven digits here; runs.csv has all." : "");
+  if (page.set.length > 0) byId("headline").append(`; in all runs: ${page.set.join(", ")}`);
 }
 
-// What became of the embryos, or a measure that says most, or else how runs ended.
+// Verdict on the embryos, or the most informative output variable, or else the status of runs.
 function firstColour(study: Study): Column {
   return study.of("verdict")[0] ?? study.mainMeasures(1).find(({ varies }) => varies) ?? study.the("status");
 }
@@ -78,7 +78,7 @@ async function start(): Promise<void> {
 
 start().catch((error) => {
   const notice = byId("problem");
-  notice.textContent = `The page cannot show its data: ${error instanceof Error ? error.message : error}`;
+  notice.textContent = `Error while showing the data: ${error instanceof Error ? error.message : error}`;
   notice.hidden = false;
   throw error;
 });

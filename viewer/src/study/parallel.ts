@@ -1,4 +1,4 @@
-// Parallel coordinates: a line a run, an axis a column. A drag along an axis leaves out what lies outside.
+// Parallel coordinates: one line per run, one axis per column. A drag along an axis hides runs outside of it.
 import { element, styleColour } from "../dom";
 import { plotFont } from "../fonts";
 import { Axis } from "./axis";
@@ -11,10 +11,10 @@ import type { Column } from "./study_data";
 const room = { top: 52, bottom: 10, sides: 54 };
 const leastGap = 92; // pixels between axes; narrower places scroll
 const linesAtOnce = 700;
-const mostFaint = 1200; // lines of runs that are left out
-const reach = 8; // pixels from the hand to the line that it means
+const mostFaint = 1200; // lines of hidden runs
+const reach = 8; // pixels from the pointer to a line
 const handleTop = 46; // pixels, below the titles
-const handle = 34; // pixels that take a drag, about an axis
+const handle = 34; // width in pixels of the draggable strip of an axis
 
 export class Parallel {
   private shownColumns: Column[];
@@ -30,7 +30,7 @@ export class Parallel {
     this.layers.box.append(this.handles);
     box.append(
       element("h2", {}, "Parallel coordinates"),
-      element("p", { class: "note" }, "Drag along an axis to keep a range; click the axis to drop it. A click on a line picks its run."),
+      element("p", { class: "note" }, "Drag along an axis to select a range; click the axis to remove it. Click a line to pick its run."),
       element("div", { class: "scroll" }, this.layers.box),
       columnTicks("axes", selection.study.plottable, columns, (wanted) => {
         this.shownColumns = wanted;
@@ -50,7 +50,7 @@ export class Parallel {
     this.layers.box.style.minWidth = `${2 * room.sides + (this.shownColumns.length - 1) * leastGap}px`;
   }
 
-  /** Draws anew: colours of the page have changed. */
+  /** Redraw after a change of the page's colours. */
   draw(): void {
     const { width, height, base } = this.layers;
     if (width === 0 || height === 0) return;
@@ -85,13 +85,13 @@ export class Parallel {
     base.globalAlpha = 1;
   }
 
-  // Some at a time, so that a drag is followed at once.
+  // In batches, so that drags are followed immediately.
   private drawLines(): void {
     const { base } = this.layers;
     const { shownRows, colour } = this.selection;
     const colours = Colours.of(colour);
     const run = ++this.drawing;
-    // In an order that mixes early and late runs: the first part is a sample of all.
+    // In an order that mixes early and late runs, so that the first part is a sample of all.
     const stride = Math.max(1, Math.floor(shownRows.length / linesAtOnce));
     const order: number[] = [];
     for (let s = 0; s < stride; ++s) for (let i = s; i < shownRows.length; i += stride) order.push(shownRows[i]);
@@ -145,7 +145,7 @@ export class Parallel {
     });
   }
 
-  // Numbers along the axes, over all lines.
+  // Numbers along the axes, above all lines.
   private drawNumbers(): void {
     const { over } = this.layers;
     const gap = this.places.length > 1 ? this.places[1] - this.places[0] : 2 * room.sides;
@@ -186,7 +186,7 @@ export class Parallel {
     this.drawNumbers();
   }
 
-  // Each axis has a strip that takes drags, so that a finger elsewhere still moves the page.
+  // Each axis has a draggable strip, so that touches elsewhere scroll the page.
   private placeHandles(gap: number): void {
     if (this.handles.children.length !== this.axes.length || this.axes.some(({ column }, i) =>
       (this.handles.children[i] as HTMLElement).dataset.key !== column.name)) {
@@ -210,7 +210,7 @@ export class Parallel {
   }
 
   private handleOf(column: Column): HTMLElement {
-    const strip = element("div", { class: "handle", "data-key": column.name, title: `${column.name}: drag to keep a range` },
+    const strip = element("div", { class: "handle", "data-key": column.name, title: `${column.name}: drag to select a range` },
       element("div", { class: "brush" }));
     let from: number | null = null;
     const axisOf = () => this.axes[this.shownColumns.indexOf(column)];

@@ -1,4 +1,4 @@
-// The phase plot: what came out over two keys. Of a grid a cell for each pair of values; else a point a run.
+// Phase plot: results over two keys. Grids: one cell per pair of values; otherwise one point per run.
 import { element, styleColour } from "../dom";
 import { number } from "../text";
 import { Colours } from "./colours";
@@ -12,11 +12,11 @@ import { verdictRule } from "./verdict";
 
 interface Cell {
   rows: number[];
-  x: number; // the places of its values among the steps
+  x: number; // indices of its values among the steps
   y: number;
 }
 
-/** The runs of each pair of values, by their places among the steps: `x + y * steps of x`. */
+/** Runs of each pair of values, by index `x + y * steps of x`. */
 export function cellsOf(x: Column, y: Column, rows: Iterable<number>): Map<number, Cell> {
   const [placesX, placesY] = [x, y].map((column) => new Map(column.steps!.map((value, i) => [value, i])));
   const cells = new Map<number, Cell>();
@@ -63,7 +63,7 @@ export class Phase {
     this.redraw();
   }
 
-  /** Colours of the page have changed. */
+  /** Update after a change of colours. */
   redraw(): void {
     this.draw();
     this.points.draw();
@@ -92,12 +92,12 @@ export class Phase {
     this.told.textContent = this.legend();
   }
 
-  // What cells are, until the hand is over one.
+  // Legend of cells, until the pointer is over one.
   private legend(): string {
     const { colour } = this.selection;
     const cells = [...this.cells.values()];
     const most = Math.max(0, ...cells.map(({ rows }) => rows.length));
-    const several = most < 2 ? "" : `Up to ${most} runs a cell, which has the colour${colour.words ? "s of all" : " of their mean"}. `;
+    const several = most < 2 ? "" : `Up to ${most} runs per cell, which has the colour${colour.words ? "s of all" : " of their mean"}. `;
     const isEmpty = cells.some(({ rows }) => rows.every((row) => !colour.has(row)));
     const rule = colour.role === "verdict" ? `${verdictRule} ` : "";
     return several + rule + (isEmpty ? "Hatched: no run has a value." : "");
@@ -112,7 +112,7 @@ export class Phase {
     return { x: this.frame.left + i * this.size.width, y: this.frame.bottom - (j + 1) * this.size.height };
   }
 
-  // The colour of the mean; of words, a part of the cell for each. Hatched where no run has a value.
+  // Colour of the mean; for words one part of the cell each. Hatched without values.
   private drawCell(cell: Cell, colours: Colours): void {
     const { base } = this.layers;
     const { colour } = this.selection;
@@ -181,7 +181,7 @@ export class Phase {
       `${rows.length === 1 ? "1 run" : `${rows.length} runs`}, ${colour.label} ${what}${least}`;
   }
 
-  // Of several runs in a cell, clicks show one after the other.
+  // Repeated clicks on a cell with several runs show one after the other.
   private followHand(): void {
     const { box } = this.layers;
     box.addEventListener("pointermove", (event) => {

@@ -1,4 +1,4 @@
-// A point a run, of one column over another. A drag over it keeps what is inside.
+// Plot of one point per run, one column over another. A drag selects the runs inside.
 import { element, styleColour } from "../dom";
 import { Axis } from "./axis";
 import { Colours } from "./colours";
@@ -7,8 +7,8 @@ import { Layers } from "./layers";
 import type { Selection } from "./selection";
 import type { Column } from "./study_data";
 
-const mostDiscs = 2500; // more are squares
-const reach = 14; // pixels from the hand to the point that it means
+const mostDiscs = 2500; // more are drawn as squares
+const reach = 14; // pixels from the pointer to a point
 
 export class Points {
   readonly layers: Layers;
@@ -74,7 +74,7 @@ export class Points {
       for (const row of rows) {
         const [x, y] = this.place(row);
         if (isDense) {
-          base.fillRect(x - 1.5, y - 1.5, 3, 3); // many times as fast as discs
+          base.fillRect(x - 1.5, y - 1.5, 3, 3); // many times faster than discs
         } else {
           base.moveTo(x + size, y);
           base.arc(x, y, size, 0, 2 * Math.PI);
@@ -122,7 +122,7 @@ export class Points {
       return from !== null && Math.abs(to.x - from.x) > 5 && Math.abs(to.y - from.y) > 5;
     };
     box.addEventListener("pointerdown", (event) => {
-      if (event.pointerType !== "mouse" || event.button !== 0) return; // a finger moves the page
+      if (event.pointerType !== "mouse" || event.button !== 0) return; // touch scrolls the page
       from = this.layers.place(event);
       box.setPointerCapture(event.pointerId);
     });

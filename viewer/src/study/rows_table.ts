@@ -1,4 +1,4 @@
-// The table of all runs. Only the rows that the window shows are there, so that a hundred thousand stay usable.
+// Table of all runs. Only visible rows exist in the page, so that a hundred thousand remain usable.
 import { element } from "../dom";
 import { compareValues } from "../order";
 import { colourOfStatus, swatch } from "./colours";
@@ -6,19 +6,19 @@ import type { Selection } from "./selection";
 import type { Column } from "./study_data";
 
 const rowHeight = 27; // pixels, as in style.css
-const rowsAround = 8; // beyond what is seen
-const mostMeasures = 8; // as columns; the others with "all columns"
+const rowsAround = 8; // beyond the visible ones
+const mostMeasures = 8; // initial columns; the others with "all columns"
 
 export class RowsTable {
   private readonly body = element("tbody");
   private readonly head = element("tr");
   private readonly scroll = element("div", { class: "scroll runs rows", tabindex: "0", "aria-label": "Table of runs" });
   private readonly table = element("table", {});
-  private readonly before = element("tr", { "aria-hidden": "true" }); // as high as the rows above
+  private readonly before = element("tr", { "aria-hidden": "true" }); // height of the rows above
   private readonly after = element("tr", { "aria-hidden": "true" });
   private columns: Column[];
-  private all: number[] = []; // runs as they are sorted
-  private order: number[] = []; // those that are shown
+  private all: number[] = []; // runs in sorted order
+  private order: number[] = []; // visible runs
   private sortedBy: { column: Column; down: boolean };
   private drawn = "";
 
@@ -44,12 +44,12 @@ export class RowsTable {
     this.sort();
   }
 
-  /** The shown runs as they are sorted. */
+  /** Visible runs in sorted order. */
   get rows(): readonly number[] {
     return this.order;
   }
 
-  /** Colours have changed. */
+  /** Update after a change of colours. */
   rebuild(): void {
     this.draw();
   }
@@ -63,7 +63,7 @@ export class RowsTable {
     ];
   }
 
-  // Columns keep their widths while rows come and go: those of their longest texts among many.
+  // Columns keep the width of their longest texts while rows change.
   private fillHead(): void {
     const { study } = this.selection;
     const every = Math.max(1, Math.floor(study.runs / 200));
@@ -123,7 +123,7 @@ export class RowsTable {
     const now = `${first} ${last}`;
     if (!anew && now === this.drawn) return;
     this.drawn = now;
-    this.selection.point(null); // no leaving is told of rows that go
+    this.selection.point(null); // removed rows send no leave event
     this.before.style.height = `${first * rowHeight}px`;
     this.after.style.height = `${(this.order.length - last) * rowHeight}px`;
     [this.before.hidden, this.after.hidden] = [first === 0, last === this.order.length];

@@ -1,10 +1,10 @@
-// The picked run: its values, the command that makes it again, and what was kept of it.
+// Panel of the picked run: values, command to repeat it, and kept files.
 import { element } from "../dom";
 import { colourOfStatus, swatch } from "./colours";
 import type { Selection } from "./selection";
 import type { Column, Study } from "./study_data";
 
-/** `plica run` with all that the run says otherwise than its scenario, for a shell. */
+/** Shell command `plica run` with all overrides of the run. */
 export function commandOf(study: Study, row: number): string {
   const { page } = study;
   const seeds = study.the("seeds").exact(row);
@@ -16,7 +16,7 @@ export function commandOf(study: Study, row: number): string {
   return [`plica run ${quoted(page.scenario_argument)}`, ...overrides.map((override) => `--set ${quoted(override)}`), `--out ${out}`].join(" \\\n  ");
 }
 
-/** An argument as a shell takes it. */
+/** Quote an argument for a shell. */
 export function quoted(argument: string): string {
   return /^[\w.,:=/+@%-]+$/.test(argument) ? argument : `'${argument.replaceAll("'", `'\\''`)}'`;
 }
@@ -27,7 +27,7 @@ export class RunPanel {
     this.show();
   }
 
-  /** Colours have changed. */
+  /** Update after a change of colours. */
   show(): void {
     const { picked, study } = this.selection;
     document.body.classList.toggle("with-run", picked !== null);
@@ -63,7 +63,7 @@ export class RunPanel {
     const kept = study.the("kept").exact(row);
     if (kept === "") return [];
     const href = [...study.page.points.split("/"), ...kept.split("/")].map(encodeURIComponent).join("/");
-    const text = kept.endsWith(".html") ? "The report of this run" : "summary.json of this run";
+    const text = kept.endsWith(".html") ? "Report of this run" : "summary.json of this run";
     return [element("p", {}, element("a", { href, target: "_blank", rel: "noopener", id: "kept" }, text))];
   }
 
@@ -74,7 +74,7 @@ export class RunPanel {
       navigator.clipboard.writeText(text).then(() => (copy.textContent = "Copied"), () => (copy.textContent = "Not allowed here"));
     });
     return [
-      element("div", { class: "title" }, element("h3", {}, "To make it again"), copy),
+      element("div", { class: "title" }, element("h3", {}, "Command to repeat this run"), copy),
       element("pre", { id: "command", tabindex: "0" }, text),
     ];
   }

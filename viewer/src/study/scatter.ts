@@ -1,4 +1,4 @@
-// The scatter plot: any column over any other.
+// Scatter plot of any column over any other.
 import { element } from "../dom";
 import { columnSelect } from "./column_choice";
 import { Points } from "./points";

@@ -1,4 +1,4 @@
-// Which runs are shown, which one is picked or pointed at, and what gives them their colours.
+// Selection: visible, picked and highlighted runs, and their colouring.
 import { comparisonIn, compares, isNamed, isPart, wordsOf } from "../filter";
 import type { Column, Study } from "./study_data";
 
@@ -10,12 +10,12 @@ export interface Range {
 export type What = "shown" | "picked" | "pointed" | "colour";
 
 export class Selection {
-  /** 1 for each run that is shown. */
+  /** Visibility of runs, 1 if visible. */
   readonly shown: Uint8Array;
   shownRows: number[] = [];
   text = "";
   readonly ranges = new Map<Column, Range>();
-  readonly ticks = new Map<Column, Set<number>>(); // values that a column of words may have
+  readonly ticks = new Map<Column, Set<number>>(); // selected values of a column of words
   picked: number | null = null;
   pointed: number | null = null;
   private isWaiting = false;
@@ -39,7 +39,7 @@ export class Selection {
     this.apply();
   }
 
-  /** Runs whose value lies outside, or is missing, are left out; null takes that back. */
+  /** Hide runs with values outside a range or missing; null removes the range. */
   setRange(column: Column, range: Range | null): void {
     if (range) this.ranges.set(column, range);
     else this.ranges.delete(column);
@@ -80,7 +80,7 @@ export class Selection {
     this.tell("colour");
   }
 
-  // Once a picture, however fast the hand moves.
+  // At most once per frame.
   private applySoon(): void {
     if (this.isWaiting) return;
     this.isWaiting = true;
@@ -120,7 +120,7 @@ export class Selection {
   }
 }
 
-/** Which runs have all words of a text (../filter.ts). */
+/** Runs that match all words of a text (../filter.ts). */
 export function fitting(study: Study, text: string): (row: number) => boolean {
   const columns = study.columns.filter(({ role }) => role !== "kept" && role !== "seeds");
   const tests = wordsOf(text).map((word) => testOf(columns, word));

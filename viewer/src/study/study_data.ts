@@ -1,4 +1,4 @@
-// What plica put into the page of a study: src/study/study_report.cpp. Columns of values, a value a run.
+// Data of the page of a study, written by src/study/study_report.cpp: columns with one value per run.
 import { type ArrayEntry, inflate, PackedArrays } from "../packed";
 import { lastOf, number, words } from "../text";
 import { withVerdict } from "./verdict";
@@ -21,27 +21,27 @@ export interface StudyPage {
   name: string;
   scenario: string;
   scenario_argument: string; // of `plica run`
-  design: string; // its kind; "" where the study's scenario was not found
+  design: string; // its kind; "" if the scenario of the study was not found
   set: string[]; // KEY=VALUE in all runs
   log_keys: string[];
   runs: number;
-  points: string; // the directory of what was kept of runs, from the page's own
+  points: string; // directory of kept files, relative to the page
   study: string; // TOML
   columns: ColumnEntry[];
   arrays: ArrayEntry[];
 }
 
-const mostSteps = 60; // values of a column that counts as one of steps
+const mostSteps = 60; // distinct values of a column treated as steps
 
-/** Values of one kind, a number a run: of words their places in the list, from 0 on. NaN is missing. */
+/** Column of values, one number per run: for words the index in the list, from 0. NaN if missing. */
 export class Column {
   readonly name: string;
   readonly role: Role;
   readonly words: string[] | null;
   readonly low: number;
   readonly high: number;
-  readonly missing: number; // how many runs have no value
-  readonly steps: number[] | null; // the values, where they are few
+  readonly missing: number; // runs without a value
+  readonly steps: number[] | null; // distinct values, if few
   private usual: { low: number; high: number } | null = null;
   label: string;
   readonly unit: string;
@@ -69,12 +69,12 @@ export class Column {
     return this.unit === "" ? this.label : `${this.label}, ${this.unit}`;
   }
 
-  /** The title, whose unit stays with the word before it where lines break. */
+  /** Title whose unit is not separated from the preceding word by line breaks. */
   get heading(): string {
     return this.unit === "" ? this.label : `${this.label},\u00a0${this.unit.replaceAll(" ", "\u00a0")}`;
   }
 
-  /** From the least value to the greatest, or without a hundredth at each end where those lie far off. */
+  /** Range of values, without outliers (1 % at each end). */
   get usualRange(): { low: number; high: number } {
     if (!this.usual) {
       const sorted = this.values.filter((value) => !Number.isNaN(value)).sort();
@@ -85,7 +85,7 @@ export class Column {
     return this.usual;
   }
 
-  /** Whether it has more than one value. */
+  /** Whether the column has more than one value. */
   get varies(): boolean {
     return this.high > this.low;
   }
@@ -94,7 +94,7 @@ export class Column {
     return !Number.isNaN(this.values[row]);
   }
 
-  /** A value as people read it. */
+  /** Format a value for reading. */
   textOf(value: number): string {
     if (Number.isNaN(value)) return "none";
     return this.words ? plainWord(this.words[value], this.role) : number(value);
@@ -104,14 +104,14 @@ export class Column {
     return this.textOf(this.values[row]);
   }
 
-  /** A value as plica reads it; "" where it is missing. */
+  /** Format a value as input of plica; "" if missing. */
   exact(row: number): string {
     if (!this.has(row)) return "";
     return this.words ? this.words[this.values[row]] : String(this.values[row]);
   }
 }
 
-// Words of keys are in TOML, with quotes; a status is one word there.
+// Words of keys are in TOML, with quotes; a status is one word.
 function plainWord(word: string, role: Role): string {
   if (role === "status") return word.replaceAll("_", " ");
   return role === "key" && /^"[^"\\]*"$/.test(word) ? word.slice(1, -1) : word;
@@ -136,14 +136,14 @@ export class Study {
     return found;
   }
 
-  /** What can be plotted: columns with at least one value, keys first. */
+  /** Columns that can be plotted: with at least one value, keys first. */
   get plottable(): Column[] {
     const order: Role[] = ["key", "measure", "verdict", "status", "steps", "wall_s", "point", "replicate"];
     return order.flatMap((role) => this.of(role))
       .filter((column) => column.low <= column.high && (column.role !== "replicate" || column.varies));
   }
 
-  /** The measures that are shown at first: all that a study names, else those that vary. */
+  /** Initially shown output variables: those named by the study, else those that vary. */
   mainMeasures(most: number): Column[] {
     if (this.of("measure").length <= most) return this.of("measure");
     const measures = this.of("measure").filter(({ low, high }) => low <= high);
@@ -158,7 +158,7 @@ const usualMeasures = [
   "max_volume_error", "self_intersections", "min_scaled_jacobian",
 ];
 
-// Keys that end alike are called by what stands before, too.
+// Keys with equal endings include what precedes.
 function tellApart(keys: Column[]): void {
   for (let parts = 2; parts <= 4; ++parts) {
     const titles = keys.map(({ title }) => title);
@@ -172,7 +172,7 @@ function tellApart(keys: Column[]): void {
 
 export async function readStudy(): Promise<Study> {
   const page = JSON.parse(document.getElementById("data")!.textContent!) as StudyPage;
-  if (page.format !== 1) throw new Error(`the data are of format ${page.format}; this page reads format 1`);
+  if (page.format !== 1) throw new Error(`the data have format ${page.format}, but this page reads format 1`);
   const packed = new PackedArrays(await inflate(document.getElementById("rows")!.textContent!), page.arrays);
   const columns = page.columns.map((entry, place) =>
     new Column(entry, unpacked(entry, String(place), packed), page.log_keys.includes(entry.name)));

@@ -1,16 +1,16 @@
-// What became of an embryo, in a word: the rules of plica.verdict (docs/how-to/answers.md).
+// Verdict on an embryo by the rules of plica.verdict (docs/how-to/answers.md).
 import { Column } from "./study_data";
 
 const furrowed_um = 1; // below its lips
-const deep_um = 15; // below where it was at rest, where the lips have gone in, too
+const deep_um = 15; // below the reference position, if the lips have moved inward, too
 
-export const verdictRule = `Furrowed: floor ${furrowed_um} µm or more below its lips, or ${deep_um} µm or more deep; flattened: less.`;
+export const verdictRule = `Furrowed: bottom at least ${furrowed_um} µm below the lips, or ${deep_um} µm deep; flattened: less.`;
 const verdicts = ["closed", "furrowed", "flattened", "passes through itself"];
 export const verdictColours: Record<string, string> = {
   closed: "#009e73", furrowed: "#0072b2", flattened: "#e69f00", "passes through itself": "#d55e00",
 };
 
-/** A column of verdicts, where the study has the measures that they need. A run without a result has none. */
+/** Column of verdicts, if the study has the required output variables; missing for runs without a result. */
 export function verdictColumn(columns: Column[]): Column | null {
   const named = (name: string) => columns.find((column) => column.name === name);
   const [closed, belowLips, depth] = ["lips_closed_time_s", "furrow_depth_below_lips_um", "furrow_depth_um"].map(named);
@@ -27,7 +27,7 @@ export function verdictColumn(columns: Column[]): Column | null {
   return new Column({ name: "verdict", role: "verdict", words: verdicts }, values);
 }
 
-/** The columns with that of verdicts, where it can be made, behind the status. */
+/** Columns with the verdicts, if available, after the status. */
 export function withVerdict(columns: Column[]): Column[] {
   const verdict = verdictColumn(columns);
   return verdict ? columns.flatMap((column) => (column.role === "status" ? [column, verdict] : [column])) : columns;

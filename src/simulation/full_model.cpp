@@ -1,0 +1,90 @@
+#include "simulation/full_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/errors.hpp"
+#include "solver/step/backward_difference.hpp"
+
+namespace plica {
+
+FullModel::FullModel(std::unique_ptr<Model> model, Mirror mirror)
+    : model_(std::move(model)), mirror_(std::move(mirror)), state_(rest_state(*model_)) {}
+
+FullModel::FullModel(const FullModel& other)
+    : model_(std::make_unique<Model>(*other.model_)), mirror_(other.mirror_), state_(other.state_) {}
+
+// State without the internal variables of laws.
+State FullModel::whole_of(const Model& side, const State& state) const {
+  const auto vectors = [&](const Vectors& of_side) { return of_side.empty() ? Vectors() : mirror_.whole(of_side); };
+  const auto multipliers = [&](const std::vector<double>& of_side) {
+    std::vector<double> all;
+    if (of_side.empty()) return all;
+    for (const CellId cell : mirror_.cells) all.push_back(of_side[cell.index()]);
+    const auto others = static_cast<std::ptrdiff_t>(side.tissue.cells.size());
+    all.insert(all.end(), of_side.begin() + others, of_side.end());
+    return all;
+  };
+  State whole;
+  whole.time_s = state.time_s;
+  whole.positions = vectors(state.positions);
+  whole.velocities = vectors(state.velocities);
+  whole.multipliers = multipliers(state.multipliers);
+  whole.divided_until_s = state.divided_until_s;
+  whole.trend = {.step_s = state.trend.step_s,
+                 .earlier_s = state.trend.earlier_s,
+                 .mean_velocities = vectors(state.trend.mean_velocities),
+                 .accelerations = vectors(state.trend.accelerations),
+                 .multiplier_rates = multipliers(state.trend.multiplier_rates)};
+  std::size_t first = 0;  // of the obstacle's contacts on the side
+  for (std::size_t o = 0; o < side.obstacles.size(); ++o) {
+    const std::span<const NodeId> nodes = side.obstacles[o]->nodes();
+    for (const NodeId of_whole : model_->obstacles[o]->nodes()) {
+      const NodeId node = mirror_.image(of_whole).node;
+      const auto contact = first + static_cast<std::size_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
+      // Contact forces at nodes on a mirror plane are divided by the share of the side.
+      whole.contact_forces.push_back(state.contact_forces[contact] / side.tissue.own_share({&node, 1}));
+      whole.in_contact.push_back(state.in_contact[contact]);
+    }
+    first += nodes.size();
+  }
+  return whole;
+}
+
+State FullModel::follow(const Model& side, const State& state) {
+  State next = whole_of(side, state);
+  const BackwardDifference rates = rates_of(state_, next);
+  const Vectors earlier = rates.ahead > 0 ? earlier_positions(state_) : Vectors();
+  next.internals = next_internals(*model_, {.positions = next.positions,
+                                            .previous_positions = state_.positions,
+                                            .previous_velocities = state_.velocities,
+                                            .rate_s = rates.rate_s,
+                                            .end_time_s = next.time_s,
+                                            .earlier_positions = earlier,
+                                            .ahead = rates.ahead,
+                                            .internals = state_.internals});
+  return std::exchange(state_, std::move(next));
+}
+
+void FullModel::go_to(const Model& side, const State& state, std::vector<std::vector<double>> internals) {
+  state_ = whole_of(side, state);
+  state_.internals = std::move(internals);
+}
+
+std::vector<double> FullModel::take_activities(std::size_t law, const std::vector<double>& activities) {
+  for (std::size_t c = 0; c < activities.size(); ++c)
+    if (const CellId own = mirror_.own(CellId(c)); activities[c] != activities[own.index()])
+      throw UsageError(
+          fmt::format("{}: cells {} and {} are mirror images, and their activities are {} and {}; give "
+                      "both the same value, or remove embryo.mirror",
+                      model_->laws[law]->label(), c, own.index(), activities[c], activities[own.index()]));
+  std::vector<double> of_side;
+  for (const CellId cell : mirror_.origins)
+    if (!activities.empty()) of_side.push_back(activities[cell.index()]);
+  state_.internals[law] = model_->laws[law]->with_activities(state_.internals[law], activities);
+  return of_side;
+}
+
+}  // namespace plica

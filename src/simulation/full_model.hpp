@@ -1,0 +1,50 @@
+// Full model of a symmetric embryo of which one side is solved; used for output and measures.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "mechanics/model.hpp"
+#include "tissue/mirror.hpp"
+
+namespace plica {
+
+/// Full model with its state, composed of the solved side and its mirror images. Internal variables of its laws are
+/// updated from step to step.
+class FullModel {
+ public:
+  /// Starts in the reference state.
+  FullModel(std::unique_ptr<Model> model, Mirror mirror);
+  FullModel(const FullModel& other);
+  FullModel(FullModel&&) noexcept = default;
+  FullModel& operator=(const FullModel&) = delete;
+  FullModel& operator=(FullModel&&) noexcept = default;
+  ~FullModel() = default;
+
+  [[nodiscard]] const Model& model() const { return *model_; }
+  [[nodiscard]] const State& state() const { return state_; }
+
+  /// Number of copies of the side in the full model: 2 or 4.
+  [[nodiscard]] double copies() const {
+    return static_cast<double>(mirror_.cells.size()) / static_cast<double>(mirror_.origins.size());
+  }
+
+  /// Update after a step of the side. Returns the state of the full model before it.
+  State follow(const Model& side, const State& state);
+
+  /// Set the state from that of the side, and the internal variables of all laws.
+  void go_to(const Model& side, const State& state, std::vector<std::vector<double>> internals);
+
+  /// Override activities of a law; cells of the full model. Returns those of the side. Throws UsageError unless mirror
+  /// images have equal activities.
+  std::vector<double> take_activities(std::size_t law, const std::vector<double>& activities);
+
+ private:
+  [[nodiscard]] State whole_of(const Model& side, const State& state) const;
+
+  std::unique_ptr<Model> model_;
+  Mirror mirror_;
+  State state_;
+};
+
+}  // namespace plica

@@ -1,0 +1,268 @@
+// One side that is solved behaves as that of a whole, and the whole is shown and measured.
+#include "simulation/full_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/threads.hpp"
+#include "measure/self_intersections.hpp"
+#include "record/archive.hpp"
+#include "record/checkpoint.hpp"
+#include "scenario/load.hpp"
+#include "scenario/setup.hpp"
+#include "simulation/simulation.hpp"
+#include "support/small_furrow.hpp"
+#include "support/tissues.hpp"
+
+namespace plica {
+namespace {
+
+using namespace support;
+
+// A belly that is drawn in, with every law that a mirror goes with.
+const std::string furrow = small_furrow + R"([contraction.net]
+region = "belly"
+stiffness_nN_per_um = 0.01
+diagonals = true
+damping_nN_s_per_um = 0.1
+delay = { speed_um_per_s = 5 }
+[cortex.all-walls]
+region = "all"
+faces = "lateral"
+tension_mN_per_m = 0.01
+stiffness_mN_per_m = 0.02
+relaxation_min = 6
+crowding_mN_per_m = 0.001
+follow = { measure = "height_ratio", from = 0.9, to = 1.1 }
+[pressure.belly]
+region = "belly"
+pressure_Pa = 3
+)";
+
+Scenario scenario_of(const std::string& text, std::vector<std::string> overrides) {
+  overrides.insert(overrides.begin(), "time.integrator=bdf2");
+  return load_scenario({"furrow", "furrow.toml", text}, overrides);
+}
+
+const std::string compliant = "enclosed.yolk.bulk_modulus_Pa=50000";
+const std::vector<std::string> planes = {"embryo.mirror=[\"y\"]", "embryo.mirror=[\"x\",\"y\"]"};
+
+// How a quantity of a whole must be twice, or four times, that of a side.
+void expect_times(double times, double of_side, double of_whole, const std::string& what) {
+  EXPECT_NEAR(of_whole, times * of_side, 1e-9 * std::abs(of_whole) + 1e-12) << what;
+}
+
+// Forces on nodes of the whole are those on the side: on a plane its own share, without what is held there.
+void expect_same_forces(const Mirror& mirror, const Tissue& side, const Vectors& of_side, const Vectors& of_whole,
+                        const std::string& what) {
+  const double size = largest(of_whole);
+  double apart = 0;
+  for (std::size_t n = 0; n < of_whole.size(); ++n) {
+    const auto [node, signs] = mirror.nodes[n];
+    Vec3 force = signs.cwiseProduct(of_side[node.index()]) / side.own_share({&node, 1});
+    for (int axis = 0; axis < 3; ++axis)
+      if (side.is_mirrored[axis] && side.rest_positions[node.index()][axis] == 0) force[axis] = 0;
+    apart = std::max(apart, (force - of_whole[n]).norm());
+  }
+  EXPECT_LE(apart, 1e-9 * size + 1e-13) << what;
+}
+
+TEST(FullModel, EachLawOfASideIsThatOfAHalfOrAQuarter) {
+  const std::string slice = "base = \"furrow-slice\"";
+  std::set<std::string> laws;
+  for (const auto& [text, overrides] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {furrow, {planes[0], "enclosed.yolk.volume=compliant", compliant}},
+           {furrow, {planes[1], "enclosed.yolk.volume=held"}},
+           {furrow,
+            {planes[1], "embryo.elements_per_cell=[2,1,2]", "dynamics.density_kg_per_m3=1000",
+             "time.integrator=backward-euler", "elasticity.model=shape-memory"}},
+           {slice, {planes[0]}}}) {
+    const Scenario scenario = scenario_of(text, overrides);
+    const auto whole = make_model(scenario);
+    const auto solved = make_solved_side(scenario, *whole);
+    ASSERT_TRUE(solved);
+    const auto& [side, mirror] = *solved;
+    const double times = scenario.embryo.mirror.size() == 2 ? 4 : 2;
+    ASSERT_EQ(side->laws.size(), whole->laws.size());
+
+    // Two steps of random motion, so that laws remember something.
+    Random random(7);
+    const auto moved = [&](const Vectors& from, double size) {
+      Vectors positions = from;
+      for (std::size_t n = 0; n < positions.size(); ++n)
+        for (int axis = 0; axis < 3; ++axis)
+          if (const double way = random.number(size); !side->held[n][axis]) positions[n][axis] += way;
+      return positions;
+    };
+    const Vectors x0 = moved(side->tissue.rest_positions, 0.5), x1 = moved(x0, 1), x2 = moved(x1, 1);
+    const Vectors w0 = mirror.whole(x0), w1 = mirror.whole(x1), w2 = mirror.whole(x2);
+    const Vectors still(x0.size(), Vec3::Zero()), whole_still(w0.size(), Vec3::Zero());
+    std::vector<std::vector<double>> internals, whole_internals;
+    for (const auto& law : side->laws) internals.push_back(law->first_internal(side->tissue));
+    for (const auto& law : whole->laws) whole_internals.push_back(law->first_internal(whole->tissue));
+    Step step{x1, x0, still, 0.7, 30}, whole_step{w1, w0, whole_still, 0.7, 30};
+    step.internals = internals, whole_step.internals = whole_internals;
+    const auto next = next_internals(*side, step), whole_next = next_internals(*whole, whole_step);
+    step = {x2, x1, still, 0.7, 31}, whole_step = {w2, w1, whole_still, 0.7, 31};
+
+    for (std::size_t l = 0; l < side->laws.size(); ++l) {
+      const std::string name(side->laws[l]->name());
+      SCOPED_TRACE(name);
+      laws.insert(name);
+      step.internal = next[l], whole_step.internal = whole_next[l];
+      expect_times(times, side->laws[l]->energy(step), whole->laws[l]->energy(whole_step), "energy");
+      expect_same_forces(mirror, side->tissue, forces_of(*side->laws[l], step), forces_of(*whole->laws[l], whole_step),
+                         "forces");
+      const Vectors direction = moved(still, 1), whole_direction = mirror.whole(direction);
+      Vectors product = still, whole_product = whole_still;
+      side->laws[l]->add_tangent_product(step, direction, product);
+      whole->laws[l]->add_tangent_product(whole_step, whole_direction, whole_product);
+      expect_same_forces(mirror, side->tissue, product, whole_product, "products");
+    }
+    for (std::size_t k = 1; k < side->constraints.size(); ++k) {
+      double volume = 0, whole_volume = 0;
+      side->constraints[k]->values(x2, {&volume, 1});
+      whole->constraints[k]->values(w2, {&whole_volume, 1});
+      expect_times(times, volume, whole_volume, "volume");
+      expect_times(times, side->constraints[k]->targets()[0], whole->constraints[k]->targets()[0], "its target");
+      Vectors forces = still, whole_forces = whole_still;
+      side->constraints[k]->add_forces(x2, std::array{0.3}, forces);
+      whole->constraints[k]->add_forces(w2, std::array{0.3}, whole_forces);
+      expect_same_forces(mirror, side->tissue, forces, whole_forces, "forces of a volume");
+    }
+  }
+  EXPECT_EQ(laws,
+            (std::set<std::string>{"contraction", "corner barrier", "cortex", "dilatation", "drag", "elasticity",
+                                   "enclosed volume", "inertia", "pressure", "self-contact", "shape memory", "ties"}));
+}
+
+// Of two runs to the same time, the columns that say where they are.
+void expect_same_end(const Simulation& a, const Simulation& b, double length_um) {
+  const Observation one = a.measures(), other = b.measures();
+  const std::vector<std::pair<std::string, double>> tolerances = {{"furrow_depth_um", length_um},
+                                                                  {"furrow_depth_below_lips_um", length_um},
+                                                                  {"lip_distance_um", 2 * length_um},
+                                                                  {"vml_height_um", length_um},
+                                                                  {"vml_displacement_um", length_um},
+                                                                  {"vce_displacement_um", length_um},
+                                                                  {"vml_apical_area_ratio", 0.002},
+                                                                  {"min_apical_area_ratio", 0.002},
+                                                                  {"min_corner_jacobian_ratio", 0.01},
+                                                                  {"enclosed_volume_ratio", 1e-6},
+                                                                  {"yolk_pressure_Pa", 0.1},
+                                                                  {"closed_length_ratio", 0.02},
+                                                                  {"flank_volume_ratio", 0.0005},
+                                                                  {"cells", 0},
+                                                                  {"lips_closed", 0}};
+  for (const auto& [column, tolerance] : tolerances) {
+    SCOPED_TRACE(column);
+    ASSERT_EQ(one[column].has_value(), other[column].has_value());
+    if (one[column]) {
+      EXPECT_NEAR(*one[column], *other[column], tolerance);
+    }
+  }
+  EXPECT_LE(*other["max_volume_error"], 1e-9);
+  EXPECT_EQ(*other["self_intersections"], 0);
+}
+
+// When lips are closed for the first time; and where the run ends.
+double closes_at_s(Simulation& simulation) {
+  double closed_s = 0;
+  while (simulation.step())
+    if (closed_s == 0 && simulation.measures()["lips_closed"].value_or(0) > 0) closed_s = simulation.time_s();
+  EXPECT_EQ(simulation.status(), RunStatus::end_time) << simulation.failure();
+  return closed_s;
+}
+
+const std::vector<std::string> fine_steps = {"time.tolerance_um=0.01", "output.cells_csv=false"};
+
+std::vector<std::string> with(std::vector<std::string> overrides, const std::string& one) {
+  overrides.push_back(one);
+  return overrides;
+}
+
+// Until lips have met. From then on corners that press on corners slip aside, by 0.3 um at 20 min, which beside a plane
+// they cannot (docs/theory/mirror.md).
+TEST(FullModel, AFurrowClosesAsItDoesWithoutPlanes) {
+  const std::vector<std::string> upright = with(fine_steps, "time.end_min=15");
+  Simulation plain(load_scenario(find_scenario("furrow-slice"), upright));
+  Simulation mirrored(load_scenario(find_scenario("furrow-slice"), with(upright, planes[0])));
+  const double plain_s = closes_at_s(plain), mirrored_s = closes_at_s(mirrored);
+  EXPECT_NEAR(plain_s, mirrored_s, 10);
+  EXPECT_GT(mirrored_s, 800);
+  expect_same_end(plain, mirrored, 0.01);
+  EXPECT_EQ(mirrored.state().positions.size(), plain.state().positions.size());
+  EXPECT_EQ(2 * mirrored.memory().state.multipliers.size(), plain.state().multipliers.size());
+
+  EXPECT_EQ(*mirrored.measures()["contact_pairs"], *plain.measures()["contact_pairs"]);
+}
+
+TEST(FullModel, AFurrowBetweenTwoPlanesIsThatOfTheWhole) {
+  const std::vector<std::string> fine = {"time.tolerance_um=0.01", "enclosed.yolk.volume=compliant", compliant};
+  Simulation plain(scenario_of(furrow, fine));
+  ASSERT_EQ(plain.run(), RunStatus::end_time) << plain.failure();
+  for (const std::string& plane : planes) {
+    SCOPED_TRACE(plane);
+    Simulation mirrored(scenario_of(furrow, with(fine, plane)));
+    ASSERT_EQ(mirrored.run(), RunStatus::end_time) << mirrored.failure();
+    expect_same_end(plain, mirrored, 0.02);
+    double apart = 0;
+    for (std::size_t n = 0; n < plain.state().positions.size(); ++n)
+      apart = std::max(apart, (plain.state().positions[n] - mirrored.state().positions[n]).norm());
+    EXPECT_LT(apart, 0.05);
+    const std::vector<double>&forces = mirrored.state().contact_forces, &plain_forces = plain.state().contact_forces;
+    double sum = 0, plain_sum = 0;
+    for (std::size_t k = 0; k < forces.size(); ++k) sum += forces[k], plain_sum += plain_forces[k];
+    EXPECT_NEAR(sum, plain_sum, 0.01 * plain_sum);
+  }
+}
+
+// Without contact the lips pass through the plane, and so through each other.
+TEST(FullModel, ACrossingOfThePlaneIsSeen) {
+  Simulation simulation(load_scenario(find_scenario("furrow-slice"), {planes[0], "self_contact.surface=none"}));
+  while (simulation.step() && *simulation.measures()["self_intersections"] == 0) continue;
+  EXPECT_GT(*simulation.measures()["self_intersections"], 0);
+  EXPECT_GT(self_intersections(simulation.model().tissue, simulation.state().positions), 0);
+}
+
+TEST(FullModel, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
+  const Scenario scenario = scenario_of(furrow, {planes[1], "enclosed.yolk.volume=compliant", compliant});
+  std::optional<RunMemory> kept;
+  Observation measures;
+  std::optional<Simulation> fork;
+  const auto run = [&](int threads) {
+    const ThreadCount so_many(threads);
+    Simulation simulation(scenario);
+    while (simulation.step())
+      if (simulation.steps() == 9) {
+        kept = simulation.memory(), measures = simulation.measures();
+        fork.emplace(simulation);
+      }
+    return simulation;
+  };
+  const Simulation whole = run(1);
+  const Simulation on_three = run(3);
+  EXPECT_EQ(whole.state().positions, on_three.state().positions);
+  EXPECT_EQ(whole.state().internals, on_three.state().internals);
+  ASSERT_TRUE(kept);
+
+  Checkpoint checkpoint{"", "", "", *kept, {}};
+  checkpoint.record.rows.push_back(measures);
+  if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
+  Simulation resumed(scenario);
+  resumed.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  for (Simulation* rest : {&resumed, &*fork}) {
+    EXPECT_EQ(rest->run(), whole.status());
+    EXPECT_EQ(rest->steps(), whole.steps());
+    EXPECT_EQ(rest->state().positions, whole.state().positions);
+    EXPECT_EQ(rest->state().velocities, whole.state().velocities);
+    EXPECT_EQ(rest->state().internals, whole.state().internals);
+    EXPECT_EQ(rest->measures().values, whole.measures().values);
+  }
+
+  RunMemory of_another = *kept;
+  of_another.whole_internals.clear();
+  EXPECT_THROW(Simulation(scenario).go_on_from(of_another, measures), UnfitMemory);
+}
+
+}  // namespace
+}  // namespace plica
