@@ -17,7 +17,7 @@ std::unique_ptr<Stepper> make_stepper(const Model& model, const StepScheme& sche
   if (scheme.forces != StepScheme::Forces::newton || scheme.projection)
     for_held_constraints(model, [&](const Constraint& constraint, std::size_t, std::size_t) {
       throw std::logic_error(
-          fmt::format("\"{}\" goes with Newton's steps only: the projection keeps the volumes of "
+          fmt::format("\"{}\" requires Newton's method: the projection keeps only the volumes of "
                       "cells, and the linearly implicit scheme none",
                       constraint.name()));
     });

@@ -393,7 +393,7 @@ std::optional<std::string> why_indivisible(const Tissue& tissue) {
   for (const Cell& cell : tissue.cells)
     if (cell.walls.empty())
       return cell.is_of_grid ? "its cells have several elements each"
-                             : "its cells are made of kites, or of several layers of elements";
+                             : "its cells consist of kites or of several layers of elements";
   if (cell_between_layers(tissue)) return "it has more than one layer of cells";
   return std::nullopt;
 }

@@ -59,8 +59,8 @@ CellLattice lattice_of(const HexahedralMesh& mesh, const SortedHexahedra& sorted
   const std::size_t begin = sorted.first[c], count = sorted.first[c + 1] - begin;
   if (std::ranges::any_of(elements, [](int n) { return n < 1 || n > 1000; }) ||
       static_cast<std::size_t>(nu) * static_cast<std::size_t>(nv) * static_cast<std::size_t>(nw) != count)
-    throw MeshError(fmt::format("{} has {} hexahedra, and elements_per_cell says {} x {} x {}",
-                                cell_at(mesh, sorted, c), count, nu, nv, nw));
+    throw MeshError(fmt::format("{} has {} hexahedra; elements_per_cell is {} x {} x {}", cell_at(mesh, sorted, c),
+                                count, nu, nv, nw));
   lattice.nodes.resize(static_cast<std::size_t>(nu + 1) * static_cast<std::size_t>(nv + 1) *
                        static_cast<std::size_t>(nw + 1));
   for (std::size_t e = 0; e < count; ++e) {
@@ -71,7 +71,7 @@ CellLattice lattice_of(const HexahedralMesh& mesh, const SortedHexahedra& sorted
       NodeId& node = lattice.nodes[static_cast<std::size_t>(place)];
       if (node.valid() && node != sorted.elements[begin + e][i])
         throw MeshError(
-            fmt::format("the hexahedra of {} are no grid of {} x {} x {} in order, the first direction fastest",
+            fmt::format("the hexahedra of {} do not form a grid of {} x {} x {} in order, first direction fastest",
                         cell_at(mesh, sorted, c), nu, nv, nw));
       node = sorted.elements[begin + e][i];
     }
@@ -84,7 +84,7 @@ Tissue from_grid(const HexahedralMesh& mesh, const SortedHexahedra& sorted, cons
   const std::size_t cell_count = sorted.first.size() - 1;
   if (counts.size() != 3 * cell_count)
     throw MeshError(
-        fmt::format("elements_per_cell has {} numbers for {} cells; they are three a cell", counts.size(), cell_count));
+        fmt::format("elements_per_cell has {} numbers for {} cells; give three per cell", counts.size(), cell_count));
   std::vector<CellLattice> lattices;
   for (std::size_t c = 0; c < cell_count; ++c) {
     lattices.push_back(lattice_of(mesh, sorted, c, {counts[3 * c], counts[3 * c + 1], counts[3 * c + 2]}));
@@ -100,11 +100,11 @@ void set_hanging(const HexahedralMesh& mesh, Tissue& tissue) {
   for (std::size_t h = 0; h < hanging.size(); h += 1 + static_cast<std::size_t>(hanging[h]), ++count)
     if (hanging[h] == 1)
       throw MeshError(
-          "the mesh is a periodic sheet, and such meshes are not read; give the keys of shape \"sheet\" that made it");
+          "the mesh is a periodic sheet, which cannot be read; use the keys of shape \"sheet\" that made it");
     else if (hanging[h] < 2 || static_cast<std::size_t>(hanging[h]) >= hanging.size() - h ||
              count >= mesh.points.size())
       throw MeshError(
-          "hanging_nodes should be, for each of the last nodes of the mesh, how many nodes it lies between, and which");
+          "hanging_nodes must give, for each of the last nodes of the mesh, how many nodes it lies between, and which");
   const std::size_t free = mesh.points.size() - count;
   std::size_t h = 0;
   for (std::size_t node = free; node < mesh.points.size(); ++node) {
@@ -113,13 +113,13 @@ void set_hanging(const HexahedralMesh& mesh, Tissue& tissue) {
     double size = 0;
     for (int k = 0; k < between; ++k, ++h) {
       if (hanging[h] < 0 || static_cast<std::size_t>(hanging[h]) >= free)
-        throw MeshError(fmt::format("node {} hangs on node {}, which is no free one", node, hanging[h]));
+        throw MeshError(fmt::format("node {} hangs on node {}, which is not free", node, hanging[h]));
       mean.emplace_back(NodeId(hanging[h]), 1.0 / between);
       size = std::max(size, (mesh.points[mean.back().first.index()] - mesh.points[mean[0].first.index()]).norm());
     }
     if (!((mean_of(mean, mesh.points) - mesh.points[node]).norm() <= hanging_tolerance * size))
       throw MeshError(
-          fmt::format("node {} hangs on {} nodes, the first node {}, and does not lie in the middle "
+          fmt::format("node {} hangs on {} nodes, the first node {}, but does not lie in the middle "
                       "between them",
                       node, between, mean[0].first.number()));
     tissue.hanging.push_back(std::move(mean));
@@ -130,12 +130,12 @@ void set_corners(const HexahedralMesh& mesh, const SortedHexahedra& sorted, std:
                  std::size_t free, Cell& cell) {
   const int count = mesh.groups.corner_counts[c];
   if (count < 6 || count % 2 != 0 || static_cast<std::size_t>(count) > mesh.groups.corners.size() - next)
-    throw MeshError(fmt::format("{} has {} corners; they are 6 or more, as many at its base as at its apex",
+    throw MeshError(fmt::format("{} has {} corners; give 6 or more, equally many basal and apical",
                                 cell_at(mesh, sorted, c), count));
   for (int k = 0; k < count; ++k) {
     const int corner = mesh.groups.corners[next++];
     if (corner < 0 || static_cast<std::size_t>(corner) >= free)
-      throw MeshError(fmt::format("a corner of {} is node {}, which is no free one", cell_at(mesh, sorted, c), corner));
+      throw MeshError(fmt::format("a corner of {} is node {}, which is not free", cell_at(mesh, sorted, c), corner));
     cell.corners.emplace_back(corner);
   }
 }
@@ -163,8 +163,8 @@ void add_cell(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const M
                                    std::span(tissue.apical_facets).subspan(apical), cell);
   if (!chains)
     throw MeshError(fmt::format(
-        "the corners of {} do not fit its hexahedra: in cell_corners stand those of its basal face, "
-        "counter-clockwise seen from the apex, then the apical ones above them; the first four nodes of each "
+        "the corners of {} do not match its hexahedra; list in cell_corners those of its basal face, "
+        "counter-clockwise seen from the apical side, then the apical ones above them; the first four nodes of each "
         "hexahedron are basal",
         cell_at(mesh, sorted, c)));
   set_polygon_edges(*chains, tissue.rest_positions, cell);
@@ -232,8 +232,8 @@ Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, 
     add_cell(mesh, sorted, faces, c, std::move(cell), tissue);
   }
   if (next != mesh.groups.corners.size())
-    throw MeshError(fmt::format("cell_corners has {} nodes, and cell_corner_counts adds up to {}",
-                                mesh.groups.corners.size(), next));
+    throw MeshError(
+        fmt::format("cell_corners has {} nodes; cell_corner_counts adds up to {}", mesh.groups.corners.size(), next));
   set_walls(tissue);
   tissue.regions["all"] = CellSet(count, true);
   return tissue;

@@ -21,8 +21,8 @@ void check_size(const HexahedralMesh& mesh, const std::array<int, 3>& elements) 
   if (along < 1 || across < 1 || radial < 1) throw MeshError("elements_per_cell must be at least 1 in every direction");
   if (along != across)
     throw MeshError(fmt::format(
-        "elements_per_cell is [{}, {}, {}]; the cells of a file have no common direction along the axis, so the first "
-        "two must be equal",
+        "elements_per_cell is [{}, {}, {}]; the cells of a file share no direction along the axis: make the first two "
+        "equal",
         along, across, radial));
   const double total = static_cast<double>(mesh.cells.size()) * along * across * radial;
   if (total > static_cast<double>(largest_mesh_elements))
@@ -45,12 +45,12 @@ void check_cell_nodes(const HexahedralMesh& mesh, std::size_t cell) {
   std::array<NodeId, 8> nodes = mesh.cells[cell];
   for (const NodeId node : nodes) {
     if (!node.valid() || node.index() >= mesh.points.size())
-      throw MeshError(fmt::format("cell {} uses node {}, and the nodes are 0 to {}", cell, node.number(),
+      throw MeshError(fmt::format("cell {} uses node {}; nodes are 0 to {}", cell, node.number(),
                                   static_cast<long long>(mesh.points.size()) - 1));
     const Vec3& point = mesh.points[node.index()];
     if (!point.allFinite() || point.cwiseAbs().maxCoeff() > largest_coordinate_um)
-      throw MeshError(fmt::format("node {} of cell {} is at ({}, {}, {}); coordinates are finite, in um", node.number(),
-                                  cell, point.x(), point.y(), point.z()));
+      throw MeshError(fmt::format("node {} of cell {} is at ({}, {}, {}); coordinates must be finite, in um",
+                                  node.number(), cell, point.x(), point.y(), point.z()));
   }
   std::sort(nodes.begin(), nodes.end());
   const auto twice = std::adjacent_find(nodes.begin(), nodes.end());
@@ -61,9 +61,9 @@ void check_cell_nodes(const HexahedralMesh& mesh, std::size_t cell) {
 /// What may have gone wrong with a cell whose Jacobian is not positive at each corner.
 const char* inversion_remedy(const HexPoints& p) {
   if (hex_scaled_jacobian({p[0], p[1], p[3], p[2], p[4], p[5], p[7], p[6]}) > 0)
-    return "its nodes are in the order of a VTK_VOXEL; a VTK_HEXAHEDRON goes round each face";
+    return "its nodes are in the order of a VTK_VOXEL; order them around each face (VTK_HEXAHEDRON)";
   if (hex_scaled_jacobian({p[4], p[5], p[6], p[7], p[0], p[1], p[2], p[3]}) > 0)
-    return "it is inside out; nodes 0-3 must run counter-clockwise seen from nodes 4-7";
+    return "it is turned over; order nodes 0-3 counter-clockwise seen from nodes 4-7";
   return "a corner is flat or folded in, or the order of the nodes is not VTK's";
 }
 
@@ -182,7 +182,7 @@ void check_elements(const Tissue& tissue) {
     if (!(hex_scaled_jacobian(tissue.element_rest_shape[e]) > 0))
       throw MeshError(
           fmt::format("{} is so warped that its elements are inverted (det J <= 0 within it); move its "
-                      "corners, or give fewer elements_per_cell",
+                      "corners, or lower elements_per_cell",
                       cell_at(tissue, tissue.element_cell[e])));
 }
 
@@ -194,7 +194,8 @@ Tissue tissue_from_mesh(const HexahedralMesh& mesh, const std::array<int, 3>& el
   check_cells(mesh);
   if (!mesh.groups.is_empty()) {
     if (elements_per_cell != std::array{1, 1, 1})
-      throw MeshError("elements_per_cell divides cells of one hexahedron; those of this file have several already");
+      throw MeshError(
+          "elements_per_cell divides cells of one hexahedron; cells of this file already have several: omit it");
     return tissue_from_groups(mesh);
   }
   const MeshFaces faces(mesh.cells, mesh.points);

@@ -57,7 +57,7 @@ MeshFaces::MeshFaces(const std::vector<std::array<NodeId, 8>>& cells, std::span<
     const std::int32_t a = uses[i - 1].side, b = uses[i].side;
     if (other_side_[a] >= 0)
       throw MeshError(
-          fmt::format("cells {}, {} and {} share one face{}; two can: remove the one that lies over another",
+          fmt::format("cells {}, {} and {} share one face{}; at most two may: remove the one that lies over another",
                       other_side_[a] / 6, a / 6, b / 6, at_middle(uses[i].sorted_nodes, points)));
     if (!opposite(face_nodes(cells[a / 6], a % 6), face_nodes(cells[b / 6], b % 6)))
       throw MeshError(

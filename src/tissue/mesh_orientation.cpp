@@ -52,11 +52,11 @@ std::size_t outer_component(const HexahedralMesh& mesh, const std::vector<CellFa
     volume[components.set_of(face_node(mesh, side, 0).index())] += enclosed_volume(mesh, side, origin);
   if (volume.size() == 1)
     throw MeshError(fmt::format(
-        "the mesh has a single surface (a block or an open sheet), so which faces are apical cannot be told; {}",
+        "the mesh has a single surface (a block or an open sheet), which leaves its apical faces undetermined; {}",
         apical_remedy));
   if (volume.size() > 2)
-    throw MeshError(fmt::format("the mesh has {} separate surfaces where one closed layer has two; {}", volume.size(),
-                                apical_remedy));
+    throw MeshError(
+        fmt::format("the mesh has {} separate surfaces; one closed layer has two: {}", volume.size(), apical_remedy));
   const auto [first, first_volume] = *volume.begin();
   const auto [second, second_volume] = *volume.rbegin();
   if ((first_volume > 0) == (second_volume > 0))
@@ -87,7 +87,7 @@ std::vector<int> outer_faces(const HexahedralMesh& mesh, const MeshFaces& faces)
   for (const CellFace& side : surface) {
     if (components.set_of(face_node(mesh, side, 0).index()) != outer) continue;
     if (apical[side.cell] >= 0)
-      throw MeshError(fmt::format("{} has more than one face on the outer surface, and a cell has one apical face; {}",
+      throw MeshError(fmt::format("{} has more than one face on the outer surface; a cell has one apical face: {}",
                                   cell_at(mesh, side.cell), apical_remedy));
     apical[side.cell] = side.face;
   }
@@ -124,10 +124,10 @@ void check_apical_faces(const HexahedralMesh& mesh, const MeshFaces& faces, cons
       // Two of the nodes: a lateral face. Four or none: an apical or basal face, on which cells may be stacked.
       const bool stacked = here.size() != 2 && there.size() != 2;
       if (!stacked && here != there)
-        throw MeshError(
-            fmt::format("the apical faces of {} and its neighbour, cell {}, do not fit together; mend the array that "
-                        "names them",
-                        cell_at(mesh, cell), beyond->cell));
+        throw MeshError(fmt::format(
+            "the apical faces of {} and its neighbour, cell {}, do not meet in an edge; correct the array that "
+            "names them",
+            cell_at(mesh, cell), beyond->cell));
     }
 }
 

@@ -80,9 +80,9 @@ class Reflecting {
       const std::optional<NodeId> image = at_place_.at(beyond);
       if (!image)
         throw NotSymmetric(fmt::format("the mesh is not symmetric about {}: it has a node at {:.6g}, {:.6g}, {:.6g} um "
-                                       "and none at its image",
+                                       "but none at its image",
                                        plane, x.x(), x.y(), x.z()),
-                           "mirror a mesh that is, with its middle at 0; or none");
+                           "center the mesh at 0, or remove embryo.mirror");
       images.nodes.push_back(*image);
     }
     images.cells.resize(whole_.cells.size());
@@ -96,7 +96,7 @@ class Reflecting {
       if (!now.valid() || (image.valid() && image != now))
         throw NotSymmetric(
             fmt::format("the mesh is not symmetric about {}: cell {} has no image", plane, cell.number()),
-            "mirror a mesh that is, or none");
+            "use a symmetric mesh, or remove embryo.mirror");
       image = now;
     }
     return images;
@@ -115,7 +115,7 @@ class Reflecting {
         above = above || whole_.rest_positions[node.index()][axis] > tolerance_;
       }
       if (below && above)
-        throw NotSymmetric(fmt::format("{} cuts cells in two, cell {} for one", plane, c),
+        throw NotSymmetric(fmt::format("{} cuts cells in two, for example cell {}", plane, c),
                            fmt::format("give an even number of cells along {}", axis_names[axis]));
     }
   }
@@ -137,7 +137,7 @@ Vectors Mirror::whole(std::span<const Vec3> of_side) const {
 
 MirroredSide side_of(const Tissue& whole, const std::array<bool, 3>& axes) {
   if (whole.is_periodic())
-    throw NotSymmetric("no side of a periodic sheet stands for the whole", "remove it, or embryo.periodic");
+    throw NotSymmetric("a periodic sheet cannot be reduced to one side", "remove it, or embryo.periodic");
   const Reflecting reflecting(whole);
   MirroredSide side{whole, {}};
   Mirror& mirror = side.mirror;

@@ -134,7 +134,7 @@ class BackFromAFile(CommandLine):
         scenario = 'format = 1\n[embryo]\nshape = "file"\nfile = "rest.vtu"\n[vitelline]\nenabled = false\n'
         self.assert_refused(scenario, "embryo.file: ", "rest.vtu: the array cell_id joins", line=4)
         rest.write_bytes(whole.replace(b'Name="cell_id"', b'Name="id_cell"'))
-        self.assert_refused(scenario, "rest.vtu: the file tells of its cells' corners, and has no cell array cell_id", line=4)
+        self.assert_refused(scenario, "rest.vtu: the file lists the corners of its cells but has no cell array cell_id", line=4)
 
 
 if __name__ == "__main__":

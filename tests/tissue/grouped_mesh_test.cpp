@@ -82,22 +82,21 @@ TEST(GroupedMesh, SaysWhatIsWrong) {
   expect([](auto& m) { m.groups.cell_of.pop_back(); }, "cell_id has ");
   expect([](auto& m) { m.points.emplace_back(0, 0, 0); }, "belongs to no hexahedron; remove it");
   expect([](auto& m) { m.groups.corner_counts.pop_back(); }, "cell_corner_counts has 55 values for 56 cells");
-  expect([](auto& m) { m.groups.corner_counts[0] = 5; }, "um has 5 corners; they are 6 or more");
+  expect([](auto& m) { m.groups.corner_counts[0] = 5; }, "um has 5 corners; give 6 or more");
   expect([](auto& m) { m.groups.corner_counts[55] += 2; }, "cell 55 at (");
   expect([](auto& m) { m.groups.corners.push_back(0); }, "cell_corner_counts adds up to");
-  expect([](auto& m) { m.groups.corners[0] = -1; }, "um is node -1, which is no free one");
-  expect([](auto& m) { m.groups.corners[0] = static_cast<int>(m.points.size()) - 1; }, "which is no free one");
+  expect([](auto& m) { m.groups.corners[0] = -1; }, "um is node -1, which is not free");
+  expect([](auto& m) { m.groups.corners[0] = static_cast<int>(m.points.size()) - 1; }, "which is not free");
   expect([](auto& m) { std::swap(m.groups.corners[0], m.groups.corners[1]); }, "the corners of cell 0 at (");
-  expect([](auto& m) { m.groups.hanging.pop_back(); }, "hanging_nodes should be, for each");
-  expect([](auto& m) { m.groups.hanging[1] = 1 << 20; }, "which is no free one");
+  expect([](auto& m) { m.groups.hanging.pop_back(); }, "hanging_nodes must give, for each");
+  expect([](auto& m) { m.groups.hanging[1] = 1 << 20; }, "which is not free");
   expect([](auto& m) { m.groups.hanging[1] = m.groups.hanging[4]; }, "does not lie in the middle between them");
   expect([](auto& m) { m.groups.elements_per_cell = {2, 2}; }, "elements_per_cell has 2 numbers for 56 cells");
-  expect([](auto& m) { m.groups.elements_per_cell.assign(3 * 56, 1); },
-         "hexahedra, and elements_per_cell says 1 x 1 x 1");
-  expect_mesh_error([&] { tissue_from_mesh(good, {2, 2, 1}); }, "those of this file have several already");
+  expect([](auto& m) { m.groups.elements_per_cell.assign(3 * 56, 1); }, "hexahedra; elements_per_cell is 1 x 1 x 1");
+  expect_mesh_error([&] { tissue_from_mesh(good, {2, 2, 1}); }, "cells of this file already have several");
   HexahedralMesh grid = mesh_of(build_block({60, 40, 20, {3, 2, 1}, {2, 2, 1}}));
   std::swap(grid.cells[0], grid.cells[1]);
-  expect_mesh_error([&] { tissue_from_mesh(grid, {1, 1, 1}); }, "are no grid of 2 x 2 x 1");
+  expect_mesh_error([&] { tissue_from_mesh(grid, {1, 1, 1}); }, "do not form a grid of 2 x 2 x 1");
 }
 
 }  // namespace

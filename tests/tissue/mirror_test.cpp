@@ -99,7 +99,7 @@ TEST(Mirror, WhatIsNotSymmetricIsRefused) {
     return "";
   };
   EXPECT_EQ(complaint(build_shell({300, 160, 30, {12, 7, 6}, {1, 1, 1}})),
-            "the plane y = 0 cuts cells in two, cell 36 for one; give an even number of cells along y");
+            "the plane y = 0 cuts cells in two, for example cell 36; give an even number of cells along y");
   Tissue bent = pill();
   bent.rest_positions[40].z() += 0.1;
   EXPECT_NE(complaint(bent).find("the mesh is not symmetric about the plane y = 0: it has a node at"),

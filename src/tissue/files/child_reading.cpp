@@ -23,7 +23,7 @@ std::string read_in_child(const std::filesystem::path& file, const std::function
       return std::string("f") + error.what();
     }
   });
-  if (!answer || answer->empty()) throw_unread(file, fmt::format("it is damaged: {} breaks off at it", reader));
+  if (!answer || answer->empty()) throw_unread(file, fmt::format("it is damaged: {} crashes on it", reader));
   if (answer->front() == 'f') throw FileError(answer->substr(1));
   if (answer->front() == 'm') throw MeshError(answer->substr(1));
   return answer->substr(1);

@@ -14,8 +14,8 @@ namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& file) {
   throw FileError(
-      fmt::format("{}: cannot be read: this plica was built without VTK. Build it with VTK, or read the "
-                  "file from Python, which takes meshio for it: pip install 'plica[plot]'",
+      fmt::format("{}: cannot be read: this build has no VTK; build plica with VTK, or read the file from Python "
+                  "through meshio: pip install 'plica[plot]'",
                   file.string()));
 }
 
@@ -29,7 +29,7 @@ TriangleSurface read_surface(const std::filesystem::path& file) { refuse(file); 
 std::vector<std::pair<double, std::string>> read_collection(const std::filesystem::path& pvd) { refuse(pvd); }
 PolygonFile read_vtk_polygons(const std::filesystem::path& file) {
   throw FileError(fmt::format(
-      "{}: cannot be read: this plica was built without VTK. Build it with VTK, or save the surface as OBJ, OFF or PLY",
+      "{}: cannot be read: this build has no VTK; build plica with VTK, or save the surface as OBJ, OFF or PLY",
       file.string()));
 }
 
@@ -41,8 +41,7 @@ PolygonFile read_vtk_polygons(const std::filesystem::path& file) {
 
 plica::PolygonFile plica::read_vertex_model(const std::filesystem::path& file) {
   throw FileError(fmt::format(
-      "{}: cannot be read: this plica was built without HDF5. Build it with HDF5, or save the surface as OBJ",
-      file.string()));
+      "{}: cannot be read: this build has no HDF5; build plica with HDF5, or save the surface as OBJ", file.string()));
 }
 
 #endif

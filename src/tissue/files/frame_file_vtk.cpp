@@ -95,7 +95,7 @@ std::string surface_bytes(const fs::path& file) {
     std::array<int, 3> triangle{};
     for (int i = 0; i < 3; ++i) {
       if (ids->GetId(i) < 0 || ids->GetId(i) >= surface->GetNumberOfPoints())
-        throw_unread(file, fmt::format("face {} uses a point that is not there", cell));
+        throw_unread(file, fmt::format("face {} uses a missing point", cell));
       triangle[i] = static_cast<int>(ids->GetId(i));
     }
     triangles.push_back(triangle);
@@ -111,14 +111,14 @@ std::string collection_bytes(const fs::path& pvd) {
   const vtkSmartPointer<vtkXMLDataElement> root =
       vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromStream(text));
   vtkXMLDataElement* collection = root == nullptr ? nullptr : root->FindNestedElementWithName("Collection");
-  if (collection == nullptr) throw_unread(pvd, "it is no collection of frames");
+  if (collection == nullptr) throw_unread(pvd, "not a collection of frames (.pvd)");
   std::string bytes;
   for (int i = 0; i < collection->GetNumberOfNestedElements(); ++i) {
     vtkXMLDataElement* entry = collection->GetNestedElement(i);
     double time_s = 0;
     const char* file = entry->GetAttribute("file");
     if (file == nullptr || entry->GetScalarAttribute("timestep", time_s) != 1 || !std::isfinite(time_s))
-      throw_unread(pvd, fmt::format("frame {} has no file or no time", i));
+      throw_unread(pvd, fmt::format("frame {} has no file name or no time", i));
     put(std::vector<double>{time_s}, bytes);
     put(std::string(file), bytes);
   }
@@ -133,7 +133,7 @@ Frame read_frame(const fs::path& file) try {
   Frame frame;
   frame.positions = take<Vectors>(rest);
   frame.elements = take<std::vector<std::array<NodeId, 8>>>(rest);
-  if (frame.elements.empty()) throw_unread(file, "it holds no hexahedra");
+  if (frame.elements.empty()) throw_unread(file, "it has no hexahedra");
   const auto time = take<std::vector<double>>(rest);
   if (!time.empty()) frame.time_s = time.front();
   for (std::vector<int>* list :
@@ -157,13 +157,14 @@ Frame read_frame(const fs::path& file) try {
 
 TriangleSurface read_surface(const fs::path& file) {
   // Some of VTK's readers do not say so themselves.
-  if (!fs::is_regular_file(file)) throw_unread(file, fs::exists(file) ? "it is no file" : "No such file or directory");
+  if (!fs::is_regular_file(file))
+    throw_unread(file, fs::exists(file) ? "not a regular file" : "No such file or directory");
   const std::string bytes = read_in_child(file, [&] { return surface_bytes(file); });
   std::string_view rest = bytes;
   TriangleSurface surface;
   surface.points = take<Vectors>(rest);
   surface.triangles = take<std::vector<std::array<int, 3>>>(rest);
-  if (surface.triangles.empty()) throw_unread(file, "it holds no face");
+  if (surface.triangles.empty()) throw_unread(file, "it has no faces");
   require_finite(file, surface.points);
   return surface;
 }

@@ -81,7 +81,7 @@ vtkStandardNewMacro(ErrorWindow)
   if (start.starts_with("\xEF\xBB\xBF")) start.erase(0, 3);
   const std::size_t first = start.find_first_not_of(" \t\r\n");
   if (first == std::string::npos || start[first] != '<')
-    throw_unread(file, "it is neither a VTK XML file (.vtu) nor a legacy VTK file (.vtk)");
+    throw_unread(file, "neither a VTK XML file (.vtu) nor a legacy VTK file (.vtk)");
   return true;
 }
 
@@ -92,9 +92,9 @@ vtkSmartPointer<Output> output_of(const std::filesystem::path& file, Reader& rea
   vtkOutputWindow::SetInstance(window);
   reader.SetFileName(file.c_str());
   last.Update();
-  if (window->has_error()) throw_unread(file, fmt::format("VTK says: {}", window->first_error()));
+  if (window->has_error()) throw_unread(file, fmt::format("VTK reports: {}", window->first_error()));
   vtkSmartPointer<Output> output = Output::SafeDownCast(last.GetOutputDataObject(0));
-  if (output == nullptr) throw_unread(file, fmt::format("it holds no {}", what_is<Output>));
+  if (output == nullptr) throw_unread(file, fmt::format("it has no {}", what_is<Output>));
   return output;
 }
 
@@ -118,14 +118,15 @@ void check_hexahedra(vtkUnstructuredGrid& grid) {
   vtkCellArray* cells = grid.GetCells();
   const vtkUnsignedCharArray* types = grid.GetCellTypesArray();
   if (cells == nullptr || types == nullptr || !cells->IsValid() || types->GetNumberOfTuples() != count)
-    throw MeshError("the lists of the cells' nodes and types do not fit together");
+    throw MeshError("the lists of cells, nodes and types have inconsistent lengths");
   for (vtkIdType cell = 0; cell < count; ++cell) {
     const int type = grid.GetCellType(cell);
     if (type != VTK_HEXAHEDRON)
       throw MeshError(fmt::format("cell {} is a {} (VTK type {}); every cell must be a vtkHexahedron (type {})", cell,
                                   vtkCellTypes::GetClassNameFromTypeId(type), type, int{VTK_HEXAHEDRON}));
     if (cells->GetCellSize(cell) != 8)
-      throw MeshError(fmt::format("cell {} is a hexahedron with {} nodes", cell, cells->GetCellSize(cell)));
+      throw MeshError(
+          fmt::format("cell {} is a hexahedron with {} nodes; 8 are required", cell, cells->GetCellSize(cell)));
   }
 }
 
@@ -165,7 +166,9 @@ vtkSmartPointer<vtkPolyData> read_triangles(const std::filesystem::path& file) {
 void copy_hexahedra(vtkUnstructuredGrid& grid, Vectors& points, std::vector<std::array<NodeId, 8>>& hexahedra) {
   check_hexahedra(grid);
   const vtkIdType point_count = grid.GetNumberOfPoints(), cell_count = grid.GetNumberOfCells();
-  if (point_count > 8 * largest_mesh_elements) throw MeshError(fmt::format("the mesh has {} nodes", point_count));
+  if (point_count > 8 * largest_mesh_elements)
+    throw MeshError(
+        fmt::format("the mesh has {} nodes; at most {} are allowed", point_count, 8 * largest_mesh_elements));
   points.resize(static_cast<std::size_t>(point_count));
   for (vtkIdType i = 0; i < point_count; ++i) grid.GetPoints()->GetPoint(i, points[i].data());
   hexahedra.resize(static_cast<std::size_t>(cell_count));
@@ -176,7 +179,7 @@ void copy_hexahedra(vtkUnstructuredGrid& grid, Vectors& points, std::vector<std:
       // Before VTK's number is made shorter.
       const vtkIdType node = nodes->GetId(i);
       if (node < 0 || node >= point_count)
-        throw MeshError(fmt::format("cell {} uses node {}, and the nodes are 0 to {}", cell, node, point_count - 1));
+        throw MeshError(fmt::format("cell {} uses node {}; nodes are 0 to {}", cell, node, point_count - 1));
       hexahedra[cell][i] = NodeId(static_cast<std::size_t>(node));
     }
   }

@@ -52,8 +52,8 @@ void copy_arrays(vtkUnstructuredGrid& grid, const std::string& apical_array, Hex
     }
   }
   if (!apical_array.empty() && mesh.apical_faces.empty())
-    throw MeshError(fmt::format("there is no cell array \"{}\" of one number a cell; there {}", apical_array,
-                                names.empty() ? "is none at all" : "are: " + names));
+    throw MeshError(fmt::format("no cell array \"{}\" with one number per cell; there {}", apical_array,
+                                names.empty() ? "are none" : "are: " + names));
 }
 
 std::vector<int> whole_numbers(vtkDataArray* array) {
@@ -63,7 +63,7 @@ std::vector<int> whole_numbers(vtkDataArray* array) {
   for (vtkIdType i = 0; i < array->GetNumberOfTuples() * components; ++i) {
     const double value = array->GetComponent(i / components, static_cast<int>(i % components));
     if (!(std::abs(value) <= std::numeric_limits<int>::max()) || value != std::floor(value))
-      throw MeshError(fmt::format("\"{}\" holds {}; its values are whole numbers", array->GetName(), value));
+      throw MeshError(fmt::format("\"{}\" contains {}; values must be whole numbers", array->GetName(), value));
     numbers.push_back(static_cast<int>(value));
   }
   return numbers;
@@ -77,17 +77,16 @@ void copy_groups(vtkUnstructuredGrid& grid, HexahedralMesh& mesh) {
   const bool is_told = !groups.elements_per_cell.empty() || !groups.corner_counts.empty();
   const auto id = mesh.arrays.find("cell_id");
   if (id == mesh.arrays.end()) {
-    if (is_told) throw MeshError("the file tells of its cells' corners, and has no cell array cell_id");
+    if (is_told) throw MeshError("the file lists the corners of its cells but has no cell array cell_id");
     return;
   }
   const std::set<double> cells(id->second.begin(), id->second.end());
   if (!is_told && cells.size() == mesh.cells.size()) return;
   if (!is_told)
     throw MeshError(fmt::format(
-        "the array cell_id joins {} hexahedra to {} cells, and the file does not tell their corners: it should have "
-        "the "
-        "field arrays cell_corner_counts and cell_corners, as plica mesh writes them. If each hexahedron is a cell, "
-        "remove cell_id",
+        "the array cell_id joins {} hexahedra to {} cells without their corners; add the field arrays "
+        "cell_corner_counts and cell_corners, as `plica mesh` writes them, or remove cell_id if each hexahedron is a "
+        "cell",
         mesh.cells.size(), cells.size()));
   groups.cell_of = whole_numbers(grid.GetCellData()->GetArray("cell_id"));
   mesh.groups = std::move(groups);

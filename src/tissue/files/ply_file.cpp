@@ -50,13 +50,13 @@ enum class Format { ascii, little, big };
 class Header {
  public:
   explicit Header(std::string_view& bytes) : bytes_(bytes) {
-    if (next().front() != "ply") complain("\"ply\" should stand here");
+    if (next().front() != "ply") complain("expected \"ply\"");
     for (auto words = next(); words.front() != "end_header"; words = next()) {
       if (words.front() == "format") read_format(words);
       if (words.front() == "element") read_element(words);
       if (words.front() == "property") read_property(words);
     }
-    if (!format) complain("the header names no format");
+    if (!format) complain("the header has no format line");
   }
 
   std::optional<Format> format;
@@ -70,7 +70,7 @@ class Header {
   std::vector<std::string_view> next() {
     ++line_;
     const std::size_t end = bytes_.find('\n');
-    if (end == std::string_view::npos) complain("the file ends within its header");
+    if (end == std::string_view::npos) complain("the file ends within the header");
     std::string_view line = bytes_.substr(0, end);
     bytes_.remove_prefix(end + 1);
     std::vector<std::string_view> words;
@@ -89,31 +89,30 @@ class Header {
     if (word == "binary_little_endian") format = Format::little;
     if (word == "binary_big_endian") format = Format::big;
     if (!format)
-      complain(fmt::format("\"{}\" is no format; there are ascii, binary_little_endian and binary_big_endian", word));
+      complain(fmt::format("\"{}\" is not a format; formats: ascii, binary_little_endian, binary_big_endian", word));
   }
 
   void read_element(const std::vector<std::string_view>& words) {
     Element element;
-    if (words.size() < 3) complain("an element should have a name and a number");
+    if (words.size() < 3) complain("an element must have a name and a count");
     element.name = words[1];
     const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
     if (error != std::errc() || end != words[2].data() + words[2].size())
-      complain(fmt::format("\"{}\" is no number of elements", words[2]));
+      complain(fmt::format("\"{}\" is not a number of elements", words[2]));
     if (std::ranges::find(elements, element.name, &Element::name) != elements.end())
-      complain(fmt::format("the header has two elements \"{}\"; give one another name", element.name));
+      complain(fmt::format("the header has two elements \"{}\"; rename one", element.name));
     elements.push_back(std::move(element));
   }
 
   void read_property(const std::vector<std::string_view>& words) {
-    if (elements.empty()) complain("a property stands before the first element");
+    if (elements.empty()) complain("a property precedes the first element");
     const bool is_list = words.size() == 5 && words[1] == "list";
-    if (!is_list && words.size() != 3) complain("a property should have a type and a name");
+    if (!is_list && words.size() != 3) complain("a property must have a type and a name");
     const std::optional<Type> type = type_of(words[words.size() - 2]), count = is_list ? type_of(words[2]) : Type::int8;
-    if (!type || !count) complain(fmt::format("\"{}\": there is no such type", fmt::join(words, " ")));
+    if (!type || !count) complain(fmt::format("\"{}\": unknown type", fmt::join(words, " ")));
     Element& element = elements.back();
     if (std::ranges::find(element.properties, words.back(), &Property::name) != element.properties.end())
-      complain(
-          fmt::format("element \"{}\" has two properties \"{}\"; give one another name", element.name, words.back()));
+      complain(fmt::format("element \"{}\" has two properties \"{}\"; rename one", element.name, words.back()));
     element.properties.push_back({std::string(words.back()), *type, is_list ? count : std::optional<Type>()});
   }
 
@@ -153,7 +152,7 @@ class Numbers {
   std::size_t next_count(Type type) {
     const double count = next(type);
     if (!(count >= 0) || count > static_cast<double>(bytes_.size()) || count != std::floor(count))
-      throw MeshError(fmt::format("a list has {} numbers, more than the file", count));
+      throw MeshError(fmt::format("a list of {} numbers exceeds the file", count));
     return static_cast<std::size_t>(count);
   }
 
@@ -178,7 +177,7 @@ class Numbers {
     double value = 0;
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || stop != word.data() + word.size())
-      throw MeshError(fmt::format("\"{}\" is no number", word.substr(0, 40)));
+      throw MeshError(fmt::format("\"{}\" is not a number", word.substr(0, 40)));
     return value;
   }
 
@@ -203,8 +202,8 @@ void read_face(const Element& element, std::size_t face, Numbers& numbers, Polyg
       if (!is_corners(property)) continue;
       if (!(vertex >= 0) || !(vertex < static_cast<double>(file.surface.vertices.size())) ||
           vertex != std::floor(vertex))
-        throw MeshError(fmt::format("face {} uses vertex {}, and there are {} before it", face, vertex,
-                                    file.surface.vertices.size()));
+        throw MeshError(
+            fmt::format("face {} uses vertex {}; {} precede it", face, vertex, file.surface.vertices.size()));
       file.surface.polygons[face].push_back(static_cast<std::size_t>(vertex));
     }
   }
@@ -228,8 +227,8 @@ void check_properties(const Element& element) {
   for (const Property& property : element.properties)
     found += element.name == "face" ? is_corners(property)
                                     : property.name == "x" || property.name == "y" || property.name == "z";
-  if (element.name == "vertex" && found != 3) throw MeshError("vertices should have x, y and z");
-  if (element.name == "face" && found != 1) throw MeshError("faces should have a list vertex_indices or vertex_index");
+  if (element.name == "vertex" && found != 3) throw MeshError("vertices must have x, y and z");
+  if (element.name == "face" && found != 1) throw MeshError("faces must have one list vertex_indices or vertex_index");
 }
 
 }  // namespace
@@ -242,7 +241,7 @@ PolygonFile polygons_in_ply(std::string_view bytes) {
     check_properties(element);
     // A number has at least a byte; elements without numbers are none.
     if (element.count > bytes.size())
-      throw MeshError(fmt::format("{} elements \"{}\" are more than the file can hold", element.count, element.name));
+      throw MeshError(fmt::format("{} elements \"{}\" exceed the file", element.count, element.name));
     if (element.name == "face") file.surface.polygons.resize(element.count);
     for (std::size_t i = 0; i < element.count; ++i) {
       if (element.name == "vertex") {

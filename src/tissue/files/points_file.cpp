@@ -49,22 +49,22 @@ PointTable points_in_csv(std::string_view text) {
       for (const std::string_view axis : axes)
         if (std::ranges::count(names, axis) != 1)
           throw MeshError(
-              fmt::format("line {}: should name the columns, x_um, y_um and z_um once each among them; it "
+              fmt::format("line {}: must name the columns, including x_um, y_um and z_um once each; it "
                           "names {}",
                           line_number, fmt::join(names, ", ")));
       continue;
     }
     if (fields.size() != names.size())
       throw MeshError(
-          fmt::format("line {}: has {} fields, and the first line has {}", line_number, fields.size(), names.size()));
+          fmt::format("line {}: has {} fields; the first line has {}", line_number, fields.size(), names.size()));
     for (std::size_t f = 0; f < fields.size(); ++f) {
       const std::optional<double> number = number_in(fields[f]);
       if (!number)
-        throw MeshError(fmt::format("line {}: \"{}\" of column {} is no number", line_number, fields[f], names[f]));
+        throw MeshError(fmt::format("line {}: \"{}\" of column {} is not a number", line_number, fields[f], names[f]));
       columns[f].push_back(*number);
     }
   }
-  if (names.empty()) throw MeshError("is empty; its first line names the columns, x_um, y_um and z_um among them");
+  if (names.empty()) throw MeshError("is empty; the first line must name the columns, including x_um, y_um and z_um");
   PointTable table;
   table.points.assign(columns.front().size(), Vec3::Zero());
   for (std::size_t f = 0; f < names.size(); ++f) {

@@ -48,7 +48,7 @@ class Lines {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size()) complain(fmt::format("\"{}\" is no number", word));
+    if (error != std::errc() || end != word.data() + word.size()) complain(fmt::format("\"{}\" is not a number", word));
     return value;
   }
 
@@ -56,12 +56,12 @@ class Lines {
     long long value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size())
-      complain(fmt::format("\"{}\" is no whole number", word));
+      complain(fmt::format("\"{}\" is not a whole number", word));
     return value;
   }
 
   [[nodiscard]] Vec3 point(const std::vector<std::string_view>& words, std::size_t first) const {
-    if (words.size() < first + 3) complain("a vertex should have three coordinates");
+    if (words.size() < first + 3) complain("a vertex must have three coordinates");
     return {number(words[first]), number(words[first + 1]), number(words[first + 2])};
   }
 
@@ -74,8 +74,7 @@ void check_corners(const PolygonFile& file) {
   const std::size_t count = file.surface.vertices.size();
   for (std::size_t face = 0; face < file.surface.polygons.size(); ++face)
     for (const std::size_t vertex : file.surface.polygons[face])
-      if (vertex >= count)
-        throw MeshError(fmt::format("face {} uses vertex {}, and there are {}", face, vertex, count));
+      if (vertex >= count) throw MeshError(fmt::format("face {} uses vertex {}; there are {}", face, vertex, count));
 }
 
 }  // namespace
@@ -93,7 +92,7 @@ PolygonFile polygons_in_obj(std::string_view text) {
       const long long given = lines.whole((*words)[w].substr(0, (*words)[w].find('/')));
       const long long vertex = given < 0 ? count + given : given - 1;
       if (given == 0 || vertex < 0)
-        lines.complain(fmt::format("a face uses vertex {}; the first is 1, the last -1", given));
+        lines.complain(fmt::format("a face uses vertex {}; the first vertex is 1, the last -1", given));
       face.push_back(static_cast<std::size_t>(vertex));
     }
   }
@@ -108,10 +107,10 @@ PolygonFile polygons_in_off(std::string_view text) {
   if (!words) throw MeshError("is empty");
   const std::string_view kind = words->front();
   if (kind != "OFF" && kind != "COFF" && kind != "NOFF" && kind != "CNOFF")
-    lines.complain(fmt::format("\"{}\" stands where OFF should", kind.substr(0, 20)));
+    lines.complain(fmt::format("found \"{}\", expected OFF", kind.substr(0, 20)));
   words->erase(words->begin());
   if (words->empty()) words = lines.next();
-  if (!words || words->size() < 2) lines.complain("the numbers of vertices and faces should stand here");
+  if (!words || words->size() < 2) lines.complain("expected the numbers of vertices and faces");
   const long long vertices = lines.whole(words->front()), faces = lines.whole((*words)[1]);
   for (long long v = 0; v < vertices; ++v) {
     words = lines.next();
@@ -123,11 +122,11 @@ PolygonFile polygons_in_off(std::string_view text) {
     if (!words) lines.complain(fmt::format("the file ends after {} of {} faces", f, faces));
     const long long corners = lines.whole(words->front());
     if (corners < 0 || static_cast<unsigned long long>(corners) >= words->size())
-      lines.complain(fmt::format("a face should have {} corners and has {}", corners, words->size() - 1));
+      lines.complain(fmt::format("a face has {1} corners; its line announces {0}", corners, words->size() - 1));
     std::vector<std::size_t>& face = file.surface.polygons.emplace_back();
     for (long long k = 1; k <= corners; ++k) {
       const long long vertex = lines.whole((*words)[static_cast<std::size_t>(k)]);
-      if (vertex < 0) lines.complain(fmt::format("a face uses vertex {}; the first is 0", vertex));
+      if (vertex < 0) lines.complain(fmt::format("a face uses vertex {}; the first vertex is 0", vertex));
       face.push_back(static_cast<std::size_t>(vertex));
     }
   }
@@ -146,9 +145,8 @@ PolygonFile read_by_ending(const std::filesystem::path& path) {
   if (ending == ".vtp" || ending == ".vtk" || ending == ".vtu") return read_vtk_polygons(path);
   if (ending == ".h5" || ending == ".hdf5" || ending == ".hf5") return read_vertex_model(path);
   throw MeshError(
-      fmt::format("\"{}\" is no ending of a file of polygons; there are .obj, .off, .ply, .vtp, .vtk, .vtu, and .h5, "
-                  ".hdf5 and .hf5 "
-                  "of tyssue",
+      fmt::format("\"{}\" is not the extension of a polygon file; readable are .obj, .off, .ply, .vtp, .vtk, .vtu, and "
+                  ".h5, .hdf5 and .hf5 by tyssue",
                   ending));
 }
 

@@ -25,17 +25,17 @@ bool is_polygon(int type) {
 /// Faces of the grid: points and lines are passed over.
 std::vector<vtkIdType> faces_of_grid(vtkDataSet& grid) {
   if (grid.GetNumberOfCells() > largest_mesh_elements)
-    throw MeshError(
-        fmt::format("there are {} faces; at most {} are allowed", grid.GetNumberOfCells(), largest_mesh_elements));
+    throw MeshError(fmt::format("the surface has {} faces; at most {} are allowed", grid.GetNumberOfCells(),
+                                largest_mesh_elements));
   std::vector<vtkIdType> faces;
   for (vtkIdType cell = 0; cell < grid.GetNumberOfCells(); ++cell) {
     const int type = grid.GetCellType(cell);
     if (is_polygon(type)) faces.push_back(cell);
     if (is_polygon(type) || type == VTK_VERTEX || type == VTK_POLY_VERTEX || type == VTK_LINE || type == VTK_POLY_LINE)
       continue;
-    throw MeshError(fmt::format("cell {} is a {} (VTK type {}); a surface is made of polygons{}", cell,
+    throw MeshError(fmt::format("cell {} is a {} (VTK type {}); a surface consists of polygons{}", cell,
                                 vtkCellTypes::GetClassNameFromTypeId(type), type,
-                                type == VTK_HEXAHEDRON ? ", hexahedra go with shape \"file\"" : ""));
+                                type == VTK_HEXAHEDRON ? "; for hexahedra, set embryo.shape to \"file\"" : ""));
   }
   return faces;
 }
@@ -58,7 +58,7 @@ std::string polygon_bytes(const std::filesystem::path& path) {
     counts.push_back(static_cast<std::size_t>(ids->GetNumberOfIds()));
     for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k) {
       if (ids->GetId(k) < 0 || ids->GetId(k) >= grid->GetNumberOfPoints())
-        throw MeshError(fmt::format("face {} uses vertex {}, and there are {}", counts.size() - 1, ids->GetId(k),
+        throw MeshError(fmt::format("face {} uses vertex {}; there are {}", counts.size() - 1, ids->GetId(k),
                                     grid->GetNumberOfPoints()));
       corners.push_back(static_cast<std::size_t>(ids->GetId(k)));
     }

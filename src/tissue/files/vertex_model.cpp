@@ -14,7 +14,7 @@ namespace {
 const std::vector<double>& column(const NumberedTable& table, const char* name, const char* of) {
   const auto found = table.columns.find(name);
   if (found == table.columns.end())
-    throw MeshError(fmt::format("the table of {} has no column \"{}\" of numbers; it has {}", of, name,
+    throw MeshError(fmt::format("the table of {} has no numeric column \"{}\"; it has {}", of, name,
                                 fmt::join(keys_of(table.columns), ", ")));
   return found->second;
 }
@@ -30,7 +30,8 @@ class Rows {
 
   [[nodiscard]] std::size_t row(double index) const {
     const auto found = rows_.find(index);
-    if (found == rows_.end()) throw MeshError(fmt::format("an edge names row {} of {}, and there is none", index, of_));
+    if (found == rows_.end())
+      throw MeshError(fmt::format("an edge names row {} of {}, which does not exist", index, of_));
     return found->second;
   }
 
@@ -55,7 +56,8 @@ PolygonFile polygons_of(const VertexModelTables& tables) {
       tables.faces.index.size());  // of each face, from vertex to vertex
   for (std::size_t e = 0; e < from.size(); ++e)
     if (!next[face_rows.row(face[e])].emplace(vertex_rows.row(from[e]), vertex_rows.row(to[e])).second)
-      throw MeshError(fmt::format("two edges of face {} begin at vertex {}; they should be a ring", face[e], from[e]));
+      throw MeshError(
+          fmt::format("two edges of face {} begin at vertex {}; edges of a face must form one ring", face[e], from[e]));
 
   // tyssue leaves cells that have gone in its tables.
   const auto alive = tables.faces.columns.find("is_alive");
@@ -71,7 +73,8 @@ PolygonFile polygons_of(const VertexModelTables& tables) {
     }
     const auto last = next[f].find(ring.back());
     if (ring.size() != next[f].size() || last == next[f].end() || last->second != ring.front())
-      throw MeshError(fmt::format("the {} edges of face {} are no ring", next[f].size(), tables.faces.index[f]));
+      throw MeshError(
+          fmt::format("the {} edges of face {} do not form one ring", next[f].size(), tables.faces.index[f]));
     file.surface.polygons.push_back(std::move(ring));
     kept.push_back(f);
   }

@@ -64,7 +64,7 @@ std::vector<double> numbers_in(hid_t group, const std::string& name, Shape& shap
   shape = *found;
   std::vector<double> values(shape.rows * shape.columns);
   if (!values.empty() && H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    throw MeshError(fmt::format("HDF5 cannot read {}: is it compressed by what HDF5 does not know?", name));
+    throw MeshError(fmt::format("HDF5 cannot read {}; save it without compression, or with gzip", name));
   return values;
 }
 
@@ -90,11 +90,11 @@ std::vector<std::string> texts_in(hid_t group, const std::string& name) {
 
 NumberedTable table_in(hid_t file, const std::string& name) {
   if (!has(file, name))
-    throw MeshError(fmt::format("it holds no table \"{}\"; tyssue's save_datasets writes vert, edge and face", name));
+    throw MeshError(fmt::format("no table \"{}\"; write vert, edge and face by tyssue's save_datasets", name));
   const Handle group(H5Gopen2(file, name.c_str(), H5P_DEFAULT), H5Gclose);
   if (!group.is_open() || !has(group, "axis1"))
     throw MeshError(
-        fmt::format("the table \"{}\" is none of pandas' \"fixed\" format: write it by tyssue's "
+        fmt::format("the table \"{}\" is not in pandas' \"fixed\" format; write it by tyssue's "
                     "save_datasets, or DataFrame.to_hdf without format=\"table\"",
                     name));
   NumberedTable table;
@@ -136,8 +136,8 @@ std::string table_bytes(const std::filesystem::path& path) {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file.is_open()) throw MeshError("it is no HDF5 file");
-  if (has(file, "cell")) throw MeshError("it holds cells of three dimensions; a surface is wanted, with a cell a face");
+  if (!file.is_open()) throw MeshError("not an HDF5 file");
+  if (has(file, "cell")) throw MeshError("it contains three-dimensional cells; give a surface with one cell per face");
   std::string bytes;
   for (const char* name : {"vert", "edge", "face"}) put_table(table_in(file, name), bytes);
   return bytes;

@@ -72,8 +72,8 @@ Outline outline_with(double belly_sag, double back_sag) {
   const bool found = (sags(outline) - wanted).norm() < 1e-8;
   if (!found || outline.even > 0.48 || outline.even + std::abs(outline.odd) > 0.5)
     throw MeshError(
-        fmt::format("no egg has sags of {:.3g} and {:.3g} % of its height; those of an ellipsoid are 10 %, "
-                    "of a measured embryo 9.4 and 3.9 %",
+        fmt::format("no egg shape has sags of {:.3g} and {:.3g} % of its height; an ellipsoid has 10 %, a "
+                    "measured embryo 9.4 and 3.9 %",
                     50 * belly_sag, 50 * back_sag));
   return outline;
 }
@@ -83,8 +83,8 @@ Outline outline_with(double belly_sag, double back_sag) {
 StarSurface egg_surface(const EggShape& shape) {
   for (const double length : {shape.length_um, shape.width_um, shape.height_um})
     if (!(length > 0) || !std::isfinite(length))
-      throw MeshError(fmt::format("an egg of {:.4g} x {:.4g} x {:.4g} um; its lengths should be positive",
-                                  shape.length_um, shape.width_um, shape.height_um));
+      throw MeshError(fmt::format("an egg of {:.4g} x {:.4g} x {:.4g} um; lengths must be positive", shape.length_um,
+                                  shape.width_um, shape.height_um));
   Vec3 half_axes = 0.5 * Vec3(shape.length_um, shape.width_um, shape.height_um);
   Outline outline{0, 0};
   if (shape.belly_sag_um || shape.back_sag_um) {

@@ -60,7 +60,7 @@ Vectors random_points(const StarSurface& surface, std::size_t count, std::uint64
 }  // namespace
 
 Vectors even_points(const StarSurface& surface, std::size_t count, std::uint64_t seed) {
-  if (count < 12) throw MeshError(fmt::format("{} points; a closed sheet takes at least 12 cells", count));
+  if (count < 12) throw MeshError(fmt::format("{} points; a closed sheet requires at least 12 cells", count));
   Vectors points = random_points(surface, count, seed);
   // Cells that are neighbours should be near each other in memory, too.
   std::ranges::sort(points, {}, [](const Vec3& p) { return p.x(); });

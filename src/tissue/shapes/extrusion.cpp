@@ -21,11 +21,11 @@ double bounded_height(double height, double bound) {
 
 void check_heights(const PolygonSurface& polygons, std::span<const double> heights_um) {
   if (heights_um.size() != 1 && heights_um.size() != polygons.polygons.size())
-    throw MeshError(fmt::format("{} heights for {} cells; there should be one, or one a cell", heights_um.size(),
-                                polygons.polygons.size()));
+    throw MeshError(
+        fmt::format("{} heights for {} cells; give one, or one per cell", heights_um.size(), polygons.polygons.size()));
   for (std::size_t i = 0; i < heights_um.size(); ++i)
     if (!(heights_um[i] > 0) || !std::isfinite(heights_um[i]))
-      throw MeshError(fmt::format("the height of row {} is {:.4g} um; it should be positive", i, heights_um[i]));
+      throw MeshError(fmt::format("the height of row {} is {:.4g} um; heights must be positive", i, heights_um[i]));
 }
 
 // Whether a part of the basal face, about its middle, is turned over or nearly so, seen along the apical normal.
@@ -92,8 +92,8 @@ ExtrudedSheet extrude(const PolygonSurface& polygons, std::span<const VertexBend
     if (heights[cell] < heights[sheet.lowest_cell]) sheet.lowest_cell = cell;
     if (!(area_vector(sheet.basal, sheet.cells[cell]).dot(area_vector(sheet.apical, sheet.cells[cell])) > 0))
       throw MeshError(fmt::format(
-          "the basal face of cell {}, whose apex is at {}, is turned over; its height of {:.3g} um should be "
-          "less, or the surface smoother there",
+          "the basal face of cell {}, whose apical face is at {}, is turned over; lower its height of {:.3g} um, "
+          "or smooth the surface there",
           cell, place_text(sheet.apical[sheet.cells[cell].front()]), height_of(cell)));
   }
   if (!heights.empty()) sheet.lowest_um = heights[sheet.lowest_cell];
@@ -103,9 +103,9 @@ ExtrudedSheet extrude(const PolygonSurface& polygons, std::span<const VertexBend
 
 void note_lower_cells(const ExtrudedSheet& sheet, std::vector<std::string>& remarks) {
   if (sheet.lower_cells > 0)
-    remarks.push_back(
-        fmt::format("{} cells are lower than {}, the lowest, cell {}, {:.3g} um: the surface bends too sharply there",
-                    sheet.lower_cells, sheet.asked_um, sheet.lowest_cell, sheet.lowest_um));
+    remarks.push_back(fmt::format(
+        "{} cells are lower than {} (minimum: cell {}, {:.3g} um), because the surface bends too sharply there",
+        sheet.lower_cells, sheet.asked_um, sheet.lowest_cell, sheet.lowest_um));
 }
 
 std::vector<double> prism_heights(const PrismSheet& sheet) {

@@ -35,16 +35,16 @@ std::string face_at(const PolygonSurface& surface, std::size_t face) {
 }
 
 void check_corners(const PolygonSurface& surface) {
-  if (surface.polygons.empty()) throw MeshError("there is no face");
+  if (surface.polygons.empty()) throw MeshError("the surface has no faces");
   for (std::size_t face = 0; face < surface.polygons.size(); ++face) {
     std::vector<std::size_t> corners = surface.polygons[face];
     if (corners.size() < 3)
-      throw MeshError(fmt::format("face {} has {} corners; a cell has at least three", face, corners.size()));
+      throw MeshError(fmt::format("face {} has {} corners; a cell requires at least three", face, corners.size()));
     for (const std::size_t vertex : corners) {
       const Vec3& p = surface.vertices[vertex];
       if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest_coordinate_um)
-        throw MeshError(fmt::format("vertex {} of face {} is at ({}, {}, {}); coordinates are finite, in um", vertex,
-                                    face, p.x(), p.y(), p.z()));
+        throw MeshError(fmt::format("vertex {} of face {} is at ({}, {}, {}); coordinates must be finite, in um",
+                                    vertex, face, p.x(), p.y(), p.z()));
     }
     std::ranges::sort(corners);
     if (const auto twice = std::ranges::adjacent_find(corners); twice != corners.end())
@@ -94,8 +94,8 @@ std::size_t merge_vertices(PolygonSurface& surface, bool mend) {
     ++merged;
     if (!mend)
       throw MeshError(
-          fmt::format("vertices {} and {} lie at the same place, {}; neighbours should share their "
-                      "vertices: give mend = true",
+          fmt::format("vertices {} and {} coincide at {}; let neighbours share their vertices: set "
+                      "mend = true",
                       first[v], v, place_text(surface.vertices[v])));
   }
   for (auto& polygon : surface.polygons)
@@ -143,7 +143,7 @@ std::vector<std::vector<Across>> faces_across(const PolygonSurface& surface) {
   for (const auto& [edge, at] : faces) {
     if (at.size() > 2)
       throw MeshError(
-          fmt::format("the edge from {} to {} belongs to {} faces, {}, {} and {} among them; it may be the edge of two",
+          fmt::format("the edge from {} to {} belongs to {} faces, {}, {} and {} among them; an edge may belong to two",
                       place_text(surface.vertices[edge.first]), place_text(surface.vertices[edge.second]), at.size(),
                       at[0].first, at[1].first, at[2].first));
     if (at.size() < 2) continue;
@@ -167,7 +167,7 @@ std::vector<bool> unlike_first(const PolygonSurface& surface) {
     for (const Across& other : across[next.front()]) {
       const int wanted = turn[next.front()] ^ static_cast<int>(other.runs_alike);
       if (turn[other.face] == 1 - wanted)
-        throw MeshError(fmt::format("{} and face {} cannot both look outward: the surface has one side only",
+        throw MeshError(fmt::format("{} and face {} cannot both face outward: the surface is one-sided",
                                     face_at(surface, next.front()), other.face));
       if (turn[other.face] == wanted) continue;
       turn[other.face] = wanted;
@@ -176,8 +176,8 @@ std::vector<bool> unlike_first(const PolygonSurface& surface) {
   if (reached < turn.size()) {
     const auto apart = static_cast<std::size_t>(std::ranges::find(turn, -1) - turn.begin());
     throw MeshError(
-        fmt::format("the surface is not one piece: {} of {} faces are joined to face 0 by edges, and {} is "
-                    "not; corners that neighbours share may lie {:.2g} um apart, no more",
+        fmt::format("the surface is not one piece: {} of {} faces are joined to face 0 by edges, {} is "
+                    "not; corners shared by neighbours may lie at most {:.2g} um apart",
                     reached, turn.size(), face_at(surface, apart), same_place * mean_side(surface)));
   }
   return {turn.begin(), turn.end()};
@@ -206,8 +206,8 @@ std::size_t turn_faces(PolygonSurface& surface, bool mend, bool& is_closed) {
   }
   if (count > 0 && !mend)
     throw MeshError(
-        fmt::format("{} winds the other way than it should, as {} of {} faces do: corners go "
-                    "counter-clockwise seen from outside; give mend = true",
+        fmt::format("{} is wound the wrong way, as are {} of {} faces; order corners "
+                    "counter-clockwise seen from outside, or set mend = true",
                     face_at(surface, static_cast<std::size_t>(std::ranges::find(turned, true) - turned.begin())), count,
                     turned.size()));
   return count;
@@ -219,8 +219,8 @@ std::string apical_side_text(const PolygonSurface& surface) {
   for (const auto& polygon : surface.polygons) sum += area_vector(surface.vertices, polygon);
   const Vec3 way = sum.normalized();
   return fmt::format(
-      ", as the most wind: the apical side looks along ({:.2f}, {:.2f}, {:.2f}); for the other side, turn most "
-      "faces of the file round",
+      ", by majority: the apical side faces ({:.2f}, {:.2f}, {:.2f}); for the other side, reverse most "
+      "faces of the file",
       way.x(), way.y(), way.z());
 }
 
@@ -250,7 +250,7 @@ void check_fans(const PolygonSurface& surface) {
     }
     if (reached == about.size()) continue;
     throw MeshError(
-        fmt::format("the surface touches itself at vertex {} at {}: face {} and others meet there and share no edge "
+        fmt::format("the surface touches itself at vertex {} at {}: face {} and others meet there but share no edge "
                     "with the rest",
                     v, place_text(surface.vertices[v]), about.front().face));
   }
@@ -301,7 +301,7 @@ void check_folds(const PolygonSurface& surface) {
     if (edge.right == no_polygon || normals[edge.left].dot(normals[edge.right]) > sharpest_fold_cosine) continue;
     throw MeshError(fmt::format(
         "{} and its neighbour, face {}, are folded onto each other at the edge from {} to {}; if the sheet is "
-        "periodic, leave out the faces that reach across",
+        "periodic, omit the faces that cross its boundary",
         face_at(surface, edge.left), edge.right, place_text(surface.vertices[edge.vertices[0]]),
         place_text(surface.vertices[edge.vertices[1]])));
   }
@@ -327,12 +327,12 @@ void check_faces(const PolygonSurface& surface, bool mended) {
     const std::string flaw =
         polygon_flaw(surface.vertices, polygon, area_vector(surface.vertices, polygon).normalized());
     if (!flaw.empty())
-      throw MeshError(fmt::format("{} {}{}; cut it in two, or move its corners", face_at(surface, face), flaw,
+      throw MeshError(fmt::format("{} {}{}; split it, or move its corners", face_at(surface, face), flaw,
                                   mended ? "" : " (mend = true sharpens wide angles)"));
     const double warp = warp_deg(surface, face);
     if (warp > largest_warp_deg)
       throw MeshError(
-          fmt::format("{} is far from flat: its corners lie up to {:.0f} degrees out of its plane, and {} "
+          fmt::format("{} is far from flat: its corners lie up to {:.0f} degrees out of its plane; {} "
                       "are allowed",
                       face_at(surface, face), warp, largest_warp_deg));
   }
@@ -359,8 +359,8 @@ MendedPolygons mend_shapes(PolygonSurface& surface, const PolygonOptions& option
     surface.vertices = start;
     check_faces(surface, true);  // a face is wrong, as a rule
     throw MeshError(fmt::format(
-        "its short edges and wide angles cannot be mended: vertex {} at {} would move farther than {:.3g} um; "
-        "give mend = false, or a smaller least_edge_ratio",
+        "its short edges and wide angles cannot be repaired: vertex {} at {} would move by more than {:.3g} um; "
+        "set mend = false, or lower least_edge_ratio",
         v, place_text(start[v]), limit_um));
   }
   return mended;
@@ -375,18 +375,18 @@ MendedSurface check_and_mend(PolygonSurface& surface, bool mend, const PolygonOp
   };
   check_corners(surface);
   const std::size_t merged = merge_vertices(surface, mend);
-  remark(merged, "vertices lay where others do and were merged with them");
+  remark(merged, "coincident vertices were merged");
   check_corners(surface);
-  remark(drop_unused(surface, merged), "vertices that no face uses were dropped");
+  remark(drop_unused(surface, merged), "unused vertices were removed");
   const std::size_t turned = turn_faces(surface, mend, result.is_closed);
-  remark(turned, "faces wound the other way and were turned");
+  remark(turned, "faces were reversed");
   if (turned > 0 && !result.is_closed) result.remarks.back() += apical_side_text(surface);
   check_fans(surface);
   check_areas(surface);
   check_folds(surface);
   if (mend) {
     remark(drop_wall_vertices(surface, options.largest_angle_deg),
-           "vertices lay along a wall or the rim, where no third cell meets, and were dropped");
+           "vertices along an edge or the rim, where no third cell meets, were removed");
     check_areas(surface);
     const std::vector<std::string> shapes = remarks_on(mend_shapes(surface, options));
     result.remarks.insert(result.remarks.end(), shapes.begin(), shapes.end());

@@ -35,8 +35,8 @@ StarSurface smooth_surface(const PolygonSurface& surface) {
   const double allowed = largest_roughness * fit.surface.half_axes().minCoeff();
   if (fit.largest_um > allowed)
     throw MeshError(
-        fmt::format("vertex {} at {} lies {:.2g} um from the smooth surface that is nearest to all, and {:.2g} um "
-                    "are allowed; smooth the surface there",
+        fmt::format("vertex {} at {} lies {:.2g} um from the fitted smooth surface; {:.2g} um "
+                    "are allowed: smooth the surface there",
                     fit.largest_row, place_text(surface.vertices[fit.largest_row]), fit.largest_um, allowed));
   return fit.surface;
 }
@@ -71,7 +71,7 @@ SurfaceTissue build_under_surface(GivenSurface given, const PolygonCells& cells)
   SurfaceTissue result;
   std::optional<StarSurface> smooth;
   try {
-    if (!mended.is_closed) throw MeshError("the surface has a rim, and a shell is closed");
+    if (!mended.is_closed) throw MeshError("the surface has a boundary; give a closed surface");
     smooth = smooth_surface(surface);
   } catch (const MeshError& error) {
     result.why_no_shape = error.what();
@@ -102,8 +102,8 @@ Tissue build_about_points(const MeasuredPoints& measured, const PolygonCells& ce
   Tissue tissue = build_on(fit.surface, points, cells);
   tissue.remarks.insert(
       tissue.remarks.begin(),
-      fmt::format("the points lie {:.2g} um from a smooth surface (root of the mean square), row {} the "
-                  "farthest, {:.2g} um",
+      fmt::format("the points lie {:.2g} um (root mean square) from a smooth surface; row {} is farthest, "
+                  "{:.2g} um",
                   fit.rms_um, fit.largest_row, fit.largest_um));
   return tissue;
 }

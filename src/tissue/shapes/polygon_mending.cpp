@@ -123,12 +123,11 @@ MendedPolygons mend_polygons(const MendingGround& ground, const PolygonOptions& 
 std::vector<std::string> remarks_on(const MendedPolygons& mended) {
   std::vector<std::string> remarks;
   if (mended.lengthened_edges + mended.sharpened_corners > 0)
-    remarks.push_back(fmt::format(
-        "{} edges were too short for a mesh and {} angles too wide: their vertices were moved, by {:.2g} um at most",
-        mended.lengthened_edges, mended.sharpened_corners, mended.furthest_move_um));
-  if (mended.left_edges + mended.left_corners > 0)
     remarks.push_back(
-        fmt::format("{} edges are still short, and {} angles still wide", mended.left_edges, mended.left_corners));
+        fmt::format("{} short edges and {} wide angles were repaired: their vertices moved by at most {:.2g} um",
+                    mended.lengthened_edges, mended.sharpened_corners, mended.furthest_move_um));
+  if (mended.left_edges + mended.left_corners > 0)
+    remarks.push_back(fmt::format("{} edges remain short, and {} angles wide", mended.left_edges, mended.left_corners));
   return remarks;
 }
 

@@ -39,8 +39,8 @@ std::vector<std::string> mend(const Vectors& points, PolygonSurface& polygons, c
   const MendedPolygons mended = mend_polygons(ground, {.least_edge = least_edge}, polygons);
   for (std::size_t p = 0; p < points.size(); ++p)
     if (const std::string flaw = polygon_flaw(polygons.vertices, polygons.polygons[p], Vec3::UnitZ()); !flaw.empty())
-      throw MeshError(fmt::format("cell {} at ({:.4g}, {:.4g}) um {}; another seed may do better", p, points[p].x(),
-                                  points[p].y(), flaw));
+      throw MeshError(
+          fmt::format("cell {} at ({:.4g}, {:.4g}) um {}; try another seed", p, points[p].x(), points[p].y(), flaw));
   return remarks_on(mended);
 }
 
@@ -52,17 +52,17 @@ class Bent {
     constexpr double pi = std::numbers::pi;
     for (int axis = 0; axis < 2; ++axis)
       if (shape.is_periodic[axis] && shape.curvature_per_um[axis] != 0)
-        throw MeshError("a sheet does not repeat itself along a direction along which it is bent");
+        throw MeshError("a sheet cannot be periodic along a direction in which it is curved");
     if (!(turn < 1.9 * pi) || !(tilt < 1.9 * pi))
       throw MeshError(
           fmt::format("a sheet of {:.4g} x {:.4g} um with these curvatures turns by {:.0f} and {:.0f} degrees "
-                      "and would close upon itself; 340 are allowed",
+                      "and would overlap itself; at most 340 are allowed",
                       shape.length_um, shape.width_um, turn * 180 / pi, tilt * 180 / pi));
     const double narrowest = stretch(0.5 * shape.width_um), widest = std::max(1.0, narrowest);
     if (!(narrowest >= 0.5) || widest > 2)
       throw MeshError(
           fmt::format("a sheet with these curvatures is {:.2g} times as long at its sides as in its middle; "
-                      "0.5 to 2 are allowed: give a smaller width_um or curvature",
+                      "0.5 to 2 are allowed: lower width_um or the curvature",
                       narrowest));
   }
 

@@ -40,8 +40,8 @@ std::vector<Side> sorted_sides(const PolygonSurface& surface) {
     const bool third = i + 2 < sides.size() && sides[i + 2].low == sides[i].low && sides[i + 2].high == sides[i].high;
     if (third || sides[i].rises == sides[i + 1].rises)
       throw MeshError(
-          fmt::format("the edge between vertices {} and {} at {} {}; neighbours should share an edge in twos and "
-                      "run along it in opposite directions",
+          fmt::format("the edge between vertices {} and {} at {} {}; each edge must belong to two "
+                      "cells that traverse it in opposite directions",
                       sides[i].low, sides[i].high, place_text(surface.vertices[sides[i].low]),
                       third ? "belongs to more than two cells" : "runs the same way in two cells"));
     ++i;

@@ -100,7 +100,7 @@ class Squares {
       if ((ring - 1) * std::min(sides_[0], sides_[1]) > 2 * farthest) return cut;
       for (const auto& [at, name] : in_ring(ring, from)) {
         if (name.cell == static_cast<int>(own)) continue;
-        if (from == at) throw MeshError(fmt::format("points {} and {} are in one place", own, name.cell));
+        if (from == at) throw MeshError(fmt::format("points {} and {} coincide", own, name.cell));
         cut_by(from, at, name, cut);
       }
     }
@@ -182,8 +182,8 @@ void refuse_few_cells(const std::vector<Cut>& cuts) {
     std::ranges::sort(about);
     if (std::ranges::adjacent_find(about) != about.end())
       throw MeshError(
-          fmt::format("cell {} would meet itself, or another cell twice, across the period: give a longer "
-                      "period or more cells, some four along it",
+          fmt::format("cell {} would meet itself, or another cell twice, across the period; lengthen the "
+                      "period, or give more cells (about four along it)",
                       i));
   }
 }
@@ -252,8 +252,8 @@ PolygonSurface rectangle_polygons(const Vectors& points, const Rectangle& rectan
   for (const auto& [name, images] : all)
     if (images.cells != std::ranges::count_if(name, &Beyond::is_cell)) {
       const Vec3& at = surface.vertices[images.original];
-      throw MeshError(
-          fmt::format("cells cannot be told apart at ({:.4g}, {:.4g}) um: points lie too regularly", at.x(), at.y()));
+      throw MeshError(fmt::format("ambiguous cells at ({:.4g}, {:.4g}) um: points are too regular; set another seed",
+                                  at.x(), at.y()));
     }
   const auto& [size, is_periodic] = rectangle;
   if (is_periodic[0] || is_periodic[1])

@@ -18,12 +18,12 @@ constexpr double largest_share = 0.1;       // of a point's radius, that it may 
 
 void check_points(const Vectors& points) {
   if (points.size() < least_points)
-    throw MeshError(fmt::format("{} points; a closed surface takes at least {}", points.size(), least_points));
+    throw MeshError(fmt::format("{} points; a closed surface requires at least {}", points.size(), least_points));
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite())
-      throw MeshError(fmt::format("row {} is no point; every row should be three finite lengths in um", i));
+      throw MeshError(fmt::format("row {} is not a point; give three finite lengths in um", i));
     if (points[i].norm() < 1e-9)
-      throw MeshError(fmt::format("row {} is at the origin; points should lie around the origin", i));
+      throw MeshError(fmt::format("row {} is at the origin; points must surround the origin", i));
   }
   // Every direction needs a point somewhere near it.
   Vectors directions;
@@ -34,8 +34,8 @@ void check_points(const Vectors& points) {
     for (const Vec3& other : directions) nearest = std::max(nearest, direction.dot(other));
     if (nearest < widest_hole_cosine)
       throw MeshError(
-          fmt::format("no point lies toward ({:.2f}, {:.2f}, {:.2f}), seen from the origin; points should "
-                      "lie all around the origin: is it outside of them?",
+          fmt::format("no point lies toward ({:.2f}, {:.2f}, {:.2f}), seen from the origin; points must "
+                      "surround the origin: shift them",
                       direction.x(), direction.y(), direction.z()));
   }
 }
@@ -69,7 +69,7 @@ Frame frame_of(const Vectors& points) {
     half_axes = (3 * solver.eigenvalues()).cwiseMax(0).cwiseSqrt();
   }
   if (half_axes.minCoeff() < 1e-3)
-    throw MeshError("the points lie in a plane; they should lie on a closed surface around the origin");
+    throw MeshError("the points lie in a plane; give points on a closed surface around the origin");
   Frame frame{solver.eigenvectors(), scale * half_axes};
   if (frame.axes.determinant() < 0) frame.axes.col(2) *= -1;
   return frame;
@@ -124,7 +124,7 @@ StarFit fit_star_surface(const Vectors& points, int degree) {
   if (far_count > 0)
     throw MeshError(fmt::format(
         "row {} at {} is {:.2g} um from the smooth closed surface through the points, and {} of "
-        "{} rows are further than a tenth of their radius; points should lie on one surface "
+        "{} rows are further than a tenth of their radius; give points on one surface "
         "that every ray from the origin meets once",
         farthest, place_text(points[farthest]), farthest_share * points[farthest].norm(), far_count, points.size()));
   fit.rms_um = std::sqrt(squares / static_cast<double>(points.size()));

@@ -85,7 +85,7 @@ StarSurface::StarSurface(const Mat3& axes, const Vec3& half_axes_um, const std::
     if (!(radius > 0))
       throw MeshError(
           fmt::format("the surface passes through the origin in the direction ({:.3g}, {:.3g}, {:.3g}); "
-                      "the origin should be well inside",
+                      "move the surface so that the origin is well inside",
                       samples_.back().x(), samples_.back().y(), samples_.back().z()));
     for (const double bend_radius : bend(samples_.back()).radii)
       if (bend_radius > 0) least_radius_ = std::min(least_radius_, bend_radius);

@@ -29,8 +29,8 @@ Vectors points_on(const Vectors& points, const StarSurface& surface, double furt
     const ClosestOnSurface closest = surface.closest(points[i]);
     if (std::abs(closest.signed_distance_um) > furthest_share * closest.point.norm())
       throw MeshError(fmt::format(
-          "row {} at ({:.4g}, {:.4g}, {:.4g}) um is {:.3g} um from the surface; points should "
-          "lie within {:.0f} % of its radius",
+          "row {} at ({:.4g}, {:.4g}, {:.4g}) um is {:.3g} um from the surface; move it "
+          "within {:.0f} % of the radius",
           i, points[i].x(), points[i].y(), points[i].z(), closest.signed_distance_um, 100 * furthest_share));
     on.push_back(closest.point);
   }
@@ -78,8 +78,8 @@ void check_polygons(const Vectors& points, const StarSurface& surface, const Pol
     const Vec3& at = points[p];
     if (!flaw.empty())
       throw MeshError(
-          fmt::format("the cell of row {} at ({:.4g}, {:.4g}, {:.4g}) um {}; its point should be further from its "
-                      "neighbours', or these more even",
+          fmt::format("the cell of row {} at ({:.4g}, {:.4g}, {:.4g}) um {}; move its point away from its "
+                      "neighbours', or space these more evenly",
                       p, at.x(), at.y(), at.z(), flaw));
   }
 }
@@ -87,7 +87,7 @@ void check_polygons(const Vectors& points, const StarSurface& surface, const Pol
 CellPolygons polygons_of_points(const Vectors& points, const StarSurface& surface, const PolygonOptions& options) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!points[i].allFinite())
-      throw MeshError(fmt::format("row {} is no point; every row should be three finite lengths in um", i));
+      throw MeshError(fmt::format("row {} is not a point; give three finite lengths in um", i));
   const Vectors on = points_on(points, surface, options.furthest_share);
   SurfaceTriangulation triangulation = hull_triangulation(on, surface);
   CellPolygons cells;

@@ -25,11 +25,11 @@ std::string text_of(const Vec3& point) {
 
 void check_points(const Vectors& points) {
   if (points.size() < least_points)
-    throw MeshError(fmt::format("{} points; a closed sheet takes at least {} cells", points.size(), least_points));
+    throw MeshError(fmt::format("{} points; a closed sheet requires at least {} cells", points.size(), least_points));
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!points[i].allFinite() || points[i].norm() < same_place_um)
       throw MeshError(
-          fmt::format("row {} at {} is no place of a cell; every row should be three finite lengths in um, "
+          fmt::format("row {} at {} is not a cell position; give three finite lengths in um, "
                       "away from the origin",
                       i, text_of(points[i])));
   // Sorted along x, two points in one place are near each other in the list.
@@ -39,7 +39,7 @@ void check_points(const Vectors& points) {
   for (std::size_t a = 0; a < order.size(); ++a)
     for (std::size_t b = a + 1; b < order.size() && points[order[b]].x() - points[order[a]].x() < same_place_um; ++b)
       if ((points[order[b]] - points[order[a]]).norm() < same_place_um)
-        throw MeshError(fmt::format("rows {} and {} are in one place, {}; each cell should have a place of its own",
+        throw MeshError(fmt::format("rows {} and {} coincide at {}; give each cell its own position",
                                     std::min(order[a], order[b]), std::max(order[a], order[b]),
                                     text_of(points[order[a]])));
 }
@@ -69,7 +69,7 @@ std::vector<std::array<std::size_t, 3>> hull_of(Vectors& directions) {
                                   nullptr, unheard.get());
   if (status != 0)
     throw MeshError(
-        fmt::format("the points have no convex hull (Qhull's error {}); they should lie all around the "
+        fmt::format("the points have no convex hull (Qhull error {}); give points that surround the "
                     "origin",
                     status));
   std::vector<std::array<std::size_t, 3>> triangles;
@@ -91,7 +91,7 @@ void check_triangles(const Vectors& points, const Vectors& directions,
     if (normal.dot(directions[a]) < widest_hole_cosine)
       throw MeshError(
           fmt::format("the rows {}, {} and {} are neighbours across a hole without points, at {}; points "
-                      "should lie all around the origin: is it outside of them?",
+                      "must surround the origin: shift them, or fill the hole",
                       a, b, c, text_of((points[a] + points[b] + points[c]) / 3)));
   }
   std::vector<bool> used(points.size(), false);
@@ -103,13 +103,13 @@ void check_triangles(const Vectors& points, const Vectors& directions,
     for (std::size_t j = 0; j < points.size(); ++j)
       if (j != i && directions[j].dot(directions[i]) > directions[nearest].dot(directions[i])) nearest = j;
     throw MeshError(
-        fmt::format("rows {} and {} lie in one direction from the origin, at {} and {}; each cell should be "
-                    "alone on its ray",
+        fmt::format("rows {} and {} lie in one direction from the origin, at {} and {}; leave one cell per "
+                    "ray",
                     std::min(i, nearest), std::max(i, nearest), text_of(points[std::min(i, nearest)]),
                     text_of(points[std::max(i, nearest)])));
   }
   if (triangles.size() != 2 * points.size() - 4)
-    throw MeshError(fmt::format("{} points make {} triangles, not {}; are some of them too near to each other?",
+    throw MeshError(fmt::format("{} points make {} triangles, not {}; move points apart that nearly coincide",
                                 points.size(), triangles.size(), 2 * points.size() - 4));
 }
 
@@ -128,8 +128,9 @@ std::vector<std::array<std::size_t, 3>> across_of(const std::vector<std::array<s
   std::vector<std::array<std::size_t, 3>> across(triangles.size());
   for (std::size_t i = 0; i + 1 < sides.size(); i += 2) {
     if (sides[i].low != sides[i + 1].low || sides[i].high != sides[i + 1].high)
-      throw MeshError(fmt::format("the triangles about rows {} and {} do not close; are points too near to each other?",
-                                  sides[i].low, sides[i].high));
+      throw MeshError(
+          fmt::format("the triangles about rows {} and {} do not close; move points apart that nearly coincide",
+                      sides[i].low, sides[i].high));
     across[sides[i].triangle][sides[i].corner] = sides[i + 1].triangle;
     across[sides[i + 1].triangle][sides[i + 1].corner] = sides[i].triangle;
   }
@@ -213,8 +214,8 @@ std::size_t flip_to_delaunay(const Vectors& points, SurfaceTriangulation& triang
       if (!flip(points, triangulation, triangle, corner, &neighbour)) continue;
       if (++flips > most_flips)
         throw MeshError(
-            fmt::format("neighbours about row {} at {} cannot be told; points should lie on a smooth surface "
-                        "and be finer than its bends",
+            fmt::format("neighbours about row {} at {} are ambiguous; give points on a smooth surface, "
+                        "denser than its bends",
                         triangulation.triangles[triangle][0], text_of(points[triangulation.triangles[triangle][0]])));
       waiting.push_back(triangle);
       waiting.push_back(neighbour);

@@ -202,8 +202,7 @@ TEST_F(MeshFileTest, WhatIsNoMeshIsAFileErrorInOneLine) {
     return text;
   };
   EXPECT_EQ(refused(""), "cannot be read: it is empty");
-  EXPECT_EQ(refused("length_um = 460\n"),
-            "cannot be read: it is neither a VTK XML file (.vtu) nor a legacy VTK file (.vtk)");
+  EXPECT_EQ(refused("length_um = 460\n"), "cannot be read: neither a VTK XML file (.vtu) nor a legacy VTK file (.vtk)");
   for (const char* text :
        {"<html><body/></html>", "<VTKFile type=\"PolyData\"></VTKFile>", "<?xml version=\"1.0\"?>\n<VTKFile",
         "# vtk DataFile Version 3.0\n", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n"})
@@ -264,19 +263,19 @@ TEST_F(MeshFileTest, WhatIsWrongWithACellIsSaid) {
       {legacy(cube_points, {}), "the mesh has no cells"},
       {legacy(cube_points, {{0, 1, 3, 4}}, 10),
        "cell 0 is a vtkTetra (VTK type 10); every cell must be a vtkHexahedron (type 12)"},
-      {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, 8}}), "cell 0 uses node 8, and the nodes are 0 to 7"},
-      {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, -1}}), "cell 0 uses node -1, and the nodes are 0 to 7"},
+      {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, 8}}), "cell 0 uses node 8; nodes are 0 to 7"},
+      {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, -1}}), "cell 0 uses node -1; nodes are 0 to 7"},
       {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, 6}}),
        "cell 0 at (0.625, 0.5, 0.5) um uses node 6 twice; a hexahedron has eight"},
       {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6}}), "cell 0 is a hexahedron with 7 nodes"},
-      {binary_cube(std::nan("")), "node 6 of cell 0 is at (1, 1, nan); coordinates are finite, in um"},
-      {legacy(with(6, "1 1 1e200"), {cube}), "node 6 of cell 0 is at (1, 1, 1e+200); coordinates are finite, in um"},
+      {binary_cube(std::nan("")), "node 6 of cell 0 is at (1, 1, nan); coordinates must be finite, in um"},
+      {legacy(with(6, "1 1 1e200"), {cube}),
+       "node 6 of cell 0 is at (1, 1, 1e+200); coordinates must be finite, in um"},
       {legacy(cube_points, {{0, 1, 3, 2, 4, 5, 7, 6}}),
        "cell 0 at (0.5, 0.5, 0.5) um is inverted (det J <= 0 at a corner): its nodes are in the order of a VTK_VOXEL; "
-       "a "
-       "VTK_HEXAHEDRON goes round each face"},
+       "order them around each face (VTK_HEXAHEDRON)"},
       {legacy(cube_points, {{4, 5, 6, 7, 0, 1, 2, 3}}),
-       "cell 0 at (0.5, 0.5, 0.5) um is inverted (det J <= 0 at a corner): it is inside out; nodes 0-3 must run "
+       "cell 0 at (0.5, 0.5, 0.5) um is inverted (det J <= 0 at a corner): it is turned over; order nodes 0-3 "
        "counter-clockwise seen from nodes 4-7"},
       {legacy(with(6, "0 0 0.5"), {cube}),
        "cell 0 at (0.375, 0.375, 0.4375) um is inverted (det J <= 0 at a corner): a corner is flat or folded in, or "
@@ -287,7 +286,7 @@ TEST_F(MeshFileTest, WhatIsWrongWithACellIsSaid) {
        "twisted, "
        "or they overlap; turn or remove one"},
       {legacy(cube_points, {cube}),
-       "the mesh has a single surface (a block or an open sheet), so which faces are apical cannot be told; name the "
+       "the mesh has a single surface (a block or an open sheet), which leaves its apical faces undetermined; name the "
        "cell "
        "array that holds each cell's apical face (0-5) as apical_array"},
   };
@@ -301,26 +300,24 @@ TEST_F(MeshFileTest, WhatIsWrongWithACellIsSaid) {
 TEST_F(MeshFileTest, TheApicalArrayMustBeThereAndFit) {
   write_file(file, legacy(cube_points, {cube}, 12, apical_lines("6")));
   EXPECT_EQ(error<MeshError>("apical"), "the apical face of cell 0 is 6 in \"apical\"; faces are 0 to 5");
-  EXPECT_EQ(error<MeshError>("up"), "there is no cell array \"up\" of one number a cell; there are: apical");
+  EXPECT_EQ(error<MeshError>("up"), "no cell array \"up\" with one number per cell; there are: apical");
   write_file(file, legacy(cube_points, {cube}));
-  EXPECT_EQ(error<MeshError>("up"), "there is no cell array \"up\" of one number a cell; there is none at all");
+  EXPECT_EQ(error<MeshError>("up"), "no cell array \"up\" with one number per cell; there are none");
 
   const Tissue block = build_block({});
   write_mesh(file, block, block.rest_positions, {{}, {}, {{"top", {5, 4, 5}}}});
-  EXPECT_EQ(
-      error<MeshError>("top"),
-      "the apical faces of cell 0 at (-20, 0, 0) um and its neighbour, cell 1, do not fit together; mend the array "
-      "that names them");
+  EXPECT_EQ(error<MeshError>("top"),
+            "the apical faces of cell 0 at (-20, 0, 0) um and its neighbour, cell 1, do not meet in an edge; correct "
+            "the array that names them");
   write_mesh(file, block, block.rest_positions, {{}, {}, {{"top", {5, 5, 0}}}});
-  EXPECT_EQ(
-      error<MeshError>("top"),
-      "the apical faces of cell 1 at (0, 0, 0) um and its neighbour, cell 2, do not fit together; mend the array that "
-      "names them");
+  EXPECT_EQ(error<MeshError>("top"),
+            "the apical faces of cell 1 at (0, 0, 0) um and its neighbour, cell 2, do not meet in an edge; correct the "
+            "array that names them");
 }
 
 TEST_F(MeshFileTest, RefinementMustBePossible) {
   write_file(file, legacy(cube_points, {cube}, 12, apical_lines("5")));
-  EXPECT_NE(error<MeshError>("apical", {1, 2, 1}).find("first two must be equal"), std::string::npos);
+  EXPECT_NE(error<MeshError>("apical", {1, 2, 1}).find("make the first two equal"), std::string::npos);
   EXPECT_NE(error<MeshError>("apical", {0, 0, 1}).find("at least 1"), std::string::npos);
   EXPECT_EQ(error<MeshError>("apical", {300, 300, 300}),
             "the mesh would have 27000000 elements; at most 20000000 are allowed");

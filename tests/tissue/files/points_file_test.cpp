@@ -26,13 +26,12 @@ TEST(PointsFile, SaysInWhichLineWhatIsWrong) {
       EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
     }
   };
-  expect("", "is empty; its first line names the columns, x_um, y_um and z_um among them");
-  expect("x,y,z\n1,2,3\n",
-         "line 1: should name the columns, x_um, y_um and z_um once each among them; it names x, y, z");
-  expect("x_um,y_um,z_um,z_um\n", "line 1: should name");
-  expect("x_um,y_um,z_um\n1,2,3\n1,2\n", "line 3: has 2 fields, and the first line has 3");
-  expect("x_um,y_um,z_um\n1,2,three\n", "line 2: \"three\" of column z_um is no number");
-  expect("x_um,y_um,z_um\n1,nan,3\n", "line 2: \"nan\" of column y_um is no number");
+  expect("", "is empty; the first line must name the columns, including x_um, y_um and z_um");
+  expect("x,y,z\n1,2,3\n", "line 1: must name the columns, including x_um, y_um and z_um once each; it names x, y, z");
+  expect("x_um,y_um,z_um,z_um\n", "line 1: must name");
+  expect("x_um,y_um,z_um\n1,2,3\n1,2\n", "line 3: has 2 fields; the first line has 3");
+  expect("x_um,y_um,z_um\n1,2,three\n", "line 2: \"three\" of column z_um is not a number");
+  expect("x_um,y_um,z_um\n1,nan,3\n", "line 2: \"nan\" of column y_um is not a number");
   EXPECT_THROW(read_points_file("/nowhere/points.csv"), FileError);
 }
 

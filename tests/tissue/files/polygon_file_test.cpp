@@ -93,44 +93,44 @@ TEST(PolygonFile, PlyAsBytes) {
 
 TEST(PolygonFile, SaysWhatIsWrongAndWhere) {
   const auto obj = [](const char* text, const char* said) { expect_mesh_error([&] { polygons_in_obj(text); }, said); };
-  obj("v 0 0\n", "line 1: a vertex should have three coordinates");
-  obj("v 0 0 0\n\nv 0 one 0\n", "line 3: \"one\" is no number");
-  obj("v 0 0 0\nf 1 1.5 1\n", "line 2: \"1.5\" is no whole number");
-  obj("v 0 0 0\nf 0 1 1\n", "line 2: a face uses vertex 0; the first is 1, the last -1");
+  obj("v 0 0\n", "line 1: a vertex must have three coordinates");
+  obj("v 0 0 0\n\nv 0 one 0\n", "line 3: \"one\" is not a number");
+  obj("v 0 0 0\nf 1 1.5 1\n", "line 2: \"1.5\" is not a whole number");
+  obj("v 0 0 0\nf 0 1 1\n", "line 2: a face uses vertex 0; the first vertex is 1, the last -1");
   obj("v 0 0 0\nf -2 1 1\n", "line 2: a face uses vertex -2");
-  obj("v 0 0 0\nf 1 1 7\n", "face 0 uses vertex 6, and there are 1");
+  obj("v 0 0 0\nf 1 1 7\n", "face 0 uses vertex 6; there are 1");
   const auto off = [](const char* text, const char* said) { expect_mesh_error([&] { polygons_in_off(text); }, said); };
   off("", "is empty");
-  off("4OFF\n", "line 1: \"4OFF\" stands where OFF should");
-  off("OFF\n", "the numbers of vertices and faces should stand here");
+  off("4OFF\n", "line 1: found \"4OFF\", expected OFF");
+  off("OFF\n", "expected the numbers of vertices and faces");
   off("OFF\n2 1 0\n0 0 0\n", "the file ends after 1 of 2 vertices");
   off("OFF\n1 1 0\n0 0 0\n", "the file ends after 0 of 1 faces");
-  off("OFF\n1 1 0\n0 0 0\n3 0 0\n", "line 4: a face should have 3 corners and has 2");
+  off("OFF\n1 1 0\n0 0 0\n3 0 0\n", "line 4: a face has 2 corners; its line announces 3");
   off("OFF\n1 1 0\n0 0 0\n3 0 0 -1\n", "line 4: a face uses vertex -1");
-  off("OFF\n1 1 0\n0 0 0\n3 0 0 4\n", "face 0 uses vertex 4, and there are 1");
+  off("OFF\n1 1 0\n0 0 0\n3 0 0 4\n", "face 0 uses vertex 4; there are 1");
   const auto ply = [](const std::string& text, const char* said) {
     expect_mesh_error([&] { polygons_in_ply(text); }, said);
   };
   const std::string start = "ply\nformat ascii 1.0\n";
-  ply("plx\n", "line 1: \"ply\" should stand here");
-  ply("ply\nformat utf8 1.0\nend_header\n", "line 2: \"utf8\" is no format; there are ascii, binary_little_endian");
-  ply("ply\nend_header\n", "the header names no format");
-  ply(start, "line 3: the file ends within its header");
-  ply(start + "property float x\nend_header\n", "line 3: a property stands before the first element");
-  ply(start + "element vertex many\nend_header\n", "line 3: \"many\" is no number of elements");
-  ply(start + "element vertex 1\nproperty half x\nend_header\n", "line 4: \"property half x\": there is no such type");
+  ply("plx\n", "line 1: expected \"ply\"");
+  ply("ply\nformat utf8 1.0\nend_header\n", "line 2: \"utf8\" is not a format; formats: ascii, binary_little_endian");
+  ply("ply\nend_header\n", "the header has no format line");
+  ply(start, "line 3: the file ends within the header");
+  ply(start + "property float x\nend_header\n", "line 3: a property precedes the first element");
+  ply(start + "element vertex many\nend_header\n", "line 3: \"many\" is not a number of elements");
+  ply(start + "element vertex 1\nproperty half x\nend_header\n", "line 4: \"property half x\": unknown type");
   ply(start + "element face 1\nelement face 2\nend_header\n", "line 4: the header has two elements \"face\"");
   ply(start + "element face 1\nproperty int a\nproperty float a\nend_header\n",
-      "line 5: element \"face\" has two properties \"a\"; give one another name");
+      "line 5: element \"face\" has two properties \"a\"; rename one");
   ply(start + "element vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
-      "vertices should have x, y and z");
+      "vertices must have x, y and z");
   ply(start + "element face 1\nproperty int a\nend_header\n0\n",
-      "faces should have a list vertex_indices or vertex_index");
+      "faces must have one list vertex_indices or vertex_index");
   ply(start + "element vertex 999999999999\nproperty int x\nproperty int y\nproperty int z\nend_header\n0 0 0\n",
-      "999999999999 elements \"vertex\" are more than the file can hold");
-  ply(start + "element face 1\nproperty list int int vertex_index\nend_header\n-3 1 2 3\n", "a list has -3 numbers");
+      "999999999999 elements \"vertex\" exceed the file");
+  ply(start + "element face 1\nproperty list int int vertex_index\nend_header\n-3 1 2 3\n", "a list of -3 numbers");
   ply(start + "element face 1\nproperty list int int vertex_index\nend_header\n3 1 2 3\n",
-      "face 0 uses vertex 1, and there are 0 before it");
+      "face 0 uses vertex 1; 0 precede it");
 }
 
 // Two triangles that share the edge from 10 to 30; the rows of faces are numbered 5 and 6, and 7 has no edges.
@@ -163,14 +163,13 @@ TEST(VertexModel, SaysWhatIsWrong) {
     spoil(tables);
     expect_mesh_error([&] { polygons_of(tables); }, said);
   };
-  expect([](auto& t) { t.vertices.columns.erase("y"); },
-         "the table of vertices has no column \"y\" of numbers; it has x");
+  expect([](auto& t) { t.vertices.columns.erase("y"); }, "the table of vertices has no numeric column \"y\"; it has x");
   expect([](auto& t) { t.edges.columns.erase("srce"); }, "the table of edges has no column \"srce\"");
   expect([](auto& t) { t.vertices.index[1] = 10; }, "the table of vertices has two rows 10");
-  expect([](auto& t) { t.edges.columns["trgt"][1] = 99; }, "an edge names row 99 of vertices, and there is none");
-  expect([](auto& t) { t.edges.columns["face"][1] = 99; }, "an edge names row 99 of faces, and there is none");
-  expect([](auto& t) { t.edges.columns["trgt"][1] = 40; }, "the 3 edges of face 6 are no ring");
-  expect([](auto& t) { t.edges.columns["trgt"][2] = 20; }, "the 3 edges of face 6 are no ring");
+  expect([](auto& t) { t.edges.columns["trgt"][1] = 99; }, "an edge names row 99 of vertices, which does not exist");
+  expect([](auto& t) { t.edges.columns["face"][1] = 99; }, "an edge names row 99 of faces, which does not exist");
+  expect([](auto& t) { t.edges.columns["trgt"][1] = 40; }, "the 3 edges of face 6 do not form one ring");
+  expect([](auto& t) { t.edges.columns["trgt"][2] = 20; }, "the 3 edges of face 6 do not form one ring");
   expect([](auto& t) { t.edges.columns["srce"][1] = 10; }, "two edges of face 6 begin at vertex 10");
 }
 
@@ -180,7 +179,8 @@ TEST(PolygonFile, IsReadByItsEnding) {
   write_file(folder / "a.OBJ", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   EXPECT_EQ(read_polygon_file(folder / "a.OBJ").surface.polygons.size(), 1U);
   write_file(folder / "a.stl", "solid\n");
-  expect_mesh_error([&] { read_polygon_file(folder / "a.stl"); }, "a.stl: \".stl\" is no ending of a file of polygons");
+  expect_mesh_error([&] { read_polygon_file(folder / "a.stl"); },
+                    "a.stl: \".stl\" is not the extension of a polygon file");
   EXPECT_THROW(read_polygon_file(folder / "nowhere.ply"), FileError);
   write_file(folder / "a.h5", "no HDF5");
   try {

@@ -66,7 +66,7 @@ TEST_F(PolygonFileVtk, SaysWhatIsWrong) {
       [&] {
         read("a.vtk", legacy + "DATASET UNSTRUCTURED_GRID\n" + points + "CELLS 1 5\n4 0 1 2 4\nCELL_TYPES 1\n10\n");
       },
-      "a.vtk: cell 0 is a vtkTetra (VTK type 10); a surface is made of polygons");
+      "a.vtk: cell 0 is a vtkTetra (VTK type 10); a surface consists of polygons");
   EXPECT_THROW(read("a.vtp", "<VTKFile"), FileError);
   EXPECT_THROW(read("a.vtk", "nothing of VTK's"), FileError);
   EXPECT_THROW(read_polygon_file(folder_ / "nowhere.vtp"), FileError);

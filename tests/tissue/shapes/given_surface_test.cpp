@@ -68,12 +68,12 @@ TEST(GivenSurface, VerticesGivenTwiceAreMerged) {
     }
   }
   PolygonSurface as_given = soup;
-  expect_mesh_error([&] { check_and_mend(as_given, false); },
-                    "vertices 3 and 8 lie at the same place, (-1, -1, -1) um; neighbours should share their vertices: "
-                    "give mend = true");
+  expect_mesh_error(
+      [&] { check_and_mend(as_given, false); },
+      "vertices 3 and 8 coincide at (-1, -1, -1) um; let neighbours share their vertices: set mend = true");
   const MendedSurface mended = check_and_mend(soup, true);
   EXPECT_TRUE(mended.is_closed);
-  EXPECT_EQ(all(mended), "16 vertices lay where others do and were merged with them\n");
+  EXPECT_EQ(all(mended), "16 coincident vertices were merged\n");
   EXPECT_EQ(soup.vertices.size(), 8U);
 }
 
@@ -82,8 +82,8 @@ TEST(GivenSurface, FacesAreTurnedOutward) {
   for (const std::size_t face : {1, 4}) std::ranges::reverse(surface.polygons[face]);
   PolygonSurface as_given = surface;
   expect_mesh_error([&] { check_and_mend(as_given, false); },
-                    "face 1 at (0, 0, 1) um winds the other way than it should, as 2 of 6 faces do");
-  EXPECT_EQ(all(check_and_mend(surface, true)), "2 faces wound the other way and were turned\n");
+                    "face 1 at (0, 0, 1) um is wound the wrong way, as are 2 of 6 faces");
+  EXPECT_EQ(all(check_and_mend(surface, true)), "2 faces were reversed\n");
   for (std::size_t face = 0; face < 6; ++face) {
     Vec3 middle = Vec3::Zero();
     for (const std::size_t vertex : surface.polygons[face]) middle += surface.vertices[vertex] / 4;
@@ -92,12 +92,12 @@ TEST(GivenSurface, FacesAreTurnedOutward) {
   // All of a closed one look inward; of an open one, whichever are fewer are wrong.
   surface = cube();
   for (Face& polygon : surface.polygons) std::ranges::reverse(polygon);
-  EXPECT_EQ(all(check_and_mend(surface, true)), "6 faces wound the other way and were turned\n");
+  EXPECT_EQ(all(check_and_mend(surface, true)), "6 faces were reversed\n");
   surface = squares(3, 1);
   std::ranges::reverse(surface.polygons[0]);
   EXPECT_EQ(all(check_and_mend(surface, true)),
-            "1 faces wound the other way and were turned, as the most wind: the apical side looks along (0.00, 0.00, "
-            "1.00); for the other side, turn most faces of the file round\n");
+            "1 faces were reversed, by majority: the apical side faces (0.00, 0.00, 1.00); for the other side, reverse "
+            "most faces of the file\n");
   EXPECT_GT(area_vector(surface.vertices, surface.polygons[0]).z(), 0);
 }
 
@@ -107,7 +107,7 @@ TEST(GivenSurface, ShortEdgesAndWideAnglesAreMended) {
   surface.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, -0.025, 0}, {0, 0.025, 0}};
   surface.polygons = {{0, 1, 4}, {1, 2, 5, 4}, {2, 3, 5}, {3, 0, 4, 5}};
   const MendedSurface mended = check_and_mend(surface, true, {.least_edge = 0.3});
-  EXPECT_NE(all(mended).find("1 edges were too short for a mesh and 0 angles too wide"), std::string::npos);
+  EXPECT_NE(all(mended).find("1 short edges and 0 wide angles"), std::string::npos);
   const double mean = (4 * 2 + 4 * std::sqrt(1 + 0.975 * 0.975) + 0.05) / 9;
   EXPECT_NEAR((surface.vertices[5] - surface.vertices[4]).norm(), 0.3 * mean, 0.02 * mean);
 
@@ -115,7 +115,7 @@ TEST(GivenSurface, ShortEdgesAndWideAnglesAreMended) {
   surface = squares(2, 2);
   surface.polygons = {{0, 1, 2, 5, 4, 3}, {3, 4, 7, 6}, {4, 5, 8, 7}};
   surface.vertices[1].y() = -0.5;
-  EXPECT_NE(all(check_and_mend(surface, true)).find("1 angles too wide"), std::string::npos);
+  EXPECT_NE(all(check_and_mend(surface, true)).find("1 wide angles"), std::string::npos);
   EXPECT_GT(surface.vertices[4].y(), 1.05);
 }
 
@@ -126,13 +126,13 @@ TEST(GivenSurface, VerticesAlongAWallAreDropped) {
     surface.vertices.push_back(more);
   surface.polygons = {{0, 8, 1, 6, 7, 4, 3}, {1, 9, 2, 5, 4, 7, 6}};
   EXPECT_EQ(all(check_and_mend(surface, true)),
-            "3 vertices lay along a wall or the rim, where no third cell meets, and were dropped\n");
+            "3 vertices along an edge or the rim, where no third cell meets, were removed\n");
   EXPECT_EQ(surface.polygons, (std::vector<Face>{{0, 1, 4, 3}, {1, 6, 2, 5, 4}}));
   // A rim that is bent inward.
   surface = squares(2, 1);
   surface.vertices.emplace_back(0.5, 0.1, 0);
   surface.polygons[0] = {0, 6, 1, 4, 3};
-  EXPECT_NE(all(check_and_mend(surface, true)).find("1 vertices lay along a wall or the rim"), std::string::npos);
+  EXPECT_NE(all(check_and_mend(surface, true)).find("1 vertices along an edge or the rim"), std::string::npos);
   EXPECT_EQ(surface.polygons[0], (Face{0, 1, 4, 3}));
 }
 
@@ -140,7 +140,7 @@ TEST(GivenSurface, NeighboursOfAFileOfFiveDigitsAreJoined) {
   PolygonSurface surface = squares(2, 1);
   for (const std::size_t v : {1, 4}) surface.vertices.push_back(surface.vertices[v] + Vec3(2e-5, 0, 0));
   surface.polygons[1] = {6, 2, 5, 7};
-  EXPECT_EQ(all(check_and_mend(surface, true)), "2 vertices lay where others do and were merged with them\n");
+  EXPECT_EQ(all(check_and_mend(surface, true)), "2 coincident vertices were merged\n");
 }
 
 // The smallest surfaces that are wrong each in one way.
@@ -153,11 +153,11 @@ TEST(GivenSurface, SaysWhatIsWrongAndWhere) {
     spoil(surface);
     return surface;
   };
-  expect({}, "there is no face");
+  expect({}, "the surface has no faces");
   expect(spoilt([](auto& s) { s.vertices[2].x() = std::nan(""); }), "vertex 2 of face 1 is at (nan, 0, 0)");
   expect(spoilt([](auto& s) { s.vertices[2].x() = std::numeric_limits<double>::infinity(); }), "vertex 2 of face 1");
-  expect(spoilt([](auto& s) { s.vertices[2].x() = 1e12; }), "coordinates are finite, in um");
-  expect(spoilt([](auto& s) { s.polygons[1] = {1, 2}; }), "face 1 has 2 corners; a cell has at least three");
+  expect(spoilt([](auto& s) { s.vertices[2].x() = 1e12; }), "coordinates must be finite, in um");
+  expect(spoilt([](auto& s) { s.polygons[1] = {1, 2}; }), "face 1 has 2 corners; a cell requires at least three");
   expect(spoilt([](auto& s) { s.polygons[1] = {}; }), "face 1 has 0 corners");
   expect(spoilt([](auto& s) { s.polygons[1] = {1, 2, 5, 2}; }), "face 1 at (1.75, 0.25, 0) um has vertex 2 twice");
   expect(spoilt([](auto& s) { s.vertices[2] = s.vertices[5]; }), "has vertex 2 twice");
@@ -170,7 +170,7 @@ TEST(GivenSurface, SaysWhatIsWrongAndWhere) {
            for (const double x : {9, 10, 9}) s.vertices.emplace_back(x, s.vertices.size() == 8, 0);
            s.polygons.push_back({6, 7, 8});
          }),
-         "the surface is not one piece: 2 of 3 faces are joined to face 0 by edges, and face 2 at (9.333, 0.3333, 0)");
+         "the surface is not one piece: 2 of 3 faces are joined to face 0 by edges, face 2 at (9.333, 0.3333, 0)");
   // A ring of squares, but for one corner: those beside it touch in one vertex.
   PolygonSurface ring = squares(3, 3);
   ring.polygons.erase(ring.polygons.begin() + 4);
@@ -186,7 +186,7 @@ TEST(GivenSurface, SaysWhatIsWrongAndWhere) {
   }
   for (std::size_t i = 0; i < 4; ++i) band.polygons.push_back({2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1});
   band.polygons.push_back({8, 1, 0, 9});
-  expect(band, "the surface has one side only");
+  expect(band, "the surface is one-sided");
   expect(spoilt([](auto& s) {
            for (const int v : {2, 5}) s.vertices[v].x() = 1;
            s.vertices[2].y() = 0.25, s.vertices[5].y() = 0.75;
@@ -206,7 +206,7 @@ TEST(GivenSurface, SaysWhatIsWrongAndWhere) {
   PolygonSurface saddle;
   saddle.vertices = {{-1, -1, 1}, {1, -1, -1}, {1, 1, 1}, {-1, 1, -1}};
   saddle.polygons = {{0, 1, 2, 3}};
-  expect(saddle, "face 0 at (0, 0, 0) um is far from flat: its corners lie up to 45 degrees out of its plane, and 40");
+  expect(saddle, "face 0 at (0, 0, 0) um is far from flat: its corners lie up to 45 degrees out of its plane; 40");
 }
 
 }  // namespace

@@ -181,7 +181,7 @@ TEST_P(PolygonEmbryo, UnderAFootballElsewhereGoesAlongMeanNormals) {
   for (std::size_t v = 0; v < 60; ++v) basal[v] = football.vertices[v] + height * basal[v].normalized();
   for (Vec3& vertex : football.vertices) vertex += Vec3(100, 50, 0);
   const SurfaceTissue made = build_under_surface({.surface = football}, {height, GetParam(), 1});
-  EXPECT_NE(made.why_no_shape.find("is it outside of them?"), std::string::npos) << made.why_no_shape;
+  EXPECT_NE(made.why_no_shape.find("points must surround the origin"), std::string::npos) << made.why_no_shape;
   EXPECT_NEAR(volume_of(made.tissue) / (8 * football_volume - volume_within(basal, football.polygons)), 1, 1e-9);
 }
 
@@ -191,7 +191,7 @@ TEST(SurfaceEmbryo, TakesAHeightACellAndMovesToTheMiddle) {
   std::vector<double> heights(32, 1.0);
   heights[3] = 1.3;
   const SurfaceTissue off = build_under_surface({.surface = football, .heights_um = heights}, {});
-  EXPECT_NE(off.why_no_shape.find("is it outside of them?"), std::string::npos) << off.why_no_shape;
+  EXPECT_NE(off.why_no_shape.find("points must surround the origin"), std::string::npos) << off.why_no_shape;
   EXPECT_FALSE(off.tissue.outer_shape);
   const SurfaceTissue centred = build_under_surface({.surface = football, .heights_um = heights, .centre = true}, {});
   EXPECT_EQ(centred.why_no_shape, "");
@@ -209,14 +209,14 @@ TEST(SurfaceEmbryo, TakesAHeightACellAndMovesToTheMiddle) {
       "2 heights for 32 cells");
   heights[5] = 0;
   expect_mesh_error([&] { build_under_surface({.surface = football, .heights_um = heights}, {}); },
-                    "the height of row 5 is 0 um; it should be positive");
+                    "the height of row 5 is 0 um; heights must be positive");
 }
 
 TEST(SurfaceEmbryo, AnOpenOneHasNoShape) {
   PolygonSurface football = truncated_icosahedron();
   football.polygons.pop_back();
   const SurfaceTissue made = build_under_surface({.surface = football}, {1});
-  EXPECT_EQ(made.why_no_shape, "the surface has a rim, and a shell is closed");
+  EXPECT_EQ(made.why_no_shape, "the surface has a boundary; give a closed surface");
   EXPECT_EQ(expect_faces_enclose_the_cells(made.tissue).rims, 6U);
 }
 

@@ -80,7 +80,7 @@ TEST(PolygonSheet, IsLowerWhereItBendsSharply) {
 }
 
 TEST(PolygonSheet, SaysWhatIsWrong) {
-  expect_mesh_error([] { build_sheet({100, 100, {0.07, 0}}, 50, 1, cells); }, "would close upon itself");
+  expect_mesh_error([] { build_sheet({100, 100, {0.07, 0}}, 50, 1, cells); }, "would overlap itself");
   expect_mesh_error(
       [] {
         build_sheet({100, 200, {0.01, 0.013}}, 50, 1, cells);
@@ -160,7 +160,7 @@ TEST(PolygonSheet, OfOnePeriodMayBeATrough) {
         EXPECT_NEAR(std::hypot(x[1 - axis], x.z() + 100 - 6), 100, 1e-9);
       }
     shape.curvature_per_um[axis] = 0.001;
-    expect_mesh_error([&] { build_sheet(shape, 80, 1, cells); }, "does not repeat itself along a direction");
+    expect_mesh_error([&] { build_sheet(shape, 80, 1, cells); }, "cannot be periodic along a direction");
   }
 }
 

@@ -81,10 +81,11 @@ TEST(RectanglePolygons, DoNotDependOnWhereAPeriodEnds) {
 }
 
 TEST(RectanglePolygons, SayWhatIsWrong) {
-  expect_mesh_error([] { rectangle_polygons({{0, 0, 0}, {0, 0, 0}}, {{10, 10}}); }, "points 0 and 1 are in one place");
+  expect_mesh_error([] { rectangle_polygons({{0, 0, 0}, {0, 0, 0}}, {{10, 10}}); }, "points 0 and 1 coincide");
   const Rectangle narrow{{10, 100}, {true, false}};
-  expect_mesh_error([&] { rectangle_polygons(even_points(narrow, 20, 1), narrow); },
-                    "would meet itself, or another cell twice, across the period: give a longer period or more cells");
+  expect_mesh_error(
+      [&] { rectangle_polygons(even_points(narrow, 20, 1), narrow); },
+      "would meet itself, or another cell twice, across the period; lengthen the period, or give more cells");
 }
 
 }  // namespace

@@ -229,7 +229,7 @@ TEST(EggSurface, IsAnEllipsoidWithoutSags) {
 
 TEST(EggSurface, RefusesWhatIsNoEgg) {
   expect_mesh_error([] { egg_surface({500, 0, 180, {}, {}}); }, "positive");
-  expect_mesh_error([] { egg_surface({500, 180, 180, 40, -20}); }, "no egg has sags");
+  expect_mesh_error([] { egg_surface({500, 180, 180, 40, -20}); }, "no egg shape has sags");
 }
 
 }  // namespace

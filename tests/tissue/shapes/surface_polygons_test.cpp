@@ -219,7 +219,7 @@ TEST(PolygonsOfPoints, NameTheRowsThatCannotBeUsed) {
   refused(bad, "row 7");
   bad = points;
   bad[150] = bad[20] + Vec3(0, 0, 1e-9);
-  refused(bad, "rows 20 and 150 are in one place");
+  refused(bad, "rows 20 and 150 coincide");
   bad = points;
   bad[42] *= 0.8;
   refused(bad, "row 42");
