@@ -23,7 +23,7 @@ std::string StepReport::reason() const {
              where;
     case Status::not_projected:
       return fmt::format(
-          "the projection does not converge in {0} sweeps: relative error {:.1e} in the volume of {}, a node {:.1e} um "
+          "the projection does not converge in {} sweeps: relative error {:.1e} in the volume of {}, a node {:.1e} um "
           "outside the shell",
           projection_sweeps, constraint_error, cell ? where : "the whole surface", outside_um);
     case Status::not_finite:
