@@ -45,7 +45,7 @@ void print_result(const nlohmann::ordered_json& summary, const std::string& out)
                                ? fmt::format(", lips {} at {:.2f} min", closed == 1 ? "closed" : "open again, closed",
                                              closed_s.get<double>() / units::minute)
                                : ", lips open";
-  fmt::print("  furrow depth {}, apical area ratio {} (midline centre), peak speed ratio {} (centre/end){}\n",
+  fmt::print("  furrow depth {}, apical area ratio {} (midline centre), peak speed ratio {} (end/centre){}\n",
              value("furrow_depth_um", " um"), value("vml_apical_area_ratio", ""), value("peak_speed_ratio", ""), lips);
   fmt::print("  results in {0}{1}\n", out, can_report() ? fmt::format("; open {}/report.html in a browser", out) : "");
 }
