@@ -193,7 +193,7 @@ std::vector<std::string> SimulationOf::begin_record(const std::string& out, cons
                                                                      : RecordedRun::Start::fresh);
   std::vector<std::string> notes = record->notes();
   if (record->is_finished()) {
-    notes.push_back(out + ": the run is finished; nothing is left to do");
+    notes.push_back(out + ": the run is already complete");
     return notes;
   }
   const SafeThreadCount count(threads_);
