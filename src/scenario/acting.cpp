@@ -84,7 +84,7 @@ std::vector<Ablation> make_ablations(const Scenario& scenario, const std::string
 
 std::vector<bool> held_nodes(const HoldInput& input, const Tissue& tissue) {
   const auto inside = [](const std::optional<Range>& range, double value) {
-    // A face given by its place, [a, a], holds the nodes on it despite rounding.
+    // The tolerance includes nodes on a plane given as [a, a] despite rounding.
     return !range || (value >= (*range)[0] - 1e-9 && value <= (*range)[1] + 1e-9);
   };
   const CellSet& cells = tissue.regions.at(input.region);

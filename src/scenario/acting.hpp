@@ -1,4 +1,4 @@
-// Which cells and nodes a table of the scenario is about, on a tissue that has its regions.
+// Cells and nodes affected by a scenario table, on a tissue with resolved regions.
 #pragma once
 
 #include <vector>
@@ -8,23 +8,24 @@
 
 namespace plica {
 
-/// Who acts, how strongly and how late; or of which cells something else is told, with a factor on it.
+/// Per-cell activation of a table: region, amplitude factors, delays and pulses (pressures and elasticity: factors
+/// only).
 CellPattern make_pattern(const ContractionInput& input, const Tissue& tissue);
 CellPattern make_pattern(const CortexInput& input, const Tissue& tissue);
 CellPattern make_pattern(const PressureInput& input, const Tissue& tissue);
 CellPattern make_pattern(const RegionElasticityInput& input, const Tissue& tissue);
 
-/// Whether an ablation takes from a table, cortex.NAME or contraction.NAME, that acts on these faces, or their edges.
+/// Whether an ablation affects `table` (cortex.NAME or contraction.NAME), which acts on `faces` or their edges.
 bool takes_from(const AblationInput& ablation, const std::string& table, const std::string& faces);
 
-/// What the scenario takes away from cells' strength in that table.
+/// Ablations of the scenario that affect this table.
 std::vector<Ablation> make_ablations(const Scenario& scenario, const std::string& table, const std::string& faces,
                                      const Tissue& tissue);
 
-/// The longest step that sees pulses, s.
+/// Longest time step that resolves the pulses (s).
 inline double longest_step_of_pulses_s(const PulseInput& pulse) { return *pulse.period_s / (12 * (1 + pulse.spread)); }
 
-/// The nodes of a hold.
+/// Fixed nodes of a [hold.NAME] table; one entry per node.
 std::vector<bool> held_nodes(const HoldInput& input, const Tissue& tissue);
 
 }  // namespace plica

@@ -18,20 +18,21 @@
 namespace plica {
 namespace {
 
-using Say = std::function<void(std::string)>;
+using MessageSink = std::function<void(std::string)>;  // receives one message
 
-void advise_on_shape_memory(const Scenario& scenario, const Model& model, const Say& note, const Say& warn) {
+void advise_on_shape_memory(const Scenario& scenario, const Model& model, const MessageSink& note,
+                            const MessageSink& warn) {
   for (const auto& law : model.laws)
     if (const auto* springs = dynamic_cast<const ShapeMemory*>(law.get())) {
       const auto [least, most] = std::ranges::minmax(springs->stiffness());
-      note(fmt::format("springs to the attractor have {:.4g} to {:.4g} nN/um{}", least, most,
+      note(fmt::format("shape-memory springs have a stiffness of {:.4g} to {:.4g} nN/um{}", least, most,
                        scenario.elasticity.attractor_stiffness_nN_per_um
                            ? "; Young's modulus and Poisson's ratio are not used"
-                           : ", so that the mean shear modulus is that of Young's modulus and Poisson's ratio"));
+                           : ", derived from Young's modulus and Poisson's ratio (equal mean shear modulus)"));
       if (model.tissue.elements.size() > model.tissue.cells.size())
         warn(
-            "shape memory is a law of whole cells: in cells of several elements the sheet bends up to three times more "
-            "easily (docs/theory/shape_memory.md)");
+            "shape memory acts on whole cells, so with several elements per cell the sheet bends up to three times "
+            "more easily; use one element per cell (docs/theory/shape_memory.md)");
     }
 }
 
@@ -64,8 +65,8 @@ std::set<std::string> used_regions(const Scenario& scenario) {
   return used;
 }
 
-// What a profile takes to nothing, most likely because the values of its array are others than was thought.
-void advise_on_profiles(const Scenario& scenario, const Tissue& tissue, const Say& warn) {
+// Warns of a profile that is 0 in every cell. The usual cause is an array with an unexpected range.
+void advise_on_profiles(const Scenario& scenario, const Tissue& tissue, const MessageSink& warn) {
   const auto look = [&](const std::string& tables, const auto& inputs) {
     for (const auto& [name, input] : inputs) {
       const CellPattern pattern = make_pattern(input, tissue);
@@ -76,9 +77,10 @@ void advise_on_profiles(const Scenario& scenario, const Tissue& tissue, const Sa
         for (std::size_t c = 0; c < tissue.cells.size(); ++c)
           if (pattern.cells[c]) values.push_back(tissue.cell_arrays.at(input.profile.array)[c]);
         const auto [least, most] = std::ranges::minmax(values);
-        range = fmt::format("; there {} goes from {:.4g} to {:.4g}", input.profile.array, least, most);
+        range = fmt::format(" ({} ranges from {:.4g} to {:.4g} there)", input.profile.array, least, most);
       }
-      warn(fmt::format("{}.{}: its profile is 0 in every cell of region {}{}", tables, name, input.region, range));
+      warn(fmt::format("{}.{}: profile is 0 in every cell of region {}{}; change profile", tables, name, input.region,
+                       range));
     }
   };
   look("contraction", scenario.contractions);
@@ -86,10 +88,11 @@ void advise_on_profiles(const Scenario& scenario, const Tissue& tissue, const Sa
   look("pressure", scenario.pressures);
 }
 
-void advise_on_ablations(const Scenario& scenario, const Tissue& tissue, const Say& warn) {
+void advise_on_ablations(const Scenario& scenario, const Tissue& tissue, const MessageSink& warn) {
   for (const auto& [name, ablation] : scenario.ablations) {
     if (*ablation.at_s >= scenario.time.end_s)
-      warn(fmt::format("ablation.{}: it comes after the run's end at {} s", name, scenario.time.end_s));
+      warn(fmt::format("ablation.{}: the ablation starts after the end of the run ({} s); change at_s or time.end_s",
+                       name, scenario.time.end_s));
     const CellSet& cells = tissue.regions.at(ablation.region);
     bool takes = false;
     const auto look = [&](const std::string& table, const std::string& faces, const std::string& region) {
@@ -101,8 +104,10 @@ void advise_on_ablations(const Scenario& scenario, const Tissue& tissue, const S
     for (const auto& [other, springs] : scenario.contractions)
       look("contraction." + other, springs.edges, springs.region);
     if (!takes)
-      warn(fmt::format("ablation.{}: takes nothing: no such cortex or contraction acts on these faces in region {}",
-                       name, ablation.region));
+      warn(
+          fmt::format("ablation.{}: has no effect, since no selected cortex or contraction acts on these faces in "
+                      "region {}; change faces, only or region",
+                      name, ablation.region));
   }
 }
 
@@ -110,7 +115,7 @@ int longest_axis(const Vectors& positions) {
   Eigen::AlignedBox3d box;
   for (const Vec3& position : positions) box.extend(position);
   int axis = 0;
-  // Not for a ball's last digits.
+  // The tolerance ignores rounding in a sphere.
   if (const Vec3 size = box.sizes(); size.maxCoeff(&axis) <= 1.05 * size.x()) axis = 0;
   return axis;
 }
@@ -128,73 +133,81 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   const bool is_tense =
       std::ranges::any_of(scenario.cortices, [](const auto& entry) { return entry.second.tension_mN_per_m > 0; });
   if (!pulls && !is_tense && scenario.pressures.empty() && scenario.divisions.empty())
-    warn("nothing pushes or pulls: without [contraction], [cortex], [pressure] or [division] the embryo stays at rest");
+    warn("no force acts, so the embryo does not move; add [contraction], [cortex], [pressure] or [division]");
   for (const auto& [name, contraction] : scenario.contractions)
     if (contraction.stiffness_nN_per_um == 0 && contraction.preload_nN == 0 && contraction.tension_mN_per_m == 0)
-      warn(fmt::format("contraction.{}: has no stiffness, preload or tension, so it does nothing", name));
+      warn(
+          fmt::format("contraction.{}: has no effect, since stiffness, pre-tension and tension are 0; set "
+                      "stiffness_nN_per_um, preload_nN or tension_mN_per_m",
+                      name));
   const std::set<std::string> used = used_regions(scenario);
   for (const auto& [name, region] : scenario.regions)
-    if (!used.contains(name)) note(fmt::format("region.{}: nothing acts on it or measures it", name));
+    if (!used.contains(name)) note(fmt::format("region.{}: no table uses this region", name));
   for (const auto& [name, division] : scenario.divisions)
     if (division.at_s && *division.at_s >= scenario.time.end_s)
-      warn(fmt::format("division.{}: it comes after the run's end at {} s", name, scenario.time.end_s));
+      warn(fmt::format("division.{}: the division occurs after the end of the run ({} s); change at_s or time.end_s",
+                       name, scenario.time.end_s));
   for (const auto& [name, monitor] : scenario.monitors)
     if (monitor.at_s && *monitor.at_s > scenario.time.end_s)
-      warn(fmt::format("monitor.{}: its time comes after the run's end at {} s", name, scenario.time.end_s));
+      warn(fmt::format("monitor.{}: at_s is after the end of the run ({} s); change at_s or time.end_s", name,
+                       scenario.time.end_s));
   advise_on_ablations(scenario, model.tissue, warn);
   for (const auto& [name, contraction] : scenario.contractions)
     if (contraction.stiffness_nN_per_um > 0 || contraction.preload_nN > 0)
       note(
-          fmt::format("contraction.{}: every edge is a spring, so the same region of smaller cells pulls harder; "
-                      "tension_mN_per_m does not depend on their size",
+          fmt::format("contraction.{}: every edge carries a spring, so a region of smaller cells contracts more "
+                      "strongly; use tension_mN_per_m for a tension independent of cell size",
                       name));
   for (const auto& [name, contraction] : scenario.contractions)
     if (!contraction.program.activity.empty() && std::ranges::max(contraction.program.activity) == 0)
-      warn(fmt::format("contraction.{}: its program is 0 at every point", name));
+      warn(fmt::format("contraction.{}: program is 0 at all times; set an activity above 0", name));
   for (const auto& law : model.laws)
     if (const auto* contraction = dynamic_cast<const Contraction*>(law.get());
         contraction != nullptr && contraction->last_program_point_s() > scenario.time.end_s)
-      warn(fmt::format("{}: its program goes on after the run's end at {} s", law->label(), scenario.time.end_s));
+      warn(fmt::format("{}: program extends beyond the end of the run ({} s); change program or time.end_s",
+                       law->label(), scenario.time.end_s));
   for (const auto& [name, cortex] : scenario.cortices)
     for (const ProgramInput* program : {&cortex.program, &cortex.stiffness_program})
       if (!program->time_s.empty() && program->time_s.back() > scenario.time.end_s)
-        warn(fmt::format("cortex.{}: its program goes on after the run's end at {} s", name, scenario.time.end_s));
+        warn(fmt::format("cortex.{}: program extends beyond the end of the run ({} s); change program or time.end_s",
+                         name, scenario.time.end_s));
   if (scenario.time.step_s && *scenario.time.step_s > scenario.time.end_s)
-    warn("time.step_s is longer than the whole run");
+    warn("time.step_s: the time step is longer than the run; reduce step_s or increase end_s");
   advise_on_profiles(scenario, model.tissue, warn);
   advise_on_shape_memory(scenario, model, note, warn);
   if (method_of(scenario.volume) == VolumeMethod::coupled &&
       model_of(scenario.elasticity) != ElasticModel::shape_memory)
     note(
-        "every cell's volume is held exactly, so Poisson's ratio sets only the shear modulus and how far parts of a "
-        "cell may swell at each other's cost");
+        "cell volumes are conserved exactly, so Poisson's ratio affects only the shear modulus and the dilatation "
+        "within a cell");
   if (const double poisson = scenario.elasticity.poisson_ratio;
       model_of(scenario.elasticity) == ElasticModel::neo_hookean && poisson > 0.1 &&
       model.tissue.elements.size() == model.tissue.cells.size())
-    warn(
-        fmt::format("neo-hookean cells of one element bend {:.0f} % more easily than Poisson's ratio {} says; take two "
-                    "elements through the height, or model corotational (docs/theory/neo_hookean.md)",
-                    100 * poisson, poisson));
+    warn(fmt::format(
+        "neo-hookean cells of one element bend {:.0f} % more easily than Poisson's ratio {} implies; use two elements "
+        "through the height, or set elasticity.model to \"corotational\" (docs/theory/neo_hookean.md)",
+        100 * poisson, poisson));
   if (method_of(scenario.volume) == VolumeMethod::projection) {
-    note("volumes are projected after the forces: where the embryo comes to rest depends on time.step_s");
+    note("volumes are projected after the forces act, so the equilibrium depends on time.step_s");
     if (!scenario.time.step_s && scenario.volume.projection_weights == "equal")
       warn(
-          "where a projection with equal weights comes to rest moves with the step's length, so adaptive steps chase "
-          "it and stay short; give time.step_s a number");
+          "the equilibrium of a projection with equal weights depends on the step length, so adaptive steps stay "
+          "short; set time.step_s to a number");
   }
   if (scenario.vitelline.enabled && scenario.vitelline.gap_um > 0)
-    note(fmt::format("the embryo starts {} um away from its shell", scenario.vitelline.gap_um));
+    note(fmt::format("the initial gap to the vitelline membrane is {} um", scenario.vitelline.gap_um));
 
   if (scenario.vitelline.enabled && shape_of(scenario.embryo) == EmbryoShape::file) {
     const Capsule& mesh = *model.tissue.outer_shape->capsule();
     const double radius_um = mesh.radius_um + scenario.vitelline.gap_um;
-    note(fmt::format("the shell is the capsule along x around the mesh, {:.4g} um long and {:.4g} um across",
-                     2 * (mesh.half_axis_um + radius_um), 2 * radius_um));
+    note(fmt::format(
+        "the vitelline membrane is the spherocylinder along x around the mesh, {:.4g} um long and {:.4g} um wide",
+        2 * (mesh.half_axis_um + radius_um), 2 * radius_um));
     if (const int axis = longest_axis(model.tissue.rest_positions); axis != 0)
-      warn(fmt::format(
-          "the mesh is longest along {}, and the shell's axis is x, so the shell is far wider than the mesh; "
-          "turn the mesh so that its long axis is x",
-          axis == 1 ? "y" : "z"));
+      warn(
+          fmt::format("the mesh is longest along {}, but the axis of the vitelline membrane is x, so the membrane is "
+                      "far wider than the mesh; rotate the mesh so that its long axis is x",
+                      axis == 1 ? "y" : "z"));
   }
 
   for (const std::string& remark : model.tissue.remarks) note(remark);
@@ -202,18 +215,20 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   const std::string& measured = scenario.furrow.region;
   if (measured.empty() && regions.size() > 1)
     warn(
-        fmt::format("contractions act on the regions {}: the furrow is measured where the largest is, {}; "
-                    "furrow.region names another",
+        fmt::format("contractions act on the regions {}, and the furrow is measured on the largest, {}; set "
+                    "furrow.region to measure another",
                     fmt::join(regions, ", "), regions.front()));
   if (!measured.empty() && !regions.empty() && std::ranges::find(regions, measured) == regions.end())
-    warn(fmt::format("the furrow is measured on region {} (furrow.region), and what contracts its apices is {}",
-                     measured, fmt::join(regions, ", ")));
+    warn(
+        fmt::format("furrow.region: the furrow is measured on region {}, but apical surfaces contract in {}; set "
+                    "furrow.region to a contracting region",
+                    measured, fmt::join(regions, ", ")));
   if (!measured.empty() || !regions.empty())
     if (make_furrow_sites(scenario, model.tissue).vml.empty())
-      warn(fmt::format(
-          "region {} does not meet the plane y = 0, where a furrow is measured: its depth, its lips and VML "
-          "have no value; a [monitor.NAME] measures any region",
-          measured.empty() ? regions.front() : measured));
+      warn(
+          fmt::format("region {} does not intersect the plane y = 0, so furrow depth, furrow lips and VML have no "
+                      "value; use [monitor.NAME] to measure any region",
+                      measured.empty() ? regions.front() : measured));
 
   const MeshQuality quality = mesh_quality(model.tissue, model.tissue.rest_positions);
   note(fmt::format(
@@ -221,11 +236,13 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
       model.tissue.cells.size(), model.tissue.elements.size(), model.tissue.node_count(), quality.volume_um3.min,
       quality.volume_um3.max, quality.apical_area_um2.min, quality.apical_area_um2.max));
   if (const std::size_t planes = scenario.embryo.mirror.size(); planes > 0)
-    note(fmt::format("{} of these cells are solved, the others are their images (embryo.mirror)",
+    note(fmt::format("{} of these cells are solved, the others are mirror images (embryo.mirror)",
                      model.tissue.cells.size() >> planes));
   if (quality.min_scaled_jacobian < 0.2)
-    warn(fmt::format("the worst element has a scaled Jacobian of {:.2f} (1 is a brick): results near it are poor",
-                     quality.min_scaled_jacobian));
+    warn(
+        fmt::format("the lowest scaled Jacobian of an element is {:.2f} (1: cuboid), so results near it are "
+                    "inaccurate; improve the mesh",
+                    quality.min_scaled_jacobian));
   return lines;
 }
 

@@ -1,4 +1,4 @@
-// What is not wrong in a scenario, but worth knowing before it runs.
+// Warnings and notes about a valid scenario, for `plica check` and the start of a run.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace plica {
 
-/// Lines that begin with "warning: " (what cannot work as meant) or "note: ".
+/// Returns lines that begin with "warning: " (probably not intended) or "note: " (for information).
 std::vector<std::string> advice(const Scenario& scenario, const Model& model);
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// The scenarios that plica carries within itself: the files of scenarios/, put in at build time.
+// Built-in scenarios: the files of scenarios/, embedded at build time.
 #pragma once
 
 #include <string_view>
@@ -23,11 +23,11 @@ struct BuiltinFile {
 
 const std::vector<BuiltinScenario>& builtin_scenarios();
 
-/// Measured tables that they build on: the files of scenarios/data/. A scenario names one builtin:NAME in place of a
-/// path.
+/// Measured tables used by built-in scenarios: the files of scenarios/data/. A scenario refers to one as builtin:NAME
+/// in place of a path.
 const std::vector<BuiltinTable>& builtin_tables();
 
-/// Experiments and what lies beside them: scenarios/living/experiments.toml has the path living/experiments.toml.
+/// Experiment files and their tables, by path below scenarios/ (living/experiments.toml).
 const std::vector<BuiltinFile>& builtin_experiment_files();
 
 inline constexpr std::string_view builtin_table_mark = "builtin:";

@@ -20,42 +20,43 @@
 namespace plica {
 namespace {
 
-// A mesh file's apical surface may be open; that of a built embryo is not.
+// Checks a mesh file's apical surface, which may be open; that of a built embryo is closed.
 void check_encloses(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   if (!encloses(tissue, tissue.apical_facets))
-    errors.push_back(diagnostic_at(scenario, "volume.projection_surface",
-                                   "the apical surface of this mesh encloses nothing", "give \"cells\" or \"tissue\""));
+    errors.push_back(diagnostic_at(scenario, "volume.projection_surface", "the apical surface of this mesh is open",
+                                   "set projection_surface to \"cells\" or \"tissue\""));
 }
 
-// The same of a basal surface and the yolk; the planes at a slice's ends close it, too.
+// Checks that the basal surface encloses a volume; the end planes of a slice count as closed.
 void check_encloses_yolk(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   if (!scenario.enclosed.empty() && !EnclosedVolume::is_closed(tissue))
     errors.push_back(diagnostic_at(scenario, "enclosed." + scenario.enclosed.begin()->first,
-                                   "the basal surface of this mesh encloses nothing", "remove the table"));
+                                   "the basal surface of this mesh is open", "remove [enclosed.NAME]"));
 }
 
-// Cells without an apical or a basal face have nodes inside that no drag slows, and a projection throws them about.
+// Projection needs drag on every node: cells without an apical or basal face have inner nodes without drag.
 void check_is_one_layer(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   const std::optional<CellId> inner = cell_between_layers(tissue);
   if (!inner) return;
   errors.push_back(diagnostic_at(scenario, "volume.method",
-                                 fmt::format("a projection needs one layer of cells, and {} has no apical or no "
-                                             "basal face: nothing slows the nodes between cells above each other",
+                                 fmt::format("projection requires a single layer of cells, but {} has no apical or no "
+                                             "basal face, so no drag acts on its inner nodes",
                                              cell_at(tissue, *inner)),
-                                 "give \"coupled\" or \"none\", or one layer of cells"));
+                                 "set method to \"coupled\" or \"none\", or use one layer of cells"));
 }
 
-// Corners of polygons lie on edges of their neighbours: the paper's algorithm moves them by themselves, and tears the
-// tissue there.
+// Polygon corners are hanging nodes on edges of neighbours; the paper's algorithm would move them independently and
+// tear the tissue.
 void check_nodes_are_free(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   if (tissue.hanging.empty() || !is_as_in_the_paper(scenario)) return;
   const bool projects = method_of(scenario.volume) == VolumeMethod::projection;
-  errors.push_back(diagnostic_at(scenario, projects ? "volume.method" : "time.scheme",
-                                 "the paper's algorithm knows cells of four sides only, and this tissue has polygons",
-                                 projects ? "give \"coupled\" or \"none\"" : "give \"newton\""));
+  errors.push_back(
+      diagnostic_at(scenario, projects ? "volume.method" : "time.scheme",
+                    "the paper's algorithm supports four-sided cells only, but this tissue has polygonal cells",
+                    projects ? "set method to \"coupled\" or \"none\"" : "set scheme to \"newton\""));
 }
 
-// What acts on faces needs cells that have them: those between two layers have none.
+// Checks that regions have the faces a table acts on; cells between two layers have neither apical nor basal faces.
 void check_faces(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   const auto check = [&](const std::string& table, const char* key, const std::string& side, const CellSet& region) {
     const auto side_meant = meaning_of(words::edges, side);
@@ -65,7 +66,7 @@ void check_faces(const Scenario& scenario, const Tissue& tissue, std::vector<Dia
       errors.push_back(diagnostic_at(
           scenario, table + ".region",
           fmt::format("no cell of this region has {} {} face", side_meant == CellSide::apical ? "an" : "a", side),
-          fmt::format("name a region on that side, or give other {}", key)));
+          fmt::format("set region to cells with this face, or change {}", key)));
   };
   for (const auto& [name, it] : scenario.contractions) {
     const CellSet& region = tissue.regions.at(it.region);
@@ -73,10 +74,11 @@ void check_faces(const Scenario& scenario, const Tissue& tissue, std::vector<Dia
     if (!it.diagonals) continue;
     for (std::size_t c = 0; c < region.size(); ++c)
       if (region[c] && tissue.cells[c].sides() != 4) {
-        errors.push_back(diagnostic_at(scenario, "contraction." + name + ".diagonals",
-                                       fmt::format("{} has {} corners; which diagonals contract is told for four",
-                                                   cell_at(tissue, CellId(c)), tissue.cells[c].sides()),
-                                       "give false"));
+        errors.push_back(
+            diagnostic_at(scenario, "contraction." + name + ".diagonals",
+                          fmt::format("{} has {} corners, but diagonals are defined for four-sided cells only",
+                                      cell_at(tissue, CellId(c)), tissue.cells[c].sides()),
+                          "set diagonals to false"));
         break;
       }
   }
@@ -86,7 +88,7 @@ void check_faces(const Scenario& scenario, const Tissue& tissue, std::vector<Dia
     check("pressure." + name, "face", it.face, tissue.regions.at(it.region));
 }
 
-// Contact keeps sides apart that lie apart: which side is which cannot be told where they are mixed from the start.
+// Contact requires a reference mesh without self-intersections: otherwise the two sides cannot be distinguished.
 void check_contact_at_rest(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   if (scenario.self_contact.surface == "none") return;
   const CellSet crossing = self_intersecting_cells(tissue, tissue.rest_positions);
@@ -94,40 +96,41 @@ void check_contact_at_rest(const Scenario& scenario, const Tissue& tissue, std::
   if (first != crossing.end())
     errors.push_back(
         diagnostic_at(scenario, "self_contact.surface",
-                      fmt::format("the mesh passes through itself at rest, at {}",
+                      fmt::format("the reference mesh self-intersects at {}",
                                   cell_at(tissue, CellId(static_cast<std::size_t>(first - crossing.begin())))),
-                      "mend the mesh, or give \"none\""));
+                      "repair the mesh, or set surface to \"none\""));
 }
 
-// Where two tables speak of one cell, nobody knows which is meant.
+// Rejects two tables for one element: neither takes precedence.
 void check_elasticities_apart(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
-  std::vector<const std::string*> spoken_of(tissue.elements.size(), nullptr);
+  std::vector<const std::string*> owner(tissue.elements.size(), nullptr);
   for (const auto& [name, input] : scenario.region_elasticities) {
     const std::vector<bool> chosen = elements_of(input, tissue.regions.at(input.region), tissue);
     if (std::ranges::find(chosen, true) == chosen.end())
-      errors.push_back(diagnostic_at(scenario, "elasticity." + name + ".height_percent",
-                                     "no element of the region has its middle in this part of the height",
-                                     is_of_grid(shape_of(scenario.embryo))
-                                         ? "widen it, or give embryo.elements_per_cell more elements through the height"
-                                         : "widen it, or give more embryo.layers"));
+      errors.push_back(
+          diagnostic_at(scenario, "elasticity." + name + ".height_percent",
+                        "no element of the region has its centre in this part of the height",
+                        is_of_grid(shape_of(scenario.embryo))
+                            ? "widen height_percent, or increase embryo.elements_per_cell through the height"
+                            : "widen height_percent, or increase embryo.layers"));
     for (std::size_t e = 0; e < chosen.size(); ++e) {
       if (!chosen[e]) continue;
-      if (spoken_of[e]) {
+      if (owner[e]) {
         const bool has_layers = input.height_percent.has_value();
         errors.push_back(
             diagnostic_at(scenario, "elasticity." + name,
-                          fmt::format("elasticity.{} speaks of {}{}, too", *spoken_of[e],
+                          fmt::format("overlaps elasticity.{} in {}{}", *owner[e],
                                       has_layers ? "the same layer of " : "", cell_at(tissue, tissue.element_cell[e])),
-                          has_layers ? "give them parts of the height without common elements, or other regions"
-                                     : "give them regions without common cells, by `except` for instance"));
+                          has_layers ? "set height_percent to disjoint ranges, or use disjoint regions"
+                                     : "use disjoint regions, for example with `except`"));
         break;
       }
-      spoken_of[e] = &name;
+      owner[e] = &name;
     }
   }
 }
 
-// Profiles by an array: of the tissue, with numbers in every cell that acts.
+// Checks profiles by array: the tissue has the array, with a finite value in every cell of the region.
 void check_arrays(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   const auto check = [&](const std::string& tables, const auto& inputs) {
     for (const auto& [name, input] : inputs) {
@@ -136,10 +139,10 @@ void check_arrays(const Scenario& scenario, const Tissue& tissue, std::vector<Di
       const auto array = tissue.cell_arrays.find(input.profile.array);
       if (array == tissue.cell_arrays.end()) {
         const std::vector<std::string> names = keys_of(tissue.cell_arrays);
-        errors.push_back(
-            diagnostic_at(scenario, key, fmt::format("the embryo has no array \"{}\"", input.profile.array),
-                          names.empty() ? "it has none: arrays come with cells about points, or from a mesh file"
-                                        : fmt::format("it has {}", fmt::join(names, ", "))));
+        errors.push_back(diagnostic_at(
+            scenario, key, fmt::format("the embryo has no array \"{}\"", input.profile.array),
+            names.empty() ? "use an embryo from a file (shape \"points\", \"surface\" or \"file\") with this array"
+                          : fmt::format("set array to one of: {}", fmt::join(names, ", "))));
         continue;
       }
       const CellSet& cells = tissue.regions.at(input.region);
@@ -147,8 +150,8 @@ void check_arrays(const Scenario& scenario, const Tissue& tissue, std::vector<Di
         if (cells[c] && !std::isfinite(array->second[c])) {
           errors.push_back(diagnostic_at(
               scenario, key,
-              fmt::format("array \"{}\" has no number in {}", input.profile.array, cell_at(tissue, CellId(c))),
-              "give every cell of the region one"));
+              fmt::format("array \"{}\" is not finite in {}", input.profile.array, cell_at(tissue, CellId(c))),
+              "provide a number for every cell of the region"));
           break;
         }
     }
@@ -159,7 +162,7 @@ void check_arrays(const Scenario& scenario, const Tissue& tissue, std::vector<Di
   check("elasticity", scenario.region_elasticities);
 }
 
-// A modulus that a profile takes to 0 leaves cells without any.
+// Rejects profiles that reduce the modulus of a cell to 0.
 void check_moduli(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   for (const auto& [name, input] : scenario.region_elasticities) {
     const CellPattern pattern = make_pattern(input, tissue);
@@ -167,7 +170,7 @@ void check_moduli(const Scenario& scenario, const Tissue& tissue, std::vector<Di
       if (pattern.cells[c] && !(pattern.strengths[c] > 1e-6)) {
         errors.push_back(diagnostic_at(scenario, "elasticity." + name + ".profile",
                                        fmt::format("the modulus of {} would be 0", cell_at(tissue, CellId(c))),
-                                       "give profile.edge, or factors, above 0"));
+                                       "set profile.edge or profile.factor above 0"));
         break;
       }
   }
@@ -176,22 +179,23 @@ void check_moduli(const Scenario& scenario, const Tissue& tissue, std::vector<Di
 void check_holds(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   for (const auto& [name, input] : scenario.holds)
     if (std::ranges::none_of(held_nodes(input, tissue), [](bool is_held) { return is_held; }))
-      errors.push_back(diagnostic_at(scenario, "hold." + name, "no node of the region lies in its ranges",
-                                     "widen x_um, y_um or z_um; see `plica mesh` for where nodes lie"));
+      errors.push_back(diagnostic_at(scenario, "hold." + name, "no node of the region lies in these ranges",
+                                     "widen x_um, y_um or z_um; `plica mesh` writes the positions of nodes"));
 }
 
 }  // namespace
 
-// A mesh may be so coarse, thick or short that cells turn inside out where it is bent most.
+// Coarse, thick or short meshes have inverted cells where curvature is highest.
 void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
     if (!(hex_scaled_jacobian(tissue.element_rest_shape[e]) > 0)) {
       const bool has_grid = is_of_grid(shape_of(scenario.embryo));
       errors.push_back(diagnostic_at(scenario, has_grid ? "embryo.cells" : "embryo.cell_height_um",
-                                     fmt::format("the mesh would be inverted: {} is inside out or flat at rest",
+                                     fmt::format("the mesh is invalid: {} is inverted or flat in the reference state",
                                                  cell_at(tissue, tissue.element_cell[e])),
-                                     has_grid ? "take more cells, or flatter ones"
-                                              : "give a smaller height, or a surface that is bent less there"));
+                                     has_grid
+                                         ? "increase cells, or reduce cell_height_um"
+                                         : "reduce cell_height_um, or use a surface with a lower curvature there"));
       return;
     }
 }
@@ -207,7 +211,7 @@ void check_tissue(const Scenario& scenario, const Tissue& tissue) {
   if (const auto why = why_indivisible(tissue); why && !scenario.divisions.empty())
     errors.push_back(diagnostic_at(scenario, "division." + scenario.divisions.begin()->first,
                                    "the cells of this embryo cannot divide: " + *why,
-                                   "take one element a cell and one layer of cells"));
+                                   "use one element per cell and one layer of cells"));
   if (scenario.volume.projection_surface == "embryo") check_encloses(scenario, tissue, errors);
   check_encloses_yolk(scenario, tissue, errors);
   if (method_of(scenario.volume) == VolumeMethod::projection) check_is_one_layer(scenario, tissue, errors);

@@ -1,5 +1,4 @@
-// What is wrong with a scenario and only its tissue shows: no face where something acts, nothing enclosed, no node
-// held.
+// Checks that need the tissue: missing faces, open surfaces, overlapping tables, inverted elements, empty holds.
 #pragma once
 
 #include <vector>
@@ -10,10 +9,10 @@
 
 namespace plica {
 
-/// Cells that are inside out at rest.
+/// Adds an error for the first element that is inverted or flat in the reference state.
 void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors);
 
-/// All else, of a tissue with its regions. Throws ScenarioError with all that it finds.
+/// Runs all other checks on a tissue with resolved regions. Throws ScenarioError with all errors found.
 void check_tissue(const Scenario& scenario, const Tissue& tissue);
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// In which keys two scenarios differ.
+// Differences between two scenarios, key by key.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace plica {
 
-/// A key in dotted form, as in --set, and its two values as in TOML; empty where a scenario has none.
+/// Dotted key and its two values in TOML; empty where a scenario lacks the key.
 struct KeyDifference {
   std::string key, a, b;
 };
 
-/// Of two scenarios as a run leaves them (scenario.toml, every default filled in), in the order of keys. A text that is
-/// no TOML has no keys.
+/// Compares two resolved scenarios (scenario.toml of a run) and returns differing keys in alphabetical order. Invalid
+/// TOML counts as empty.
 std::vector<KeyDifference> scenario_differences(std::string_view a, std::string_view b);
 
 }  // namespace plica

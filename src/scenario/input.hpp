@@ -1,5 +1,5 @@
-// What a scenario's sources gave so far, and what is wrong with it. An address is a dotted key whose stand-ins
-// (end_min for end_s) are replaced by the key they stand in for, or the path of a table.
+// Keys read so far, with their places, and errors found. An address is a dotted key in its primary unit (end_s for
+// end_min), or the path of a table.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace plica {
 
-/// Where something was given last. Layers are counted from the deepest base; `--set` is the last.
+/// Place where a key was set last. Layers count from the deepest base; `--set` is the last.
 struct Place {
   std::string file;
   int line = 0;
@@ -22,9 +22,9 @@ struct Place {
 };
 
 struct Input {
-  std::string file;  // of the scenario itself
+  std::string file;  // the scenario's own
   std::map<std::string, Place> places;
-  std::set<std::string> doubtful;  // addresses with an error: rules between keys leave them alone
+  std::set<std::string> doubtful;  // addresses with an error, skipped by rules between keys
   std::vector<Diagnostic> diagnostics;
 
   [[nodiscard]] const Place* place(const std::string& address) const {
@@ -34,14 +34,14 @@ struct Input {
 
   [[nodiscard]] bool sound(const std::string& address) const { return !doubtful.contains(address); }
 
-  /// Whether `address` was given along with `chooser` or after it, so that it cannot have been meant for another choice
-  /// that was inherited.
+  /// Whether `address` was set in the same layer as `chooser` or later, so it cannot belong to another, inherited
+  /// choice.
   [[nodiscard]] bool given_with(const std::string& address, const std::string& chooser) const {
     const Place *given = place(address), *choice = place(chooser);
     return given != nullptr && (choice == nullptr || given->layer >= choice->layer);
   }
 
-  /// Reports at the place of `address`, or of the table around it where it was not given.
+  /// Adds an error at the place of `address`, or of the enclosing table if the key was not set.
   void report(const std::string& address, std::string problem, std::string remedy) {
     const Place* here = place(address);
     const std::string key = here != nullptr ? here->written : address;

@@ -25,7 +25,7 @@ struct Document {
   toml::table table;
 };
 
-/// The scenario that `base` of `document` names. Reports it and returns nothing where there is none.
+/// Finds the scenario that `base` of `document` names. Returns nothing, after reporting, if it cannot be found.
 std::optional<ScenarioSource> find_base(const Document& document, const std::vector<Document>& chain,
                                         std::vector<Diagnostic>& diagnostics) {
   const toml::node* base = document.table.get("base");
@@ -44,21 +44,21 @@ std::optional<ScenarioSource> find_base(const Document& document, const std::vec
              other.source.text == found.text;
     };
     if (std::ranges::none_of(chain, same)) return found;
-    report(fmt::format("\"{}\" inherits from itself in the end", *name), "remove one base of the circle");
+    report(fmt::format("\"{}\" inherits from itself through its bases", *name), "remove one base of the cycle");
   } catch (const UsageError& error) {
-    report(error.what(), "give a built-in name, or a path relative to this file");
+    report(error.what(), "set base to a built-in name or a path relative to this file");
   } catch (const FileError& error) {
-    report(error.what(), "give a built-in name, or a path relative to this file");
+    report(error.what(), "set base to a built-in name or a path relative to this file");
   }
   return {};
 }
 
-/// The scenario and its bases, the deepest first. Incomplete where anything was reported.
+/// Reads the scenario and its bases, the deepest first. Incomplete if an error was reported.
 std::vector<Document> read_documents(const ScenarioSource& source, std::vector<Diagnostic>& diagnostics) {
   std::vector<Document> chain;
   for (std::optional<ScenarioSource> next = source; next;) {
     if (const int line = line_of_too_deep_key(next->text); line > 0) {
-      diagnostics.push_back({next->file, line, "", "a key has too many parts", "a scenario's keys have at most four"});
+      diagnostics.push_back({next->file, line, "", "a key has too many parts", "use at most four parts"});
       break;
     }
     try {
@@ -67,16 +67,16 @@ std::vector<Document> read_documents(const ScenarioSource& source, std::vector<D
       const bool is_study = table.contains("vary") && table.contains("design");
       if (is_study || table.contains("experiment")) {
         diagnostics.push_back({next->file, 0, "",
-                               is_study ? "is a study and no scenario" : "holds experiments and is no scenario",
-                               fmt::format("run {} by plica {} {} --out DIR", is_study ? "it" : "them",
+                               is_study ? "is a study, not a scenario" : "contains experiments, not a scenario",
+                               fmt::format("run {} with plica {} {} --out DIR", is_study ? "it" : "them",
                                            is_study ? "study" : "reproduce", next->file)});
         chain.clear();
         break;
       }
       next = find_base(chain.back(), chain, diagnostics);
       if (next && chain.size() == most_bases) {
-        diagnostics.push_back({chain.back().source.file, 0, "base", "too many scenarios inherit from each other",
-                               fmt::format("at most {} may", most_bases)});
+        diagnostics.push_back({chain.back().source.file, 0, "base", "too many scenarios inherit from one another",
+                               fmt::format("use at most {}", most_bases)});
         break;
       }
     } catch (const toml::parse_error& error) {
@@ -93,7 +93,7 @@ std::string trimmed(const std::string& text) {
   return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-/// The TOML document that says the same as "dotted.key=value", or nothing where it cannot be understood.
+/// Converts "dotted.key=value" to a TOML document; nothing if it cannot be parsed.
 std::optional<toml::table> parse_override(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || line_of_too_deep_key(text) > 0) return {};
@@ -126,10 +126,11 @@ void read_overrides(const std::vector<std::string>& overrides, int layer, Scenar
     const auto table = parse_override(text);
     if (!table) {
       input.diagnostics.push_back(
-          {"--set", 0, key, "is not understood",
-           "give dotted.key=value, the value as in TOML: a number with a point and without its unit, or a word"});
+          {"--set", 0, key, "cannot be parsed",
+           "write dotted.key=value with a TOML value: a number with a decimal point and no unit, or a word"});
     } else if (table->contains("base")) {
-      input.diagnostics.push_back({"--set", 0, "base", "a base cannot be set here", "write it in the scenario's file"});
+      input.diagnostics.push_back(
+          {"--set", 0, "base", "base cannot be set on the command line", "write base in the scenario's file"});
     } else {
       read_layer(*table, {"--set", layer, false}, scenario, input);
     }
@@ -141,7 +142,7 @@ void forget_expectations(Scenario& scenario, Input& input) {
   std::erase_if(input.places, [](const auto& place) { return place.first.starts_with("expect."); });
 }
 
-/// A built-in of a name like the path's, or a file beside it.
+/// Suggests a built-in, or a file in the folder of the path, with a similar name.
 std::string nearest_scenario(const fs::path& path, const fs::path& beside) {
   std::vector<std::string> files;
   const fs::path folder = (beside / path).parent_path();
@@ -150,11 +151,11 @@ std::string nearest_scenario(const fs::path& path, const fs::path& beside) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path().filename().string());
   std::ranges::sort(files);
   if (const auto nearest = nearest_name(path.filename().string(), files); nearest && path.extension() == ".toml")
-    return fmt::format("did you mean \"{}\"?", (path.parent_path() / *nearest).string());
+    return fmt::format("use \"{}\" (nearest match)", (path.parent_path() / *nearest).string());
   return did_you_mean(path.stem().string(), names_of(builtin_scenarios()));
 }
 
-/// In the order of the sources, and of the lines in each.
+/// Sorts by source, then by line.
 void sort_diagnostics(std::vector<Diagnostic>& diagnostics, const std::vector<Document>& documents) {
   const auto rank = [&](const Diagnostic& diagnostic) {
     const auto has_file = [&](const Document& document) { return document.source.file == diagnostic.file; };
@@ -197,13 +198,13 @@ Scenario load_scenario(const ScenarioSource& source, const std::vector<std::stri
   int layer = 0;
   for (const Document& document : documents) {
     read_layer(document.table, {document.source.file, layer++, true}, scenario, input);
-    // What a built-in expects holds for the built-in as it is, not for what is made of it.
+    // Expectations of a built-in apply to the unmodified built-in only.
     const bool changed = &document != &documents.back() || !overrides.empty();
     if (changed && std::ranges::count(names_of(builtin_scenarios()), document.source.file) > 0)
       forget_expectations(scenario, input);
   }
   read_overrides(overrides, layer, scenario, input);
-  // Without a base, what it gives would be missed everywhere.
+  // A missing base would cause follow-up errors.
   if (complete) validate(scenario, input);
 
   if (!input.diagnostics.empty()) {

@@ -1,4 +1,4 @@
-// From TOML to a Scenario, or to everything that is wrong with it.
+// Loading of scenarios from TOML, with all errors reported at once.
 #pragma once
 
 #include <filesystem>
@@ -16,17 +16,16 @@ struct ScenarioSource {
   std::string text;
 };
 
-/// Finds a built-in by name, or reads a file; a built-in goes before a file of the same name.
-/// Throws UsageError where it is neither, FileError where the file cannot be read.
-/// The message suggests built-in names, and files that lie beside the path or in the folder `beside`.
+/// Finds a built-in by name, or reads a file; a built-in takes precedence over a file of the same name.
+/// Throws UsageError if it is neither, FileError if the file cannot be read.
+/// The message suggests built-in names, and files in the folder of the path, relative to `beside`.
 ScenarioSource find_scenario(const std::string& name_or_path, const std::filesystem::path& beside = {});
 
 /// Parses and validates a scenario. Keys of `base` come first, then the scenario's own, then `overrides`
 /// ("dotted.key=value", the value in TOML syntax or a bare word). Throws ScenarioError with all errors at once.
 Scenario load_scenario(const ScenarioSource& source, const std::vector<std::string>& overrides = {});
 
-/// What is wrong with an override by itself, whatever the scenario: an unknown key, a value of a wrong type or out of
-/// range.
+/// Errors of an override on its own, independent of a scenario: unknown key, wrong type, value out of range.
 std::vector<Diagnostic> problems_of_override(const std::string& override);
 
 }  // namespace plica

@@ -9,7 +9,7 @@ Vec3 mean(std::span<const NodeId> nodes, const Vectors& positions) {
   return sum / static_cast<double>(nodes.size());
 }
 
-// How far up the cell the element's middle lies at rest: from 0 at the base to 100 at the apex.
+// Height of the element's centre in its cell, reference state: 0 at the basal, 100 at the apical surface.
 double height_percent(const Tissue& tissue, std::size_t element) {
   const Cell& cell = tissue.cells[tissue.element_cell[element].index()];
   const Vec3 base = mean(cell.basal_corners(), tissue.rest_positions);

@@ -1,4 +1,4 @@
-// What elements are made of: the tables [elasticity] and [elasticity.NAME], on a tissue.
+// Elastic properties of elements, from [elasticity] and [elasticity.NAME].
 #pragma once
 
 #include <vector>
@@ -8,17 +8,17 @@
 
 namespace plica {
 
-/// Of an element.
+/// Elastic properties of one element.
 struct ElasticMaterial {
   double factor = 1;  // on the Young's modulus of [elasticity]
   double poisson_ratio = 0;
   double relaxation_s = 0;  // 0: none
 };
 
-/// The elements of which a table speaks: of the cells of a set, those whose middle lies in its part of the height.
+/// Elements affected by a table: those of `cells` with their centre in `height_percent`. One entry per element.
 std::vector<bool> elements_of(const RegionElasticityInput& input, const CellSet& cells, const Tissue& tissue);
 
-/// Gives these elements what the table says; `pattern`: of the table, on the tissue.
+/// Overwrites `materials` of the affected elements; `pattern` is that of the table on this tissue.
 void put_material(const RegionElasticityInput& input, const ElasticityInput& common, const CellPattern& pattern,
                   const Tissue& tissue, std::vector<ElasticMaterial>& materials);
 

@@ -5,7 +5,7 @@
 namespace plica {
 namespace {
 
-/// The end of the string that begins at `begin`, in any of TOML's four ways; that of the text where it never ends.
+/// Returns the end of the TOML string (any of four kinds) that starts at `begin`, or the end of the text if unclosed.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string_view three(quote == '"' ? "\"\"\"" : "'''");
@@ -15,7 +15,8 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
       ++i;
     } else if (is_long && text.substr(i, 3) == three) {
       std::size_t end = i + 3;
-      for (int more = 0; more < 2 && end < text.size() && text[end] == quote; ++more) ++end;  // they belong to it
+      for (int more = 0; more < 2 && end < text.size() && text[end] == quote; ++more)
+        ++end;  // quotes inside the string
       return end;
     } else if (!is_long && (text[i] == quote || text[i] == '\n')) {
       return text[i] == quote ? i + 1 : i;

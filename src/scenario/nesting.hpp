@@ -1,4 +1,4 @@
-// Limits of a scenario's text that hold before the TOML library sees it.
+// Limits on the text of a scenario, checked before parsing.
 #pragma once
 
 #include <cstdint>
@@ -6,17 +6,17 @@
 
 namespace plica {
 
-/// Largest scenario file.
+/// Largest size of a scenario file (bytes).
 inline constexpr std::uintmax_t largest_scenario_bytes = std::uintmax_t{4} << 20;
 
-/// Most scenarios that inherit from each other.
+/// Largest number of scenarios in a chain of bases.
 inline constexpr std::size_t most_bases = 16;
 
-/// Most parts of a dotted key; a scenario's have at most four.
+/// Largest number of parts of a dotted key; scenario keys have at most four.
 inline constexpr int most_key_parts = 16;
 
-/// The line of a key with more than `most_key_parts` parts, or 0: the TOML library recurses once a part, until the
-/// stack is full. Values nested without end it refuses itself.
+/// Returns the line of a key with more than `most_key_parts` parts, or 0. The TOML library recurses once per part and
+/// would overflow the stack; it rejects deeply nested values itself.
 int line_of_too_deep_key(std::string_view text);
 
 }  // namespace plica

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
 #include <ranges>
 
 #include "scenario/schema.hpp"
@@ -27,9 +29,9 @@ std::string in_toml(const std::string& text) {
 
 namespace {
 
-using plica::in_toml;  // of a text, among the others
+using plica::in_toml;  // overload for texts
 std::string in_toml(int value) { return fmt::format("{}", value); }
-std::string in_toml(double value) { return fmt::format("{}", value); }  // the shortest that reads back exactly
+std::string in_toml(double value) { return fmt::format("{}", value); }  // the shortest text that reads back exactly
 std::string in_toml(bool value) { return value ? "true" : "false"; }
 
 template <std::ranges::range Items>
@@ -40,7 +42,7 @@ std::string in_toml(const Items& items) {
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
-/// The value of a row as TOML; nothing where it has none.
+/// Returns the value of a row in TOML, or an empty text without a value.
 std::string value_text(const Row& row, Scenario& scenario, const std::string& name) {
   const auto text = [&]<class Field>(const Field& field) -> std::string {
     if constexpr (std::is_same_v<Field, std::monostate>) {
@@ -48,7 +50,7 @@ std::string value_text(const Row& row, Scenario& scenario, const std::string& na
     } else if constexpr (requires { field->has_value(); }) {
       const std::string none(row.allowed.word_for_none);
       return *field ? in_toml(**field) : none.empty() ? "" : in_toml(none);
-    } else if constexpr (requires { field->empty(); }) {  // a text or a list
+    } else if constexpr (requires { field->empty(); }) {  // text or list
       return field->empty() ? "" : in_toml(*field);
     } else {
       return in_toml(*field);
@@ -61,7 +63,7 @@ std::string table_text(const TableInfo& info, const std::string& name, Scenario&
   std::string text;
   if (!info.path.empty()) text = fmt::format("\n[{}{}{}]\n", info.stem(), name.empty() ? "" : ".", name);
   for (const Row* row : rows_of(info.path)) {
-    // A stand-in says the same in another unit; only the two tolerances have a field each.
+    // Alternatives in another unit fill the same field; only the two tolerances have a field each.
     const bool repeats = !row->options.instead_of.empty() && row->options.scale != 1;
     if (repeats || !row->used_by(scenario.embryo.shape)) continue;
     const std::string value = value_text(*row, scenario, name);
@@ -79,7 +81,7 @@ std::string default_text(const Row& row) {
   return fmt::format("`{}`", value);
 }
 
-/// A vertical bar would end the column.
+/// Escapes vertical bars, which would end the column.
 std::string in_column(const std::string& text) {
   std::string result;
   for (const char c : text) result += c == '|' ? std::string("\\|") : std::string(1, c);
@@ -97,11 +99,109 @@ std::string allowed_text(const Row& row) {
   return text.empty() ? "any" : in_column(text);
 }
 
+// The reference page.
+
+std::string name_of(const TableInfo& info) {
+  return info.named() ? fmt::format("{}.NAME", info.stem()) : std::string(info.path);
+}
+
+std::string heading_of(const TableInfo& info) {
+  return info.path.empty() ? "Top level" : fmt::format("`[{}]`", name_of(info));
+}
+
+/// Links to a heading, by the anchor that GitHub and Sphinx derive from it.
+std::string link_to(std::string_view label, std::string_view heading) {
+  std::string anchor;
+  for (const unsigned char c : heading) {
+    if (std::isalnum(c) != 0 || c == '_' || c == '-') anchor += static_cast<char>(std::tolower(c));
+    if (c == ' ') anchor += '-';
+  }
+  return fmt::format("[{}](#{})", label, anchor);
+}
+
+/// Returns the shared inner tables of a row, or null for a key of the table itself.
+const InnerTables* inner_of(const Row& row) {
+  const std::size_t dot = row.key.find('.');
+  if (dot == std::string_view::npos) return nullptr;
+  for (const InnerTables& inner : inner_tables())
+    if (std::ranges::find(inner.keys, row.key.substr(0, dot)) != inner.keys.end()) return &inner;
+  return nullptr;
+}
+
+std::vector<const Row*> own_rows(const TableInfo& info) {
+  std::vector<const Row*> rows = rows_of(info.path);
+  std::erase_if(rows, [](const Row* row) { return inner_of(*row) != nullptr; });
+  return rows;
+}
+
+/// Returns the rows of one key of inner tables, from the first table that has it.
+std::vector<const Row*> rows_of_key(std::string_view key) {
+  std::vector<const Row*> rows;
+  for (const Row& row : schema())
+    if (row.key.starts_with(std::string(key) + '.') && (rows.empty() || rows.front()->table == row.table))
+      rows.push_back(&row);
+  return rows;
+}
+
+/// Returns the rows of inner tables; two that differ in name only (program, stiffness_program) are listed once.
+std::vector<const Row*> rows_of_inner(const InnerTables& inner) {
+  const auto leaf = [](const Row* row) { return row->key.substr(row->key.find('.')); };
+  std::vector<const Row*> all;
+  for (const std::string_view key : inner.keys) {
+    const std::vector<const Row*> rows = rows_of_key(key);
+    if (!std::ranges::equal(all, rows, {}, leaf, leaf)) all.insert(all.end(), rows.begin(), rows.end());
+  }
+  return all;
+}
+
+/// Lists the inner tables of a table, with links to their sections.
+std::string inner_links(const TableInfo& info) {
+  std::vector<std::string> links;
+  for (const InnerTables& inner : inner_tables()) {
+    std::vector<std::string> keys;
+    for (const std::string_view key : inner.keys)
+      if (std::ranges::any_of(rows_of(info.path),
+                              [&](const Row* row) { return row->key.starts_with(std::string(key) + '.'); }))
+        keys.push_back(fmt::format("`{}`", key));
+    if (!keys.empty())
+      links.push_back(fmt::format("{} ({})", fmt::join(keys, ", "), link_to(inner.title, inner.title)));
+  }
+  return fmt::format("{}", fmt::join(links, "; "));
+}
+
+std::string section_of(const std::string& heading, std::string_view meaning) {
+  return fmt::format("\n## {}\n\n{}\n\n", heading, meaning);
+}
+
+std::string key_table(const std::vector<const Row*>& rows) {
+  std::string text = "| key | type | default | allowed | meaning |\n|---|---|---|---|---|\n";
+  for (const Row* row : rows)
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", row->key, row->type(), default_text(*row), allowed_text(*row),
+                        row->meaning);
+  return text;
+}
+
+/// Lists links to all sections, by group.
+std::string contents() {
+  std::vector<std::pair<std::string_view, std::vector<std::string>>> groups;
+  const auto links_of = [&](std::string_view title) -> std::vector<std::string>& {
+    const auto found = std::ranges::find(groups, title, [](const auto& group) { return group.first; });
+    return found != groups.end() ? found->second : groups.emplace_back(title, std::vector<std::string>()).second;
+  };
+  for (const TableInfo& info : schema_tables())
+    links_of(info.group).push_back(link_to(info.path.empty() ? "top level" : name_of(info), heading_of(info)));
+  for (const InnerTables& inner : inner_tables())
+    links_of("Inner tables of several tables").push_back(link_to(inner.title, inner.title));
+  std::string text;
+  for (const auto& [title, links] : groups) text += fmt::format("- {}: {}\n", title, fmt::join(links, ", "));
+  return text;
+}
+
 }  // namespace
 
 std::string float_in_toml(double value) {
   const std::string text = fmt::format("{}", value);
-  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;  // n: of inf and nan
+  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;  // 'n' of inf and nan
 }
 
 std::string resolved_toml(const Scenario& scenario) {
@@ -117,19 +217,23 @@ std::string resolved_toml(const Scenario& scenario) {
 std::string reference_markdown() {
   std::string text =
       "# Scenario reference\n\n"
-      "Every key of a scenario, generated from the table in `src/scenario/schema.cpp`. A scenario is a TOML file; a "
-      "key\n"
-      "that is not given has its default, and one that is not known is an error.\n";
+      "This page lists every key of a scenario with its type, default, allowed values and meaning. A scenario is a "
+      "[TOML](https://toml.io) file; keys that are not set take their defaults, and unknown keys are errors.\n\n"
+      "Conventions: NAME is a name of your choice (letters, digits, `_`, `-`). Keys end in their unit; pairs such as "
+      "`at_s` and `at_min` set one value in two units. The x axis points from anterior to posterior, y to the right, z "
+      "from ventral to dorsal. Reference means undeformed (t = 0).\n\n" +
+      contents() + "\n`plica reference` generates this page from the table in `src/scenario/schema.cpp`.\n";
   for (const TableInfo& info : schema_tables()) {
-    const std::string name = info.named() ? fmt::format("{}.NAME", info.stem()) : std::string(info.path);
-    text += info.path.empty() ? "\n## Top level\n\n" : fmt::format("\n## `[{}]`\n\n", name);
-    text += fmt::format("{}\n\n| key | type | default | allowed | meaning |\n|---|---|---|---|---|\n", info.meaning);
-    for (const Row* row : rows_of(info.path)) {
-      text += fmt::format("| `{}` | {} | {} | {} | {} |\n", row->key, row->type(), default_text(*row),
-                          allowed_text(*row), row->meaning);
-    }
+    text += section_of(heading_of(info), info.meaning);
+    if (const std::string inner = inner_links(info); !inner.empty())
+      text += fmt::format("Inner tables: {}.\n\n", inner);
+    text += key_table(own_rows(info));
+    if (info.stem() == "expect")
+      text += fmt::format("\n`[expect]` accepts: `{}`.\n", fmt::join(expectation_names(), "`, `"));
   }
-  return text + fmt::format("\n`[expect]` knows: `{}`.\n", fmt::join(expectation_names(), "`, `"));
+  for (const InnerTables& inner : inner_tables())
+    text += section_of(std::string(inner.title), inner.meaning) + key_table(rows_of_inner(inner));
+  return text;
 }
 
 }  // namespace plica

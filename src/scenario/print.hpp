@@ -1,4 +1,4 @@
-// A scenario as TOML again, and the reference page of all keys.
+// Output of a scenario as TOML, and of the reference page of all keys.
 #pragma once
 
 #include <string>
@@ -7,16 +7,17 @@
 
 namespace plica {
 
-/// Every key with its default filled in; optional keys without a value are left out. Loads back to the same Scenario.
+/// Writes every key with defaults filled in, except optional keys without a value. Loads back to the same Scenario.
 std::string resolved_toml(const Scenario& scenario);
 
-/// A text in TOML's quotes.
+/// Quotes a text for TOML.
 std::string in_toml(const std::string& text);
 
-/// A number in TOML that is floating-point also where it is whole, so that a key that wants an integer says so.
+/// Writes a number as a TOML float even if it is whole, so that integer keys reject it.
 std::string float_in_toml(double value);
 
-/// The page docs/reference/scenario.md: for each table its keys, types, defaults, what is allowed, and meaning.
+/// Writes docs/reference/scenario.md: keys, types, defaults, allowed values and meanings by table. Inner tables that
+/// several tables share (profile, program, ...) have one section each, linked from these tables.
 std::string reference_markdown();
 
 }  // namespace plica

@@ -14,7 +14,7 @@
 namespace plica {
 namespace {
 
-/// What is wrong with a value, or nothing.
+/// Problem with a value, or nothing.
 using Problem = std::optional<std::string>;
 
 std::string in_toml(const toml::node& node) {
@@ -25,7 +25,7 @@ std::string in_toml(const toml::node& node) {
     if constexpr (toml::is_string<decltype(value)>) {
       stream << '"' << value.get() << '"';
     } else if constexpr (toml::is_floating_point<decltype(value)>) {
-      stream << fmt::format("{}", value.get());  // the shortest, most likely as it was written
+      stream << fmt::format("{}", value.get());  // the shortest form, most likely as written
     } else if constexpr (toml::is_value<decltype(value)>) {
       stream << value;
     }
@@ -33,7 +33,7 @@ std::string in_toml(const toml::node& node) {
   return stream.str();
 }
 
-Problem wrong_type(const toml::node& node) { return fmt::format("{} is of the wrong type", in_toml(node)); }
+Problem wrong_type(const toml::node& node) { return fmt::format("{} has the wrong type", in_toml(node)); }
 
 Problem read(const toml::node& node, const Row& row, int& target) {
   if (node.is_floating_point()) return fmt::format("{} is not an integer", in_toml(node));
@@ -67,13 +67,13 @@ Problem read(const toml::node& node, const Row& row, std::string& target) {
   if (value->empty()) return "the text is empty";
   const auto& words = row.allowed.words;
   if (!words.empty() && std::ranges::find(words, *value) == words.end()) {
-    return fmt::format("\"{}\" is not known", *value);
+    return fmt::format("\"{}\" is unknown", *value);
   }
   target = *value;
   return {};
 }
 
-/// Reads `node` as a list and its items one by one; `take` gets each.
+/// Reads `node` as a list and passes each item to `take`.
 template <class Item, class Take>
 Problem read_items(const toml::node& node, const Row& row, const Take& take) {
   const toml::array* items = node.as_array();
@@ -97,7 +97,7 @@ template <class Item, std::size_t n>
 Problem read(const toml::node& node, const Row& row, std::array<Item, n>& target) {
   std::vector<Item> items;
   if (Problem problem = read(node, row, items)) return problem;
-  if (items.size() != n) return fmt::format("{} values were given, not {}", items.size(), n);
+  if (items.size() != n) return fmt::format("{} values are given, but {} are required", items.size(), n);
   if (std::is_same_v<std::array<Item, n>, Range> && items.front() > items.back()) return "low is above high";
   std::ranges::copy(items, target.begin());
   return {};
@@ -130,18 +130,18 @@ Problem read(const toml::node& node, const Row& row, const Slot& slot) {
       slot);
 }
 
-/// For a value that is none of the words: the nearest one, too.
+/// Returns what to set the key to, with the nearest word for a misspelt one.
 std::string remedy_for(const toml::node& node, const Row& row) {
   const std::vector<std::string> words(row.allowed.words.begin(), row.allowed.words.end());
   const auto nearest = nearest_name(node.value_or(std::string()), words);
-  return "give " + row.expected() + (nearest ? fmt::format(" (did you mean \"{}\"?)", *nearest) : "");
+  return row.remedy() + (nearest ? fmt::format(" (nearest match: \"{}\")", *nearest) : "");
 }
 
 std::string joined(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-/// What to write instead of an unknown key, and the address of what was probably meant.
+/// Replacement for an unknown key, and the address that was probably meant.
 struct Suggestion {
   std::string remedy;
   std::string meant;
@@ -150,14 +150,14 @@ struct Suggestion {
 Suggestion suggest_key(const std::string& table, const std::string& path, const std::string& key) {
   std::vector<std::string> known, same_stem;
   for (const Row* row : rows_of(table)) {
-    // Of a table within the table, the name is enough until one writes in it.
+    // For inner tables the name is enough unless the key is inside one.
     const std::size_t dot = key.find('.') == std::string::npos ? row->key.find('.') : std::string_view::npos;
     const std::string name(row->key.substr(0, dot));
     if (known.empty() || known.back() != name) known.push_back(name);
     if (without_unit(row->key) == without_unit(key)) same_stem.push_back(fmt::format("\"{}\"", row->key));
   }
   if (!same_stem.empty()) {
-    return {fmt::format("write {}, in the unit of that name", fmt::join(same_stem, " or ")), path};
+    return {fmt::format("use {} and convert the value to that unit", fmt::join(same_stem, " or ")), path};
   }
   if (table.empty()) {
     for (const TableInfo& info : schema_tables()) {
@@ -170,8 +170,7 @@ Suggestion suggest_key(const std::string& table, const std::string& path, const 
   for (const Row& row : schema()) {
     if (row.key != key) continue;
     const std::size_t star = row.table.find('*');
-    return {fmt::format("it belongs in [{}{}]", row.table.substr(0, star), star == std::string::npos ? "" : "NAME"),
-            ""};
+    return {fmt::format("move it to [{}{}]", row.table.substr(0, star), star == std::string::npos ? "" : "NAME"), ""};
   }
   return {did_you_mean(key, known), path};
 }
@@ -193,7 +192,7 @@ class Reader {
   }
 
  private:
-  /// The table of that name; of two, the plain one or, when `named` is asked for, the one of named tables.
+  /// Returns the table with this stem; if there are two, the plain one, or with `named` the one of named tables.
   static const TableInfo* table_with_stem(std::string_view stem, bool named = false) {
     for (const TableInfo& info : schema_tables()) {
       if (!info.path.empty() && info.stem() == stem && (!named || info.named())) return &info;
@@ -201,7 +200,7 @@ class Reader {
     return nullptr;
   }
 
-  /// The keys of a table and, where there are such, the named tables within it: [stop] and [stop.NAME].
+  /// Reads the keys of a table and its named tables, if any: [stop] and [stop.NAME].
   void read_plain(const TableInfo& info, const toml::table& table) {
     const std::string path(info.path);
     const TableInfo* inner = table_with_stem(info.stem(), true);
@@ -230,7 +229,7 @@ class Reader {
   const toml::table* as_table(const toml::node& node, const toml::key& key, const std::string& written,
                               const std::string& expected) {
     if (node.is_table()) return node.as_table();
-    report(key, written, fmt::format("{} is not a table", in_toml(node)), "give " + expected);
+    report(key, written, fmt::format("{} is not a table", in_toml(node)), "write " + expected);
     input_.doubtful.insert(written);
     return nullptr;
   }
@@ -255,31 +254,31 @@ class Reader {
     if (!is_known_name(info, name, key, path)) return;
     if (info.stem() == "expect" && node.is_value()) {
       report(key, path, fmt::format("{} has no tolerance", in_toml(node)),
-             "give { value = ..., within_percent = ... } or { value = ..., within = ... }");
+             "write { value = ..., within_percent = ... } or { value = ..., within = ... }");
       return;
     }
     const toml::table* table = as_table(node, key, path, "a table");
     if (table == nullptr) return;
     note(path, path, key, nullptr);
-    rows_of(info.path).front()->field(scenario_, name);  // so that a table without keys exists, too
+    rows_of(info.path).front()->field(scenario_, name);  // so that a table without keys exists
     read_keys(std::string(info.path), name, "", *table);
   }
 
   bool is_known_name(const TableInfo& info, const std::string& name, const toml::key& key, const std::string& path) {
     if (info.stem() == "expect") {
-      if (name.find('.') != std::string::npos) return true;  // of a monitor, which may not have been read yet
+      if (name.find('.') != std::string::npos) return true;  // a monitor's, which may not have been read yet
       const auto names = expectation_names();
       if (std::ranges::find(names, name) != names.end()) return true;
-      report(key, path, "unknown result", did_you_mean(name, {names.begin(), names.end()}));
+      report(key, path, "unknown output variable", did_you_mean(name, {names.begin(), names.end()}));
       return false;
     }
     if (!is_plain_name(name)) {
-      report(key, path, "is no name", "use letters, digits, \"_\" and \"-\"");
+      report(key, path, "is not a valid name", "use letters, digits, \"_\" and \"-\" only");
       input_.doubtful.insert(path);
       return false;
     }
     if (info.stem() == "region" && name == "all") {
-      report(key, path, "\"all\" is every cell already", "choose another name");
+      report(key, path, "\"all\" is predefined as every cell", "rename the region");
       return false;
     }
     return true;
@@ -315,7 +314,8 @@ class Reader {
     const std::string address = joined(path, row.options.instead_of.empty() ? row.key : row.options.instead_of);
     if (const Place* before = input_.place(address); before != nullptr && before->row != &row) {
       if (before->layer == layer_.number) {
-        report(key, written, fmt::format("{} is given as well", before->written), "give one of the two");
+        report(key, written, fmt::format("conflicts with {}, which is also set", before->written),
+               "remove one of them");
         input_.doubtful.insert(address);
       }
       reset_to_default(*before->row, scenario_, name);
@@ -326,7 +326,7 @@ class Reader {
       report(key, written, *problem, remedy_for(node, row));
       input_.doubtful.insert(address);
     } else if (row.options.is_path) {
-      // On the command line a path is relative to where the command runs, as everywhere in a shell.
+      // On the command line, paths are relative to the working directory.
       std::string& file = *std::get<std::string*>(slot);
       if (is_builtin_table(file)) return;
       const std::filesystem::path folder = layer_.has_lines ? std::filesystem::path(layer_.file).parent_path() : "";

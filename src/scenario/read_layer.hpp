@@ -1,4 +1,4 @@
-// One TOML document into the fields of a Scenario, key by key along the table of schema.cpp.
+// Reading of one TOML document into a Scenario, key by key, according to the table in schema.cpp.
 #pragma once
 
 #include <toml++/toml.h>
@@ -12,14 +12,14 @@ namespace plica {
 
 struct Layer {
   std::string file;       // as shown in messages
-  int number = 0;         // later layers go before earlier ones
+  int number = 0;         // later layers override earlier ones
   bool has_lines = true;  // not on the command line
 };
 
-/// Fills the fields that `table` gives and notes their places; reports unknown keys and values that are not allowed.
+/// Fills the fields set in `table` and records their places; reports unknown keys and values that are not allowed.
 void read_layer(const toml::table& table, const Layer& layer, Scenario& scenario, Input& input);
 
-/// Whether `name` may name a region, a contraction, ...: letters, digits, "_" and "-".
+/// Whether `name` is valid for a region, a contraction, ...: letters, digits, "_" and "-".
 bool is_plain_name(std::string_view name);
 
 }  // namespace plica

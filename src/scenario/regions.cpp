@@ -20,12 +20,12 @@ bool inside(const std::optional<Range>& range, double value) {
   return !range || (value >= (*range)[0] && value <= (*range)[1]);
 }
 
-// Whether a place lies in the centred strip of `wanted` out of `count`.
+// Whether position `place` lies in the centred strip of `wanted` cells out of `count`.
 bool in_strip(int place, int count, const std::optional<int>& wanted) {
   return !wanted || std::abs(2 * place - (count - 1)) < *wanted;
 }
 
-// `low` and `high`: where the tissue begins and ends along x.
+// `low`, `high`: extent of the tissue along x.
 bool selected(const RegionInput& region, std::size_t id, const Cell& cell, const Tissue& tissue, double low,
               double high) {
   if (!region.face.empty()) {
@@ -42,7 +42,7 @@ bool selected(const RegionInput& region, std::size_t id, const Cell& cell, const
   return inside(region.x_um, centre.x()) && inside(region.y_um, centre.y()) && inside(region.z_um, centre.z());
 }
 
-// Where the tissue begins and ends along x.
+// Extent of the tissue along x.
 std::pair<double, double> extent_along(const Tissue& tissue) {
   std::pair extent(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
   for (const Vec3& x : tissue.rest_positions) extent = {std::min(extent.first, x.x()), std::max(extent.second, x.x())};
@@ -66,7 +66,7 @@ Diagnostic diagnostic_at(const Scenario& scenario, const std::string& key, std::
 void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnostic>& errors) {
   const std::size_t cells = tissue.cells.size();
   const auto [low, high] = extent_along(tissue);
-  std::vector<int> from_midline;  // counted when a region asks for it
+  std::vector<int> from_midline;  // computed when a region needs it
   const std::function<const CellSet&(const std::string&)> resolve = [&](const std::string& name) -> const CellSet& {
     if (const auto known = tissue.regions.find(name); known != tissue.regions.end()) return known->second;
     const RegionInput& region = scenario.regions.at(name);
@@ -85,9 +85,10 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
       const auto array = tissue.cell_arrays.find(region.array);
       if (array == tissue.cell_arrays.end()) {
         const std::vector<std::string> names = keys_of(tissue.cell_arrays);
-        errors.push_back(diagnostic_at(
-            scenario, "region." + name + ".array", fmt::format("the file has no array \"{}\"", region.array),
-            names.empty() ? "it has none" : fmt::format("it has {}", fmt::join(names, ", "))));
+        errors.push_back(diagnostic_at(scenario, "region." + name + ".array",
+                                       fmt::format("the file has no array \"{}\"", region.array),
+                                       names.empty() ? "use a file with this array"
+                                                     : fmt::format("set array to one of: {}", fmt::join(names, ", "))));
       } else {
         const auto is_wanted = [&](double value) {
           if (!region.above && !region.below) return value != 0;
@@ -96,7 +97,7 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
         for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] && is_wanted(array->second[c]);
       }
     }
-    // A region of named others only starts from nothing, one with selectors from what they select.
+    // A union without other selectors starts empty; otherwise the set starts from the selected cells.
     const bool only_others = region.face.empty() && region.ids.empty() && region.array.empty() && !region.x_um &&
                              !region.y_um && !region.z_um && !region.angle_deg && !region.length_percent &&
                              !region.rows && region.neighbours_of.empty();
@@ -110,8 +111,8 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
   for (const auto& [name, region] : scenario.regions) {
     const CellSet& set = resolve(name);
     if (std::ranges::find(set, true) == set.end())
-      errors.push_back(diagnostic_at(scenario, "region." + name, "no cell of the embryo lies in it",
-                                     "a region needs at least one cell; see `plica mesh` for where cells lie"));
+      errors.push_back(diagnostic_at(scenario, "region." + name, "contains no cell of the embryo",
+                                     "change its selectors; `plica mesh` writes the positions of cells"));
   }
 }
 

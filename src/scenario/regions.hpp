@@ -1,4 +1,4 @@
-// From a scenario's region tables to sets of cells.
+// Resolution of region tables to cell sets.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,11 @@
 
 namespace plica {
 
-/// Fills `tissue.regions`. What only the embryo shows (a region with no cell, an array that the mesh lacks) is added to
-/// `errors`. References and circles have been checked by load_scenario.
+/// Fills `tissue.regions`. Adds errors that depend on the embryo (empty regions, missing arrays). References and cycles
+/// have been checked by load_scenario.
 void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnostic>& errors);
 
-/// The place of `key` (or the nearest table around it) in the scenario's file, as the start of a message.
+/// Makes an error at the place of `key`, or of the nearest enclosing table, in the scenario's file.
 Diagnostic diagnostic_at(const Scenario& scenario, const std::string& key, std::string problem, std::string remedy);
 
 }  // namespace plica

@@ -61,13 +61,13 @@ RestArrays rest_arrays(const Scenario& scenario, const Tissue& tissue) {
   add_patterns("contraction", scenario.contractions, tissue, patterns);
   add_patterns("cortex", scenario.cortices, tissue, patterns);
   add_patterns("pressure", scenario.pressures, tissue, patterns);
-  // Of a mesh that came from here, what is said anew counts.
-  const auto is_anew = [&](const std::string& name) {
+  // A mesh written by plica already has these arrays; new values replace them.
+  const auto is_replaced = [&](const std::string& name) {
     return name == "cell_id" || name.starts_with("region_") ||
            std::ranges::any_of(patterns, [&](const auto& pattern) { return pattern.first == name; });
   };
   for (const auto& [name, values] : tissue.cell_arrays)
-    if (!is_anew(name)) add(name, values, arrays.cells);
+    if (!is_replaced(name)) add(name, values, arrays.cells);
   arrays.cells.insert(arrays.cells.end(), patterns.begin(), patterns.end());
   add_materials(scenario, tissue, arrays.elements);
   return arrays;

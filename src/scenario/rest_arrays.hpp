@@ -1,4 +1,4 @@
-// What a scenario says of each cell at rest, as arrays: what was measured, who acts how strongly and when, moduli.
+// Per-cell and per-element inputs as arrays: measured values, activation strengths, delays, elastic moduli.
 #pragma once
 
 #include <string>
@@ -13,12 +13,12 @@ namespace plica {
 using NamedArrays = std::vector<std::pair<std::string, std::vector<double>>>;
 
 struct RestArrays {
-  NamedArrays cells;  // the tissue's arrays; strength_TABLE.NAME; where they matter delay_s_ and pulse_phase_TABLE.NAME
-  NamedArrays elements;  // young_modulus_Pa and poisson_ratio, where a table [elasticity.NAME] changes them
+  NamedArrays cells;     // the tissue's arrays; strength_TABLE.NAME; if used, delay_s_ and pulse_phase_TABLE.NAME
+  NamedArrays elements;  // young_modulus_Pa and poisson_ratio, if [elasticity.NAME] changes them
 };
 
-/// On a tissue that has its regions. Left out is what cannot be made: a profile by an array that the tissue lacks, an
-/// array that has no number in some cell.
+/// Collects the arrays on a tissue with resolved regions. Omits profiles by an array that the tissue lacks, and arrays
+/// that are not finite in every cell.
 RestArrays rest_arrays(const Scenario& scenario, const Tissue& tissue);
 
 }  // namespace plica

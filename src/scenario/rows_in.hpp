@@ -1,4 +1,4 @@
-// How rows of the input's table are written: a key, the member that it fills, what is allowed, what it means.
+// Helpers to write rows of the key table: key, member that it fills, allowed values, meaning.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace plica {
 template <class Table>
 using Named = std::map<std::string, Table> Scenario::*;
 
-/// Makes the rows of one table, whose keys fill the members of a Table.
+/// Makes rows of one table, whose keys fill members of a `Table`.
 template <class Table>
 struct RowsIn {
   std::string_view path;
@@ -32,7 +32,7 @@ struct RowsIn {
     return {path, key, slot, std::move(allowed), meaning, std::move(options)};
   }
 
-  /// Of a table within the table.
+  /// Makes a row of an inner table.
   template <class Inner, class T>
   Row operator()(std::string_view key, Inner Table::*inner, T Inner::*field, Allowed allowed, std::string_view meaning,
                  RowOptions options = {}) const {
@@ -64,7 +64,7 @@ Allowed one_of(const std::array<Word<Meaning>, n>& table) {
   return one_of(words_of(table));
 }
 
-/// The tables by which cells act and resist: elasticity, contractions, cortices, pressures.
+/// Rows of the force laws: elasticity, contraction, cortex, enclosed volume, self-contact, pressure, ablation.
 std::vector<Row> law_rows();
 
 }  // namespace plica

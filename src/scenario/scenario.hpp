@@ -1,5 +1,5 @@
-// A scenario as plain data, in the units of its keys. `load_scenario` (load.hpp) fills it from TOML; every rule of
-// the input (type, range, default, meaning) stands in the one table of schema.cpp. Nothing here is computed.
+// Scenario as plain data, in the units of its keys. `load_scenario` (load.hpp) fills it from TOML. Types, ranges,
+// defaults and meanings of keys are in the table of schema.cpp.
 #pragma once
 
 #include <array>
@@ -15,26 +15,26 @@ struct HexahedralMesh;
 
 using Range = std::array<double, 2>;  // low, high
 
-/// Linear between the points, held after the last and before the first. Empty means: always 1.
+/// Activity time course: linear between the points, constant before the first and after the last; empty: always 1.
 struct ProgramInput {
   std::vector<double> time_s;
   std::vector<double> activity;
 };
 
-/// A named set of cells. Selectors that are given are intersected; `unite`, `intersect`, `except` name other regions.
+/// Named cell set. Given selectors are intersected; `unite`, `intersect`, `except` name other regions.
 struct RegionInput {
   std::string face;                // ventral dorsal left right anterior posterior, or empty
   std::optional<int> cells_along;  // centred strip of the face
   std::optional<int> cells_across;
   std::vector<int> ids;
-  std::string array;                                  // cell array of the file; cells where it is not 0, or
-  std::optional<double> above, below;                 // where it is above, and below
-  std::optional<Range> angle_deg;                     // of the cell's centre about x, from the belly towards +y
+  std::string array;                                  // cell array of the file: cells where it is not 0, or
+  std::optional<double> above, below;                 // above and below these values
+  std::optional<Range> angle_deg;                     // of the cell's centre about x, from ventral towards +y
   std::optional<Range> length_percent;                // of the embryo's length, from the anterior end
-  std::optional<Range> x_um, y_um, z_um;              // of the cell's centre at rest
-  std::optional<int> rows;                            // about the midline of the belly, both sides together
-  std::string neighbours_of;                          // a region: cells beside it, that are not in it
-  std::optional<int> rings;                           // up to how many walls away from it; empty: 1
+  std::optional<Range> x_um, y_um, z_um;              // of the reference cell centre
+  std::optional<int> rows;                            // about the ventral midline, both sides together
+  std::string neighbours_of;                          // region: cells adjacent to it, outside it
+  std::optional<int> rings;                           // up to this many lateral faces away; empty: 1
   std::vector<std::string> unite, intersect, except;  // TOML keys: union, intersect, except
 };
 
@@ -48,25 +48,25 @@ struct EmbryoInput {
   double cell_height_um = 40;
   std::array<int, 3> cells = {18, 9, 8};
   std::array<int, 3> elements_per_cell = {1, 1, 1};
-  std::vector<std::string> mirror;                  // x, y: planes through the middle, of which one side is solved
+  std::vector<std::string> mirror;                  // x, y: symmetry planes; one side is solved
   int cell_count = 6000;                            // egg, sheet
-  int seed = 1;                                     // egg, sheet: how the cells are spread
-  std::optional<double> belly_sag_um, back_sag_um;  // egg: how much its outline bulges
-  std::string elements = "diagonals";               // of polygons: diagonals | kites
-  double least_edge_ratio = 0.3;                    // of polygons: to the mean; shorter edges are lengthened
-  int layers = 1;                                   // of polygons: elements from basal to apical
-  std::vector<double> curvature_per_um = {0, 0};    // sheet: along and across; positive as an embryo's
+  int seed = 1;                                     // egg, sheet: cell arrangement
+  std::optional<double> belly_sag_um, back_sag_um;  // egg: ventral and dorsal bulge
+  std::string elements = "diagonals";               // polygons: diagonals | kites
+  double least_edge_ratio = 0.3;                    // polygons: relative to the mean; shorter edges are lengthened
+  int layers = 1;                                   // polygons: elements from basal to apical
+  std::vector<double> curvature_per_um = {0, 0};    // sheet: along x and y; positive as on an embryo
   std::string rim = "free";                         // sheet, surface: free | held
-  std::vector<std::string> periodic;                // sheet: x, y: directions along which it repeats itself
+  std::vector<std::string> periodic;                // sheet: x, y: periodic directions
   std::string cell_height_array;                    // surface: array of heights; empty: cell_height_um
-  bool mend = true;                                 // surface: whether what is safe to mend is mended
-  bool centre = false;                              // surface: whether its middle is moved to the origin
+  bool mend = true;                                 // surface: whether the mesh is repaired
+  bool centre = false;                              // surface: whether its centre is moved to the origin
   std::vector<double> scale = {1, 1, 1};            // points, surface
-  double points_depth_um = 0;                       // points: below the apical surface, before they are scaled
-  std::string file;          // "file": a hexahedral mesh that VTK reads; "points": a table; "surface": polygons
+  double points_depth_um = 0;                       // points: below the apical surface, before scaling
+  std::string file;          // "file": hexahedral mesh read by VTK; "points": table; "surface": polygons
   std::string apical_array;  // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;
                              // empty: the outer surface
-  std::shared_ptr<const HexahedralMesh> mesh;  // in place of what the file holds: from a program, not from TOML
+  std::shared_ptr<const HexahedralMesh> mesh;  // replaces the file; set by programs, not in TOML
 };
 
 enum class ElasticModel { corotational, shape_memory, neo_hookean };
@@ -77,7 +77,7 @@ struct ElasticityInput {
   double poisson_ratio = 0.45;
   std::optional<double> attractor_stiffness_nN_per_um;  // shape-memory; empty: derived from the two above
   double attractor_preload_nN = 0;                      // shape-memory
-  double attractor_preload_length_um = 0.5;             // shape-memory: the preload acts in full farther off than this
+  double attractor_preload_length_um = 0.5;             // shape-memory: distance above which it acts in full
   double corner_barrier_Pa = 0;
   std::optional<double> relaxation_s;  // neo-hookean; TOML: relaxation_s or relaxation_min; empty: "none"
 };
@@ -105,18 +105,18 @@ struct DynamicsInput {
 struct ProfileInput {
   std::string shape;                 // constant | linear | gaussian | plateau | table | array; empty: constant
   std::string axis;                  // across | along | angle; empty: across
-  std::string about;                 // a region; empty: the one that acts
-  std::optional<double> centre_deg;  // axis = "angle": about which angle; empty: 0
+  std::string about;                 // region; empty: the one that acts
+  std::optional<double> centre_deg;  // axis = "angle": angle of the centre; empty: 0
   std::optional<double> half_width_deg, sigma_deg, full_deg, fade_deg;  // axis = "angle": linear, gaussian, plateau
   std::vector<double> at_um, at_cells, at_deg;                          // table: one of them
   std::vector<double> factor;                                           // table
-  std::string array;                                                    // array: of the tissue's cells
-  std::optional<double> from, to;                                       // array: where the factor is edge, and middle
-  std::optional<double> half_width_um;                                  // linear
-  std::optional<double> sigma_um, sigma_cells;                          // gaussian: one of them
-  std::optional<double> full_cells, fade_cells;                         // plateau
-  std::optional<double> full_length_um, fade_um;                        // both or none
-  std::optional<double> middle, edge;                                   // empty: 1, 0
+  std::string array;                                                    // array: cell array of the tissue
+  std::optional<double> from, to;                 // array: values at which the factor is edge, and middle
+  std::optional<double> half_width_um;            // linear
+  std::optional<double> sigma_um, sigma_cells;    // gaussian: one of them
+  std::optional<double> full_cells, fade_cells;   // plateau
+  std::optional<double> full_length_um, fade_um;  // both or none
+  std::optional<double> middle, edge;             // empty: 1, 0
 };
 
 struct DelayInput {
@@ -128,26 +128,26 @@ struct DelayInput {
 struct VariationInput {
   double spread = 0;
   int seed = 1;
-  std::string by;  // number | place: what a cell's factor goes with; empty: number
+  std::string by;  // number | place: cell property that sets the factor; empty: number
 };
 
-/// Activity that goes up and down in each cell.
+/// Pulsatile activity of each cell.
 struct PulseInput {
   std::optional<double> period_s;  // TOML: period_s or period_min; empty: no pulses
   double amplitude = 1;
   std::string phase;  // random | together; empty: random
-  double spread = 0;  // of the cells' periods
+  double spread = 0;  // relative, of the cells' periods
   int seed = 1;
 };
 
-/// What cells of a region have instead, or the elements of a layer of them.
+/// Different elastic properties of a region, or of a layer of its elements.
 struct RegionElasticityInput {
   std::string region;
-  std::optional<Range> height_percent;  // elements whose middle lies here, from base to apex; empty: all
+  std::optional<Range> height_percent;  // of element centres, basal to apical; empty: all
   std::optional<double> young_modulus_Pa;
   std::optional<double> poisson_ratio;
   std::optional<double> relaxation_s;
-  ProfileInput profile;  // of the modulus
+  ProfileInput profile;  // factor on the modulus
   VariationInput variation;
 };
 
@@ -169,14 +169,15 @@ struct ContractionInput {
   PulseInput pulse;
 };
 
-/// A cell's own state starts its programs, or scales its tension.
+/// Shape-dependent activation: a threshold on the cell's own shape starts its programs.
 struct TriggerInput {
-  std::string measure;                 // of the cell (OwnMeasure); empty: none
+  std::string measure;                 // shape measure (OwnMeasure); empty: none
   std::optional<double> below, above;  // one of them
 };
 
+/// Shape-dependent tension: a factor that follows the cell's own shape.
 struct FollowInput {
-  std::string measure;  // the same
+  std::string measure;  // shape measure (OwnMeasure); empty: none
   std::optional<double> from, to;
 };
 
@@ -206,7 +207,7 @@ struct EnclosedInput {
   std::optional<double> bulk_modulus_Pa;  // compliant
 };
 
-/// Surfaces that do not pass through themselves.
+/// Surfaces with self-contact.
 enum class ContactSurface { none, apical, basal, both };
 
 struct SelfContactInput {
@@ -214,13 +215,14 @@ struct SelfContactInput {
   double distance_um = 0.4;
   double stiffness_kPa_per_um = 1;
   double search_um = 6;
-  double friction = 0;  // the coefficient
+  double friction = 0;  // coefficient
 };
 
-/// What makes cells divide: a time, or what has to pass a threshold.
+/// Trigger of cell division: a time, or a measure with a threshold.
 enum class DivisionTrigger { time, apical_area, volume, elongation };
 
-/// Apico-basal planes: across the embryo's axis (x), along the midline (across y), or across the cell's longer side.
+/// Apico-basal division planes: across the embryo's axis (x), along the midline (across y), or across the cell's longer
+/// side.
 enum class DivisionPlane { transverse, sagittal, longest_axis };
 
 struct DivisionInput {
@@ -238,7 +240,7 @@ struct TimeInput {
   std::optional<double> step_s;               // empty: "adaptive"
   double first_step_s = 0.05;                 // adaptive
   double max_step_s = 30;                     // adaptive
-  double tolerance_um = 0.05;                 // adaptive: error of a step, on positions
+  double tolerance_um = 0.05;                 // adaptive: local error on positions
   double end_s = 3600;                        // TOML: end_s or end_min
   std::string scheme = "newton";              // newton | linearly-implicit
   std::string integrator = "backward-euler";  // backward-euler | bdf2
@@ -250,31 +252,31 @@ struct TimeInput {
 struct StopInput {
   double equilibrium_speed_um_per_min = 0.2;
   bool at_equilibrium = true;
-  std::string combine = "any";  // any | all, of the criteria and of equilibrium
+  std::string combine = "any";  // any | all: of criteria and equilibrium
 };
 
-/// A bound on a monitor, in the unit of its column.
+/// Stop criterion: a bound on a monitor, in the unit of its column.
 struct CriterionInput {
   std::string monitor;
   std::optional<double> above, below;
-  std::string over;  // any | all of the monitor's nodes or cells; empty: its number
+  std::string over;  // any | all nodes or cells; empty: the monitor's value
 };
 
 struct MonitorInput {
   std::string quantity;
   std::string region = "all";
-  std::string face;            // apical | basal; empty: all nodes; of the area, apical
+  std::string face;            // apical | basal; empty: all nodes, or apical for areas
   std::string axis;            // x | y | z; empty: the norm
-  std::string from;            // of a force: what the cells of this region exert, volumes' pressures included
+  std::string from;            // force: exerted by cells of this region, incl. pressures
   std::string over;            // mean | max | min | sum | rms; empty: mean
-  std::string reference;       // directory of a run, or a mesh file
+  std::string reference;       // run directory or mesh file
   std::string reference_at;    // same-time | end; empty: same-time
   std::optional<double> at_s;  // TOML: at_s or at_min; empty: the last value
 };
 
 struct FurrowInput {
-  std::string region;           // contractile cells whose furrow is measured; empty: the first contraction's region
-  std::optional<int> vce_cell;  // VCE is this cell of the region's midline, counted from its ends; empty: 2
+  std::string region;           // contractile cells; empty: the largest contracting region
+  std::optional<int> vce_cell;  // VCE: midline cell counted from the ends; empty: 2
 };
 
 struct OutputInput {
@@ -285,34 +287,34 @@ struct OutputInput {
 struct HoldInput {
   std::string region;
   std::vector<std::string> directions = {"x", "y", "z"};
-  std::optional<Range> x_um, y_um, z_um;  // only the region's nodes that lie here at rest
+  std::optional<Range> x_um, y_um, z_um;  // only nodes with reference positions in these ranges
 };
 
 struct PressureInput {
   std::string region;
   std::string face = "apical";  // apical | basal
-  double pressure_Pa = 0;       // pushes into the cell; a dead load on the rest face
+  double pressure_Pa = 0;       // into the cell; dead load on the reference face
   ProgramInput program;
   ProfileInput profile;
   VariationInput variation;
 };
 
-/// Cells that lose their pull: cut by a laser, or switched off by light.
+/// Laser ablation or optogenetic inhibition: loss of cortical and contractile strength.
 struct AblationInput {
   std::string region;
   std::vector<std::string> faces = {"apical", "basal", "lateral"};
-  std::vector<std::string> only;        // names of tables, as cortex.apical; empty: all
-  std::optional<double> at_s, until_s;  // TOML: at_s or at_min; empty until_s: for good
-  double remaining = 0;                 // the part of their strength that is left
+  std::vector<std::string> only;        // names of tables, such as cortex.apical; empty: all
+  std::optional<double> at_s, until_s;  // TOML: at_s or at_min; empty until_s: permanent
+  double remaining = 0;                 // residual activity
 };
 
 struct ExpectInput {
   double value = 0;
   std::optional<double> within;          // absolute
-  std::optional<double> within_percent;  // of value
+  std::optional<double> within_percent;  // percent of value
 };
 
-/// Where a key or table was given, for messages about what only the embryo shows to be wrong.
+/// Place where a key or table was set, for errors found after loading.
 struct GivenAt {
   std::string file;
   int line = 0;
@@ -321,7 +323,7 @@ struct GivenAt {
 struct Scenario {
   std::string name;                         // built-in name or file stem
   std::string file;                         // as shown in messages
-  std::map<std::string, GivenAt> given_at;  // by dotted key or table; not part of the experiment
+  std::map<std::string, GivenAt> given_at;  // by dotted key or table; not part of the model
   int format = 1;
   std::string title;
   EmbryoInput embryo;
@@ -345,7 +347,7 @@ struct Scenario {
   std::map<std::string, PressureInput> pressures;
   std::map<std::string, DivisionInput> divisions;
   std::map<std::string, AblationInput> ablations;
-  std::map<std::string, ExpectInput> expect;  // keys are those of summary.json, monitors' among them
+  std::map<std::string, ExpectInput> expect;  // keys of summary.json, including monitors
 };
 
 }  // namespace plica

@@ -62,7 +62,7 @@ PointTable table_of(const std::string& file) {
     names.push_back(fmt::format("{}{}", builtin_table_mark, table.name));
     if (names.back() == file) return points_in_csv(table.csv);
   }
-  throw MeshError(fmt::format("there is no table {}; there is {}", file, fmt::join(names, ", ")));
+  throw MeshError(fmt::format("table {} does not exist; use one of: {}", file, fmt::join(names, ", ")));
 }
 
 PolygonCells cells_of(const EmbryoInput& e) { return {e.cell_height_um, split_of(e), e.layers, e.least_edge_ratio}; }
@@ -94,10 +94,11 @@ std::vector<double> heights_of(const Scenario& scenario, const PolygonFile& file
   const std::string& name = scenario.embryo.cell_height_array;
   if (name.empty()) return {};
   if (const auto found = file.arrays.find(name); found != file.arrays.end()) return found->second;
-  const std::string others = file.arrays.empty() ? "none" : fmt::format("{}", fmt::join(keys_of(file.arrays), ", "));
+  const std::string remedy =
+      file.arrays.empty() ? "remove cell_height_array, since the file has none"
+                          : fmt::format("set cell_height_array to one of: {}", fmt::join(keys_of(file.arrays), ", "));
   throw ScenarioError(
-      {diagnostic_at(scenario, "embryo.cell_height_array", fmt::format("the file has no array \"{}\"", name),
-                     fmt::format("there are: {}", others))});
+      {diagnostic_at(scenario, "embryo.cell_height_array", fmt::format("the file has no array \"{}\"", name), remedy)});
 }
 
 Tissue surface_tissue(const Scenario& scenario) {
@@ -121,8 +122,8 @@ Tissue surface_tissue(const Scenario& scenario) {
   }
   result.tissue.cell_arrays = std::move(file.arrays);
   if (scenario.vitelline.enabled && !result.tissue.outer_shape)
-    throw ScenarioError(
-        {diagnostic_at(scenario, "vitelline.enabled", "no shell fits: " + result.why_no_shape, "give false")});
+    throw ScenarioError({diagnostic_at(scenario, "vitelline.enabled",
+                                       "no vitelline membrane fits: " + result.why_no_shape, "set enabled to false")});
   return std::move(result.tissue);
 }
 
@@ -149,13 +150,13 @@ Tissue build_tissue(const Scenario& scenario) {
   return read_tissue(scenario);
 }
 
-/// The tissue in which cells are counted from a midline, and which part of it the model is.
+/// Whole tissue, in which cells are counted from the midline, and the part of it that is solved.
 struct Origin {
   const Tissue& whole;
   const Mirror& mirror;
 };
 
-/// Of the model's cells.
+/// Makes the activation pattern on the model's cells.
 template <class Acting>
 CellPattern pattern_of(const Acting& input, const Origin& origin, std::vector<Ablation> ablations = {}) {
   CellPattern of_whole = make_pattern(input, origin.whole);
@@ -176,7 +177,7 @@ void add_elasticity(const Scenario& scenario, const Origin& origin, Model& model
     const AttractorSprings springs{input.attractor_stiffness_nN_per_um.value_or(0), moduli.shear_modulus,
                                    input.attractor_preload_nN, input.attractor_preload_length_um};
     auto law = std::make_unique<ShapeMemory>(model.tissue, springs, viscosity);
-    // The modulus that a given stiffness amounts to.
+    // Young's modulus equivalent to a given stiffness.
     const double shear = attractor_moduli(model.tissue.element_rest_shape[0], law->stiffness()[0]).mean_shear();
     model.stiffness_scale = 2 * (1 + input.poisson_ratio) * shear;
     model.laws.push_back(std::move(law));
@@ -220,7 +221,7 @@ void add_contractions(const Scenario& scenario, const Origin& origin, Model& mod
     rule.rest_length_ratio = input.rest_length_ratio;
     rule.preload = input.preload_nN;
     rule.damping = input.damping_nN_s_per_um;
-    rule.tension = input.tension_mN_per_m;  // nN/um is the same
+    rule.tension = input.tension_mN_per_m;  // nN/um = mN/m
     const std::string table = "contraction." + name;
     CellPattern pattern = pattern_of(input, origin, make_ablations(scenario, table, input.edges, origin.whole));
     std::vector<Spring> springs = contraction_springs(model.tissue, pattern, rule);
@@ -249,7 +250,7 @@ OwnStateRule make_own_state(const CortexInput& input) {
 void add_cortices(const Scenario& scenario, const Origin& origin, Model& model) {
   for (const auto& [name, input] : scenario.cortices) {
     if (input.tension_mN_per_m == 0 && input.stiffness_mN_per_m == 0 && input.crowding_mN_per_m == 0) continue;
-    CortexRule rule;  // nN/um is mN/m
+    CortexRule rule;  // nN/um = mN/m
     rule.side = meaning_of(words::edges, input.faces);
     rule.tension = input.tension_mN_per_m;
     rule.saturation = input.saturation_ratio;
@@ -301,14 +302,14 @@ void add_pressures(const Scenario& scenario, const Origin& origin, Model& model)
   }
 }
 
-/// Plane strain: no motion along the axis, and every plane across it moves like the first.
+/// Imposes plane strain: no motion along the axis, and all cross-sections move alike.
 void make_endless(const Scenario& scenario, Model& model) {
   for (std::array<bool, 3>& held : model.held) held[0] = true;
   const double stiffness = 1000 * model.stiffness_scale * scenario.embryo.length_um;
   model.laws.push_back(std::make_unique<Ties>(ties_along_x(model.tissue), stiffness));
 }
 
-/// Holds a node, and what it is an image of.
+/// Fixes a node and its periodic original along `axis`.
 void hold(NodeId node, int axis, Model& model) {
   for (const NodeId one : {node, model.tissue.original(node)}) model.held[one.index()][axis] = true;
 }
@@ -322,7 +323,7 @@ void add_holds(const Scenario& scenario, Model& model) {
   }
 }
 
-/// Nodes of the walls that no neighbour shares, nor an image of one.
+/// Fixes nodes of lateral faces at the sheet boundary.
 void hold_rim(Model& model) {
   for (const Face& face : faces_of(model.tissue, CellSide::lateral))
     if (!face.beyond && face.share == 1)
@@ -330,15 +331,14 @@ void hold_rim(Model& model) {
         for (int axis = 0; axis < 3; ++axis) hold(node, axis, model);
 }
 
-/// Nodes on a mirror plane stay on it.
+/// Keeps nodes of a mirror plane on it.
 void hold_mirror_planes(Model& model) {
   for (std::size_t n = 0; n < model.held.size(); ++n)
     for (int axis = 0; axis < 3; ++axis)
       if (model.tissue.is_mirrored[axis] && model.tissue.rest_positions[n][axis] == 0) model.held[n][axis] = true;
 }
 
-/// Forces at rest that are no finite numbers, of springs stronger than numbers are: there would be nothing to begin
-/// with.
+/// Rejects forces that overflow in the reference state.
 void check_forces_at_rest(const Scenario& scenario, const Model& model) {
   const Vectors forces = driving_forces(model, rest_state(model));
   const auto bad = std::ranges::find_if(forces, [](const Vec3& force) { return !force.allFinite(); });
@@ -348,12 +348,12 @@ void check_forces_at_rest(const Scenario& scenario, const Model& model) {
   const auto element = std::ranges::find_if(model.tissue.elements, holds_it) - model.tissue.elements.begin();
   const std::string key = scenario.contractions.empty() ? "elasticity" : "contraction";
   throw ScenarioError({diagnostic_at(scenario, key,
-                                     fmt::format("the force in cell {} is not a finite number at rest",
+                                     fmt::format("the force in cell {} is not finite in the reference state",
                                                  model.tissue.element_cell[static_cast<std::size_t>(element)].number()),
-                                     "give weaker springs, smaller preloads or pressures")});
+                                     "reduce stiffness, pre-tension or pressure")});
 }
 
-/// All that a scenario puts on a tissue.
+/// Adds all force laws, constraints and obstacles of a scenario.
 void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model) {
   const Tissue& tissue = model.tissue;
   model.volumes().hold(method_of(scenario.volume) == VolumeMethod::coupled);
@@ -436,7 +436,7 @@ FurrowSites make_furrow_sites(const Scenario& scenario, const Tissue& tissue) {
         {diagnostic_at(scenario, "furrow.vce_cell",
                        fmt::format("the midline of region \"{}\" has only {} cells from an end to the middle", region,
                                    sites.midline_pairs),
-                       "count from the end, 1 is the last")});
+                       "reduce vce_cell; 1 is the last cell")});
   return sites;
 }
 

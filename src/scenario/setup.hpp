@@ -1,4 +1,4 @@
-// From a scenario to what is run: the model, and where the furrow is measured.
+// Construction of the model of a scenario, and of the sites where the furrow is measured.
 #pragma once
 
 #include <memory>
@@ -13,28 +13,25 @@
 
 namespace plica {
 
-/// The tissue of a scenario with its regions. Throws ScenarioError (an empty region, a mesh that cannot be used) or
-/// FileError.
+/// Builds the tissue of a scenario with its regions. Throws ScenarioError (empty region, unusable mesh) or FileError.
 Tissue make_tissue(const Scenario& scenario);
 
-/// The laws of a scenario on its tissue, the whole of it. Throws ScenarioError for what only the tissue shows to be
-/// wrong.
+/// Builds the whole tissue and its force laws. Throws ScenarioError for errors that depend on the tissue.
 std::unique_ptr<Model> make_model(const Scenario& scenario);
 
-/// The part of a symmetric embryo that is solved, and what of the whole it stands for.
+/// Solved part of a symmetric embryo, and its mapping to the whole.
 struct SolvedSide {
   std::unique_ptr<Model> model;
   Mirror mirror;
 };
 
-/// Of the scenario's whole model; nothing where it has no mirror planes. Throws ScenarioError for what is not
-/// symmetric.
+/// Builds the solved part of a whole model; nothing without mirror planes. Throws ScenarioError for asymmetric input.
 std::optional<SolvedSide> make_solved_side(const Scenario& scenario, const Model& whole);
 
-/// The regions on which contractions act, the largest first: without [furrow], that is where the furrow is measured.
+/// Contracting regions, the largest first; by default, the furrow is measured on the first.
 std::vector<std::string> contracting_regions(const Scenario& scenario, const Tissue& tissue);
 
-/// VML, VCE, midline and lips of the scenario's furrow; none where there is no contraction.
+/// VML, VCE, midline and lips of the scenario's furrow; empty without contraction.
 FurrowSites make_furrow_sites(const Scenario& scenario, const Tissue& tissue);
 
 }  // namespace plica

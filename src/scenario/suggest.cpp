@@ -18,7 +18,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-// Levenshtein's distance in which a swap of two neighbours counts as one edit, too; three rows of the table at a time.
+// Levenshtein distance in which swapping two neighbours is one edit; keeps three rows of the table.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> above, two_above, row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -68,8 +68,8 @@ std::string without_unit(std::string_view name) {
 }
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
-  if (const auto nearest = nearest_name(name, known)) return fmt::format("did you mean \"{}\"?", *nearest);
-  return known.empty() ? "there are none" : fmt::format("known are: {}", fmt::join(known, ", "));
+  if (const auto nearest = nearest_name(name, known)) return fmt::format("use \"{}\" (nearest match)", *nearest);
+  return known.empty() ? "none is defined" : fmt::format("use one of: {}", fmt::join(known, ", "));
 }
 
 }  // namespace plica

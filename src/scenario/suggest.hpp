@@ -1,4 +1,4 @@
-// What somebody who wrote an unknown name probably meant.
+// Suggestions for unknown names.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,13 @@
 
 namespace plica {
 
-/// The known name nearest to `name` by edit distance, case ignored; none where nothing is near.
+/// Returns the known name nearest to `name` by edit distance, ignoring case; nothing if none is near.
 std::optional<std::string> nearest_name(std::string_view name, const std::vector<std::string>& known);
 
-/// `name` without the unit it ends with: young_modulus for young_modulus_Pa and for young_modulus_kPa.
+/// Returns `name` without its unit: young_modulus for young_modulus_Pa and for young_modulus_kPa.
 std::string without_unit(std::string_view name);
 
-/// "did you mean "x"?" where one is near, and otherwise "known are: ...".
+/// Returns a remedy: "use "x" (nearest match)" if a known name is near, otherwise "use one of: ...".
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace plica

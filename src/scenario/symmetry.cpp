@@ -31,10 +31,14 @@ class SymmetryCheck {
     if (!check_region(table, input.region)) return;
     const CellPattern pattern = make_pattern(input, whole_);
     for (const auto& [of_cells, what] :
-         {std::pair(&pattern.strengths, "acts with the factor {:.4g} in cell {} and {:.4g} in its image, cell {}"),
-          {&pattern.delays_s, "starts {:.4g} s late in cell {} and {:.4g} s in its image, cell {}"},
-          {&pattern.pulse_phases, "pulses with the phase {:.4g} in cell {} and {:.4g} in its image, cell {}"},
-          {&pattern.pulse_periods_s, "pulses every {:.4g} s in cell {} and {:.4g} s in its image, cell {}"}}) {
+         {std::pair(&pattern.strengths,
+                    "is not symmetric: the factor is {:.4g} in cell {} and {:.4g} in its mirror image, cell {}"),
+          {&pattern.delays_s,
+           "is not symmetric: the delay is {:.4g} s in cell {} and {:.4g} s in its mirror image, cell {}"},
+          {&pattern.pulse_phases,
+           "is not symmetric: the pulse phase is {:.4g} in cell {} and {:.4g} in its mirror image, cell {}"},
+          {&pattern.pulse_periods_s,
+           "is not symmetric: the pulse period is {:.4g} s in cell {} and {:.4g} s in its mirror image, cell {}"}}) {
       const std::vector<double>& numbers = *of_cells;
       if (numbers.empty()) continue;
       const double largest = std::abs(*std::ranges::max_element(numbers, {}, [](double a) { return std::abs(a); }));
@@ -45,7 +49,7 @@ class SymmetryCheck {
         return refuse(table,
                       fmt::format(fmt::runtime(what), numbers[cell->index()], cell->number(),
                                   numbers[mirror_.own(*cell).index()], mirror_.own(*cell).number()),
-                      "let variation, delay, pulse and profile be symmetric, or remove embryo.mirror");
+                      "make variation, delay, pulse and profile symmetric, or remove embryo.mirror");
     }
   }
 
@@ -56,24 +60,26 @@ class SymmetryCheck {
     const CellId own = mirror_.own(*cell);
     const bool has_own = cells[own.index()];
     refuse(table + ".region",
-           fmt::format("region \"{}\" is not symmetric: it has cell {} and not its image, cell {}", region,
+           fmt::format("region \"{}\" is not symmetric: it contains cell {} but not its mirror image, cell {}", region,
                        (has_own ? own : *cell).number(), (has_own ? *cell : own).number()),
-           "give one that is, or remove embryo.mirror");
+           "use a symmetric region, or remove embryo.mirror");
     return false;
   }
 
   void check_hold(const std::string& table, const HoldInput& input) {
     const std::vector<bool> held = held_nodes(input, whole_);
-    std::vector<NodeId> own(held.size());  // of the side's nodes: the whole's
+    std::vector<NodeId> own(held.size());  // node of the whole, by node of the side
     for (std::size_t n = held.size(); n-- > 0;)
       if (const auto [node, signs] = mirror_.nodes[n]; signs == Vec3::Ones()) own[node.index()] = NodeId(n);
     for (std::size_t n = 0; n < held.size(); ++n) {
       if (held[n] == held[own[mirror_.nodes[n].node.index()].index()]) continue;
       const Vec3& x = whole_.rest_positions[n];
-      return refuse(table,
-                    fmt::format("is not symmetric: of the node at {:.6g}, {:.6g}, {:.6g} um and its image it holds one",
-                                x.x(), x.y(), x.z()),
-                    "give a symmetric region and ranges, or remove embryo.mirror");
+      return refuse(
+          table,
+          fmt::format(
+              "is not symmetric: only one of the node at {:.6g}, {:.6g}, {:.6g} um and its mirror image is fixed",
+              x.x(), x.y(), x.z()),
+          "use a symmetric region and ranges, or remove embryo.mirror");
     }
   }
 
@@ -82,7 +88,7 @@ class SymmetryCheck {
   }
 
  private:
-  // The first cell of the whole that differs from its image on the side.
+  // Returns the first cell of the whole that differs from its mirror image on the side.
   template <class Differ>
   [[nodiscard]] std::optional<CellId> first_cell(const Differ& differ) const {
     for (std::size_t c = 0; c < whole_.cells.size(); ++c)

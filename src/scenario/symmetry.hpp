@@ -1,4 +1,4 @@
-// What [embryo] mirror asks of an embryo and of what acts on it: to be symmetric.
+// Symmetry checks for `embryo.mirror`.
 #pragma once
 
 #include "scenario/scenario.hpp"
@@ -6,8 +6,8 @@
 
 namespace plica {
 
-/// The side of the scenario's mirror planes, of which there is one at least, that is solved. Throws ScenarioError where
-/// the tissue, or what the scenario says of its cells and nodes, differs from its image.
+/// Returns the solved side of the scenario's mirror planes (at least one). Throws ScenarioError if the tissue, or input
+/// on its cells and nodes, is not symmetric.
 MirroredSide mirrored_side(const Scenario& scenario, const Tissue& whole);
 
 }  // namespace plica

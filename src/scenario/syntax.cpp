@@ -25,13 +25,13 @@ std::string trimmed(const std::string& text) {
 
 bool is_table(const std::string& line) { return line.starts_with('['); }
 
-// What a line names: the key before "=", or the table in its brackets.
+// Returns the key before "=", or the table in brackets.
 std::string named_in(const std::string& line) {
   if (is_table(line)) return trimmed(line.substr(0, line.find(']'))) + "]";
   return line.find('=') == std::string::npos ? "" : trimmed(line.substr(0, line.find('=')));
 }
 
-// The line, from 1, that has named the same before `last` in the same table; 0 where it is not seen.
+// Returns the line (from 1) before `last` that sets the same key in the same table; 0 if there is none.
 int first_line_of(const std::string& name, const std::vector<std::string>& lines, int last) {
   for (int line = last - 1; line > 0; --line) {
     const std::string text = trimmed(lines[static_cast<std::size_t>(line - 1)]);
@@ -41,7 +41,7 @@ int first_line_of(const std::string& name, const std::vector<std::string>& lines
   return 0;
 }
 
-// The word after "=", where it is one that lacks its quotes.
+// Returns the word after "=" if it lacks quotes.
 std::string bare_word_in(const std::string& line) {
   const std::size_t equals = line.find('=');
   if (equals == std::string::npos) return "";
@@ -59,17 +59,17 @@ Diagnostic syntax_diagnostic(const std::string& file, const std::string& text, c
   const int line = static_cast<int>(error.source().begin.line);
   const std::vector<std::string> lines = lines_of(text);
   if (line < 1 || static_cast<std::size_t>(line) > lines.size())
-    return {file, line, "", problem, "write it in TOML syntax"};
+    return {file, line, "", problem, "correct the TOML syntax"};
   const std::string written = trimmed(lines[static_cast<std::size_t>(line - 1)]), name = named_in(written);
   if (problem.find("redefine") != std::string::npos && !name.empty()) {
     const int first = first_line_of(name, lines, line);
-    const std::string where = first > 0 ? fmt::format("; first in line {}", first) : "";
-    return {file, line, name, "is given twice" + where, "keep one of the two"};
+    const std::string where = first > 0 ? fmt::format(" (first in line {})", first) : "";
+    return {file, line, name, "is set twice" + where, "remove one of them"};
   }
   if (const std::string word = bare_word_in(written); !word.empty())
-    return {file, line, name, fmt::format("{} is no value", word),
-            fmt::format("a text is in quotes: {} = \"{}\"", name, word)};
-  return {file, line, "", problem, "write it in TOML syntax"};
+    return {file, line, name, fmt::format("{} is not a valid value", word),
+            fmt::format("put text in quotes: {} = \"{}\"", name, word)};
+  return {file, line, "", problem, "correct the TOML syntax"};
 }
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// What the TOML library says of a text that it cannot read, in words that help.
+// Messages for TOML syntax errors.
 #pragma once
 
 #include <toml++/toml.h>
@@ -9,8 +9,8 @@
 
 namespace plica {
 
-/// Of an error that parsing `text`, which messages call `file`, has thrown: a key that is given twice, a text without
-/// quotes, or what the library says.
+/// Converts a parse error of `text` (named `file` in messages) to a message: a key set twice, text without quotes, or
+/// the library's own description.
 Diagnostic syntax_diagnostic(const std::string& file, const std::string& text, const toml::parse_error& error);
 
 }  // namespace plica

@@ -15,7 +15,7 @@ namespace plica {
 
 toml::table parse_toml(const std::string& file, const std::string& text) {
   if (const int line = line_of_too_deep_key(text); line > 0)
-    throw ScenarioError({{file, line, "", "a key has too many parts", "a scenario's keys have at most four"}});
+    throw ScenarioError({{file, line, "", "a key has too many parts", "use at most four parts"}});
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
@@ -38,7 +38,7 @@ std::string value_in_toml(const toml::node& node) {
       parts.push_back(fmt::format("{} = {}", in_toml(std::string(key.str())), value_in_toml(part)));
     return fmt::format("{{{}}}", fmt::join(parts, ", "));
   }
-  return "";  // dates: no key of a scenario has one
+  return "";  // dates, which scenarios do not use
 }
 
 std::vector<std::pair<std::string, const toml::node*>> in_order(const toml::table& table) {
@@ -75,13 +75,15 @@ const toml::table* TomlReader::table(const toml::table& parent, const char* key,
 std::optional<int> TomlReader::count(const toml::table& table, const char* key, const std::string& before) {
   const auto number = get<std::int64_t>(table, key, before, "a whole number");
   if (number && *number >= 1 && *number <= 10'000'000) return static_cast<int>(*number);
-  if (number) report(*table.get(key), before + key, fmt::format("is {}", *number), "give 1 to 10 000 000");
+  if (number)
+    report(*table.get(key), before + key, fmt::format("{} is out of range", *number),
+           fmt::format("set {} to a whole number from 1 to 10 000 000", key));
   return {};
 }
 
 void TomlReader::report_unknown_word(const toml::node& node, std::string key, const std::string& word,
                                      const std::vector<std::string>& known) {
-  report(node, std::move(key), fmt::format("\"{}\" is no known word", word), did_you_mean(word, known));
+  report(node, std::move(key), fmt::format("\"{}\" is unknown", word), did_you_mean(word, known));
 }
 
 std::optional<ScenarioSource> TomlReader::scenario(const toml::table& table, const char* key,
@@ -94,7 +96,8 @@ std::optional<ScenarioSource> TomlReader::scenario(const toml::table& table, con
     const bool is_file = std::filesystem::is_regular_file(folder / *name, unknown);
     return find_scenario(is_file ? (folder / *name).string() : *name, folder);
   } catch (const std::runtime_error& error) {
-    report(*table.get(key), before + key, error.what(), "files are relative to this one");
+    report(*table.get(key), before + key, error.what(),
+           fmt::format("set {} to a built-in name or a path relative to this file", key));
     return {};
   }
 }

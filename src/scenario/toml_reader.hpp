@@ -1,5 +1,4 @@
-// What readers of TOML files that are no scenarios have in common (studies, experiments): values of their types, and
-// all that is wrong, with its line, its key and what would be right.
+// Base of readers of other TOML files (studies, experiments): typed values, and errors with line, key and remedy.
 #pragma once
 
 #include <toml++/toml.h>
@@ -18,13 +17,13 @@
 
 namespace plica {
 
-/// The table that a text holds. ScenarioError where it is no TOML, or its keys are nested without end.
+/// Parses a text. Throws ScenarioError for invalid TOML or too deeply nested keys.
 toml::table parse_toml(const std::string& file, const std::string& text);
 
-/// A value in TOML, on one line.
+/// Writes a value in TOML, on one line.
 std::string value_in_toml(const toml::node& node);
 
-/// The keys of a table in the order of the file.
+/// Returns the keys of a table in file order.
 std::vector<std::pair<std::string, const toml::node*>> in_order(const toml::table& table);
 
 class TomlReader {
@@ -41,15 +40,15 @@ class TomlReader {
     if (!diagnostics_.empty()) throw ScenarioError(std::move(diagnostics_));
   }
 
-  /// `before`: what messages call the table, with a point.
+  /// Reports keys that are not in `known`. `before`: name of the table in messages, with a trailing dot.
   void refuse_unknown(const toml::table& table, const std::string& before, const std::vector<std::string>& known,
                       const std::function<std::string(std::string_view)>& remedy_of);
   void refuse_unknown(const toml::table& table, const std::string& before, const std::vector<std::string>& known);
 
-  /// A table within another; nothing where it is not there.
+  /// Returns an inner table, or null if absent.
   const toml::table* table(const toml::table& parent, const char* key, const std::string& before = "");
 
-  /// `what` it is to be: "a text". Numbers are finite.
+  /// Reads a value; reports a wrong type. `what`: the expected type in messages ("a text"). Numbers must be finite.
   template <class Value>
   std::optional<Value> get(const toml::table& table, const char* key, const std::string& before, const char* what) {
     const toml::node* node = table.get(key);
@@ -60,14 +59,14 @@ class TomlReader {
     } else if (std::optional<Value> value = node->value_exact<Value>()) {
       return value;
     }
-    report(*node, before + key, "is not " + std::string(what), "give " + std::string(what));
+    report(*node, before + key, "is not " + std::string(what), "set " + std::string(key) + " to " + std::string(what));
     return {};
   }
 
-  /// A whole number from 1 on.
+  /// Reads a whole number from 1 to 10 000 000.
   std::optional<int> count(const toml::table& table, const char* key, const std::string& before);
 
-  /// One of some words, given as pairs of word and value; nothing where the key is not there, or is none of them.
+  /// Reads one of the words in `choices`, pairs of word and value; nothing if absent or unknown.
   template <class Choices>
   auto word(const toml::table& table, const char* key, const std::string& before, const Choices& choices)
       -> std::optional<std::remove_cvref_t<decltype(choices[0].second)>> {
@@ -82,10 +81,10 @@ class TomlReader {
     return {};
   }
 
-  /// A scenario that is built in, or a file beside this one.
+  /// Finds a scenario: a file relative to this one, or a built-in.
   std::optional<ScenarioSource> scenario(const toml::table& table, const char* key, const std::string& before = "");
 
-  /// A table of a scenario's keys, nested or dotted, as of --set, and the lines that they stand in.
+  /// Reads a table of scenario keys, nested or dotted, as overrides in the form of --set, and their lines.
   void read_overrides(const toml::table& table, std::vector<std::string>& overrides, std::vector<int>& lines,
                       const std::string& before = "");
 

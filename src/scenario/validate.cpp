@@ -17,31 +17,30 @@ namespace {
 
 constexpr std::int64_t max_elements = 20'000'000;
 
-/// Cells of a built shape. A closed sheet has one layer of cells on each of its six sides, a slice on four.
+/// Number of cells of a built shape. A closed sheet has cells on six sides, a slice on four.
 std::int64_t cell_count(const EmbryoInput& embryo) {
   const std::int64_t a = embryo.cells[0], b = embryo.cells[1], c = embryo.cells[2];
   const bool has_ends = shape_of(embryo) != EmbryoShape::slice;
   return shape_of(embryo) == EmbryoShape::block ? a * b * c : 2 * (a * b + (has_ends ? b * c : 0) + c * a);
 }
 
-/// A key that the shape does not use is an error where it was given along with the shape or after it, and is dropped
-/// where it was inherited from a scenario of another shape.
+/// Keys that the shape does not use are errors if set together with the shape or later, and dropped if inherited from
+/// a scenario of another shape.
 void check_unused_keys(Scenario& scenario, Input& input) {
   const std::string shape = scenario.embryo.shape;
   for (const Row* row : rows_of("embryo")) {
     if (row->used_by(shape)) continue;
     const std::string address = fmt::format("embryo.{}", row->key);
     if (input.given_with(address, "embryo.shape")) {
-      input.report(address, fmt::format("has no meaning with shape \"{}\"", shape),
-                   fmt::format("remove it, or choose shape {}", fmt::join(row->options.shapes, " or ")));
+      input.report(address, fmt::format("is not used with shape \"{}\"", shape),
+                   fmt::format("remove {}, or set shape to {}", row->key, fmt::join(row->options.shapes, " or ")));
     }
     reset_to_default(*row, scenario, "");
   }
   if (shape_of(scenario.embryo) == EmbryoShape::sphere) scenario.embryo.length_um = scenario.embryo.diameter_um;
 }
 
-/// Likewise of regions that were inherited from a scenario of another shape: what they are selected by since then
-/// stands in place of selectors that this shape lacks.
+/// Drops inherited selectors that this shape lacks, in regions that have a newer selector.
 void drop_unfit_selectors(Scenario& scenario, Input& input) {
   const EmbryoShape shape = shape_of(scenario.embryo);
   std::set<std::string_view> unfit;
@@ -63,8 +62,8 @@ void check_element_count(const EmbryoInput& embryo, Input& input) {
   const auto& per_cell = embryo.elements_per_cell;
   const std::int64_t elements = cell_count(embryo) * per_cell[0] * per_cell[1] * per_cell[2];
   if (elements > max_elements) {
-    input.report("embryo.cells", fmt::format("asks for {} elements; the limit is {}", elements, max_elements),
-                 "give fewer cells, or fewer elements per cell");
+    input.report("embryo.cells", fmt::format("requires {} elements, more than the limit of {}", elements, max_elements),
+                 "reduce cells or elements_per_cell");
   }
 }
 
@@ -77,29 +76,31 @@ void check_embryo(Scenario& scenario, Input& input) {
   if (is_from_file(shape_of(embryo))) {
     if (embryo.file.empty() && sound("file"))
       input.report("embryo.file", "is missing",
-                   shape_of(embryo) == EmbryoShape::file     ? "name the mesh file for shape \"file\""
-                   : shape_of(embryo) == EmbryoShape::points ? "name the table of points for shape \"points\""
-                                                             : "name the file of polygons for shape \"surface\"");
+                   shape_of(embryo) == EmbryoShape::file     ? "set file to the mesh file for shape \"file\""
+                   : shape_of(embryo) == EmbryoShape::points ? "set file to the table of points for shape \"points\""
+                                                             : "set file to the polygon file for shape \"surface\"");
     if (embryo.scale.size() != 3 && sound("scale"))
-      input.report("embryo.scale", fmt::format("has {} numbers", embryo.scale.size()), "give three, along x, y and z");
+      input.report("embryo.scale", fmt::format("has length {}", embryo.scale.size()),
+                   "set scale to three numbers, along x, y and z");
     return;
   }
   if (embryo.curvature_per_um.size() != 2 && sound("curvature_per_um"))
-    input.report("embryo.curvature_per_um", fmt::format("has {} numbers", embryo.curvature_per_um.size()),
-                 "give two, along and across");
+    input.report("embryo.curvature_per_um", fmt::format("has length {}", embryo.curvature_per_um.size()),
+                 "set curvature_per_um to two numbers, along x and y");
   if (embryo.belly_sag_um.has_value() != embryo.back_sag_um.has_value())
-    input.report(embryo.belly_sag_um ? "embryo.belly_sag_um" : "embryo.back_sag_um", "stands alone",
-                 fmt::format("give {}, too, or neither", embryo.belly_sag_um ? "back_sag_um" : "belly_sag_um"));
+    input.report(embryo.belly_sag_um ? "embryo.belly_sag_um" : "embryo.back_sag_um",
+                 fmt::format("requires {}", embryo.belly_sag_um ? "back_sag_um" : "belly_sag_um"),
+                 "set both keys, or neither");
   if ((shape_of(embryo) == EmbryoShape::pill || shape_of(embryo) == EmbryoShape::egg) && sound("length_um") &&
       sound("diameter_um") && embryo.length_um < embryo.diameter_um) {
     input.report("embryo.length_um",
                  fmt::format("{} is less than the diameter, {}", embryo.length_um, embryo.diameter_um),
-                 "give a length of at least diameter_um");
+                 "set length_um to at least diameter_um");
   }
   if (!is_patch(shape_of(embryo)) && sound("cell_height_um") && sound("diameter_um") &&
       embryo.cell_height_um >= embryo.diameter_um / 2) {
     input.report("embryo.cell_height_um", fmt::format("{} leaves no room inside the embryo", embryo.cell_height_um),
-                 fmt::format("give less than half of diameter_um, {}", embryo.diameter_um / 2));
+                 fmt::format("set cell_height_um below half of diameter_um, {}", embryo.diameter_um / 2));
   }
   if (is_of_grid(shape_of(embryo)) && sound("cells") && sound("elements_per_cell")) check_element_count(embryo, input);
 }
@@ -108,75 +109,80 @@ void check_shell_drag(const Scenario& scenario, Input& input) {
   const std::string key = "vitelline.drag_Pa_s_per_um";
   if (scenario.vitelline.drag_Pa_s_per_um == 0 || !input.sound(key) || !input.sound("vitelline.enabled")) return;
   if (!scenario.vitelline.enabled)
-    input.report(key, "has no meaning without a shell",
-                 is_patch(shape_of(scenario.embryo)) ? "remove it" : "remove it, or give enabled = true");
+    input.report(key, "is not used without a vitelline membrane",
+                 is_patch(shape_of(scenario.embryo)) ? "remove drag_Pa_s_per_um"
+                                                     : "remove drag_Pa_s_per_um, or set enabled to true");
   else if (is_as_in_the_paper(scenario))
-    input.report(key, "drag of the shell goes with time.scheme \"newton\" and volumes that are not projected",
-                 "remove it, or choose another scheme or volume.method");
+    input.report(key, "requires time.scheme \"newton\" and a volume.method other than \"projection\"",
+                 "remove drag_Pa_s_per_um, or change time.scheme or volume.method");
 }
 
-/// What goes with neither mirror planes nor periods, and that each is named once.
-void check_repeats(const Scenario& scenario, const std::vector<std::string>& named, const std::string& address,
-                   const std::string& cells, const std::string& embryos, Input& input) {
+/// Checks a list of mirror planes or periodic directions (`key` of [embryo]): no repetition, division or projection.
+/// `cells`, `feature`: how messages name them.
+void check_repeats(const Scenario& scenario, const std::vector<std::string>& named, const std::string& key,
+                   const std::string& cells, const std::string& feature, Input& input) {
+  const std::string address = "embryo." + key;
   if (std::set(named.begin(), named.end()).size() < named.size())
-    return input.report(address, fmt::format("\"{}\" stands there twice", named.back()), "give each once");
-  if (!scenario.divisions.empty()) input.report(address, cells + " do not divide", "remove it, or [division]");
+    return input.report(address, fmt::format("\"{}\" occurs twice", named.back()), "list each direction once");
+  if (!scenario.divisions.empty())
+    input.report(address, cells + " cannot divide", fmt::format("remove {}, or [division]", key));
   if (is_as_in_the_paper(scenario))
-    input.report(address, "the paper's algorithm does not know " + embryos,
-                 "remove it, or give time.scheme \"newton\" and volume.method \"coupled\" or \"none\"");
+    input.report(
+        address, "the paper's algorithm does not support " + feature,
+        fmt::format("remove {}, or set time.scheme to \"newton\" and volume.method to \"coupled\" or \"none\"", key));
 }
 
 void check_mirror(const Scenario& scenario, Input& input) {
   const std::string address = "embryo.mirror";
   if (scenario.embryo.mirror.empty() || !input.sound(address)) return;
-  check_repeats(scenario, scenario.embryo.mirror, address, "cells of which one side is solved", "halves of embryos",
-                input);
+  check_repeats(scenario, scenario.embryo.mirror, "mirror", "mirrored cells", "mirror planes", input);
 }
 
 void check_periods(const Scenario& scenario, Input& input) {
   const EmbryoInput& embryo = scenario.embryo;
   const std::string address = "embryo.periodic";
   if (embryo.periodic.empty() || !input.sound(address)) return;
-  check_repeats(scenario, embryo.periodic, address, "cells of a periodic sheet", "periodic sheets", input);
+  check_repeats(scenario, embryo.periodic, "periodic", "cells of a periodic sheet", "periodic sheets", input);
   for (const std::string& axis : embryo.periodic)
     if (input.sound("embryo.curvature_per_um") && embryo.curvature_per_um.size() == 2 &&
         embryo.curvature_per_um[meaning_of(words::periods, axis)] != 0)
       input.report("embryo.curvature_per_um",
-                   fmt::format("a sheet that is bent along {} does not repeat itself along {}", axis, axis),
-                   fmt::format("give 0 there, or leave \"{}\" out of embryo.periodic", axis));
+                   fmt::format("a sheet curved along {} cannot be periodic along {}", axis, axis),
+                   fmt::format("set its curvature there to 0, or remove \"{}\" from embryo.periodic", axis));
   if (embryo.periodic.size() == words::periods.size() && meaning_of(words::rims, embryo.rim) &&
       input.sound("embryo.rim"))
-    input.report("embryo.rim", "a sheet that is periodic along x and y has no rim",
-                 "remove it, or leave a direction out of embryo.periodic");
+    input.report("embryo.rim", "a sheet periodic along x and y has no boundary",
+                 "remove rim, or one direction of embryo.periodic");
 }
 
 void check_vitelline(Scenario& scenario, Input& input) {
   const EmbryoShape shape = shape_of(scenario.embryo);
   if ((!is_patch(shape) && shape != EmbryoShape::surface) || !input.sound("vitelline.enabled")) return;
-  // Whether a surface is closed, its file tells.
+  // The file determines whether a surface is closed.
   if (input.place("vitelline.enabled") == nullptr) scenario.vitelline.enabled = false;
   if (scenario.vitelline.enabled && is_patch(shape)) {
     input.report("vitelline.enabled",
-                 fmt::format("a shell needs a closed embryo, and a {} is none", scenario.embryo.shape), "give false");
+                 fmt::format("a vitelline membrane requires a closed embryo, but a {} is open", scenario.embryo.shape),
+                 "set enabled to false");
   }
 }
 
 void check_dynamics(const DynamicsInput& dynamics, Input& input) {
   if (!input.sound("dynamics.surface_drag_Pa_s_per_um") || !input.sound("dynamics.density_kg_per_m3")) return;
   if (dynamics.surface_drag_Pa_s_per_um == 0 && dynamics.density_kg_per_m3 == 0) {
-    input.report("dynamics.surface_drag_Pa_s_per_um", "a body with neither drag nor mass is refused",
-                 "give a drag or a density above 0");
+    input.report("dynamics.surface_drag_Pa_s_per_um", "drag and density are both 0",
+                 "set surface_drag_Pa_s_per_um or density_kg_per_m3 above 0");
   }
 }
 
 void check_time(const TimeInput& time, Input& input) {
   if (input.sound("time.end_s") && has_come(time.end_s, 0))
     input.report("time.end_s", fmt::format("the run would end before its first step, at {} s", time.end_s),
-                 "give a later end");
+                 "set end_s to a later time");
   if (!input.sound("time.first_step_s") || !input.sound("time.max_step_s")) return;
   if (time.first_step_s > time.max_step_s) {
     input.report("time.first_step_s", fmt::format("{} is above max_step_s, {}", time.first_step_s, time.max_step_s),
-                 "give a first step no longer than the longest");
+                 "set first_step_s to at most max_step_s");
   }
 }
 
@@ -184,23 +190,22 @@ void check_scheme(const Scenario& scenario, Input& input) {
   if (!input.sound("time.scheme") || !input.sound("volume.method") || !input.sound("embryo.shape")) return;
   if (scenario.time.scheme == "linearly-implicit" && method_of(scenario.volume) == VolumeMethod::coupled)
     input.report("time.scheme",
-                 "solves forces only, it cannot hold volumes as constraints (volume.method is \"coupled\")",
-                 "give volume.method = \"projection\" or \"none\", or scheme = \"newton\"");
+                 "\"linearly-implicit\" does not support volume constraints (volume.method is \"coupled\")",
+                 "set volume.method to \"projection\" or \"none\", or scheme to \"newton\"");
   if (!scenario.divisions.empty() && is_as_in_the_paper(scenario))
     input.report(method_of(scenario.volume) == VolumeMethod::projection ? "volume.method" : "time.scheme",
-                 "cells cannot divide under the paper's algorithm",
-                 "give method = \"coupled\" or \"none\" and scheme = \"newton\", or no [division]");
+                 "the paper's algorithm does not support division",
+                 "set volume.method to \"coupled\" or \"none\" and time.scheme to \"newton\", or remove [division]");
   if (scenario.volume.projection_surface == "embryo" && is_patch(shape_of(scenario.embryo)) &&
       input.sound("volume.projection_surface"))
-    input.report("volume.projection_surface",
-                 fmt::format("the apical surface of a {} encloses nothing", scenario.embryo.shape),
-                 "give \"cells\" or \"tissue\"");
+    input.report("volume.projection_surface", fmt::format("the apical surface of a {} is open", scenario.embryo.shape),
+                 "set projection_surface to \"cells\" or \"tissue\"");
 }
 
 void check_integrator(const Scenario& scenario, Input& input) {
   if (!input.sound("time.integrator") || scenario.time.integrator != "bdf2") return;
   const auto refuse = [&](const std::string& why) {
-    input.report("time.integrator", "second order in time does not go with " + why, "give \"backward-euler\"");
+    input.report("time.integrator", "\"bdf2\" does not support " + why, "set integrator to \"backward-euler\"");
   };
   if (scenario.time.scheme != "newton") return refuse(fmt::format("time.scheme = \"{}\"", scenario.time.scheme));
   if (method_of(scenario.volume) == VolumeMethod::projection) return refuse("volume.method = \"projection\"");
@@ -215,12 +220,13 @@ void check_required_keys(const Scenario& scenario, Input& input) {
       for (const Row* row : rows_of(info.path)) {
         const std::string address = fmt::format("{}.{}", path, row->key);
         if (row->options.required && input.sound(path) && input.place(address) == nullptr) {
-          // As often as not the table's name is misspelt, and another is meant.
+          // A misspelt table name is a frequent cause.
           std::vector<std::string> others = info.names(scenario);
           std::erase(others, name);
           const std::optional<std::string> meant = nearest_name(name, others);
-          const std::string table = meant ? fmt::format(", or did you mean {}.{}?", info.stem(), *meant) : "";
-          input.report(address, "is missing", "give " + row->expected() + table);
+          const std::string table =
+              meant ? fmt::format(", or rename the table to {}.{} (nearest match)", info.stem(), *meant) : "";
+          input.report(address, "is missing", row->remedy() + table);
         }
       }
     }
@@ -231,7 +237,7 @@ void check_expectations(const Scenario& scenario, Input& input) {
   for (const auto& [name, expected] : scenario.expect) {
     const std::string path = "expect." + name;
     if (!expected.within && !expected.within_percent && input.sound(path) && input.sound(path + ".within")) {
-      input.report(path, "has no tolerance", "give within or within_percent, too");
+      input.report(path, "has no tolerance", "set within or within_percent");
     }
   }
 }
@@ -242,61 +248,26 @@ void check_program(const std::string& table, const ProgramInput& program, Input&
   const std::string activity = fmt::format("{}.{}.activity", table, name);
   if (!input.sound(table) || !input.sound(time) || !input.sound(activity)) return;
   if (program.time_s.empty() && program.activity.empty()) return;
-  if (program.time_s.empty()) return input.report(time, "is missing", "give time_s or time_min beside activity");
-  if (program.activity.empty()) return input.report(activity, "is missing", "give as many activities as times");
+  if (program.time_s.empty()) return input.report(time, "is missing", "set time_s or time_min along with activity");
+  if (program.activity.empty()) return input.report(activity, "is missing", "set activity to as many values as times");
   if (program.time_s.size() != program.activity.size()) {
-    input.report(activity, fmt::format("{} activities for {} times", program.activity.size(), program.time_s.size()),
-                 "give as many activities as times");
+    input.report(activity, fmt::format("has length {} for {} times", program.activity.size(), program.time_s.size()),
+                 "set activity to as many values as times");
   }
   const auto& times = program.time_s;
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (times[i] < times[i - 1])
       return input.report(time, "the times do not increase",
-                          "give each time later than the one before, or the same twice for a jump");
+                          "list times in increasing order; repeat a time once to mark a jump");
     if (i > 1 && times[i] == times[i - 2])
-      return input.report(time, fmt::format("{} stands there three times", times[i]), "give it twice for a jump");
+      return input.report(time, fmt::format("{} occurs three times", times[i]), "repeat a time once to mark a jump");
     if (times[i] != times[i - 1] && has_come(times[i], times[i - 1]))
       return input.report(time, fmt::format("{} and {} are closer than {} s", times[i - 1], times[i], instant_s),
-                          "give the same time twice for a jump");
+                          "repeat a time once to mark a jump");
   }
 }
 
-void check_division(const std::string& table, const DivisionInput& division, Input& input) {
-  for (const char* key : {".at_s", ".when", ".threshold"})
-    if (!input.sound(table) || !input.sound(table + key)) return;
-  if (division.at_s && !division.when.empty())
-    input.report(table + ".when", "the division has a time already", "give at_min or when, not both");
-  if (!division.at_s && division.when.empty())
-    input.report(table, "says not when", "give at_s, at_min, or when with a threshold");
-  if (!division.when.empty() && !division.threshold)
-    input.report(table + ".threshold", "is missing", "give the value that `when` is about");
-  if (division.when.empty() && division.threshold)
-    input.report(table + ".threshold", "belongs to `when`", "remove it, or give when");
-}
-
-/// The tables by which cells pull, as [ablation] names them.
-std::vector<std::string> pulling_tables(const Scenario& scenario) {
-  std::vector<std::string> tables;
-  for (const auto& [name, it] : scenario.cortices) tables.push_back("cortex." + name);
-  for (const auto& [name, it] : scenario.contractions) tables.push_back("contraction." + name);
-  return tables;
-}
-
-void check_ablation(const std::string& name, const Scenario& scenario, Input& input) {
-  const AblationInput& ablation = scenario.ablations.at(name);
-  const std::string table = "ablation." + name;
-  const std::vector<std::string> known = pulling_tables(scenario);
-  for (const std::string& other : ablation.only)
-    if (std::ranges::find(known, other) == known.end() && input.sound(table + ".only") && input.sound(other))
-      input.report(table + ".only", fmt::format("there is no [{}]", other), did_you_mean(other, known));
-  for (const std::string key : {"", ".at_s", ".at_min", ".until_s", ".until_min"})
-    if (!input.sound(table + key)) return;
-  if (!ablation.at_s) return input.report(table, "says not when", "give at_min, or at_s; 0 from the beginning");
-  if (ablation.until_s && has_come(*ablation.until_s, *ablation.at_s))
-    input.report(table + ".until_s", "does not come after the ablation", "give a later time, or \"none\"");
-}
-
-/// The rules about regions: selectors that make sense on this embryo, names that exist, no circles.
+/// Checks regions: selectors available for this embryo, existing names, no cycles.
 class RegionCheck {
  public:
   RegionCheck(const Scenario& scenario, Input& input)
@@ -306,9 +277,9 @@ class RegionCheck {
 
   void check_reference(const std::string& address, const std::string& region) {
     if (region.empty() || !input_.sound("region") || !input_.sound(address)) return;
-    if (!input_.sound("region." + region)) return;  // it was not read; that has been reported
+    if (!input_.sound("region." + region)) return;  // not read; already reported
     if (std::ranges::find(names_, region) != names_.end()) return;
-    input_.report(address, fmt::format("there is no region \"{}\"", region), did_you_mean(region, names_));
+    input_.report(address, fmt::format("region \"{}\" does not exist", region), did_you_mean(region, names_));
   }
 
   void check_references() {
@@ -346,29 +317,30 @@ class RegionCheck {
     const bool has_doubt = std::ranges::any_of(
         input_.doubtful, [&](const std::string& it) { return it == path || it.starts_with(path + "."); });
     if (!has_selector && !has_doubt) {
-      input_.report(path, "selects nothing",
-                    "give face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, rows, neighbours_of, union, "
+      input_.report(path, "has no selector",
+                    "set face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, rows, neighbours_of, union, "
                     "intersect or except");
     }
     if (region.rings && region.neighbours_of.empty() && input_.sound(path + ".neighbours_of"))
-      input_.report(path + ".rings", "needs neighbours_of", "name the region around which the rings lie");
+      input_.report(path + ".rings", "is not used without neighbours_of",
+                    "set neighbours_of to the region inside the rings");
     if (!input_.sound("embryo.shape")) return;
     const EmbryoShape shape = shape_of(scenario_.embryo);
     if (!region.array.empty() && !is_from_file(shape)) {
       input_.report(path + ".array", "a built embryo has no arrays",
-                    "use it with shape \"file\", \"points\" or \"surface\" only" + instead_of(path + ".array"));
+                    "remove array, or use shape \"file\", \"points\" or \"surface\"" + instead_of(path + ".array"));
     }
     for (const auto& [key, value] : {std::pair("above", region.above), {"below", region.below}})
       if (value && region.array.empty() && input_.sound(path + ".array"))
-        input_.report(fmt::format("{}.{}", path, key), "needs an array", "give array, too");
+        input_.report(fmt::format("{}.{}", path, key), "is not used without array", "set array");
     if (!region.face.empty() && !is_of_grid(shape)) {
-      input_.report(path + ".face", "cells that are no grid have no named sides",
+      input_.report(path + ".face", "cells of this shape have no named faces",
                     "use angle_deg, length_percent, ids, array, x_um, y_um or z_um" + instead_of(path + ".face"));
     }
     if (is_of_grid(shape) && input_.sound("embryo.cells")) check_cell_numbers(path, region);
   }
 
-  /// Reports every circle of regions once, at its first member in the order of names.
+  /// Reports every cycle of regions once, at its first member in alphabetical order.
   void check_circles() {
     std::set<std::string> done;
     for (const auto& [name, region] : scenario_.regions) {
@@ -378,12 +350,11 @@ class RegionCheck {
   }
 
  private:
-  // What to do about a selector that another scenario has given, for another shape.
+  // Remedy for a selector inherited from a scenario of another shape.
   [[nodiscard]] std::string instead_of(const std::string& address) const {
     if (input_.given_with(address, "embryo.shape")) return "";
     const std::string region = address.substr(0, address.rfind('.'));
-    return fmt::format("; another selector in a [{}] of your own takes the place of the {} that is inherited", region,
-                       address.substr(region.size() + 1));
+    return fmt::format("; a new selector in [{}] replaces the inherited {}", region, address.substr(region.size() + 1));
   }
 
   void check_cell_numbers(const std::string& path, const RegionInput& region) {
@@ -394,13 +365,13 @@ class RegionCheck {
     for (const std::string key : {".cells_along", ".cells_across"}) {
       const bool missing = region.face.empty() && input_.sound(path + ".face") && input_.sound(path + key);
       if (missing && input_.place(path + key) != nullptr) {
-        input_.report(path + key, "needs a face to lie on", "give face, too");
+        input_.report(path + key, "is not used without face", "set face");
       }
     }
     const std::int64_t cells = cell_count(scenario_.embryo);
     if (!region.ids.empty() && *std::ranges::max_element(region.ids) >= cells) {
-      input_.report(path + ".ids", fmt::format("there is no cell {}", *std::ranges::max_element(region.ids)),
-                    fmt::format("give numbers from 0 to {}", cells - 1));
+      input_.report(path + ".ids", fmt::format("cell {} does not exist", *std::ranges::max_element(region.ids)),
+                    fmt::format("set ids to numbers from 0 to {}", cells - 1));
     }
   }
 
@@ -411,12 +382,13 @@ class RegionCheck {
 
   void check_centred(const std::string& address, int wanted, int available) {
     if (wanted > available) {
-      input_.report(address, fmt::format("{} cells on a face that has {} that way", wanted, available),
-                    fmt::format("give at most {}", available));
+      input_.report(address, fmt::format("{} exceeds the {} cells of the face in this direction", wanted, available),
+                    fmt::format("set {} to at most {}", address.substr(address.rfind('.') + 1), available));
     } else if ((available - wanted) % 2 != 0) {
       const std::string fewer = wanted > 1 ? fmt::format("{} or ", wanted - 1) : "";
       input_.report(address, fmt::format("{} cells cannot be centred on {}", wanted, available),
-                    fmt::format("{}{} can: both numbers odd, or both even", fewer, wanted + 1));
+                    fmt::format("set {} to {}{} (both numbers odd, or both even)",
+                                address.substr(address.rfind('.') + 1), fewer, wanted + 1));
     }
   }
 
@@ -424,8 +396,8 @@ class RegionCheck {
     const auto region = scenario_.regions.find(name);
     if (region == scenario_.regions.end()) return;
     if (const auto start = std::ranges::find(path, name); start != path.end()) {
-      const std::vector<std::string> circle(start, path.end());
-      input_.report("region." + *start, fmt::format("is defined by itself: {} > {}", fmt::join(circle, " > "), name),
+      const std::vector<std::string> cycle(start, path.end());
+      input_.report("region." + *start, fmt::format("refers to itself: {} > {}", fmt::join(cycle, " > "), name),
                     "remove one of these references");
       return;
     }
@@ -487,8 +459,8 @@ void validate(Scenario& scenario, Input& input) {
   }
   for (const auto& [name, it] : scenario.divisions) check_division("division." + name, it, input);
   if (!scenario.divisions.empty() && input.sound("embryo.shape") && shape_of(scenario.embryo) == EmbryoShape::slice)
-    input.report("embryo.shape", "the cells of a slice do not divide: its planes would no longer be alike",
-                 "take a pill, or no [division]");
+    input.report("embryo.shape", "cells of a slice cannot divide, since its cross-sections must stay alike",
+                 "set shape to \"pill\", or remove [division]");
   for (const auto& [name, it] : scenario.ablations) check_ablation(name, scenario, input);
   RegionCheck regions(scenario, input);
   for (const auto& [name, region] : scenario.regions) regions.check_selectors(name, region);

@@ -1,4 +1,4 @@
-// The rules between several keys of a scenario. Those of a single key are in the table of schema.cpp.
+// Rules between several keys of a scenario. Rules of a single key are in the table of schema.cpp.
 #pragma once
 
 #include "scenario/input.hpp"
@@ -6,13 +6,14 @@
 
 namespace plica {
 
-/// Reports to `input` what does not fit together, and settles defaults that depend on other keys: fields that the
-/// embryo's shape does not use, a sphere's length (its diameter), a block's shell (none).
+/// Reports inconsistent keys to `input` and sets defaults that depend on other keys: fields that the embryo's shape
+/// does not use, the length of a sphere (its diameter), the vitelline membrane of a block (none).
 void validate(Scenario& scenario, Input& input);
 
-// Parts of it.
+// Parts of validate().
 
-/// Gives `field` its default; an error where it was given another value along with a choice that does not use it.
+/// Resets `field` to its default. Reports an error if it was set together with, or after, a choice that does not use
+/// it.
 template <class T>
 void drop(const std::string& address, T& field, const T& default_value, const std::string& chooser,
           const std::string& problem, const std::string& remedy, Input& input) {
@@ -20,37 +21,42 @@ void drop(const std::string& address, T& field, const T& default_value, const st
   field = default_value;
 }
 
-/// Reports monitors whose keys do not fit their quantity, criteria that bound nothing or what is not there, and
-/// expectations of monitors that are not there.
+/// Checks keys of monitors against their quantity, criteria for bounds and monitors, and expectations of monitors.
 void check_monitors(const Scenario& scenario, Input& input);
 
-/// Keys of the attractor belong to the model "shape-memory", relaxation to "neo-hookean": with another they are an
-/// error where they were given along with the model or after it, and dropped where they were inherited from a scenario
-/// of the other model. And what a neo-Hookean law cannot be.
+/// Checks keys of the elastic model: attractor keys belong to "shape-memory", relaxation to "neo-hookean". With another
+/// model, keys set together with it or later are errors; inherited ones are dropped. Also checks the limits of the
+/// neo-Hookean law.
 void check_elasticity(Scenario& scenario, Input& input);
 
-/// Other values in a region: which, and of which model.
+/// Checks elastic properties of regions against the model.
 void check_region_elasticities(Scenario& scenario, Input& input);
 
-/// The same of the projection's keys, and of those of the conjugate gradients.
+/// Checks keys of the projection and of the conjugate gradients, likewise.
 void check_volume_and_time(VolumeInput& volume, TimeInput& time, Input& input);
 
-/// Profile, delay and pulses of what acts at `table` ("contraction.NAME"): what their shape needs and what has no
-/// meaning with it, as above; settles their axis, where a wave starts, and the phase.
+/// Check profile, delay and pulse of `table` ("contraction.NAME"): keys that the shape requires or does not use, as
+/// above. Set default axis, wave origin and phase.
 void check_profile(const std::string& table, ProfileInput& profile, Input& input);
 void check_delay(const std::string& table, DelayInput& delay, Input& input);
 void check_pulse(const std::string& table, PulseInput& pulse, const TimeInput& time, Input& input);
 
-/// Self-contact: with what it goes.
+/// Checks that other settings support self-contact.
 void check_contact(const Scenario& scenario, Input& input);
 
-/// Enclosed volumes: of a sheet that is closed, with room to move.
+/// Checks enclosed volumes: closed sheet, and room to move.
 void check_enclosed(Scenario& scenario, Input& input);
 
-/// What starts a cortex's programs, or what its tension follows.
+/// Checks trigger and follow of a cortex.
 void check_own_state(const std::string& table, const CortexInput& cortex, Input& input);
 
-/// What of a cortex has nothing that it could act on.
+/// Checks a cortex for keys without effect.
 void check_cortex(const std::string& table, const CortexInput& cortex, Input& input);
+
+/// Checks the time or threshold of a division; `table`: "division.NAME".
+void check_division(const std::string& table, const DivisionInput& division, Input& input);
+
+/// Checks times and affected tables of an ablation.
+void check_ablation(const std::string& name, const Scenario& scenario, Input& input);
 
 }  // namespace plica

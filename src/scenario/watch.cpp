@@ -71,10 +71,10 @@ Watch make_watch(const Scenario& scenario, const Tissue& tissue) {
       watch.monitors.push_back(make_monitor(name, input, scenario));
       if (!reads_something(watch.monitors.back(), tissue))
         errors.push_back(diagnostic_at(scenario, path + ".face",
-                                       fmt::format("no cell of region \"{}\" has that side", input.region),
-                                       "choose another region or face"));
+                                       fmt::format("no cell of region \"{}\" has this face", input.region),
+                                       "change region or face"));
     } catch (const FileError& error) {
-      errors.push_back(diagnostic_at(scenario, path + ".reference", error.what(), "name another"));
+      errors.push_back(diagnostic_at(scenario, path + ".reference", error.what(), "set reference to another file"));
     }
   }
   if (!errors.empty()) throw ScenarioError(std::move(errors));

@@ -1,4 +1,4 @@
-// From a scenario's [monitor.NAME] and [stop.NAME] to what is watched during its run.
+// Monitors and stop criteria of a run, from [monitor.NAME] and [stop.NAME].
 #pragma once
 
 #include "measure/observation.hpp"
@@ -6,8 +6,8 @@
 
 namespace plica {
 
-/// Monitors in the order of their names, references opened, and the criteria on them. ScenarioError for what only the
-/// tissue or the files show to be wrong.
+/// Makes monitors in the order of their names, opens their references, and makes the stop criteria. Throws
+/// ScenarioError for errors that depend on the tissue or on files.
 Watch make_watch(const Scenario& scenario, const Tissue& tissue);
 
 }  // namespace plica

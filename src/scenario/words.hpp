@@ -1,5 +1,5 @@
-// The words of the input that stand for one of several things, a table a key: schema.cpp takes from it what is allowed,
-// and whoever builds from the scenario what is meant.
+// Words allowed as values, with their meanings, one table per key. schema.cpp takes the allowed words from here, and
+// code that builds from a scenario the meanings.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ struct Word {
   Meaning meaning;
 };
 
-/// The words alone, in their order.
+/// Returns the words of a table, in order.
 template <class Words>
 std::vector<std::string_view> words_of(const Words& table) {
   std::vector<std::string_view> words;
@@ -34,7 +34,7 @@ std::vector<std::string_view> words_of(const Words& table) {
   return words;
 }
 
-/// What a word stands for. The scenario has been read against the same table: std::logic_error for another word.
+/// Returns the meaning of a word. Throws std::logic_error for words not in the table, which reading has rejected.
 template <class Meaning, std::size_t n>
 Meaning meaning_of(const std::array<Word<Meaning>, n>& table, std::string_view word) {
   for (const Word<Meaning>& entry : table)
@@ -42,7 +42,7 @@ Meaning meaning_of(const std::array<Word<Meaning>, n>& table, std::string_view w
   throw std::logic_error("no word of this key: " + std::string(word));
 }
 
-/// The same of a key that need not be given.
+/// Returns the meaning of a word, or a default for a key that is not set.
 template <class Meaning, std::size_t n>
 Meaning meaning_of(const std::array<Word<Meaning>, n>& table, std::string_view word, Meaning when_not_given) {
   return word.empty() ? when_not_given : meaning_of(table, word);
@@ -77,7 +77,7 @@ inline constexpr auto polygon_splits =
     std::to_array<Word<PolygonSplit>>({{"diagonals", PolygonSplit::diagonals}, {"kites", PolygonSplit::kites}});
 
 inline constexpr auto periods = std::to_array<Word<int>>({{"x", 0}, {"y", 1}});
-inline constexpr auto rims = std::to_array<Word<bool>>({{"free", false}, {"held", true}});  // whether it is held
+inline constexpr auto rims = std::to_array<Word<bool>>({{"free", false}, {"held", true}});  // whether it is fixed
 
 inline constexpr auto elastic_models =
     std::to_array<Word<ElasticModel>>({{"corotational", ElasticModel::corotational},
@@ -106,7 +106,7 @@ inline constexpr auto profile_shapes =
                                                  {"array", StrengthProfile::Shape::array}});
 inline constexpr auto profile_axes = std::to_array<Word<PatternAxis>>(
     {{"across", PatternAxis::across}, {"along", PatternAxis::along}, {"angle", PatternAxis::angle}});
-// Whether factors go with the place, and whether phases are those of all cells.
+// Whether factors depend on position, and whether all cells share one phase.
 inline constexpr auto variation_bys = std::to_array<Word<bool>>({{"number", false}, {"place", true}});
 inline constexpr auto pulse_phases = std::to_array<Word<bool>>({{"random", false}, {"together", true}});
 inline constexpr auto delay_axes =
@@ -116,14 +116,14 @@ inline constexpr auto delay_starts = std::to_array<Word<StartDelay::From>>({{"mi
                                                                             {"low", StartDelay::From::low},
                                                                             {"high", StartDelay::From::high}});
 
-// [cortex.NAME], beside those above.
+// [cortex.NAME], in addition to those above.
 inline constexpr auto own_measures =
     std::to_array<Word<OwnMeasure>>({{"apical_area_ratio", OwnMeasure::apical_area_ratio},
                                      {"basal_area_ratio", OwnMeasure::basal_area_ratio},
                                      {"height_ratio", OwnMeasure::height_ratio},
                                      {"apical_stretch", OwnMeasure::apical_stretch}});
 
-// [pressure.NAME]: whether it is the apical face.
+// [pressure.NAME]: whether the face is apical.
 inline constexpr auto pressure_faces = std::to_array<Word<bool>>({{"apical", true}, {"basal", false}});
 
 // [enclosed.NAME]
@@ -156,7 +156,7 @@ inline constexpr auto linear_solvers = std::to_array<Word<LinearMethod>>({{"auto
                                                                           {"cholesky", LinearMethod::cholesky},
                                                                           {"multigrid", LinearMethod::multigrid}});
 
-// [stop]: whether all of the criteria have to be met. [stop.NAME]: by how many of a monitor's values.
+// [stop]: whether all criteria must be met. [stop.NAME]: whether any or all values of a monitor must pass.
 inline constexpr auto combinations = std::to_array<Word<bool>>({{"any", false}, {"all", true}});
 inline constexpr auto criterion_overs =
     std::to_array<Word<Criterion::Over>>({{"any", Criterion::Over::any}, {"all", Criterion::Over::all}});
@@ -172,22 +172,21 @@ inline constexpr auto reference_times = std::to_array<Word<Monitor::ReferenceAt>
 }  // namespace words
 
 inline PolygonSplit split_of(const EmbryoInput& embryo) { return meaning_of(words::polygon_splits, embryo.elements); }
-/// Whether its cells lie on a grid, so that they have sides and numbers along and across.
+/// Whether cells lie on a grid and have named sides.
 inline bool is_of_grid(EmbryoShape shape) {
   return shape == EmbryoShape::pill || shape == EmbryoShape::sphere || shape == EmbryoShape::slice ||
          shape == EmbryoShape::block;
 }
-/// Whether a file says where its cells are; it may have arrays.
+/// Whether a file defines the cells; it may have cell arrays.
 inline bool is_from_file(EmbryoShape shape) {
   return shape == EmbryoShape::file || shape == EmbryoShape::points || shape == EmbryoShape::surface;
 }
-/// Whether it has a rim, whatever its numbers: it encloses nothing.
+/// Whether the shape is always open, so it encloses no volume.
 inline bool is_patch(EmbryoShape shape) { return shape == EmbryoShape::block || shape == EmbryoShape::sheet; }
 inline EmbryoShape shape_of(const EmbryoInput& embryo) { return meaning_of(words::embryo_shapes, embryo.shape); }
 inline ElasticModel model_of(const ElasticityInput& input) { return meaning_of(words::elastic_models, input.model); }
 inline VolumeMethod method_of(const VolumeInput& volume) { return meaning_of(words::volume_methods, volume.method); }
-/// Whether steps are solved, or volumes kept, as in the paper: not by constraints of a step that Newton's method
-/// solves.
+/// Whether time steps or volumes follow the paper's algorithm instead of Newton's method with volume constraints.
 inline bool is_as_in_the_paper(const Scenario& scenario) {
   return method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton";
 }

@@ -70,7 +70,7 @@ class BadScenario(CommandLine):
                 self.assert_refused(SPHERE.replace("cell_height_um = 30", f"cell_height_um = {height}"), "embryo.")
         self.assert_refused(SPHERE.replace("diameter_um = 200", "diameter_um = 1e300"), "embryo.")
         egg = 'format = 1\n[embryo]\nshape = "egg"\nlength_um = 300\ndiameter_um = 60\ncell_count = 60\ncell_height_um = 29\n'
-        self.assert_refused(egg, "the mesh would be inverted: cell ", ") um is inside out or flat", "give a smaller height",
+        self.assert_refused(egg, "the mesh is invalid: cell ", ") um is inverted or flat", "reduce cell_height_um",
                             line=7, key="embryo.cell_height_um")
 
     def test_hundreds_of_millions_of_cells_are_refused_before_any_is_made(self):
@@ -213,7 +213,7 @@ class BadMesh(CommandLine):
         scenario = ('format = 1\n[embryo]\nshape = "file"\nfile = "cubes.vtk"\napical_array = "apical"\n'
                     "[vitelline]\nenabled = false\n")
         self.assertEqual(plica("check", self.write(scenario)).returncode, 0)
-        self.assert_refused(scenario + '[self_contact]\nsurface = "both"\n', "the mesh passes through itself at rest",
+        self.assert_refused(scenario + '[self_contact]\nsurface = "both"\n', "the reference mesh self-intersects",
                             "cell 0", line=9, key="self_contact.surface")
 
 
@@ -225,9 +225,9 @@ class BadSurface(CommandLine):
     def test_one_thing_wrong(self):
         corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
         cases = [
-            ("a.obj", "", "there is no face"),
-            ("a.obj", "v 0 0\n", "line 1: a vertex should have three coordinates"),
-            ("a.obj", corners + "f 1 2 3 9\n", "face 0 uses vertex 8, and there are 6"),
+            ("a.obj", "", "the surface has no faces"),
+            ("a.obj", "v 0 0\n", "line 1: a vertex must have three coordinates"),
+            ("a.obj", corners + "f 1 2 3 9\n", "face 0 uses vertex 8; there are 6"),
             ("a.obj", corners + "f 1 2\n", "face 0 has 2 corners"),
             ("a.obj", corners + "f 1 2 3 2\n", "has vertex 1 twice, at (1, 0, 0) um"),
             ("a.obj", corners + "f 1 3 2 4\n", "face 0 at (0.5, 0.5, 0) um"),
@@ -238,8 +238,8 @@ class BadSurface(CommandLine):
             ("a.obj", corners.replace("v 1 1 0", "v 1 1 nan") + "f 1 2 3 4\n", "coordinates are finite"),
             ("a.obj", corners.replace("v 1 1 0", "v 1 1 1").replace("v 0 0 0", "v 0 0 1") + "f 1 2 3 4\n", "is far from flat"),
             ("a.off", "OFF\n3 1 0\n0 0 0\n", "the file ends after 1 of 3 vertices"),
-            ("a.ply", "ply\nformat ascii 1.0\nelement face 1\nend_header\n", "faces should have a list"),
-            ("a.png", "no surface", '".png" is no ending of a file of polygons'),
+            ("a.ply", "ply\nformat ascii 1.0\nelement face 1\nend_header\n", "faces must have one list"),
+            ("a.png", "no surface", '".png" is not the extension of a polygon file'),
         ]
         for name, text, part in cases:
             with self.subTest(part):
@@ -250,17 +250,17 @@ class BadSurface(CommandLine):
     def test_keys(self):
         (self.folder / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
         scenario = self.SCENARIO.replace("NAME", "a.obj")
-        self.assert_refused(scenario + 'cell_height_array = "height"\n', "there are: none", line=7, key="embryo.cell_height_array")
+        self.assert_refused(scenario + 'cell_height_array = "height"\n', "remove cell_height_array", line=7, key="embryo.cell_height_array")
         self.assert_refused(scenario + "[vitelline]\nenabled = true\n", "the surface has a rim", line=8, key="vitelline.enabled")
-        self.assert_refused(scenario + "scale = [1, 2]\n", "has 2 numbers", line=7, key="embryo.scale")
+        self.assert_refused(scenario + "scale = [1, 2]\n", "has length 2", line=7, key="embryo.scale")
         self.assert_refused(scenario + 'rim = "loose"\n', "free | held", line=7, key="embryo.rim")
-        self.assert_refused(scenario + "length_um = 3\n", "has no meaning", line=7, key="embryo.length_um")
+        self.assert_refused(scenario + "length_um = 3\n", "is not used", line=7, key="embryo.length_um")
         sheet = 'format = 1\n[embryo]\nshape = "sheet"\nlength_um = 50\nwidth_um = 50\ncell_count = 20\ncell_height_um = 9\n'
-        self.assert_refused(sheet + "curvature_per_um = [0.1]\n", "give two", line=8, key="embryo.curvature_per_um")
+        self.assert_refused(sheet + "curvature_per_um = [0.1]\n", "set curvature_per_um to two", line=8, key="embryo.curvature_per_um")
         self.assert_refused(sheet + "curvature_per_um = [0.3, 0]\n", "close upon itself", line=2)
-        self.assert_refused(sheet + "mend = false\n", "has no meaning", line=8, key="embryo.mend")
-        self.assert_refused(sheet + "[vitelline]\nenabled = true\n", "a sheet is none", line=9, key="vitelline.enabled")
-        self.assert_refused(sheet + '[enclosed.yolk]\nsurface = "basal"\n', "a sheet encloses nothing", line=8)
+        self.assert_refused(sheet + "mend = false\n", "is not used", line=8, key="embryo.mend")
+        self.assert_refused(sheet + "[vitelline]\nenabled = true\n", "a sheet is open", line=9, key="vitelline.enabled")
+        self.assert_refused(sheet + '[enclosed.yolk]\nsurface = "basal"\n', "a sheet encloses no volume", line=8)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Runs a furrow that closes with all of its parameters drawn at once, each within 25 % of its own: how many close, and
-that none fails. By default 100 of furrow-slice, from one seed.
+"""Run a closing furrow with all parameters drawn at random within 25 %; count closures, and check that no run fails.
+
+By default, 100 draws of furrow-slice from one seed.
 
 Usage: furrow_draws.py PROGRAM [--scenario NAME] [--count N] [--seed S] [--spread 0.25] [--keep DIRECTORY]
                        [--only NUMBER ...]
@@ -16,14 +17,14 @@ import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-# What is drawn: keys of numbers in these tables, and the times of programs after the first.
+# Tables whose numbers, and times of programs after the first, are drawn.
 TABLES = ("elasticity", "vitelline", "dynamics", "cortex", "enclosed")
 NOT_DRAWN = {"poisson_ratio", "middle", "edge", "compression_ratio", "seed", "attractor_preload_length_um"}
 
 
 def numbers(table, path=()):
     for key, value in table.items():
-        if key == "pulse":  # there is none, whatever its keys say
+        if key == "pulse":  # off, whatever its keys
             continue
         if isinstance(value, dict):
             yield from numbers(value, (*path, key))
@@ -59,7 +60,7 @@ parser.add_argument("--count", type=int, default=100)
 parser.add_argument("--seed", type=int, default=1)
 parser.add_argument("--spread", type=float, default=0.25)
 parser.add_argument("--keep", type=Path)
-parser.add_argument("--only", type=int, nargs="+", help="these of the draws")
+parser.add_argument("--only", type=int, nargs="+", help="numbers of draws to run")
 options = parser.parse_args()
 program = options.program.resolve()
 resolved = tomllib.loads(subprocess.run([program, "check", options.scenario], capture_output=True, text=True, check=True).stdout)
@@ -84,7 +85,7 @@ for number, (done, summary) in zip(chosen, ended):
     if summary["self_intersections"] > 0:
         crossed.append(number)
 print(f"{len(chosen)} draws of {len(base)} parameters of {options.scenario}, each within {options.spread:.0%}: "
-      f"{closed} close, {len(failed)} fail, {len(crossed)} pass through themselves {crossed}; at most {worst_refused:.0%} "
-      "of a run's steps were refused")
+      f"{closed} close, {len(failed)} fail, {len(crossed)} self-intersect {crossed}; at most {worst_refused:.0%} "
+      "of the steps of a run were rejected")
 print("\n".join(failed))
 sys.exit(1 if failed else 0)

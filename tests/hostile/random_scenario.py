@@ -1,12 +1,12 @@
-"""Draws a scenario from the input table: a small embryo, sensible values for most keys, absurd ones for some.
+"""Draw a random scenario from the key table: a small embryo, plausible values for most keys, extreme ones for some.
 
-Which keys there are, of which type and range, comes from the table; what is sensible comes from a key's default, or
-from the unit in its name. So a new key is drawn without a word here. Here stands only what keeps a run short.
+Keys, types and ranges come from the table; plausible values from a key's default or the unit in its name, so new keys
+need no change here. This module only adds what keeps runs short.
 """
 import math
 
 SEVERAL = {"region": (0, 3), "contraction": (0, 3), "hold": (0, 1), "pressure": (0, 2), "division": (-2, 1), "stop": (-1, 1),
-           "monitor": (0, 3), "expect": (-2, 1)}  # tables of a named kind: least (below 0: mostly none) and most
+           "monitor": (0, 3), "expect": (-2, 1)}  # numbers of named tables: least (below 0: mostly none) and most
 MOST_ELEMENTS = 250
 MOST_STEPS = 60
 
@@ -22,7 +22,7 @@ def toml(value):
 
 
 class Draft:
-    """A scenario as addresses and values: {"embryo.shape": "block", "contraction.a.region": "all", ...}."""
+    """Scenario as addresses and values: {"embryo.shape": "block", "contraction.a.region": "all", ...}."""
 
     def __init__(self):
         self.values = {}
@@ -41,7 +41,7 @@ class Draft:
         return self.values[address][2] if address in self.values else default
 
     def drop(self, address):
-        """The key, or what lies in the table of that name; whether anything was there."""
+        """Remove a key, or all keys of a table; return whether there was any."""
         gone = [a for a in self.values if a == address or a.startswith(address + ".")]
         for a in gone:
             del self.values[a]
@@ -49,7 +49,7 @@ class Draft:
 
 
 class Drawer:
-    """`files`: what a key that is a file's name may name, by the key ("embryo.file": [...])."""
+    """Random draws. `files`: file names by key ("embryo.file": [...])."""
 
     def __init__(self, random, tables, expected, files):
         self.random, self.tables, self.expected, self.files = random, tables, expected, files
@@ -65,7 +65,7 @@ class Drawer:
             self.names[table.stem] = names if table.named else []
         for table in self.tables:
             for path in [f"{table.stem}.{name}" for name in self.names[table.stem]] if table.named else [table.path]:
-                # Of a plain table few keys, of a named one more: it says nothing without them.
+                # Draw few keys of plain tables, more of named ones, which have no effect without keys.
                 share = r.choice((0, 0.2, 0.5)) if not table.named else r.choice((0.3, 0.6))
                 for key in table.keys:
                     if key.required or r.random() < share:
@@ -111,10 +111,10 @@ class Drawer:
             return sorted(map(abs, numbers)) if "time" in key.name or ".at_" in key.name else numbers
         if kind == "list of texts":
             return [self.word_of(path, key) for _ in range(r.randint(1, 2))]
-        raise ValueError(f"{path}.{key.name}: the type \"{kind}\" is new here: say how to draw it")
+        raise ValueError(f"{path}.{key.name}: unknown type \"{kind}\"; add it to Drawer.value")
 
     def word_of(self, path, key):
-        """A text names a file, something of this scenario, or is free."""
+        """Draw a text: a file, a name in this scenario, or arbitrary characters."""
         r, stem = self.random, path.split(".")[0]
         if f"{stem}.{key.name}" in self.files:
             return r.choice(self.files[f"{stem}.{key.name}"])
@@ -157,7 +157,7 @@ class Drawer:
         return -value if key.low < 0 and r.random() < 0.3 else value
 
     def make_small(self):
-        """What bounds the work: few cells and elements, a short time."""
+        """Limit the work: few cells and elements, a short time."""
         r, draft = self.random, self.draft
         if draft.get("base") or draft.get("embryo.shape") != "file":
             cells = draft.get("embryo.cells") or [r.randint(1, 5) for _ in range(3)]
@@ -168,10 +168,10 @@ class Drawer:
                 draft.drop("embryo.elements_per_cell")
             draft.put("embryo", "cells", cells)
             if "embryo.mirror" in draft.values and r.random() < 0.7:
-                draft.drop("embryo.mirror")  # mostly: hardly anything drawn is symmetric
+                draft.drop("embryo.mirror")  # usually, since random scenarios are rarely symmetric
             elif "embryo.mirror" in draft.values:
                 draft.put("embryo", "cells", [2 * max(1, n // 2) for n in cells])
-        # As many steps as the longest one allows; an adaptive one is shorter where much happens.
+        # At most MOST_STEPS of the longest step; adaptive steps may be shorter.
         step = draft.get("time.step_s", "adaptive")
         longest = step if isinstance(step, float) else min(draft.get("time.max_step_s", 30.0), 30.0)
         end = draft.get("time.end_s", 60 * draft.get("time.end_min", 0)) or 10 ** r.uniform(-1, 2)
@@ -182,7 +182,7 @@ class Drawer:
         for key, least in (("time.tolerance_um", 1e-3), ("time.max_step_s", draft.get("time.end_s") / MOST_STEPS)):
             if draft.get(key) is not None:
                 draft.put("time", key.split(".")[1], max(draft.get(key), least))
-        # An adaptive step is at most a twelfth of a pulse.
+        # An adaptive step is at most a twelfth of a pulse period.
         for key, unit_s in (("pulse.period_s", 1), ("pulse.period_min", 60)):
             for address in [a for a in draft.values if a.endswith("." + key) and draft.get(a) != "none"]:
                 table, _, value = draft.values[address]
@@ -192,7 +192,7 @@ class Drawer:
             draft.put(table, "max_generation", min(draft.get(f"{table}.max_generation", 1), 2))
 
 
-# The extremes of the reliability page, each on whatever has been drawn.
+# Extreme inputs of the reliability page, applied to a drawn scenario.
 
 
 def contract_ten_times_too_strongly(draft, _):
@@ -221,7 +221,7 @@ def step_an_hour(draft, r):
 
 
 def fill_the_shell(draft, r):
-    """The embryo has no room in its shell: a pressure drives it outwards, and it grows."""
+    """Press the embryo against the vitelline membrane, and let it grow."""
     if draft.get("embryo.shape") == "block":
         return
     draft.put("vitelline", "enabled", True)

@@ -1,14 +1,14 @@
-"""Runs random scenarios, and holds each to what plica promises of any input.
+"""Run random scenarios and check the guarantees of plica for arbitrary input.
 
-A scenario is drawn from the whole input table (random_scenario.py). What `plica check` refuses is mostly mended, by
-taking out the keys that it names, and sometimes run as it is. Then each run
+A scenario is drawn from the whole key table (random_scenario.py). Keys that `plica check` rejects are usually removed;
+sometimes the scenario is run as it is. Each run must then, within a time limit, without a crash and without NaN in any
+file,
 
-- ends at equilibrium, at a criterion or at its end time (status 0, or 1 when it misses an expectation),
-- gives up with status 3 and one line that names cell, time and cause,
-- or is refused with status 2 and lines of FILE:LINE: KEY: PROBLEM; REMEDY,
+- end at equilibrium, at a criterion or at its end time (status 0, or 1 if it misses an expectation),
+- fail with status 3 and one line that names cell, time and cause,
+- or be refused with status 2 and lines of the form FILE:LINE: KEY: PROBLEM; REMEDY.
 
-within a time, without a crash, without a number that is none in any file. What breaks that is a failure; its scenario
-is kept. Scenario I of a seed is the same whatever the count.
+Scenarios that violate this are kept. Scenario I of a seed does not depend on the count.
 
 Usage: random_scenarios.py PROGRAM [--count N] [--seed S] [--first I] [--keep DIR]
 """
@@ -31,16 +31,16 @@ import support  # noqa: E402
 from random_scenario import Drawer  # noqa: E402
 from scenario_table import read_table  # noqa: E402
 
-LONGEST_WAIT_S = 600  # by the clock: a run that waits for ever
-GAVE_UP = re.compile(r"plica: gave up: .*(cell \d+|whole surface).* at t = [\d.e+-]+ s, with steps down to [\d.e+-]+ s; ")
+LONGEST_WAIT_S = 600  # wall-clock limit, for a run that waits forever
+FAILED = re.compile(r"plica: (?:gave up|solver failed): .*(cell \d+|whole surface).* at t = [\d.e+-]+ s, with steps down to [\d.e+-]+ s; ")
 REFUSED = re.compile(r"(?P<where>[^:\n]+):(?:\d+: )?\s?(?P<key>[^:]*): (?P<problem>.+)")
 
 
 class Broken(Exception):
-    """A promise that was not kept."""
+    """A violated guarantee."""
 
 
-longest_s = 120  # of the processor, for one run; the slowest takes 34 s on an idle machine
+longest_s = 120  # CPU time of one run; the slowest takes 34 s on an idle machine
 
 
 def limit_time():
@@ -52,35 +52,35 @@ def plica(*arguments):
     try:
         result = support.plica(*arguments, timeout=LONGEST_WAIT_S, preexec_fn=limit_time)
     except subprocess.TimeoutExpired:
-        raise Broken(f"waits for ever: {' '.join(map(str, arguments))}") from None
+        raise Broken(f"waits forever: {' '.join(map(str, arguments))}") from None
     if result.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
-        raise Broken(f"is not over after {longest_s} s of the processor: plica {arguments[0]}")
+        raise Broken(f"exceeds {longest_s} s of CPU time: plica {arguments[0]}")
     return result
 
 
 def refused_keys(result):
-    """The keys that a refusal names; Broken when it does not say where and what."""
+    """Return the keys that a refusal names; Broken if a line lacks place or problem."""
     if not result.stderr.strip():
-        raise Broken("refused without a word")
+        raise Broken("refused without a message")
     keys = []
     for line in result.stderr.splitlines():
         if line.startswith(("warning", "note")):
             continue
         match = REFUSED.fullmatch(line)
         if not match:
-            raise Broken(f"a refusal that does not say where: {line}")
+            raise Broken(f"a refusal without a place: {line}")
         keys.append(match["key"])
     return keys
 
 
 def cause(message):
-    """A failure's cause without its numbers."""
-    text = re.sub(r"^plica: gave up: | at t = .*$", "", message)
+    """Return the cause of a failure without numbers."""
+    text = re.sub(r"^plica: (?:gave up|solver failed): | at t = .*$", "", message)
     return re.sub(r"[\d.]+(e[+-]?\d+)?", "N", text)
 
 
 def judge(result, out):
-    """The kind of outcome; Broken when it is none that is allowed."""
+    """Return the kind of outcome; Broken if it is not allowed."""
     noise = [word for word in ("terminate called", "runtime error", "Sanitizer", "Assertion") if word in result.stderr]
     if result.returncode < 0 or noise:
         raise Broken(f"crashed, status {result.returncode}: {result.stderr[-1500:]}")
@@ -96,22 +96,22 @@ def judge(result, out):
         checks.assert_whole(out)
         summary = checks.summary(out)
     except (AssertionError, ValueError, KeyError, OSError) as error:
-        raise Broken(f"a file is not whole: {error}") from None
+        raise Broken(f"an incomplete file: {error}") from None
     if result.returncode == 3:
         lines = [line for line in result.stderr.splitlines() if line.startswith("plica: ")]
-        if len(lines) != 1 or not GAVE_UP.match(lines[0]):
-            raise Broken(f"gave up without saying in which cell, when and why: {result.stderr.strip()}")
+        if len(lines) != 1 or not FAILED.match(lines[0]):
+            raise Broken(f"failed without cell, time and cause: {result.stderr.strip()}")
         if summary["status"] != "failed":
-            raise Broken(f"status 3, and the summary says {summary['status']}")
-        return "gave up: " + cause(lines[0])
+            raise Broken(f"status 3, but the summary has {summary['status']}")
+        return "failed: " + cause(lines[0])
     ends = {"equilibrium": "equilibrium", "end_time": "end time", "criterion": "criterion"}
     if summary["status"] not in ends:
-        raise Broken(f"status {result.returncode}, and the summary says {summary['status']}")
+        raise Broken(f"status {result.returncode}, but the summary has {summary['status']}")
     return ends[summary["status"]]
 
 
-def mended(drawer, scenario, chance):
-    """Takes out what `plica check` refuses, while there is anything, or mostly. The number of refusals."""
+def repaired(drawer, scenario, chance):
+    """Remove rejected keys until `plica check` accepts the scenario, or stop early by chance; return the number of refusals."""
     draft = drawer.draft
     for refusals in range(8):
         scenario.write_text(draft.text())
@@ -122,7 +122,7 @@ def mended(drawer, scenario, chance):
         if chance.random() < 0.05:
             return refusals
         for key in keys:
-            # What is missing cannot be taken out; then the table goes.
+            # A missing key cannot be removed; remove its table.
             if not draft.drop(key):
                 draft.drop(key.rsplit(".", 1)[0])
         drawer.make_small()
@@ -130,7 +130,7 @@ def mended(drawer, scenario, chance):
 
 
 def prepare(folder):
-    """Meshes and a run that scenarios may refer to."""
+    """Write meshes and a run that scenarios may refer to."""
     files = {"base": ["drosophila"], "embryo.file": [], "embryo.apical_array": ["apical", "mother_id"],
              "region.array": ["cell_id", "generation"], "monitor.reference": []}
     for name, text in (("block", support.BLOCK), ("sphere", support.SPHERE)):
@@ -146,13 +146,13 @@ def prepare(folder):
 
 
 def run_one(number, seed, table, files, folder):
-    """The kind of outcome of one scenario, how often it was refused before, and its time."""
+    """Return the outcome of one scenario, the number of refusals before, and its time (s)."""
     chance = random.Random(f"{seed}/{number}")
     scenario, out = folder / "scenario.toml", folder / "out"
     shutil.rmtree(out, ignore_errors=True)
     drawer = Drawer(chance, *table, files)
     drawer.draw()
-    refusals = mended(drawer, scenario, chance)
+    refusals = repaired(drawer, scenario, chance)
     started = time.monotonic()
     kind = judge(plica("run", scenario, "--out", out, "--quiet"), out)
     return kind, refusals, time.monotonic() - started
@@ -164,10 +164,10 @@ def main():
     parser.add_argument("program", type=Path)
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--first", type=int, default=0, help="number of the first scenario: to repeat one")
-    parser.add_argument("--keep", type=Path, default=Path("random_scenarios_failed"), help="where failures' scenarios go")
-    parser.add_argument("--longest", type=int, default=longest_s, metavar="S", help="of the processor, for one run; "
-                        "sanitizers take far longer")
+    parser.add_argument("--first", type=int, default=0, help="number of the first scenario, to repeat one")
+    parser.add_argument("--keep", type=Path, default=Path("random_scenarios_failed"), help="folder for scenarios that fail")
+    parser.add_argument("--longest", type=int, default=longest_s, metavar="S", help="CPU time of one run; "
+                        "sanitizers need far more")
     given = parser.parse_args()
     longest_s = given.longest
     support.PROGRAM = str(given.program.resolve())
@@ -192,8 +192,8 @@ def main():
             counts[kind] += 1
             if sum(counts.values()) % 100 == 0 and given.count > 100:
                 print(f"{sum(counts.values())} scenarios after {time.monotonic() - started:.0f} s", flush=True)
-    print(f"{given.count} scenarios of seed {given.seed} in {time.monotonic() - started:.0f} s; {refusals} more were refused and "
-          f"mended; the slowest took {slowest[0]:.1f} s (number {slowest[1]})")
+    print(f"{given.count} scenarios of seed {given.seed} in {time.monotonic() - started:.0f} s; {refusals} refusals were "
+          f"repaired; the slowest took {slowest[0]:.1f} s (number {slowest[1]})")
     for kind, count in counts.most_common():
         print(f"{count:6} {kind}")
     sys.exit(1 if failures else 0)

@@ -1,10 +1,10 @@
-"""The input table as `plica reference` prints it: every table and key with its type, default and what is allowed.
+"""Reader of the key table printed by `plica reference`: every table and key with type, default and allowed values.
 
-A key that is added to src/scenario/schema.cpp appears here by itself.
+Keys added to src/scenario/schema.cpp appear here automatically.
 """
 import re
 import subprocess
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass
@@ -12,10 +12,10 @@ class Key:
     name: str
     kind: str  # "number", "3 integers", "list of words", ...
     default: str  # in TOML, or ""
-    low: float  # bounds of a number, or of each of a list
+    low: float  # bounds of a number, or of each number of a list
     high: float
-    words: tuple  # of which a word, or each of a list, is one
-    word_for_none: str  # how a number says that it has none
+    words: tuple  # allowed words, also for each item of a list
+    word_for_none: str  # word for a number without a value
     shapes: tuple  # embryo shapes that use it; empty: all
     instead_of: str
     required: bool
@@ -61,15 +61,39 @@ def _key(cells):
                default == "required")
 
 
+def _slug(heading):
+    """The anchor of a heading."""
+    return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
+
+
+def _inner_keys(names, keys):
+    """Keys of the inner tables `names`, from the section that lists them. It lists tables with the same keys once."""
+    listed = {key.name.split(".")[0] for key in keys}
+    first = keys[0].name.split(".")[0]
+    for name in names:
+        source = name if name in listed else first
+        for key in keys:
+            if key.name.startswith(f"{source}."):
+                yield replace(key, name=key.name.replace(source, name, 1), instead_of=key.instead_of.replace(source, name, 1))
+
+
 def read_table(program):
-    """The tables in their order, and the names that [expect] knows."""
+    """Tables in order, with the keys of their inner tables, and names that [expect] accepts."""
     text = subprocess.run([program, "reference"], check=True, capture_output=True, text=True).stdout
-    tables = []
+    tables, sections, inner = [], {}, []
     for line in text.splitlines():
         if line.startswith("## "):
-            tables.append(Table("" if line == "## Top level" else line.strip("# `[]"), []))
+            heading = line.removeprefix("## ")
+            keys = sections[_slug(heading)] = []
+            if heading == "Top level" or heading.startswith("`["):
+                tables.append(Table("" if heading == "Top level" else heading.strip("`[]"), keys))
+        elif line.startswith("Inner tables: "):
+            inner.append((tables[-1], line))
         elif line.startswith("| `"):
             cells = [cell.strip().replace(r"\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
-            tables[-1].keys.append(_key(cells))
-    expected = re.findall(r"`(\w+)`", text[text.rindex("`[expect]` knows:") + len("`[expect]` knows:"):])
-    return tables, expected
+            keys.append(_key(cells))
+    for table, line in inner:
+        for names, slug in re.findall(r"((?:`\w+`(?:, )?)+) \(\[[^\]]*\]\(#([\w-]+)\)\)", line):
+            table.keys.extend(_inner_keys(re.findall(r"`(\w+)`", names), sections[slug]))
+    expected = re.search(r"^`\[expect\]` accepts: (.*)$", text, re.MULTILINE)[1]
+    return tables, re.findall(r"`(\w+)`", expected)

@@ -67,7 +67,7 @@ def test_all_errors_at_once():
 
 
 def test_wrong_sources(tmp_path):
-    with pytest.raises(ValueError, match='did you mean "drosophila"'):
+    with pytest.raises(ValueError, match='use "drosophila"'):
         plica.Scenario("drosofila")
     with pytest.raises(plica.ScenarioError, match="TOML"):
         plica.Scenario("[time\nend_min = 1")

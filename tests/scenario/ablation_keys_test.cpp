@@ -73,24 +73,24 @@ TEST(AblationKeys, FacesTimesAndRegionsAreThoseGiven) {
 TEST(AblationKeys, WhatIsWrongIsSaid) {
   const auto cut = [](const std::string& keys) { return sheet + "[ablation.cut]\n" + keys; };
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {cut("at_s = 5"), "test.toml:18: ablation.cut.region: is missing; give text"},
+      {cut("at_s = 5"), "test.toml:18: ablation.cut.region: is missing; set region to a text"},
       {cut("region = \"second\"\nat_s = 5"),
-       "test.toml:19: ablation.cut.region: there is no region \"second\"; known are"},
-      {cut("region = \"first\""),
-       "test.toml:18: ablation.cut: says not when; give at_min, or at_s; 0 from the beginning"},
-      {cut("region = \"first\"\nat_s = -5"), "test.toml:20: ablation.cut.at_s: -5 is out of range; give a number >= 0"},
-      {cut("region = \"first\"\nat_s = 5\nat_min = 1"), "ablation.cut.at_min is given as well; give one of the two"},
+       "test.toml:19: ablation.cut.region: region \"second\" does not exist; use one of"},
+      {cut("region = \"first\""), "test.toml:18: ablation.cut: no start time; set at_min or at_s (0 = from the start)"},
+      {cut("region = \"first\"\nat_s = -5"),
+       "test.toml:20: ablation.cut.at_s: -5 is out of range; set at_s to a number >= 0"},
+      {cut("region = \"first\"\nat_s = 5\nat_min = 1"),
+       "conflicts with ablation.cut.at_min, which is also set; remove one of them"},
       {cut("region = \"first\"\nat_min = 5\nuntil_min = 5"),
-       "test.toml:21: ablation.cut.until_min: does not come after the ablation; give a later time, or \"none\""},
+       "test.toml:21: ablation.cut.until_min: is not after the start of the ablation; set a later time, or \"none\""},
       {cut("region = \"first\"\nat_s = 5\nremaining = 1.5"),
-       "test.toml:21: ablation.cut.remaining: 1.5 is out of range; give a number, 0 to 1"},
+       "test.toml:21: ablation.cut.remaining: 1.5 is out of range; set remaining to a number, 0 to 1"},
       {cut("region = \"first\"\nat_s = 5\nfaces = []"), "test.toml:21: ablation.cut.faces: the list is empty"},
-      {cut("region = \"first\"\nat_s = 5\nfaces = [\"top\"]"),
-       "test.toml:21: ablation.cut.faces: \"top\" is not known"},
+      {cut("region = \"first\"\nat_s = 5\nfaces = [\"top\"]"), "test.toml:21: ablation.cut.faces: \"top\" is unknown"},
       {cut("region = \"first\"\nat_s = 5\nonly = [\"cortex.tip\"]"),
-       "test.toml:21: ablation.cut.only: there is no [cortex.tip]; did you mean \"cortex.top\"?"},
+       "test.toml:21: ablation.cut.only: [cortex.tip] does not exist; use \"cortex.top\" (nearest match)"},
       {cut("region = \"first\"\nat_s = 5\nface = \"apical\""),
-       "test.toml:21: ablation.cut.face: unknown key; did you mean \"faces\""},
+       "test.toml:21: ablation.cut.face: unknown key; use \"faces\""},
   };
   for (const auto& [text, message] : cases) try {
       (void)loaded(text);
@@ -114,10 +114,12 @@ TEST(AblationKeys, WhatTakesNothingIsTold) {
   EXPECT_NE(advice_on("at_s = 5\nonly = [\"cortex.walls\"]\nfaces = [\"apical\"]"), "");
   EXPECT_EQ(advice_on("at_s = 5\n[monitor.ablation]\nquantity = \"time\"\nat_s = 60"), "");
   EXPECT_EQ(advice_on("at_s = 5\n[monitor.ablation]\nquantity = \"time\"\nat_s = 61"),
-            "warning: monitor.ablation: its time comes after the run's end at 60 s");
-  EXPECT_EQ(advice_on("at_s = 60"), "warning: ablation.cut: it comes after the run's end at 60 s");
+            "warning: monitor.ablation: at_s is after the end of the run (60 s); change at_s or time.end_s");
+  EXPECT_EQ(advice_on("at_s = 60"),
+            "warning: ablation.cut: the ablation starts after the end of the run (60 s); change at_s or time.end_s");
   EXPECT_EQ(advice_on("at_s = 5\nfaces = [\"basal\"]"),
-            "warning: ablation.cut: takes nothing: no such cortex or contraction acts on these faces in region first");
+            "warning: ablation.cut: has no effect, since no selected cortex or contraction acts on these faces in "
+            "region first; change faces, only or region");
 }
 
 }  // namespace

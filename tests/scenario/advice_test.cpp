@@ -38,7 +38,7 @@ TEST(Advice, AMeshThatLiesAcrossTheShellIsWarnedOf) {
     ASSERT_EQ(warnings.size(), 1U) << axis;
     EXPECT_TRUE(warnings[0].starts_with("warning: ")) << warnings[0];
     EXPECT_NE(warnings[0].find(axis), std::string::npos) << warnings[0];
-    EXPECT_NE(warnings[0].find("turn the mesh"), std::string::npos) << warnings[0];
+    EXPECT_NE(warnings[0].find("rotate the mesh"), std::string::npos) << warnings[0];
   }
 }
 
@@ -47,7 +47,7 @@ TEST(Advice, AMeshThatLiesAlongTheShellIsNot) {
   int cases = 0;
   for (const Vec3& size_um : {Vec3(120, 60, 50), Vec3(100, 100, 100), Vec3(100, 104, 100)}) {
     EXPECT_TRUE(lines_with("longest along", advice_on_mesh(size_um)).empty()) << size_um.transpose();
-    EXPECT_EQ(lines_with("the shell is the capsule along x", advice_on_mesh(size_um)).size(), 1U);
+    EXPECT_EQ(lines_with("the vitelline membrane is the spherocylinder along x", advice_on_mesh(size_um)).size(), 1U);
     ++cases;
   }
   EXPECT_TRUE(lines_with("longest along", advice_on_mesh({50, 120, 60}, false)).empty());
@@ -60,8 +60,8 @@ TEST(Advice, WhatDoesNothingIsTold) {
                                            "base = \"drosophila\"\n[region.furow]\nx_um = [0, 50]\n"
                                            "[contraction.apicl]\nregion = \"all\"\n"});
   const auto lines = advice(scenario, *make_model(scenario));
-  EXPECT_EQ(lines_with("region.furow: nothing acts on it or measures it", lines).size(), 1U);
-  EXPECT_EQ(lines_with("contraction.apicl: has no stiffness, preload or tension", lines).size(), 1U);
+  EXPECT_EQ(lines_with("region.furow: no table uses this region", lines).size(), 1U);
+  EXPECT_EQ(lines_with("contraction.apicl: has no effect, since stiffness", lines).size(), 1U);
   EXPECT_TRUE(lines_with("region.furrow: nothing", lines).empty());
 }
 
@@ -71,19 +71,20 @@ TEST(Advice, AFurrowBesideTheMidlineIsTold) {
       "base = \"drosophila\"\n[region.flank]\nangle_deg = [60, 120]\n[contraction.apical]\nregion = ";
   const auto told = [&](const std::string& region) {
     const Scenario scenario = load_scenario({"side", "side.toml", flank + region});
-    return lines_with("does not meet the plane y = 0", advice(scenario, *make_model(scenario)));
+    return lines_with("does not intersect the plane y = 0", advice(scenario, *make_model(scenario)));
   };
   ASSERT_EQ(told("\"flank\"").size(), 1U);
-  EXPECT_TRUE(told("\"flank\"")[0].starts_with("warning: region flank does not meet"));
+  EXPECT_TRUE(told("\"flank\"")[0].starts_with("warning: region flank does not intersect"));
   EXPECT_TRUE(told("\"furrow\"").empty());
   EXPECT_TRUE(told("\"all\"").empty());
 }
 
 TEST(Advice, AProgramThatTheRunCutsOffIsTold) {
   const Scenario scenario = load_scenario(find_scenario("furrow-slice"), {"time.end_min=15"});
-  const auto warnings = lines_with("its program goes on", advice(scenario, *make_model(scenario)));
+  const auto warnings = lines_with("program extends beyond", advice(scenario, *make_model(scenario)));
   ASSERT_EQ(warnings.size(), 2U);
-  EXPECT_EQ(warnings[0], "warning: cortex.floor: its program goes on after the run's end at 900 s");
+  EXPECT_EQ(warnings[0],
+            "warning: cortex.floor: program extends beyond the end of the run (900 s); change program or time.end_s");
 }
 
 }  // namespace

@@ -29,97 +29,102 @@ std::vector<std::string> complaints(const std::string& text) {
 
 TEST(CortexKeys, SayWhatWouldBeRight) {
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {cortex, "test.toml:1: cortex.a: does nothing; give tension_mN_per_m, stiffness_mN_per_m or crowding_mN_per_m"},
+      {cortex, "test.toml:1: cortex.a: has no effect; set tension_mN_per_m, stiffness_mN_per_m or crowding_mN_per_m"},
       {cortex + "tension_mN_per_m = -1",
-       "test.toml:3: cortex.a.tension_mN_per_m: -1 is out of range; give a number >= 0"},
+       "test.toml:3: cortex.a.tension_mN_per_m: -1 is out of range; set tension_mN_per_m to a number >= 0"},
       {cortex + "tension_mN_per_m = 1\nfaces = \"top\"",
-       "test.toml:4: cortex.a.faces: \"top\" is not known; give one of: apical | basal | lateral"},
+       "test.toml:4: cortex.a.faces: \"top\" is unknown; set faces to one of: apical | basal | lateral"},
       {cortex + "stiffness_mN_per_m = 1\nsaturation_ratio = 0.2",
-       "test.toml:4: cortex.a.saturation_ratio: has no meaning without tension_mN_per_m; remove it, or give "
+       "test.toml:4: cortex.a.saturation_ratio: is not used without tension_mN_per_m; remove it, or set "
        "tension_mN_per_m"},
       {cortex + "tension_mN_per_m = 1\ncompression_ratio = 0.1",
-       "test.toml:4: cortex.a.compression_ratio: has no meaning without stiffness_mN_per_m; remove it, or give "
+       "test.toml:4: cortex.a.compression_ratio: is not used without stiffness_mN_per_m; remove it, or set "
        "stiffness_mN_per_m"},
       {cortex + "tension_mN_per_m = 1\nrelaxation_min = 0",
-       "test.toml:4: cortex.a.relaxation_min: 0 is out of range; give a number > 0 or \"none\""},
+       "test.toml:4: cortex.a.relaxation_min: 0 is out of range; set relaxation_min to a number > 0 or \"none\""},
       {cortex + "stiffness_mN_per_m = 1\nstiffness_program = { time_min = [0, 1], activity = [1] }",
-       "test.toml:4: cortex.a.stiffness_program.activity: 1 activities for 2 times; give as many activities as times"},
+       "test.toml:4: cortex.a.stiffness_program.activity: has length 1 for 2 times; set activity to as many values as "
+       "times"},
       {"[cortex.apical]\nregion = \"all\"\ntension_mN_per_m = 1\n[cortex.apicl]\ntension_mN_per_m = 2",
-       "test.toml:4: cortex.apicl.region: is missing; give text, or did you mean cortex.apical?"},
+       "test.toml:4: cortex.apicl.region: is missing; set region to a text, or rename the table to cortex.apical "
+       "(nearest match)"},
       {"[cortex.a]\nregion = \"mesoderm\"\ntension_mN_per_m = 1",
-       "test.toml:2: cortex.a.region: there is no region \"mesoderm\"; known are: all"},
+       "test.toml:2: cortex.a.region: region \"mesoderm\" does not exist; use one of: all"},
       {cortex + "tension_mN_per_m = 1\nprofile = { shape = \"gaussian\", sigma_um = 3, sigma_cells = 2 }",
-       "test.toml:4: cortex.a.profile.sigma_um: cortex.a.profile.sigma_cells is given as well; give one of the two"},
+       "test.toml:4: cortex.a.profile.sigma_um: conflicts with cortex.a.profile.sigma_cells, which is also set; remove "
+       "one of them"},
       {cortex + "tension_mN_per_m = 1\nprofile = { edge = 0.5 }",
-       "test.toml:4: cortex.a.profile.edge: has no meaning where nothing fades; remove it, or choose another shape, or "
-       "a taper"},
+       "test.toml:4: cortex.a.profile.edge: is not used with a constant profile; remove it, or set another shape or a "
+       "taper"},
       {cortex + "tension_mN_per_m = 1\nprofile = { shape = \"plateau\", full_cells = 3 }",
-       "test.toml:4: cortex.a.profile.fade_cells: is missing; give over how many cells it fades, 0 for none"},
+       "test.toml:4: cortex.a.profile.fade_cells: is missing; set fade_cells to the width of the taper in cells (0: "
+       "none)"},
       {cortex +
            "tension_mN_per_m = 1\nprofile = { shape = \"plateau\", full_cells = 3, fade_cells = 1, about = \"belly\" }",
-       "test.toml:4: cortex.a.profile.about: there is no region \"belly\"; known are: all"},
+       "test.toml:4: cortex.a.profile.about: region \"belly\" does not exist; use one of: all"},
       {cortex + "tension_mN_per_m = 1\ntrigger = { below = 0.3 }",
-       "test.toml:4: cortex.a.trigger.measure: is missing; give one of: apical_area_ratio | basal_area_ratio | "
-       "height_ratio | apical_stretch"},
+       "test.toml:4: cortex.a.trigger.measure: is missing; set measure to one of: apical_area_ratio | basal_area_ratio "
+       "| height_ratio | apical_stretch"},
       {cortex + "tension_mN_per_m = 1\ntrigger = { measure = \"height_ratio\" }",
-       "test.toml:4: cortex.a.trigger.below: is missing; give below or above, one of them"},
+       "test.toml:4: cortex.a.trigger.below: is missing; set either below or above"},
       {cortex + "tension_mN_per_m = 1\nfollow = { measure = \"height_ratio\", from = 1, to = 1 }",
-       "test.toml:4: cortex.a.follow.to: is where the factor is 0, too; give another value than from"},
+       "test.toml:4: cortex.a.follow.to: equals `from`; set `to` to a different value"},
       {cortex + "tension_mN_per_m = 1\nfollow = { measure = \"height_ratio\", from = 1, to = 2 }\ntrigger = { measure "
                 "= \"height_ratio\", below = 1 }",
-       "test.toml:4: cortex.a.follow: stands beside a trigger; give one of the two"},
+       "test.toml:4: cortex.a.follow: conflicts with `trigger`; remove one of them"},
       {cortex +
            "tension_mN_per_m = 1\ndelay = { speed_um_per_s = 1 }\ntrigger = { measure = \"height_ratio\", below = 1 }",
-       "test.toml:5: cortex.a.trigger: stands beside a delay, which starts cells by the clock; give one of the two"},
+       "test.toml:5: cortex.a.trigger: conflicts with `delay`, which activates cells at prescribed times; remove one "
+       "of them"},
       {cortex + "tension_mN_per_m = 1\nprofile = { full_length_um = 300 }",
-       "test.toml:4: cortex.a.profile.fade_um: is missing; a taper along the axis has both lengths"},
+       "test.toml:4: cortex.a.profile.fade_um: is missing; set both full_length_um and fade_um"},
       {"[enclosed.yolk]\nvolume = \"compliant\"\n[vitelline]\ngap_um = 1",
-       "test.toml:1: enclosed.yolk.bulk_modulus_Pa: is missing; give how compliant the volume is, a number > 0"},
+       "test.toml:1: enclosed.yolk.bulk_modulus_Pa: is missing; set bulk_modulus_Pa to a number > 0"},
       {"[enclosed.yolk]\nbulk_modulus_Pa = 10\n[vitelline]\ngap_um = 1",
-       "test.toml:2: enclosed.yolk.bulk_modulus_Pa: has no meaning with volume \"held\"; remove it, or choose volume "
-       "\"compliant\""},
+       "test.toml:2: enclosed.yolk.bulk_modulus_Pa: is not used with volume \"held\"; remove bulk_modulus_Pa, or set "
+       "volume to \"compliant\""},
       {"[enclosed.yolk]\nvolume = \"held\"",
-       "test.toml:2: enclosed.yolk.volume: no cell can leave the shell: cells and what they enclose keep their "
-       "volumes, and the shell leaves no room; give vitelline.gap_um, such as 0.5, or volume \"compliant\""},
+       "test.toml:2: enclosed.yolk.volume: no cell can leave the vitelline membrane, since cell and enclosed volumes "
+       "are fixed and the gap is 0; set vitelline.gap_um, for example to 0.5, or volume to \"compliant\""},
       {"[embryo]\nshape = \"slice\"\n[division.a]\nregion = \"all\"\nat_s = 5",
-       "test.toml:2: embryo.shape: the cells of a slice do not divide: its planes would no longer be alike; take a "
-       "pill, or "
-       "no [division]"},
+       "test.toml:2: embryo.shape: cells of a slice cannot divide, since its cross-sections must stay alike; set shape "
+       "to \"pill\", or remove [division]"},
       {"[embryo]\nshape = \"block\"\n[enclosed.yolk]\nvolume = \"held\"",
-       "test.toml:3: enclosed.yolk: a block encloses nothing; remove it, or choose shape \"pill\" or \"sphere\""},
+       "test.toml:3: enclosed.yolk: a block encloses no volume; remove the table, or set embryo.shape to \"pill\" or "
+       "\"sphere\""},
       {"[enclosed.yolk]\nvolume = \"held\"\n[volume]\nmethod = \"projection\"",
-       "test.toml:2: enclosed.yolk.volume: a held volume goes with time.scheme \"newton\" and volumes that are not "
-       "projected; give \"compliant\", or another scheme or volume.method"},
+       "test.toml:2: enclosed.yolk.volume: \"held\" requires time.scheme \"newton\" and a volume.method other than "
+       "\"projection\"; set volume to \"compliant\", or change time.scheme or volume.method"},
       {"[enclosed.a]\nvolume = \"held\"\n[enclosed.b]\nsurface = \"basal\"\n[vitelline]\ngap_um = 1",
-       "test.toml:4: enclosed.b.surface: its volume is kept by another table already; remove one of the two"},
+       "test.toml:4: enclosed.b.surface: another table already constrains this volume; remove one of the two tables"},
       {cortex + "tension_mN_per_m = 1\nprogram = { time_min = [0, inf], activity = [0, 1] }",
-       "test.toml:4: cortex.a.program.time_min: inf is not a finite number; give a list of numbers"},
+       "test.toml:4: cortex.a.program.time_min: inf is not a finite number; set time_min to a list of numbers"},
       {cortex + "tension_mN_per_m = 1\nprogram = { time_min = [5, 1], activity = [0, 1] }",
-       "test.toml:4: cortex.a.program.time_min: the times do not increase; give each time later than the one before, "
-       "or the same twice for a jump"},
+       "test.toml:4: cortex.a.program.time_min: the times do not increase; list times in increasing order; repeat a "
+       "time once to mark a jump"},
       {cortex + "tension_mN_per_m = 1\nprogram = { time_min = [0, 1], activity = [0, -1] }",
-       "test.toml:4: cortex.a.program.activity: -1 is out of range; give a list of numbers >= 0"},
+       "test.toml:4: cortex.a.program.activity: -1 is out of range; set activity to a list of numbers >= 0"},
       {"[self_contact]\nsurface = \"apical\"\nstiffness_kPa_per_um = 0",
-       "test.toml:3: self_contact.stiffness_kPa_per_um: 0 is out of range; give a number > 0"},
+       "test.toml:3: self_contact.stiffness_kPa_per_um: 0 is out of range; set stiffness_kPa_per_um to a number > 0"},
       {"[self_contact]\nsurface = \"apical\"\ndistance_um = 10",
-       "test.toml:1: self_contact.search_um: 6 is under twice distance_um; give several times distance_um"},
+       "test.toml:1: self_contact.search_um: 6 is below twice distance_um; set search_um to several times distance_um"},
       {"[elasticity]\ncorner_barrier_Pa = -1",
-       "test.toml:2: elasticity.corner_barrier_Pa: -1 is out of range; give a number >= 0"},
+       "test.toml:2: elasticity.corner_barrier_Pa: -1 is out of range; set corner_barrier_Pa to a number >= 0"},
       {"[self_contact]\nsurface = \"apical\"\nfriction = -0.1",
-       "test.toml:3: self_contact.friction: -0.1 is out of range; give a number >= 0"},
+       "test.toml:3: self_contact.friction: -0.1 is out of range; set friction to a number >= 0"},
       {"[self_contact]\nfriction = 0.3",
-       "test.toml:2: self_contact.friction: has no meaning with surface \"none\"; remove it, or choose a surface, such "
-       "as \"apical\""},
+       "test.toml:2: self_contact.friction: is not used with surface \"none\"; remove friction, or set surface, for "
+       "example to \"apical\""},
       {"[vitelline]\ndrag_Pa_s_per_um = -5",
-       "test.toml:2: vitelline.drag_Pa_s_per_um: -5 is out of range; give a number >= 0"},
+       "test.toml:2: vitelline.drag_Pa_s_per_um: -5 is out of range; set drag_Pa_s_per_um to a number >= 0"},
       {"[vitelline]\nenabled = false\ndrag_Pa_s_per_um = 5",
-       "test.toml:3: vitelline.drag_Pa_s_per_um: has no meaning without a shell; remove it, or give enabled = true"},
+       "test.toml:3: vitelline.drag_Pa_s_per_um: is not used without a vitelline membrane; remove drag_Pa_s_per_um, or "
+       "set enabled to true"},
       {"[embryo]\nshape = \"block\"\n[vitelline]\ndrag_Pa_s_per_um = 5",
-       "test.toml:4: vitelline.drag_Pa_s_per_um: has no meaning without a shell; remove it"},
+       "test.toml:4: vitelline.drag_Pa_s_per_um: is not used without a vitelline membrane; remove drag_Pa_s_per_um"},
       {"[vitelline]\ndrag_Pa_s_per_um = 5\n[volume]\nmethod = \"projection\"",
-       "test.toml:2: vitelline.drag_Pa_s_per_um: drag of the shell goes with time.scheme \"newton\" and volumes that "
-       "are "
-       "not projected; remove it, or choose another scheme or volume.method"},
+       "test.toml:2: vitelline.drag_Pa_s_per_um: requires time.scheme \"newton\" and a volume.method other than "
+       "\"projection\"; remove drag_Pa_s_per_um, or change time.scheme or volume.method"},
   };
   for (const auto& [text, expected] : cases) {
     const std::vector<std::string> found = complaints(text);
@@ -135,13 +140,13 @@ TEST(CortexKeys, FacesThatARegionDoesNotHave) {
       "-10]\n";
   for (const auto& [table, problem] : {std::pair("[cortex.a]\ntension_mN_per_m = 1\nregion = \"inner\"",
                                                  "test.toml:10: cortex.a.region: no cell of this region has an apical "
-                                                 "face; name a region on that side, or give other faces"),
+                                                 "face; set region to cells with this face, or change faces"),
                                        {"[contraction.a]\nstiffness_nN_per_um = 1\nregion = \"lower\"",
                                         "test.toml:10: contraction.a.region: no cell of this region has an apical "
-                                        "face; name a region on that side, or give other edges"},
+                                        "face; set region to cells with this face, or change edges"},
                                        {"[pressure.a]\nface = \"basal\"\nregion = \"inner\"\npressure_Pa = 1",
-                                        "test.toml:10: pressure.a.region: no cell of this region has a basal face; "
-                                        "name a region on that side, or give other face"}}) {
+                                        "test.toml:10: pressure.a.region: no cell of this region has a basal face; set "
+                                        "region to cells with this face, or change face"}}) {
     const Scenario scenario = load_scenario({"test", "test.toml", block + table});
     try {
       (void)make_model(scenario);

@@ -43,40 +43,41 @@ TEST(InteriorKeys, ModuliByRegionSayWhatWouldBeRight) {
       "young_modulus_Pa = 50\n";
   expect_complaints({
       {soft,
-       "test.toml:1: elasticity.soft: does nothing; give young_modulus_Pa, poisson_ratio, relaxation_min, profile or "
+       "test.toml:1: elasticity.soft: has no effect; set young_modulus_Pa, poisson_ratio, relaxation_min, profile or "
        "variation"},
-      {"[elasticity.soft]\nyoung_modulus_Pa = 5", "test.toml:1: elasticity.soft.region: is missing; give text"},
+      {"[elasticity.soft]\nyoung_modulus_Pa = 5",
+       "test.toml:1: elasticity.soft.region: is missing; set region to a text"},
       {soft + "young_modulus_Pa = 0",
-       "test.toml:3: elasticity.soft.young_modulus_Pa: 0 is out of range; give a number > 0"},
+       "test.toml:3: elasticity.soft.young_modulus_Pa: 0 is out of range; set young_modulus_Pa to a number > 0"},
       {soft + "young_modulus_Pa = 5\npoisson_ratio = 0.5",
-       "test.toml:4: elasticity.soft.poisson_ratio: 0.5 is out of range; give a number > -1 and < 0.5"},
+       "test.toml:4: elasticity.soft.poisson_ratio: 0.5 is out of range; set poisson_ratio to a number > -1 and < 0.5"},
       {"[elasticity]\nmodel = \"neo-hookean\"\n" + soft + "poisson_ratio = -0.2",
-       "test.toml:5: elasticity.soft.poisson_ratio: -0.2 is below 0, which model \"neo-hookean\" cannot have; give a "
-       "number >= 0, or choose model \"corotational\""},
+       "test.toml:5: elasticity.soft.poisson_ratio: -0.2 is below 0, the minimum with model \"neo-hookean\"; set "
+       "poisson_ratio to a number >= 0, or model to \"corotational\""},
       {soft + "young_modulus_Pa = 5\nheight_percent = [80, 100]",
-       "test.toml:4: elasticity.soft.height_percent: no element of the region has its middle in this part of the "
-       "height; widen it, or give embryo.elements_per_cell more elements through the height"},
+       "test.toml:4: elasticity.soft.height_percent: no element of the region has its centre in this part of the "
+       "height; widen height_percent, or increase embryo.elements_per_cell through the height"},
       {"[embryo]\nelements_per_cell = [1, 1, 3]\n[region.belly]\nface = \"ventral\"\n" + soft +
            "young_modulus_Pa = 5\nheight_percent = [60, 100]\n[elasticity.apex]\nregion = \"belly\"\n"
            "height_percent = [80, 100]\npoisson_ratio = 0.3",
-       "test.toml:5: elasticity.soft: elasticity.apex speaks of the same layer of cell 0 at (-154.4, -67.53, -74.13) "
-       "um, "
-       "too; give them parts of the height without common elements, or other regions"},
+       "test.toml:5: elasticity.soft: overlaps elasticity.apex in the same layer of cell 0 at (-154.4, -67.53, -74.13) "
+       "um; set height_percent to disjoint ranges, or use disjoint regions"},
       {soft + "young_modulus_Pa = 5\nheight_percent = [80, 10]",
-       "test.toml:4: elasticity.soft.height_percent: low is above high; give [low, high], 0 to 100"},
+       "test.toml:4: elasticity.soft.height_percent: low is above high; set height_percent to [low, high], 0 to 100"},
       {soft + "profile = { shape = \"linear\", half_width_um = 20 }",
-       "test.toml:3: elasticity.soft.profile: the modulus of cell 0 at (-154.4, -67.53, -74.13) um would be 0; give "
-       "profile.edge, or factors, above 0"},
+       "test.toml:3: elasticity.soft.profile: the modulus of cell 0 at (-154.4, -67.53, -74.13) um would be 0; set "
+       "profile.edge or profile.factor above 0"},
       {soft + "young_modulus_Pa = 5\nheight_percent = [0, 50]\n[division.d]\nregion = \"all\"\nat_s = 9",
-       "test.toml:4: elasticity.soft.height_percent: cells with layers do not divide; remove it, or [division]"},
+       "test.toml:4: elasticity.soft.height_percent: cells with layers cannot divide; remove height_percent, or "
+       "[division]"},
       {"[elasticity.soft]\nregion = \"belly\"\nyoung_modulus_Pa = 5",
-       "test.toml:2: elasticity.soft.region: there is no region \"belly\"; known are: all"},
+       "test.toml:2: elasticity.soft.region: region \"belly\" does not exist; use one of: all"},
       {"[elasticity]\nmodel = \"shape-memory\"\n" + soft + "young_modulus_Pa = 5",
-       "test.toml:3: elasticity.soft: model \"shape-memory\" is the same in all cells; remove it, or choose model "
-       "\"corotational\" or \"neo-hookean\""},
+       "test.toml:3: elasticity.soft: model \"shape-memory\" does not support regions; remove the table, or set "
+       "elasticity.model to \"corotational\" or \"neo-hookean\""},
       {two,
-       "test.toml:9: elasticity.stiff: elasticity.soft speaks of cell 72 at (-167.4, 0, -90.53) um, too; give them "
-       "regions without common cells, by `except` for instance"},
+       "test.toml:9: elasticity.stiff: overlaps elasticity.soft in cell 72 at (-167.4, 0, -90.53) um; use disjoint "
+       "regions, for example with `except`"},
   });
 }
 
@@ -85,33 +86,33 @@ TEST(InteriorKeys, NeoHookeanAndFlowSayWhatWouldBeRight) {
   const std::string soft = "[elasticity.soft]\nregion = \"all\"\n";
   expect_complaints({
       {"[elasticity]\nmodel = \"neohookean\"",
-       "test.toml:2: elasticity.model: \"neohookean\" is not known; give one of: corotational | neo-hookean | "
-       "shape-memory (did you mean \"neo-hookean\"?)"},
+       "test.toml:2: elasticity.model: \"neohookean\" is unknown; set model to one of: corotational | neo-hookean | "
+       "shape-memory (nearest match: \"neo-hookean\")"},
       {"[elasticity]\nrelaxation_min = 6",
-       "test.toml:2: elasticity.relaxation_min: has no meaning with model \"corotational\"; remove it, or choose model "
-       "\"neo-hookean\""},
+       "test.toml:2: elasticity.relaxation_min: is not used with model \"corotational\"; remove it, or set "
+       "elasticity.model to \"neo-hookean\""},
       {"[elasticity]\nmodel = \"shape-memory\"\nrelaxation_s = 6",
-       "test.toml:3: elasticity.relaxation_s: has no meaning with model \"shape-memory\"; remove it, or choose model "
-       "\"neo-hookean\""},
+       "test.toml:3: elasticity.relaxation_s: is not used with model \"shape-memory\"; remove it, or set "
+       "elasticity.model to \"neo-hookean\""},
       {neo + "relaxation_min = 0",
-       "test.toml:3: elasticity.relaxation_min: 0 is out of range; give a number > 0 or \"none\""},
+       "test.toml:3: elasticity.relaxation_min: 0 is out of range; set relaxation_min to a number > 0 or \"none\""},
       {neo + "attractor_preload_nN = 1",
-       "test.toml:3: elasticity.attractor_preload_nN: has no meaning with model \"neo-hookean\"; remove it, or choose "
-       "model \"shape-memory\""},
+       "test.toml:3: elasticity.attractor_preload_nN: is not used with model \"neo-hookean\"; remove it, or set "
+       "elasticity.model to \"shape-memory\""},
       {neo + "poisson_ratio = -0.2",
-       "test.toml:3: elasticity.poisson_ratio: -0.2 is below 0, which model \"neo-hookean\" cannot have; give a number "
-       ">= 0, or choose model \"corotational\""},
+       "test.toml:3: elasticity.poisson_ratio: -0.2 is below 0, the minimum with model \"neo-hookean\"; set "
+       "poisson_ratio to a number >= 0, or model to \"corotational\""},
       {neo + "[dynamics]\nshear_viscosity_Pa_s = 10",
-       "test.toml:4: dynamics.shear_viscosity_Pa_s: model \"neo-hookean\" has no such viscosity; give 0, and "
-       "elasticity.relaxation_min for cells that flow, or choose model \"corotational\""},
+       "test.toml:4: dynamics.shear_viscosity_Pa_s: model \"neo-hookean\" does not support shear viscosity; set it to "
+       "0 and use elasticity.relaxation_min, or set elasticity.model to \"corotational\""},
       {soft + "relaxation_min = 6",
-       "test.toml:3: elasticity.soft.relaxation_min: has no meaning with model \"corotational\"; remove it, or choose "
-       "model \"neo-hookean\""},
+       "test.toml:3: elasticity.soft.relaxation_min: is not used with model \"corotational\"; remove it, or set "
+       "elasticity.model to \"neo-hookean\""},
       {neo + soft + "relaxation_min = \"none\"",
-       "test.toml:5: elasticity.soft.relaxation_min: \"none\" is of the wrong type; give a number > 0"},
+       "test.toml:5: elasticity.soft.relaxation_min: \"none\" has the wrong type; set relaxation_min to a number > 0"},
       {neo + soft + "relaxation_min = 6\nrelaxation_s = 6",
-       "test.toml:6: elasticity.soft.relaxation_s: elasticity.soft.relaxation_min is given as well; give one of the "
-       "two"},
+       "test.toml:6: elasticity.soft.relaxation_s: conflicts with elasticity.soft.relaxation_min, which is also set; "
+       "remove one of them"},
   });
 }
 

@@ -27,70 +27,74 @@ const std::string floor_monitor = "[monitor.floor]\nquantity = \"position\"\naxi
 TEST(MonitorRules, EveryErrorIsOneLineWithARemedy) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"[monitor.a]",
-       "test.toml:1: monitor.a.quantity: is missing; give one of: position | displacement | speed | "
+       "test.toml:1: monitor.a.quantity: is missing; set quantity to one of: position | displacement | speed | "
        "velocity | deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | "
        "apical_elongation | pressure | kinetic_energy | time | wall"},
       {"[monitor.a]\nquantity = \"displacment\"",
-       "test.toml:2: monitor.a.quantity: \"displacment\" is not known; give one of: position | displacement | speed | "
-       "velocity | deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | "
-       "apical_elongation | pressure | kinetic_energy | time | wall (did you mean \"displacement\"?)"},
+       "test.toml:2: monitor.a.quantity: \"displacment\" is unknown; set quantity to one of: position | displacement | "
+       "speed | velocity | deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | "
+       "apical_elongation | pressure | kinetic_energy | time | wall (nearest match: \"displacement\")"},
       {"[monitor.a]\nquantity = \"speed\"\nregion = \"al\"",
-       "test.toml:3: monitor.a.region: there is no region \"al\"; did you mean \"all\"?"},
-      {"[monitor.a]\nquantity = \"position\"", "test.toml:1: monitor.a.axis: is missing; give \"x\", \"y\" or \"z\""},
+       "test.toml:3: monitor.a.region: region \"al\" does not exist; use \"all\" (nearest match)"},
+      {"[monitor.a]\nquantity = \"position\"",
+       "test.toml:1: monitor.a.axis: is missing; set axis to \"x\", \"y\" or \"z\""},
       {"[monitor.a]\nquantity = \"speed\"\naxis = \"z\"",
-       "test.toml:3: monitor.a.axis: has no meaning for quantity \"speed\"; remove it, or monitor velocity"},
+       "test.toml:3: monitor.a.axis: is not used with quantity \"speed\"; remove axis, or set quantity to "
+       "\"velocity\""},
       {"[monitor.a]\nquantity = \"volume\"\nface = \"apical\"",
-       "test.toml:3: monitor.a.face: has no meaning for quantity \"volume\"; remove it"},
+       "test.toml:3: monitor.a.face: is not used with quantity \"volume\"; remove face"},
       {"[monitor.a]\nquantity = \"time\"\nover = \"max\"",
-       "test.toml:3: monitor.a.over: has no meaning for quantity \"time\"; remove it: there is one value only"},
+       "test.toml:3: monitor.a.over: is not used with quantity \"time\"; remove over, since the quantity has a single "
+       "value"},
       {"[monitor.a]\nquantity = \"deviation\"",
-       "test.toml:1: monitor.a.reference: is missing; name the directory of a run's results"},
+       "test.toml:1: monitor.a.reference: is missing; set reference to the results directory of a run"},
       {"[monitor.a]\nquantity = \"surface_distance\"",
-       "test.toml:1: monitor.a.reference: is missing; name a mesh file"},
+       "test.toml:1: monitor.a.reference: is missing; set reference to a mesh file"},
       {"[monitor.a]\nquantity = \"speed\"\nreference = \"b\"",
-       "test.toml:3: monitor.a.reference: has no meaning for quantity \"speed\"; remove it"},
+       "test.toml:3: monitor.a.reference: is not used with quantity \"speed\"; remove reference"},
       {"[monitor.a]\nquantity = \"surface_distance\"\nreference = \"b\"\nreference_at = \"end\"",
-       "test.toml:4: monitor.a.reference_at: has no meaning for quantity \"surface_distance\"; remove it"},
+       "test.toml:4: monitor.a.reference_at: is not used with quantity \"surface_distance\"; remove reference_at"},
       {"[monitor.a]\nquantity = \"kinetic_energy\"",
-       "test.toml:2: monitor.a.quantity: a body without mass has no kinetic energy; give a density in [dynamics], or "
-       "monitor speed"},
+       "test.toml:2: monitor.a.quantity: kinetic energy requires a density above 0; set dynamics.density_kg_per_m3, or "
+       "set quantity to \"speed\""},
       {"[volume]\nmethod = \"none\"\n[monitor.a]\nquantity = \"pressure\"",
-       "test.toml:4: monitor.a.quantity: cells that do not hold their volume have no pressure; give volume.method = "
+       "test.toml:4: monitor.a.quantity: cell pressure requires conserved cell volumes; set volume.method to "
        "\"coupled\""},
       // Criteria.
-      {"[stop.a]\nabove = 1", "test.toml:1: stop.a.monitor: is missing; give text"},
-      {floor_monitor + "[stop.a]\nmonitor = \"floor\"", "test.toml:4: stop.a: bounds nothing; give above or below"},
+      {"[stop.a]\nabove = 1", "test.toml:1: stop.a.monitor: is missing; set monitor to a text"},
+      {floor_monitor + "[stop.a]\nmonitor = \"floor\"", "test.toml:4: stop.a: has no bound; set above or below"},
       {"[stop.a]",
-       "test.toml:1: stop.a.monitor: is missing; give text\n"
-       "test.toml:1: stop.a: bounds nothing; give above or below"},
+       "test.toml:1: stop.a.monitor: is missing; set monitor to a text\n"
+       "test.toml:1: stop.a: has no bound; set above or below"},
       {floor_monitor + "[stop.a]\nmonitor = \"flor\"\nabove = 1",
-       "test.toml:5: stop.a.monitor: there is no monitor \"flor\"; did you mean \"floor\"?"},
+       "test.toml:5: stop.a.monitor: monitor \"flor\" does not exist; use \"floor\" (nearest match)"},
       {"[stop.a]\nmonitor = \"floor\"\nabove = 1",
-       "test.toml:2: stop.a.monitor: there is no monitor \"floor\"; give it as [monitor.floor]"},
+       "test.toml:2: stop.a.monitor: monitor \"floor\" does not exist; define [monitor.floor]"},
       {floor_monitor + "[stop.a]\nmonitor = \"floor\"\nabove = 3\nbelow = 3",
-       "test.toml:6: stop.a.above: no value lies above 3 and below 3; give a lower bound for above, or make two "
-       "criteria of it"},
+       "test.toml:6: stop.a.above: no value lies above 3 and below 3; reduce above, or define two criteria"},
       {floor_monitor + "[stop.a]\nmonitor = \"floor\"\nabove = nan",
-       "test.toml:6: stop.a.above: nan is not a finite number; give a number"},
+       "test.toml:6: stop.a.above: nan is not a finite number; set above to a number"},
       {floor_monitor + "[stop.a]\nmonitor = \"floor\"\nabov = 3",
-       "test.toml:6: stop.a.abov: unknown key; did you mean \"above\"?"},
+       "test.toml:6: stop.a.abov: unknown key; use \"above\" (nearest match)"},
       {floor_monitor + "[stop.equilibrium]\nmonitor = \"floor\"\nabove = 3",
-       "test.toml:4: stop.equilibrium: equilibrium is a criterion already; see equilibrium_speed_um_per_min, or choose "
-       "another name"},
+       "test.toml:4: stop.equilibrium: \"equilibrium\" is a predefined criterion; rename the table, or set "
+       "stop.equilibrium_speed_um_per_min"},
       {"[monitor.t]\nquantity = \"time\"\n[stop.a]\nmonitor = \"t\"\nabove = 3\nover = \"any\"",
-       "test.toml:6: stop.a.over: monitor \"t\" has one value only; remove it"},
-      {"[stop]\ncombine = \"none\"", "test.toml:2: stop.combine: \"none\" is not known; give one of: any | all"},
-      {"[stop]\ncombine = {}", "test.toml:2: stop.combine: a table is of the wrong type; give one of: any | all"},
+       "test.toml:6: stop.a.over: monitor \"t\" has a single value; remove over"},
+      {"[stop]\ncombine = \"none\"",
+       "test.toml:2: stop.combine: \"none\" is unknown; set combine to one of: any | all"},
+      {"[stop]\ncombine = {}",
+       "test.toml:2: stop.combine: a table has the wrong type; set combine to one of: any | all"},
       {"[stop]\nat_equilibium = false",
-       "test.toml:2: stop.at_equilibium: unknown key; did you mean \"at_equilibrium\"?"},
-      {"[stop.\"a b\"]", "test.toml:1: stop.a b: is no name; use letters, digits, \"_\" and \"-\""},
+       "test.toml:2: stop.at_equilibium: unknown key; use \"at_equilibrium\" (nearest match)"},
+      {"[stop.\"a b\"]", "test.toml:1: stop.a b: is not a valid name; use letters, digits, \"_\" and \"-\" only"},
       // Expectations of monitors.
       {floor_monitor + "[expect]\nfloor.position_m = { value = 1, within = 1 }",
-       "test.toml:5: expect.floor.position_m: no monitor has that name; did you mean \"floor.position_um\"?"},
+       "test.toml:5: expect.floor.position_m: no monitor has this name; use \"floor.position_um\" (nearest match)"},
       {"[expect]\n\"floor.position_um\" = { value = 1, within = 1 }",
-       "test.toml:2: expect.floor.position_um: no monitor has that name; give the monitor as [monitor.NAME]"},
+       "test.toml:2: expect.floor.position_um: no monitor has this name; define the monitor as [monitor.NAME]"},
       {floor_monitor + "[expect]\nfloor.position_um = { value = 1 }",
-       "test.toml:5: expect.floor.position_um: has no tolerance; give within or within_percent, too"},
+       "test.toml:5: expect.floor.position_um: has no tolerance; set within or within_percent"},
   };
   int count = 0;
   for (const auto& [text, message] : cases) {

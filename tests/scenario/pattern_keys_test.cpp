@@ -111,16 +111,19 @@ TEST(PatternKeys, ProfilesByAnArray) {
     return advice(other, *make_model(other));
   };
   const std::string nothing =
-      "warning: contraction.a: its profile is 0 in every cell of region all; there twi goes from 0 to 199";
+      "warning: contraction.a: profile is 0 in every cell of region all (twi ranges from 0 to 199 there); change "
+      "profile";
   EXPECT_EQ(std::ranges::count(lines_of("{ shape = \"array\", array = \"twi\", from = 300, to = 400 }"), nothing), 1);
   EXPECT_EQ(std::ranges::count(lines_of("{ shape = \"array\", array = \"twi\", from = 100, to = 400 }"), nothing), 0);
   try {
     make_model(load("{ shape = \"array\", array = \"sna\", from = 0, to = 1 }"));
     FAIL();
   } catch (const ScenarioError& error) {
-    EXPECT_NE(std::string(error.what())
-                  .find("test.toml:9: contraction.a.profile.array: the embryo has no array \"sna\"; it has twi"),
-              std::string::npos)
+    EXPECT_NE(
+        std::string(error.what())
+            .find(
+                "test.toml:9: contraction.a.profile.array: the embryo has no array \"sna\"; set array to one of: twi"),
+        std::string::npos)
         << error.what();
   }
   std::filesystem::remove_all(folder);
@@ -137,66 +140,71 @@ TEST(PatternKeys, WhatIsWrongIsSaidWithItsKey) {
     return "[contraction.a]\nregion = \"all\"\nstiffness_nN_per_um = 1\n" + more + "\n";
   };
   expect("[region.r]\nneighbours_of = \"belly\"\n",
-         "test.toml:9: region.r.neighbours_of: there is no region \"belly\"");
-  expect("[region.r]\nneighbours_of = \"r\"\n",
-         "region.r: is defined by itself: r > r; remove one of these references");
-  expect("[region.a]\nneighbours_of = \"b\"\n[region.b]\nunion = [\"a\"]\n",
-         "region.a: is defined by itself: a > b > a");
-  expect("[region.r]\nneighbours_of = \"all\"\n", "region.r: no cell of the embryo lies in it");
-  expect("[region.r]\nrows = 3\nrings = 2\n", "test.toml:10: region.r.rings: needs neighbours_of; name the region");
-  expect("[region.r]\nrows = 0\n", "test.toml:9: region.r.rows: 0 is out of range; give an integer, 1 to 100000");
+         "test.toml:9: region.r.neighbours_of: region \"belly\" does not exist");
+  expect("[region.r]\nneighbours_of = \"r\"\n", "region.r: refers to itself: r > r; remove one of these references");
+  expect("[region.a]\nneighbours_of = \"b\"\n[region.b]\nunion = [\"a\"]\n", "region.a: refers to itself: a > b > a");
+  expect("[region.r]\nneighbours_of = \"all\"\n", "region.r: contains no cell of the embryo");
+  expect("[region.r]\nrows = 3\nrings = 2\n",
+         "test.toml:10: region.r.rings: is not used without neighbours_of; set neighbours_of to the region");
+  expect("[region.r]\nrows = 0\n",
+         "test.toml:9: region.r.rows: 0 is out of range; set rows to an integer, 1 to 100000");
   expect("[region.r]\nrows = 2.5\n", "region.r.rows: 2.5 is not an integer");
-  expect("[region.r]\nneighbours_of = [\"a\"]\n", "region.r.neighbours_of: a list is of the wrong type; give text");
+  expect("[region.r]\nneighbours_of = [\"a\"]\n",
+         "region.r.neighbours_of: a list has the wrong type; set neighbours_of to a text");
   expect(act("profile = { shape = \"array\", from = 0, to = 1 }"),
-         "test.toml:11: contraction.a.profile.array: is missing; name an array");
+         "test.toml:11: contraction.a.profile.array: is missing; set array to a cell array");
   expect(act("profile = { shape = \"array\", array = \"twi\", from = 0, to = 1 }"),
-         "contraction.a.profile.array: the embryo has no array \"twi\"; it has none: arrays come with");
+         "contraction.a.profile.array: the embryo has no array \"twi\"; use an embryo from a file");
   expect(act("profile = { shape = \"array\", array = \"twi\", to = 1 }"),
-         "contraction.a.profile.from: is missing; give");
+         "contraction.a.profile.from: is missing; set `from`");
   expect(act("profile = { shape = \"array\", array = \"twi\", from = 1, to = 1 }"),
-         "contraction.a.profile.to: is where the factor is edge, too; give another value than from");
+         "contraction.a.profile.to: equals `from`; set `to` to a different value");
   expect(act("profile = { shape = \"gaussian\", sigma_um = 9, array = \"twi\" }"),
-         "contraction.a.profile.array: has no meaning with shape \"gaussian\"; remove it, or choose shape \"array\"");
+         "contraction.a.profile.array: is not used with shape \"gaussian\"; remove array, or set shape to \"array\"");
   expect(act("profile = { shape = \"array\", array = \"twi\", from = 0, to = 1, axis = \"along\" }"),
-         "contraction.a.profile.axis: has no meaning with shape \"array\"; remove it");
-  expect(act("profile = { shape = \"gaussian\", axis = \"angle\", sigma_um = 9 }"),
-         "contraction.a.profile.sigma_um: has no meaning with axis \"angle\"; give degrees, or another axis");
+         "contraction.a.profile.axis: is not used with shape \"array\"; remove axis");
+  expect(
+      act("profile = { shape = \"gaussian\", axis = \"angle\", sigma_um = 9 }"),
+      "contraction.a.profile.sigma_um: is not used with axis \"angle\"; use the key in degrees, or set another axis");
   expect(act("profile = { shape = \"gaussian\", axis = \"angle\" }"),
-         "contraction.a.profile.sigma_deg: is missing; give the width of the gaussian in degrees");
-  expect(act("profile = { shape = \"plateau\", sigma_deg = 4, full_cells = 3, fade_cells = 1 }"),
-         "contraction.a.profile.sigma_deg: has no meaning with shape \"plateau\"; remove it, or choose shape "
-         "\"gaussian\"");
-  expect(act("profile = { shape = \"linear\", half_width_deg = 4, half_width_um = 3 }"),
-         "contraction.a.profile.half_width_deg: has no meaning with axis \"across\"; give lengths, or axis \"angle\"");
+         "contraction.a.profile.sigma_deg: is missing; set sigma_deg to a number > 0");
+  expect(
+      act("profile = { shape = \"plateau\", sigma_deg = 4, full_cells = 3, fade_cells = 1 }"),
+      "contraction.a.profile.sigma_deg: is not used with shape \"plateau\"; remove it, or set shape to \"gaussian\"");
+  expect(
+      act("profile = { shape = \"linear\", half_width_deg = 4, half_width_um = 3 }"),
+      "contraction.a.profile.half_width_deg: is not used with axis \"across\"; use a length, or set axis to \"angle\"");
   expect(act("profile = { shape = \"linear\", half_width_um = 3, centre_deg = 4 }"),
-         "contraction.a.profile.centre_deg: goes with axis \"angle\"; remove it, or choose that axis");
+         "contraction.a.profile.centre_deg: requires axis \"angle\"; remove centre_deg, or set axis to \"angle\"");
   expect(act("profile = { shape = \"linear\", axis = \"angle\", half_width_deg = 3, about = \"all\" }"),
-         "contraction.a.profile.about: has no meaning with axis \"angle\"; remove it; centre_deg says");
-  expect(act("profile = { sigma_deg = 4 }"), "contraction.a.profile.shape: is missing; give one of: constant | linear");
+         "contraction.a.profile.about: is not used with axis \"angle\"; remove about; centre_deg sets");
+  expect(act("profile = { sigma_deg = 4 }"),
+         "contraction.a.profile.shape: is missing; set shape to one of: constant | linear");
   expect(act("profile = { shape = \"table\", factor = [1, 0] }"),
-         "contraction.a.profile.at_um: is missing; give the places");
+         "contraction.a.profile.at_um: is missing; set at_um or at_cells");
   expect(act("profile = { shape = \"table\", at_um = [1, 2] }"),
-         "contraction.a.profile.factor: is missing; give a factor");
+         "contraction.a.profile.factor: is missing; set factor to one value");
   expect(act("profile = { shape = \"table\", at_um = [0, 20, 10], factor = [1, 0, 0] }"),
-         "contraction.a.profile.at_um: the places do not increase; give each place farther than the one before");
+         "contraction.a.profile.at_um: the positions do not increase; list positions in increasing order");
   expect(act("profile = { shape = \"table\", at_um = [0, 20, 30], factor = [1, 0] }"),
-         "contraction.a.profile.factor: has 2 numbers for 3 places; give as many factors as places");
+         "contraction.a.profile.factor: has length 2 for 3 positions; set factor to as many values as positions");
   expect(act("profile = { shape = \"table\", at_um = [0, 20], factor = [1, -1] }"),
-         "contraction.a.profile.factor: -1 is out of range; give a list of numbers >= 0");
+         "contraction.a.profile.factor: -1 is out of range; set factor to a list of numbers >= 0");
   expect(act("profile = { shape = \"table\", at_um = [0, 20], at_cells = [0, 2], factor = [1, 0] }"),
-         "profile.at_um: contraction.a.profile.at_cells is given as well; give one of the two");
+         "profile.at_um: conflicts with contraction.a.profile.at_cells, which is also set; remove one of them");
   expect(act("profile = { shape = \"table\", at_um = [0, 20], factor = [1, 0], middle = 2 }"),
-         "contraction.a.profile.middle: has no meaning beside the factors of a table; remove it");
-  expect(act("pulse = { amplitude = 0.5 }"), "test.toml:11: contraction.a.pulse.period_s: is missing; give how long");
+         "contraction.a.profile.middle: is not used with shape \"table\"; remove it");
+  expect(act("pulse = { amplitude = 0.5 }"), "test.toml:11: contraction.a.pulse.period_s: is missing; set period_s");
   expect(act("pulse = { period_s = 0 }"),
-         "contraction.a.pulse.period_s: 0 is out of range; give a number >= 1 or \"none\"");
+         "contraction.a.pulse.period_s: 0 is out of range; set period_s to a number >= 1 or \"none\"");
   expect(act("pulse = { period_s = 60, amplitude = 1.5 }"), "contraction.a.pulse.amplitude: 1.5 is out of range");
   expect(act("pulse = { period_s = 60, phase = \"odd\" }"),
-         "contraction.a.pulse.phase: \"odd\" is not known; give one of: random | together");
-  expect(act("pulse = { period_s = 60 }\n[time]\nstep_s = 10"),
-         "contraction.a.pulse.period_s: steps of 10 s do not see pulses of 60 s; give time.step_s of at most 5");
+         "contraction.a.pulse.phase: \"odd\" is unknown; set phase to one of: random | together");
+  expect(
+      act("pulse = { period_s = 60 }\n[time]\nstep_s = 10"),
+      "contraction.a.pulse.period_s: time steps of 10 s do not resolve a period of 60 s; set time.step_s to at most 5");
   expect(act("variation = { spread = 0.2, by = \"name\" }"),
-         "contraction.a.variation.by: \"name\" is not known; give one of: number | place");
+         "contraction.a.variation.by: \"name\" is unknown; set by to one of: number | place");
   RecordProperty("bad inputs", checked);
   EXPECT_EQ(checked, 34);
 }

@@ -35,25 +35,28 @@ std::unique_ptr<Model> model_of(const std::string& text) {
 TEST(PeriodicKeys, WhatDoesNotGoWithThemIsRefused) {
   const std::string both = sheet + "periodic = [\"x\", \"y\"]\n", along = sheet + "periodic = [\"x\"]\n";
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {sheet + "periodic = [\"z\"]", "test.toml:7: embryo.periodic: \"z\" is not known; give a list of: x | y"},
-      {sheet + "periodic = [\"x\", \"x\"]", "test.toml:7: embryo.periodic: \"x\" stands there twice; give each once"},
+      {sheet + "periodic = [\"z\"]",
+       "test.toml:7: embryo.periodic: \"z\" is unknown; set periodic to a list of: x | y"},
+      {sheet + "periodic = [\"x\", \"x\"]",
+       "test.toml:7: embryo.periodic: \"x\" occurs twice; list each direction once"},
       {"[embryo]\nshape = \"egg\"\nperiodic = [\"x\"]",
-       "test.toml:3: embryo.periodic: has no meaning with shape \"egg\"; remove it, or choose shape sheet"},
+       "test.toml:3: embryo.periodic: is not used with shape \"egg\"; remove periodic, or set shape to sheet"},
       {along + "curvature_per_um = [0.004, 0.004]",
-       "test.toml:8: embryo.curvature_per_um: a sheet that is bent along x does not repeat itself along x; give 0 "
-       "there, or leave \"x\" out of embryo.periodic"},
+       "test.toml:8: embryo.curvature_per_um: a sheet curved along x cannot be periodic along x; set its curvature "
+       "there to 0, or remove \"x\" from embryo.periodic"},
       {both + "rim = \"held\"",
-       "test.toml:8: embryo.rim: a sheet that is periodic along x and y has no rim; remove it, or leave a direction "
-       "out of embryo.periodic"},
+       "test.toml:8: embryo.rim: a sheet periodic along x and y has no boundary; remove rim, or one direction of "
+       "embryo.periodic"},
       {along + "[division.a]\nregion = \"all\"\nat_s = 5",
-       "test.toml:7: embryo.periodic: cells of a periodic sheet do not divide; remove it, or [division]"},
+       "test.toml:7: embryo.periodic: cells of a periodic sheet cannot divide; remove periodic, or [division]"},
       {along + "mirror = [\"y\"]",
-       "test.toml:8: embryo.mirror: no side of a periodic sheet stands for the whole; remove it, or embryo.periodic"},
+       "test.toml:8: embryo.mirror: a periodic sheet cannot be reduced to one side; remove it, or embryo.periodic"},
       {along + "[volume]\nmethod = \"projection\"",
-       "test.toml:7: embryo.periodic: the paper's algorithm does not know periodic sheets; remove it, or give "
-       "time.scheme \"newton\" and volume.method \"coupled\" or \"none\""},
+       "test.toml:7: embryo.periodic: the paper's algorithm does not support periodic sheets; remove periodic, or set "
+       "time.scheme to \"newton\" and volume.method to \"coupled\" or \"none\""},
       {both + "[enclosed.yolk]\nvolume = \"held\"",
-       "test.toml:8: enclosed.yolk: a sheet encloses nothing; remove it, or choose shape \"pill\" or \"sphere\""},
+       "test.toml:8: enclosed.yolk: a sheet encloses no volume; remove the table, or set embryo.shape to \"pill\" or "
+       "\"sphere\""},
   };
   for (const auto& [text, expected] : cases) {
     SCOPED_TRACE(text);
@@ -63,7 +66,8 @@ TEST(PeriodicKeys, WhatDoesNotGoWithThemIsRefused) {
       "[embryo]\nshape = \"sheet\"\nlength_um = 10\nwidth_um = 90\n"
       "cell_count = 20\ncell_height_um = 9\nperiodic = [\"x\"]");
   ASSERT_EQ(few.size(), 1U);
-  EXPECT_NE(few[0].find("across the period: give a longer period or more cells, some four along it"), std::string::npos)
+  EXPECT_NE(few[0].find("across the period; lengthen the period, or give more cells (about four along it)"),
+            std::string::npos)
       << few[0];
 }
 

@@ -110,43 +110,41 @@ TEST(PolygonKeys, ARegionSelectedAnewDropsWhatAnotherShapeSelectedItBy) {
 
   const std::string inherited = errors_of(base + shape), own = errors_of(base + shape + belly + "face = \"left\"\n");
   EXPECT_TRUE(inherited.starts_with("drosophila:")) << inherited;
-  EXPECT_NE(inherited.find("region.furrow.face: cells that are no grid have no named sides; use angle_deg, "),
+  EXPECT_NE(inherited.find("region.furrow.face: cells of this shape have no named faces; use angle_deg, "),
             std::string::npos);
-  EXPECT_NE(inherited.find("in a [region.furrow] of your own takes the place of the face that is inherited"),
-            std::string::npos);
-  EXPECT_EQ(own.find("test.toml:7: region.furrow.face: cells that are no grid"), 0U) << own;
+  EXPECT_NE(inherited.find("a new selector in [region.furrow] replaces the inherited face"), std::string::npos);
+  EXPECT_EQ(own.find("test.toml:7: region.furrow.face: cells of this shape"), 0U) << own;
 }
 
 TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
   const auto expect = [](const std::string& text, const std::string& said) {
     EXPECT_NE(errors_of(text).find(said), std::string::npos) << errors_of(text);
   };
-  expect("format = 1\n[embryo]\nshape = \"points\"\n", "embryo.file: is missing; name the table of points");
+  expect("format = 1\n[embryo]\nshape = \"points\"\n", "embryo.file: is missing; set file to the table of points");
   expect("format = 1\n[embryo]\nshape = \"points\"\nfile = \"nowhere.csv\"\n", "embryo.file: ");
   expect("format = 1\n[embryo]\nshape = \"points\"\nfile = \"builtin:mouse\"\n",
-         "there is no table builtin:mouse; there is builtin:drosophila_atlas");
+         "table builtin:mouse does not exist; use one of: builtin:drosophila_atlas");
   expect("format = 1\n[embryo]\nshape = \"points\"\nfile = \"a.csv\"\nscale = [1, 2]\n",
-         "embryo.scale: has 2 numbers; give three");
-  expect(egg + "belly_sag_um = 9\n", "embryo.belly_sag_um: stands alone; give back_sag_um, too");
+         "embryo.scale: has length 2; set scale to three");
+  expect(egg + "belly_sag_um = 9\n", "embryo.belly_sag_um: requires back_sag_um; set both keys");
   expect(egg + "belly_sag_um = 60\nback_sag_um = 2\n", "embryo: ");
-  expect(egg + "cells = [3, 3, 3]\n", "embryo.cells: has no meaning with shape \"egg\"");
+  expect(egg + "cells = [3, 3, 3]\n", "embryo.cells: is not used with shape \"egg\"");
   expect(egg + "elements = \"triangles\"\n", "embryo.elements: ");
   expect(egg + "least_edge_ratio = 0.9\n", "embryo.least_edge_ratio: ");
-  expect(egg + "[region.r]\nface = \"ventral\"\n", "region.r.face: cells that are no grid have no named sides");
+  expect(egg + "[region.r]\nface = \"ventral\"\n", "region.r.face: cells of this shape have no named faces");
   expect(egg + "[region.r]\narray = \"sna\"\n", "region.r.array: a built embryo has no arrays");
-  expect(egg + "[region.r]\nx_um = [-10, 10]\nabove = 2\n", "region.r.above: needs an array");
+  expect(egg + "[region.r]\nx_um = [-10, 10]\nabove = 2\n", "region.r.above: is not used without array");
   expect(egg + "[region.r]\nangle_deg = [170, 175]\nlength_percent = [0, 0.1]\n",
-         "region.r: no cell of the embryo lies in it");
+         "region.r: contains no cell of the embryo");
   expect(egg + "[contraction.c]\nregion = \"all\"\nedges = \"apical\"\nstiffness_nN_per_um = 1\ndiagonals = true\n",
          "contraction.c.diagonals: cell ");
   expect(egg + "elements = \"kites\"\n[division.d]\nregion = \"all\"\nat_s = 10\n",
-         "made of kites, or of several layers");
-  expect(
-      egg + "[volume]\nmethod = \"projection\"\n",
-      "test.toml:9: volume.method: the paper's algorithm knows cells of four sides only, and this tissue has polygons; "
-      "give \"coupled\" or \"none\"");
+         "consist of kites or of several layers");
+  expect(egg + "[volume]\nmethod = \"projection\"\n",
+         "test.toml:9: volume.method: the paper's algorithm supports four-sided cells only, but this tissue has "
+         "polygonal cells; set method to \"coupled\" or \"none\"");
   expect(egg + "[time]\nscheme = \"linearly-implicit\"\n[volume]\nmethod = \"none\"\n",
-         "test.toml:9: time.scheme: the paper's algorithm knows cells of four sides only");
+         "test.toml:9: time.scheme: the paper's algorithm supports four-sided cells only");
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iostream>
+#include <map>
 
 #include "scenario/builtin.hpp"
 #include "scenario/load.hpp"
@@ -96,24 +98,75 @@ TEST(ResolvedToml, FillsInDefaultsAndLeavesOutWhatHasNoValue) {
   EXPECT_EQ(text.find("width_um"), std::string::npos) << text;
 }
 
+// The section below a heading, without the heading.
+std::string section_of(const std::string& page, const std::string& heading) {
+  const std::size_t begin = page.find("\n## " + heading + "\n");
+  EXPECT_NE(begin, std::string::npos) << heading;
+  return begin == std::string::npos ? "" : page.substr(begin + 1, page.find("\n## ", begin + 1) - begin - 1);
+}
+
+const InnerTables* inner_of(std::string_view key) {
+  for (const InnerTables& inner : inner_tables())
+    if (std::ranges::find(inner.keys, key.substr(0, key.find('.'))) != inner.keys.end()) return &inner;
+  return nullptr;
+}
+
+std::string heading_of(const TableInfo& info) {
+  return info.path.empty() ? "Top level" : "`[" + std::string(info.stem()) + (info.named() ? ".NAME]`" : "]`");
+}
+
 TEST(Reference, HasEveryRowOfTheTable) {
   const std::string page = reference_markdown();
-  int count = 0;
+  int count = 0, inner_count = 0;
   for (const TableInfo& info : schema_tables()) {
-    const std::string heading =
-        info.path.empty() ? "## Top level" : "## `[" + std::string(info.stem()) + (info.named() ? ".NAME]`" : "]`");
-    const std::size_t begin = page.find(heading);
-    ASSERT_NE(begin, std::string::npos) << heading;
-    const std::string section = page.substr(begin, page.find("\n## ", begin + 1) - begin);
+    const std::string section = section_of(page, heading_of(info));
     for (const Row* row : rows_of(info.path)) {
-      EXPECT_NE(section.find("\n| `" + std::string(row->key) + "` | "), std::string::npos)
-          << heading << " " << row->key;
-      EXPECT_NE(section.find(row->meaning), std::string::npos) << heading << " " << row->key;
+      const InnerTables* inner = inner_of(row->key);
+      const std::string& there = inner == nullptr ? section : section_of(page, std::string(inner->title));
+      std::string key(row->key);
+      if (key.starts_with("stiffness_program.")) key.erase(0, std::string_view("stiffness_").size());
+      EXPECT_NE(there.find("\n| `" + key + "` | " + row->type() + " | "), std::string::npos) << info.path << " " << key;
+      EXPECT_NE(there.find(row->meaning), std::string::npos) << info.path << " " << key;
+      if (inner != nullptr) {
+        EXPECT_NE(section.find("([" + std::string(inner->title) + "](#"), std::string::npos) << info.path << " " << key;
+        ++inner_count;
+      }
       ++count;
     }
   }
   EXPECT_EQ(count, static_cast<int>(schema().size()));  // no row is of a table that does not exist
-  std::cout << count << " rows\n";
+  EXPECT_GT(inner_count, 100);
+  std::cout << count << " rows, " << inner_count << " of inner tables\n";
+}
+
+TEST(Reference, TablesThatShareInnerTablesHaveTheSameKeysInThem) {
+  std::map<std::string, std::map<std::string, std::string>> meanings;  // by key of the inner table, and table
+  for (const Row& row : schema()) {
+    if (inner_of(row.key) == nullptr) continue;
+    const std::size_t dot = row.key.find('.');
+    std::string key(row.key.substr(0, dot)), table(row.table);
+    if (key == "stiffness_program") key = "program", table += " stiffness";
+    meanings[key][table] += std::string(row.key.substr(dot)) + row.type() + row.expected() + std::string(row.meaning);
+  }
+  for (const auto& [key, tables] : meanings)
+    for (const auto& [table, text] : tables) EXPECT_EQ(text, tables.begin()->second) << table << " " << key;
+}
+
+TEST(Reference, LinksToEverySection) {
+  const std::string page = reference_markdown();
+  for (const auto& [label, anchor] : {std::pair("top level", "top-level"),
+                                      {"embryo", "embryo"},
+                                      {"stop", "stop"},
+                                      {"stop.NAME", "stopname"},
+                                      {"self_contact", "self_contact"},
+                                      {"division.NAME", "divisionname"},
+                                      {"Profile", "profile"},
+                                      {"Activity time course", "activity-time-course"}})
+    EXPECT_NE(page.find("[" + std::string(label) + "](#" + anchor + ")"), std::string::npos) << label;
+  std::size_t links = 0, headings = 0;
+  for (std::size_t at = 0; (at = page.find("](#", at)) != std::string::npos && at < page.find("\n## "); ++at) ++links;
+  for (std::size_t at = 0; (at = page.find("\n## ", at)) != std::string::npos; ++at) ++headings;
+  EXPECT_EQ(links, headings);
 }
 
 TEST(Reference, SaysTypeDefaultAndRange) {

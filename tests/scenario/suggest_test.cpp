@@ -39,9 +39,9 @@ TEST(Suggest, AUnitIsWhatFollowsAName) {
 }
 
 TEST(Suggest, WhereNothingIsNearAllThatIsKnownIsNamed) {
-  EXPECT_EQ(did_you_mean("drosofila", {"xenopus", "drosophila"}), "did you mean \"drosophila\"?");
-  EXPECT_EQ(did_you_mean("mouse", {"xenopus", "drosophila"}), "known are: xenopus, drosophila");
-  EXPECT_EQ(did_you_mean("mouse", {}), "there are none");
+  EXPECT_EQ(did_you_mean("drosofila", {"xenopus", "drosophila"}), "use \"drosophila\" (nearest match)");
+  EXPECT_EQ(did_you_mean("mouse", {"xenopus", "drosophila"}), "use one of: xenopus, drosophila");
+  EXPECT_EQ(did_you_mean("mouse", {}), "none is defined");
 }
 
 }  // namespace

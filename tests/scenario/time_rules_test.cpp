@@ -19,7 +19,7 @@ std::string error_of(const std::string& override_text) {
 
 TEST(TimeRules, AProgramMayJumpButNotTwiceAtOnce) {
   EXPECT_EQ(error_of("contraction.apical.program.time_s=[0, 10, 10]"), "");
-  EXPECT_NE(error_of("contraction.apical.program.time_s=[10, 10, 10]").find("10 stands there three times"),
+  EXPECT_NE(error_of("contraction.apical.program.time_s=[10, 10, 10]").find("10 occurs three times"),
             std::string::npos);
   EXPECT_NE(error_of("contraction.apical.program.time_s=[0, 10, 10.0000001]").find("closer than 1e-06 s"),
             std::string::npos);
