@@ -9,7 +9,6 @@ Prints one line per breach, with file, line and what to write instead; exit stat
 """
 import io
 import re
-import subprocess
 import sys
 import tokenize
 from pathlib import Path
@@ -18,7 +17,7 @@ MOST_WORDS = {"README.md": 600, "user's part": 60_000}
 LONGEST_SENTENCE = 35
 FIRST_PAGES = ("README.md", "docs/index.md", "docs/start/", "docs/concepts/", "docs/gallery.md")
 FOR_DEVELOPERS = ("docs/developers/", "docs/decisions/")
-SOURCES = ("src/", "python/", "viewer/src/", "scenarios/", "docs/", "cmake/", "packaging/", "tools/")  # beside pages
+FOLDERS = ("src", "python", "viewer/src", "scenarios", "docs", "cmake", "packaging", "tools", "bench/data")
 SUFFIXES = (".md", ".cpp", ".hpp", ".py", ".ts", ".toml", ".html", ".css", ".sh", ".cmake")
 
 arguments = [one for one in sys.argv[1:] if one != "--count"]
@@ -80,12 +79,11 @@ def prose(path):
     return re.sub(r"^( *)#(?=[ \n])", lambda found: blank(found[0]), text, flags=re.M)
 
 
-def tracked():
-    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=root, capture_output=True, text=True, check=True)
-    for name in sorted(set(listed.stdout.splitlines())):
-        path = root / name
-        if path.is_file() and path.suffix in SUFFIXES and (path.suffix == ".md" or name.startswith(SOURCES)) and \
-                not name.startswith(("fuzz/corpus", "tests/words", "scenarios/data")):
+def read():
+    """Files whose words are checked."""
+    for path in sorted([*root.glob("*.md"), *(root / ".github").rglob("*"), *(path for folder in FOLDERS for path in (root / folder).rglob("*"))]):
+        name = path.relative_to(root).as_posix()
+        if path.is_file() and path.suffix in SUFFIXES and "node_modules" not in path.parts and not name.startswith("scenarios/data"):
             yield path
 
 
@@ -105,7 +103,7 @@ def sentences(text):
 
 
 breaches, looked = [], 0
-files = [Path(one).resolve() for one in arguments[1:]] or list(tracked())
+files = [Path(one).resolve() for one in arguments[1:]] or list(read())
 rules = banned()
 for path in files:
     text = re.sub(r" *\n[ \n]*", lambda found: "\n" * found[0].count("\n"), re.sub(r"[ \t]+", " ", prose(path)))
