@@ -1,5 +1,5 @@
-// The seeds of the fuzzers (fuzz/corpus), each also with some of its bytes changed, and what they found (fuzz/found),
-// through the same functions: seeds are of today's formats, and what was found stays mended.
+// Replays fuzzer seeds (fuzz/corpus), also with changed bytes, and past findings (fuzz/found). Seeds must be of current
+// formats, and findings must stay fixed.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// [ablation]: what it does to the laws of a scenario, and what is wrong with what is given.
+// Keys of [ablation.NAME]: effects on force laws, and messages.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ TEST(AblationKeys, FacesTimesAndRegionsAreThoseGiven) {
     EXPECT_EQ(*walls.activity_of(CellId(0), time_s, {}), first) << time_s;
     EXPECT_EQ(*walls.activity_of(CellId(1), time_s, {}), 1);
   }
-  // A wall between one that is cut and one that is not keeps the half of the other, and here half of its own.
+  // A lateral face between an ablated and an intact cell keeps the intact half, and here half of the ablated half.
   Step step;
   step.positions = step.previous_positions = model->tissue.rest_positions;
   step.end_time_s = 100;

@@ -1,4 +1,4 @@
-// What `plica check` and `plica run` say of a scenario that is right and perhaps not meant so.
+// Warnings and notes of `plica check` and `plica run` about valid scenarios.
 #include "scenario/advice.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace plica {
 namespace {
 
-// The advice on a mesh file whose cells are a block of that size; no file is read.
+// Returns the advice on a mesh file whose cells form a block of that size; no file is read.
 std::vector<std::string> advice_on_mesh(const Vec3& size_um, bool in_shell = true) {
   const Scenario scenario = load_scenario({"mesh", "mesh.toml",
                                            "[embryo]\nshape = \"file\"\nfile = \"mesh.vtu\"\n[vitelline]\nenabled = " +
@@ -42,7 +42,7 @@ TEST(Advice, AMeshThatLiesAcrossTheShellIsWarnedOf) {
   }
 }
 
-// A ball has no longest axis; 5 % is none either. Without a shell any mesh may lie as it likes.
+// A sphere has no longest axis, nor does a mesh within 5 % of one. Without a membrane, orientation is arbitrary.
 TEST(Advice, AMeshThatLiesAlongTheShellIsNot) {
   int cases = 0;
   for (const Vec3& size_um : {Vec3(120, 60, 50), Vec3(100, 100, 100), Vec3(100, 104, 100)}) {
@@ -54,7 +54,7 @@ TEST(Advice, AMeshThatLiesAlongTheShellIsNot) {
   EXPECT_EQ(cases, 3);
 }
 
-// A misspelt name in an inherited table makes a new one, which does nothing.
+// A misspelt name in an inherited table defines a new table without effect.
 TEST(Advice, WhatDoesNothingIsTold) {
   const Scenario scenario = load_scenario({"typo", "typo.toml",
                                            "base = \"drosophila\"\n[region.furow]\nx_um = [0, 50]\n"
@@ -65,7 +65,7 @@ TEST(Advice, WhatDoesNothingIsTold) {
   EXPECT_TRUE(lines_with("region.furrow: nothing", lines).empty());
 }
 
-// A fold beside the midline has none of the furrow's numbers.
+// A fold beside the midline has no furrow measures.
 TEST(Advice, AFurrowBesideTheMidlineIsTold) {
   const std::string flank =
       "base = \"drosophila\"\n[region.flank]\nangle_deg = [60, 120]\n[contraction.apical]\nregion = ";

@@ -1,4 +1,4 @@
-// Keys of what a closing furrow needs: cortices, enclosed volumes, corner barrier, profiles in cells and tapers.
+// Keys for furrow closure: cortices, enclosed volumes, inversion barrier, profiles in cells and tapers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -133,7 +133,7 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
   }
 }
 
-// Of three layers of cells, that in the middle has neither apical nor basal faces.
+// The middle of three cell layers has neither apical nor basal faces.
 TEST(CortexKeys, FacesThatARegionDoesNotHave) {
   const std::string block =
       "[embryo]\nshape = \"block\"\ncells = [2, 2, 3]\n[region.inner]\nz_um = [-10, 10]\n[region.lower]\nz_um = [-100, "
@@ -158,12 +158,12 @@ TEST(CortexKeys, FacesThatARegionDoesNotHave) {
   }
 }
 
-// Its base gives how compliant the yolk is; one who holds it need not take that back.
+// A scenario with a fixed yolk volume may inherit the bulk modulus of its base.
 TEST(CortexKeys, AHeldYolkLeavesWhatItsBaseSaysOfACompliantOne) {
   EXPECT_NO_THROW(load_scenario({"test", "test.toml", "base = \"furrow-slice\"\n[enclosed.yolk]\nvolume = \"held\""}));
 }
 
-// A belly that is drawn in, with all that a closing furrow has.
+// Invaginating ventral side, with all laws of a closing furrow.
 Scenario small_furrow() {
   const std::string yolk = "[enclosed.yolk]\nvolume = \"compliant\"\nbulk_modulus_Pa = 50000\n";
   return load_scenario({"furrow", "furrow.toml", support::small_furrow + yolk});
@@ -181,14 +181,14 @@ TEST(CortexKeys, ASmallFurrowOfCorticesFolds) {
   EXPECT_EQ(contracting_regions(scenario, simulation.model().tissue), std::vector<std::string>{"belly"});
 }
 
-// An experiment that takes a pull away gives it as 0: its program and profile are no mistake then.
+// A tension set to 0 switches the cortex off; its program and profile are no error.
 TEST(CortexKeys, OneThatIsGivenAsNothingIsOff) {
   const Simulation without(load_scenario(find_scenario("furrow-slice"), {"cortex.shortening.tension_mN_per_m=0"}));
   EXPECT_EQ(Simulation(load_scenario(find_scenario("furrow-slice"))).model().laws.size(),
             without.model().laws.size() + 1);
 }
 
-// What cells exert is asked of a part of the tissue: yolk and contact are no part's own.
+// Forces exerted by a part of the tissue exclude yolk pressure and contact.
 TEST(CortexKeys, ForcesOfAPartLeaveOutWhatIsNotOfCells) {
   Scenario scenario = small_furrow();
   scenario.cortices.clear();
@@ -206,7 +206,7 @@ TEST(CortexKeys, ForcesOfAPartLeaveOutWhatIsNotOfCells) {
   EXPECT_EQ(belly, forces_of_cells(alone, of_alone, tissue.regions.at("belly")));
 }
 
-// Rest areas that flow and pairs in contact are part of what a run remembers.
+// Checkpoints include relaxing stress-free areas and contact pairs.
 TEST(CortexKeys, ARunGoesOnToTheSameBits) {
   Scenario scenario = small_furrow();
   scenario.self_contact.friction = 0.3;

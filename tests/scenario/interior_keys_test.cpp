@@ -1,4 +1,4 @@
-// Keys of the cells' interior: moduli by region, the neo-Hookean law, rest shapes that flow.
+// Keys of elasticity: moduli by region, the neo-Hookean law, relaxation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -116,7 +116,7 @@ TEST(InteriorKeys, NeoHookeanAndFlowSayWhatWouldBeRight) {
   });
 }
 
-// Flow of one region only, and the modulus of volume that goes with the law.
+// Relaxation of one region only, and the dilatation law of neo-Hookean cells.
 TEST(InteriorKeys, WhatTheyMakeOfTheModel) {
   const auto laws = [](const std::string& more) {
     const auto model = make_model(load_scenario(support::pulled_block(more)));
@@ -136,7 +136,7 @@ TEST(InteriorKeys, WhatTheyMakeOfTheModel) {
             "elasticity, dilatation, contraction, drag, 768");
 }
 
-// One element cannot bend as Poisson's ratio says: told where it matters.
+// Bending of single neo-Hookean elements is too soft; warned of if it matters.
 TEST(InteriorKeys, BendingOfOneNeoHookeanElementIsWarnedOf) {
   const auto warnings = [](const std::string& more) {
     const Scenario scenario = load_scenario(support::pulled_block("[elasticity]\nmodel = \"neo-hookean\"\n" + more));
@@ -149,7 +149,7 @@ TEST(InteriorKeys, BendingOfOneNeoHookeanElementIsWarnedOf) {
   EXPECT_EQ(warnings("poisson_ratio = 0\n"), 0);
 }
 
-// A column of two cells under pressure: each is shortened by pressure over its own modulus.
+// Column of two cells under pressure: each shortens by pressure / its own modulus.
 TEST(InteriorKeys, ASoftCellIsShortenedMore) {
   const Scenario scenario = load_scenario({"column", "column.toml", R"(format = 1
 [embryo]
@@ -194,7 +194,7 @@ equilibrium_speed_um_per_min = 1e-6
   EXPECT_NEAR(top - middle, -20 * 4e-3, 2e-4);
 }
 
-// All cells in the region: as if the modulus were everyone's.
+// A region of all cells is equivalent to the common modulus.
 TEST(InteriorKeys, ARegionOfAllCellsIsLikeNone) {
   const auto end = [](const std::string& more) {
     Simulation simulation(load_scenario(support::pulled_block(more)));

@@ -16,7 +16,7 @@ Scenario load(const std::string& text, const Overrides& overrides = {}) {
   return load_scenario({"test", "test.toml", text}, overrides);
 }
 
-/// All messages, a line each; empty where the scenario is right.
+/// Returns all messages, one per line; empty for a valid scenario.
 std::string errors_of(const std::string& text, const Overrides& overrides = {}) {
   try {
     load(text, overrides);
@@ -335,7 +335,7 @@ TEST(LoadScenario, ReportsAllErrorsAtOnceInOrderOfLines) {
 }
 
 TEST(LoadScenario, OneMistakeIsOneError) {
-  // An unknown key that was to be the region, an unknown table that was to hold it, a region that was not read.
+  // Unknown key meant as region, unknown table meant to define it, region that was not read.
   EXPECT_EQ(errors_of("[contraction.a]\nregoin = \"all\""),
             "test.toml:2: contraction.a.regoin: unknown key; use \"region\" (nearest match)");
   EXPECT_EQ(errors_of("[regions.a]\nface = \"left\"\n[hold.a]\nregion = \"a\""),
@@ -360,7 +360,7 @@ TEST(LoadScenario, SettlesDefaultsThatDependOnTheShape) {
             (here / "b.vtu").string());
 }
 
-// An inherited attractor is dropped with its model, as an inherited length is with a pill.
+// Inherited attractor keys are dropped with their model, like an inherited length with a pill.
 TEST(LoadScenario, SettlesTheAttractorByTheElasticModel) {
   const std::string springs = "[elasticity]\nmodel = \"shape-memory\"\nattractor_stiffness_nN_per_um = 7\n";
   EXPECT_EQ(load(springs).elasticity.attractor_stiffness_nN_per_um, 7);
@@ -383,7 +383,7 @@ TEST(LoadScenario, SettlesTheDefaultsOfPatterns) {
   EXPECT_EQ(some.profile.edge, std::nullopt);
   EXPECT_EQ(some.delay.axis, "along");
   EXPECT_EQ(some.delay.from, "middle");
-  // What belonged to the shape and the wave goes with them.
+  // Keys of the shape and the wave are dropped with them.
   const ContractionInput other =
       load(given, {"contraction.a.profile.shape=gaussian", "contraction.a.profile.sigma_um=30",
                    "contraction.a.delay.speed_um_per_s=none"})

@@ -1,4 +1,4 @@
-// Regions and profiles by what was measured, rows, rings, angles, tables; pulses. And what is wrong with what is given.
+// Regions and profiles by arrays, rows, rings, angles and tables; pulses; messages.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -81,7 +81,7 @@ TEST(PatternKeys, ProfilesOfAScenario) {
   }
   EXPECT_EQ(make_controls(scenario).max_step_s, 7.5);
   EXPECT_GE(make_controls(scenario).program_points_s.back(), scenario.time.end_s);
-  // What is printed reads back as the same.
+  // The printed scenario reads back as the same.
   const std::string printed = resolved_toml(scenario);
   EXPECT_EQ(resolved_toml(load_scenario({"test", "test.toml", printed})), printed);
 }
@@ -129,7 +129,7 @@ TEST(PatternKeys, ProfilesByAnArray) {
   std::filesystem::remove_all(folder);
 }
 
-// Each with the line, the key and the remedy.
+// Messages contain line, key and remedy.
 TEST(PatternKeys, WhatIsWrongIsSaidWithItsKey) {
   int checked = 0;
   const auto expect = [&](const std::string& text, const std::string& said) {

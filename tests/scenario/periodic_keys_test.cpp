@@ -1,4 +1,4 @@
-// [embryo] periodic: what it makes, and what does not go with it.
+// Key `embryo.periodic`: periodic sheets, and incompatible keys.
 #include <gtest/gtest.h>
 
 #include "scenario/load.hpp"
@@ -83,7 +83,7 @@ TEST(PeriodicKeys, ThePartsOfTheRimThatAreLeftAreHeld) {
   EXPECT_GT(held, 20U);
 }
 
-// A hold that has only the far end of a period in its range holds what this is an image of.
+// A hold at the far end of a period fixes the periodic originals.
 TEST(PeriodicKeys, AHoldOfAnImageHolds) {
   const auto model = model_of(sheet + "periodic = [\"x\", \"y\"]\n[hold.end]\nregion = \"all\"\nx_um = [30, 40]\n");
   std::size_t held = 0;

@@ -1,4 +1,4 @@
-// Embryos of polygons from a scenario: their regions, and what is wrong with what is given.
+// Embryos of polygonal cells: regions, and messages.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -100,9 +100,9 @@ TEST(PolygonKeys, ARegionSelectedAnewDropsWhatAnotherShapeSelectedItBy) {
   EXPECT_EQ(furrow.face, "");
   EXPECT_FALSE(furrow.cells_along || furrow.cells_across);
   EXPECT_TRUE(furrow.angle_deg);
-  // Where the shape has faces, selectors are intersected as ever.
+  // For shapes with faces, selectors are intersected.
   EXPECT_EQ(load(base + belly).regions.at("furrow").face, "ventral");
-  // Arrays go the same way.
+  // Likewise for arrays.
   const std::string pill =
       "base = \"drosophila-atlas\"\n[embryo]\nshape = \"pill\"\n[region.mesoderm]\nface = \"left\"\n";
   EXPECT_EQ(load(pill).regions.at("mesoderm").array, "");

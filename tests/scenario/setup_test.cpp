@@ -10,7 +10,7 @@
 namespace plica {
 namespace {
 
-// A strip of seven cells on which contractions act in three regions: of one cell, three and two.
+// Strip of seven cells with contractions in three regions, of one, three and two cells.
 Scenario three_contractions(const std::string& more = "") {
   std::string text =
       "[embryo]\nshape = \"block\"\nlength_um = 140\nwidth_um = 20\ncell_height_um = 30\ncells = [7, 1, 1]\n"

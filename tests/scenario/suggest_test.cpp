@@ -5,11 +5,11 @@
 namespace plica {
 namespace {
 
-// Two known names are near; the order in which they are known does not matter.
+// The order of two near names does not matter.
 TEST(Suggest, TheNearestOfSeveralThatAreNear) {
   EXPECT_EQ(nearest_name("stifness", {"stiffness", "stillness"}), "stiffness");
   EXPECT_EQ(nearest_name("stifness", {"stillness", "stiffness"}), "stiffness");
-  // Two letters that changed places are one slip, a letter less and another one more are two.
+  // A swap of two letters is one edit; a deletion and an insertion are two.
   EXPECT_EQ(nearest_name("gpa", {"gab", "gap"}), "gap");
   EXPECT_EQ(nearest_name("yolk_gpa", {"yolk_gal", "yolk_gap"}), "yolk_gap");
   EXPECT_EQ(nearest_name("lengt_um", {"length_um", "height_um"}), "length_um");

@@ -1,4 +1,4 @@
-// [embryo] mirror: what is refused, and what one side is told of the whole.
+// Key `embryo.mirror`: asymmetric input is refused.
 #include <gtest/gtest.h>
 
 #include "scenario/load.hpp"
@@ -78,7 +78,7 @@ TEST(Symmetry, WhatHasNoImageIsRefused) {
   }
 }
 
-// What is only measured need not be symmetric.
+// Regions used for measurement only need not be symmetric.
 TEST(Symmetry, RegionsThatAreOnlyMeasuredMayLieOnOneSide) {
   EXPECT_EQ(
       complaints(

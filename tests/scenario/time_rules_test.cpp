@@ -1,4 +1,4 @@
-// Rules of times: what is one instant, and what a program's points may be.
+// Rules of times: smallest difference, and points of a program.
 #include <gtest/gtest.h>
 
 #include "core/errors.hpp"

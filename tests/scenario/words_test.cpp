@@ -11,7 +11,7 @@ namespace {
 
 int tables = 0;  // that were looked at
 
-// What schema.cpp allows for a key.
+// Returns the words that schema.cpp allows for a key.
 std::vector<std::string_view> allowed(std::string_view table, std::string_view key) {
   for (const Row* row : rows_of(table))
     if (row->key == key) return row->allowed.words;
@@ -19,7 +19,7 @@ std::vector<std::string_view> allowed(std::string_view table, std::string_view k
   return {};
 }
 
-// Every word that may be given means something, and no two mean the same.
+// Every allowed word has a meaning of its own.
 template <class Words>
 void expect_words(std::string_view table, std::string_view key, const Words& words) {
   ++tables;
