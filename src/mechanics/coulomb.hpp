@@ -1,6 +1,6 @@
-// Coulomb's friction of a place that slides at the velocity v, as the potential limit f(|v|) of a rate (docs/theory/
-// coulomb.md). With s the speed below which it counts as sticking, f' = 2 v/s - (v/s)^2 below s and 1 above: all of the
-// limit where it slides, and smooth enough for Newton's method where it creeps.
+// Regularised Coulomb friction: the potential limit f(|v|) of the sliding velocity v (docs/theory/coulomb.md). With s
+// the stick speed, f' = 2 v/s - (v/s)^2 below s and 1 above: the full limit in sliding, and smooth enough for Newton's
+// method near sticking.
 #pragma once
 
 #include "core/vector.hpp"
@@ -12,11 +12,11 @@ struct Coulomb {
 
   static constexpr double stick_speed = 0.1 / 60;  // um/s: s
 
-  /// nN um/s
+  /// Return the potential, nN um/s.
   [[nodiscard]] double potential(const Vec3& velocity) const;
-  /// On what slides, nN: against the velocity.
+  /// Return the force on the sliding body, nN, opposite to the velocity.
   [[nodiscard]] Vec3 force(const Vec3& velocity) const;
-  /// -d(force)/d(velocity), nN s/um: never negative.
+  /// Return -d(force)/d(velocity), nN s/um; positive semidefinite.
   [[nodiscard]] Mat3 resistance(const Vec3& velocity) const;
 };
 

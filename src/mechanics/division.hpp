@@ -1,5 +1,5 @@
-// Cells divide and daughters grow, between two steps: what changes of the model and of its state. The cut itself is
-// tissue/division.hpp. Theory: docs/theory/division.md.
+// Cell division and growth of daughters between steps: changes of model and state. The cut itself: tissue/division.hpp.
+// Theory: docs/theory/division.md.
 #pragma once
 
 #include <span>
@@ -9,21 +9,20 @@
 
 namespace plica {
 
-/// One cell to be divided.
+/// Order to divide one cell.
 struct PlannedDivision {
   CellCut cut;
-  double growth_s = 0;      // from the cut until the daughters have their final size; 0: at once
-  double volume_ratio = 1;  // a daughter's final volume over her mother's: 1 as large, 0.5 a half
+  double growth_s = 0;      // from cut to final size of the daughters; 0: immediate
+  double volume_ratio = 1;  // final volume of a daughter / volume of the mother
 };
 
-/// Cuts the cells at the state's time. Positions, momentum and contraction's tension do not change; pressures and
-/// velocities are handed on. Each daughter's
-/// target volume starts at what her half has, her rest shape at the half of her mother's; both then grow (`grow`).
-/// std::logic_error when the tissue is indivisible.
+/// Divide the cells at the time of the state. Positions, momentum and tension of contractions do not change; pressures
+/// and velocities are inherited. The target volume of a daughter starts at the volume of its half, its rest shape at
+/// half of that of the mother; both then grow (`grow`). std::logic_error if the tissue is indivisible.
 Division divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned);
 
-/// Gives growing daughters the rest shape and target volume of `time_s`. Depends on the time only, so that a step can
-/// be taken again.
+/// Set rest shape and target volume of growing daughters for `time_s`. Depends on the time only, so steps can be
+/// repeated.
 void grow(Model& model, double time_s);
 
 }  // namespace plica

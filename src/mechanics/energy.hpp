@@ -1,5 +1,4 @@
-// Where energy goes over a step, law by law: what cells put in, what the tissue stores, what is lost
-// (docs/theory/energy.md).
+// Energy budget of a step by law: work done by cells, stored and dissipated energy (docs/theory/energy.md).
 #pragma once
 
 #include <string>
@@ -9,17 +8,17 @@
 
 namespace plica {
 
-/// The length of a step on which nothing moves: rates do not matter then, if it is so short that nothing flows.
+/// Duration of a step in which nothing moves: rates vanish, and it is too short for relaxation.
 inline constexpr double no_time_s = 1e-9;
 
-/// Of a law that resists changes in proportion to their rate: half of what that costs is in its energy.
+/// Return the flow of a law that resists rates linearly: twice its energy is dissipated.
 EnergyFlow viscous_energy_flow(const Law& law, const MadeStep& made);
 
-/// What the step from `before` to `after` did: of each law, in the model's order, then of the cells' volumes, which
-/// work only where cells grow. Of such cells the model has the rest shapes that they had midway.
+/// Return the energy flows of the step from `before` to `after`: of each law in model order, then of cell volumes,
+/// which do work only when cells grow. The model must have the rest shapes of growing cells midway through the step.
 std::vector<EnergyFlow> energy_flows(const Model& model, const State& before, const State& after);
 
-/// What tables call these.
+/// Names of these terms in tables.
 std::vector<std::string> energy_labels(const Model& model);
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// The model of a run (constant) and its state (everything that changes).
+// Model of a run (constant) and its state (everything that changes).
 #pragma once
 
 #include <array>
@@ -15,14 +15,14 @@
 
 namespace plica {
 
-/// A daughter on her way from a half of her mother to her final size: linear in time.
+/// Growth of a daughter cell from half of its mother to its final size, linear in time.
 struct Growth {
   CellId cell;
   std::vector<Vec3> rest_from, rest_to;   // um; corners, as Cell::rest_shape
   double target_from = 0, target_to = 0;  // volume, um^3
   double start_s = 0, end_s = 0;
 
-  /// Part of the way, 0 to 1.
+  /// Return the completed fraction, 0 to 1.
   [[nodiscard]] double part(double time_s) const;
 };
 
@@ -30,13 +30,13 @@ struct Growth {
 struct Model {
   Tissue tissue;
   std::vector<std::unique_ptr<Law>> laws;
-  std::vector<std::unique_ptr<Constraint>> constraints;  // the first is that of the cells' volumes
+  std::vector<std::unique_ptr<Constraint>> constraints;  // the first is CellVolumes
   std::vector<std::unique_ptr<Obstacle>> obstacles;
-  std::vector<std::array<bool, 3>> held;  // nodes; directions x, y, z in which a node does not move
-  std::vector<Growth> growths;            // under way, and over since the last division
-  double stiffness_scale = 1;             // Young's modulus, kPa: for tolerances that must not depend on the load
+  std::vector<std::array<bool, 3>> held;  // nodes; fixed directions x, y, z
+  std::vector<Growth> growths;            // in progress, or finished since the last division
+  double stiffness_scale = 1;             // Young's modulus, kPa, for load-independent tolerances
 
-  /// Nothing but the cells' volumes, which are held.
+  /// Make a model with held cell volumes and no laws.
   explicit Model(Tissue t);
   Model(const Model& other);
   Model(Model&&) = default;
@@ -45,27 +45,28 @@ struct Model {
   [[nodiscard]] CellVolumes& volumes() { return static_cast<CellVolumes&>(*constraints.front()); }
   [[nodiscard]] const CellVolumes& volumes() const { return static_cast<const CellVolumes&>(*constraints.front()); }
 
-  /// How many multipliers all constraints have.
+  /// Return the number of multipliers of all constraints.
   [[nodiscard]] std::size_t multiplier_count() const;
 
-  /// Mass of the nodes, g; empty in a model without inertia.
+  /// Return nodal masses, g; empty without inertia.
   [[nodiscard]] std::span<const double> masses() const;
 
-  /// Typical force of the body, nN: modulus times the mean area of an element's face. Residuals are zero against this.
+  /// Return the typical force of the body, nN: modulus times the mean face area of elements. Residuals are scaled by
+  /// it.
   [[nodiscard]] double force_scale() const;
 
-  /// What rounding of positions makes of elastic forces (nN, norm over nodes): nothing solves below that. Matters for
-  /// cells that are very thin beside the embryo.
+  /// Return the error of elastic forces caused by rounding of positions (nN, norm over nodes): a lower bound for
+  /// convergence. Relevant for cells much thinner than the embryo.
   [[nodiscard]] double elastic_rounding() const;
-  /// How far positions are rounded, with a margin for sums, um.
+  /// Return the rounding error of positions, with a margin for sums, um.
   [[nodiscard]] double position_rounding() const;
 };
 
-/// The place in model.laws of the one that tables call so; of those by which cells act, where `acting` asks for that.
-/// UsageError, with the names that there are.
+/// Return the index in model.laws of the law with this label; if `acting`, among active laws only. UsageError lists
+/// the existing labels.
 std::size_t place_of_law(const Model& model, const std::string& label, bool acting = false);
 
-/// Calls body(law, step as that law sees it) for every law.
+/// Call body(law, step as seen by that law) for every law.
 template <class Body>
 void for_laws(const Model& model, const Step& step, const Body& body) {
   Step own = step;
@@ -75,11 +76,10 @@ void for_laws(const Model& model, const Step& step, const Body& body) {
   }
 }
 
-/// The internal states of all laws at the end of a step, whose positions are there.
+/// Return the internal states of all laws at the end of a step, at whose end positions are.
 std::vector<std::vector<double>> next_internals(const Model& model, const Step& step);
 
-/// Calls body(constraint, where its multipliers begin among all, its place in the model) for every constraint that a
-/// step holds.
+/// Call body(constraint, index of its first multiplier, index in the model) for every held constraint.
 template <class Body>
 void for_held_constraints(const Model& model, const Body& body) {
   std::size_t first = 0;
@@ -90,34 +90,34 @@ void for_held_constraints(const Model& model, const Body& body) {
   }
 }
 
-/// Where the body is. What a run needs beside it to go on to the same bits is in RunMemory.
+/// State of the body. RunMemory holds what a run also needs to continue bitwise identically.
 struct State {
   double time_s = 0;
   Vectors positions;                           // nodes; um
   Vectors velocities;                          // nodes; um/s, at the end of the last step
-  std::vector<double> multipliers;             // the constraints', one after the other; first the cells' pressures, kPa
+  std::vector<double> multipliers;             // of all constraints, consecutively; first cell pressures, kPa
   std::vector<double> contact_forces;          // Contacts; nN, >= 0
   std::vector<char> in_contact;                // Contacts
-  std::vector<std::vector<double>> internals;  // laws: what each remembers (Law::next_internal)
-  double divided_until_s = -1;                 // divisions that were due up to here have been made
+  std::vector<std::vector<double>> internals;  // laws: internal states (Law::next_internal)
+  double divided_until_s = -1;                 // divisions due until then are done
 
-  // How things last changed (record_motion), from which the next step's end is forecast. Empty when that is not known:
-  // at the start and after a division.
+  // Recent rates of change (record_motion), from which the end of the next step is predicted. Empty if unknown: at the
+  // start and after a division.
   struct Trend {
-    double step_s = 0;                     // the last step
-    double earlier_s = 0;                  // the one before it
-    Vectors mean_velocities;               // nodes; um/s, over the last step; empty where they are the velocities
-    Vectors accelerations;                 // nodes; um/s^2, between the middles of these two steps
-    std::vector<double> multiplier_rates;  // a second
+    double step_s = 0;                     // length of the last step
+    double earlier_s = 0;                  // length of the one before
+    Vectors mean_velocities;               // nodes; um/s, over the last step; empty if equal to velocities
+    Vectors accelerations;                 // nodes; um/s^2, between the midpoints of these two steps
+    std::vector<double> multiplier_rates;  // per second
   } trend;
 
-  /// The cells' pressures, kPa.
+  /// Return cell pressures, kPa.
   [[nodiscard]] std::span<const double> pressures(const Model& model) const {
     return std::span(multipliers).first(model.tissue.cells.size());
   }
 };
 
-/// The model at rest, before the first step.
+/// Return the reference state, before the first step.
 State rest_state(const Model& model);
 
 }  // namespace plica

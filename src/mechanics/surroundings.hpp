@@ -1,4 +1,4 @@
-// Laws that act on single nodes: drag of the surroundings, inertia, and pressure on faces as a dead load.
+// Laws on single nodes: drag, inertia, and pressure on faces (dead load).
 #pragma once
 
 #include "mechanics/active/cell_pattern.hpp"
@@ -8,10 +8,10 @@
 
 namespace plica {
 
-/// Drag on the apical and basal faces: force -d v, d from the faces' rest area, a quarter of each facet to each corner.
+/// Drag on apical and basal faces: force -d v, with d from reference face areas, a quarter of each facet per corner.
 class SurfaceDrag final : public Law {
  public:
-  /// `drag` in nN s/um^3 (1 Pa s/um is 1e-3).
+  /// Make the law with `drag` in nN s/um^3 (1 Pa s/um is 1e-3).
   SurfaceDrag(const Tissue& tissue, double drag);
 
   [[nodiscard]] std::string_view name() const override { return "drag"; }
@@ -31,10 +31,10 @@ class SurfaceDrag final : public Law {
   std::vector<double> coefficients_;  // nodes; nN s/um
 };
 
-/// Mass lumped to the nodes, an eighth of each element's to each corner: backward Euler for M dv/dt.
+/// Inertia with lumped mass, an eighth of each element per corner: backward Euler for M dv/dt.
 class Inertia final : public Law {
  public:
-  /// `density` in g/um^3.
+  /// Make the law with `density` in g/um^3.
   Inertia(const Tissue& tissue, double density);
 
   [[nodiscard]] std::string_view name() const override { return "inertia"; }
@@ -54,10 +54,10 @@ class Inertia final : public Law {
   std::vector<double> masses_;  // nodes; g
 };
 
-/// A pressure on the apical or basal facets of some cells, pushing into the cell: a dead load on the faces at rest.
+/// Pressure on apical or basal facets of some cells, directed into the cell: a dead load on reference faces.
 class FacePressure final : public Law {
  public:
-  /// `pressure` in kPa, times the cells' strengths; on all at once, without their delays.
+  /// Make the law with `pressure` in kPa, times the strengths of cells; delays are ignored.
   FacePressure(const Tissue& tissue, bool on_apical, CellPattern pattern, double pressure, Program program);
 
   [[nodiscard]] std::string_view name() const override { return "pressure"; }

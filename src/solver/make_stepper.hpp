@@ -1,4 +1,4 @@
-// Who takes a model's steps: the choice between the schemes that a scenario may ask for.
+// Choice of the time-stepping scheme requested by a scenario.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace plica {
 
-/// What takes a step.
+/// Description of a scheme.
 struct StepScheme {
   enum class Forces { newton, linearly_implicit } forces = Forces::newton;
   TimeOrder order = TimeOrder::first;                    // second: newton, no projection, no inertia

@@ -1,4 +1,4 @@
-// The faces of a tissue as laws on faces are told them: apical, basal, and lateral ones, each of these once.
+// Faces of a tissue for laws on faces: apical, basal, and lateral ones, each lateral face once.
 #pragma once
 
 #include <array>
@@ -11,30 +11,30 @@
 
 namespace plica {
 
-/// A bilinear face, counter-clockwise seen from outside its cell.
+/// Bilinear face, counter-clockwise seen from outside its cell.
 struct Face {
   std::array<NodeId, 4> nodes;
   CellId cell;
-  std::optional<CellId> beyond;  // of a lateral face: the neighbour, which shares it; none at a rim
-  double share = 1;              // how much of it is this tissue's: a half on a mirror plane, or at an end of a slice
+  std::optional<CellId> beyond;  // lateral face: the neighbour that shares it; none at a boundary
+  double share = 1;              // fraction of this tissue: 1/2 on a mirror plane or at an end of a slice
 };
 
-/// All faces of a side, in the order of the elements. A cell of several elements has several on each side. A lateral
-/// face stands once, for the first of its two cells. After a division a wall is cut where the neighbour has been, so
+/// Return all faces of a side, in order of elements. A cell of several elements has several on each side. A lateral
+/// face occurs once, for the first of its two cells. After a division a lateral face is cut where the neighbour was, so
 /// that each face has one cell on either side.
 std::vector<Face> faces_of(const Tissue& tissue, CellSide side);
 
-/// The rim of a surface of facets, none of a closed one: edges that two facets do not share, between free nodes, as the
-/// facet has them. Where nodes hang on a facet's edge and its neighbour's edges end at them, these are shared.
+/// Return the boundary of a surface of facets (empty if closed): edges between free nodes that belong to one facet,
+/// oriented as in it. Edges of neighbours that end at nodes hanging on an edge of a facet are shared.
 std::vector<std::pair<NodeId, NodeId>> rim_of(const Tissue& tissue, std::span<const Facet> facets);
 
-/// Whether a surface of facets encloses a volume: it has no rim, and does not go on for ever either.
+/// Whether a surface of facets encloses a volume: it has no boundary and is not periodic.
 bool encloses(const Tissue& tissue, std::span<const Facet> facets);
 
-/// The cells that share a wall with each cell, in the order of their numbers.
+/// Return the cells that share a lateral face with each cell, ascending.
 std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue);
 
-/// The first cell that lacks an apical or a basal face: there is more than one layer of cells.
+/// Return the first cell without an apical or basal face, which shows more than one layer of cells.
 std::optional<CellId> cell_between_layers(const Tissue& tissue);
 
 }  // namespace plica

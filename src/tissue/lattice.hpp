@@ -1,5 +1,5 @@
-// From cells to a tissue: each cell is a lattice of nodes, n_u x n_v x n_w elements, and everything else (elements,
-// facets, edges) is read off that lattice in the same way for every kind of embryo.
+// Tissue from lattices: each cell is a lattice of nodes, n_u x n_v x n_w elements; elements, facets and edges are
+// derived from it in the same way for every shape.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace plica {
 
-/// The nodes of one cell, (n_u + 1)(n_v + 1)(n_w + 1) of them, u fastest. w runs from the basal to the apical face and
-/// u x v points outward. `has_apical` and `has_basal` say whether those faces lie on the tissue's surface.
+/// Lattice of a cell: (n_u + 1)(n_v + 1)(n_w + 1) nodes, u fastest. w runs from the basal to the apical face and u x v
+/// points outward. `has_apical` and `has_basal`: whether those faces lie on the surface of the tissue.
 struct CellLattice {
   std::array<int, 3> elements = {1, 1, 1};
   std::vector<NodeId> nodes;
@@ -23,19 +23,18 @@ struct CellLattice {
   }
 };
 
-/// Numbers the nodes anew, in the order in which the elements come to them. So what a loop over elements looks at lies
-/// close together; layer by layer it would be far apart where cells are cut into many elements. Every node has to be
-/// one of a cell's.
+/// Renumber the nodes in the order in which elements use them, so that data of nearby elements are close in memory.
+/// Every node must belong to a cell.
 void number_as_elements_come(std::vector<CellLattice>& cells, Vectors& rest_positions);
 
-/// Appends the cell's elements and facets to the tissue's, with rest shapes from its rest positions, u fastest.
+/// Append the elements and facets of the cell to the tissue, with rest shapes from its rest positions, u fastest.
 void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue);
 
-/// Sets corners, edges and lines of a grid's cell.
+/// Set corners, edges and lines of a grid cell.
 void set_corners_and_lines(const CellLattice& lattice, const Vectors& rest_positions, Cell& cell);
 
-/// Builds the tissue of the given cells. Of the directions u and v, a cell's edges along the one that lies closer to x
-/// at rest are `along`, the others `across`. Region "all" is set. Takes time in proportion to the elements.
+/// Build the tissue of the given cells. Of directions u and v, edges closer to x in the reference state are `along`,
+/// the others `across`. Sets region "all". Takes linear time.
 Tissue tissue_from_lattices(const std::vector<CellLattice>& cells, Vectors rest_positions);
 
 }  // namespace plica

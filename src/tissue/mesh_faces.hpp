@@ -1,4 +1,4 @@
-// Which cells of a hexahedral mesh share a face, and which faces are its surface.
+// Face adjacency of a hexahedral mesh, and the faces of its surface.
 #pragma once
 
 #include <array>
@@ -10,26 +10,26 @@
 
 namespace plica {
 
-/// A face of a cell, 0-5 in the order of hex_faces.
+/// Face of a cell, 0-5 in the order of hex_faces.
 struct CellFace {
   std::size_t cell;
   int face;
 };
 
-/// The nodes of a face of a cell, counter-clockwise seen from outside.
+/// Return the nodes of a face of a cell, counter-clockwise seen from outside.
 std::array<NodeId, 4> face_nodes(const std::array<NodeId, 8>& cell, int face);
 
 class MeshFaces {
  public:
-  /// Pairs the faces of cells in VTK's order. MeshError when more than two cells share a face, or when two share its
-  /// nodes but not the face: twisted, or lying over each other. It says where, if `points` are given.
+  /// Pair the faces of cells in VTK order. MeshError if more than two cells share a face, or if two share its nodes but
+  /// not the face (twisted or overlapping). With `points`, the message has positions.
   explicit MeshFaces(const std::vector<std::array<NodeId, 8>>& cells, std::span<const Vec3> points = {});
 
-  /// The same face as the cell beyond it has it; nothing on the surface.
+  /// Return the face as seen by the adjacent cell; empty on the surface.
   [[nodiscard]] std::optional<CellFace> neighbour(const CellFace& side) const;
   [[nodiscard]] bool on_surface(const CellFace& side) const { return !neighbour(side); }
 
-  /// The faces used by one cell only, in the order of the cells.
+  /// Return the faces of one cell only, in order of cells.
   [[nodiscard]] std::vector<CellFace> surface() const;
 
  private:

@@ -1,4 +1,4 @@
-// Which face of each cell of a mesh is apical, and cells turned so that it is where plica wants it.
+// Orientation of mesh cells: apical face of each, and rotation into the order of plica.
 #pragma once
 
 #include <array>
@@ -9,18 +9,17 @@
 
 namespace plica {
 
-/// The face of each cell on the outer surface of a closed layer, one cell thick. MeshError when the mesh is no such
-/// layer.
+/// Return the face of each cell on the outer surface of a closed layer, one cell thick. MeshError for any other mesh.
 std::vector<int> outer_faces(const HexahedralMesh& mesh, const MeshFaces& faces);
 
-/// The cell turned (not mirrored) so that the given face becomes nodes 4-7; face 5 leaves it as it is.
+/// Return the cell rotated (not mirrored) so that the given face becomes nodes 4-7; unchanged for face 5.
 std::array<NodeId, 8> turned_cell(const std::array<NodeId, 8>& cell, int apical_face);
 
-/// MeshError when the apical faces of two neighbours do not fit: side by side, both cells must have the same end of the
-/// face they share at their apical side; else neither the layer nor its refinement makes sense.
+/// Check that apical faces of neighbours meet: both cells must have the same side of their shared face at their apical
+/// side. MeshError otherwise.
 void check_apical_faces(const HexahedralMesh& mesh, const MeshFaces& faces, const std::vector<int>& apical_faces);
 
-/// The face opposite to a face of a hexahedron.
+/// Return the face opposite to a face of a hexahedron.
 constexpr int opposite_face(int face) { return face ^ 1; }
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// How even a tissue's cells are.
+// Quality of the cells and elements of a tissue.
 #pragma once
 
 #include "tissue/tissue.hpp"
@@ -12,30 +12,30 @@ struct Spread {
 struct MeshQuality {
   Spread volume_um3;       // of cells
   Spread apical_area_um2;  // of cells
-  Spread along_um;         // lengths of apical and basal edges along the axis, each cell's own
+  Spread along_um;         // apical and basal edges along the axis, per cell
   Spread across_um;
   Spread height_um;                // lateral edges
   double min_scaled_jacobian = 1;  // of elements
-  CellId worst_cell;               // whose element that is
+  CellId worst_cell;               // cell of that element
 };
 
-/// What is to be told of polygons beside that.
+/// Further statistics of polygons.
 struct PolygonQuality {
   Spread basal_area_um2;                   // of cells
-  Spread apical_edge_um;                   // edges of apical polygons, each cell's own
-  std::vector<std::size_t> corner_counts;  // how many cells have 0, 1, 2, 3, ... corners
-  std::vector<std::size_t> neighbours;     // and how many have 0, 1, 2, ... cells beyond their walls
-  std::size_t rim_cells = 0;               // cells with a wall that nobody shares
+  Spread apical_edge_um;                   // edges of apical polygons, per cell
+  std::vector<std::size_t> corner_counts;  // number of cells with 0, 1, 2, 3, ... corners
+  std::vector<std::size_t> neighbours;     // number of cells with 0, 1, 2, ... neighbours
+  std::size_t rim_cells = 0;               // cells at a boundary
 };
 
 MeshQuality mesh_quality(const Tissue& tissue, const Vectors& positions);
 
 PolygonQuality polygon_quality(const Tissue& tissue, const Vectors& positions);
 
-/// Worst corner of an element: 1 is a brick, 0 is flat.
+/// Return the scaled Jacobian of an element: 1 for a brick, 0 if flat.
 double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions);
 
-/// Smallest Jacobian of an element's corner over that at rest: 0 is flat, below it the corner is inside out.
+/// Return the smallest corner Jacobian / reference value of an element: 0 if flat, negative if inverted.
 double min_corner_jacobian_ratio(const Tissue& tissue, const Vectors& positions);
 
 }  // namespace plica

@@ -1,5 +1,5 @@
-// A tissue that is symmetric about planes through the origin, and the one side of them that need be solved: what stands
-// for what (docs/theory/mirror.md).
+// Symmetric tissue: its planes through the origin, and the mapping of the full tissue to the solved side
+// (docs/theory/mirror.md).
 #pragma once
 
 #include <array>
@@ -11,31 +11,31 @@
 
 namespace plica {
 
-/// Which node and cell of a side each of the whole is an image of. Empty: of a tissue that is a whole by itself, where
+/// Mapping of nodes and cells of the full tissue to those of a side. Empty for a tissue without mirror planes, where
 /// everything is its own image.
 struct Mirror {
-  /// Where that node is, times a sign an axis.
+  /// Return the position of that node, with one sign per axis.
   struct Image {
     NodeId node;
     Vec3 signs;
   };
   std::vector<Image> nodes;     // of the whole
   std::vector<CellId> cells;    // of the whole
-  std::vector<CellId> origins;  // of the side: which of the whole's its cells are
+  std::vector<CellId> origins;  // side: cells of the full tissue
 
   [[nodiscard]] bool is_used() const { return !nodes.empty(); }
   [[nodiscard]] Image image(NodeId of_whole) const {
     return is_used() ? nodes[of_whole.index()] : Image{of_whole, Vec3::Ones()};
   }
-  /// The cell of the whole, on the side, that a cell of the whole is an image of.
+  /// Return the cell on the side of which a cell of the full tissue is an image.
   [[nodiscard]] CellId own(CellId of_whole) const {
     return is_used() ? origins[cells[of_whole.index()].index()] : of_whole;
   }
-  /// Vectors of a side's nodes (positions, or what turns as they do), of all nodes of the whole.
+  /// Return vectors (positions, or others that mirror likewise) of all nodes of the full tissue from those of a side.
   [[nodiscard]] Vectors whole(std::span<const Vec3> of_side) const;
 };
 
-/// Vectors of a side's nodes, read by nodes of the whole.
+/// View of vectors of a side, read by nodes of the full tissue.
 struct MirroredVectors {
   const Mirror& mirror;
   std::span<const Vec3> of_side;
@@ -45,14 +45,15 @@ struct MirroredVectors {
   }
 };
 
-/// A tissue is not symmetric about a plane. The text says which, and what is wrong.
+/// Asymmetry about a plane; the text names the plane and the problem.
 struct NotSymmetric : std::runtime_error {
   NotSymmetric(const std::string& problem, std::string what_would_be_right)
       : std::runtime_error(problem), remedy(std::move(what_would_be_right)) {}
   std::string remedy;
 };
 
-/// The part of a whole on the positive side of the planes across some axes (0, 1, 2 for x, y, z), through the origin.
+/// Return the part of a tissue on the positive side of the planes across some axes (0, 1, 2 for x, y, z), through the
+/// origin. NotSymmetric if a node or cell has no image, a plane cuts a cell, or the sheet is periodic.
 struct MirroredSide {
   Tissue tissue;
   Mirror mirror;

@@ -1,4 +1,4 @@
-// A surface that repeats itself: its vertices are those of one period, and of where that ends.
+// Periodic surface: vertices of one period, and images at its end.
 #pragma once
 
 #include <cmath>
@@ -9,14 +9,14 @@
 namespace plica {
 
 struct Periods {
-  Vec3 length = Vec3::Zero();  // um along x, y, z; 0 where it does not repeat itself
-  // Of each vertex the one that stands for it, whole periods away; of most the vertex itself. Empty: no periods.
+  Vec3 length = Vec3::Zero();  // um along x, y, z; 0 if not periodic
+  // Original of each vertex, whole periods away; mostly the vertex itself. Empty: not periodic.
   std::vector<std::size_t> originals = {};
 
   [[nodiscard]] bool is_used() const { return !originals.empty(); }
   [[nodiscard]] std::size_t original(std::size_t vertex) const { return is_used() ? originals[vertex] : vertex; }
 
-  /// The whole periods that come nearest to a way.
+  /// Return the whole periods nearest to an offset.
   [[nodiscard]] Vec3 whole(const Vec3& way) const {
     Vec3 periods = Vec3::Zero();
     for (int axis = 0; axis < 3; ++axis)

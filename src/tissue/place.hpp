@@ -1,4 +1,4 @@
-// Where something is, for messages about it.
+// Positions in messages.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@ namespace plica {
 struct HexahedralMesh;
 struct Tissue;
 
-/// "(1.5, 0, -20) um".
+/// Return "(1.5, 0, -20) um".
 std::string place_text(const Vec3& place);
 
-/// "cell 12 at (1.5, 0, -20) um": its middle at rest, or that of its nodes.
+/// Return "cell 12 at (1.5, 0, -20) um": the centre in the reference state, or the mean of its nodes.
 std::string cell_at(const Tissue& tissue, CellId cell);
 std::string cell_at(const HexahedralMesh& mesh, std::size_t cell);
 

@@ -1,4 +1,4 @@
-// The outline of a cell that is given by its elements and corners alone.
+// Outline of a cell given by its elements and corners only.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace plica {
 
-/// The chains of free nodes from a corner to the next, on both faces, and up from each. `basal` and `apical` are the
-/// cell's facets; of each element, nodes 4-7 lie above 0-3. Nothing when there are no such chains: corners are not on
-/// the rim of the facets, in its order, or not above each other.
+/// Return the chains of free nodes between corners on both faces, and up from each corner. `basal` and `apical` are the
+/// facets of the cell; nodes 4-7 of each element lie above 0-3. Empty if there are none: corners are not on the
+/// boundary of the facets, in its order, or not above each other.
 std::optional<PolygonChains> chains_about(const Tissue& tissue, std::span<const Facet> basal,
                                           std::span<const Facet> apical, const Cell& cell);
 

@@ -1,5 +1,5 @@
-// From polygons to a tissue: each cell is a prism over a polygon, made of hexahedra over quadrilaterals that the
-// polygon is split into. Nothing outside of this folder knows how.
+// Tissue from polygons: each cell is a prism over a polygon, made of hexahedra over quadrilaterals. Only this folder
+// depends on the split.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace plica {
 
-/// A layer of prisms side by side: walls between neighbours are bilinear.
+/// Layer of adjacent prisms: lateral faces between neighbours are bilinear.
 struct PrismSheet {
   Vectors apical, basal;                        // vertices, one below the other; um
   std::vector<std::vector<std::size_t>> cells;  // vertices of each polygon, counter-clockwise seen from outside
@@ -17,15 +17,16 @@ struct PrismSheet {
 };
 
 enum class PolygonSplit {
-  /// By diagonals. An odd polygon gets a node in the middle of an edge, which hangs on the edge's ends: so what the
-  /// neighbour is made of does not matter. A triangle is split as by kites, whose nodes hang on its corners.
+  /// Split by diagonals. An odd polygon gets a node in the middle of an edge, which hangs on its ends, so the split
+  /// does not affect the neighbour. A triangle is split into kites, whose nodes hang on its corners.
   diagonals,
-  /// A kite a corner: from there to the middles of its edges and that of the polygon. All nodes are free.
+  /// Split into kites, one per corner: from there to the middles of its edges and that of the polygon. All nodes are
+  /// free.
   kites
 };
 
-/// Each prism cut into so many layers. Images of vertices hang on these: they are one node of the mechanics. Polygons
-/// are split in the way that makes the best elements. Region "all" is set.
+/// Build the tissue with each prism cut into `layers`. Images of vertices hang on their originals, as one node of the
+/// mechanics. Polygons are split for the best element quality. Sets region "all".
 Tissue tissue_from_prisms(const PrismSheet& sheet, PolygonSplit split, int layers);
 
 }  // namespace plica

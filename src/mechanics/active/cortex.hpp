@@ -1,9 +1,9 @@
 // The cortex: a thin, active, elastic layer on apical, basal or lateral faces of cells (docs/theory/cortex.md).
 //
-// The tension T of a face, nN/um, is a function of its area A alone, the same in all directions:
+// The tension T of a face, nN/um, is isotropic and depends on its area A only:
 //   T = a(t) gamma A/(A + A_s) + b(t) k (A/A_0 - 1) - c (A_r/A)^2,
-// a and b the programs, A_r the face's area at rest, A_s = saturation A_r, and A_0 the rest area, which is A_r or flows
-// after the area: dA_0/dt = (A - A_0)/tau. Where A < A_0, k is `compression_ratio` times smaller.
+// with programs a and b, reference area A_r, A_s = saturation A_r, and stress-free area A_0, which is A_r or relaxes
+// towards the area: dA_0/dt = (A - A_0)/tau. Where A < A_0, k is `compression_ratio` times smaller.
 #pragma once
 
 #include <vector>
@@ -20,24 +20,23 @@
 
 namespace plica {
 
-/// What a cortex is like. As in the scenario's [cortex.NAME].
+/// Parameters of a cortex, as in [cortex.NAME] of the scenario.
 struct CortexRule {
   CellSide side = CellSide::apical;
   double tension = 0;              // gamma, nN/um
-  double saturation = 0;           // A_s over the area at rest
+  double saturation = 0;           // A_s / A_r
   double stiffness = 0;            // k, nN/um
-  double compression_ratio = 1;    // 0: slack
+  double compression_ratio = 1;    // stiffness in compression / in extension; 0: slack
   double crowding = 0;             // c, nN/um
-  double relaxation_s = 0;         // tau; 0: the rest area does not flow
-  Program program = {};            // of gamma; a cell's begins after its delay
+  double relaxation_s = 0;         // tau; 0: no relaxation
+  Program program = {};            // of gamma; starts after the delay of the cell
   Program stiffness_program = {};  // of k
-  OwnStateRule own = {};           // what starts both programs, or scales the tension, in each cell
+  OwnStateRule own = {};           // shape-dependent start of both programs, or factor on the tension
 };
 
-/// Cells' strengths scale all of it. A wall is the cortex of the two cells that share it: it has the mean of what they
-/// are told, nothing from one that does not act; at a rim, where there is one cell, what that is told; on a mirror
-/// plane or at the end of a slice, whose other side has the rest, a half of that. The semidefinite tangent leaves out
-/// faces under compression and what changes of shape within a face give.
+/// Cortex law. Cell strengths scale all terms. A lateral face is shared by two cells and takes the mean of their
+/// parameters (0 for an inactive cell); at a boundary it takes those of its one cell; on a mirror plane or at the end
+/// of a slice, half of them. The semidefinite tangent omits faces under compression and changes of shape within a face.
 class Cortex final : public Law {
  public:
   Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kernels kernels = chosen_kernels());
@@ -51,13 +50,13 @@ class Cortex final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
 
-  /// Where rest areas flow: those at the beginning of the step, then those at the beginning of the step before. Then
-  /// the cells' own states, where these matter; then activities that are given from outside.
+  /// Return, if areas relax, stress-free areas at the beginning of this step and of the previous one; then cell
+  /// states, if used; then overridden activities, if any.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
 
-  /// Faces of daughters have the strain of their mother's: rest areas over areas at rest. A wall between daughters is
-  /// as it is at rest.
+  /// Keep the strain of the mother in faces of daughters (stress-free / reference area). The face between daughters
+  /// starts in its reference state.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
@@ -68,27 +67,27 @@ class Cortex final : public Law {
   [[nodiscard]] bool is_active() const override { return rule_.tension != 0; }
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
                                                   std::span<const double> internal) const override;
-  /// Of the tension: stiffness keeps its program.
+  /// Override the activity of the tension; stiffness keeps its program.
   [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
                                                     std::span<const double> activities) const override;
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   [[nodiscard]] const CellPattern& pattern() const { return pattern_; }
-  /// Areas and tensions at a step's end; faces.
+  /// Areas (um^2) and tensions (nN/um) of the faces at the end of a step.
   [[nodiscard]] std::vector<double> areas(std::span<const Vec3> positions) const;
   [[nodiscard]] std::vector<double> tensions(const Step& step) const;
 
  private:
-  struct Response {  // of a face to its area
+  struct Response {  // response of a face to its area
     double energy = 0, tension = 0, slope = 0;
   };
   [[nodiscard]] Response respond(std::size_t face, double area, const Step& step, bool with_energy) const;
-  // Its three terms: T of the program, b(t) k (A/A_0 - 1) with a given b (strength included), and crowding.
+  // Its three terms: T of the program, b(t) k (A/A_0 - 1) with given b (strength included), and crowding.
   [[nodiscard]] Response active(std::size_t face, double area, const Step& step, bool with_energy) const;
   [[nodiscard]] Response elastic(std::size_t face, double area, const Step& step, double b, bool with_energy) const;
   [[nodiscard]] Response crowded(std::size_t face, double area, bool with_energy) const;
   [[nodiscard]] double stiffening_of(std::size_t face, const Step& step) const;
-  struct Pull;  // of all faces at a step's end, as kernels take it
+  struct Pull;  // all faces at the end of a step, for kernels
   [[nodiscard]] Pull pull(const Step& step) const;
   [[nodiscard]] bool flows() const { return rule_.relaxation_s > 0; }
   [[nodiscard]] double rest_area_before(std::size_t face, const Step& step) const;
@@ -108,7 +107,7 @@ class Cortex final : public Law {
   CortexRule rule_;
   CellPattern pattern_;
   Kernels kernels_;
-  std::vector<Face> faces_;         // that have any strength
+  std::vector<Face> faces_;         // faces with nonzero strength
   std::vector<double> rest_areas_;  // faces; um^2: A_r
   std::vector<double> strengths_;   // faces
   OwnState own_;

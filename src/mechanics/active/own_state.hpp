@@ -1,5 +1,5 @@
-// What a cell does by its own state, not at prescribed times: a program that starts when the cell has become so small,
-// tall or flat, or an activity that follows it (docs/theory/cortex.md, "Time-prescribed and shape-dependent activity").
+// Shape-dependent, cell-autonomous activity: a program that starts at a threshold of area, height or stretch, or an
+// activity that follows it (docs/theory/cortex.md, "Time-prescribed and shape-dependent activity").
 #pragma once
 
 #include <array>
@@ -10,20 +10,21 @@
 
 namespace plica {
 
-/// Of a cell, over the same at rest. The stretch is that of its apex, along the direction in which it is largest.
+/// Quantity of a cell relative to its reference value. The stretch is that of its apical surface along the direction of
+/// largest stretch.
 enum class OwnMeasure { apical_area_ratio, basal_area_ratio, height_ratio, apical_stretch };
 
-/// How cells begin, or go along. Numbers of cells are those at the beginning of a step.
+/// Rule by which cells start, or follow their shape. Cell numbers are those at the beginning of a step.
 struct OwnStateRule {
   enum class Kind { none, starts_below, starts_above, follows };
   Kind kind = Kind::none;
   OwnMeasure measure = OwnMeasure::apical_area_ratio;
-  double threshold = 1;     // of the two that start
-  double from = 1, to = 0;  // follows: the activity is 0 there and before, 1 there and beyond, linear between
+  double threshold = 1;     // for both triggers
+  double from = 1, to = 0;  // follow: activity 0 up to `from`, 1 beyond `to`, linear between
 };
 
-/// One number a cell: of those that start, when it did (s), or `not_yet`; of one that follows, how far it has gone,
-/// 0 to 1.
+/// State, one number per cell: start time (s) or `not_yet` for cells with a trigger, or progress from 0 to 1 for cells
+/// that follow.
 class OwnState {
  public:
   static constexpr double not_yet = -1;
@@ -33,22 +34,22 @@ class OwnState {
   [[nodiscard]] bool is_used() const { return rule_.kind != OwnStateRule::Kind::none; }
   [[nodiscard]] bool starts() const { return is_used() && rule_.kind != OwnStateRule::Kind::follows; }
 
-  /// The numbers of cells at positions and a time, from those before; none before the first step.
+  /// Return the state at given positions and time from the previous state (empty before the first step).
   [[nodiscard]] std::vector<double> numbers(std::span<const Vec3> positions, double time_s,
                                             std::span<const double> before) const;
 
-  /// The measure itself; cells.
+  /// Return the quantity of each cell.
   [[nodiscard]] std::vector<double> ratios(std::span<const Vec3> positions) const;
 
  private:
   [[nodiscard]] std::vector<double> sizes(std::span<const Vec3> positions) const;
 
   OwnStateRule rule_;
-  std::vector<Facet> facets_;                               // areas: those of the measure's side
-  std::vector<std::vector<std::array<NodeId, 2>>> edges_;   // heights: of each cell, from base to apex
-  std::vector<std::vector<NodeId>> apices_;                 // stretches: corners of each cell's apex
-  std::vector<std::vector<Eigen::RowVector2d>> gradients_;  // stretches: weights of these, for the mean gradient
-  std::vector<double> at_rest_;                             // cells; of stretches, 1
+  std::vector<Facet> facets_;                               // areas: facets of that side
+  std::vector<std::vector<std::array<NodeId, 2>>> edges_;   // heights: of each cell, basal to apical
+  std::vector<std::vector<NodeId>> apices_;                 // stretches: apical corners of each cell
+  std::vector<std::vector<Eigen::RowVector2d>> gradients_;  // stretches: their weights for the mean gradient
+  std::vector<double> at_rest_;                             // cells; 1 for stretches
 };
 
 }  // namespace plica

@@ -1,5 +1,5 @@
-// Activity over time: linear between points, held before the first and after the last. Two points of one time are a
-// jump: until that time and at it the activity is the first's, later the second's.
+// Activity time course: linear between points, constant before the first and after the last. Two points at one time
+// mark a jump: up to and at that time the first value holds, later the second.
 #pragma once
 
 #include <vector>
@@ -9,23 +9,23 @@ namespace plica {
 class Program {
  public:
   Program() = default;  // always 1
-  /// Times in s, increasing, one activity each. Empty: always 1.
+  /// Make a program from increasing times in s with one activity each; empty: always 1.
   Program(std::vector<double> times_s, std::vector<double> activities)
       : times_(std::move(times_s)), activities_(std::move(activities)) {}
 
   [[nodiscard]] double at(double time_s) const;
-  /// Of what follows the program `delay_s` later: 0 before the program's time 0.
+  /// Return the activity with a delay of `delay_s`; 0 before time 0 of the program.
   [[nodiscard]] double delayed_at(double delay_s, double time_s) const;
-  /// The time of the last point, s: from then on the activity is constant.
+  /// Return the time of the last point, s; the activity is constant from there on.
   [[nodiscard]] double end_s() const { return times_.empty() ? 0 : times_.back(); }
   [[nodiscard]] const std::vector<double>& times_s() const { return times_; }
-  /// Times at which it jumps.
+  /// Return the times of jumps, s.
   [[nodiscard]] std::vector<double> jumps_s() const;
 
-  /// Increasing: its points shifted by each of the delays and by none. Of a program without jumps, delays closer than a
-  /// hundredth of the longest count as one.
+  /// Return increasing times of its points, shifted by each delay and by none. For a program without jumps, delays
+  /// closer than 1 % of the longest count as one.
   [[nodiscard]] std::vector<double> delayed_points_s(std::vector<double> delays_s) const;
-  /// And its jumps, shifted by every delay.
+  /// Return its jumps, shifted by every delay.
   [[nodiscard]] std::vector<double> delayed_jumps_s(std::vector<double> delays_s) const;
 
  private:

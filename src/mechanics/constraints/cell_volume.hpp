@@ -1,5 +1,5 @@
-// Volume: exactly held per cell by a multiplier, and resisted per element where it varies within a cell.
-// Theory: docs/theory/cell_volume.md.
+// Cell volume: an equality constraint per cell, and a bulk modulus within cells of several elements. Theory:
+// docs/theory/cell_volume.md.
 #pragma once
 
 #include <span>
@@ -16,10 +16,10 @@
 
 namespace plica {
 
-/// Elements whose volume matters, eight side by side, and the way through them.
+/// Elements with volumes, in batches of eight, and the traversal of them.
 class VolumeElements {
  public:
-  /// What values they have: a value a cell, or one an element.
+  /// Values per cell, or per element.
   enum class Values { of_cells, of_elements };
   VolumeElements(const Tissue& tissue, Kernels kernels, Values values = Values::of_cells);
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements);
@@ -41,11 +41,10 @@ class VolumeElements {
   std::vector<VolumeBatch> batches_;
 };
 
-/// The constraints V_c(x) = target, one a cell. Their multipliers are the cells' pressures, kPa, positive in
-/// compression.
+/// Volume constraints V_c(x) = target, one per cell. Multipliers are cell pressures, kPa, positive in compression.
 class CellVolumes final : public Constraint {
  public:
-  /// Targets are the cells' rest volumes.
+  /// Set targets to reference volumes.
   explicit CellVolumes(const Tissue& tissue, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "cell volumes"; }
@@ -53,15 +52,15 @@ class CellVolumes final : public Constraint {
   [[nodiscard]] std::size_t count() const override { return targets_.size(); }
   [[nodiscard]] std::span<const double> targets() const override { return targets_; }
   [[nodiscard]] bool is_held() const override { return is_held_; }
-  /// Whether steps hold them. Where they do not, the projection may, or a bulk modulus, or nobody.
+  /// Whether steps enforce the constraints; otherwise the projection, a bulk modulus, or nothing does.
   void hold(bool held) { is_held_ = held; }
   void set_target(CellId cell, double volume) { targets_[cell.index()] = volume; }
 
-  /// V_c at the given positions, um^3; cells.
+  /// Return V_c at the given positions, um^3; cells.
   [[nodiscard]] std::vector<double> volumes(std::span<const Vec3> positions) const;
   void values(std::span<const Vec3> positions, std::span<double> of_cells) const override;
 
-  /// V_c / target - 1; cells.
+  /// Return V_c / target - 1; cells.
   [[nodiscard]] std::vector<double> relative_errors(std::span<const Vec3> positions) const;
 
   /// Elements.
@@ -79,13 +78,13 @@ class CellVolumes final : public Constraint {
   [[nodiscard]] double gradient_scale(std::size_t cell) const override;
   [[nodiscard]] double rounding(const Tissue& tissue, double position_rounding) const override;
   [[nodiscard]] std::optional<CellId> cell_of(std::size_t cell) const override { return CellId(cell); }
-  /// Targets and pressures are handed on to daughters.
+  /// Return constraints after a division; daughters inherit targets and pressures.
   [[nodiscard]] std::unique_ptr<Constraint> after_division(const Tissue& tissue, const Division& division,
                                                            std::span<const Vec3> positions) const override;
   [[nodiscard]] std::vector<double> multipliers_after_division(std::span<const double> pressures,
                                                                const Division& division) const override;
 
-  /// What the kernels are given.
+  /// Return the input of the kernels.
   [[nodiscard]] VolumeStep kernel_step(std::span<const Vec3> positions, std::span<const double> pressures) const;
 
  private:
@@ -96,18 +95,18 @@ class CellVolumes final : public Constraint {
   bool is_held_ = true;
 };
 
-/// The bulk modulus at work: energy kappa V0 (V/V0 - 1)^2 / 2 an element, with exact volumes; V0 is the element's part
-/// of the volume that its cell is held at, else its rest volume. It replaces the mean volumetric part that the elastic
-/// laws leave out. Where a cell is one element of exact volume it is zero; within a cell of several it resists one
-/// element growing at another's cost; without the constraint it is the whole volume elasticity. Its semidefinite
-/// tangent leaves out the pressure times d2V/dx2.
+/// Bulk elasticity: energy kappa V0 (V/V0 - 1)^2 / 2 per element, with exact volumes; V0 is the share of the element in
+/// the held volume of its cell, else its reference volume. It replaces the mean volumetric part that the elastic laws
+/// omit. It is zero if a cell is one element of exact volume; in a cell of several elements it resists volume exchange
+/// between them; without the constraint it is the whole volume elasticity. The semidefinite tangent omits the pressure
+/// times d2V/dx2.
 class Dilatation final : public Law {
  public:
-  /// `bulk_moduli` of elements in kPa. With `cells_are_exact` (cells' volumes are held) it is left out while every cell
-  /// is one element.
+  /// Make the law; `bulk_moduli` per element, kPa. With `cells_are_exact` (cell volumes held) it is inactive while
+  /// every cell is one element.
   Dilatation(const Tissue& tissue, std::vector<double> bulk_moduli, bool cells_are_exact,
              Kernels kernels = chosen_kernels());
-  /// The same in all cells, times the cell's `factors`, where given.
+  /// Make the law with one modulus, times the `factors` of cells if given.
   Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact = false,
              const std::vector<double>& factors = {}, Kernels kernels = chosen_kernels());
 
@@ -126,7 +125,7 @@ class Dilatation final : public Law {
  private:
   [[nodiscard]] VolumeStep kernel_step(const Step& step) const;
 
-  std::vector<std::array<NodeId, 8>> elements_;  // none while it is left out
+  std::vector<std::array<NodeId, 8>> elements_;  // empty while inactive
   OfElements<double> bulk_moduli_;               // kPa
   bool cells_are_exact_;
   Kernels kernels_;

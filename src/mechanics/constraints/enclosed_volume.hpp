@@ -1,4 +1,5 @@
-// The volume inside the basal surface of a closed sheet, the yolk's: held, or elastic (docs/theory/enclosed_volume.md).
+// Volume enclosed by the basal surface of a closed sheet (the yolk): held or compressible
+// (docs/theory/enclosed_volume.md).
 #pragma once
 
 #include <array>
@@ -10,12 +11,12 @@ namespace plica {
 
 struct Tissue;
 
-/// Held at its volume at rest; the multiplier is the pressure inside, kPa. The sheet is closed, or a slice that is
-/// closed by planes across x at its ends, or by mirror planes, in which its nodes must stay.
+/// Constraint that holds the enclosed volume at its reference value; the multiplier is the inner pressure, kPa. The
+/// sheet must be closed, or a slice closed by planes across x or by mirror planes, in which its nodes must stay.
 class EnclosedVolume final : public Constraint {
  public:
   explicit EnclosedVolume(const Tissue& tissue);
-  /// The same, held at another volume, um^3.
+  /// Make the constraint with another target volume, um^3.
   EnclosedVolume(const Tissue& tissue, double target);
 
   [[nodiscard]] std::string_view name() const override { return "enclosed volume"; }
@@ -38,18 +39,18 @@ class EnclosedVolume final : public Constraint {
   [[nodiscard]] std::unique_ptr<Constraint> after_division(const Tissue& tissue, const Division& division,
                                                            std::span<const Vec3> positions) const override;
 
-  /// The volume, um^3.
+  /// Return the volume, um^3.
   [[nodiscard]] double volume(std::span<const Vec3> positions) const;
   [[nodiscard]] std::size_t facet_count() const { return facets_.size(); }
 
-  /// Whether the basal surface of a tissue is closed, or a slice's, or one side's of such.
+  /// Whether the basal surface of a tissue is closed, or that of a slice or one side of such.
   [[nodiscard]] static bool is_closed(const Tissue& tissue);
 
  private:
   template <class Take>
   void for_blocks(std::span<const Vec3> positions, double pressure, const Take& take) const;
 
-  /// An edge of the rim at a slice's ends, as its facet has it: with a place in its plane, a triangle of the end.
+  /// Edge at the end of a slice, oriented as in its facet; forms a triangle of the end with a place in its plane.
   struct RimEdge {
     NodeId from, to;
     Vec3 place;
@@ -59,15 +60,14 @@ class EnclosedVolume final : public Constraint {
   std::vector<std::array<NodeId, 4>> facets_;
   std::vector<RimEdge> rim_;
   double target_ = 0;
-  double gradient_scale_ = 0;  // |dV/dx|^2 at rest, um^4
+  double gradient_scale_ = 0;  // reference |dV/dx|^2, um^4
 };
 
-/// The same volume, elastic: energy K V_0/2 (V/V_0 - 1)^2, so that the pressure inside is K (1 - V/V_0). Its assembled
-/// tangent leaves out the pressure's share, which joins every node with every other; the semidefinite one has nothing
-/// else.
+/// Compressible enclosed volume: energy K V_0/2 (V/V_0 - 1)^2, inner pressure K (1 - V/V_0). The assembled tangent
+/// omits the pressure term, which joins all nodes; the semidefinite tangent is zero otherwise.
 class ElasticVolume final : public Law {
  public:
-  /// `bulk_modulus` K in kPa; `rest_volume` V_0, um^3.
+  /// Make the law with `bulk_modulus` K, kPa, and `rest_volume` V_0, um^3.
   ElasticVolume(const Tissue& tissue, double bulk_modulus);
   ElasticVolume(const Tissue& tissue, double bulk_modulus, double rest_volume);
 
@@ -78,13 +78,13 @@ class ElasticVolume final : public Law {
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
-  /// Of a part of the tissue, which encloses nothing: without any force.
+  /// Return a law without force for a part of the tissue, which encloses nothing.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
 
-  /// V/V_0.
+  /// Return V/V_0.
   [[nodiscard]] double volume_ratio(std::span<const Vec3> positions) const;
-  /// Pressure inside, kPa.
+  /// Return the inner pressure, kPa.
   [[nodiscard]] double pressure(std::span<const Vec3> positions) const;
 
  private:

@@ -1,5 +1,5 @@
-// Pairs of nodes that move alike: stiff springs that keep the way from one to the other as it is at rest
-// (docs/theory/ties.md). A slice's two planes, so that it is as if it were endless.
+// Penalty coupling: stiff springs that keep the reference offset between two nodes (docs/theory/ties.md), so that both
+// planes of a slice move alike, as in an endless tissue.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@ class Ties final : public Law {
  public:
   struct Tie {
     std::array<NodeId, 2> nodes;
-    Vec3 apart;        // the second less the first, at rest; um
-    double share = 1;  // how much of it is this tissue's: a half on a mirror plane
+    Vec3 apart;        // reference offset, second minus first; um
+    double share = 1;  // fraction of this tissue: 1/2 on a mirror plane
   };
 
-  /// `stiffness` k in nN/um: E = k/2 |x_b - x_a - apart|^2 a tie, times its share.
+  /// Make the law with `stiffness` k, nN/um: E = k/2 |x_b - x_a - apart|^2 per tie, times its share.
   Ties(std::vector<Tie> ties, double stiffness) : ties_(std::move(ties)), stiffness_(stiffness) {}
 
   [[nodiscard]] std::string_view name() const override { return "ties"; }
@@ -29,7 +29,7 @@ class Ties final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
   [[nodiscard]] double rounding(const Step& step, double position_rounding) const override;
-  /// Of a part of the tissue: none, since ties are no cell's own. (A slice's cells do not divide.)
+  /// Return a law without ties for a part of the tissue. (Cells of a slice do not divide.)
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
 
@@ -38,7 +38,7 @@ class Ties final : public Law {
   double stiffness_;
 };
 
-/// Every node of a slice with the one at the same place of its first plane, along x.
+/// Make ties between every node of a slice and the node at the same place of its first plane, along x.
 std::vector<Ties::Tie> ties_along_x(const Tissue& tissue);
 
 }  // namespace plica

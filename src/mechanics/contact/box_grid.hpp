@@ -1,4 +1,4 @@
-// Which boxes are near a place: a grid of cubes, each of which lists the boxes that it touches.
+// Search for boxes near a place: a grid of cubes, each listing the boxes that overlap it.
 #pragma once
 
 #include <array>
@@ -25,9 +25,9 @@ class BoxGrid {
   explicit BoxGrid(double cube_size) : size_(cube_size) {}
 
   void add(std::size_t number, const Box& box);
-  /// Of the boxes of the place's cube, in the order in which they were added.
+  /// Return the boxes of the cube at the place, in order of insertion.
   [[nodiscard]] std::span<const std::size_t> near(const Vec3& place) const;
-  /// Of the boxes of all cubes that a box touches, each once, in ascending order; instead of what was in `found`.
+  /// Find the boxes of all cubes that a box overlaps, each once, ascending; replaces the content of `found`.
   void find_near(const Box& box, std::vector<std::size_t>& found) const;
 
  private:

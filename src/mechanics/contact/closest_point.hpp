@@ -1,4 +1,4 @@
-// The place on a triangle nearest to a point, and those on two segments nearest to each other.
+// Closest points: on a triangle to a point, and between two segments.
 #pragma once
 
 #include <array>
@@ -9,20 +9,20 @@
 namespace plica {
 
 struct ClosestPoint {
-  std::array<double, 3> weights;  // of the corners; add up to 1
+  std::array<double, 3> weights;  // barycentric; sum to 1
   double squared_distance;        // um^2
 };
 
-/// Of p to the triangle a, b, c, which may be a needle or a point.
+/// Return the point of triangle a, b, c nearest to p; the triangle may be degenerate.
 ClosestPoint closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// As parts of the ways from their first ends to their second ones.
+/// Fractions of the two segments, from first to second end.
 struct PlacesOnSegments {
   double on_first, on_second;
 };
 
-/// Of the segments a b and c d, where both places lie inside them. Nothing where an end of one is as near, or where
-/// they are parallel (within a thousandth) or have no length.
+/// Return the closest points of segments a b and c d if both are interior; empty if an end is as near, or the segments
+/// are parallel (within 0.001) or have no length.
 std::optional<PlacesOnSegments> nearest_inside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 }  // namespace plica

@@ -1,9 +1,9 @@
-// An energy that keeps corners of elements from folding over (docs/theory/corner_barrier.md).
+// Inversion barrier: an energy that prevents inversion of element corners (docs/theory/corner_barrier.md).
 //
-// Between the points at which elastic energies are taken, a corner may turn inside out and nothing says so. With J the
-// Jacobian of a corner (the product of its three edges), J_0 that at rest and r = J / (threshold J_0), each corner has
+// Elastic energies are integrated at Gauss points, so a corner may invert unnoticed. With the corner Jacobian J (triple
+// product of its edges), its reference value J_0 and r = J / (threshold J_0), each corner has
 //   E = -k V_0/8 (r - 1)^2 ln r   where r < 1, and nothing above,
-// V_0 the element's volume at rest: twice continuous, convex in r, infinite at J = 0.
+// V_0 the reference volume of the element: twice continuously differentiable, convex in r, infinite at J = 0.
 #pragma once
 
 #include "mechanics/kernels/element_chunks.hpp"
@@ -12,10 +12,11 @@
 
 namespace plica {
 
-/// Its semidefinite tangent leaves out the change of a corner's gradient.
+/// Inversion barrier law. Its semidefinite tangent omits the change of the gradient of a corner.
 class CornerBarrier final : public Law {
  public:
-  /// `modulus` k in kPa; `threshold`: the part of its Jacobian at rest below which a corner is pushed back.
+  /// Make the law with `modulus` k, kPa; `threshold` is the fraction of the reference Jacobian below which a corner is
+  /// repelled.
   CornerBarrier(const Tissue& tissue, double modulus, double threshold = 0.15);
 
   [[nodiscard]] std::string_view name() const override { return "corner barrier"; }
@@ -30,7 +31,7 @@ class CornerBarrier final : public Law {
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
 
  private:
-  struct Corner;  // one that is pushed back, at given positions
+  struct Corner;  // corner below the threshold, at given positions
   template <class Take>
   void for_pushed(std::span<const Vec3> positions, std::size_t element, const Take& take) const;
   void fit(const Tissue& tissue, std::size_t element);
@@ -38,7 +39,7 @@ class CornerBarrier final : public Law {
   double modulus_, threshold_;
   ElementChunks chunks_;
   std::vector<std::array<NodeId, 8>> elements_;
-  std::vector<std::array<double, 8>> rest_jacobians_;  // elements, corners; um^3: an eighth of the edges' product
+  std::vector<std::array<double, 8>> rest_jacobians_;  // elements, corners; um^3: 1/8 of the triple product of edges
   std::vector<double> rest_volumes_;                   // elements; um^3
 };
 

@@ -1,13 +1,13 @@
 // Corotational elasticity and Kelvin-Voigt shear viscosity of hexahedral elements.
 //
-// Linear elasticity in each element's own rotating frame (docs/theory/corotational.md): with R the rotation and S the
-// stretch of the mean deformation gradient F = sum_i x_i b_i^T = R S, and h the hourglasses of what is not linear in
+// Linear elasticity in the rotating frame of each element (docs/theory/corotational.md): with R the rotation and S the
+// stretch of the mean deformation gradient F = sum_i x_i b_i^T = R S, and h the hourglass modes of
 // the local displacement u_i = R^T (x_i - c) - (X_i - C),
 //   energy = V0 G |dev(S - I)|^2 + h^T H h / 2.
 // That is u^T K u / 2 with K the 24 x 24 stiffness of the rest shape with nine incompatible modes (Wilson-Taylor)
-// condensed, less its mean volumetric part, which belongs to cell_volume. R is differentiated too: the force is the
-// exact gradient, so angular momentum is exact and the tangent symmetric. The semidefinite tangent leaves the
-// derivative of R out: R K R^T, the warped stiffness.
+// condensed, minus its mean volumetric part, which belongs to cell_volume. R is differentiated too: the force is the
+// exact gradient, so angular momentum is conserved and the tangent symmetric. The semidefinite tangent omits the
+// derivative of R: R K R^T, the warped stiffness.
 #pragma once
 
 #include "mechanics/elasticity/hexahedron_stiffness.hpp"
@@ -22,11 +22,11 @@ namespace plica {
 
 class Corotational final : public Law {
  public:
-  /// `moduli` of elements; `shear_viscosity` in nN s/um^2 (0: none). Rest shapes are those of the tissue's elements.
-  /// Throws std::domain_error when a rest shape is inverted.
+  /// Make the law; `moduli` per element, `shear_viscosity` in nN s/um^2 (0: none), rest shapes of the elements of the
+  /// tissue. Throws std::domain_error if a rest shape is inverted.
   Corotational(const Tissue& tissue, std::vector<ElasticModuli> moduli, double shear_viscosity,
                Kernels kernels = chosen_kernels());
-  /// The same in all cells, times the cell's `factors`, where given.
+  /// Make the law with equal moduli, times the `factors` of cells if given.
   Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity,
                const std::vector<double>& factors = {}, Kernels kernels = chosen_kernels())
       : Corotational(tissue, in_all_elements(tissue, moduli, factors), shear_viscosity, kernels) {}
@@ -43,11 +43,11 @@ class Corotational final : public Law {
                                                     std::span<const Vec3> positions) const override;
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
 
-  /// What the kernels are given.
+  /// Return the input of the kernels.
   [[nodiscard]] CorotationalStep kernel_step(const Step& step) const;
 
  private:
-  void fit(const Tissue& tissue, std::size_t element);  // makes what is kept of it from its rest shape
+  void fit(const Tissue& tissue, std::size_t element);  // computes element data from the rest shape
   [[nodiscard]] NodeId node(std::size_t element, int corner) const;
   [[nodiscard]] const CorotationalKernels& kernels() const;
 
@@ -56,7 +56,7 @@ class Corotational final : public Law {
   Kernels kernels_;
   ElementChunks chunks_;
   std::vector<CorotationalBatch> batches_;     // eight elements each
-  std::vector<ViscousBatch> viscous_batches_;  // the same, when viscous
+  std::vector<ViscousBatch> viscous_batches_;  // viscous counterpart
 };
 
 }  // namespace plica

@@ -1,10 +1,10 @@
-// Neo-Hookean elasticity of hexahedral elements, whose rest shapes may flow (docs/theory/neo_hookean.md).
+// Neo-Hookean elasticity of hexahedral elements with optional Maxwell relaxation (docs/theory/neo_hookean.md).
 //
 // At the 2 x 2 x 2 Gauss points, with F the deformation gradient, C = F^T F, J = det F,
 //   energy = sum w mu/2 (tr(C C_p^-1) - 3 - 2 ln J),
-// infinite where a point is inside out. C_p says how the rest shape has flowed (Maxwell): det C_p = 1, and
+// infinite where a point is inverted. C_p describes the relaxed rest shape (Maxwell): det C_p = 1, and
 //   dC_p/dt = (C - tr(C C_p^-1)/3 C_p)/tau.
-// A change of volume meets 2 mu/3 only; the rest belongs to cell_volume.
+// The bulk modulus of this energy is 2 mu/3; the rest of volume elasticity belongs to cell_volume.
 #pragma once
 
 #include "mechanics/elasticity/of_elements.hpp"
@@ -16,20 +16,20 @@
 
 namespace plica {
 
-/// What an element is made of.
+/// Material of an element.
 struct NeoHookeanMaterial {
   double shear_modulus = 0;  // mu, kPa
-  double relaxation_s = 0;   // tau; 0: it does not flow
+  double relaxation_s = 0;   // tau; 0: no relaxation
 };
 
-/// Its semidefinite tangent has the flowed rest shape stand still, and is stiffer along rotations of a Gauss point that
-/// is under pressure: by as much as keeps any direction from negative stiffness.
+/// Neo-Hookean law. Its semidefinite tangent keeps the relaxed rest shape fixed, and is stiffened along rotations of
+/// Gauss points under pressure, just enough to prevent negative stiffness.
 class NeoHookean final : public Law {
  public:
-  /// `materials` of elements. Rest shapes are those of the tissue's elements. Throws std::domain_error when one is
-  /// inverted.
+  /// Make the law; `materials` per element, rest shapes of the elements of the tissue. Throws std::domain_error if one
+  /// is inverted.
   NeoHookean(const Tissue& tissue, std::vector<NeoHookeanMaterial> materials, Kernels kernels = chosen_kernels());
-  /// `shear_moduli` of the cells; `relaxation_s` of the cells, none at all when no cell flows.
+  /// Make the law; `shear_moduli` and `relaxation_s` per cell, the latter empty if no cell relaxes.
   NeoHookean(const Tissue& tissue, const std::vector<double>& shear_moduli,
              const std::vector<double>& relaxation_s = {}, Kernels kernels = chosen_kernels());
 
@@ -42,38 +42,37 @@ class NeoHookean final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
 
-  /// Where cells flow: C_p at the beginning of the step, then that at the beginning of the step before, as kernels take
-  /// them.
+  /// Return, if cells relax, C_p at the beginning of this step, then of the previous step, in the layout of kernels.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
 
-  /// Daughters have their mother's modulus and relaxation; a Gauss point has the C_p of that of its mother which was
-  /// nearest at rest.
+  /// Return materials after a division; daughters inherit modulus and relaxation, and each Gauss point the C_p of the
+  /// nearest Gauss point of the mother in the reference state.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                             const Division& division) const override;
   void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
 
-  /// C_p of a Gauss point in an internal state.
+  /// Return C_p of a Gauss point in an internal state.
   [[nodiscard]] Mat3 flowed(std::span<const double> internal, ElementId element, int gauss_point) const;
 
  private:
-  void fit(const Tissue& tissue, std::size_t element);  // makes what is kept of it from its rest shape
+  void fit(const Tissue& tissue, std::size_t element);  // computes element data from the rest shape
   [[nodiscard]] bool flows() const { return flows_; }
   [[nodiscard]] Mat3 flowed_before(std::size_t element, int gauss_point, const Step& step) const;
   [[nodiscard]] NeoHookeanStep kernel_step(const Step& step) const;
   [[nodiscard]] const NeoHookeanKernels& kernels() const;
 
   OfElements<NeoHookeanMaterial> materials_;
-  bool flows_;  // whether any does
+  bool flows_;  // whether any element relaxes
   Kernels kernels_;
   std::vector<std::array<NodeId, 8>> elements_;
   std::vector<CellId> element_cell_;
   std::vector<HexPoints> rest_;  // elements; um
   ElementChunks chunks_;
   std::vector<NeoHookeanBatch> batches_;
-  std::vector<FlowBatch> flow_batches_;  // where cells flow
+  std::vector<FlowBatch> flow_batches_;  // if cells relax
 };
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// What elements are made of, where the elements of a cell may differ: the layers of a cell.
+// Per-element values, for cells whose elements differ (layers).
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace plica {
 
-/// The value of its cell for every element.
+/// Give every element the value of its cell.
 template <class Value>
 std::vector<Value> of_cells(const Tissue& tissue, const std::vector<Value>& values) {
   std::vector<Value> result;
@@ -19,7 +19,7 @@ std::vector<Value> of_cells(const Tissue& tissue, const std::vector<Value>& valu
   return result;
 }
 
-/// The same value for all elements, times the factor of the cell where factors are given.
+/// Give all elements one value, times the factor of the cell if factors are given.
 template <class Value>
 std::vector<Value> in_all_elements(const Tissue& tissue, const Value& value, const std::vector<double>& factors) {
   std::vector<Value> result(tissue.elements.size(), value);
@@ -28,7 +28,7 @@ std::vector<Value> in_all_elements(const Tissue& tissue, const Value& value, con
   return result;
 }
 
-/// A value an element, handed on with its cell.
+/// Values per element, inherited with their cells.
 template <class Value>
 class OfElements {
  public:
@@ -39,8 +39,8 @@ class OfElements {
   const Value& operator[](std::size_t element) const { return values_[element]; }
   [[nodiscard]] const Value* data() const { return values_.data(); }
 
-  /// The elements of a cell that was there before have what they had. Those of a daughter have what her mother's first
-  /// one had: cells whose elements differ do not divide.
+  /// Return values after a division. Elements of existing cells keep theirs; those of a daughter take that of the
+  /// first element of the mother, since cells with different elements do not divide.
   [[nodiscard]] std::vector<Value> after_division(const Tissue& tissue, const Division& division) const {
     std::vector<Value> after(tissue.elements.size());
     for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
@@ -54,7 +54,7 @@ class OfElements {
 
  private:
   std::vector<Value> values_;
-  std::vector<std::pair<std::size_t, int>> cells_;  // first element, and how many
+  std::vector<std::pair<std::size_t, int>> cells_;  // first element and count
 };
 
 }  // namespace plica

@@ -1,39 +1,39 @@
 // Discrete shape-memory elasticity (section 2.2 of the paper; docs/theory/shape_memory.md).
 //
-// Every node of an element is drawn to its place in the rest-shape attractor, the rest shape that follows the element
-// as a rigid body: f_i = -(P + k l) d_i / l with d_i = x_i - (c + R (X_i - C)) and l = |d_i|. R is the rotation that
-// fits best, sum |d_i|^2 least: then forces along the springs alone have no torque, and derive from sum k l^2 / 2.
+// Each node of an element is pulled to its place in the rest-shape attractor, the rest shape moved as a rigid body with
+// the element: f_i = -(P + k l) d_i / l with d_i = x_i - (c + R (X_i - C)) and l = |d_i|. R is the rotation that
+// fits best (least sum |d_i|^2): spring forces then have no torque and derive from sum k l^2 / 2.
 #pragma once
 
 #include "mechanics/elasticity/turning_elements.hpp"
 
 namespace plica {
 
-/// The springs from nodes to their places in the attractor. The tension of one is P l / sqrt(l^2 + e^2) + k l.
+/// Springs from nodes to their places in the attractor, with tension P l / sqrt(l^2 + e^2) + k l.
 struct AttractorSprings {
-  double stiffness = 0;       // k, nN/um; 0: each element's from the shear modulus
-  double shear_modulus = 0;   // kPa; used when no stiffness is given
+  double stiffness = 0;       // k, nN/um; 0: from the shear modulus of each element
+  double shear_modulus = 0;   // kPa; used if stiffness is 0
   double preload = 0;         // P >= 0, nN
-  double preload_length = 1;  // e > 0, um: a node this far off is pulled back with P / sqrt(2)
+  double preload_length = 1;  // e > 0, um: at this distance the pull is P / sqrt(2)
 };
 
-/// How an element resists uniform small strain, in the principal axes of its nodes' spread (a brick's edges), kPa.
+/// Moduli of an element for small uniform strain, in the principal axes of its nodes (edges of a brick), kPa.
 struct AttractorModuli {
-  Vec3 uniaxial;  // stress over strain along each axis; it gives no stress along the others
-  Vec3 shear;     // of the planes yz, zx, xy
-  /// The mean over all directions (Voigt); on a cube the shear modulus itself.
+  Vec3 uniaxial;  // stress / strain along each axis; no stress along the others
+  Vec3 shear;     // planes yz, zx, xy
+  /// Return the mean over all directions (Voigt); for a cube the shear modulus.
   [[nodiscard]] double mean_shear() const { return (uniaxial.sum() + 3 * shear.sum()) / 15; }
 };
 
-/// The moduli of a rest shape whose nodes have springs of `stiffness` (nN/um) and no preload. For a brick a x b x c the
-/// uniaxial one along a is 2 k a / (b c), the shear one in the plane of a and b is 2 k a b / (c (a^2 + b^2)).
+/// Return the moduli of a rest shape with springs of `stiffness` (nN/um) and no pre-tension. For a brick a x b x c the
+/// uniaxial modulus along a is 2 k a / (b c), the shear modulus in the plane of a and b is 2 k a b / (c (a^2 + b^2)).
 AttractorModuli attractor_moduli(const HexPoints& rest, double stiffness);
 
 class ShapeMemory final : public TurningElements {
  public:
-  /// `shear_viscosity` in nN s/um^2 (0: none), as in Corotational. A stiffness and a preload that are given are those
-  /// of a cell of one element; an element that is a part v of its cell's volume has k v^(1/3) and P v^(2/3), which
-  /// keeps moduli and stresses. Throws std::domain_error when a rest shape is inverted.
+  /// Make the law; `shear_viscosity` in nN s/um^2 (0: none), as in Corotational. Given stiffness and pre-tension are
+  /// those of a cell of one element; an element that is a fraction v of the cell volume has k v^(1/3) and P v^(2/3),
+  /// which preserves moduli and stresses. Throws std::domain_error if a rest shape is inverted.
   ShapeMemory(const Tissue& tissue, const AttractorSprings& springs, double shear_viscosity);
 
   [[nodiscard]] std::string_view name() const override { return "shape memory"; }
@@ -41,7 +41,7 @@ class ShapeMemory final : public TurningElements {
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
 
-  /// k of each element, nN/um.
+  /// Return k of each element, nN/um.
   [[nodiscard]] const std::vector<double>& stiffness() const { return stiffness_; }
 
  protected:

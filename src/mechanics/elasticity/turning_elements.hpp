@@ -1,9 +1,9 @@
-// What the elastic laws share: a frame that turns with each element, and how forces and tangents in that frame turn
-// with it. Derivation: docs/theory/corotational.md, Frame, Force and Tangent.
+// Base of the elastic laws: a frame that rotates with each element, and the transformation of forces and tangents in
+// that frame. Derivation: docs/theory/corotational.md, Frame, Force and Tangent.
 //
 // A law gives its element eight frame vectors b_i; the frame is the rotation R nearest to sum_i x_i b_i^T = R S. In it
 // the local displacement is u_i = R^T (x_i - c) - (X_i - C), and the law is an energy of u. R is differentiated too:
-// forces are exact gradients, without resultant or torque, whatever the b_i, and tangents are exact and symmetric.
+// forces are exact gradients, without resultant or torque for any b_i, and tangents are exact and symmetric.
 #pragma once
 
 #include <Eigen/Dense>
@@ -15,10 +15,10 @@
 
 namespace plica {
 
-/// The nearest rotation R to F and the symmetric S = R^T F.
+/// Return the rotation R nearest to F and the symmetric S = R^T F.
 void polar(const Mat3& F, Mat3& R, Mat3& S);
 
-/// Throws std::domain_error, with the element's number, when a rest shape of `tissue` is inverted or flat.
+/// Throw std::domain_error, naming the element, if a rest shape of `tissue` is inverted or flat.
 void require_upright_rest_shapes(const Tissue& tissue);
 
 /// Laws whose energy is a function of each element's local displacement.
@@ -35,21 +35,22 @@ class TurningElements : public Law {
  protected:
   struct Element {
     std::array<NodeId, 8> nodes;
-    std::array<Vec3, 8> frame;  // b_i; they add up to zero
+    std::array<Vec3, 8> frame;  // b_i; sum to zero
     HexPoints rest;             // X_i - C
-    Mat24 viscosity;            // used when the law is viscous only
+    Mat24 viscosity;            // used only if the law is viscous
   };
 
-  /// Elements with the nodes and centred rest shapes of `tissue`; frames and viscosities are the law's to fill.
+  /// Make elements with the nodes and centred rest shapes of `tissue`; derived laws fill frames and viscosities.
   TurningElements(const Tissue& tissue, bool viscous);
 
-  /// Energy of local displacements u, nN um, and its gradient q, nN: blind to a translation of u, so q adds up to zero.
+  /// Return the energy of local displacements u, nN um, and its gradient q, nN; independent of translations of u, so q
+  /// sums to zero.
   virtual double respond(std::size_t element, const Vec24& u, Vec24& q) const = 0;
 
-  /// Its Hessian at u, nN/um: one that is stored, or made in `space`.
+  /// Return its Hessian at u, nN/um: stored, or computed in `space`.
   virtual const Mat24& local_stiffness(std::size_t element, const Vec24& u, Mat24& space) const = 0;
 
-  /// Makes what the law keeps of an element from its rest shape: frame, viscosity and its own.
+  /// Compute the data of an element from its rest shape: frame, viscosity and those of the law.
   virtual void fit(const Tissue& tissue, std::size_t element) = 0;
 
   std::vector<Element> elements_;
@@ -57,7 +58,7 @@ class TurningElements : public Law {
  private:
   void add_warped_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const;
   void take_rest_shape(const Tissue& tissue, std::size_t element);
-  struct Frame;  // an element's rotation, local displacement and local force at given positions
+  struct Frame;  // rotation, local displacement and local force of an element at given positions
   [[nodiscard]] Frame frame(std::size_t e, const Step& step) const;
 
   ElementChunks chunks_;

@@ -1,6 +1,6 @@
-// Corotational elements side by side: frame, deformation, and what answers it. For kernel sources. Letters as in
+// Corotational elements, several per register: frame, deformation and response, for kernel sources. Letters as in
 // docs/theory/corotational.md: F = R S the mean deformation gradient, h_a the hourglasses of the local displacement, T
-// and q what answers S - I and h.
+// and q the responses to S - I and h.
 #pragma once
 
 #include "mechanics/kernels/corotational_kernels.hpp"
@@ -8,7 +8,7 @@
 
 namespace plica::PLICA_KERNELS {
 
-/// A register's worth of a batch's elements, from `lane` on.
+/// Elements of one register of a batch, from `lane` on.
 struct Elements {
   const CorotationalBatch& batch;
   const ViscousBatch* viscous;  // null: not viscous
@@ -24,14 +24,14 @@ struct Elements {
 /// See CorotationalKernels.
 void write_blocks(const CorotationalStep& step, std::size_t batch, HexahedronBlocks& blocks);
 
-/// Four vectors, one a hourglass.
+/// Four vectors, one per hourglass.
 struct Hourglass {
   Lanes at[12];
   Vec operator[](int a) const { return {at[3 * a], at[3 * a + 1], at[3 * a + 2]}; }
   void set(int a, const Vec& v) { at[3 * a] = v.x, at[3 * a + 1] = v.y, at[3 * a + 2] = v.z; }
 };
 
-/// sum_j m_j b_j^T.
+/// Return sum_j m_j b_j^T.
 inline Mat gradient(const Elements& e, const Vec (&m)[7]) {
   Mat F = outer(m[0], e.b(0));
 #pragma GCC unroll copies
@@ -39,9 +39,9 @@ inline Mat gradient(const Elements& e, const Vec (&m)[7]) {
   return F;
 }
 
-/// tr S of F = R S, from a = tr S^2, b = |cof S|^2 and J = det F: the largest root of the quartic
-/// (s^2 - a)^2/4 - b - 2 J s. All its roots are real, so Halley's iteration comes down to it from any larger number,
-/// cubically in the end.
+/// Return tr S of F = R S from a = tr S^2, b = |cof S|^2 and J = det F: the largest root of the quartic (s^2 - a)^2/4
+/// - b - 2 J s. All roots are real, so Halley's iteration descends to it from any larger number, with cubic
+/// convergence.
 inline Lanes stretch_trace(Lanes a, Lanes b, Lanes J) {
   const Lanes J2 = J + J;
   const auto halley = [&](Lanes s) {
@@ -59,13 +59,13 @@ inline Lanes stretch_trace(Lanes a, Lanes b, Lanes J) {
   return s;
 }
 
-/// R, and G = (s I - S)^-1, where s = tr S.
+/// R and G = (s I - S)^-1, with s = tr S.
 struct Frame {
   Mat R;
   Sym G;
 };
 
-// One element after the other, whatever they look like. Apart, so that those that need no such care do not pay for it.
+// Handle elements one by one, whatever their shape. Separate, so that regular elements do not pay for it.
 [[gnu::noinline, gnu::cold]] inline Mat nearest_rotation(const Mat& F) {
   Mat R;
   for (int k = 0; k < width; ++k) {
@@ -79,9 +79,9 @@ struct Frame {
   return R;
 }
 
-/// With K = cof F, C = F^T F = S^2, c = (s^2 - tr C)/2, the second invariant of S, and D = s c - J = det(s I - S), the
-/// theorem of Cayley and Hamilton gives D G = C + c I and D R = F ((s^2 - c) I - C) + s K. (Written where it is wanted,
-/// not returned: without AVX-512, GCC 12 would copy it, in pieces of 8 bytes.)
+/// Compute R and G by the Cayley-Hamilton theorem: with K = cof F, C = F^T F = S^2, c = (s^2 - tr C)/2 (second
+/// invariant of S) and D = s c - J = det(s I - S), D G = C + c I and D R = F ((s^2 - c) I - C) + s K. (Written in
+/// place: without AVX-512, GCC 12 would copy a return value in pieces of 8 bytes.)
 inline void set_frame(const Mat& F, Frame& result) {
   const Mat K = {cross(F.y, F.z), cross(F.z, F.x), cross(F.x, F.y)};
   const Sym C = {dot(F.x, F.x), dot(F.y, F.y), dot(F.z, F.z), dot(F.x, F.y), dot(F.y, F.z), dot(F.z, F.x)};
@@ -94,22 +94,22 @@ inline void set_frame(const Mat& F, Frame& result) {
                     {-part.zx, -part.yz, rest - part.zz}} +
                 (scale * s) * K,
             {part.xx + own, part.yy + own, part.zz + own, part.xy, part.yz, part.zx}};
-  // Inverted elements, or nearly so, and very flat ones.
+  // Nearly or fully inverted, and very flat elements.
   if (any(~((J > 1e-3) & (D > 1e-3 * s * s2)))) {
     const Mat deformed = F, R = nearest_rotation(deformed);
     result = {R, inverse(turning(upper_part(turn_back(R, F))))};
   }
 }
 
-/// What moves with velocities or small displacements, seen in the frame: W = R^T sum m_j b_j^T and the hourglasses that
-/// are not part of it, w_a = R^T m_a - W X_a.
+/// Velocities or small displacements in the frame: W = R^T sum m_j b_j^T and the remaining hourglasses w_a = R^T m_a -
+/// W X_a.
 inline Mat seen_from(const Elements& e, const Mat& R, const Mat& F, const Vec (&m)[7], Hourglass& w) {
 #pragma GCC unroll copies
   for (int a = 0; a < 4; ++a) w.set(a, turn_back(R, m[3 + a] - F * e.X(a)));
   return turn_back(R, F);
 }
 
-/// S and h, and the frame they are seen in.
+/// S, h, and their frame.
 struct Deformation : Frame {
   Sym S;
   Hourglass h;
@@ -125,8 +125,8 @@ inline Deformation deformation(const Elements& e, const double* positions) {
   return now;
 }
 
-/// q = H h for each of `n`, by blocks of 3 x 3: row by row every entry would cost each of them two loads and a store.
-/// All of them at each block, which so is loaded once.
+/// Compute q = H h for each of `n`, by 3 x 3 blocks (row by row, each entry would cost two loads and a store). Each
+/// block is loaded once for all of them.
 template <int n>
 inline void multiply(const double (&H)[78][batch_size], int lane, const Hourglass* const (&h)[n],
                      Hourglass* const (&q)[n]) {
@@ -159,7 +159,7 @@ inline void multiply(const double (&H)[78][batch_size], int lane, const Hourglas
   }
 }
 
-/// How a viscous element deforms: its rate of deformation times rate_s.
+/// Deformation of a viscous element: rate of deformation times rate_s.
 struct Strain {
   Sym S;
   Hourglass h;
@@ -177,14 +177,14 @@ inline Strain strain(const Elements& e, const CorotationalStep& step, const Defo
   return change;
 }
 
-/// sum_a a_a x b_a.
+/// Return sum_a a_a x b_a.
 inline Vec cross(const Hourglass& a, const Hourglass& b) {
   Vec sum = cross(a[0], b[0]);
   for (int k = 1; k < 4; ++k) sum = sum + cross(a[k], b[k]);
   return sum;
 }
 
-/// Adds the viscosity's part of T and q.
+/// Add the viscous part of T and q.
 inline void add_viscous(const Elements& e, const CorotationalStep& step, const Deformation& now, Sym& T, Hourglass& q) {
   const Strain change = strain(e, step, now);
   Hourglass viscous;

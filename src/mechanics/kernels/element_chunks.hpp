@@ -1,7 +1,7 @@
-// A way through all elements for any number of threads: chunks of consecutive elements, coloured so that chunks of one
-// colour have no node in common, nor one that theirs hang on. Colours follow each other, the chunks of one colour are
-// shared out among the threads. So elements add to their nodes without more ado, and what a node gets is added up in
-// the same order whoever does it. Chunks are as long as they can be while there are enough of them to share out
+// Traversal of all elements with any number of threads: chunks of consecutive elements, coloured so that chunks of one
+// colour share no node (including nodes that theirs hang on). Colours run in sequence; the chunks of one colour are
+// distributed over threads. Elements thus add to nodes without locks, and sums have the same order for any number of
+// threads. Chunks are as long as possible while there are enough to distribute
 // (docs/developers/performance-notebook.md).
 #pragma once
 
@@ -20,32 +20,32 @@ namespace plica {
 
 struct Tissue;
 
-/// Vectors as kernels take them: x y z each.
+/// View of vectors as x y z each, for kernels.
 inline const double* numbers(std::span<const Vec3> vectors) { return reinterpret_cast<const double*>(vectors.data()); }
 inline double* numbers(std::span<Vec3> vectors) { return reinterpret_cast<double*>(vectors.data()); }
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
 class ElementChunks {
  public:
-  /// Elements that kernels take at once. Chunks begin at multiples of it.
+  /// Number of elements per kernel batch. Chunks begin at multiples of it.
   static constexpr std::size_t batch_size = 8;
   static constexpr std::size_t most_chunks = 64;
 
-  /// `elements`: those of the tissue, or its faces, say. With their cells, chunks of one colour have no cell in common
-  /// either.
+  /// Make chunks of `elements` (those of the tissue, or its faces). With their cells, chunks of one colour share no
+  /// cell either.
   ElementChunks(const Tissue& tissue, std::span<const std::array<NodeId, 8>> elements,
                 std::span<const CellId> element_cell = {});
 
   [[nodiscard]] std::size_t element_count() const { return elements_; }
   [[nodiscard]] std::size_t batch_count() const { return (elements_ + batch_size - 1) / batch_size; }
 
-  /// Calls body(first batch, last batch) for every chunk. `last` is the one after. On one thread unless `shared`.
+  /// Call body(first batch, last batch) for every chunk; `last` is one past the end. On one thread unless `shared`.
   template <class Body>
   void for_batches(const Body& body, bool shared = true) const {
     for_chunks([&](std::size_t chunk) { body(first_batch(chunk), last_batch(chunk)); }, shared);
   }
 
-  /// Calls body(element) for every element.
+  /// Call body(element) for every element.
   template <class Body>
   void for_elements(const Body& body, bool shared = true) const {
     for_chunks(
@@ -55,7 +55,7 @@ class ElementChunks {
         shared);
   }
 
-  /// The sum of body(element) over all elements.
+  /// Return the sum of body(element) over all elements.
   template <class Body>
   [[nodiscard]] double sum_over_elements(const Body& body) const {
     std::array<double, most_chunks> parts = {};
@@ -70,7 +70,7 @@ class ElementChunks {
  private:
   template <class Body>
   void for_chunks(const Body& body, bool shared = true) const {
-    constexpr std::size_t worth_sharing = 2048;  // elements; with fewer, waking other threads costs more than they save
+    constexpr std::size_t worth_sharing = 2048;  // elements; with fewer, waking threads costs more than it saves
     if (!shared || elements_ < worth_sharing || omp_get_max_threads() == 1) {
       for (const std::size_t chunk : order_) body(chunk);
       return;
@@ -93,7 +93,7 @@ class ElementChunks {
   std::size_t elements_;
   std::size_t batches_in_chunk_;
   std::vector<std::size_t> order_;        // chunks, colour by colour
-  std::vector<std::size_t> phase_start_;  // where each colour starts in order_, and the end
+  std::vector<std::size_t> phase_start_;  // start of each colour in order_, and the end
 };
 
 }  // namespace plica

@@ -1,8 +1,9 @@
-// Hexahedra side by side, for kernel sources: nodes in and out, the seven modes of a trilinear hexahedron, its volume.
+// Hexahedra per register, for kernel sources: gather and scatter, the seven modes of a trilinear hexahedron, its
+// volume.
 //
 // The modes m_j = sum_i s_ji x_i have signs s_ji = xi, eta, zeta, xi eta, eta zeta, zeta xi and xi eta zeta at the
-// reference place of node i (VTK's order): three that are linear and four hourglasses. The eighth, the sum, is the
-// place of the element, on which nothing here depends. With a gradient in modes g_j, that of the nodes is sum_j s_ji
+// reference place of node i (VTK order): three linear modes and four hourglasses. The eighth, the sum, is the place of
+// the element, on which nothing here depends. With a gradient in modes g_j, that of the nodes is sum_j s_ji
 // g_j (docs/theory/corotational.md).
 #pragma once
 
@@ -10,16 +11,16 @@
 
 namespace plica::PLICA_KERNELS {
 
-/// Three times the number of each corner: [corner][element].
+/// 3 x node index of each corner: [corner][element].
 using BatchNodes = int[8][batch_size];
 
-/// How many elements of a batch there are: all, but for the last one.
+/// Return the number of elements of a batch: full, except for the last.
 inline int count_in_batch(std::size_t elements, std::size_t batch) {
   const std::size_t left = elements - batch * batch_size;
   return left < batch_size ? static_cast<int>(left) : batch_size;
 }
 
-/// The vectors of some nodes side by side: rows x y z are read, and columns taken from them.
+/// Gather vectors of nodes: reads rows x y z and transposes.
 inline Vec gather(const double* vectors, const int* at) {
 #if PLICA_LANES == 8
   const auto rows = [&](int k, int l) { return join(load_row(vectors + at[k]), load_row(vectors + at[l])); };
@@ -63,8 +64,8 @@ inline void scatter(const Vec& f, const int* at, double* vectors) {
   v[2] += f.z[0];
 }
 #else
-// Adds lane k of z, and of x and y, which `xy` holds in turns, lane k & ~1 first. Two stores a vector, not three:
-// stores are what scattering waits for. (Not one: a later load of x y z cannot be had from a masked store.)
+// Add lane k of z, and of x and y, which alternate in `xy`, lane k & ~1 first. Two stores per vector instead of three,
+// since scattering is limited by stores. (Not one: a later load of x y z cannot be forwarded from a masked store.)
 template <int k>
 inline void add_lane(const Lanes& xy, const Lanes& z, double* vector) {
   *reinterpret_cast<Pair*>(vector) += pair<k / 2>(xy);
@@ -95,7 +96,7 @@ inline void scatter(const Vec& f, const int* at, double* vectors) {
 }
 #endif
 
-/// Adds to the nodes of the first `count` lanes; to those of the others, which exist, nothing.
+/// Add to the nodes of the first `count` lanes; adds nothing to those of the other lanes, which exist.
 inline void scatter(const BatchNodes& nodes, int lane, int count, Vec (&f)[8], double* vectors) {
   if (count < width) {
     Lanes counts;
@@ -108,7 +109,7 @@ inline void scatter(const BatchNodes& nodes, int lane, int count, Vec (&f)[8], d
   for (int i = 0; i < 8; ++i) scatter(f[i], nodes[i] + lane, vectors);
 }
 
-// Differences of neighbouring nodes first: what they have in common is lost without rounding.
+// Differences of neighbouring nodes first, so that their common part cancels without rounding.
 inline void to_modes(const Vec (&x)[8], Vec (&m)[7]) {
 #pragma GCC unroll copies
   for (int c = 0; c < 3; ++c) {
@@ -151,20 +152,20 @@ inline void from_modes(const Vec (&g)[7], Vec (&f)[8]) {
   }
 }
 
-/// The sign of hourglass a, mode 3 + a, at corner i.
+/// Return the sign of hourglass a, mode 3 + a, at corner i.
 inline double hourglass_sign(int a, int i) {
   const int xi = ((i + 1) & 2) ? 1 : -1, eta = (i & 2) ? 1 : -1, zeta = (i & 4) ? 1 : -1;
   const int signs[4] = {xi * eta, eta * zeta, zeta * xi, xi * eta * zeta};
   return signs[a];
 }
 
-/// Volume of the trilinear hexahedron, a cubic polynomial of its modes (docs/theory/cell_volume.md).
+/// Return the volume of the trilinear hexahedron, a cubic polynomial of its modes (docs/theory/cell_volume.md).
 inline Lanes volume(const Vec (&m)[7]) {
   const Lanes blended = dot(m[0], cross(m[3], m[5])) + dot(m[1], cross(m[4], m[3])) + dot(m[2], cross(m[5], m[4]));
   return (1.0 / 64) * dot(m[0], cross(m[1], m[2])) + (1.0 / 192) * blended;
 }
 
-/// dV/dm. The last mode does not change the volume.
+/// Return dV/dm. The last mode does not change the volume.
 inline void volume_gradient(const Vec (&m)[7], Vec (&g)[7]) {
   const Lanes linear = broadcast(1.0 / 64), blended = broadcast(1.0 / 192);
   for (int k = 0; k < 3; ++k) {
@@ -175,7 +176,7 @@ inline void volume_gradient(const Vec (&m)[7], Vec (&g)[7]) {
   g[6] = Vec{};
 }
 
-/// How that changes with m by d.
+/// Return the change of dV/dm when m changes by d.
 inline void volume_gradient_change(const Vec (&m)[7], const Vec (&d)[7], Vec (&change)[7]) {
   const Lanes linear = broadcast(1.0 / 64), blended = broadcast(1.0 / 192);
   const auto product = [&](int a, int b) { return cross(m[a], d[b]) + cross(d[a], m[b]); };

@@ -1,5 +1,5 @@
-// Kernel sources (*_kernels.cpp) are compiled for several instruction sets; the one to use is chosen when laws are
-// made.
+// Choice of kernels. Kernel sources (*_kernels.cpp) are compiled for several instruction sets; laws choose one when
+// they are made.
 #pragma once
 
 #include <string_view>
@@ -7,23 +7,23 @@
 
 namespace plica {
 
-/// Instruction sets that there are kernels for. Their results differ by rounding (generic ones round after each
-/// product, the others after each product and sum); each gives the same bits every time.
+/// Instruction sets with kernels. Results of generic and other sets differ by rounding (after each product, or after
+/// each product and sum); each set is bitwise reproducible.
 enum class Kernels { generic, avx2, avx512 };
 
 [[nodiscard]] std::string_view name(Kernels kernels);
 
-/// Those that this program has and this machine runs, slowest first.
+/// Return the sets that this program has and this machine supports, slowest first.
 [[nodiscard]] const std::vector<Kernels>& available_kernels();
 
-/// The one of three tables of kernels that is for an instruction set.
+/// Select one of three kernel tables by instruction set.
 template <class Table>
 const Table& kernels_for(Kernels kernels, const Table& generic, const Table& avx2, const Table& avx512) {
   return kernels == Kernels::avx512 ? avx512 : kernels == Kernels::avx2 ? avx2 : generic;
 }
 
-/// The last of them, or the one that the environment variable PLICA_KERNELS names. Throws std::invalid_argument when
-/// that is not available.
+/// Return the fastest set, or the one named by the environment variable PLICA_KERNELS. Throws std::invalid_argument if
+/// that is unavailable.
 [[nodiscard]] Kernels chosen_kernels();
 
 }  // namespace plica

@@ -1,9 +1,9 @@
-// Numbers side by side: what kernel sources calculate with. A Lanes is as many doubles as a register of the build
-// holds, each of another element; Vec, Mat and Sym are vectors and matrices of them.
+// SIMD types for kernel sources. A Lanes holds the doubles of one register, one per element; Vec, Mat and Sym are
+// vectors and matrices of them.
 //
 // Kernel sources (*_kernels.cpp) are compiled once for each instruction set (cmake/kernels.cmake), each time in another
-// namespace PLICA_KERNELS with PLICA_LANES doubles a register, so no function of one build is ever taken for another's.
-// They include nothing whose inline functions other sources have too, but for intrinsics.
+// namespace PLICA_KERNELS with PLICA_LANES doubles per register, so functions of different builds are never confused.
+// They include nothing with inline functions used in other sources, except intrinsics.
 #pragma once
 
 #include <cstddef>
@@ -14,20 +14,19 @@
 namespace plica::PLICA_KERNELS {
 
 constexpr int width = PLICA_LANES;
-constexpr int batch_size = 8;  // elements a batch: as many as the widest register holds
+constexpr int batch_size = 8;  // elements per batch: those of the widest register
 
-/// How often loops over an element's corners, modes and blocks are unrolled: all the way where there are 32 registers.
-/// Where there are 16, every other instruction would move something between these and memory, and there would be more
-/// of them than processors keep decoded.
+/// Unroll factor of loops over corners, modes and blocks of an element: complete with 32 registers. With 16, spills
+/// would double the instructions and exceed the decoded-instruction cache.
 constexpr int copies = width == 8 ? 8 : 1;
 
-#if PLICA_LANES != 1  // else it is a number that counts what is done with it (bench/counted_lanes.hpp)
+#if PLICA_LANES != 1  // else a number type that counts operations (bench/counted_lanes.hpp)
 typedef double Lanes __attribute__((vector_size(8 * PLICA_LANES), may_alias));  // NOLINT: no `using` for attributes
 inline Lanes broadcast(double value) { return Lanes{} + value; }
 #endif
 
 #if PLICA_LANES > 2
-/// Four numbers, of which memory holds the first three: the fourth is not looked at.
+/// Four numbers, of which memory holds the first three; the fourth is ignored.
 typedef double Row __attribute__((vector_size(32)));  // NOLINT
 #if PLICA_LANES == 8
 inline Row load_row(const double* values) { return _mm256_maskz_loadu_pd(7, values); }
@@ -38,7 +37,7 @@ inline Row load_row(const double* values) { return _mm256_maskload_pd(values, __
 #endif
 
 #if PLICA_LANES > 1
-/// Two of the lanes: 2 k and 2 k + 1.
+/// Return lanes 2 k and 2 k + 1.
 typedef double Pair __attribute__((vector_size(16), aligned(8), may_alias));  // NOLINT
 template <int k>
 inline Pair pair(const Lanes& a) {
@@ -54,7 +53,7 @@ inline Pair pair(const Lanes& a) {
 
 inline Lanes load(const double* values) { return *reinterpret_cast<const Lanes*>(values); }
 
-/// The same from and to arrays that begin anywhere.
+/// Load from and stores to unaligned arrays.
 #if PLICA_LANES != 1
 typedef double LooseLanes __attribute__((vector_size(8 * PLICA_LANES), aligned(8), may_alias));  // NOLINT
 #else
@@ -63,7 +62,7 @@ using LooseLanes = Lanes;
 inline Lanes load_loose(const double* values) { return *reinterpret_cast<const LooseLanes*>(values); }
 inline void store_loose(Lanes a, double* values) { *reinterpret_cast<LooseLanes*>(values) = a; }
 
-/// Square roots.
+/// Return square roots.
 inline Lanes root(Lanes a) {
 #if PLICA_LANES == 8
   return _mm512_sqrt_pd(a);
@@ -117,12 +116,12 @@ inline Mat operator*(Lanes s, const Mat& a) { return {s * a.x, s * a.y, s * a.z}
 inline Vec operator*(const Mat& a, const Vec& v) { return v.x * a.x + v.y * a.y + v.z * a.z; }
 inline Mat operator*(const Mat& a, const Mat& b) { return {a * b.x, a * b.y, a * b.z}; }
 inline Mat transpose(const Mat& a) { return {{a.x.x, a.y.x, a.z.x}, {a.x.y, a.y.y, a.z.y}, {a.x.z, a.y.z, a.z.z}}; }
-/// a^T v and a^T b.
+/// Return a^T v and a^T b.
 inline Vec turn_back(const Mat& a, const Vec& v) { return {dot(a.x, v), dot(a.y, v), dot(a.z, v)}; }
 inline Mat turn_back(const Mat& a, const Mat& b) { return {turn_back(a, b.x), turn_back(a, b.y), turn_back(a, b.z)}; }
-/// a b^T.
+/// Return a b^T.
 inline Mat outer(const Vec& a, const Vec& b) { return {b.x * a, b.y * a, b.z * a}; }
-/// [a]x b, and a [b]x.
+/// Return [a]x b and a [b]x.
 inline Mat cross(const Vec& a, const Mat& b) { return {cross(a, b.x), cross(a, b.y), cross(a, b.z)}; }
 inline Mat cross(const Mat& a, const Vec& b) {
   return {b.z * a.y - b.y * a.z, b.x * a.z - b.z * a.x, b.y * a.x - b.x * a.y};
@@ -131,7 +130,7 @@ inline Mat cross_matrix(const Vec& a) {
   const Lanes zero = {};
   return {{zero, a.z, -a.y}, {-a.z, zero, a.x}, {a.y, -a.x, zero}};
 }
-/// Of sum_i u_i v_i^T: sum_i u_i x v_i.
+/// Return sum_i u_i x v_i from sum_i u_i v_i^T.
 inline Vec axial(const Mat& a) { return {a.z.y - a.y.z, a.x.z - a.z.x, a.y.x - a.x.y}; }
 
 /// A symmetric matrix.
@@ -151,12 +150,12 @@ inline Vec operator*(const Sym& a, const Vec& v) {
   return {a.xx * v.x + a.xy * v.y + a.zx * v.z, a.xy * v.x + a.yy * v.y + a.yz * v.z,
           a.zx * v.x + a.yz * v.y + a.zz * v.z};
 }
-/// a : b.
+/// Return a : b.
 inline Lanes contract(const Sym& a, const Sym& b) {
   const Lanes off = a.xy * b.xy + a.yz * b.yz + a.zx * b.zx;
   return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + (off + off);
 }
-/// a - tr(a)/3 I.
+/// Return a - tr(a)/3 I.
 inline Sym deviator(const Sym& a) {
   const Lanes mean = (1.0 / 3) * trace(a);
   return {a.xx - mean, a.yy - mean, a.zz - mean, a.xy, a.yz, a.zx};
@@ -164,9 +163,9 @@ inline Sym deviator(const Sym& a) {
 inline Sym symmetric_part(const Mat& a) {
   return {a.x.x, a.y.y, a.z.z, 0.5 * (a.x.y + a.y.x), 0.5 * (a.y.z + a.z.y), 0.5 * (a.z.x + a.x.z)};
 }
-/// Whose result is known to be symmetric but for rounding.
+/// Multiply matrices whose product is symmetric except for rounding.
 inline Sym upper_part(const Mat& a) { return {a.x.x, a.y.y, a.z.z, a.y.x, a.z.y, a.z.x}; }
-/// tr(S) I - S.
+/// Return tr(S) I - S.
 inline Sym turning(const Sym& S) { return {S.yy + S.zz, S.zz + S.xx, S.xx + S.yy, -S.xy, -S.yz, -S.zx}; }
 inline Sym inverse(const Sym& a) {
   const Sym cofactors = {a.yy * a.zz - a.yz * a.yz, a.zz * a.xx - a.zx * a.zx, a.xx * a.yy - a.xy * a.xy,

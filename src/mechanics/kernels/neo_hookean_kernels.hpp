@@ -1,5 +1,5 @@
-// What neo_hookean.cpp and the kernels that calculate for it have in common: plain arrays, so that it does not matter
-// how either is compiled. Letters as in docs/theory/neo_hookean.md.
+// Interface between neo_hookean.cpp and its kernels: plain arrays, independent of how either is compiled. Letters as in
+// docs/theory/neo_hookean.md.
 #pragma once
 
 #include <cstddef>
@@ -8,28 +8,28 @@
 
 namespace plica {
 
-/// Eight elements side by side: the last index is the element's. A batch that is not full repeats its last element.
-/// Symmetric matrices are xx yy zz xy yz zx; Gauss points in the order of the corners.
+/// Batch of eight elements; the last index is the element. An incomplete batch repeats its last element. Symmetric
+/// matrices are xx yy zz xy yz zx; Gauss points are in the order of the corners.
 struct alignas(64) NeoHookeanBatch {
-  int nodes[8][8];          // corners; three times the node's number
+  int nodes[8][8];          // corners; 3 x node index
   double weights[8][8];     // Gauss points; mu det D0, nN um
-  double metrics[8][6][8];  // Gauss points; (D0^T D0)^-1, 1/um^2: how the rest shape lies in reference coordinates
+  double metrics[8][6][8];  // Gauss points; (D0^T D0)^-1, 1/um^2: metric of the rest shape in reference coordinates
 };
 
-/// The same of what flows.
+/// Batch of relaxation data.
 struct alignas(64) FlowBatch {
   double frames[8][9][8];  // Gauss points; D0 by columns, um
-  double rates[8];         // 1/tau, 1/s; 0: it does not flow
+  double rates[8];         // 1/tau, 1/s; 0: no relaxation
 };
 
-/// The elements of a law and where they are. Vectors are x y z a node.
+/// Elements of a law and their positions. Vectors are x y z per node.
 struct NeoHookeanStep {
   const NeoHookeanBatch* batches;
-  const FlowBatch* flows;  // null: nothing flows
+  const FlowBatch* flows;  // null: no relaxation
   std::size_t elements;
   const double* positions;  // um
   bool semidefinite_tangent;
-  // Looked at where something flows only: C_p at the step's beginning and at that of the step before, as in
+  // Used only with relaxation: C_p at the beginning of this step and of the previous step, as in
   // NeoHookeanBatch::metrics; the others as in Step.
   const double* flowed;
   const double* flowed_earlier;
@@ -37,16 +37,16 @@ struct NeoHookeanStep {
   double rate_s;
 };
 
-/// Kernels for the batches from `first` to before `last`. Each comes from one instruction set.
+/// Kernels for batches `first` to `last` - 1, for one instruction set.
 struct NeoHookeanKernels {
-  /// Adds their forces, nN: not finite where a Gauss point is inside out.
+  /// Add forces, nN; not finite if a Gauss point is inverted.
   void (*add_forces)(const NeoHookeanStep&, std::size_t first, std::size_t last, double* forces);
-  /// Adds their tangent times a direction.
+  /// Add tangent times direction.
   void (*add_product)(const NeoHookeanStep&, std::size_t first, std::size_t last, const double* direction,
                       double* product);
-  /// Writes the tangent of one batch.
+  /// Write the tangent of one batch.
   void (*write_blocks)(const NeoHookeanStep&, std::size_t batch, HexahedronBlocks& blocks);
-  /// Writes C_p at the step's end.
+  /// Write C_p at the end of the step.
   void (*write_flowed)(const NeoHookeanStep&, std::size_t first, std::size_t last, double* flowed);
 };
 

@@ -1,6 +1,6 @@
-// Viscous drag of the shell on the apical surface where it touches: what slides along the shell shears a film
-// (docs/theory/vitelline.md). Force on a node -c (1 - g/film) T v, g its gap and T the shell's tangent plane there,
-// both at the step's beginning, none where g is above the film.
+// Viscous drag of the shell on the apical surface in contact, from shear of a film (docs/theory/vitelline.md). Force on
+// a node: -c (1 - g/film) T v, with gap g and tangent plane T of the shell at the beginning of the step; none if g
+// exceeds the film.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ class ShellDrag final : public Law {
  public:
   static constexpr double film_um = 0.1;
 
-  /// `drag` in nN s/um^3 (1 Pa s/um is 1e-3), of the area at rest.
+  /// Make the law with `drag` in nN s/um^3 (1 Pa s/um is 1e-3), per reference area.
   ShellDrag(const Tissue& tissue, const OuterShape& shell, double drag);
 
   [[nodiscard]] std::string_view name() const override { return "shell-drag"; }

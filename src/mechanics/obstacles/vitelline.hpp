@@ -1,5 +1,5 @@
-// The vitelline layer: a rigid, frictionless shell around the embryo. Every apical node keeps a gap g(x) >= 0 to it.
-// Inward motion is free; there is no sticking (shell_drag.hpp slows sliding). Theory: docs/theory/vitelline.md.
+// Vitelline membrane: a rigid, frictionless shell around the embryo. Every apical node keeps a gap g(x) >= 0 to it.
+// Inward motion is free; there is no adhesion (shell_drag.hpp slows sliding). Theory: docs/theory/vitelline.md.
 #pragma once
 
 #include <vector>
@@ -10,13 +10,13 @@
 
 namespace plica {
 
-/// The narrowest capsule along x around all nodes at rest: the shell of a mesh from a file, which is meant to be
-/// centred on the x axis. (Of a pill or a sphere it is a little off: between two nodes their shell bulges.)
+/// Return the narrowest capsule along x around all reference nodes: the shell of a mesh from a file, which should be
+/// centred on the x axis. (Slightly off for built pills and spheres, whose shell bulges between nodes.)
 Capsule enclosing_capsule(const Vectors& positions);
 
 class Vitelline final : public Obstacle {
  public:
-  /// The nodes are those of the tissue's apical surface.
+  /// Make the obstacle for the nodes of the apical surface.
   Vitelline(const Tissue& tissue, const OuterShape& shell);
 
   [[nodiscard]] std::string_view name() const override { return "vitelline"; }

@@ -1,18 +1,17 @@
-// How plica calls BLAS: on one thread, with memory that is there.
+// BLAS calls of plica: on one thread, with memory reserved in advance.
 #pragma once
 
 #include <mutex>
 
 namespace plica {
 
-/// To be called before BLAS is. OpenBLAS, where a variant with threads is installed, is given one thread: sums would
-/// depend on their number. And its working memory is taken now: where there is not enough, OpenBLAS (0.3) would
-/// otherwise wait for it without end in the middle of a factorisation; here it is std::bad_alloc.
+/// Prepare BLAS; call it first. Limits OpenBLAS to one thread where a threaded variant is installed, since sums would
+/// depend on the number of threads, and reserves its working memory: without enough memory OpenBLAS (0.3) would wait
+/// forever within a factorisation; here std::bad_alloc is thrown.
 void prepare_blas();
 
-/// To be held while BLAS is called, or a library that does. OpenBLAS's serial variant has no locks, so there only one
-/// thread holds it at a time; the variant with OpenMP asks that for threads at each call, whatever it was given, and is
-/// told one.
+/// Scope guard for calls of BLAS, or of a library that calls it. Serial OpenBLAS has no locks, so only one thread holds
+/// the guard at a time; the OpenMP variant queries the number of threads at each call, and gets one.
 class BlasUse {
  public:
   BlasUse();
@@ -22,7 +21,7 @@ class BlasUse {
 
  private:
   std::unique_lock<std::mutex> lock_;
-  int threads_;  // outside
+  int threads_;  // number of threads outside the scope
 };
 
 }  // namespace plica

@@ -1,13 +1,13 @@
-// Cholesky factor of a sparse matrix of 3 x 3 blocks, one a node, kept in single precision: a preconditioner that is
-// cheap to apply many times.
+// Cholesky factor of a sparse matrix of 3 x 3 blocks, one per node, in single precision: a preconditioner that is cheap
+// to apply many times.
 //
-// Multifrontal: nodes are ordered by nested dissection (METIS), columns of like structure form supernodes, and each is
-// eliminated in a dense front, to which its children add their updates; subtrees are shared out among the threads. A
-// factor is applied much more often than it is made, so each supernode's panel [L11; L21] is kept as P = [L11^-1; L21
-// L11^-1]: both triangular solves are then plain products with P and its transpose, without dependencies inside, and
-// their time is that of reading P twice. Large factors are read by several threads: each takes subtrees, whose updates
-// of what is above them are kept apart and added in a fixed order. Weighed: MUMPS (double precision; 2 ms a solve at
-// 4500 unknowns, against 0.2 ms here), CHOLMOD (its supernodal part is GPL), Eigen's SimplicialLLT (no supernodes).
+// Multifrontal: nodes are ordered by nested dissection (METIS), columns of equal structure form supernodes, and each is
+// eliminated in a dense front, to which its children add their updates; subtrees are distributed over threads. A
+// factor is applied much more often than computed, so each supernode's panel [L11; L21] is kept as P = [L11^-1; L21
+// L11^-1]: both triangular solves are then products with P and its transpose, without inner dependencies, at the cost
+// of reading P twice. Large factors are read by several threads: each takes subtrees, whose updates to nodes above are
+// stored separately and added in a fixed order. Alternatives: MUMPS (double precision; 2 ms per solve at 4500
+// unknowns, 0.2 ms here), CHOLMOD (its supernodal part is GPL), Eigen's SimplicialLLT (no supernodes).
 #pragma once
 
 #include <cstddef>
@@ -24,56 +24,59 @@ namespace plica {
 
 class BlockCholesky final : public Preconditioner {
  public:
-  /// Numbers in a factor, 8 MB, from which on threads share out a solve, which reads them twice.
+  /// Factor size, 8 MB, from which solves are distributed over threads.
   static constexpr std::size_t worth_sharing = 2'000'000;
 
-  /// Orders the nodes and finds where the factor has entries. Once a topology. `kernels`: of the solves' products.
+  /// Order the nodes and finds the structure of the factor; once per topology. `kernels` selects the products of
+  /// solves.
   explicit BlockCholesky(const BlockPattern& pattern, Kernels kernels = chosen_kernels());
 
-  /// Factorises; `values` are the pattern's blocks, nine numbers each, by rows. False when the matrix is not positive
-  /// definite in single precision: for condition numbers up to 1e6 it is, beyond 1e7 it hardly can be.
+  /// Factorise; `values` are the blocks of the pattern, nine numbers each, by rows. False if the matrix is not
+  /// positive definite in single precision: it is up to condition numbers of 1e6, and rarely beyond 1e7.
   [[nodiscard]] bool factorise(std::span<const float> values);
   [[nodiscard]] bool factorise(std::span<const float> values, std::span<const float> /*near_kernel*/) override {
     return factorise(values);
   }
 
-  /// Solves in place with the last factor: x = b in, x = A^-1 b out, to about 1e-7 times the condition number.
+  /// Solve in place with the last factor: x = b in, x = A^-1 b out, with relative error of about 1e-7 times the
+  /// condition number.
   void solve(std::span<float> x) const override;
 
   struct alignas(16) NodeNumbers {
-    float numbers[4];  // the last does not matter
+    float numbers[4];  // the last is padding
   };
-  /// The numbers of each node in the order of elimination.
+  /// Values per node in order of elimination.
   using Halfway = std::vector<NodeNumbers>;
 
-  /// The halves of a solve with A = L L^T: z = L^-1 b, and x = L^-T z, which uses z up. Where b is zero in most nodes
-  /// the first takes a part of the time, and z is zero where no path in the tree of elimination leads from b's others.
+  /// Half solves with A = L L^T: z = L^-1 b, and x = L^-T z, which overwrites z. For sparse b the first is faster, and
+  /// z is zero at nodes not reached in the elimination tree.
   void solve_down(std::span<const float> b, Halfway& z) const;
   void solve_up(Halfway& z, std::span<float> x) const;
 
-  /// Numbers kept in the factor, zeros inside panels included.
+  /// Number of stored values, including zeros inside panels.
   [[nodiscard]] std::size_t factor_size() const { return factor_size_; }
 
  private:
   struct Block {
     std::size_t number;  // in the pattern
     int row, column;     // in the front
-    bool turned;         // transposed there
+    bool turned;         // transposed in the front
   };
   struct Run {
-    int first, last, in_parent;  // rows `first` to before `last` follow each other in the parent's front too, from here
+    int first, last,
+        in_parent;  // rows `first` to `last` - 1 are also consecutive in the front of the parent, from here
   };
   struct Supernode {
     int first = 0, columns = 0;  // nodes in elimination order
     std::vector<int> rows;       // nodes below, ascending
-    std::vector<Run> runs;       // where they are in the parent's front
-    std::size_t panel = 0;       // where its panel begins
+    std::vector<Run> runs;       // their positions in the front of the parent
+    std::size_t panel = 0;       // start of its panel
     std::vector<int> children;   // supernodes that update this one
-    std::vector<Block> blocks;   // of the matrix that are assembled here
-    int subtree = 0;             // the first supernode of those from which paths lead here; all are between
-    double work = 0;             // to eliminate these and it, multiply-adds or so
+    std::vector<Block> blocks;   // matrix blocks assembled here
+    int subtree = 0;             // first supernode of its subtree, which is contiguous
+    double work = 0;             // cost of eliminating its subtree, approximate multiply-adds
 
-    // Of its panel, in numbers.
+    // Sizes of its panel, in numbers.
     [[nodiscard]] std::size_t width() const { return 3 * static_cast<std::size_t>(columns); }
     [[nodiscard]] std::size_t height() const { return 3 * (static_cast<std::size_t>(columns) + rows.size()); }
     [[nodiscard]] std::size_t stride() const { return PanelChunk::size * chunks_for(height()); }  // between columns
@@ -91,13 +94,13 @@ class BlockCholesky final : public Preconditioner {
   void factorise_subtree(int root, std::span<const float> values, Fronts& fronts);
   void factorise_front(int s, std::span<const float> values, Fronts& fronts);
 
-  // Supernodes that one thread takes in a solve, children first.
+  // Supernodes of one thread in a solve, children first.
   struct Part {
     std::vector<int> supernodes;
-    int end = 0;                    // the first node above it, in the order of elimination
-    Halfway above;                  // what it adds to the nodes above it
-    std::vector<float> own;         // scratch: a supernode's own numbers,
-    std::vector<PanelChunk> front;  // and what its panel is multiplied with, or gives
+    int end = 0;                    // first node above it in order of elimination
+    Halfway above;                  // its contribution to nodes above
+    std::vector<float> own;         // scratch: values of a supernode,
+    std::vector<PanelChunk> front;  // and input or output of its panel product
   };
   void share_out();
   template <class Body>
@@ -107,11 +110,11 @@ class BlockCholesky final : public Preconditioner {
 
   const PanelProducts* products_;
   int nodes_ = 0;
-  std::vector<int> position_;          // of each node in the order of elimination
+  std::vector<int> position_;          // position of each node in order of elimination
   std::vector<Supernode> supernodes_;  // children before parents
   UninitialisedVector<PanelChunk> panels_;
   std::size_t factor_size_ = 0;
-  mutable std::vector<Part> branches_;  // subtrees that do not depend on each other; none in a small factor
+  mutable std::vector<Part> branches_;  // independent subtrees; empty in a small factor
   mutable Part trunk_;                  // all others
   mutable Halfway z_;                   // scratch of solve()
 };

@@ -1,4 +1,4 @@
-// Where a sparse symmetric matrix of 3 x 3 blocks, one a node, has blocks.
+// Sparsity pattern of a symmetric matrix of 3 x 3 blocks, one per node.
 #pragma once
 
 #include <span>
@@ -8,14 +8,14 @@
 
 namespace plica {
 
-/// The blocks on and below the diagonal; the last of a row is its diagonal's.
+/// Blocks on and below the diagonal; the last block of a row is diagonal.
 struct BlockPattern : Rows {
   [[nodiscard]] int nodes() const { return count(); }
-  /// Number of the block at (row, column), column <= row; it must be there.
+  /// Return the index of the existing block (row, column), column <= row.
   [[nodiscard]] int find(int row, int column) const;
 };
 
-/// The pattern in which any two nodes of a group are neighbours; `groups` holds `group_size` nodes after another.
+/// Return the pattern in which all nodes of a group are neighbours; `groups` lists `group_size` nodes per group.
 BlockPattern pattern_of_groups(int nodes, std::span<const int> groups, int group_size);
 
 }  // namespace plica

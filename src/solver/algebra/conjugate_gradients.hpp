@@ -5,8 +5,8 @@
 
 namespace plica {
 
-/// Solves A x = b from x = 0. `precondition` applies an approximate A^-1, symmetric positive definite. Sums are taken
-/// in a fixed order: the same bits for any number of threads.
+/// Solve A x = b from x = 0. `precondition` applies an approximate, symmetric positive definite A^-1. Sums have a
+/// fixed order: bitwise identical for any number of threads.
 KrylovReport conjugate_gradients(const KrylovOperator& multiply, const KrylovOperator& precondition,
                                  const KrylovVector& b, const KrylovRule& rule, const KrylovGoOn& go_on,
                                  KrylovVector& x);

@@ -1,4 +1,4 @@
-// THE sparse pattern: which columns each row of a matrix has. Groups of nodes, factors and the multigrid all have it.
+// THE sparse pattern: columns of each row of a matrix. Used for node groups, factors and multigrid.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ struct Rows {
   [[nodiscard]] std::span<const int> of(int row) const {
     return std::span(columns).subspan(starts[row], starts[row + 1] - starts[row]);
   }
-  /// The place of (row, column) in `columns`; -1 where it is not there.
+  /// Return the index of (row, column) in `columns`; -1 if absent.
   [[nodiscard]] int place(int row, int column) const {
     const auto first = columns.begin() + starts[row], last = columns.begin() + starts[row + 1];
     const auto at = std::lower_bound(first, last, column);
@@ -23,22 +23,22 @@ struct Rows {
   }
 };
 
-/// The pattern of the whole of a symmetric matrix without its diagonal, from that on and below it.
+/// Return the pattern of a symmetric matrix without its diagonal from the part on and below it.
 Rows neighbours_of(const Rows& lower);
 
-/// The order in which a symmetric matrix is best eliminated (nested dissection): the place of each row in it. `lower`:
-/// its pattern on and below the diagonal, or below. The same on every call, also of several threads at once.
+/// Return the position of each row in a nested-dissection elimination order. `lower`: pattern on and below, or below
+/// the diagonal. Reproducible, also when called by several threads.
 std::vector<int> elimination_order(const Rows& lower);
 
-/// The rows that `visit(row, take)` makes by calling take(column), in any order and as often as it likes.
+/// Make rows by calls of take(column) in `visit(row, take)`, in any order, with repetitions allowed.
 template <class Visit>
 Rows collect_rows(int count, const Visit& visit) {
   Rows rows;
   rows.starts.assign(count + 1, 0);
-  for (const bool counting : {true, false}) {  // the same walk twice, so that rows are found on any thread
+  for (const bool counting : {true, false}) {  // two passes, so that rows can be found on any thread
 #pragma omp parallel
     {
-      std::vector<int> found;  // few: looked through faster than any set
+      std::vector<int> found;  // few: linear search is faster than a set
 #pragma omp for schedule(static)
       for (int row = 0; row < count; ++row) {
         found.clear();
@@ -60,7 +60,7 @@ Rows collect_rows(int count, const Visit& visit) {
   return rows;
 }
 
-/// The other way round: for each column the rows that have it, and where in `rows.columns`.
+/// Transpose: for each column its rows, and their indices in `rows.columns`.
 struct Transposed {
   std::vector<int> starts, rows, places;
 };

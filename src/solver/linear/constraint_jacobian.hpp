@@ -1,8 +1,8 @@
-// J: how the functions of the constraints that a step holds change with the free nodes. What acts on a hanging node
-// acts on those that carry it.
+// J: gradients of the held constraint functions by free nodes. Terms on a hanging node are passed to the nodes that
+// carry it.
 //
-// The rows of functions of few nodes are sparse; those of functions of thousands are kept as whole vectors, and never
-// meet a matrix (dense_border.hpp).
+// Rows of functions of few nodes are sparse; those of functions of thousands are stored as full vectors, outside any
+// matrix (dense_border.hpp).
 #pragma once
 
 #include <span>
@@ -17,53 +17,53 @@ class ConstraintJacobian {
  public:
   explicit ConstraintJacobian(const Model& model);
 
-  /// Functions of few nodes come first, in the order of their constraints; then the dense ones.
+  /// Rows: functions of few nodes first, in order of their constraints, then dense ones.
   [[nodiscard]] std::size_t sparse_rows() const { return start_.size() - 1; }
   [[nodiscard]] std::size_t dense_rows() const { return dense_.size(); }
   [[nodiscard]] std::size_t rows() const { return sparse_rows() + dense_rows(); }
-  /// The place of a row's multiplier among those of all constraints.
+  /// Return the index of the multiplier of a row among those of all constraints.
   [[nodiscard]] std::size_t multiplier(std::size_t row) const { return multiplier_[row]; }
-  /// Constraint::gradient_scale of a row's function, and of how many parts it is the sum.
+  /// Return Constraint::gradient_scale of the function of a row, and its number of parts.
   [[nodiscard]] double gradient_scale(std::size_t row) const { return gradient_scale_[row]; }
   [[nodiscard]] int part_count(std::size_t row) const { return part_count_[row]; }
-  /// The rows of one constraint each: first, last.
+  /// Row ranges of each constraint: first, last.
   [[nodiscard]] const std::vector<std::pair<std::size_t, std::size_t>>& blocks() const { return blocks_; }
 
-  /// Takes the gradients at these positions.
+  /// Evaluate the gradients at these positions.
   void update(const Model& model, std::span<const Vec3> positions);
 
-  /// J times a vector; rows.
+  /// Return J times a vector; rows.
   void rates(std::span<const Vec3> direction, std::span<double> rates) const;
-  /// Adds factor times weights times J times a vector; sparse rows.
+  /// Add factor times weights times J times a vector; sparse rows.
   void add_rates(std::span<const Vec3> direction, std::span<const double> weights, double factor,
                  std::span<double> to) const;
-  /// Adds factor times J^T times multipliers; nN. Of the sparse rows only where there are no more multipliers.
+  /// Add factor times J^T times multipliers; nN. Sparse rows only, if there are no more multipliers.
   void add_forces(std::span<const double> multipliers, double factor, std::span<Vec3> forces) const;
 
-  /// Of one function to one node's position.
+  /// Gradient of one function by the position of one node.
   struct Gradient {
     NodeId node;
     Vec3 value;
   };
-  /// Those of a sparse row, by ascending node.
+  /// Return the gradients of a sparse row, by ascending node.
   [[nodiscard]] std::span<const Gradient> of_row(std::size_t row) const {
     return {gradients_.data() + start_[row], gradients_.data() + start_[row + 1]};
   }
 
-  /// A sparse row that a node changes, and which of that row's gradients is the node's.
+  /// Sparse row that depends on a node, and the index of that gradient in the row.
   struct Touch {
     int row, slot;
   };
-  /// The sparse rows around one free node, in ascending order.
+  /// Return the sparse rows of one free node, ascending.
   [[nodiscard]] std::span<const Touch> around(std::size_t node) const {
     return {touches_.data() + node_start_[node], touches_.data() + node_start_[node + 1]};
   }
 
-  /// A dense row; a Vec3 a free node. `row`: from 0.
+  /// Return a dense row, one Vec3 per free node. `row`: from 0.
   [[nodiscard]] std::span<const Vec3> dense_row(std::size_t row) const { return dense_[row]; }
 
-  /// Calls body(row, nodes, gradients) for each part of the sparse rows' functions at these positions; with `shared`,
-  /// at once for parts that have no node in common.
+  /// Call body(row, nodes, gradients) for each part of the sparse functions at these positions; if `shared`,
+  /// simultaneously for parts without common nodes.
   template <class Body>
   void for_parts(const Model& model, std::span<const Vec3> positions, bool shared, const Body& body) const {
     for (const Source& source : sources_) {
@@ -87,11 +87,11 @@ class ConstraintJacobian {
     int slot;
     double weight;
   };
-  /// Where the gradients of a constraint's parts go.
+  /// Destination of the gradients of the parts of a constraint.
   struct Source {
     std::size_t constraint, first_row;
     ConstraintParts parts;
-    std::vector<int> slots;  // nodes of all parts: where a gradient is added; -1: the node hangs
+    std::vector<int> slots;  // nodes of all parts: target of a gradient; -1: hanging node
     std::vector<HangingSlot> hanging;
   };
   void add_sparse(const Tissue& tissue, Source& source, std::size_t functions);
@@ -107,12 +107,12 @@ class ConstraintJacobian {
   std::vector<std::size_t> multiplier_;                      // rows
   std::vector<double> gradient_scale_;                       // rows
   std::vector<int> part_count_;                              // rows
-  std::vector<std::pair<std::size_t, std::size_t>> blocks_;  // constraints that are held
+  std::vector<std::pair<std::size_t, std::size_t>> blocks_;  // held constraints
   std::vector<std::size_t> start_ = {0};                     // sparse rows + 1
   std::vector<Gradient> gradients_;
   std::vector<std::size_t> node_start_;  // free nodes + 1
   std::vector<Touch> touches_;
-  std::vector<Vectors> dense_;  // dense rows; a Vec3 a free node
+  std::vector<Vectors> dense_;  // dense rows; one Vec3 per free node
 };
 
 }  // namespace plica

@@ -1,11 +1,10 @@
-// Lets a factor serve while nodes leave obstacles or come to them. The factor has the directions that were fixed when
-// it was made; each node that has changed since borders it with one more unknown (its free normal) or condition (its
-// fixed one):
-//   [ A0   B ] [ x  ]   [ f        ]     B: columns A n of nodes that have left, n of nodes that have come,
-//   [ B^T  D ] [ xi ] = [ n^T f, 0 ]     D: n^T A n among those that have left.
+// Update a factor for nodes that have since left or reached obstacles. The factor has the directions fixed when it was
+// computed; each changed node borders it with one more unknown (its free normal) or condition (its fixed normal):
+//   [ A0   B ] [ x  ]   [ f        ]     B: columns A n of nodes that left, n of nodes that arrived,
+//   [ B^T  D ] [ xi ] = [ n^T f, 0 ]     D: n^T A n among those that left.
 // With A0 = L L^T and Y = L^-1 B this is, between the two halves of a solve with the factor,
 //   z = L^-1 f,   (D - Y^T Y) xi = [ n^T f, 0 ] - Y^T z,   x = L^-T (z - Y xi).
-// Y is sparse: a column of it costs a part of half a solve, once.
+// Y is sparse: a column costs a fraction of half a solve, once.
 #pragma once
 
 #include <Eigen/LU>
@@ -19,19 +18,19 @@ namespace plica {
 
 class ContactBorder {
  public:
-  /// The factor is new: of `matrix` (which stays as it is until the next call) with these frames and contacts.
+  /// Start with a new factor of `matrix` (which must not change until the next call) with these frames and contacts.
   void begin(const Model& model, const Contacts& contacts, const StepMatrix& matrix, std::vector<NodeFrame> frames,
              std::vector<char> in_contact, std::size_t most_changes);
 
-  /// Takes up the changes of contacts since. False when there are too many, or one of a node that touches something
-  /// else as well: the factor should be made anew.
+  /// Add changes of contacts since. False if there are too many, or one of a node in several contacts: compute a new
+  /// factor then.
   [[nodiscard]] bool follow(const Iterate& at, const BlockCholesky& factor);
 
-  /// Adds the changes that have been taken up to a factor's memory; takes up those of one after `begin`.
+  /// Save the added changes in the memory of a factor, or restores those of one after `begin`.
   void remember(FactorMemory& memory) const;
   void recall(const FactorMemory& memory, const BlockCholesky& factor);
 
-  /// Applies factor and border in place; free nodes.
+  /// Apply factor and border in place; free nodes.
   void solve(const BlockCholesky& factor, std::span<Vec3> x) const;
 
  private:
@@ -42,7 +41,7 @@ class ContactBorder {
   };
   struct Column : Change {
     std::size_t node;
-    std::vector<std::pair<int, Vec3>> halfway;  // of Y: place in the order of elimination, numbers
+    std::vector<std::pair<int, Vec3>> halfway;  // entries of Y: position in order of elimination, values
   };
   [[nodiscard]] bool is_alone(std::size_t contact, const Iterate& at) const;
   void add_column(const Change& change, const BlockCholesky& factor);
@@ -54,9 +53,9 @@ class ContactBorder {
   std::vector<NodeFrame> frames_;
   std::vector<char> in_contact_;
   std::size_t most_changes_ = 0;
-  std::vector<Column> columns_;      // of all changes since; some may have been undone
+  std::vector<Column> columns_;      // of all changes since; some may be undone
   Eigen::MatrixXd complement_;       // D - Y^T Y of all columns
-  std::vector<std::size_t> active_;  // columns that hold now
+  std::vector<std::size_t> active_;  // columns in use
   Eigen::PartialPivLU<Eigen::MatrixXd> active_complement_;
   mutable std::vector<float> single_;  // scratch
   mutable BlockCholesky::Halfway z_;

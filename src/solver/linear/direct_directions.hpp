@@ -1,5 +1,5 @@
-// Newton directions from a factor of the whole indefinite system. The factor is kept, within a step and in the next
-// one of about equal length with the same contacts, while it still converges fast (docs/decisions/0003-newton.md).
+// Newton directions from a factor of the full indefinite system. The factor is reused, within a step and in the next
+// one of similar length with the same contacts, while it converges fast (docs/decisions/0003-newton.md).
 #pragma once
 
 #include "solver/linear/dense_border.hpp"
@@ -24,12 +24,12 @@ class DirectDirections final : public NewtonDirections {
 
   const Model& model_;
   Contacts contacts_;
-  std::unique_ptr<StepMatrix> matrix_;  // of the laws' last patterns
+  std::unique_ptr<StepMatrix> matrix_;  // for the last patterns of the laws
   std::unique_ptr<LinearSolver> linear_solver_;
   DenseBorder dense_;
   std::vector<double> values_;
 
-  // The factor at hand: for which Step::rate_s and frames it was made. Empty frames: none.
+  // Step::rate_s and frames of the present factor. Empty frames: no factor.
   std::vector<NodeFrame> factor_frames_;
   std::vector<char> factor_contacts_;
   double factor_rate_s_ = 0;

@@ -1,8 +1,8 @@
-// An approximate inverse of the linear system of a Newton iteration, made for one iterate and kept over steps: that of
+// Approximate inverse of the linear system of a Newton iteration, computed at one iterate and kept over steps: that of
 //   [ A             -J^T          ]
 //   [ -J   -(gamma W)^-1          ],  W = 1/gradient_scale,
 // in which multipliers are eliminated: A + gamma J^T W J is positive definite, and its factor (or multigrid) is in
-// single precision. What has changed since is borders: contacts (contact_border.hpp), and dense rows always
+// single precision. Later changes of contacts are borders (contact_border.hpp), as dense rows always are
 // (dense_border.hpp). Derivation: docs/theory/step.md, Linear systems.
 #pragma once
 
@@ -24,29 +24,29 @@ class KeptPreconditioner {
  public:
   enum class Inverse { cholesky, multigrid };
 
-  /// `system`: whose inverse it is. For steps in which the laws' patterns are those of `step`.
+  /// Make a preconditioner of `system`, for steps with the patterns of `step`.
   KeptPreconditioner(const Model& model, const LinearisedStep& system, Inverse inverse, const Step& step);
 
-  /// Whether the laws' patterns are still those that it was made for.
+  /// Whether the patterns of the laws are unchanged.
   [[nodiscard]] bool serves(const Step& step) const { return matrix_.serves(model_, step); }
 
-  /// Makes it anew for where the system is. False, and it is of no use, when no matrix near the tangent is positive
+  /// Recompute it at the present iterate of the system. False, and it is unusable, if no nearby matrix is positive
   /// definite.
   [[nodiscard]] bool make(const Step& step, const Iterate& at);
 
-  /// Takes up the changes of contacts since. False when it should be made anew.
+  /// Add changes of contacts since. False if it must be recomputed.
   [[nodiscard]] bool follow_contacts(const Iterate& at);
 
-  /// Takes the dense rows of where the system is now: a solve each. (With those of an older iterate, exactly held, each
-  /// solve of the system took five iterations more.)
+  /// Update the dense rows at the present iterate, one solve each. (With those of an older iterate, held exactly,
+  /// solves took five more iterations.)
   void border_dense_rows();
 
   void apply(const KrylovVector& residual, KrylovVector& result) const;
 
-  /// gamma W; rows, a force over a length squared, over gradient_scale. Those of the dense rows serve as units only.
+  /// Return gamma W of the rows, a force over a length squared, divided by gradient_scale. For dense rows only a unit.
   [[nodiscard]] std::span<const double> weights() const { return weights_; }
 
-  /// From what it was made, with the contacts since; and the same made again.
+  /// Return its input, including later contacts, or recomputes it from that.
   [[nodiscard]] FactorMemory memory() const;
   [[nodiscard]] bool recall(const FactorMemory& memory);
 
@@ -59,11 +59,11 @@ class KeptPreconditioner {
   const Model& model_;
   const LinearisedStep& system_;
   Inverse inverse_;
-  StepMatrix matrix_;  // with its J, where the inverse was made
+  StepMatrix matrix_;  // with its J, at the iterate of the inverse
   std::unique_ptr<Preconditioner> preconditioner_;
-  const BlockCholesky* factor_ = nullptr;  // it, where it is one; with its border
+  const BlockCholesky* factor_ = nullptr;  // the factor, if it is one, with its border
   ContactBorder contacts_;
-  std::optional<ChequerboardFactor> chequerboards_;  // for what gamma W does not see
+  std::optional<ChequerboardFactor> chequerboards_;  // for modes that gamma W does not resist
   DenseBorder dense_;
   FactorMemory made_from_;
   std::vector<double> weights_;  // rows

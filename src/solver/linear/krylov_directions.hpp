@@ -1,5 +1,5 @@
-// Newton directions by conjugate residuals on the products of the laws: the system (linearised_step.hpp) is not
-// assembled, only what preconditions it (kept_preconditioner.hpp), and that serves over steps.
+// Newton directions by conjugate residuals with products of the laws: the system (linearised_step.hpp) is matrix-free;
+// only its preconditioner (kept_preconditioner.hpp) is assembled, and reused over steps.
 #pragma once
 
 #include "solver/algebra/conjugate_residuals.hpp"
@@ -20,18 +20,18 @@ class KrylovDirections final : public NewtonDirections {
   void recall(const FactorMemory& memory) override;
 
  private:
-  /// Laws may join other nodes than when the preconditioner was made; it serves on while it is good.
+  /// Take new patterns: the preconditioner stays in use while it is good.
   void fit_pattern(const Step& step);
-  /// How many of a solve's iterations a new preconditioner would have saved.
+  /// Return the iterations of a solve that a new preconditioner would have saved.
   [[nodiscard]] int wasted(const KrylovReport& solve) const;
 
   const Model& model_;
   std::function<bool()> stop_requested_;
   Inverse inverse_;
   LinearisedStep system_;
-  std::unique_ptr<KeptPreconditioner> kept_;  // of the laws' patterns when it was made
+  std::unique_ptr<KeptPreconditioner> kept_;  // for the patterns at its computation
   bool is_made_ = false;
-  int price_of_new_;             // in iterations that take as long, with the assembly
+  int price_of_new_;             // cost of a new one, in iterations, including assembly
   int iterations_when_new_ = 0;  // to 1e-4
   int wasted_iterations_ = 0;
   ConjugateResiduals solver_;

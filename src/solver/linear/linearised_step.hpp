@@ -1,8 +1,8 @@
-// The linear system of a Newton iteration, known by its products:
+// Matrix-free linear system of a Newton iteration:
 //   [ A  -J^T ] [ dx           ]
 //   [ -J   0  ] [ dmultipliers ]
-// at an iterate, without the directions in which nodes are fixed. The rows of constraints are in units of force, so
-// that one norm judges all of a residual.
+// at an iterate, without fixed directions of nodes. Constraint rows are scaled to units of force, so one norm measures
+// the whole residual.
 #pragma once
 
 #include <span>
@@ -18,8 +18,8 @@ class LinearisedStep {
  public:
   explicit LinearisedStep(const Model& model);
 
-  // A vector is three numbers a node, then one a row of J. Forces are 0 on hanging nodes, directions are where the free
-  // nodes say.
+  // Vectors have three numbers per node, then one per row of J. Forces are 0 on hanging nodes; their directions follow
+  // from the free nodes.
   [[nodiscard]] std::size_t size() const { return 3 * nodes_ + jacobian_.rows(); }
   [[nodiscard]] std::span<Vec3> of_nodes(std::span<double> vector) const {
     static_assert(sizeof(Vec3) == 3 * sizeof(double));
@@ -35,18 +35,18 @@ class LinearisedStep {
     return std::span(vector).subspan(3 * nodes_);
   }
 
-  /// Moves to an iterate.
+  /// Move to an iterate.
   void take(const Iterate& at);
 
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
   [[nodiscard]] const std::vector<NodeFrame>& frames() const { return frames_; }
-  /// Where the last iterate is.
+  /// Return the last iterate.
   [[nodiscard]] const ConstraintJacobian& jacobian() const { return jacobian_; }
 
-  /// Takes out what fixed directions have of vectors of the nodes.
+  /// Remove the components along fixed directions from vectors of nodes.
   void project(std::span<Vec3> vectors) const;
 
-  /// What a row of J is multiplied with, from its weight (a force over a length squared, over gradient_scale).
+  /// Return the scale of a row of J from its weight (a force over a length squared, divided by gradient_scale).
   void set_units(std::span<const double> weights);
   [[nodiscard]] std::span<const double> units() const { return units_; }
 
@@ -54,7 +54,7 @@ class LinearisedStep {
   [[nodiscard]] KrylovVector right_side(const Residual& residual) const;
   [[nodiscard]] Direction direction_of(const KrylovVector& solution, std::size_t multipliers) const;
 
-  /// dx (A + J^T W J) dx of a direction, by its product: below 0 only where the sheet is not stable.
+  /// Return dx (A + J^T W J) dx of a direction from its product; negative only if the sheet is unstable.
   [[nodiscard]] double curvature(const KrylovVector& direction, const KrylovVector& product,
                                  std::span<const double> weights) const;
 

@@ -1,4 +1,4 @@
-// The directions in which nodes cannot move: held ones, and the normals of obstacles that they touch.
+// Fixed directions of nodes: held ones, and normals of touched obstacles.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace plica {
 
-/// The first `fixed` columns of `axes`, orthonormal, are the directions in which a node is fixed.
+/// Frame of a node; the first `fixed` columns of `axes`, orthonormal, are its fixed directions.
 struct NodeFrame {
   Mat3 axes = Mat3::Identity();
   int fixed = 0;
@@ -20,23 +20,23 @@ struct NodeFrame {
   }
 };
 
-/// Frames of the free nodes: held axes first, then normals.
+/// Return the frames of free nodes: held axes first, then normals.
 std::vector<NodeFrame> node_frames(const Model& model, const Contacts& contacts, const Iterate& at);
 
-/// `direction` without the axes along which the node is held.
+/// Return `direction` without components along held axes.
 Vec3 without_held(const Model& model, std::size_t node, Vec3 direction);
 
-/// The contacts that keep one node, as far as its held axes and the contacts before them leave them something to do.
+/// Independent contacts of one node, beyond its held axes and earlier contacts.
 struct NodeContacts {
   int count = 0;
   std::array<std::size_t, 3> contact;
-  std::array<Vec3, 3> inward;  // the obstacles' own normals: along them they push
-  std::array<Vec3, 3> way;     // what the holds leave of these: along them the node can go
+  std::array<Vec3, 3> inward;  // normals of the obstacles, direction of contact forces
+  std::array<Vec3, 3> way;     // their free parts, along which the node can move
 };
 NodeContacts node_contacts(const Model& model, const Contacts& contacts, std::span<const std::size_t> of_node,
                            const Iterate& at);
 
-/// Puts nodes in contact back on their obstacles, along the normals that they are free to move along.
+/// Move nodes in contact back onto their obstacles, along their free normals.
 void return_to_obstacles(const Model& model, const Contacts& contacts, Iterate& at);
 
 }  // namespace plica

@@ -1,10 +1,10 @@
 // The symmetric system of one Newton iteration:
 //   [ A  -J^T ] [ dx           ]
 //   [ -J   0  ] [ dmultipliers ]
-// A: tangent of all laws, constraints and obstacles, 3 x 3 blocks a pair of nodes; J: the sparse rows of the
-// constraints' gradients. Nodes are the free ones: what acts on a hanging node acts on those that carry it. Some nodes
-// have directions in which they are fixed (held, or in contact): their unknowns are turned into a frame whose first
-// axes are those directions, and those rows and columns are taken out.
+// A: tangent of all laws, constraints and obstacles, one 3 x 3 block per pair of nodes; J: sparse constraint
+// gradients. Nodes are the free ones; terms on a hanging node are passed to those that carry it. Unknowns of nodes with
+// fixed directions (held, or in contact) are rotated into a frame whose first axes are those directions, and those rows
+// and columns are removed.
 #pragma once
 
 #include <atomic>
@@ -22,46 +22,46 @@ namespace plica {
 
 class StepMatrix final : public TangentSink {
  public:
-  /// For steps in which the laws' patterns are those of this one.
+  /// Make the matrix for steps with the patterns of this one.
   explicit StepMatrix(const Model& model, const Step& step = {});
 
-  /// Whether they still are.
+  /// Whether the patterns are unchanged.
   [[nodiscard]] bool serves(const Model& model, const Step& step) const {
     return pattern_revisions(model, step) == revisions_;
   }
 
-  /// The numbers of the whole system, in the order of write_values. Unknowns: three a free node, then one a sparse row
-  /// of J.
+  /// Return the pattern of the full system, in the order of write_values. Unknowns: three per free node, then one per
+  /// sparse row of J.
   [[nodiscard]] Rows pattern() const;
 
   void set_zero();
-  /// The tangent of all laws, constraints and obstacles, and J, at an iterate. std::logic_error, which names the law,
-  /// when one adds a block outside the pattern that it states.
+  /// Assemble the tangent of all laws, constraints and obstacles, and J, at an iterate. std::logic_error, naming the
+  /// law, if it adds a block outside its pattern.
   void assemble(const Model& model, const Contacts& contacts, const Step& step, const Iterate& at);
   void add_block(NodeId row, NodeId column, const Mat3& block) override;
   [[nodiscard]] bool takes_apart() const override { return true; }
   void take_gradients(const Model& model, std::span<const Vec3> positions) { jacobian_.update(model, positions); }
   [[nodiscard]] const ConstraintJacobian& jacobian() const { return jacobian_; }
 
-  /// Adds sum_r w_r J_r^T J_r of the sparse rows, spread over their functions' parts so that it joins no more nodes
-  /// than they do: the elements of one cell resist their own changes of volume.
+  /// Add sum_r w_r J_r^T J_r of the sparse rows, distributed over the parts of their functions so that no further
+  /// nodes are joined: the elements of a cell each resist their own volume change.
   void add_constraint_stiffness(const Model& model, std::span<const Vec3> positions, std::span<const double> weights);
 
-  /// The mean of the diagonal of A, nN/um.
+  /// Return the mean of the diagonal of A, nN/um.
   [[nodiscard]] double mean_diagonal() const;
 
-  /// The block of A of two nodes; 0 where there is none.
+  /// Return the block of A of two nodes; 0 if absent.
   [[nodiscard]] Mat3 block(std::size_t row, std::size_t column) const;
 
-  /// A times a vector that is zero but at `node`, in global axes, all rows.
+  /// Return A times a vector that is zero except at `node`, in global axes, all rows.
   void multiply(std::size_t node, const Vec3& direction, std::span<Vec3> product) const;
-  /// Values in the pattern's order, turned into the frames, fixed unknowns replaced by the identity.
+  /// Write values in the order of the pattern, rotated into the frames, fixed unknowns replaced by the identity.
   void write_values(std::span<const NodeFrame> frames, std::vector<double>& values) const;
 
-  /// Which blocks there are.
+  /// Return the block pattern.
   [[nodiscard]] const BlockPattern& layout() const { return layout_; }
-  /// The blocks of A with fixed directions projected out, and in their place a diagonal of the block's own size; nine
-  /// numbers a block, by rows.
+  /// Write the blocks of A with fixed directions projected out and replaced by a diagonal of the size of the block;
+  /// nine numbers per block, by rows.
   void write_projected_blocks(std::span<const NodeFrame> frames, UninitialisedVector<float>& values) const;
 
  private:
@@ -72,7 +72,7 @@ class StepMatrix final : public TangentSink {
   BlockPattern layout_;  // lower triangle
   std::vector<Mat3> blocks_;
   ConstraintJacobian jacobian_;
-  std::atomic<bool> is_outside_ = false;  // a block was given that is not in the pattern
+  std::atomic<bool> is_outside_ = false;  // whether a block outside the pattern was added
 };
 
 }  // namespace plica

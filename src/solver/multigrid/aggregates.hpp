@@ -1,4 +1,4 @@
-// Which nodes become one of the next coarser level.
+// Aggregation: groups of nodes that become one node of the next coarser level.
 #pragma once
 
 #include "solver/algebra/rows.hpp"
@@ -7,12 +7,12 @@ namespace plica::multigrid {
 
 struct Aggregates {
   int count = 0;
-  std::vector<int> of_node;  // -1: a node without neighbours, which needs no coarser level
+  std::vector<int> of_node;  // -1: isolated node, omitted on the coarser level
   Rows members;              // of each aggregate
 };
 
-/// Disjoint neighbourhoods: a node with all its neighbours where none of them is taken yet; what is left over joins the
-/// aggregate in which it has most neighbours. In a lattice of hexahedra 27 nodes, in a sheet of one layer 18.
+/// Make disjoint neighbourhoods: a node with all its neighbours if none is taken yet; each remaining node joins the
+/// aggregate with most of its neighbours. 27 nodes in a lattice of hexahedra, 18 in a sheet of one layer.
 Aggregates make_aggregates(const Rows& matrix);
 
 }  // namespace plica::multigrid

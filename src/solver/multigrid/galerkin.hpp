@@ -1,4 +1,4 @@
-// The coarser level's matrix, P^T A P.
+// Galerkin matrix of the coarser level, P^T A P.
 #pragma once
 
 #include "solver/multigrid/transfer.hpp"
@@ -11,13 +11,14 @@ class Galerkin {
   Galerkin(const Rows& matrix, const Transfer<B>& transfer);
 
   [[nodiscard]] const BlockPattern& pattern() const { return pattern_; }
-  /// Values of the pattern's blocks, 6 x 6 each by rows. An unknown that has no part in P gets the diagonal 1.
+  /// Return the values of the blocks of the pattern, 6 x 6 each by rows. Unknowns without part in P get the diagonal
+  /// 1.
   [[nodiscard]] UninitialisedVector<float> values(const Matrix<B>& matrix, const Transfer<B>& transfer) const;
 
  private:
   [[nodiscard]] UninitialisedVector<float> times_transfer(const Matrix<B>& matrix, const Transfer<B>& transfer) const;
 
-  Rows product_;  // A P, as far as the blocks on and below the diagonal of P^T A P need it
+  Rows product_;  // A P, as required for the lower triangle of P^T A P
   BlockPattern pattern_;
 };
 

@@ -1,8 +1,8 @@
-// The matrix of one level of the multigrid: square blocks of B unknowns a node, 3 on the finest level and 6 on others.
+// Matrix of one multigrid level: square blocks of B unknowns per node, 3 on the finest level and 6 on others.
 //
-// Symmetric, but kept with all its rows whole: a product then writes each row once and reads memory in one stream, and
-// is the same to the bit for any number of threads. Half of it would take half the memory, and turns to write into
-// rows that other threads write.
+// Symmetric, but stored with complete rows: a product then writes each row once, reads memory in one stream, and is
+// bitwise identical for any number of threads. Half of it would save half the memory, but threads would write into the
+// same rows.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@
 
 namespace plica::multigrid {
 
-/// Columns of a block are handled in vectors a little longer than they are; what the last lanes hold (the beginning of
-/// the next column) is never looked at. Arrays of blocks therefore end with `spare` numbers more.
+/// Number of padding values after arrays of blocks: columns of a block are processed in slightly longer vectors, whose
+/// last lanes (the beginning of the next column) are ignored.
 template <int B>
 inline constexpr int lanes = B == 3 ? 4 : 8;
 inline constexpr std::size_t spare = 8;
@@ -24,26 +24,26 @@ inline constexpr std::size_t spare = 8;
 template <int B>
 class Matrix {
  public:
-  /// `places` says which row of this matrix each node of the pattern is; without, nodes keep their order.
+  /// Make the matrix for a pattern. `places`: row of each node of the pattern; default: the same order.
   explicit Matrix(const BlockPattern& pattern, std::span<const int> places = {});
 
-  /// Takes values of the pattern's blocks, B x B each by rows. False when a diagonal block is not positive definite.
+  /// Set the blocks of the pattern, B x B each by rows. False if a diagonal block is not positive definite.
   [[nodiscard]] bool set(std::span<const float> values);
 
   [[nodiscard]] int nodes() const { return rows_.count(); }
   [[nodiscard]] std::size_t unknowns() const { return std::size_t{B} * static_cast<std::size_t>(nodes()); }
   [[nodiscard]] const Rows& rows() const { return rows_; }
-  /// A block of rows().columns, by columns.
+  /// Return a block of rows().columns, by columns.
   [[nodiscard]] const float* block(int place) const { return &values_[std::size_t{B * B} * place]; }
-  /// The inverse of a node's diagonal block.
+  /// Return the inverse of the diagonal block of a node.
   [[nodiscard]] const float* inverse(int node) const { return &inverses_[std::size_t{B * B} * node]; }
 
-  /// Row of a node times x.
+  /// Return the row of a node times x.
   void multiply_row(int node, const float* x, float (&product)[B]) const {
     float sums[B][lanes<B>] = {};
     for (int place = rows_.starts[node]; place < rows_.starts[node + 1]; ++place) {
       const float *a = block(place), *from = x + std::size_t{B} * rows_.columns[place];
-      __builtin_prefetch(a + 1024);  // 4 kB ahead: a fifth faster than what the processor does by itself
+      __builtin_prefetch(a + 1024);  // 4 kB ahead: a fifth faster than hardware prefetching
       for (int column = 0; column < B; ++column)
 #pragma omp simd
         for (int lane = 0; lane < lanes<B>; ++lane) sums[column][lane] += a[B * column + lane] * from[column];
@@ -54,7 +54,7 @@ class Matrix {
     }
   }
 
-  /// Inverse of a node's diagonal block times r.
+  /// Return the inverse of the diagonal block of a node times r.
   void multiply_inverse(int node, const float* r, float (&product)[B]) const {
     const float* a = inverse(node);
     float sums[lanes<B>] = {};
@@ -64,16 +64,16 @@ class Matrix {
     for (int i = 0; i < B; ++i) product[i] = sums[i];
   }
 
-  /// y = A x.
+  /// Compute y = A x.
   void multiply(std::span<const float> x, std::span<float> y) const;
-  /// z = D^-1 r, D the diagonal blocks.
+  /// Compute z = D^-1 r, with D the diagonal blocks.
   void multiply_inverses(std::span<const float> r, std::span<float> z) const;
 
  private:
   [[nodiscard]] bool invert_diagonal();
 
   Rows rows_;
-  std::vector<int> sources_;  // of rows_.columns: the pattern's block, or ~ of it where it is to be transposed
+  std::vector<int> sources_;  // of rows_.columns: block of the pattern, or ~ of it if transposed
   UninitialisedVector<float> values_, inverses_;
 };
 

@@ -1,5 +1,5 @@
-// An order of nodes in which neighbours are near each other, so that a few products can follow one another through
-// memory (smoother.hpp).
+// Node order with small distances between neighbours, so that several products can follow one another through memory
+// (smoother.hpp).
 #pragma once
 
 #include "solver/algebra/block_pattern.hpp"
@@ -7,12 +7,12 @@
 
 namespace plica::multigrid {
 
-/// Each node's place when they are in the order of their distance, counted in neighbours, from a node at one end of the
-/// mesh: rings about an embryo's axis.
+/// Return the place of each node, sorted by distance (in neighbours) from a node at one end of the mesh: rings about
+/// the axis of an embryo.
 std::vector<int> places_by_distance(const BlockPattern& pattern);
 
-/// The bounds of groups of rows, one after another, each of at least `least` rows (the last may have less), such that
-/// all columns of a group's rows are in it or in the two beside it. Where neighbours are far apart, these are few.
+/// Return the bounds of consecutive groups of at least `least` rows (fewer in the last), such that all columns of the
+/// rows of a group lie in it or in the two adjacent groups. If neighbours are far apart, there are few groups.
 std::vector<int> groups_of_rows(const Rows& matrix, int least);
 
 }  // namespace plica::multigrid

@@ -12,17 +12,17 @@ class Smoother {
  public:
   explicit Smoother(const Matrix<B>& matrix);
 
-  /// After the matrix has been set. False when it shows not to be positive definite.
+  /// Prepare smoothing after the matrix has been set. False if it is found not to be positive definite.
   [[nodiscard]] bool update();
   [[nodiscard]] double largest_eigenvalue() const { return largest_; }
 
-  /// x = about A^-1 r, and r becomes r - A x.
+  /// Set x to about A^-1 r, and r to r - A x.
   void start(std::span<float> r, std::span<float> x);
-  /// x, of which r is the residual, gets the correction and is smoothed. r is used up.
+  /// Correct and smooths x, whose residual is r; r is overwritten.
   void finish(std::span<const float> correction, std::span<float> r, std::span<float> x);
 
  private:
-  static constexpr int degree = 4;  // products a smoothing
+  static constexpr int degree = 4;  // products per smoothing
   struct Term {
     float keep, step;
   };
@@ -32,7 +32,7 @@ class Smoother {
   std::vector<int> groups_;
   double largest_ = 0;
   std::array<Term, degree> terms_{};
-  std::array<UninitialisedVector<float>, 2> directions_;  // in turns
+  std::array<UninitialisedVector<float>, 2> directions_;  // used alternately
 };
 
 extern template class Smoother<3>;

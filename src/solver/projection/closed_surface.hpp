@@ -1,6 +1,6 @@
-// A closed surface of bilinear facets and the volume inside it: what the projection keeps.
+// Closed surface of bilinear facets and its enclosed volume, which the projection conserves.
 //
-// The volume is the sum of hex_volume's term over the facets, a homogeneous cubic polynomial of the points. So with
+// The volume is the sum of the hex_volume term over the facets, a homogeneous cubic polynomial of the points. So with
 // g(x) its gradient, V(x) = x.g(x)/3, and along a direction d
 //   V(x + l d) = V(x) + l g(x).d + l^2 x.g(d) + l^3 d.g(d)/3    exactly.
 #pragma once
@@ -20,26 +20,27 @@ class ClosedSurface {
  public:
   using Quad = std::array<NodeId, 4>;  // counter-clockwise from outside; a triangle repeats a node
 
-  /// Facets that two neighbours share with opposite orientation cancel: those of all elements of a body make the
-  /// surface around it.
+  /// Make the surface; facets shared by two neighbours with opposite orientation cancel, so all facets of the elements
+  /// of a body give its outer surface.
   explicit ClosedSurface(const std::vector<Quad>& facets);
   explicit ClosedSurface(std::span<const Facet> facets);
 
   [[nodiscard]] const std::vector<NodeId>& nodes() const { return nodes_; }
 
-  /// The positions of its nodes relative to the first, so that rounding does not depend on where the body lies.
+  /// Gather the positions of its nodes relative to the first, so that rounding does not depend on the position of the
+  /// body.
   void gather(std::span<const Vec3> positions, Vectors& points) const;
 
-  /// dV/dx at the points (or any vectors) of its nodes, um^2.
+  /// Compute dV/dx at the points (or any vectors) of its nodes, um^2.
   void gradient(const Vectors& points, Vectors& gradient) const;
 
-  /// V(points + l direction) as a polynomial of l; `gradient` that at the points, `scratch` is overwritten.
+  /// Return V(points + l direction) as a polynomial of l; `gradient` is that at the points, `scratch` is overwritten.
   [[nodiscard]] Cubic volume_along(const Vectors& points, const Vectors& gradient, const Vectors& direction,
                                    Vectors& scratch) const;
 
  private:
   std::vector<NodeId> nodes_;
-  std::vector<std::array<int, 4>> facets_;  // places in nodes_
+  std::vector<std::array<int, 4>> facets_;  // indices into nodes_
 };
 
 }  // namespace plica

@@ -1,15 +1,15 @@
-// The force step of the paper (2.7): backward Euler linearised at the beginning of the step, one linear system solved
-// by conjugate gradients, no global matrix. Volumes and the shell come afterwards (projected_stepper.hpp).
-// Theory: docs/theory/paper_algorithm.md.
+// Force step of the paper (2.7): linearised backward Euler, one linear system solved by conjugate gradients, no global
+// matrix. Volumes and the shell are projected afterwards (projected_stepper.hpp). Theory:
+// docs/theory/paper_algorithm.md.
 #pragma once
 
 #include "solver/step/stepper.hpp"
 
 namespace plica {
 
-/// Solves  A dx = f(x^n),  A = D/h + M/h^2 + K~  with the laws' semidefinite tangent K~, to a residual of `tolerance`
-/// times |f|. Preconditioned by the inverse 3 x 3 blocks on A's diagonal. A step fails when that takes more than
-/// `most_iterations`.
+/// Linearly implicit stepper. Solves  A dx = f(x^n),  A = D/h + M/h^2 + K~,  with the semidefinite tangent K~ of the
+/// laws, to a residual of `tolerance` times |f|. Preconditioned by the inverse 3 x 3 diagonal blocks of A. The step
+/// fails after `most_iterations`.
 class LinearlyImplicit final : public Stepper {
  public:
   LinearlyImplicit(const Model& model, double tolerance, int most_iterations);

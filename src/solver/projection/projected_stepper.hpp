@@ -1,4 +1,4 @@
-// A force step followed by the projection onto volumes and obstacles: the splitting of the paper (2.5, 2.7).
+// Force step followed by projection onto volumes and obstacles: the splitting of the paper (2.5, 2.7).
 #pragma once
 
 #include "solver/projection/volume_projection.hpp"
@@ -8,7 +8,7 @@ namespace plica {
 
 class ProjectedStepper final : public Stepper {
  public:
-  /// Without a rule only obstacles are kept.
+  /// Make the stepper; without a rule only obstacles are enforced.
   ProjectedStepper(const Model& model, std::unique_ptr<Stepper> force_step, const std::optional<ProjectionRule>& rule);
 
   StepReport advance(const State& state, double duration_s, bool from_rest, State& next) override;

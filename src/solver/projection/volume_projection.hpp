@@ -1,5 +1,5 @@
-// The paper's incompressibility (2.5): after the force step, X <- X + l W dV/dX with the real root l nearest zero of
-// the cubic V(X + l W dV/dX) = V0, a closed surface after another, obstacles and volumes in turn, until all hold.
+// Incompressibility of the paper (2.5): after the force step, X <- X + l W dV/dX with the real root l nearest zero of
+// the cubic V(X + l W dV/dX) = V0, one closed surface after another, alternating obstacles and volumes, until all hold.
 // Theory: docs/theory/paper_algorithm.md.
 #pragma once
 
@@ -10,28 +10,28 @@
 
 namespace plica {
 
-/// How volumes are projected after the force step.
+/// Parameters of the projection.
 struct ProjectionRule {
-  /// Closed surfaces whose volumes are kept: each cell's; that around all cells together; the apical surface, with
-  /// the lumen inside.
+  /// Surfaces with conserved volume: each cell; the surface of all cells together; the apical surface, including the
+  /// lumen.
   enum class Surfaces { cells, tissue, embryo } surfaces = Surfaces::cells;
-  /// How far nodes go along the gradient: all alike, or each as far as its drag and mass let it.
+  /// Step lengths along the gradient: equal, or by the mobility of each node (drag and mass).
   enum class Weights { equal, mobility } weights = Weights::equal;
   double tolerance = 1e-9;  // |V/target - 1|, every surface
-  double gap_um = 1e-7;     // depth of a node outside the shell
+  double gap_um = 1e-7;     // distance of a node outside the shell
   int most_sweeps = 1000;
 };
 
 class VolumeProjection {
  public:
-  /// Without a rule only obstacles are kept.
+  /// Make the projection; without a rule only obstacles are enforced.
   VolumeProjection(const Model& model, const std::optional<ProjectionRule>& rule);
 
-  /// Moves `after`, where a force step has led from `before`, onto volumes and obstacles; held directions of nodes
-  /// stay. Multipliers over the step's length are added to the multipliers of the volumes and contact forces of
-  /// `after`, which come with the force step's own part; where weights are equal, as if every node had the mean
-  /// mobility. The sweeps start from what of this `before` has. What was done goes into the report; the outcome is
-  /// converged, not_projected (with the cell that is off most), or interrupted.
+  /// Project `after`, the result of a force step from `before`, onto volumes and obstacles; held directions of nodes
+  /// stay. Adds the multipliers over the step to those of the volumes and contact forces of `after`, which contain the
+  /// part of the force step; with equal weights, as if every node had the mean mobility. Sweeps start from the values
+  /// in `before`. The report receives the counts and a status: converged, not_projected (with the worst cell), or
+  /// interrupted.
   void apply(const State& before, double duration_s, const std::function<bool()>& stop_requested, State& after,
              StepReport& report);
 
@@ -58,8 +58,8 @@ class VolumeProjection {
   std::vector<Kept> kept_;
   std::vector<double> weights_;                      // nodes; um/(nN s)
   std::vector<double> moved_;                        // kept surfaces; sum of l, kPa s
-  std::vector<double> pushed_;                       // contacts; how far their nodes have been pushed in, um
-  Vectors points_, gradient_, direction_, scratch_;  // of one surface's nodes
+  std::vector<double> pushed_;                       // contacts; inward displacement of their nodes, um
+  Vectors points_, gradient_, direction_, scratch_;  // nodes of one surface
 };
 
 }  // namespace plica

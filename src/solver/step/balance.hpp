@@ -1,4 +1,4 @@
-// What is unbalanced at an iterate of a step, and which nodes touch obstacles there.
+// Residual of an iterate of a step, and the contact states of nodes.
 #pragma once
 
 #include "mechanics/model.hpp"
@@ -6,11 +6,11 @@
 
 namespace plica {
 
-/// When a step counts as solved.
+/// Convergence tolerances of a step.
 struct StepTolerances {
-  double force = 1e-8;        // residual over the norm of the forces that balance
-  double constraint = 1e-10;  // |value/target - 1|, every function that is held
-  double gap_um = 1e-8;       // depth of a node beyond an obstacle
+  double force = 1e-8;        // residual / norm of the balancing forces
+  double constraint = 1e-10;  // |value/target - 1| of every held function
+  double gap_um = 1e-8;       // penetration of a node into an obstacle
   int max_iterations = 40;
 };
 
@@ -18,13 +18,14 @@ class Balance {
  public:
   Balance(const Model& model, const StepTolerances& tolerances);
 
-  /// Sets the iterate's contact forces: obstacles bear what else would push nodes outward along their normals.
+  /// Compute the residual and sets the contact forces of the iterate: obstacles bear the forces that push nodes
+  /// outward along their normals.
   [[nodiscard]] Residual residual(const Step& step, Iterate& at) const;
 
   [[nodiscard]] bool is_solved(const Residual& residual) const;
 
-  /// Lets nodes go that are pulled inward, takes up those that are outside, and puts all on their obstacles. Whether
-  /// any has changed. `changes`: contacts; how often each has in this step, counted here.
+  /// Release nodes pulled inward, adds nodes outside, and projects all onto their obstacles. Returns whether any
+  /// contact changed. `changes`: contacts; number of changes in this step, updated here.
   bool revise_contacts(Iterate& at, std::span<unsigned char> changes) const;
 
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
@@ -38,8 +39,8 @@ class Balance {
   Contacts contacts_;
   double force_scale_;                       // nN
   double position_rounding_;                 // um
-  double elastic_rounding_;                  // nN: what that makes of elastic forces
-  std::vector<double> constraint_rounding_;  // the same of relative values; constraints
+  double elastic_rounding_;                  // nN: resulting error of elastic forces
+  std::vector<double> constraint_rounding_;  // resulting error of relative values; constraints
 };
 
 }  // namespace plica

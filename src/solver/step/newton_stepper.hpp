@@ -1,8 +1,8 @@
-// One implicit step, of first or second order in time, with constraints and obstacles held together with the forces
-// (THE NEWTON LOOP).
+// One implicit step, of first or second order in time, with forces, constraints and obstacles solved together (THE
+// NEWTON LOOP).
 //
 // The step ends where  -dPhi/dx + J^T lambda + N mu = 0,  c = target,  0 <= g _|_ mu >= 0,  Phi being the sum of the
-// laws' energies. Newton's method on all of it at once, with line search; obstacles by an active set that is revised
+// laws' energies. Newton's method for all of it at once, with line search; obstacles by an active set that is revised
 // after each iteration. Theory: docs/theory/step.md.
 #pragma once
 
@@ -18,14 +18,14 @@
 
 namespace plica {
 
-/// Solves steps of one model; keeps what its linear systems have in common between them.
+/// Stepper of one model; keeps data shared by linear systems of successive steps.
 class NewtonStepper final : public Stepper {
  public:
   explicit NewtonStepper(const Model& model, StepTolerances tolerances = {},
                          LinearMethod method = LinearMethod::automatic, TimeOrder order = TimeOrder::first);
   ~NewtonStepper() override;
 
-  /// Starts from the velocities' forecast unless `from_rest`.
+  /// Solve a step, starting from a prediction by velocities unless `from_rest`.
   StepReport advance(const State& state, double duration_s, bool from_rest, State& next) override;
   void stop_when(std::function<bool()> stop_requested) override { stop_requested_ = std::move(stop_requested); }
   void forget_factor() override;

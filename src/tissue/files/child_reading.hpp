@@ -1,4 +1,4 @@
-// Reading by libraries that a damaged file may crash: in a child process, which hands over what it found as bytes.
+// File reading in a child process, for libraries that damaged files may crash; results are passed as bytes.
 #pragma once
 
 #include <filesystem>
@@ -7,11 +7,11 @@
 
 namespace plica {
 
-/// FileError: `FILE: cannot be read: WHY`.
+/// Throw FileError `FILE: cannot be read: WHY`.
 [[noreturn]] void throw_unread(const std::filesystem::path& file, const std::string& why);
 
-/// What `read` returns, run in a child process. Its FileError and MeshError come out here; FileError when it crashed,
-/// which says that `reader` (a library's name) breaks off at the file.
+/// Return the result of `read`, run in a child process. Its FileError and MeshError are passed on; FileError if it
+/// crashed, naming the library `reader`.
 std::string read_in_child(const std::filesystem::path& file, const std::function<std::string()>& read,
                           const char* reader = "VTK");
 

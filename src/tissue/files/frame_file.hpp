@@ -1,4 +1,4 @@
-// Meshes read back: the frames of a run, and surfaces to measure distances to.
+// Reading of snapshots of a run, and of surfaces to measure distances to.
 #pragma once
 
 #include <array>
@@ -14,42 +14,42 @@
 
 namespace plica {
 
-/// The polygons of a mesh's cells, as lists of corners one after the other. Files hold them as field data of these
-/// names, with `polygon_` before them.
+/// Polygons of cells, as consecutive lists of corners. Files store them as field data of these names with prefix
+/// `polygon_`.
 struct FramePolygons {
-  std::vector<int> ends;           // cells: where the cell's corners end among all
-  std::vector<int> apical, basal;  // nodes, counter-clockwise seen from outside, above the apex
-  std::vector<int> elements;       // cells: the first element of each, whose values are the cell's
+  std::vector<int> ends;           // cells: end of the corners of each
+  std::vector<int> apical, basal;  // nodes, counter-clockwise seen from outside, above the apical surface
+  std::vector<int> elements;       // cells: first element of each, which has the values of the cell
 
   [[nodiscard]] bool empty() const { return ends.empty(); }
 };
 
-/// What write_mesh wrote: a moment of a run.
+/// Snapshot of a run, as written by write_mesh.
 struct Frame {
   Vectors positions;                                           // nodes; um
   std::vector<std::array<NodeId, 8>> elements;                 // VTK's order, nodes 4-7 on the apical side
   std::map<std::string, Vectors> node_vectors;                 // nodes, by name
   std::map<std::string, std::vector<double>> element_scalars;  // elements, by name
   std::optional<double> time_s;
-  FramePolygons polygons = {};  // none where every cell is one element, and in frames of older versions
+  FramePolygons polygons = {};  // empty if every cell is one element, and in files of older versions
 };
 
-/// A surface as flat triangles.
+/// Surface of flat triangles.
 struct TriangleSurface {
   Vectors points;  // um
   std::vector<std::array<int, 3>> triangles;
 };
 
-/// Reads a frame: hexahedra, node vectors, one-component cell data and the time. FileError when the file cannot be
-/// read, or holds no hexahedra or what is not finite; MeshError when it holds other cells.
+/// Read a snapshot: hexahedra, node vectors, one-component cell data and the time. FileError if the file cannot be
+/// read, has no hexahedra or contains non-finite numbers; MeshError if it contains other cells.
 Frame read_frame(const std::filesystem::path& file);
 
-/// Reads the surface that a file holds (VTK, STL, PLY, OBJ), or the boundary of a volume mesh; polygons are split into
-/// triangles. FileError when it cannot be read or has no face.
+/// Read the surface in a file (VTK, STL, PLY, OBJ), or the boundary of a volume mesh; polygons are split into
+/// triangles. FileError if it cannot be read or has no faces.
 TriangleSurface read_surface(const std::filesystem::path& file);
 
-/// The times (s) and files of ParaView's collection file, as write_collection writes it; paths as they stand there.
-/// FileError when it cannot be read or is none.
+/// Return the times (s) and files of a ParaView collection file, as written by write_collection; paths as in the file.
+/// FileError if it cannot be read or is not a collection.
 std::vector<std::pair<double, std::string>> read_collection(const std::filesystem::path& pvd);
 
 }  // namespace plica

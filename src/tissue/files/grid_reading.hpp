@@ -1,9 +1,8 @@
 // Mesh files through VTK's readers.
 //
-// VTK's readers trust the numbers in a file: a few damaged bytes make them divide by zero or write beyond their memory.
-// So a child process reads the file (child_reading.hpp). There a window of our own takes what VTK has to say, also from
-// objects within its readers. Any error counts, since VTK hands out what it has got of a broken file as if it were
-// whole.
+// VTK readers trust the numbers in a file: damaged bytes make them divide by zero or write out of bounds. So a child
+// process reads the file (child_reading.hpp). A custom output window collects VTK messages, also from objects within
+// readers. Any error counts, since VTK returns partial data of a broken file as if it were complete.
 #pragma once
 
 #include <array>
@@ -21,19 +20,19 @@ class vtkUnstructuredGrid;
 
 namespace plica {
 
-// To be called within `read` of read_in_child. All throw FileError when the file cannot be read.
+// Call these within `read` of read_in_child. All throw FileError if the file cannot be read.
 
-/// An unstructured grid, XML or legacy, told by its content.
+/// Read an unstructured grid, XML or legacy by content.
 vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& file);
 
-/// What a VTK file holds, XML or legacy, told by its content: points and cells of any kind.
+/// Read points and cells of any kind from a VTK file, XML or legacy by content.
 vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& file);
 
-/// The surface that a file holds, or the boundary of a volume mesh, split into triangles: VTK XML or legacy by content;
-/// STL, PLY and OBJ by the file's ending.
+/// Read the surface in a file, or the boundary of a volume mesh, split into triangles: VTK XML or legacy by content;
+/// STL, PLY and OBJ by extension.
 vtkSmartPointer<vtkPolyData> read_triangles(const std::filesystem::path& file);
 
-/// Nodes and cells of a grid of hexahedra. MeshError when it holds anything else, or its lists do not fit together.
+/// Copy nodes and cells of a grid of hexahedra. MeshError for other cells or inconsistent lists.
 void copy_hexahedra(vtkUnstructuredGrid& grid, Vectors& points, std::vector<std::array<NodeId, 8>>& hexahedra);
 
 }  // namespace plica

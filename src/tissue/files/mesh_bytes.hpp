@@ -1,4 +1,4 @@
-// A mesh as a string of bytes, to hand it from one process to another on the same machine.
+// Serialisation of a mesh, to pass it between processes on one machine.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace plica {
 
 std::string mesh_to_bytes(const HexahedralMesh& mesh);
 
-/// MeshError when the bytes end early.
+/// Read a mesh back. MeshError if the bytes end early.
 HexahedralMesh mesh_from_bytes(std::string_view bytes);
 
 }  // namespace plica

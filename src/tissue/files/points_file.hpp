@@ -1,4 +1,4 @@
-// Tables of measured points.
+// Reading of tables of measured points.
 #pragma once
 
 #include <filesystem>
@@ -12,12 +12,12 @@
 namespace plica {
 
 struct PointTable {
-  Vectors points;                                     // um; a row each
-  std::map<std::string, std::vector<double>> arrays;  // the other columns of numbers
+  Vectors points;                                     // um; one per row
+  std::map<std::string, std::vector<double>> arrays;  // other columns
 };
 
-/// A table in CSV whose first line names its columns, x_um, y_um and z_um among them. MeshError names the line and what
-/// is wrong with it.
+/// Parse a CSV table whose first line names its columns, including x_um, y_um and z_um. MeshError names the line and
+/// the problem.
 PointTable points_in_csv(std::string_view text);
 PointTable read_points_file(const std::filesystem::path& file);
 

@@ -1,4 +1,4 @@
-// Surfaces of polygons, a cell a face, as modellers, image tools and vertex models write them.
+// Reading of polygon surfaces, one face per cell, from modelling software, image tools and vertex models.
 #pragma once
 
 #include <filesystem>
@@ -12,24 +12,24 @@
 namespace plica {
 
 struct PolygonFile {
-  PolygonSurface surface;                   // as the file has it: unchecked, but corners are vertices that there are
-  std::map<std::string, CellArray> arrays;  // numbers a face
+  PolygonSurface surface;                   // as in the file: unchecked, but corners are existing vertices
+  std::map<std::string, CellArray> arrays;  // one number per face
 };
 
-/// Wavefront's OBJ: lines `v x y z` and `f a b c ...`; the rest is passed over. No arrays.
+/// Parse Wavefront OBJ: lines `v x y z` and `f a b c ...`; others are ignored. No arrays.
 PolygonFile polygons_in_obj(std::string_view text);
-/// Geomview's OFF: a vertex or a face a line; colours are passed over. No arrays.
+/// Parse Geomview OFF: one vertex or face per line; colours are ignored. No arrays.
 PolygonFile polygons_in_off(std::string_view text);
-/// Stanford's PLY, text or binary. Numbers of the faces (not lists) are arrays.
+/// Parse Stanford PLY, text or binary. Scalar face properties become arrays.
 PolygonFile polygons_in_ply(std::string_view bytes);
-// All of these: MeshError, which names the line or element, when the text is no such file.
+// These throw MeshError, naming the line or element, if the text is invalid.
 
-/// Reads a file by its ending: .obj, .off, .ply; .vtp, .vtu and .vtk through VTK, with all arrays of one number a face;
-/// .h5, .hdf5 and .hf5 as tyssue's save_datasets writes it. FileError when it cannot be read, or the plica was built
-/// without what that takes; MeshError when it is something else.
+/// Read a file by extension: .obj, .off, .ply; .vtp, .vtu and .vtk with VTK, including arrays with one number per face;
+/// .h5, .hdf5 and .hf5 as written by save_datasets of tyssue. FileError if it cannot be read or this build lacks the
+/// library; MeshError for other content.
 PolygonFile read_polygon_file(const std::filesystem::path& file);
 
-// What read_polygon_file chooses among.
+// Readers chosen by read_polygon_file.
 PolygonFile read_vtk_polygons(const std::filesystem::path& file);
 PolygonFile read_vertex_model(const std::filesystem::path& file);
 

@@ -1,5 +1,4 @@
-// Tables of a vertex model in two dimensions of space or three: vertices, half-edges that run from one to the next
-// about a face, and faces.
+// Tables of a vertex model in two or three dimensions: vertices, half-edges along the outline of a face, and faces.
 #pragma once
 
 #include <map>
@@ -10,20 +9,20 @@
 
 namespace plica {
 
-/// A table as pandas has it: a number for each row by which others name it, and named columns of numbers.
+/// Table as in pandas: an index number per row, and named numeric columns.
 struct NumberedTable {
   std::vector<double> index;
   std::map<std::string, std::vector<double>> columns;
 };
 
 struct VertexModelTables {
-  NumberedTable vertices;  // x, y and perhaps z
+  NumberedTable vertices;  // x, y and optionally z
   NumberedTable edges;     // srce, trgt, face
-  NumberedTable faces;     // whatever is known of them
+  NumberedTable faces;     // any columns
 };
 
-/// Faces in the order of their table, its columns as arrays. Those without any edge are left out. MeshError when
-/// columns are missing, a row is named that there is not, or the edges of a face are no ring.
+/// Return faces in the order of their table, with its columns as arrays; faces without edges are omitted. MeshError if
+/// columns or referenced rows are missing, or the edges of a face do not form one ring.
 PolygonFile polygons_of(const VertexModelTables& tables);
 
 }  // namespace plica

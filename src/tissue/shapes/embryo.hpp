@@ -1,8 +1,8 @@
 // Builders of embryos: the pill (Drosophila), the sphere (Xenopus), a slice of a pill and the flat block.
 //
-// Pill and sphere are the surface grid of a box of a x b x c cells (2(ab + bc + ca) cells, that many + 2 nodes a
-// layer), laid on a capsule: first by equal angles (and equal arcs along the axis), then smoothed until the cells are
-// as even as they get. Nodes of refined elements lie on the same smooth surfaces as the cells' corners.
+// Pill and sphere are the surface grid of a box of a x b x c cells (2(ab + bc + ca) cells, that many + 2 nodes
+// per layer), mapped to a capsule: first by equal angles (and equal arcs along the axis), then smoothed for even cells.
+// Nodes of refined elements lie on the same smooth surfaces as the cells' corners.
 #pragma once
 
 #include <array>
@@ -19,12 +19,12 @@ struct ShellShape {
   std::array<int, 3> elements_per_cell = {1, 1, 1};  // along, across, basal to apical
 };
 
-/// A closed sheet one cell thick: a pill, or a sphere when length and diameter agree. Apical faces outside. Positions
-/// are symmetric about the three planes to the bit.
+/// Build a closed sheet one cell thick: a pill, or a sphere if length and diameter agree. Apical faces outside.
+/// Positions are bitwise symmetric about the three planes.
 Tissue build_shell(const ShellShape& shape);
 
-/// The same cells around a cylinder: `length_um` of its middle, with cells[0] along x, cells[1] on belly and back each,
-/// cells[2] on either side. Symmetric about y = 0 to the bit.
+/// Build the same cells around a cylinder: `length_um` of its middle, with cells[0] along x, cells[1] each on the
+/// ventral and dorsal side, cells[2] on either side. Bitwise symmetric about y = 0.
 Tissue build_slice(const ShellShape& shape);
 
 struct BlockShape {
@@ -35,7 +35,7 @@ struct BlockShape {
   std::array<int, 3> elements_per_cell = {1, 1, 1};
 };
 
-/// A flat block, centred on the origin, apical faces on top (+z).
+/// Build a flat block, centred on the origin, apical faces on top (+z).
 Tissue build_block(const BlockShape& shape);
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// Points spread evenly over a closed surface, irregular as cells of an epithelium are.
+// Points distributed evenly over a closed surface, irregular like cells of an epithelium.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,9 @@
 
 namespace plica {
 
-/// Random points, as many everywhere by area, then evened out by Lloyd's relaxation: each point moves to the middle of
-/// its polygon (surface_polygons.hpp) again and again. The areas of the polygons then vary by some 8 % (coefficient of
-/// variation), some 70 % of them are hexagons. The same seed gives the same points. Their order is by x and says
-/// nothing else. MeshError for fewer than 12.
+/// Return random points with uniform density per area, evened out by Lloyd's relaxation: each point moves repeatedly to
+/// the centroid of its polygon (surface_polygons.hpp). Polygon areas then vary by about 8 % (coefficient of variation);
+/// about 70 % are hexagons. The seed determines the points; they are sorted by x. MeshError for fewer than 12.
 Vectors even_points(const StarSurface& surface, std::size_t count, std::uint64_t seed);
 
 }  // namespace plica

@@ -14,20 +14,21 @@ namespace plica {
 
 inline constexpr int largest_harmonic_degree = 16;
 
-/// How many harmonics there are up to the degree.
+/// Return the number of harmonics up to the degree.
 constexpr std::size_t harmonic_count(int degree) {
   return static_cast<std::size_t>(degree + 1) * static_cast<std::size_t>(degree + 1);
 }
 
 using HarmonicValues = std::array<double, harmonic_count(largest_harmonic_degree)>;
 
-/// Values of the harmonics up to `degree` at a unit vector; later places are not set.
+/// Evaluate the harmonics up to `degree` at a unit vector; later places are not set.
 void evaluate_harmonics(const Vec3& direction, int degree, HarmonicValues& values);
 
-/// Factors that give each harmonic a mean square of 1 over the sphere.
+/// Return factors that give each harmonic a mean square of 1 over the sphere.
 std::vector<double> harmonic_norms(int degree);
 
-/// Coefficients of the derivative along x, y or z (axis 0, 1, 2); as many as before, the highest degree is 0.
+/// Return the coefficients of the derivative along x, y or z (axis 0, 1, 2); the number is unchanged, the highest
+/// degree is 0.
 std::vector<double> harmonic_derivative(const std::vector<double>& coefficients, int degree, int axis);
 
 }  // namespace plica

@@ -1,8 +1,9 @@
-// A smooth closed surface around the origin that every ray from there meets once: the shape of a measured embryo.
+// Smooth closed surface around the origin that every ray from it meets once: the shape of a measured embryo.
 //
-// Lengths are first divided by three half-axes along directions of the surface's own, which turns an elongated egg into
-// nearly a unit sphere. There the radius is a polynomial in the direction, as a sum of harmonics (solid_harmonics.hpp).
-// Scaled first, degree 6 follows a measured embryo to 0.3 um; unscaled, the poles of an egg take twice the degree.
+// Lengths are first divided by three half-axes along the principal directions of the surface, which turns an elongated
+// egg into nearly a unit sphere. There the radius is a polynomial in the direction, as a sum of harmonics
+// (solid_harmonics.hpp). Scaled first, degree 6 follows a measured embryo to 0.3 um; unscaled, the poles of an egg take
+// twice the degree.
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace plica {
 
-/// How a surface lies and bends at one of its points.
+/// Normal and curvature of a surface at a point.
 struct SurfaceBend {
   Vec3 normal;                   // unit, outward
   std::array<double, 2> radii;   // um; principal radii of curvature, the smaller first where both are positive.
@@ -20,51 +21,52 @@ struct SurfaceBend {
   std::array<Vec3, 2> tangents;  // unit, the directions of these radii
 };
 
-/// The place of a surface nearest to a point.
+/// Place of a surface nearest to a point.
 struct ClosestOnSurface {
   Vec3 point;                 // um
   Vec3 normal;                // unit, outward
-  double signed_distance_um;  // of what was asked for: negative inside
+  double signed_distance_um;  // of the given point: negative inside
   SurfaceBend bend;           // there
 };
 
 class StarSurface {
  public:
-  /// The surface x = axes * diag(half_axes) * u with |u| = the sum of harmonics at u / |u|, each harmonic scaled to a
-  /// mean square of 1. `axes` is a rotation. (degree + 1)^2 coefficients. MeshError where the radius is not positive.
+  /// Surface x = axes * diag(half_axes) * u with |u| = the sum of harmonics at u / |u|, each harmonic scaled to a mean
+  /// square of 1. `axes` is a rotation. (degree + 1)^2 coefficients. MeshError if the radius is not positive.
   StarSurface(const Mat3& axes, const Vec3& half_axes_um, const std::vector<double>& coefficients);
 
   [[nodiscard]] int degree() const { return degree_; }
   [[nodiscard]] const Vec3& half_axes() const { return half_axes_; }  // um; of the scaling
 
-  /// x / half-axes along the axes, made a unit vector: where the ray through the point meets the unit sphere.
+  /// Return x / half-axes along the axes as a unit vector: the intersection of the ray through the point with the unit
+  /// sphere.
   [[nodiscard]] Vec3 scaled_direction(const Vec3& point) const { return (to_scaled_ * point).normalized(); }
 
-  /// The place whose scaled direction is this unit vector.
+  /// Return the place with this scaled direction (unit vector).
   [[nodiscard]] Vec3 in_direction(const Vec3& scaled) const { return to_real_ * (scaled_radius(scaled) * scaled); }
 
-  /// Area of the surface over that of the unit sphere of scaled directions there, um^2.
+  /// Return the area of the surface / area of the unit sphere of scaled directions there, um^2.
   [[nodiscard]] double area_over(const Vec3& scaled) const;
 
-  /// Where the ray from the origin through the point meets the surface. The point may not be the origin.
+  /// Return the intersection with the ray from the origin through the point, which must not be the origin.
   [[nodiscard]] Vec3 along_ray(const Vec3& point) const;
 
-  /// On the surface, next to a point that is near it already: to first order along the normal. Quick.
+  /// Project a point near the surface onto it, to first order along the normal. Fast.
   [[nodiscard]] Vec3 put_on(const Vec3& point) const;
 
-  /// The nearest place, to 1e-9 of the size, from outside and from inside; where several are nearest, one of them.
+  /// Return the nearest place, to 1e-9 of the size, from outside or inside; one of them, if several are nearest.
   [[nodiscard]] ClosestOnSurface closest(const Vec3& point) const;
 
-  /// The same for a point that lies next to the surface, within a fifth of the least radius of curvature. Quick.
+  /// Return the nearest place for a point within a fifth of the least radius of curvature from the surface. Fast.
   [[nodiscard]] ClosestOnSurface closest_by_ray(const Vec3& point) const;
 
-  /// Normal and bend where the ray through the point meets the surface.
+  /// Return normal and curvature at the intersection with the ray through the point.
   [[nodiscard]] SurfaceBend bend(const Vec3& point) const;
 
-  /// The least positive principal radius of curvature, of some 500 places all over the surface; um.
+  /// Return the least positive principal radius of curvature over about 500 places of the surface, um.
   [[nodiscard]] double least_radius() const { return least_radius_; }
 
-  /// The volume that it encloses, um^3, and its area, um^2: by a quadrature good to about 1e-4.
+  /// Return the enclosed volume, um^3, and the area, um^2, by a quadrature accurate to about 1e-4.
   [[nodiscard]] double volume() const;
   [[nodiscard]] double area() const;
 
@@ -81,11 +83,11 @@ class StarSurface {
   std::vector<double> radius_;                   // coefficients of unscaled harmonics
   std::array<std::vector<double>, 3> gradient_;  // of its derivatives along x, y, z
   std::array<std::vector<double>, 6> hessian_;   // xx, yy, zz, xy, xz, yz
-  Vectors sample_directions_, samples_;          // all over the surface: where to look for the nearest place
+  Vectors sample_directions_, samples_;          // start points of the search for the nearest place
   double least_radius_ = 0;
 };
 
-/// A surface through points, and how well it fits.
+/// Surface fitted to points, with its residuals.
 struct StarFit {
   StarSurface surface;
   double rms_um;      // of the points' distances from the surface
@@ -93,13 +95,13 @@ struct StarFit {
   std::size_t largest_row;
 };
 
-/// The surface that is nearest to the points in the sense of least squares (of distances, to first order). The degree
-/// is lowered where there are fewer than three points a coefficient. MeshError, which names rows (from 0), when there
-/// are fewer than 12 points, one is not finite or at the origin, they lie on one side of the origin, or one is further
-/// than a tenth of its radius from the surface.
+/// Fit a surface to points by least squares (of distances, to first order). The degree is lowered if there are fewer
+/// than three points per coefficient. MeshError, naming rows (from 0), if there are fewer than 12 points, one is not
+/// finite or at the origin, they lie on one side of the origin, or one is further than a tenth of its radius from the
+/// surface.
 StarFit fit_star_surface(const Vectors& points, int degree = 6);
 
-/// Directions spread evenly over the unit sphere: a spiral lattice.
+/// Return directions distributed evenly over the unit sphere: a spiral lattice.
 Vectors even_directions(std::size_t count);
 
 }  // namespace plica

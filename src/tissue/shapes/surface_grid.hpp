@@ -1,4 +1,4 @@
-// The grid on the surface of a box of a x b x c squares: vertices, and quadrilaterals counter-clockwise from outside.
+// Grid on the surface of a box of a x b x c squares: vertices, and quadrilaterals counter-clockwise from outside.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ class SurfaceGrid {
  public:
   using Place = std::array<int, 3>;  // i j k of a vertex, at least one of them 0 or at its end
 
-  /// One square of the surface: its origin vertex and the two directions u, v with u x v outward.
+  /// Square of the surface: its origin vertex and two directions u, v with u x v outward.
   struct Square {
     Place origin;
     Place u, v;
@@ -26,10 +26,10 @@ class SurfaceGrid {
   [[nodiscard]] const Place& place(std::size_t vertex) const { return vertices_[vertex]; }
   [[nodiscard]] const std::array<int, 3>& counts() const { return counts_; }
 
-  /// The square's vertices, counter-clockwise from outside.
+  /// Return the vertices of the square, counter-clockwise from outside.
   [[nodiscard]] std::array<std::size_t, 4> corners(const Square& square) const;
 
-  /// All squares, face by face: ventral, dorsal, left, right, anterior, posterior.
+  /// Return all squares, face by face: ventral, dorsal, left, right, anterior, posterior.
   [[nodiscard]] std::vector<Square> squares() const;
 
  private:

@@ -1,4 +1,4 @@
-// Which way a surface of polygons faces at its vertices, and how sharply it bends there.
+// Normal and curvature of a polygon surface at its vertices.
 #pragma once
 
 #include "tissue/shapes/polygon_surface.hpp"
@@ -8,14 +8,14 @@ namespace plica {
 
 struct VertexBend {
   Vec3 normal;             // unit, outward
-  double least_radius_um;  // of curvature, where it bends inward as a ball does; infinity where it is flat or hollow
+  double least_radius_um;  // of convex curvature; infinity if flat or concave
 };
 
-/// Of the polygons alone: the mean of the normals about a vertex by area, and the quadratic surface through it that is
-/// nearest to the other vertices of its polygons. A vertex that no polygon has faces +z.
+/// Estimate from polygons only: area-weighted mean normal about a vertex, and the fitted quadratic surface through it.
+/// An unused vertex gets +z.
 std::vector<VertexBend> vertex_bends(const PolygonSurface& polygons);
 
-/// Of a smooth surface on which the vertices lie.
+/// Evaluate on a smooth surface that contains the vertices.
 std::vector<VertexBend> vertex_bends(const PolygonSurface& polygons, const StarSurface& surface);
 
 }  // namespace plica
