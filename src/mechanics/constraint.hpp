@@ -16,7 +16,7 @@ namespace plica {
 
 /// Parts that functions are sums of; each depends on a few nodes (elements of a cell, facets of a surface).
 struct ConstraintParts {
-  NodeGroups nodes;           // of each part
+  NodeGroups nodes;           // nodes of each part
   std::vector<int> function;  // index of the function; parts
 };
 

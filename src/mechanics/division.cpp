@@ -15,7 +15,7 @@ struct Destiny {
   double target_to;
 };
 
-// What a mother grows towards: where she is under way to, or what she is.
+// Final shape of a mother cell: the target of its growth, or its present shape.
 Destiny destiny(const Model& model, CellId cell) {
   for (const Growth& growth : model.growths)
     if (growth.cell == cell) return {growth.rest_to, growth.target_to};
@@ -29,7 +29,7 @@ double prism_volume(const PrismCorners& corners) {
   return volume;
 }
 
-// Of a grid's mother, the part of her final shape that is `ratio` wide, on the daughter's side.
+// Part of the final shape of a grid mother, of width `ratio`, on the side of the daughter.
 std::vector<Vec3> part_of_hexahedron(int first_wall, bool is_low, const std::vector<Vec3>& mother, double ratio) {
   const Vec3 across = Vec3::Unit(first_wall);
   const HexPoints whole = hexahedron(mother);
@@ -152,7 +152,7 @@ void restore_momentum(const Model& model, const Division& division, const Vec3& 
 
 Division divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned) {
   if (const auto why = why_indivisible(model.tissue)) throw std::logic_error("cells cannot divide: " + *why);
-  // Who has grown up is done with: her last shape and target are hers.
+  // Finished growth is dropped; the last shape and target stay.
   grow(model, state.time_s);
   std::erase_if(model.growths, [&](const Growth& growth) { return growth.end_s <= state.time_s; });
 
@@ -187,7 +187,7 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
 }
 
 void grow(Model& model, double time_s) {
-  // Exactly `to` at the end, and where there is no way to go: stiffness is made anew for shapes that change only.
+  // Exactly `to` at the end, and if both are equal: stiffness is recomputed only for shapes that change.
   const auto between = [](double from, double to, double part) { return part < 1 ? from + part * (to - from) : to; };
   std::vector<ElementId> changed;
   bool targets_changed = false;

@@ -95,7 +95,7 @@ struct State {
   double time_s = 0;
   Vectors positions;                           // nodes; um
   Vectors velocities;                          // nodes; um/s, at the end of the last step
-  std::vector<double> multipliers;             // of all constraints, consecutively; first cell pressures, kPa
+  std::vector<double> multipliers;             // all constraints, consecutively; first cell pressures, kPa
   std::vector<double> contact_forces;          // Contacts; nN, >= 0
   std::vector<char> in_contact;                // Contacts
   std::vector<std::vector<double>> internals;  // laws: internal states (Law::next_internal)

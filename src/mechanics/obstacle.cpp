@@ -29,7 +29,7 @@ Contacts::Contacts(const Model& model) {
 Obstacle::Gap Contacts::gap(std::size_t contact, std::span<const Vec3> positions) const {
   const Vec3& position = positions[nodes_[contact].index()];
   std::optional<Answer>& last = last_[contact];
-  // To the bit, so that it does not matter what was asked before (0 and -0 are equal).
+  // Bitwise comparison, so that earlier queries have no effect (0 and -0 are equal).
   if (!last || std::memcmp(last->position.data(), position.data(), sizeof(Vec3)) != 0)
     last = {position, obstacles_[contact]->gap(position)};
   return last->gap;

@@ -287,7 +287,7 @@ class Cutter {
     return {middle, basal, apical};
   }
 
-  // The worst of the elements that the cell would have, at rest and where she is.
+  // Worst element of the cell with this split, in the reference state and at present.
   [[nodiscard]] double worst_element(const Cell& cell, const std::vector<OutlineQuad>& split) const {
     double worst = 1;
     for (const OutlineQuad& quadrilateral : split) {

@@ -19,8 +19,8 @@ struct Mirror {
     NodeId node;
     Vec3 signs;
   };
-  std::vector<Image> nodes;     // of the whole
-  std::vector<CellId> cells;    // of the whole
+  std::vector<Image> nodes;     // full tissue
+  std::vector<CellId> cells;    // full tissue
   std::vector<CellId> origins;  // side: cells of the full tissue
 
   [[nodiscard]] bool is_used() const { return !nodes.empty(); }

@@ -26,7 +26,7 @@ int start_at_midline(const Tissue& tissue, const Cell& cell) {
   return on_it > 1 ? 1 : -1;
 }
 
-// Goes on from numbers that are given, `step` more through every wall, as far as `most`.
+// Propagate given numbers, adding `step` through every lateral face, up to `most`.
 void spread(const Tissue& tissue, int step, int most, std::vector<int>& numbers) {
   const std::vector<std::vector<CellId>> neighbours = wall_neighbours(tissue);
   std::vector<std::size_t> front;

@@ -89,10 +89,10 @@ struct Cell {
   ElementId first_element;
   int element_count = 1;                // its elements are contiguous
   bool is_of_grid = false;              // four walls, whose edges run along and across
-  std::vector<NodeId> corners;          // of its polygons: basal, then the apical ones above (see below)
+  std::vector<NodeId> corners;          // both polygons: basal, then the apical ones above (see below)
   std::vector<CellEdge> edges;          // grid cells: in the order of hex_edges; else basal, apical, lateral
   std::vector<CellLine> lines;          // contractile lines: the edges, except in grid cells of several elements
-  std::optional<GridPlace> grid_place;  // of a built embryo
+  std::optional<GridPlace> grid_place;  // built embryos only
   // Data for division (division.hpp): lateral faces as chains of stops between corners, and the split of the polygon.
   // Empty in cells with inner lines: several elements of a grid, kites, layers.
   std::vector<std::vector<WallStop>> walls;
@@ -133,7 +133,7 @@ struct Tissue {
   std::vector<CellId> element_cell;             // elements
   std::vector<HexPoints> element_rest_shape;    // elements; um. Daughters inherit it, independent of node positions
   std::vector<Cell> cells;
-  std::vector<Facet> apical_facets;  // of elements; contiguous per cell
+  std::vector<Facet> apical_facets;  // element facets; contiguous per cell
   std::vector<Facet> basal_facets;
   std::optional<OuterShape> outer_shape;         // reference apical surface, or the shell around a mesh from a file
   std::map<std::string, CellArray> cell_arrays;  // from a file: measured values per cell

@@ -338,7 +338,7 @@ std::vector<double> Cortex::rest_areas_after_division(std::span<const double> in
 }
 
 std::vector<double> Cortex::program_points_s() const {
-  if (own_.starts()) return pattern_.with_ablations({});  // nobody knows the others yet
+  if (own_.starts()) return pattern_.with_ablations({});  // start times of cells are unknown in advance
   return pattern_.with_ablations(
       joined(rule_.stiffness_program.times_s(), rule_.program.delayed_points_s(pattern_.delays_s)));
 }

@@ -29,8 +29,8 @@ struct CortexRule {
   double compression_ratio = 1;    // stiffness in compression / in extension; 0: slack
   double crowding = 0;             // c, nN/um
   double relaxation_s = 0;         // tau; 0: no relaxation
-  Program program = {};            // of gamma; starts after the delay of the cell
-  Program stiffness_program = {};  // of k
+  Program program = {};            // time course of gamma; starts after the delay of the cell
+  Program stiffness_program = {};  // time course of k
   OwnStateRule own = {};           // shape-dependent start of both programs, or factor on the tension
 };
 
@@ -82,7 +82,7 @@ class Cortex final : public Law {
     double energy = 0, tension = 0, slope = 0;
   };
   [[nodiscard]] Response respond(std::size_t face, double area, const Step& step, bool with_energy) const;
-  // Its three terms: T of the program, b(t) k (A/A_0 - 1) with given b (strength included), and crowding.
+  // Three terms: T of the program, b(t) k (A/A_0 - 1) with given b (strength included), and crowding.
   [[nodiscard]] Response active(std::size_t face, double area, const Step& step, bool with_energy) const;
   [[nodiscard]] Response elastic(std::size_t face, double area, const Step& step, double b, bool with_energy) const;
   [[nodiscard]] Response crowded(std::size_t face, double area, bool with_energy) const;

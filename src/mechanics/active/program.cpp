@@ -27,8 +27,7 @@ std::vector<double> delayed(const std::vector<double>& points, std::vector<doubl
 
 double Program::at(double time_s) const {
   if (times_.empty()) return 1;
-  // The first point that has not passed: a step that ends on a jump, but for rounding, still has the activity before
-  // it.
+  // First point not yet passed: a step that ends on a jump, within rounding, still has the activity before it.
   const auto next = std::ranges::find_if(times_, [&](double point) { return point >= time_s - instant_s; });
   if (next == times_.begin()) return activities_.front();
   if (next == times_.end()) return activities_.back();
@@ -47,7 +46,7 @@ std::vector<double> Program::jumps_s() const {
 
 double Program::delayed_at(double delay_s, double time_s) const {
   const double own_time = time_s - delay_s;
-  return own_time < -1e-9 ? 0 : at(own_time);  // a step that ends on the delay does so but for rounding
+  return own_time < -1e-9 ? 0 : at(own_time);  // a step may end on the delay only within rounding
 }
 
 std::vector<double> Program::delayed_points_s(std::vector<double> delays_s) const {

@@ -230,8 +230,8 @@ void Dilatation::take_rest_shapes(const Tissue& tissue, std::span<const ElementI
   volumes_.take_rest_shapes(tissue, elements);
 }
 
-// A daughter that grows is held at another volume than that of her rest shape. Against the latter, every one of her
-// elements would press, and the multiplier, which is shown as her pressure, would only undo that.
+// The held volume of a growing daughter differs from its rest shape. Relative to the latter, each of its elements would
+// exert pressure, and the multiplier (the reported cell pressure) would only cancel that.
 void Dilatation::take_cell_volumes(const Tissue& tissue, std::span<const double> volumes) {
   if (!cells_are_exact_ || elements_.empty()) return;
   for (std::size_t c = 0; c < volumes.size(); ++c) {

@@ -136,8 +136,8 @@ class Search {
     return found != known_.end() && segments(*found) == segments(pair) ? &*found : nullptr;
   }
 
-  /// Turns the normal to the side of the first segment: that of the step before, or by the way in which the two look.
-  /// False where neither says which.
+  /// Turn the normal towards the first segment: as in the previous step, or by the facing directions of both. False if
+  /// neither decides.
   static bool turn(ContactPair& pair, const ContactPair* last, const Vec3& facing) {
     constexpr double least_as_before = 0.5, least_as_facing = 0.2;  // cosines
     double to_first = last ? pair.normal.dot(last->normal) : 0;

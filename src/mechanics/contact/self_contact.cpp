@@ -371,7 +371,7 @@ void SelfContact::add_push(const Pair& pair, const Vec3& push, std::span<Vec3> f
 }
 
 EnergyFlow SelfContact::energy_flow(const MadeStep& made) const {
-  // Pairs are found anew at the step's end, and what the old ones had stored beyond the new ones is lost.
+  // Pairs are detected again at the end of the step; energy stored by old pairs beyond the new ones is dissipated.
   Step with_old_pairs = made.end;
   with_old_pairs.internal = made.begin.internal;
   const double now = energy(made.end);

@@ -102,7 +102,7 @@ class SelfContact final : public Law {
 
   SelfContactRule rule_;
   Mirror mirror_;
-  std::vector<std::array<NodeId, 4>> facets_;  // of the full tissue
+  std::vector<std::array<NodeId, 4>> facets_;  // full tissue
   struct RimEdge {
     NodeId from, to;
     std::size_t facet;

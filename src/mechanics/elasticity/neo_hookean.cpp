@@ -139,7 +139,7 @@ double NeoHookean::energy(const Step& step) const {
       const double r = flows() ? step.rate_s * flow_batches_[e / batch_size].rates[e % batch_size] : 0;
       double stored = 0.5 * C.trace();
       if (r > 0) {
-        // 3 det(C_b + r C)^(1/3)/2 r, less what does not depend on C.
+        // 3 det(C_b + r C)^(1/3)/2 r, minus terms independent of C.
         const Mat3 before = flowed_before(e, g, step), A = before.inverse() * C;
         const double I1 = A.trace(), I2 = 0.5 * (I1 * I1 - (A * A).trace()), I3 = A.determinant();
         stored = 1.5 * std::cbrt(before.determinant()) * std::expm1(std::log1p(r * (I1 + r * (I2 + r * I3))) / 3) / r;

@@ -226,7 +226,7 @@ void TurningElements::add_tangent(const Step& step, TangentSink& tangent) const 
         const Mat3x24 right = W.transpose() - Q - D + middle.lazyProduct(G);
         K += left.lazyProduct(G);
         K += G.transpose().lazyProduct(right);
-        add(element, f.R, 0.5 * (K + K.transpose()));  // symmetric but for rounding
+        add(element, f.R, 0.5 * (K + K.transpose()));  // removes rounding asymmetry
       },
       tangent.takes_apart());
 }

@@ -11,7 +11,7 @@ namespace plica {
 /// Batch of eight elements; the last index is the element. An incomplete batch repeats its last element.
 struct alignas(64) CorotationalBatch {
   int nodes[8][8];            // corners; 3 x node index
-  double gradients[6][3][8];  // of the first six modes, 1/um; zero for the seventh
+  double gradients[6][3][8];  // first six modes, 1/um; zero for the seventh
   double hourglass[4][3][8];  // X_a: hourglasses of the rest shape, um
   double shear[8];            // 2 mu V0, nN um
   double stiffness[78][8];    // H, lower triangle by rows, nN/um

@@ -126,7 +126,7 @@ inline Rest rest_at(const NeoHookeanStep& step, const Elements& e, int g, const 
   return {w, d * inverse(flowed), r / d};
 }
 
-// D^-T, which is K/J; no numbers where the point is inside out, so that no step ends there.
+// D^-T = K/J; NaN at inverted points, so that no step ends there.
 inline Mat transposed_inverse(const Mat& D) {
   const Mat K = {cross(D.y, D.z), cross(D.z, D.x), cross(D.x, D.y)};
   const Lanes J = dot(D.x, K.x);

@@ -316,7 +316,7 @@ bool BlockCholesky::factorise(std::span<const float> values) {
   return !fronts.has_failed;
 }
 
-// Whoever eliminates a supernode: its children are added in their order, so the sums are the same.
+// On any thread, the children of a supernode are added in their order, so sums are bitwise identical.
 void BlockCholesky::factorise_subtree(int root, std::span<const float> values, Fronts& fronts) {
   constexpr double worth_sharing = 1e6;
   const Supernode& node = supernodes_[root];

@@ -20,7 +20,7 @@ struct KrylovReport {
 
 /// Stopping rule.
 struct KrylovRule {
-  double tolerance = 1e-3;  // of |b - A x| / |b|
+  double tolerance = 1e-3;  // bound on |b - A x| / |b|
   int most_iterations = 200;
   int most_kept = 30;  // conjugate residuals: kept directions, then restart
 };

@@ -53,7 +53,7 @@ class ContactBorder {
   std::vector<NodeFrame> frames_;
   std::vector<char> in_contact_;
   std::size_t most_changes_ = 0;
-  std::vector<Column> columns_;      // of all changes since; some may be undone
+  std::vector<Column> columns_;      // all changes since; some may be undone
   Eigen::MatrixXd complement_;       // D - Y^T Y of all columns
   std::vector<std::size_t> active_;  // columns in use
   Eigen::PartialPivLU<Eigen::MatrixXd> active_complement_;

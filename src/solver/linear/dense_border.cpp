@@ -16,8 +16,8 @@ void DenseBorder::begin(std::vector<std::vector<double>> rows, const std::functi
     solve(columns_[j]);
     for (Eigen::Index i = 0; i < count; ++i) complement(i, j) = parallel_dot(rows_[i], columns_[j]);
   }
-  // A row that says what K holds already (the volume of all cells together) gets no multiplier: what is left of it is
-  // the inverse's error.
+  // A row already implied by K (the total volume of all cells) gets no multiplier: its remainder is the error of the
+  // inverse.
   constexpr double nothing_left = 1e-6;
   active_.clear();
   for (Eigen::Index i = 0; i < count; ++i) {

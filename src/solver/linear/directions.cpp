@@ -6,8 +6,8 @@
 namespace plica {
 namespace {
 
-// Krylov's method, and the direct one where that gives up: far from equilibrium, or where there is no stable one, no
-// positive definite matrix is near the tangent.
+// Krylov method, with the direct one if it fails: far from equilibrium, or without a stable one, no positive definite
+// matrix is near the tangent.
 class GuardedDirections final : public NewtonDirections {
  public:
   GuardedDirections(const Model& model, std::unique_ptr<NewtonDirections> first)

@@ -10,7 +10,7 @@ namespace plica {
 
 struct Iterate {
   Vectors positions;                   // nodes; um
-  std::vector<double> multipliers;     // of all constraints, as in State
+  std::vector<double> multipliers;     // all constraints, as in State
   std::vector<double> contact_forces;  // Contacts; nN
   std::vector<char> in_contact;        // Contacts
 };
@@ -31,7 +31,7 @@ struct Residual {
 /// Direction: change of an iterate.
 struct Direction {
   Vectors positions;                // nodes, including hanging ones; um
-  std::vector<double> multipliers;  // of all constraints
+  std::vector<double> multipliers;  // all constraints
 };
 
 /// Input of a kept factor, enough to recompute it bitwise identically. Without positions: none is kept.

@@ -9,7 +9,7 @@
 namespace plica {
 namespace {
 
-constexpr std::size_t most_contact_changes = 32;  // before the factor is made anew
+constexpr std::size_t most_contact_changes = 32;  // before the factor is recomputed
 
 // gamma times the size of a cell, over the mean stiffness of a node. Large, so that few iterations are left for the
 // multipliers; but single precision has to carry A beside it, multigrid finds nearly incompressible cells hard (and has

@@ -8,7 +8,7 @@ namespace plica::multigrid {
 struct Aggregates {
   int count = 0;
   std::vector<int> of_node;  // -1: isolated node, omitted on the coarser level
-  Rows members;              // of each aggregate
+  Rows members;              // nodes of each aggregate
 };
 
 /// Make disjoint neighbourhoods: a node with all its neighbours if none is taken yet; each remaining node joins the

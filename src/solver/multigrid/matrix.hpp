@@ -73,7 +73,7 @@ class Matrix {
   [[nodiscard]] bool invert_diagonal();
 
   Rows rows_;
-  std::vector<int> sources_;  // of rows_.columns: block of the pattern, or ~ of it if transposed
+  std::vector<int> sources_;  // rows_.columns: block of the pattern, or ~ of it if transposed
   UninitialisedVector<float> values_, inverses_;
 };
 

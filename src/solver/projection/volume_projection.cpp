@@ -115,7 +115,7 @@ void VolumeProjection::move(std::size_t k, double l, Vectors& positions) {
   moved_[k] += l;
 }
 
-// True if the surface's volume was off and had to be mended.
+// Project the volume of one surface; true if it needed a correction.
 bool VolumeProjection::project(std::size_t k, Vectors& positions, StepReport& report) {
   const Kept& kept = kept_[k];
   const double excess = look_at(kept, positions);

@@ -111,8 +111,7 @@ Residual Balance::residual(const Step& step, Iterate& at) const {
   Vectors& free = of_one;
   parallel_for(model_.tissue.free_node_count(), [&](std::size_t n) { free[n] = without_held(model_, n, r.forces[n]); });
   take_out_normals(at, free);
-  // Relative to the forces that balance; but where those are next to none, or as small as what rounding makes, to a
-  // floor.
+  // Relative to the balancing forces, but at least to a floor, where these are negligible or at rounding level.
   const double floor = std::max(1e-4 * force_scale_, rounding / tolerances_.force);
   r.force = std::sqrt(parallel_squared_norm(free)) / (std::sqrt(balanced) + floor);
   return r;

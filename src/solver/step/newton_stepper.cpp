@@ -95,8 +95,8 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
     return balance_.residual(step, start);
   };
   Residual now = first_residual(at, contact_changes);
-  // Where corners of elements have come to their barrier, motion that goes on drives them deep into it: Newton's method
-  // then takes many iterations to come out, fewer from where everything was.
+  // Near the inversion barrier, the prediction drives corners deep into it, and Newton's method takes many iterations
+  // back: fewer from the previous positions.
   constexpr double poor_forecast = 0.05;  // residual's forces, relative
   if (!from_rest && !(now.force < poor_forecast)) {
     Iterate start = unmoved();

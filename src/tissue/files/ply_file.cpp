@@ -1,4 +1,4 @@
-// Stanford's PLY: a header that says which elements follow with which numbers, then these, as text or as bytes.
+// Stanford PLY: a header that lists elements and their properties, then their values as text or bytes.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

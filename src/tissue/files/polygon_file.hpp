@@ -22,7 +22,7 @@ PolygonFile polygons_in_obj(std::string_view text);
 PolygonFile polygons_in_off(std::string_view text);
 /// Parse Stanford PLY, text or binary. Scalar face properties become arrays.
 PolygonFile polygons_in_ply(std::string_view bytes);
-// These throw MeshError, naming the line or element, if the text is invalid.
+// Errors: these throw MeshError, naming the line or element, if the text is invalid.
 
 /// Read a file by extension: .obj, .off, .ply; .vtp, .vtu and .vtk with VTK, including arrays with one number per face;
 /// .h5, .hdf5 and .hf5 as written by save_datasets of tyssue. FileError if it cannot be read or this build lacks the

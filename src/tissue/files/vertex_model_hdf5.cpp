@@ -1,5 +1,5 @@
-// Tables that pandas has put into an HDF5 file, "fixed" format: a group a table, in it the rows' numbers (axis1) and
-// blocks of columns of one type, each with their names (block0_items) and values (block0_values, a row a row).
+// Tables written by pandas into an HDF5 file in "fixed" format: one group per table, with the index (axis1) and blocks
+// of columns of one type, each with names (block0_items) and values (block0_values, row by row).
 #include <fmt/format.h>
 #include <hdf5.h>
 
@@ -146,7 +146,7 @@ std::string table_bytes(const std::filesystem::path& path) {
 }  // namespace
 
 PolygonFile read_vertex_model(const std::filesystem::path& path) {
-  read_file(path);  // says why it cannot be
+  read_file(path);  // throws if unreadable
   const std::string bytes = read_in_child(
       path, [&] { return table_bytes(path); }, "HDF5");
   std::string_view rest = bytes;

@@ -107,7 +107,7 @@ Tissue build_block(const BlockShape& shape) {
   const Vec3 size(shape.length_um, shape.width_um, shape.cell_height_um * c);
   Vectors positions;
   positions.reserve(static_cast<std::size_t>(x_nodes) * y_nodes * z_nodes);
-  // (2 i - n) / 2n instead of i/n - 1/2: symmetric to the bit.
+  // (2 i - n) / 2n instead of i/n - 1/2: bitwise symmetric.
   const auto centred = [](int i, int nodes) { return (2.0 * i - (nodes - 1)) / (2.0 * (nodes - 1)); };
   for (int k = 0; k < z_nodes; ++k)
     for (int j = 0; j < y_nodes; ++j)

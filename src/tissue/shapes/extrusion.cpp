@@ -46,7 +46,7 @@ bool is_folded(const PrismSheet& sheet, const std::vector<std::size_t>& cell) {
   return false;
 }
 
-// On a rough surface neighbouring normals cross before the bound says so. There, vertices come up until they do not.
+// On a rough surface neighbouring normals cross below the bound. There, vertices are raised until they do not.
 void unfold(PrismSheet& sheet) {
   constexpr int most_passes = 30;
   constexpr double left = 0.9;  // of a height, after a pass

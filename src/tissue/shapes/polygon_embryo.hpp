@@ -14,7 +14,7 @@ namespace plica {
 struct PolygonCells {
   double height_um = 35;
   PolygonSplit split = PolygonSplit::diagonals;
-  int layers = 1;                 // of elements, from basal to apical
+  int layers = 1;                 // element layers from basal to apical
   double least_edge_ratio = 0.3;  // relative to the mean edge: shorter ones are lengthened
 };
 

@@ -1,10 +1,10 @@
-// Each polygon is the rectangle, cut by the perpendicular bisectors to the points about its own, the nearest first,
-// until the next is too far off to matter. So the rim is exact. A vertex is named by the cells and sides of the
-// rectangle that meet there, which makes it one vertex for all of them. (Rejected: points mirrored at the rim, whose
-// triangulation has two vertices in one place wherever two cells meet there.)
+// Each polygon is the rectangle, cut by the perpendicular bisectors to surrounding points, nearest first, until the
+// next is too far away. So the boundary is exact. A vertex is named by the cells and sides of the rectangle that meet
+// there, and is shared by all of them. (Rejected: points mirrored at the boundary, whose triangulation has two
+// coincident vertices wherever two cells meet there.)
 //
-// Where the rectangle repeats itself, the points about a point are those of all periods. Images of a vertex have the
-// same name, but for whole periods.
+// If the rectangle is periodic, surrounding points include those of all periods. Images of a vertex have the same name,
+// up to whole periods.
 #include "tissue/shapes/rectangle_polygons.hpp"
 
 #include <fmt/format.h>

@@ -1,11 +1,11 @@
-// Gradient descent makes the squares more alike: one larger than the mean draws its corners in, a smaller one pushes
-// them out, and every square draws a little (`tension`) so that it stays well shaped. Drawing alone, the usual
-// Laplacian smoothing, would shrink the eight squares at the box's corners, where three meet.
+// Gradient descent evens out the squares: those larger than the mean contract, smaller ones expand, and every square
+// contracts a little (`tension`), which keeps its shape. Contraction alone (Laplacian smoothing) would shrink the eight
+// squares at the corners of the box, where three meet.
 //
-// A sweep moves a vertex by what its own squares say, so unevenness over n squares takes of the order of n^2 sweeps to
-// leave, and until then squares that push out for so long fold (90 x 45 x 40 did). So a large grid begins with a coarse
-// one of the same proportions, evened in full, and goes on from it by halving the squares: what is uneven then is small
-// and near, and a few sweeps do.
+// A sweep moves a vertex by its own squares only, so unevenness over n squares takes of the order of n^2 sweeps, during
+// which expanding squares may fold (90 x 45 x 40 did). So a large grid starts with a coarse one of the same
+// proportions, fully evened, and is refined by halving the squares: the remaining unevenness is small and local, and a
+// few sweeps suffice.
 #include "tissue/shapes/shell_grid.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ std::size_t square_count(const Counts& counts) {
 }
 
 /// Gives every vertex the position of its mirror image among the lower halves of the three axes, reflected: positions
-/// are then symmetric to the bit, and exactly 0 on a plane of symmetry.
+/// are then bitwise symmetric, and exactly 0 on a plane of symmetry.
 void make_symmetric(const SurfaceGrid& grid, Vectors& positions) {
   for (std::size_t vertex = 0; vertex < grid.vertex_count(); ++vertex) {
     SurfaceGrid::Place image = grid.place(vertex);

@@ -25,7 +25,7 @@ struct SurfaceBend {
 struct ClosestOnSurface {
   Vec3 point;                 // um
   Vec3 normal;                // unit, outward
-  double signed_distance_um;  // of the given point: negative inside
+  double signed_distance_um;  // distance of the given point: negative inside
   SurfaceBend bend;           // there
 };
 
@@ -81,7 +81,7 @@ class StarSurface {
   Mat3 to_real_, to_scaled_;
   int degree_;
   std::vector<double> radius_;                   // coefficients of unscaled harmonics
-  std::array<std::vector<double>, 3> gradient_;  // of its derivatives along x, y, z
+  std::array<std::vector<double>, 3> gradient_;  // derivatives along x, y, z
   std::array<std::vector<double>, 6> hessian_;   // xx, yy, zz, xy, xz, yz
   Vectors sample_directions_, samples_;          // start points of the search for the nearest place
   double least_radius_ = 0;
@@ -90,7 +90,7 @@ class StarSurface {
 /// Surface fitted to points, with its residuals.
 struct StarFit {
   StarSurface surface;
-  double rms_um;      // of the points' distances from the surface
+  double rms_um;      // root mean square distance of the points
   double largest_um;  // the largest of them
   std::size_t largest_row;
 };

@@ -62,7 +62,7 @@ struct Hull {
 std::vector<std::array<std::size_t, 3>> hull_of(Vectors& directions) {
   const auto hull = std::make_unique<Hull>();
   qhT* const qh = &hull->qh_space;
-  // What Qhull says of an error is for whoever calls qhull; it would go to the terminal.
+  // Discard error output of Qhull, which would go to the terminal.
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> unheard(std::fopen("/dev/null", "w"), std::fclose);
   char command[] = "qhull Qt";
   const int status = qh_new_qhull(qh, 3, static_cast<int>(directions.size()), directions.front().data(), False, command,

@@ -8,7 +8,7 @@ namespace plica {
 
 struct VertexBend {
   Vec3 normal;             // unit, outward
-  double least_radius_um;  // of convex curvature; infinity if flat or concave
+  double least_radius_um;  // least radius of convex curvature; infinity if flat or concave
 };
 
 /// Estimate from polygons only: area-weighted mean normal about a vertex, and the fitted quadratic surface through it.
