@@ -9,7 +9,7 @@
 namespace plica {
 namespace {
 
-// How each daughter will grow; cells by their place before the cut, where the mother is still there.
+// Growth of each daughter; cells by their index before the cut.
 struct Destiny {
   std::vector<Vec3> rest_to;
   double target_to;
@@ -38,7 +38,7 @@ std::vector<Vec3> part_of_hexahedron(int first_wall, bool is_low, const std::vec
   return {part.begin(), part.end()};
 }
 
-// Of any other, the half of it, stretched away from the cut until it has `ratio` of its volume.
+// Part of any other mother: its half, stretched away from the cut to `ratio` of its volume.
 std::vector<Vec3> stretched_half(const CellCut& cut, bool is_low, const std::vector<Vec3>& mother, double ratio) {
   auto [low, high] = halves_of_prism(cut, mother);
   std::vector<Vec3> half = is_low ? std::move(low) : std::move(high);

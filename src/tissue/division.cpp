@@ -114,7 +114,7 @@ bool follows_lines(const Cell& cell, const CellCut& cut) {
   return is_one_patch(cell) && cut.second_wall == cut.first_wall + 2;
 }
 
-// Where lines of the cell cross the cut, along u or v.
+// Crossings of lines of the cell with the cut, along u or v.
 std::vector<double> lines_across(const Cell& cell, const CellCut& cut) {
   if (!follows_lines(cell, cut)) return {};
   return Patch(cell, cell.quadrilaterals.front()).lines(1 - cut.first_wall);
@@ -134,7 +134,7 @@ std::vector<WallStop> reversed(std::vector<WallStop> chain) {
   return chain;
 }
 
-/// What goes round each of the two daughters: corners, or the walls behind them.
+/// Outline of each daughter: corners, or the lateral faces behind them.
 template <class Item>
 struct Rings {
   std::vector<Item> low, high;

@@ -203,7 +203,7 @@ std::optional<std::vector<OutlineQuad>> outline_quads(const Tissue& tissue, cons
   return quads;
 }
 
-// What division needs, where all cells are of that kind. (Of several layers or of kites, other nodes are corners.)
+// Data for division, if all cells are of that kind. (Of several layers or of kites, other nodes are corners.)
 void set_walls(Tissue& tissue) {
   std::vector<std::vector<OutlineQuad>> quads;
   for (const Cell& cell : tissue.cells) {

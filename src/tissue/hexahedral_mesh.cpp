@@ -58,7 +58,7 @@ void check_cell_nodes(const HexahedralMesh& mesh, std::size_t cell) {
     throw MeshError(fmt::format("{} uses node {} twice; a hexahedron has eight", cell_at(mesh, cell), twice->number()));
 }
 
-/// What may have gone wrong with a cell whose Jacobian is not positive at each corner.
+/// Remedy for a cell whose Jacobian is not positive at each corner.
 const char* inversion_remedy(const HexPoints& p) {
   if (hex_scaled_jacobian({p[0], p[1], p[3], p[2], p[4], p[5], p[7], p[6]}) > 0)
     return "its nodes are in the order of a VTK_VOXEL; order them around each face (VTK_HEXAHEDRON)";

@@ -30,7 +30,7 @@ void set_corners_and_edges(const CellLattice& lattice, const Vectors& rest_posit
     cell.corners[i] = lattice.node(r.x() > 0 ? lattice.elements[0] : 0, r.y() > 0 ? lattice.elements[1] : 0,
                                    r.z() > 0 ? lattice.elements[2] : 0);
   }
-  // Which of u and v runs along the embryo: the one whose mean edge is turned less from x.
+  // The direction of u and v along the embryo is the one whose mean edge deviates less from x.
   std::array<Vec3, 2> mean = {Vec3::Zero(), Vec3::Zero()};
   for (int e = 0; e < 8; ++e) {
     const auto [a, b] = hex_edges[e];

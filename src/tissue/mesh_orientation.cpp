@@ -64,7 +64,7 @@ std::size_t outer_component(const HexahedralMesh& mesh, const std::vector<CellFa
   return first_volume > 0 ? first : second;
 }
 
-/// Which of the nodes of a shared face are apical in the cell.
+/// Nodes of a shared face that are apical in the cell.
 std::vector<NodeId> apical_nodes(const HexahedralMesh& mesh, const CellFace& side, int apical_face) {
   std::vector<NodeId> nodes;
   for (const int shared : hex_faces[side.face])

@@ -53,7 +53,7 @@ std::vector<NodeId> drop_unused_nodes(Tissue& tissue) {
     node = NodeId(positions.size());
     positions.push_back(tissue.rest_positions[before.back().index()]);
   }
-  // What a cell's nodes hang on is its own.
+  // Nodes that carry hanging nodes of a cell belong to the cell.
   for (NodeMean& mean : hanging)
     for (auto& [node, weight] : mean) node = now[node.index()];
   tissue.hanging = std::move(hanging);

@@ -71,7 +71,7 @@ class Builder {
     return middle_of_edge(from, to);
   }
 
-  // Of images of a place, what they are images of.
+  // Originals of images.
   [[nodiscard]] Place original(const Place& place) const {
     const Periods& periods = sheet_.periods;
     if (place.kind == Place::Kind::vertex) return vertex(periods.original(place.first));
@@ -160,7 +160,7 @@ class Builder {
     tissue_.rest_positions = std::move(positions);
   }
 
-  // What division needs: nodes where they are put by it, and no others.
+  // Data for division: nodes where division would put them, and no others.
   [[nodiscard]] bool divides() const { return hangs_ && layers_ == 1 && !sheet_.periods.is_used(); }
 
   // Corners, edges, lines and walls.

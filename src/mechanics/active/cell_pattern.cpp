@@ -66,7 +66,7 @@ double distance_from(StartDelay::From from, double value, const Extent& extent) 
   return 0;
 }
 
-// Of a polygon half-way up a cell: its area, and how far it reaches along the embryo's axis and across it.
+// Polygon at half height of a cell: area, and extent along and across the axis of the embryo.
 struct PolygonSize {
   double area = 0, along = 0, across = 0;
 };

@@ -90,7 +90,7 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
       if (line.side != rule.side) continue;
       const double ratio =
           line.side == CellSide::lateral ? 1 : line.along * rule.along_ratio + (1 - line.along) * rule.across_ratio;
-      // Of the tension times the width, each line its share.
+      // Each line carries its share of tension times width.
       const double tension = rule.tension > 0 ? rule.tension * width_of(tissue, cell, line, areas[c]) : 0;
       add(c, line.nodes, ratio, share, tension);
     }
@@ -149,7 +149,7 @@ struct Contraction::Pulled {
   std::span<const NodeId> nodes;
   std::span<const Segment> segments;  // between them: where dl/dx and d2l/dx2 come from
   double energy = 0, tension = 0, slope = 0;
-  // What resists the turning of the segments: the tension. A spring under pressure (a negative preload) is unstable
+  // The tension resists rotation of segments. A spring under pressure (a negative preload) is unstable
   // there, and the semidefinite tangent leaves that out.
   double turning_tension = 0;
 

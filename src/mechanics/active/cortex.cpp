@@ -92,7 +92,7 @@ double Cortex::rest_area_before(std::size_t face, const Step& step) const {
   return (1 + step.ahead) * step.internal[face] - step.ahead * step.internal[faces_.size() + face];
 }
 
-// How active a cell is, strength apart.
+// Activity of a cell, without its strength.
 double Cortex::activity(CellId cell, double time_s, std::span<const double> internal) const {
   const double part = pattern_.remaining(cell, time_s);
   if (const auto told = given(internal).of(cell)) return part * *told;

@@ -50,7 +50,7 @@ EnclosedVolume::EnclosedVolume(const Tissue& tissue) : EnclosedVolume(tissue, 0)
 std::vector<EnclosedVolume::RimEdge> EnclosedVolume::open_rim(const Tissue& tissue) {
   std::vector<RimEdge> rim;
   for (const auto& [from, to] : rim_of(tissue, tissue.basal_facets))
-    // What closes a mirror plane is seen edge-on from the origin, which lies in it: its cone has no volume.
+    // The cap in a mirror plane contains the origin, so its cone has no volume.
     if (tissue.own_share(std::array{from, to}) == 1)
       rim.push_back({from, to, Vec3(tissue.rest_positions[from.index()].x(), 0, 0)});
   return rim;

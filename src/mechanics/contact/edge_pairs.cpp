@@ -14,7 +14,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// What the pairs of the step before say about a node of the side, all that are near it taken together.
+/// Summary of the pairs of the previous step near a node of the side.
 struct Memory {
   double least_gap = infinite;       // um, now
   double edge_distance = -infinite;  // um: the largest that a pair of edges has

@@ -58,7 +58,7 @@ class NonconformingEdges {
           add_end(part, other.edge.second, other.to);
         }
   }
-  /// Of an edge that no other facet has the other way round: whether a facet lies beyond it all the same.
+  /// Whether a facet lies beyond an edge that no other facet has in opposite direction.
   [[nodiscard]] bool is_inner(const Edge& edge) const { return inner_.contains(edge); }
   /// The facets on whose edges a node lies that they do not have.
   [[nodiscard]] std::set<std::size_t> across(NodeId node) const {
@@ -161,7 +161,7 @@ SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirro
   if (rule.with_edges) edges_ = EdgePairs(facets_, areas, nonconforming.lying());
 }
 
-// Where it is when a step begins.
+// Position at the beginning of a step.
 struct SelfContact::Surface {
   std::span<const Vec3> x;  // nodes of the whole
   Vectors normals;          // of nodes, by the area vectors of their facets
@@ -246,7 +246,7 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> kn
     constexpr double rounded = -1e-9;  // of a cosine: what is square to each other on one side is so on its image
     if (found.normal.dot(facing) > rounded) continue;
     if ((first || outside.dot(facing) >= 0) && !is_nearest_about(q, place, surface)) continue;
-    // How far it may be inside: where it touched, a distance more than its last pair shows, which lags.
+    // Admissible penetration: after contact, one distance more than its last pair, which lags.
     const Pair* last = nearest_of(known, q.at(x), x);
     const double last_gap = last ? last->gap(x) : std::numeric_limits<double>::infinity();
     found.first_gap = found.gap(x);
@@ -275,12 +275,12 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<
     const std::optional<Pair> first = pair_of(p, known_of_p, surface, nullptr);
     if (!first) continue;
     const auto add = [&](const Pair& pair) {
-      // What lies beside an open surface, beyond its rim, is not over it.
+      // Points beyond the boundary of an open surface are not above it.
       const Vec3 out = pair.q.at(surface.outward);
       if (out.dot(pair.apart(surface.x)) <= rule_.distance * out.norm()) pairs.push_back(pair);
     };
     add(*first);
-    // Where three ridges meet, a point leans on two.
+    // Where three ridges meet, a point touches two.
     if (first->apart(surface.x).norm() < reach_of_second())
       if (const std::optional<Pair> second = pair_of(p, known_of_p, surface, &*first)) add(*second);
   }

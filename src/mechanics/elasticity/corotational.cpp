@@ -1,4 +1,4 @@
-// What an element is made of, and the way through all of them. The formulas of forces and tangents are in
+// Element data and the loop over elements. The formulas of forces and tangents are in
 // corotational_lanes.hpp and corotational_kernels.cpp, which is compiled for several instruction sets.
 #include "mechanics/elasticity/corotational.hpp"
 

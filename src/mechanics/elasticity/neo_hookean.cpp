@@ -1,4 +1,4 @@
-// What an element is made of, its energy, and how its rest shape flows. Forces and tangents are in
+// Element data, energy, and relaxation of rest shapes. Forces and tangents are in
 // neo_hookean_kernels.cpp.
 #include "mechanics/elasticity/neo_hookean.hpp"
 
@@ -30,7 +30,7 @@ Mat3 gauss_jacobian(const HexPoints& points, int g) {
   return jacobian;
 }
 
-// Where the numbers of a Gauss point begin among those of all batches; the next is batch_size on.
+// Index of the first number of a Gauss point among all batches; the next is batch_size further.
 std::size_t place_of(std::size_t element, int g) {
   return (element / batch_size * 8 + static_cast<std::size_t>(g)) * 6 * batch_size + element % batch_size;
 }
@@ -150,7 +150,7 @@ double NeoHookean::energy(const Step& step) const {
   });
 }
 
-// What its forces have taken and the rest shapes do not hold has flowed away.
+// Work not stored in the relaxed rest shapes is dissipated.
 EnergyFlow NeoHookean::energy_flow(const MadeStep& made) const {
   EnergyFlow flow = Law::energy_flow(made);
   if (!flows()) return flow;

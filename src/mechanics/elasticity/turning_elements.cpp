@@ -117,7 +117,8 @@ TurningElements::Frame TurningElements::frame(std::size_t e, const Step& step) c
     f.energy += 0.5 * change.dot(viscous);
     f.q += viscous;
   }
-  // How R turns with x adds -t x b_i. H exists unless the stretch is far from 1 (two principal stretches sum to 0).
+  // The rotation of R with x adds -t x b_i. H exists unless the stretch is far from 1 (two principal stretches sum to
+  // 0).
   f.H = (f.S.trace() * Mat3::Identity() - f.S).inverse();
   Vec3 torque = Vec3::Zero();
   for (int i = 0; i < 8; ++i) torque += f.y[i].cross(Vec3(f.q.segment<3>(3 * i)));

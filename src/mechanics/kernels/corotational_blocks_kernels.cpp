@@ -25,7 +25,7 @@ inline void turned_stiffness(const Elements& e, const Mat& R, Mat (&H)[4][4]) {
     }
 }
 
-// What turns with the element: deformation and what answers it, in global axes.
+// Quantities that rotate with the element: deformation and response, in global axes.
 struct Turned {
   Sym S, T, G;
   Vec t;

@@ -18,7 +18,7 @@ inline void for_elements(const CorotationalStep& step, std::size_t first, std::s
   }
 }
 
-// What is added to the nodes when the gradients in the frame are P by F and r by the hourglasses.
+// Nodal contributions for gradients P by F and r by hourglasses in the frame.
 inline void add_turned(const Elements& e, int count, const Mat& R, const Mat& P, const Hourglass& r, double* vectors) {
   const Mat RP = R * P;
   Vec g[7];
@@ -119,12 +119,12 @@ template <bool viscous>
     const Hourglass& h = now.h;
     Hourglass dh;
     const Mat W = seen_from(e, R, gradient(e, d), d, dh);
-    // How the frame turns, and what that leaves of the move as deformation.
+    // Rotation of the frame, and the remaining deformation.
     const Vec omega = -(G * axial(W));
     const Sym dS = upper_part(W - cross(omega, full(S)));
 #pragma GCC unroll copies
     for (int a = 0; a < 4; ++a) dh.set(a, dh[a] - cross(omega, h[a]));
-    // What answers it.
+    // Response.
     Hourglass q, dq;
     multiply<2>(e.batch.stiffness, e.lane, {&h, &dh}, {&q, &dq});
     Sym T = e.shear() * deviator(S), dT = e.shear() * deviator(dS);

@@ -88,7 +88,7 @@ inline Lanes cube_root(Lanes q) {
   return y;
 }
 
-// How a Gauss point flows: C_p before, D0, and r.
+// Relaxation of a Gauss point: previous C_p, D0, and r.
 struct Flow {
   Sym before;
   Mat frame;
@@ -109,7 +109,7 @@ inline Flow flow_at(const NeoHookeanStep& step, const Elements& e, int g) {
           step.rate_s * load(e.flow->rates + e.lane)};
 }
 
-// What a Gauss point is like: w, and B with what its change is made of, d = det(C_p + r C)^(1/3).
+// Data of a Gauss point: w, and B with what its change is made of, d = det(C_p + r C)^(1/3).
 struct Rest {
   Lanes w;
   Sym B;
@@ -133,7 +133,7 @@ inline Mat transposed_inverse(const Mat& D) {
   return (J > 0.0 ? 1.0 / J : broadcast(__builtin_nan(""))) * K;
 }
 
-// What has to be added along rotations so that no direction has negative stiffness: with the two smallest eigenvalues
+// Addition along rotations so that no direction has negative stiffness: with the two smallest eigenvalues
 // s and t of b = D B D^T, (1 - s t)/(2 + s + t) if that is positive. Here with a bound on the largest in place of it.
 inline Lanes missing_stiffness(const Mat& DB, const Mat& D) {
   const Mat b = DB * transpose(D);

@@ -26,7 +26,7 @@ inline void for_elements(const VolumeStep& step, std::size_t first, std::size_t 
   }
 }
 
-// What each element has of its cell.
+// Value of the cell of each element.
 inline Lanes of_owners(const double* values, const Elements& e) {
   Lanes own = {};
   for (int k = 0; k < width; ++k) own[k] = values[e.batch.owners[e.lane + k]];

@@ -94,7 +94,7 @@ void BlockCholesky::share_out() {
     for (const int child : node.children) size[s] += size[child];
     if (node.rows.empty() && factor_size_ >= worth_sharing) roots.push_back(static_cast<int>(s));
   }
-  // What is too large for one thread is trunk, and so is what is not worth a thread's while.
+  // The trunk has what is too large, or too small, for a thread of its own.
   const std::size_t largest = factor_size_ / 12, least = factor_size_ / 200;
   std::vector<char> is_trunk(supernodes_.size(), 1);
   while (!roots.empty()) {
@@ -296,7 +296,7 @@ bool BlockCholesky::eliminate(const Supernode& node, float* panel, float* front)
   return true;
 }
 
-// What threads share.
+// Data shared by threads.
 struct BlockCholesky::Fronts {
   explicit Fronts(std::size_t supernodes) : updates(supernodes) {}
 

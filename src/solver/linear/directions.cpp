@@ -1,4 +1,4 @@
-// Which way of finding Newton's directions serves which model.
+// Choice of the method for Newton directions of a model.
 #include "solver/algebra/block_cholesky.hpp"
 #include "solver/linear/direct_directions.hpp"
 #include "solver/linear/krylov_directions.hpp"
@@ -45,8 +45,8 @@ class GuardedDirections final : public NewtonDirections {
 
 std::unique_ptr<NewtonDirections> make_directions(const Model& model, LinearMethod method,
                                                   std::function<bool()> stop_requested) {
-  // Where the factor of a sheet takes as long as multigrid, and where that of the indefinite system takes more room
-  // than a usual machine has (docs/developers/performance-notebook.md). Multigrid finds the long thin elements of
+  // Sizes at which the factor of a sheet takes as long as multigrid, and where that of the indefinite system takes more
+  // room than a usual machine has (docs/developers/performance-notebook.md). Multigrid finds the long thin elements of
   // divided cells hard.
   constexpr std::size_t most_nodes_of_cholesky = 20'000, most_nodes_when_divided = 50'000,
                         most_nodes_of_direct = 60'000;

@@ -18,7 +18,7 @@ double useful_tolerance(const Residual& residual, const NewtonDirections::Forcin
   return std::clamp(forcing.relative_tolerance, useful, 0.1);
 }
 
-/// What accuracy of the whole system gives its forces `accuracy`. In a short step, where drag makes the system stiff,
+/// Accuracy of the full system that gives its forces `accuracy`. In a short step, where drag makes the system stiff,
 /// what constraints lack weighs thousands of times what is unbalanced. (Up to a thousand times, as their weights have
 /// it, forces come out well enough.)
 double accuracy_of_whole(double accuracy, const KrylovVector& right, std::size_t nodes) {

@@ -35,7 +35,7 @@ void LinearisedStep::take(const Iterate& at) {
 }
 
 void LinearisedStep::set_units(std::span<const double> weights) {
-  // Of a constraint's functions the mean, so that they stay comparable.
+  // Mean over the functions of a constraint, so that they stay comparable.
   for (const auto& [first, last] : jacobian_.blocks()) {
     double sum = 0;
     for (std::size_t row = first; row < last; ++row) sum += weights[row] * std::sqrt(jacobian_.gradient_scale(row));

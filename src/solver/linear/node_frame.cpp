@@ -9,7 +9,7 @@ namespace {
 
 constexpr double nothing_left = 1e-6;  // of a normal, by what is fixed already
 
-// What is left of a direction beside the columns that are fixed from `first` on.
+// Component of a direction orthogonal to the fixed columns from `first` on.
 Vec3 beside(const NodeFrame& frame, int first, Vec3 direction) {
   for (int i = first; i < frame.fixed; ++i) direction -= frame.axes.col(i).dot(direction) * frame.axes.col(i);
   return direction;

@@ -31,7 +31,7 @@ double root_between(const Cubic& cubic, double low, double high, double start) {
   return t;
 }
 
-// Where the slope vanishes, in order; infinite where it does not.
+// Zeros of the slope, in order; infinite if there are none.
 std::array<double, 2> turning_points(const Cubic& c) {
   const double discriminant = c.c2 * c.c2 - 3 * c.c3 * c.c1;
   if (!(discriminant > 0)) return {-infinity, infinity};

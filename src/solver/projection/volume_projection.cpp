@@ -147,7 +147,7 @@ double VolumeProjection::contact_weight(std::size_t k, double duration_s) const 
   return weights_[contacts_.node(k).index()] * duration_s;
 }
 
-// How far off volumes and obstacles are left.
+// Remaining errors of volumes and obstacles.
 void VolumeProjection::judge(const Vectors& positions, StepReport& report) const {
   report.constraint_error = report.outside_um = 0;
   for (const auto& [surface, target, cell] : kept_) {

@@ -43,7 +43,7 @@ void each_array(vtkDataSetAttributes& data, int components, std::size_t count, c
   }
 }
 
-/// What the child process makes of a frame, as bytes: what read_frame takes out again.
+/// Serialise a snapshot in the child process, for read_frame.
 std::string frame_bytes(const fs::path& file) {
   const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
   Vectors points;

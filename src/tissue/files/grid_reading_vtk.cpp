@@ -85,7 +85,7 @@ vtkStandardNewMacro(ErrorWindow)
   return true;
 }
 
-/// What `last`, a reader or a filter behind it, makes of the file.
+/// Output of `last`, a reader or a filter behind it.
 template <class Output, class Reader, class Last>
 vtkSmartPointer<Output> output_of(const std::filesystem::path& file, Reader& reader, Last& last) {
   vtkNew<ErrorWindow> window;

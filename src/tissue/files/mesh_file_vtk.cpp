@@ -92,7 +92,7 @@ void copy_groups(vtkUnstructuredGrid& grid, HexahedralMesh& mesh) {
   mesh.groups = std::move(groups);
 }
 
-/// What the child process makes of the file.
+/// Serialise the mesh in the child process.
 HexahedralMesh mesh_in(const std::filesystem::path& file, const std::string& apical_array) {
   HexahedralMesh mesh;
   const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);

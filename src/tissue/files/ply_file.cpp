@@ -148,11 +148,11 @@ class Numbers {
     return next_of<double>();
   }
 
-  /// Of a list, as far as there can be so many.
+  /// Read the length of a list, bounded by the size of the file.
   std::size_t next_count(Type type) {
     const double count = next(type);
     if (!(count >= 0) || count > static_cast<double>(bytes_.size()) || count != std::floor(count))
-      throw MeshError(fmt::format("a list of {} numbers exceeds the file", count));
+      throw MeshError(fmt::format("a list has the invalid length {}", count));
     return static_cast<std::size_t>(count);
   }
 

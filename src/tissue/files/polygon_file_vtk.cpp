@@ -40,7 +40,7 @@ std::vector<vtkIdType> faces_of_grid(vtkDataSet& grid) {
   return faces;
 }
 
-/// What the child process makes of a file.
+/// Serialise the polygons in the child process.
 std::string polygon_bytes(const std::filesystem::path& path) {
   const vtkSmartPointer<vtkDataSet> grid = read_data_set(path);
   const std::vector<vtkIdType> faces = faces_of_grid(*grid);

@@ -39,7 +39,7 @@ struct Outline {
     return at(low).x();
   }
 
-  // Of the back (side 1) or the belly (-1), as a share of the half height.
+  // Sag of the dorsal (side 1) or ventral side (-1), relative to the half height.
   [[nodiscard]] double sag(int side) const {
     const double x = 0.6 * half_length();
     double low = 0, high = std::numbers::pi / 2;

@@ -69,7 +69,7 @@ ExtrudedSheet extrude(const PolygonSurface& polygons, std::span<const VertexBend
   const auto height_of = [&](std::size_t cell) { return heights_um[heights_um.size() == 1 ? 0 : cell]; };
   ExtrudedSheet sheet{{polygons.vertices, polygons.vertices, polygons.polygons, polygons.periods}, "", 0, 0, 0};
 
-  // What the cells at a vertex ask for, on average.
+  // Mean requested height of the cells at a vertex.
   std::vector<double> asked(sheet.apical.size(), 0.0), cell_count(sheet.apical.size(), 0.0);
   for (std::size_t cell = 0; cell < sheet.cells.size(); ++cell)
     for (const std::size_t vertex : sheet.cells[cell]) {

@@ -154,7 +154,7 @@ std::vector<std::vector<Across>> faces_across(const PolygonSurface& surface) {
   return across;
 }
 
-// Which faces have to be turned so that all wind like the first. MeshError when that cannot be, or there is a face that
+// Faces to reverse so that all wind like the first. MeshError when that cannot be, or there is a face that
 // the first is not joined to.
 std::vector<bool> unlike_first(const PolygonSurface& surface) {
   const auto across = faces_across(surface);
@@ -213,7 +213,7 @@ std::size_t turn_faces(PolygonSurface& surface, bool mend, bool& is_closed) {
   return count;
 }
 
-// Of an open surface, which might have been meant the other way round.
+// Remark for an open surface, whose intended side is ambiguous.
 std::string apical_side_text(const PolygonSurface& surface) {
   Vec3 sum = Vec3::Zero();
   for (const auto& polygon : surface.polygons) sum += area_vector(surface.vertices, polygon);

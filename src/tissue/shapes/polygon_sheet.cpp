@@ -44,7 +44,7 @@ std::vector<std::string> mend(const Vectors& points, PolygonSurface& polygons, c
   return remarks_on(mended);
 }
 
-/// Where a place of the flat sheet comes to lie.
+/// Map a place of the flat sheet to the curved one.
 class Bent {
  public:
   explicit Bent(const SheetShape& shape) : along_(shape.curvature_per_um[0]), across_(shape.curvature_per_um[1]) {
@@ -79,7 +79,7 @@ class Bent {
   }
 
  private:
-  // How far an arc of this length goes along its first direction, and away from it.
+  // Extent of an arc of this length along its first direction, and away from it.
   static double arc(double curvature, double way) {
     return curvature == 0 ? way : std::sin(curvature * way) / curvature;
   }

@@ -24,7 +24,7 @@ constexpr double overrelaxation = 1.5;
 
 using Whole = std::array<int, 2>;  // along x and y
 
-/// What lies beyond a side: a cell, so many periods away, or below 0 a side of the rectangle.
+/// Neighbour beyond a side: a cell, so many periods away, or below 0 a side of the rectangle.
 struct Beyond {
   int cell;
   Whole periods = {0, 0};
@@ -39,7 +39,7 @@ struct Cut {
   std::vector<Beyond> beyond;  // of the side from a corner to the next
 };
 
-/// What no other point cuts off: the rectangle, or along a period half the way to the point's own images.
+/// Uncut region of a point: the rectangle, or along a period half the distance to its own images.
 Cut uncut(const Rectangle& rectangle, std::size_t own, const Vec3& point) {
   const int cell = static_cast<int>(own);
   const double x = 0.5 * rectangle.size_um[0], y = 0.5 * rectangle.size_um[1];
@@ -89,7 +89,7 @@ class Squares {
     for (std::size_t i = 0; i < points.size(); ++i) lists_[number(place(points[i]))].push_back(i);
   }
 
-  /// Of each point's own part of the plane.
+  /// Return the polygon of a point.
   [[nodiscard]] Cut cell(std::size_t own) const {
     const Vec3& from = points_[own];
     Cut cut = uncut(rectangle_, own, from);

@@ -116,7 +116,7 @@ Counts coarsened(const Counts& counts, double factor) {
   return coarse;
 }
 
-/// How many times coarser a small grid is whose proportions are nearest to these; none when all are far off.
+/// Coarsening factor of the small grid with the nearest proportions; empty if none is near.
 std::optional<double> best_coarsening(const Counts& counts) {
   constexpr int fewest_along_an_axis = 3;
   constexpr double largest_deviation = 0.1;

@@ -50,7 +50,7 @@ struct StarSurface::Chart {
   [[nodiscard]] Eigen::Matrix2d metric() const {
     return symmetric(first[0].squaredNorm(), first[0].dot(first[1]), first[1].squaredNorm());
   }
-  /// Of each second derivative, its part along a vector.
+  /// Component of each second derivative along a vector.
   [[nodiscard]] Eigen::Matrix2d second_along(const Vec3& way) const {
     return symmetric(way.dot(second[0]), way.dot(second[1]), way.dot(second[2]));
   }

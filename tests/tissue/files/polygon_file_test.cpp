@@ -128,7 +128,8 @@ TEST(PolygonFile, SaysWhatIsWrongAndWhere) {
       "faces must have one list vertex_indices or vertex_index");
   ply(start + "element vertex 999999999999\nproperty int x\nproperty int y\nproperty int z\nend_header\n0 0 0\n",
       "999999999999 elements \"vertex\" exceed the file");
-  ply(start + "element face 1\nproperty list int int vertex_index\nend_header\n-3 1 2 3\n", "a list of -3 numbers");
+  ply(start + "element face 1\nproperty list int int vertex_index\nend_header\n-3 1 2 3\n",
+      "a list has the invalid length -3");
   ply(start + "element face 1\nproperty list int int vertex_index\nend_header\n3 1 2 3\n",
       "face 0 uses vertex 1; 0 precede it");
 }
