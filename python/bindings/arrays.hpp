@@ -1,4 +1,4 @@
-// Numbers as NumPy arrays: copies that cannot be written to, so that none ever shows another moment than its own.
+// Conversion of numbers to NumPy arrays: read-only copies, so that none changes with the simulation.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -14,7 +14,7 @@ namespace plica::python {
 
 namespace nb = nanobind;
 
-/// `numbers` are deleted with `owner`.
+/// Wrap `numbers`, which are deleted with `owner`.
 template <class Number>
 nb::object numpy_array(const Number* numbers, std::size_t dimensions, const std::size_t* shape,
                        const nb::capsule& owner) {
@@ -24,7 +24,7 @@ nb::object numpy_array(const Number* numbers, std::size_t dimensions, const std:
   return array;
 }
 
-/// Rows of `width` numbers each; of one number, without a second dimension.
+/// Make an array with rows of `width` numbers; one-dimensional if the width is 1.
 template <class Number>
 nb::object array_of(std::vector<Number> numbers, std::size_t width = 1) {
   auto* kept = new std::vector<Number>(std::move(numbers));
@@ -48,7 +48,7 @@ inline nb::object array_of(const std::vector<bool>& flags) {
   return numpy_array(kept, 1, shape, owner);
 }
 
-/// Numbers of nodes or cells, `width` a row.
+/// Make an array of values of nodes or cells, `width` per row.
 template <class Lists>
 nb::object array_of_ids(const Lists& lists, std::size_t width) {
   std::vector<int> numbers;

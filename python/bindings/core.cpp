@@ -1,4 +1,4 @@
-// The module plica._core: what the package's Python is written on. Not for users.
+// Module plica._core, the internal basis of the Python package. Not for users.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/map.h>
@@ -33,7 +33,7 @@ namespace {
 using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 using Whole = nb::ndarray<const int, nb::c_contig, nb::device::cpu>;
 
-/// Cells as a program has them: arrays whose shapes and numbers have been looked at.
+/// Make a mesh from arrays whose shapes and numbers have been checked.
 std::shared_ptr<const HexahedralMesh> mesh_of(const Numbers& points, const Whole& hexahedra,
                                               const std::vector<int>& apical_faces,
                                               const std::map<std::string, std::vector<double>>& arrays) {
@@ -106,7 +106,7 @@ nb::dict calibration(const CheckedScenario& scenario, const std::vector<std::str
   return answer;
 }
 
-/// The quantities that colour an embryo, and by which colours.
+/// Return the quantities that colour an embryo, with their colour scales.
 nb::dict colour_fields_by_name() {
   nb::dict fields;
   for (const ColourField& field : colour_fields()) {
@@ -124,7 +124,7 @@ nb::dict colour_fields_by_name() {
   return fields;
 }
 
-/// From where a tissue is seen; first the usual view.
+/// Return the views of a tissue, the default view first.
 nb::dict views_by_name(const Numbers& points, const Whole& hexahedra) {
   nb::dict views;
   const auto mesh = mesh_of(points, hexahedra, {}, {});

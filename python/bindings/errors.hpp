@@ -1,4 +1,4 @@
-// What C++ throws, as the exceptions of plica.errors.
+// Translation of C++ exceptions into those of plica.errors.
 #pragma once
 
 #include <optional>
@@ -6,10 +6,10 @@
 
 namespace plica::python {
 
-/// From now on, errors of plica leave this module as those of plica.errors.
+/// Register the translation of exceptions that leave this module.
 void translate_errors();
 
-/// A simulation gave up.
+/// Solver failure of a simulation; raised as NumericsError.
 struct GaveUp {
   std::string reason;
   std::optional<int> cell;

@@ -1,4 +1,4 @@
-// Ctrl-C within work for which Python runs on beside.
+// Ctrl-C during C++ work while other Python threads run.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -8,11 +8,11 @@
 
 namespace plica::python {
 
-/// What Python's signal handlers raise while C++ works. They run in Python's main thread only, when it asks: here, at
-/// most every 50 ms, which costs nothing.
+/// Collector of exceptions raised by Python signal handlers during C++ work. They run only in the main thread of
+/// Python, when polled: here, at most every 50 ms, at negligible cost.
 class Signals {
  public:
-  /// Whether the work is to end. Called without Python's lock.
+  /// Whether the work must stop. Called without the GIL.
   [[nodiscard]] bool have_come() {
     using Clock = std::chrono::steady_clock;
     if (raised_ || Clock::now() - last_ < std::chrono::milliseconds(50)) return raised_.has_value();
@@ -21,9 +21,9 @@ class Signals {
     last_ = Clock::now();
     return raised_.has_value();
   }
-  /// The work is to end for this. Called with the lock.
+  /// Store an exception that stops the work. Called with the GIL.
   void raise_later(nanobind::python_error error) { raised_.emplace(std::move(error)); }
-  /// After the work, with the lock.
+  /// Raise the stored exception after the work. Called with the GIL.
   void rethrow() {
     if (!raised_) return;
     nanobind::python_error error = std::move(*raised_);

@@ -119,7 +119,7 @@ nb::object neighbours(const Simulation& simulation) {
 
 SimulationOf::Turn::Turn(SimulationOf& owner) : owner_(owner) {
   if (owner.is_busy_.exchange(true))
-    throw std::runtime_error("this simulation is taking a step in another thread; wait for it, or use a copy()");
+    throw std::runtime_error("another thread is advancing this simulation; wait for it, or use a copy()");
 }
 
 SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads, std::unique_ptr<Simulation> simulation,
@@ -140,13 +140,15 @@ SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads)
 SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads, const nb::bytes& saved)
     : SimulationOf(scenario, threads) {
   Checkpoint checkpoint = read_checkpoint_bytes({saved.c_str(), saved.size()});
-  if (checkpoint.at_rest != at_rest_) throw FileError("what was saved is of another embryo; has its mesh changed?");
-  if (checkpoint.record.rows.empty()) throw FileError("what was saved has no measures");
+  if (checkpoint.at_rest != at_rest_)
+    throw FileError(
+        "the saved state belongs to another tissue; load it with the mesh or tissue that it was saved with");
+  if (checkpoint.record.rows.empty()) throw FileError("the saved state has no output variables");
   try {
     const SafeThreadCount count(threads_);
     simulation_->go_on_from(std::move(checkpoint.run), std::move(checkpoint.record.rows.back()));
   } catch (const UnfitMemory& error) {
-    throw FileError(std::string("what was saved is damaged: ") + error.what());
+    throw FileError(std::string("the saved state is damaged: ") + error.what());
   }
 }
 
@@ -212,7 +214,7 @@ void SimulationOf::end_record() {
 void bind_simulation(nb::module_& module) {
   pthread_atfork(nullptr, nullptr, [] { is_forked = true; });
   using S = SimulationOf;
-  // A function of the simulation that only looks.
+  // Wraps a function that only reads the simulation.
   const auto looks = [](auto look) { return [look](S& self) { return self.with(look); }; };
   const auto of_state = [looks](auto member) {
     return looks([member](const Simulation& s) { return array_of(std::span<const Vec3>(s.state().*member)); });

@@ -1,4 +1,4 @@
-// A Simulation as Python holds it: with its scenario, its threads, the directory that it records to, and Ctrl-C.
+// Simulation object of Python: with scenario, threads, results directory, and handling of Ctrl-C.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -17,34 +17,35 @@ namespace plica::python {
 
 namespace nb = nanobind;
 
-/// A scenario that has been checked, and where it came from.
+/// Checked scenario and its origin.
 struct CheckedScenario {
   ScenarioSource source;
   Scenario scenario;
 };
 
-/// One thread at a time: while a step is solved, Python runs on, and others are refused.
+/// Simulation for use by one thread at a time: other Python threads run during a step, but calls from them are
+/// rejected.
 class SimulationOf {
  public:
-  /// `threads`: 0 for what suits the tissue.
+  /// Make a simulation; `threads`: 0 for the default of the tissue.
   SimulationOf(const CheckedScenario& scenario, int threads);
-  /// Where save() was called.
+  /// Restore the state at which save() was called.
   SimulationOf(const CheckedScenario& scenario, int threads, const nb::bytes& saved);
-  /// A fork in time; it records nowhere.
+  /// Return an independent copy, which does not record.
   [[nodiscard]] std::unique_ptr<SimulationOf> copy();
 
-  /// False when there is no next step. Raises what a signal handler raised, the state being that before the step; and
+  /// Take a step; false if there is none. Raise the exception of a signal handler, with the state before the step, or
   /// GaveUp.
   bool step(double until_s);
   void set_activity(const std::string& law, std::vector<double> activities);
   [[nodiscard]] nb::bytes save();
 
-  /// Returns what is odd about the checkpoint that it goes on from.
+  /// Begin recording; return notes on the checkpoint from which it continues.
   std::vector<std::string> begin_record(const std::string& out, const std::string& start);
   void end_record();
   [[nodiscard]] bool is_recording() const { return record_ != nullptr; }
 
-  /// Calls look(simulation), unless another thread steps.
+  /// Call look(simulation), unless another thread is taking a step.
   template <class Look>
   auto with(const Look& look) {
     const Turn turn(*this);
@@ -74,7 +75,7 @@ class SimulationOf {
   int threads_;
   std::atomic<bool> is_busy_ = false;
   Signals signals_;
-  std::string at_rest_;  // fingerprint of its tissue before the first step
+  std::string at_rest_;  // fingerprint of the tissue before the first step
 };
 
 void bind_simulation(nb::module_& module);

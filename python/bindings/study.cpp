@@ -1,4 +1,4 @@
-// Studies: their points, one run of them, and the directory that they leave.
+// Bindings of studies: points, single runs, and the results directory.
 #include "study/study.hpp"
 
 #include <nanobind/nanobind.h>
@@ -28,7 +28,7 @@ StudyDirectory begin(const std::filesystem::path& directory, const Study& study,
                                                   : Start::fresh);
 }
 
-/// A row of runs.csv. KeyboardInterrupt where Ctrl-C came.
+/// Run one point and return its row of runs.csv. KeyboardInterrupt on Ctrl-C.
 std::string row_of(const Study& study, std::size_t run, const std::filesystem::path& directory) {
   Signals signals;
   std::optional<RunRow> row;

@@ -1,4 +1,4 @@
-// How many OpenMP threads the work of a Python thread takes.
+// Number of OpenMP threads for work called from a Python thread.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,11 @@
 
 namespace plica::python {
 
-/// Set in a process that was forked.
+/// Flag set in a forked process.
 inline std::atomic<bool> is_forked = false;
 
-/// A ThreadCount of so many; in a forked process of one. There GNU's OpenMP would wait for ever for the threads of the
-/// parent, where these have worked before, and one thread needs none of them. Results are the same. Everything that
-/// computes is called within such a scope.
+/// Scope with this number of OpenMP threads; one in a forked process, where GNU OpenMP would wait forever for the
+/// threads of the parent. Results are identical. All computing calls need such a scope.
 class SafeThreadCount : public ThreadCount {
  public:
   explicit SafeThreadCount(int threads) : ThreadCount(is_forked ? 1 : std::max(1, threads)) {}

@@ -1,4 +1,4 @@
-"""plica simulates how sheets of living cells fold: tissue in, mechanics solved, folds measured and shown.
+"""Simulate how sheets of living cells fold: build a tissue, solve its mechanics, measure and draw the folds.
 
 >>> import plica
 >>> sim = plica.Simulation("drosophila")

@@ -1,4 +1,4 @@
-# Types of the module that bindings/ makes. Not for users.
+# Types of the internal module made by bindings/. Not for users.
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Optional
 

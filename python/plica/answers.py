@@ -1,4 +1,4 @@
-"""What a study says, in pictures: curves over one key, phase diagrams over two; and in a word, what became of an embryo."""
+"""Figures of a study: curves over one key and phase diagrams over two; verdict on a furrow."""
 from __future__ import annotations
 
 import difflib
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 __all__ = ["verdict"]
 
-FINISHED = ("equilibrium", "end_time")  # the status of a run that has results
+FINISHED = ("equilibrium", "end_time")  # statuses of runs with results
 VERDICT_COLUMNS = ("self_intersections", "lips_closed_time_s", "furrow_depth_below_lips_um", "furrow_depth_um")
-FURROWED_UM = 1.0  # below its lips (docs/reference/measures.md)
-DEEP_UM = 15.0  # below where it was at rest: furrowed, too, for its lips have gone in as well
+FURROWED_UM = 1.0  # depth below the lips (docs/reference/measures.md)
+DEEP_UM = 15.0  # depth below the reference state: also furrowed, since the lips have invaginated as well
 NO_RESULT = ("failed", "refused", "not run", "no verdict")
-DRAWN_KINDS = ("sobol", "latin-hypercube", "sobol-indices", "one-at-a-time")  # none of them has a point for each pair of values
+DRAWN_KINDS = ("sobol", "latin-hypercube", "sobol-indices", "one-at-a-time")  # none has a point for each pair of values
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 COLOURS = {"closed": "#009E73", "furrowed": "#0072B2", "flattened": "#F0E442", "passes through itself": "#D55E00",
            "failed": "#555555", "refused": "#999999", "no verdict": "#CCCCCC", "not run": "#E5E5E5", "replicates differ": "#D9D9D9"}
@@ -40,17 +40,17 @@ UNITS = {"um": "µm", "um2": "µm²", "um3": "µm³", "m": "m", "m3": "m³", "s"
 
 
 def verdict(row: Any) -> str:
-    """What became of an embryo, in a word.
+    """Classify the result of a run in one word.
 
-    The first that is true: "not run", "refused" (no valid scenario), "failed", "passes through itself"
-    (``self_intersections`` over 0), "closed" (``lips_closed_time_s`` has a value), "no verdict" (neither depth has one),
-    "furrowed" (``furrow_depth_below_lips_um`` of 1 µm or more; or ``furrow_depth_um`` of 15 µm or more, where the lips have
-    gone in, too), "flattened".
+    The first word that applies: "not run", "refused" (invalid scenario), "failed", "passes through itself"
+    (``self_intersections`` > 0), "closed" (``lips_closed_time_s`` has a value), "no verdict" (neither depth has a value),
+    "furrowed" (``furrow_depth_below_lips_um`` >= 1 µm, or ``furrow_depth_um`` >= 15 µm, since the lips may invaginate too),
+    "flattened".
 
     Parameters
     ----------
     row : pandas.Series or mapping
-        A row of `Study.table`, with these four measures.
+        Row of `Study.table` with these four output variables.
 
     Returns
     -------
@@ -59,7 +59,7 @@ def verdict(row: Any) -> str:
     Raises
     ------
     ValueError
-        A measure is not in the row.
+        If an output variable is missing in the row.
 
     Examples
     --------
@@ -70,7 +70,7 @@ def verdict(row: Any) -> str:
     """
     missing = [name for name in VERDICT_COLUMNS if name not in row]
     if missing:
-        raise ValueError(f"a verdict needs {', '.join(missing)}; add it to keep.measures, or colour by a measure that is kept")
+        raise ValueError(f"a verdict requires {', '.join(missing)}; add it to keep.measures, or colour by an output variable that is kept")
     if row["status"] in ("not_run", "refused"):
         return str(row["status"]).replace("_", " ")
     if row["status"] not in FINISHED:
@@ -86,15 +86,15 @@ def verdict(row: Any) -> str:
 
 
 def curves(study: Study, measure: str) -> Any:
-    """Draws a measure over each key while the others stay as they are in the scenario: a panel a key.
+    """Plot an output variable over each key, one panel per key, with the other keys as in the scenario.
 
-    The scenario's own values are marked. A run without the result (it failed, or its embryo has none) is a red cross at the
-    foot of the panel, and no line is drawn through it. Replicates are dots, and the line joins their means.
+    The values of the scenario are marked. Runs without a result are red crosses at the bottom of the panel, which interrupt
+    the line. Replicates are dots; the line joins their means.
 
     Parameters
     ----------
     measure : str
-        A column of `table`; its unit, the end of its name, stands at the axis.
+        Column of `table`; the unit in its name labels the axis.
 
     Returns
     -------
@@ -103,7 +103,7 @@ def curves(study: Study, measure: str) -> Any:
     Raises
     ------
     ValueError
-        The study is neither of kind "one-at-a-time" nor of one key, or has no such measure.
+        If the study is neither of kind "one-at-a-time" nor has a single key, or has no such output variable.
 
     Examples
     --------
@@ -122,7 +122,7 @@ def curves(study: Study, measure: str) -> Any:
                          'give one of kind "one-at-a-time", or with one key')
     table = study.table
     results, keys = _results(table, measure), study.keys
-    first = table.iloc[0]  # of kind one-at-a-time: the scenario itself
+    first = table.iloc[0]  # kind one-at-a-time: the scenario itself
     own = dict(first[keys]) if one_at_a_time else _own_values(study)
     across = min(3, len(keys))
     down = -(-len(keys) // across)
@@ -147,7 +147,7 @@ def curves(study: Study, measure: str) -> Any:
 
 def _curve(ax: Any, values: pandas.Series[Any], results: pandas.Series[float], own: Any) -> None:
     is_number, (x, words) = _is_number(values), _places(values)
-    means = results.groupby(x).mean()  # sorted; NaN where there is none, which breaks the line
+    means = results.groupby(x).mean()  # sorted; a missing value is NaN, which interrupts the line
     ax.plot(means.index, means, "o-" if is_number else "o", color="C0", label="result")
     lost = sorted(set(x[results.isna()]))
     if lost:
@@ -169,7 +169,7 @@ def _mark_replicates(ax: Any, values: pandas.Series[Any], results: pandas.Series
 
 
 def _places(values: pandas.Series[Any]) -> tuple[pandas.Series[float], list[str]]:
-    """Where values stand along an axis, and the words at 0, 1, 2, … where they are none."""
+    """Positions of values along an axis; 0, 1, 2, … with labels if they are not numbers."""
     if _is_number(values):
         return values.astype(float), []
     words = list(dict.fromkeys(map(str, values)))
@@ -186,24 +186,24 @@ def phase_diagram(
     thumbnails: Union[int, Sequence[int]] = 0,
     view: str = "cross-section",
 ) -> Any:
-    """Draws a grid over two keys: a cell for each pair of values, coloured by what came out.
+    """Draw a phase diagram over two keys: one cell per pair of values, coloured by the result.
 
-    Cells are equally large and carry their values at the axes, evenly spaced or not.
+    Cells have equal size, whatever the spacing of the values, which label the axes.
 
     Parameters
     ----------
     x, y : str, optional
-        The keys along the axes; by default the first and the second that vary.
+        Keys along the axes; by default the first and second key that vary.
     measure : str or callable
-        What colours a cell: "verdict" (the words of `plica.verdict`), a column of `table`, or a function of a row that
-        gives a word. Of replicates, the mean; or "replicates differ", where their words do.
+        Quantity that colours a cell: "verdict" (see `plica.verdict`), a column of `table`, or a function that maps a row to
+        a word. Replicates are averaged, or coloured as "replicates differ" if their words differ.
     at : mapping of str to value, optional
-        Values of the other keys, where the grid has more than two.
+        Values of the other keys, if more than two vary.
     thumbnails : int or sequence of int
-        How many embryos to show below, along the diagonal from the first values to the last; or which points. The study
-        has to have kept the runs (``keep.each = "full"``); needs PyVista.
+        Number of embryos shown below, along the diagonal from the first values to the last, or their points. Requires kept
+        runs (``keep.each = "full"``) and PyVista.
     view : str
-        From where, as of `plica.render`.
+        View of the embryos, as in `plica.render`.
 
     Returns
     -------
@@ -212,7 +212,8 @@ def phase_diagram(
     Raises
     ------
     ValueError
-        The study is no grid over these keys; there is no such measure; another key needs a value; or runs were not kept.
+        If the study is not a grid over these keys, the output variable does not exist, another key requires a value, or
+        runs were not kept.
 
     Examples
     --------
@@ -224,15 +225,15 @@ def phase_diagram(
     table, (x, y) = study.table, _two_keys(study, x, y)
     for key, value in (at or {}).items():
         if key not in study.keys:
-            raise ValueError(f"at: {key} does not vary in the study; there are {', '.join(study.keys)}")
+            raise ValueError(f"at: {key} does not vary in the study; keys: {', '.join(study.keys)}")
         table = table[table[key] == value]
     _check_is_plane(study, table, x, y)
     columns, rows = _in_order(table[x]), _in_order(table[y])
     shown = list(thumbnails) if not isinstance(thumbnails, int) else _diagonal(table, x, y, columns, rows, thumbnails)
     if len(shown) > len(LETTERS):
-        raise ValueError(f"thumbnails: {len(shown)} embryos; give {len(LETTERS)} at most")
+        raise ValueError(f"thumbnails: {len(shown)} embryos; give at most {len(LETTERS)}")
     if shown and (study._directory is None or study._given.get("keep.each") != "full"):
-        raise ValueError('thumbnails: the study has not kept its runs; run it with keep.each = "full" and out')
+        raise ValueError('thumbnails: the study did not keep its runs; run it with keep.each = "full" and out')
 
     wide, high = 3.2 + 0.55 * len(columns), 1.6 + 0.5 * len(rows)
     is_words = callable(measure) or measure == "verdict" or not _is_number(table.get(measure, table.status))
@@ -265,18 +266,18 @@ def _two_keys(study: Study, x: Optional[str], y: Optional[str]) -> tuple[str, st
     y = y or (free.pop(0) if free else "")
     for key in (x, y):
         if key not in study.keys:
-            told = f"{key!r} does not vary in the study{_did_you_mean(key, study.keys)}" if key else "needs two keys that vary"
-            raise ValueError(f"phase_diagram: {told}; there are {', '.join(study.keys)}")
+            told = f"{key!r} does not vary in the study{_did_you_mean(key, study.keys)}" if key else "requires two keys that vary"
+            raise ValueError(f"phase_diagram: {told}; keys: {', '.join(study.keys)}")
     return x, y
 
 
 def _check_is_plane(study: Study, table: pandas.DataFrame, x: str, y: str) -> None:
     if study.kind in DRAWN_KINDS:
-        raise ValueError(f'phase_diagram: the study is of kind "{study.kind}"; make a grid over the two keys')
+        raise ValueError(f'phase_diagram: the study is of kind "{study.kind}"; use a grid over the two keys')
     others = [key for key in study.keys if key not in (x, y) and table[key].nunique() > 1]
     if others:
         values = ", ".join(map(_shown, _in_order(table[others[0]])))
-        raise ValueError(f"phase_diagram: {others[0]} varies, too; give at={{{others[0]!r}: …}} one of {values}")
+        raise ValueError(f"phase_diagram: {others[0]} also varies; set at={{{others[0]!r}: …}} to one of {values}")
     pairs = table[[x, y, "replicate"]]
     if table.empty or pairs.duplicated().any() or len(pairs[[x, y]].drop_duplicates()) != table[x].nunique() * table[y].nunique():
         raise ValueError(f'phase_diagram: the study (of kind "{study.kind}") has not one point for each pair of values; '
@@ -285,7 +286,7 @@ def _check_is_plane(study: Study, table: pandas.DataFrame, x: str, y: str) -> No
 
 def _words(table: pandas.DataFrame, measure: Union[str, Callable[[pandas.Series[Any]], str]]) -> pandas.Series[str]:
     if not callable(measure) and measure != "verdict" and measure not in table:
-        _results(table, measure, ["verdict"])  # says what there is
+        _results(table, measure, ["verdict"])  # reports the existing columns
     if not callable(measure) and measure in table:
         return table[measure].astype(str)
     judge = measure if callable(measure) else verdict
@@ -354,16 +355,16 @@ def _add_thumbnails(study: Study, table: pandas.DataFrame, ax: Any, below: Any, 
     for letter, point in zip(LETTERS, points):
         found = table[table.point == point]
         if found.empty:
-            raise ValueError(f"thumbnails: there is no point {point} in this diagram; there are {sorted(set(table.point))}")
+            raise ValueError(f"thumbnails: point {point} is not in this diagram; points: {sorted(set(table.point))}")
         directory = study._run_directory(int(found.index[0]))
         try:
             images.append(render(open_run(directory), view=view, color="region", size=(500, 400), bar=False))
         except (OSError, IndexError) as error:
-            raise ValueError(f"thumbnails: point {point} has left no frame in {directory}; choose other points") from error
+            raise ValueError(f"thumbnails: point {point} has no frame in {directory}; choose other points") from error
         place = (across[1].index(found[across[0]].iloc[0]), up[1].index(found[up[0]].iloc[0]))
         text = ax.text(*place, letter, color="k", ha="center", va="center", fontweight="bold")
         text.set_path_effects([effects.withStroke(linewidth=3, foreground="w")])
-    drawn = np.any([(image < 250).any(axis=2) for image in images], axis=0)  # what lies around all embryos is cut off
+    drawn = np.any([(image < 250).any(axis=2) for image in images], axis=0)  # crop the margin around all embryos
     up_down, left_right = (np.flatnonzero(drawn.any(axis=axis)) for axis in (1, 0))
     for letter, image, picture in zip(LETTERS, images, below.subplots(1, len(images), squeeze=False)[0]):
         picture.imshow(image[up_down[0] : up_down[-1] + 1, left_right[0] : left_right[-1] + 1])
@@ -372,20 +373,20 @@ def _add_thumbnails(study: Study, table: pandas.DataFrame, ax: Any, below: Any, 
 
 
 def _results(table: pandas.DataFrame, measure: str, others: Sequence[str] = ()) -> pandas.Series[float]:
-    """The measure of the runs that ended well; NaN of the others, whose last good state is no result."""
+    """Output variable of finished runs; NaN for others, whose last accepted state is not a result."""
     if measure not in table or not _is_number(table[measure]):
         known = [*others, *list(table.columns)[list(table.columns).index("status") + 1 : -2]]
-        raise ValueError(f"the study has no measure {measure!r}{_did_you_mean(measure, known)}; it has {', '.join(known)}")
+        raise ValueError(f"the study has no output variable {measure!r}{_did_you_mean(measure, known)}; it has {', '.join(known)}")
     return table[measure].astype(float).where(table.status.isin(FINISHED))
 
 
 def _did_you_mean(word: str, known: Sequence[str]) -> str:
     near = [name for name in known if word in name] or difflib.get_close_matches(word, known)
-    return f" (did you mean {near[0]!r}?)" if near else ""
+    return f" (nearest match: {near[0]!r})" if near else ""
 
 
 def _scenario_of(study: Study) -> Optional[Scenario]:
-    """The study's scenario, as far as it can still be read."""
+    """Scenario of the study, or None if it cannot be read any more."""
     given = tomllib.loads(study._spec.text)
     try:
         if study._directory is not None:
@@ -399,7 +400,7 @@ def _scenario_of(study: Study) -> Optional[Scenario]:
 
 
 def _own_values(study: Study) -> dict[str, Any]:
-    """What the study's scenario says of its keys."""
+    """Values of the keys in the scenario of the study."""
     scenario = _scenario_of(study)
     try:
         return {} if scenario is None else {key: scenario[key] for key in study.keys}
@@ -427,7 +428,7 @@ def _shown(value: Any) -> str:
 
 
 def _name_and_unit(name: str) -> tuple[str, str]:
-    """A column or key without the unit at its end, and that unit: stiffness_nN_per_um is stiffness, nN/µm."""
+    """Split a column or key into name and unit: stiffness_nN_per_um becomes stiffness and nN/µm."""
     words = name.split("_")
     for first in range(1, len(words)):
         end = words[first:]
@@ -439,7 +440,7 @@ def _name_and_unit(name: str) -> tuple[str, str]:
 
 def _label(name: str, with_unit: bool = True) -> str:
     text, unit = _name_and_unit(name)
-    if "." not in text:  # a key stays as one would write it
+    if "." not in text:  # keys are written as in a scenario
         text = text.replace("_", " ")
     return f"{text} ({unit})" if unit and with_unit else text
 
@@ -449,7 +450,7 @@ def _axis_label(study: Study, key: str) -> str:
 
 
 def _set_log(axis: Any) -> None:
-    """Makes an axis logarithmic, with numbers at 1, 2, 5, 10, … as one reads them."""
+    """Make an axis logarithmic, with plain labels at 1, 2, 5, 10, …"""
     ticker = needed("matplotlib.ticker", "a logarithmic axis")
     (axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale)("log")
     axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))

@@ -1,4 +1,4 @@
-"""A formula in the place of runs: a Gaussian process over the keys of a study, and how far it is off."""
+"""Emulators: Gaussian processes over the keys of a study, with their cross-validation errors."""
 from __future__ import annotations
 
 import warnings
@@ -22,40 +22,39 @@ Array = NDArray[np.float64]
 
 
 class Range(NamedTuple):
-    """The values of a key that a study has tried."""
+    """Range of a key in a study."""
 
     low: float
     high: float
     is_log: bool
 
     def to_unit(self, values: Any) -> Array:
-        """From 0 at the low end to 1 at the high end, in the logarithm where it is of that."""
+        """Scale values to 0 (low end) … 1 (high end), logarithmically if `is_log`."""
         if self.is_log:
             return np.asarray(np.log(np.asarray(values, dtype=float) / self.low) / np.log(self.high / self.low))
         return np.asarray((np.asarray(values, dtype=float) - self.low) / (self.high - self.low))
 
     def from_unit(self, places: Array) -> Array:
-        """Back to values."""
+        """Scale numbers from 0 to 1 back to values."""
         if self.is_log:
             return self.low * (self.high / self.low) ** places
         return self.low + (self.high - self.low) * places
 
 
 class Emulator:
-    """Measures of a study as smooth functions of its keys: a guess for points that were not run, with its deviation.
+    """Output variables of a study as smooth functions of its keys, with standard deviations.
 
-    Made by `Study.emulator`.
+    Create it with `Study.emulator`.
 
     Attributes
     ----------
     ranges : dict of str to (low, high, is_log)
-        The keys, and the values between which runs were made. Nothing is said beyond.
+        Keys with the ranges covered by runs; there is no extrapolation.
     errors : pandas.DataFrame
-        A row a measure: ``runs`` that it was made from; ``missing`` ones without the measure; ``rmse``, the root of the mean
-        square error of what was predicted for runs that were held out, in the measure's unit; ``explained``, the share of
-        the variance that these predictions explain (1 is perfect, 0 no better than the mean).
+        One row per output variable: ``runs`` used; ``missing`` runs without it; ``rmse``, the cross-validation root mean
+        square error, in its unit; ``explained``, the fraction of variance explained (1: perfect, 0: no better than the mean).
     held_out : dict of str to pandas.DataFrame
-        By measure, a row a run: what came out (``run``), what was predicted without it (``mean``, ``sd``).
+        By output variable, one row per run: its result (``run``) and the prediction without it (``mean``, ``sd``).
     """
 
     def __init__(self, ranges: dict[str, Range], models: dict[str, Any], errors: pandas.DataFrame,
@@ -65,46 +64,47 @@ class Emulator:
 
     @property
     def keys(self) -> list[str]:
-        """What it is a function of."""
+        """Keys it is a function of."""
         return list(self.ranges)
 
     @property
     def measures(self) -> list[str]:
-        """What it predicts."""
+        """Output variables it predicts."""
         return list(self._models)
 
     def predict(self, points: pandas.DataFrame) -> tuple[pandas.DataFrame, pandas.DataFrame]:
-        """What runs would come to.
+        """Predict the results of runs.
 
         Parameters
         ----------
         points : pandas.DataFrame, shape (points, at least the keys)
-            Values of the keys, in columns of their names.
+            Values of the keys, in columns with their names.
 
         Returns
         -------
         mean, sd : pandas.DataFrame, shape (points, measures)
-            In the measures' units. The deviation is that of a new run: of the guess, and of replicates where there are any.
+            Prediction and standard deviation of a new run, including the variance of replicates, in the units of the output
+            variables.
 
         Raises
         ------
         ValueError
-            A key is missing, or a value lies beyond what was run.
+            If a key is missing, or a value is outside the range of the runs.
         """
         for key, (low, high, _) in self.ranges.items():
             if key not in points:
-                raise ValueError(f"predict: there is no column {key}; give {', '.join(self.keys)}")
+                raise ValueError(f"predict: column {key} is missing; give {', '.join(self.keys)}")
             slack = 1e-9 * (high - low)
             if not points[key].between(low - slack, high + slack).all():
                 raise ValueError(f"predict: {key} goes from {points[key].min():g} to {points[key].max():g}; "
-                                 f"runs were made from {low:g} to {high:g}, and beyond them an emulator knows nothing")
+                                 f"runs cover {low:g} to {high:g}, and the emulator does not extrapolate")
         places = np.column_stack([one.to_unit(points[key]) for key, one in self.ranges.items()])
         means, deviations = self._predict(places)
         pandas = needed("pandas", "predict")
         return (pandas.DataFrame(means, points.index, self.measures), pandas.DataFrame(deviations, points.index, self.measures))
 
     def plot(self) -> Any:
-        """Draws what was predicted for each run while it was held out, over what came out: a panel a measure.
+        """Plot cross-validation predictions over results, one panel per output variable.
 
         Returns
         -------
@@ -117,13 +117,13 @@ class Emulator:
             of_one, error = self.held_out[measure], self.errors.loc[measure]
             ax.errorbar(of_one.run, of_one["mean"], 2 * of_one.sd, fmt=".", color="C0", ecolor="0.75", label="held out, ± 2 sd")
             ax.axline((of_one.run.mean(), of_one.run.mean()), slope=1, color="k", linewidth=0.8)
-            ax.set_title(f"off by {error.rmse:.3g} (rms), explains {100 * error.explained:.0f} %", fontsize="medium")
+            ax.set_title(f"RMSE {error.rmse:.3g}, explains {100 * error.explained:.0f} %", fontsize="medium")
             ax.set(xlabel=_label(measure) + ", run", ylabel=_label(measure) + ", predicted")
             ax.legend(frameon=False, loc="upper left")
         return figure
 
     def _predict(self, places: Array) -> tuple[Array, Array]:
-        """Means and deviations, shape (points, measures), at places from 0 to 1 in each key."""
+        """Return means and standard deviations, shape (points, outputs), at places from 0 to 1 in each key."""
         found = [_in_parts(model, places) for model in self._models.values()]
         return np.column_stack([mean for mean, _ in found]), np.column_stack([sd for _, sd in found])
 
@@ -133,21 +133,21 @@ class Emulator:
 
 
 def emulator(study: Study, measures: Union[str, Sequence[str]], *, folds: int = 5, seed: int = 1) -> Emulator:
-    """Fits a Gaussian process to each measure, over the keys of the study. Needs scikit-learn.
+    """Fit a Gaussian process to each output variable, over the keys of the study. Requires scikit-learn.
 
-    Its covariance is a Matérn function (ν = 5/2) with a length for each key, and noise; both are fitted by the marginal
-    likelihood (Rasmussen and Williams 2006, chapters 2, 4 and 5; docs/references.bib). Keys that the study varies with
-    ``scale = "log"`` go in by their logarithm. The error is that of k-fold cross-validation: a part of the points is held out
-    and predicted by a process fitted to the rest, one part after another. Ten points a key are few; a few hundred in all are quick, 2000 are slow.
+    The covariance is a Matérn function (ν = 5/2) with one length per key, plus noise, fitted by maximum marginal likelihood
+    (Rasmussen and Williams 2006, chapters 2, 4 and 5; docs/references.bib). Keys with ``scale = "log"`` enter by their
+    logarithm. Errors come from k-fold cross-validation. Use at least ten points per key; a few hundred in total are fast,
+    2000 are slow.
 
     Parameters
     ----------
     measures : str or sequence of str
-        Columns of `table`.
+        Columns of `Study.table`.
     folds : int
-        Parts of the cross-validation.
+        Number of cross-validation folds.
     seed : int
-        Of the parts, and of the fit's starting points.
+        Random seed of the folds and of the starting points of the fit.
 
     Returns
     -------
@@ -156,13 +156,13 @@ def emulator(study: Study, measures: Union[str, Sequence[str]], *, folds: int = 
     Raises
     ------
     ValueError
-        A key takes words, lists or one value only; there is no such measure; or too few runs have it (twice the number of
-        keys and 2 more are needed, and as many as there are folds).
+        If a key takes words, lists or a single value, the output variable does not exist, or too few runs have it (required:
+        2 × keys + 2, and at least `folds`).
 
     Warns
     -----
     UserWarning
-        Runs without the measure were left out: the emulator bridges what may be a border.
+        If runs without the output variable were omitted: the emulator interpolates across a possible boundary.
 
     Examples
     --------
@@ -188,13 +188,13 @@ def emulator(study: Study, measures: Union[str, Sequence[str]], *, folds: int = 
         least = max(2 * len(ranges) + 2, folds)
         if len(set(points)) < least:
             raise ValueError(f"emulator: {len(set(points))} of {len(set(table.point))} points have {measure}; "
-                             f"at least {least} are needed")
+                             f"at least {least} are required")
         if not has.all():
-            warnings.warn(f"emulator: {int((~has).sum())} of {len(table)} runs have no {measure} and are left out; it is guessed "
+            warnings.warn(f"emulator: {int((~has).sum())} of {len(table)} runs have no {measure} and are omitted; it is interpolated "
                           "there, too", stacklevel=2)
         model = models[measure] = _fitted(processes, places, values, _covariance(processes, len(ranges)), 1, seed)
         mean, sd = np.empty_like(values), np.empty_like(values)
-        for part in range(folds):  # lengths and noise are fitted anew, too, from where they are for all
+        for part in range(folds):  # lengths and noise are refitted, starting from their values for all runs
             out = parts == part
             mean[out], sd[out] = _in_parts(_fitted(processes, places[~out], values[~out], model.kernel_, 0, seed), places[out])
         held_out[measure] = pandas.DataFrame({"run": values, "mean": mean, "sd": sd}, index=table.index[has])
@@ -208,16 +208,16 @@ def emulator(study: Study, measures: Union[str, Sequence[str]], *, folds: int = 
 def _range(study: Study, table: pandas.DataFrame, key: str) -> Range:
     if not _is_number(table[key]):
         words = ", ".join(dict.fromkeys(map(str, table[key])))
-        raise ValueError(f"emulator: {key} takes words ({words}), between which there is nothing; make a study for each of them")
+        raise ValueError(f"emulator: {key} takes words ({words}), which cannot be interpolated; use one study per word")
     low, high = (float(study._given.get(f"vary.{key}.{end}", found)) for end, found in
                  (("low", table[key].min()), ("high", table[key].max())))
     if low == high:
-        raise ValueError(f"emulator: {key} has one value only; move it from [vary] to [set]")
+        raise ValueError(f"emulator: {key} has a single value; move it from [vary] to [set]")
     return Range(low, high, study._given.get(f"vary.{key}.scale") == "log")
 
 
 def _parts(points: NDArray[Any], folds: int, seed: int) -> NDArray[np.int64]:
-    """Which part each run is in; replicates of a point are together."""
+    """Fold of each run; replicates of a point share a fold."""
     distinct, of_run = np.unique(points, return_inverse=True)
     parts = np.random.default_rng(seed).permutation(np.arange(len(distinct)) % folds)
     return np.asarray(parts[of_run])
@@ -231,15 +231,15 @@ def _covariance(processes: Any, keys: int) -> Any:
 
 def _fitted(processes: Any, places: Array, values: Array, covariance: Any, restarts: int, seed: int) -> Any:
     model = processes.GaussianProcessRegressor(covariance, normalize_y=True, n_restarts_optimizer=restarts, random_state=seed)
-    with warnings.catch_warnings():  # of lengths at their bounds: of a key that does nothing, or of results without noise
+    with warnings.catch_warnings():  # lengths at their bounds: a key without effect, or results without noise
         warnings.simplefilter("ignore", needed("sklearn.exceptions", "emulator").ConvergenceWarning)
         with _one_thread(len(values)):
             return model.fit(places, values)
 
 
 def _in_parts(model: Any, places: Array) -> tuple[Array, Array]:
-    """So many points at a time that their covariances with all runs do not fill the memory."""
-    with warnings.catch_warnings():  # of a variance that rounding makes a little less than 0, and that is taken as 0
+    """Evaluate in batches, so that covariances with all runs fit into memory."""
+    with warnings.catch_warnings():  # variances rounded to slightly below 0 are set to 0
         warnings.filterwarnings("ignore", "Predicted variances smaller than 0")
         with _one_thread(len(model.X_train_)):
             parts = [model.predict(places[at : at + 2000], return_std=True) for at in range(0, len(places), 2000)]
@@ -247,5 +247,5 @@ def _in_parts(model: Any, places: Array) -> tuple[Array, Array]:
 
 
 def _one_thread(runs: int) -> Any:
-    """One thread is as quick for a few hundred runs, and much quicker where others are busy."""
+    """Limit to one thread: equally fast for a few hundred runs, and faster on a busy machine."""
     return needed("threadpoolctl", "emulator").threadpool_limits(1 if runs < 500 else None)

@@ -1,4 +1,4 @@
-"""What can go wrong. Messages say what is wrong, where, and what would be right."""
+"""Exceptions. Messages name the file, line and key, the problem and the fix."""
 from __future__ import annotations
 
 import importlib
@@ -6,18 +6,18 @@ from typing import Any, NamedTuple, Optional, Sequence
 
 
 class Diagnostic(NamedTuple):
-    """One thing that is wrong in a scenario.
+    """One error in a scenario.
 
     Attributes
     ----------
     file : str
-        The scenario's file or built-in name; empty for a key that was set from Python.
+        Scenario file or built-in name; empty for a key set from Python.
     line : int
-        Line in that file, from 1; 0 where there is none.
+        Line in that file, from 1; 0 if unknown.
     key : str
-        The dotted key, or empty.
+        Dotted key, or empty.
     problem, remedy : str
-        What is wrong, and what would be right.
+        Problem, and how to fix it.
     """
 
     file: str
@@ -33,16 +33,16 @@ class Diagnostic(NamedTuple):
 
 
 class PlicaError(Exception):
-    """Whatever plica finds wrong: the base of its other exceptions."""
+    """Base class of all exceptions of plica."""
 
 
 class ScenarioError(PlicaError, ValueError):
-    """A scenario breaks rules. All that is wrong is told at once.
+    """Invalid scenario. All errors are reported at once.
 
     Attributes
     ----------
     diagnostics : tuple of Diagnostic
-        What is wrong, one by one.
+        The errors, one by one.
     """
 
     def __init__(self, diagnostics: Sequence[tuple[str, int, str, str, str]] = ()) -> None:
@@ -57,16 +57,16 @@ class ScenarioError(PlicaError, ValueError):
 
 
 class NumericsError(PlicaError, ArithmeticError):
-    """A simulation gave up. The simulation is at its last good state, which can be looked at and saved.
+    """Solver failure. The simulation stays at its last accepted state, which can be inspected and saved.
 
     Attributes
     ----------
     reason : str
-        What gave up, where, when, and what may help.
+        Cause, cell, time, and suggested remedy.
     cell : int or None
-        The id of the cell that it happened in, where it was one.
+        Id of the cell where it failed, if known.
     time_s : float
-        The time of the last good state, s.
+        Time of the last accepted state, s.
     """
 
     def __init__(self, reason: str, cell: Optional[int] = None, time_s: float = float("nan")) -> None:
@@ -78,11 +78,11 @@ class NumericsError(PlicaError, ArithmeticError):
 
 
 class FileError(PlicaError, OSError):
-    """A file cannot be read or written, or is not what it should be."""
+    """File that cannot be read or written, or has unexpected content."""
 
 
 class MissingExtra(PlicaError, ImportError):
-    """Something needs a package that plica itself does not."""
+    """Missing optional package; the message names the extra to install."""
 
     def __init__(self, what: str, package: str, extra: str) -> None:
         super().__init__(f"{what} needs {package}, which is not installed; to have it, where plica was checked out: pip install '.[{extra}]'")
@@ -98,7 +98,7 @@ EXTRAS = {"pandas": "plot", "matplotlib": "plot", "pyvista": "plot", "meshio": "
 
 
 def needed(package: str, what: str) -> Any:
-    """A package that only this needs, imported now."""
+    """Import an optional package. MissingExtra if it is not installed."""
     try:
         return importlib.import_module(package)
     except ImportError:

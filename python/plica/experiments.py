@@ -1,4 +1,4 @@
-"""Experiments that are written down before they are run, and what comes out."""
+"""Simulated experiments with predictions registered before they run."""
 from __future__ import annotations
 
 import os
@@ -27,42 +27,42 @@ def reproduce(
     overwrite: bool = False,
     progress: bool = False,
 ) -> pandas.DataFrame:
-    """Runs experiments and judges what comes out, as ``plica reproduce`` does; goes on with what `out` holds of them.
+    """Run experiments and compare results with observations, as ``plica reproduce`` does.
 
-    The program ``plica`` does it: that of the same installation, else of PATH, or the one that PLICA in the environment
-    names.
+    Existing results in `out` are continued. The function calls the program ``plica`` of the same installation, else the one on
+    PATH; the environment variable ``PLICA`` overrides both.
 
     Parameters
     ----------
     what : str or path
-        ``"living"``, the living embryo, or a file of experiments (docs/how-to/predictions.md).
+        ``"living"`` (the living embryo), or a file of experiments (docs/how-to/predictions.md).
     out : str or path
-        A directory for the runs, the table ``experiments.csv``, and the page: ``living.html``, or with the file's name.
+        Directory for the runs, the table ``experiments.csv`` and the page (``living.html``, or named after the file).
     jobs : int, optional
-        Runs at a time, each on one thread; 2 by default. Results do not depend on it.
+        Simultaneous runs, each on one thread; by default 2. Results do not depend on it.
     quick : bool, optional
-        The first draw only, without slow experiments.
+        Run only the first parameter sample, without slow experiments.
     overwrite : bool, optional
-        Replace the experiments in `out`.
+        Replace existing results in `out`.
     progress : bool, optional
-        Show on stderr how many runs have ended.
+        Report finished runs on stderr.
 
     Returns
     -------
     pandas.DataFrame
-        A row for each outcome and draw: experiment, outcome, draw (from 1), status (of the run), quantity (a number of
-        summary.json, its unit in its name), own, other (its values here and in the experiment that it is compared with),
-        number (what is judged), judgement (hit, miss, undecided, not solved), reason (of a run without a result).
+        One row per outcome and parameter sample: experiment, outcome, draw (sample, from 1), status (of the run), quantity
+        (a value of summary.json, unit in the name), own and other (its values here and in the experiment it is compared
+        with), number (the compared value), judgement (hit, miss, undecided, not solved), reason (if a run has no result).
 
     Raises
     ------
     ValueError
-        The experiments, their scenarios or draws are wrong, each line with file, line, key and what would be right; or
-        `out` holds something else.
+        If experiments, scenarios or samples are invalid (each line names file, line, key and fix), or `out` has other
+        content.
     FileError
-        Something cannot be read or written, or there is no program.
+        If a file cannot be read or written, or the program is missing.
     KeyboardInterrupt
-        Ctrl-C. The same call goes on.
+        On Ctrl-C. The same call continues.
 
     Examples
     --------
@@ -83,11 +83,11 @@ def reproduce(
     'hit'
     """
     if os.fspath(what) == "paper":
-        raise ValueError("what: the paper has no table of outcomes; run plica reproduce --out DIR on the command line")
+        raise ValueError("what: the paper has no table of outcomes; run `plica reproduce --out DIR` on the command line")
     command = [_program(), "reproduce", os.fspath(what), "--out", os.fspath(out)]
     command += ["--jobs", str(jobs)] if jobs is not None else []
     command += [f"--{name}" for name, given in (("quick", quick), ("overwrite", overwrite)) if given]
-    # Not --quiet with a bar: what the command prints at its end is not shown.
+    # With progress, stderr is needed, so only stdout is discarded.
     command += [] if progress else ["--quiet"]
     ran = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, text=True, check=False,
                          stderr=None if progress else subprocess.PIPE)
@@ -103,15 +103,15 @@ def reproduce(
 
 
 def _program() -> str:
-    """The program of this version. FileError where there is none."""
+    """Return the path of the program of this version. FileError if there is none."""
     beside = Path(sysconfig.get_path("scripts")) / "plica"
     found = os.environ.get("PLICA") or (str(beside) if beside.exists() else shutil.which("plica"))
     if not found:
-        raise FileError("the program plica is not found; install it, or name it by PLICA in the environment")
+        raise FileError("the program plica was not found; install it, or set the environment variable PLICA to its path")
     try:
         told = subprocess.run([found, "--version"], capture_output=True, text=True, check=False).stdout.split()
     except OSError as error:
         raise FileError(f"{found}: cannot be run: {error}") from error
     if told[1:2] != [version]:
-        raise FileError(f"{found}: is plica {' '.join(told[1:2])}, and this is {version}; install the same of both")
+        raise FileError(f"{found}: is plica {' '.join(told[1:2])}, but the package is {version}; install the same version of both")
     return found

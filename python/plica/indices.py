@@ -1,4 +1,4 @@
-"""Sobol's indices: how much of the variance of a result each key of a study makes."""
+"""Sobol indices: variance-based sensitivity of a result to each key of a study."""
 from __future__ import annotations
 
 import warnings
@@ -19,20 +19,22 @@ __all__ = ["SobolIndices"]
 
 
 class SobolIndices(NamedTuple):
-    """What each key is to the variance of a measure; made by `Study.sobol_indices`.
+    """Sobol indices of one output variable; created by `Study.sobol_indices`.
 
     Attributes
     ----------
     measure : str
+        Output variable.
     table : pandas.DataFrame
-        A row a key. ``first``: the share of the variance that would go if this key were known; ``total``: the share that
-        would stay if all others were. Both from 0 to 1, and ``first`` up to ``total``, but for the error of the estimate, which
-        is large with few base points. ``*_low`` and ``*_high`` bound their confidence intervals.
+        One row per key. ``first``: fraction of variance removed by fixing this key; ``total``: fraction that remains if all
+        other keys are fixed. Both lie between 0 and 1, with ``first`` <= ``total``, apart from the estimation error, which is
+        large with few base points. ``*_low`` and ``*_high`` bound the confidence intervals.
     base_points : int
-        How many groups of runs they come from.
+        Number of base points (groups of runs) used.
     confidence : float
+        Level of the confidence intervals.
     dropped : int
-        How many more there were, of which a run had no result (``drop_missing=True``).
+        Number of base points omitted because a run had no result (``drop_missing=True``).
     """
 
     measure: str
@@ -50,12 +52,12 @@ class SobolIndices(NamedTuple):
         return "\n".join(lines)
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws both indices of each key as bars with their confidence intervals.
+        """Plot both indices of each key as bars with confidence intervals.
 
         Parameters
         ----------
         ax : matplotlib Axes, optional
-            By default a new figure is made.
+            Axes to draw into; by default a new figure is made.
 
         Returns
         -------
@@ -82,24 +84,25 @@ class SobolIndices(NamedTuple):
 def sobol_indices(
     study: Study, measure: str, *, confidence: float = 0.95, resamples: int = 1000, seed: int = 1, drop_missing: bool = False
 ) -> SobolIndices:
-    """Says how much of a measure's variance each key makes, alone and with the others. Needs SALib.
+    """Estimate first-order and total Sobol indices of an output variable. Requires SALib.
 
-    The estimators are those of Saltelli et al. (2010), as SALib has them (Herman and Usher 2017; docs/references.bib): with
-    outputs f(A), f(B) and f(A with column k of B), of N base points and variance V, first_k = mean(f(B) (f(AB_k) - f(A))) / V and
-    total_k = mean((f(A) - f(AB_k))²) / 2V. Their confidence intervals are normal, with the deviation of bootstrap resamples.
+    Estimators of Saltelli et al. (2010) as implemented in SALib (Herman and Usher 2017; docs/references.bib): with outputs
+    f(A), f(B) and f(AB_k) (A with column k of B) and variance V, first_k = mean(f(B) (f(AB_k) - f(A))) / V and
+    total_k = mean((f(A) - f(AB_k))²) / 2V. Confidence intervals are normal, with the standard deviation of bootstrap
+    resamples.
 
     Parameters
     ----------
     measure : str
-        A column of `table`.
+        Column of `Study.table`.
     confidence : float
-        Of the intervals.
+        Level of the confidence intervals.
     resamples : int
-        Of the bootstrap.
+        Number of bootstrap resamples.
     seed : int
-        Of the bootstrap, 0 or more.
+        Random seed of the bootstrap, 0 or more.
     drop_missing : bool
-        Leave out each base point of which a run has no result, and say only something about the rest of the ranges.
+        Omit base points with a run without result; the indices then describe only the rest of the ranges.
 
     Returns
     -------
@@ -108,12 +111,12 @@ def sobol_indices(
     Raises
     ------
     ValueError
-        The study is of another kind, there is no such measure, it is the same in all runs, or runs have no value of it.
+        If the study is of another kind, the output variable does not exist or is constant, or runs have no value.
 
     Warns
     -----
     UserWarning
-        Base points were left out.
+        If base points were omitted.
 
     Examples
     --------
@@ -125,12 +128,12 @@ def sobol_indices(
     >>> table = study.run(jobs=1)
     >>> indices = study.sobol_indices("cells")
     Traceback (most recent call last):
-    ValueError: sobol_indices: cells is the same in all runs, so no key makes a difference to it
+    ValueError: sobol_indices: cells is the same in all runs, so no key has an effect on it
     """
     if study.kind != "sobol-indices":
-        raise ValueError(f'sobol_indices: the study is of kind "{study.kind}"; make one of kind "sobol-indices"')
+        raise ValueError(f'sobol_indices: the study is of kind "{study.kind}"; use kind "sobol-indices"')
     table, keys = study.table, study.keys
-    results = _results(table, measure).groupby(table.point).mean()  # of replicates, the mean
+    results = _results(table, measure).groupby(table.point).mean()  # mean of replicates
     group = len(keys) + 2
     groups: NDArray[np.float64] = np.asarray(results, dtype=np.float64).reshape(-1, group)
     complete: NDArray[np.bool_] = np.asarray(np.isfinite(groups).all(axis=1))
@@ -138,16 +141,16 @@ def sobol_indices(
         raise ValueError(_what_is_missing(table, measure, int(complete.sum()), len(groups)))
     dropped = int((~complete).sum())
     if dropped > 0:
-        warnings.warn(f"sobol_indices: {dropped} of {len(groups)} base points are left out, of which runs have no {measure}; the "
+        warnings.warn(f"sobol_indices: {dropped} of {len(groups)} base points are omitted, because runs have no {measure}; the "
                       "indices say nothing about where these are", stacklevel=2)
     groups = groups[complete]
     if len(groups) < 2:
-        raise ValueError(f"sobol_indices: {len(groups)} of {len(complete)} base points are complete; at least 2 are needed")
+        raise ValueError(f"sobol_indices: {len(groups)} of {len(complete)} base points are complete; at least 2 are required")
     if np.ptp(groups) == 0:
-        raise ValueError(f"sobol_indices: {measure} is the same in all runs, so no key makes a difference to it")
+        raise ValueError(f"sobol_indices: {measure} is the same in all runs, so no key has an effect on it")
     analysis = needed("SALib.analyze.sobol", "sobol_indices")
     problem = {"num_vars": len(keys), "names": np.array(keys), "bounds": [[0, 1]] * len(keys)}
-    # SALib draws without a seed where it is 0.
+    # SALib ignores a seed of 0.
     found = analysis.analyze(problem, groups.ravel(), calc_second_order=False, num_resamples=resamples, conf_level=confidence,
                              seed=seed + 1)
     columns: dict[str, NDArray[np.float64]] = {}
@@ -161,6 +164,6 @@ def sobol_indices(
 def _what_is_missing(table: pandas.DataFrame, measure: str, complete: int, of: int) -> str:
     lost = table[_results(table, measure).isna()]
     why = ", ".join(f"{count} {status}" for status, count in lost.status.value_counts().items())
-    return (f"sobol_indices: {len(lost)} of {len(table)} runs have no {measure} ({why}), and a base point needs all its runs; "
-            f"{complete} of {of} base points have them. Run what has not run; narrow the ranges to where every run has a "
+    return (f"sobol_indices: {len(lost)} of {len(table)} runs have no {measure} ({why}), and a base point requires all its runs; "
+            f"{complete} of {of} base points are complete. Run the remaining runs; narrow the ranges to where every run has a "
             "result; take a measure that every run has; or give drop_missing=True, and say so where you show the indices")

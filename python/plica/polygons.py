@@ -1,4 +1,4 @@
-"""Cells as polygons: of a frame, or of an image whose pixels have the labels of their cells."""
+"""Cells as polygons, from a snapshot or from a label image."""
 from __future__ import annotations
 
 import os
@@ -19,21 +19,26 @@ __all__ = ["Polygons", "polygons_of_labels"]
 
 
 class Polygons:
-    """A surface of polygons, one a cell.
+    """Surface of polygons, one per cell.
 
     Parameters
     ----------
     points : array_like of float, shape (n, 3)
         Vertices, µm.
     faces : iterable of array_like of int
-        The vertices of each polygon, counter-clockwise seen from outside.
+        Vertex indices of each polygon, counter-clockwise seen from outside.
     cell_data : mapping of str to array_like, optional
-        Arrays of a number a polygon.
+        Arrays with one number per polygon.
 
     Attributes
     ----------
     points, faces, cell_data
-        The same, as arrays.
+        Parameters as arrays.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, a number is not finite, or a vertex does not exist.
 
     Examples
     --------
@@ -62,19 +67,19 @@ class Polygons:
 
     @property
     def centres(self) -> NDArray[np.float64]:
-        """Means of the polygons' corners, µm."""
+        """Means of the corners of each polygon, µm; shape (faces, 3)."""
         return np.array([self.points[face].mean(axis=0) for face in self.faces]).reshape(-1, 3)
 
     @property
     def areas(self) -> NDArray[np.float64]:
-        """Areas, of triangles about the means of corners, µm²."""
+        """Areas of the polygons, µm², summed over triangles about the mean of the corners; shape (faces,)."""
         return np.array([
             0.5 * np.linalg.norm(np.cross(spokes, np.roll(spokes, -1, axis=0)), axis=1).sum()
             for spokes in (self.points[face] - centre for face, centre in zip(self.faces, self.centres))
         ])
 
     def to_pyvista(self) -> Any:
-        """The surface as a ``pyvista.PolyData``."""
+        """Return the surface as a ``pyvista.PolyData``."""
         pyvista = needed("pyvista", "a surface for PyVista")
         faces = np.concatenate([np.concatenate([[len(face)], face]) for face in self.faces])
         surface = pyvista.PolyData(self.points, faces)
@@ -83,7 +88,7 @@ class Polygons:
         return surface
 
     def to_tables(self) -> dict[str, pandas.DataFrame]:
-        """Tables as vertex models have them, with the column names of tyssue.
+        """Return vertex-model tables with the column names of tyssue.
 
         Returns
         -------
@@ -112,17 +117,17 @@ class Polygons:
         return tables
 
     def write(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes the surface: ``.ply`` or ``.vtp`` with its arrays, or ``.obj`` without.
+        """Write the surface: ``.ply`` or ``.vtp`` with arrays, ``.obj`` without.
 
         Parameters
         ----------
         path : str or path
-            Every plica reads ``.ply`` and ``.obj`` as ``embryo.file`` of a surface; ``.vtp`` takes one with VTK.
+            File to write. ``.ply`` and ``.obj`` can be read back as ``embryo.file``; ``.vtp`` requires a build with VTK.
 
         Raises
         ------
         ValueError
-            Another ending; in ``.ply``, an array whose name is not one word.
+            If the extension is another, or, for ``.ply``, an array name is not one word.
         """
         file = Path(path)
         texts = {".ply": self._ply, ".vtp": self._vtp, ".obj": self._obj}
@@ -141,7 +146,7 @@ class Polygons:
     def _ply(self) -> str:
         for name in self.cell_data:
             if name.split() != [name]:
-                raise ValueError(f"cell_data: {name!r}; in a .ply file the name of an array is one word, without blanks")
+                raise ValueError(f"cell_data: {name!r}; in a .ply file an array name must be one word; rename it")
         arrays = [np.asarray(values, dtype=np.float64).tolist() for values in self.cell_data.values()]
         lines = ["ply", "format ascii 1.0", f"element vertex {len(self.points)}", *(f"property double {axis}" for axis in "xyz"),
                  f"element face {len(self.faces)}", "property list uchar int vertex_indices",
@@ -179,31 +184,31 @@ def polygons_of_labels(
     gap_px: int = 2,
     keep_cut: bool = False,
 ) -> Polygons:
-    """The polygons of a label image: its corners are where three labels meet, its edges straight.
+    """Return the polygons of a label image, with straight edges between points where three labels meet.
 
     Parameters
     ----------
     image : array_like of int, shape (rows, columns)
-        The number of its cell for each pixel: a segmentation seen from the apical side.
+        Label image: cell number of each pixel, seen from the apical side.
     um_per_pixel : float
-        Size of a pixel, µm.
+        Pixel size, µm.
     background : int
-        Number of pixels that are no cell.
+        Label of pixels outside all cells.
     gap_px : int
-        Lines of background up to twice as wide, between cells, are shared out among these. 0: none are.
+        Background lines between cells, up to twice this width, are assigned to the nearest cells; 0: none.
     keep_cut : bool
-        Whether cells at the border of the image, which it cuts, are kept.
+        Whether to keep cells cut by the border of the image.
 
     Returns
     -------
     Polygons
-        x to the right, y upwards, z = 0; the middle of the lower left pixel is the origin. `cell_data` has the ``label`` of
-        each. Cells that have fewer than three corners are left out.
+        Polygons with x to the right, y upwards, z = 0, and the origin at the centre of the lower left pixel. `cell_data`
+        has the ``label`` of each. Cells with fewer than three corners are omitted.
 
     Raises
     ------
     ValueError
-        An image of another shape or type; a cell in several pieces, or with a hole; no cell with three corners.
+        If the image has the wrong shape or type, a cell is in several pieces or has a hole, or no cell has three corners.
 
     Examples
     --------
@@ -219,7 +224,7 @@ def polygons_of_labels(
     if not (np.isfinite(um_per_pixel) and um_per_pixel > 0):
         raise ValueError(f"um_per_pixel: {um_per_pixel}; give the size of a pixel in µm, above 0")
     measure = needed("skimage.measure", "polygons of labels")
-    # Numbers from 1, 0 for background, and a rim of its own number around all.
+    # Labels from 1, 0 for background, and a frame with its own label around the image.
     names, numbers = np.unique(labels, return_inverse=True)
     numbers = numbers.reshape(labels.shape) + 1
     numbers[labels == background] = 0
@@ -240,8 +245,8 @@ def polygons_of_labels(
         faces.append(_in_order(region, places, vertices, names[region.label - 1], measure))
         kept.append(int(names[region.label - 1]))
     if not faces:
-        raise ValueError("image: no cell has three corners where three labels meet; is it a label image, with gaps of more "
-                         f"than {2 * gap_px} pixels between cells? See gap_px and keep_cut")
+        raise ValueError("image: no cell has three corners where three labels meet; give a label image without gaps of more "
+                         f"than {2 * gap_px} pixels between cells, or change gap_px or keep_cut")
     used, renumbered = np.unique(np.concatenate(faces), return_inverse=True)
     ends = np.cumsum([len(face) for face in faces])[:-1]
     rows, columns = places[used].T
@@ -250,7 +255,7 @@ def polygons_of_labels(
 
 
 def _without_gaps(numbers: NDArray[Any], gap_px: int) -> NDArray[Any]:
-    """Background that lies between cells, and not at their rim, goes to the nearest of them."""
+    """Assign background between cells, but not outside the tissue, to the nearest cell."""
     if gap_px <= 0 or not (numbers == 0).any():
         return numbers
     grown: NDArray[Any] = needed("skimage.segmentation", "polygons of labels").expand_labels(numbers, distance=gap_px)
@@ -261,7 +266,7 @@ def _without_gaps(numbers: NDArray[Any], gap_px: int) -> NDArray[Any]:
 
 
 def _junctions(padded: NDArray[Any], measure: Any) -> tuple[NDArray[np.float64], dict[int, list[int]]]:
-    """Where three labels or more meet, by row and column; and those of each label."""
+    """Return the points where three or more labels meet, by row and column, and those of each label."""
     windows = np.stack([padded[:-1, :-1], padded[:-1, 1:], padded[1:, :-1], padded[1:, 1:]])
     in_order = np.sort(windows, axis=0)
     meets = 1 + (np.diff(in_order, axis=0) != 0).sum(axis=0) >= 3
@@ -278,10 +283,10 @@ def _junctions(padded: NDArray[Any], measure: Any) -> tuple[NDArray[np.float64],
 
 
 def _in_order(region: Any, places: NDArray[np.float64], vertices: list[int], name: Any, measure: Any) -> list[int]:
-    """The vertices of a cell as they come along its outline, counter-clockwise with y upwards."""
+    """Return the vertices of a cell along its outline, counter-clockwise with y upwards."""
     outlines = measure.find_contours(np.pad(region.image, 1).astype(float), 0.5, fully_connected="high")
     if len(outlines) != 1:
-        raise ValueError(f"image: cell {name} has {len(outlines)} outlines: it is in several pieces, or has a hole; mend the "
+        raise ValueError(f"image: cell {name} has {len(outlines)} outlines: it is in several pieces, or has a hole; correct the "
                          "labels, by skimage.morphology.remove_small_objects for instance")
     outline = outlines[0] + np.array(region.bbox[:2]) - 1
     nearest = [int(np.argmin(((outline - places[vertex]) ** 2).sum(axis=1))) for vertex in vertices]

@@ -1,7 +1,7 @@
-"""Which values of keys explain what was measured: not one set of them, but all, each with its weight.
+"""Posterior distributions of keys, given measured targets.
 
-Targets are taken as measured with normal errors, so the likelihood is known, and importance sampling needs no distance and no
-tolerance, as approximate Bayesian computation does. pyABC was tried, and comes to the same posterior (docs/developers/dependencies.md).
+Targets have normal errors, so the likelihood is known, and importance sampling requires neither distance nor tolerance, unlike
+approximate Bayesian computation. pyABC gives the same posterior (docs/developers/dependencies.md).
 """
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ if TYPE_CHECKING:
 
 __all__ = ["Posterior", "posterior"]
 
-FEW = 100  # effective samples, below which means and deviations are off by a tenth of a deviation and more
+FEW = 100  # effective samples; with fewer, means are wrong by a tenth of a standard deviation or more
 MOST_ROUNDS = 30
-CENTRES = 400  # of the mixture that proposals are drawn from
+CENTRES = 400  # components of the mixture for proposals
 
 
 class Posterior(NamedTuple):
-    """The values of some keys that agree with targets; made by `posterior`.
+    """Weighted samples of keys, given targets; created by `posterior`.
 
     Attributes
     ----------
     samples : pandas.DataFrame
-        A row a sample: the keys, and ``weight``; weights sum to 1. Without them the rows mean nothing.
+        One row per sample: the keys and ``weight``; weights sum to 1 and must be used in every statistic.
     targets : pandas.DataFrame
-        A row a measure: the target's ``value`` and ``sd``; ``mean`` and ``posterior_sd`` of what the samples come to. A mean
-        some ``sd`` off its value says that no values of the keys meet all targets.
+        One row per output variable: ``value`` and ``sd`` of the target, ``mean`` and ``posterior_sd`` of the samples. If
+        a mean deviates from its value by several ``sd``, no values of the keys meet all targets.
     ranges : dict of str to (low, high, is_log)
-        The prior: each key evenly between, independent of the others.
+        Prior: each key uniform between these values, independent of the others.
     effective_size : float
-        How many samples of equal weight they are worth, 1 / sum(weight²) (Kong 1992; docs/references.bib).
+        Effective sample size, 1 / sum(weight²) (Kong 1992; docs/references.bib).
     """
 
     samples: pandas.DataFrame
@@ -52,23 +52,23 @@ class Posterior(NamedTuple):
 
     @property
     def keys(self) -> list[str]:
-        """What is to be known."""
+        """Keys of the posterior."""
         return list(self.ranges)
 
     @property
     def mean(self) -> pandas.Series[float]:
-        """Of each key, in its unit."""
+        """Posterior mean of each key, in its unit."""
         mean: pandas.Series[float] = self.samples[self.keys].mul(self.samples.weight, axis=0).sum()
         return mean
 
     @property
     def covariance(self) -> pandas.DataFrame:
-        """Of each pair of keys, in the product of their units."""
+        """Posterior covariance of each pair of keys, in the product of their units."""
         away = self.samples[self.keys] - self.mean
         return away.mul(self.samples.weight, axis=0).T @ away
 
     def plot(self) -> Any:
-        """Draws each key's distribution, and below how each pair goes together. Axes span the prior.
+        """Plot the marginal distribution of each key and the joint distributions of pairs. Axes span the prior.
 
         Returns
         -------
@@ -115,33 +115,33 @@ def posterior(
     jobs: Optional[int] = None,
     progress: bool = False,
 ) -> Posterior:
-    """Finds all values of some keys with which results agree with several targets, and how well each does.
+    """Sample the posterior distribution of keys, given several targets.
 
-    The prior is even between the bounds of each key (in the logarithm where the study says so). The likelihood is normal: a
-    target's `sd` holds the error of the measurement, and what the model cannot be expected to meet. On the emulator the
-    variance of its guess is added, so that a poor emulator gives a wide posterior and not a wrong one. Samples come from
-    population Monte Carlo (Cappé et al. 2004; docs/references.bib): rounds of importance sampling, each drawn around the weighted
-    samples of the one before, with a likelihood that sharpens until it is whole.
+    The prior is uniform between the bounds of each key (in its logarithm if the study has ``scale = "log"``). The likelihood is
+    normal: the `sd` of a target must include measurement error and model discrepancy. The emulator variance is added, so a poor
+    emulator widens the posterior. Samples come from population Monte Carlo (Cappé et al. 2004; docs/references.bib):
+    rounds of importance sampling around the previous weighted samples, with a likelihood tempered from flat to full.
 
     Parameters
     ----------
-    source : Study, Scenario or what names one
-        Runs that were made, with the keys varied and the targets measured; or a scenario, of which `runs` are made now (Sobol's
-        sequence over the bounds).
+    source : Study, Scenario, str, path or mapping
+        Study whose runs vary the keys and have the targets, or scenario for which `runs` are made now (Sobol sequence over
+        the bounds).
     keys : mapping of str to (float, float)
-        Between which values each may be. Of a study, keys that are left out take their whole range.
+        Bounds of each key. Keys of a study that are omitted take their whole range.
     targets : mapping of str to (float, float)
-        Measures, each with its value and standard deviation, in its unit.
+        Output variables, each with value and standard deviation, in its unit.
     on : str
-        "emulator": of Gaussian processes fitted to the runs. "runs": of the runs themselves, each weighted by its likelihood; a
-        run without a target's measure has weight 0. It needs a study of kind "sobol" or "latin-hypercube", and many runs.
+        "emulator": evaluate Gaussian processes fitted to the runs. "runs": weight the runs by their likelihood (0 if a target
+        is missing), which requires many runs of kind "sobol" or "latin-hypercube".
     runs : int, optional
-        Of a scenario; by default 20 a key.
+        Number of runs of a scenario; by default 20 per key.
     samples : int
-        Drawn on the emulator.
+        Number of samples drawn on the emulator.
     seed : int
+        Random seed.
     jobs, progress
-        As of `Study.run`.
+        As for `Study.run`.
 
     Returns
     -------
@@ -150,14 +150,14 @@ def posterior(
     Raises
     ------
     ValueError
-        There are no targets; a deviation is not over 0; bounds go beyond the study's; or no sample agrees at all.
+        If there are no targets, a standard deviation is not positive, bounds exceed those of the study, or no sample agrees.
     ScenarioError
-        A key or a measure is not known.
+        If a key or output variable is unknown.
 
     Warns
     -----
     UserWarning
-        Fewer than 100 effective samples; or a target is missed by more than 3 standard deviations on average.
+        If there are fewer than 100 effective samples, or the mean misses a target by more than 3 standard deviations.
 
     Examples
     --------
@@ -168,7 +168,7 @@ def posterior(
     >>> found.mean, found.plot()                                                                        # doctest: +SKIP
     """
     if not targets or not all(sd > 0 for _, sd in targets.values()):
-        raise ValueError("posterior: give targets as {measure: (value, sd)}, each sd over 0")
+        raise ValueError("posterior: give targets as {output: (value, sd)}, each sd > 0")
     if on not in ("emulator", "runs"):
         raise ValueError(f'posterior: on={on!r}; give "emulator" or "runs"')
     if isinstance(source, Study):
@@ -181,10 +181,10 @@ def posterior(
     found = _of_runs(study, ranges, targets) if on == "runs" else _on_emulator(study, ranges, targets, samples, seed)
     if found.effective_size < FEW:
         more = "take more runs, or the emulator" if on == "runs" else "take more samples"
-        warnings.warn(f"posterior: worth {found.effective_size:.0f} samples only; {more}", stacklevel=2)
+        warnings.warn(f"posterior: only {found.effective_size:.0f} effective samples; {more}", stacklevel=2)
     for measure, row in found.targets.iterrows():
         if abs(row["mean"] - row.value) > 3 * row.sd:
-            warnings.warn(f"posterior: {measure} comes to {row['mean']:.4g} where {row.value:g} ± {row.sd:g} was the target; "
+            warnings.warn(f"posterior: {measure} is {row['mean']:.4g}; the target is {row.value:g} ± {row.sd:g}; "
                           "no values of the keys meet all targets", stacklevel=2)
     return found
 
@@ -193,7 +193,7 @@ def _made(source: Union[Scenario, str], keys: Mapping[str, tuple[float, float]],
           jobs: Optional[int], progress: bool) -> Study:
     scenario = source if isinstance(source, Scenario) else Scenario(source)
     if scenario.tissue is not None or scenario._regions:
-        raise ValueError("posterior runs what a file can say: neither a tissue nor regions given as arrays")
+        raise ValueError("posterior requires a scenario that a file can express: no tissue and no regions given as arrays")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "scenario.toml"
         file.write_text(scenario.to_toml(), encoding="utf-8")
@@ -208,23 +208,23 @@ def _made(source: Union[Scenario, str], keys: Mapping[str, tuple[float, float]],
 def _prior(study: Study, keys: Mapping[str, tuple[float, float]]) -> dict[str, Range]:
     unknown = [key for key in keys if key not in study.keys]
     if unknown:
-        raise ValueError(f"posterior: {unknown[0]} does not vary in the study; there are {', '.join(study.keys)}")
+        raise ValueError(f"posterior: {unknown[0]} does not vary in the study; keys: {', '.join(study.keys)}")
     table, ranges = study.table, {}
     for key in study.keys:
         tried = _range(study, table, key)
         low, high = keys.get(key, tried[:2])
         if not tried.low <= low < high <= tried.high:
-            raise ValueError(f"posterior: {key} from {low:g} to {high:g}; the study has runs from {tried.low:g} to {tried.high:g}")
+            raise ValueError(f"posterior: {key} from {low:g} to {high:g}; the study covers {tried.low:g} to {tried.high:g}")
         ranges[key] = Range(float(low), float(high), tried.is_log)
     return ranges
 
 
 def _of_runs(study: Study, ranges: dict[str, Range], targets: Mapping[str, tuple[float, float]]) -> Posterior:
     if study.kind not in ("sobol", "latin-hypercube"):
-        raise ValueError(f'posterior: the points of a study of kind "{study.kind}" are not spread as the prior is; '
+        raise ValueError(f'posterior: the points of a study of kind "{study.kind}" do not follow the prior; '
                          'give one of kind "sobol" or "latin-hypercube", or on="emulator"')
     if any(name.endswith(".mean") for name in study._given if name.startswith("vary.")):
-        raise ValueError("posterior: a key of the study has a normal distribution, and the prior is even; give low and high")
+        raise ValueError("posterior: a key of the study has a normal distribution, but the prior is uniform; give low and high")
     table = study.table
     inside = np.logical_and.reduce([table[key].between(one.low, one.high) for key, one in ranges.items()])
     table = table[inside & (table.status != "not_run")]
@@ -252,7 +252,7 @@ def _on_emulator(study: Study, ranges: dict[str, Range], targets: Mapping[str, t
 
 
 def _log_likelihood(means: Array, deviations: Array, targets: Mapping[str, tuple[float, float]]) -> Array:
-    """Of each row of results, but for a constant; -infinity where a result is missing."""
+    """Log-likelihood of each row of results, up to a constant; -infinity if a result is missing."""
     value, sd = np.array(list(targets.values()), dtype=float).T
     variance = sd**2 + deviations**2
     logs = -0.5 * ((means - value) ** 2 / variance + np.log(variance)).sum(axis=1)
@@ -262,7 +262,7 @@ def _log_likelihood(means: Array, deviations: Array, targets: Mapping[str, tuple
 def _weighted(values: pandas.DataFrame, log_weights: Array, results: Array, ranges: dict[str, Range],
               targets: Mapping[str, tuple[float, float]]) -> Posterior:
     if not np.isfinite(log_weights).any():
-        raise ValueError("posterior: no sample agrees with the targets at all; do runs have these measures?")
+        raise ValueError("posterior: no sample agrees with the targets; check that runs have these output variables")
     weights = np.exp(log_weights - log_weights.max())
     weights /= weights.sum()
     kept = weights > 0
@@ -278,7 +278,7 @@ def _weighted(values: pandas.DataFrame, log_weights: Array, results: Array, rang
 
 def population_monte_carlo(log_likelihood: Callable[[Array], Array], dimensions: int, count: int,
                            random: np.random.Generator) -> tuple[Array, Array]:
-    """Weighted samples of a likelihood over the unit cube.
+    """Draw weighted samples of a likelihood over the unit cube.
 
     Returns
     -------
@@ -299,7 +299,7 @@ def population_monte_carlo(log_likelihood: Callable[[Array], Array], dimensions:
 
 
 def _power(logs: Array, log_proposal: Array, least: float) -> float:
-    """The largest power of the likelihood, up to 1, with which samples are worth as many as `least`."""
+    """Return the largest exponent <= 1 of the likelihood with an effective sample size of at least `least`."""
     def worth(power: float) -> float:
         return float(1 / (_normal(power * logs - log_proposal) ** 2).sum())
 
@@ -318,9 +318,9 @@ def _normal(log_weights: Array) -> Array:
 
 
 def _proposed(places: Array, weights: Array, random: np.random.Generator) -> tuple[Array, Array]:
-    """New places, nine of ten from normal distributions around weighted old ones and one of ten from anywhere, and their density.
+    """Propose new places and their density: 9 of 10 normal around weighted old ones, 1 of 10 uniform.
 
-    What falls outside of the cube is drawn again, so all densities there are larger by one factor, which is counted.
+    Places outside the cube are redrawn, which raises all densities inside by one factor; it is included.
     """
     count, dimensions = places.shape
     away = places - weights @ places
@@ -343,9 +343,9 @@ def _proposed(places: Array, weights: Array, random: np.random.Generator) -> tup
 
 
 def _width(squares: Array, dimensions: int) -> float:
-    """How wide the normal distributions around centres should be, in deviations of all: the width that predicts each centre
-    best from the others. Narrow where samples lie in two heaps, or on a bent ridge."""
-    away = squares > 1e-9  # not the same sample, drawn twice
+    """Return the kernel width, in standard deviations of all samples, that best predicts each centre from the others.
+    Narrow for two clusters or a curved ridge."""
+    away = squares > 1e-9  # exclude samples drawn twice
 
     def told(width: float) -> float:
         density = np.where(away, np.exp(-0.5 * squares / width**2), 0).sum(axis=1) / width**dimensions
@@ -355,7 +355,7 @@ def _width(squares: Array, dimensions: int) -> float:
 
 
 def _squares(places: Array, others: Optional[Array] = None) -> Array:
-    """Squared distances of each place to each of the others, or of the places themselves."""
+    """Return squared distances between two sets of places, or within one."""
     others = places if others is None else others
     squares = (places**2).sum(axis=1)[:, None] + (others**2).sum(axis=1) - 2 * places @ others.T
     return np.asarray(np.maximum(squares, 0))

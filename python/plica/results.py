@@ -1,4 +1,4 @@
-"""What a run has left in its directory."""
+"""Results of a run, read from its directory."""
 from __future__ import annotations
 
 import fcntl
@@ -40,19 +40,19 @@ def _grid(points: NDArray[Any], hexahedra: NDArray[Any], point_data: dict[str, A
 
 
 class Frame:
-    """A moment of a run, as it lies in one of its ``.vtu`` files.
+    """Snapshot of a run, read from one of its ``.vtu`` files.
 
     Attributes
     ----------
     path : Path
     time_s : float
-        Of the moment, s.
+        Simulated time, s.
     points : ndarray of float, shape (nodes, 3)
-        Where the nodes are, µm.
+        Node positions, µm.
     hexahedra : ndarray of int, shape (elements, 8)
-        Nodes of the elements, in VTK's order, the last four on the apical side.
+        Node indices of the elements in VTK order, the last four apical.
     point_data, cell_data, field_data : dict of str to ndarray
-        Arrays by node and by element, units in the names; and of the file as a whole.
+        Arrays per node, per element and for the whole file; units in the names.
     """
 
     def __init__(self, path: Path, time_s: float) -> None:
@@ -67,15 +67,15 @@ class Frame:
 
     @property
     def time_min(self) -> float:
-        """Of the moment, minutes."""
+        """Simulated time, minutes."""
         return self.time_s / 60
 
     def to_pyvista(self) -> Any:
-        """The frame as a ``pyvista.UnstructuredGrid``."""
+        """Return the snapshot as a ``pyvista.UnstructuredGrid``."""
         return _grid(self.points, self.hexahedra, self.point_data, self.cell_data)
 
     def polygons(self, side: str = "apical") -> Polygons:
-        """The cells as polygons, with the cells' arrays.
+        """Return the cells as polygons, with the arrays of the cells.
 
         Parameters
         ----------
@@ -85,7 +85,13 @@ class Frame:
         Returns
         -------
         Polygons
-            What goes on to PyVista, to tables, or into a file.
+
+        Raises
+        ------
+        ValueError
+            If `side` is neither "apical" nor "basal".
+        FileError
+            If an older version of plica wrote the file without polygons.
         """
         if side not in ("apical", "basal"):
             raise ValueError(f'side: {side!r}; give "apical" or "basal"')
@@ -97,13 +103,13 @@ class Frame:
             nodes, ends = self.hexahedra[:, 4:] if side == "apical" else self.hexahedra[:, :4], 4 * np.arange(1, count + 1)
             elements = np.arange(count)
         else:
-            raise FileError(f"{self.path}: has no polygons of cells: an older version of plica wrote it; run it again")
+            raise FileError(f"{self.path}: has no cell polygons (written by an older version of plica); repeat the run")
         used, corners = np.unique(nodes.ravel(), return_inverse=True)
         values = {name: array[elements] for name, array in self.cell_data.items()}
         return Polygons(self.points[used], np.split(corners, ends[:-1]), values)
 
     def to_meshio(self) -> Any:
-        """The frame as a ``meshio.Mesh``."""
+        """Return the snapshot as a ``meshio.Mesh``."""
         meshio = needed("meshio", "a mesh for meshio")
         cell_data = {name: [values] for name, values in self.cell_data.items()}
         return meshio.Mesh(self.points, [("hexahedron", self.hexahedra)], point_data=self.point_data, cell_data=cell_data)
@@ -113,7 +119,7 @@ class Frame:
 
 
 class Frames(Sequence[Frame]):
-    """The frames of a run in the order of time, read from their files when asked for."""
+    """Snapshots of a run in order of time; each is read from its file on access."""
 
     def __init__(self, directory: Path) -> None:
         listing = directory / "frames.pvd"
@@ -129,13 +135,13 @@ class Frames(Sequence[Frame]):
 
     @property
     def times_s(self) -> list[float]:
-        """Their times, s."""
+        """Times of the snapshots, s."""
         return [time_s for time_s, _ in self._files]
 
     def at(self, time_min: float) -> Frame:
-        """The frame nearest to a time, minutes."""
+        """Return the snapshot nearest to a time in minutes. FileError if the run has none."""
         if not self._files:
-            raise FileError("the run has no frame")
+            raise FileError("the run has no frames")
         return self[min(range(len(self)), key=lambda i: abs(self._files[i][0] - 60 * time_min))]
 
     def __len__(self) -> int:
@@ -156,18 +162,19 @@ class Frames(Sequence[Frame]):
 
 
 class Run:
-    """A directory of results: of a run that has finished, is under way, or was killed.
+    """Results directory of a finished, running or killed run.
 
-    Tables are read when asked for, and again the next time, so that a run under way shows how far it is.
+    Tables are read again on each access, so a running simulation shows its progress.
 
     Parameters
     ----------
     directory : str or path
+        Directory written by ``plica run --out`` or ``Simulation.run(out=...)``.
 
     Raises
     ------
     FileError
-        There is no run.
+        If the directory does not contain a run.
     """
 
     def __init__(self, directory: Union[str, os.PathLike[str]]) -> None:
@@ -175,41 +182,41 @@ class Run:
         if not self.directory.is_dir():
             raise FileError(f"{self.directory}: there is no such directory")
         if not (self.directory / "series.csv").is_file():
-            raise FileError(f"{self.directory}: holds no run (no series.csv)")
+            raise FileError(f"{self.directory}: not a results directory (no series.csv)")
 
     @property
     def series(self) -> pandas.DataFrame:
-        """A row a step; a column of no value is NaN."""
+        """Time series, one row per step; missing values are NaN."""
         return self._table("series.csv")
 
     @property
     def cells(self) -> pandas.DataFrame:
-        """A row a cell and frame."""
-        return self._table("cells.csv", "embryos of over 2000 cells have none, unless output.cells_csv is true")
+        """Per-cell values, one row per cell and snapshot."""
+        return self._table("cells.csv", "embryos of over 2000 cells have none by default; set output.cells_csv = true")
 
     @property
     def midline(self) -> pandas.DataFrame:
-        """A row a cell of the furrow's midline and frame."""
+        """Midline of the furrow, one row per cell and snapshot."""
         return self._table("midline.csv")
 
     @property
     def cross_section(self) -> pandas.DataFrame:
-        """A row a cell of three cross-sections and frame."""
+        """Three cross-sections, one row per cell and snapshot."""
         return self._table("cross_section.csv")
 
     @property
     def lineage(self) -> pandas.DataFrame:
-        """A row a daughter, when she is born."""
+        """Cell lineage, one row per daughter cell, at its birth."""
         return self._table("lineage.csv", "no cells divide in this scenario")
 
     @property
     def frames(self) -> Frames:
-        """The moments that were saved as meshes."""
+        """Snapshots saved as meshes."""
         return Frames(self.directory)
 
     @property
     def summary(self) -> dict[str, Any]:
-        """What the run came to (``summary.json``); empty while it has not ended."""
+        """Final results (``summary.json``); empty until the run has ended."""
         path = self.directory / "summary.json"
         try:
             return dict(json.loads(path.read_text(encoding="utf-8")))
@@ -220,7 +227,7 @@ class Run:
 
     @property
     def status(self) -> str:
-        """How it ended ("equilibrium", "end_time", "failed", "interrupted"), or "running", or "killed"."""
+        """Final status ("equilibrium", "end_time", "failed", "interrupted"), or "running", or "killed"."""
         summary = self.summary
         if summary:
             return str(summary["status"])
@@ -228,21 +235,29 @@ class Run:
 
     @property
     def scenario(self) -> Scenario:
-        """What it was made from. ScenarioError where another version of plica wrote what this one does not read."""
+        """Scenario of the run. ScenarioError if this version of plica cannot read it."""
         return Scenario(self.directory / "scenario.toml")
 
     def plot(self, columns: Union[str, Sequence[str]] = ("furrow_depth_um", "max_node_speed_um_per_s"), ax: Any = None) -> Any:
-        """Draws columns of `series` over time, each in axes of its own.
+        """Plot columns of `series` over time, one axes per column.
 
         Parameters
         ----------
         columns : str or sequence of str
+            Column names.
         ax : matplotlib Axes, or sequence of them, optional
-            By default a new figure is made.
+            Axes to draw into; by default a new figure is made.
 
         Returns
         -------
         matplotlib.figure.Figure
+
+        Raises
+        ------
+        ValueError
+            If a column does not exist.
+        MissingExtra
+            If pandas or matplotlib is not installed.
         """
         plt = needed("matplotlib.pyplot", "plot")
         names = [columns] if isinstance(columns, str) else list(columns)
@@ -264,19 +279,19 @@ class Run:
         return figure
 
     def show(self, height: int = 800) -> Any:
-        """The report, inside a notebook.
+        """Show the report inside a notebook.
 
         Parameters
         ----------
         height : int
-            Pixels.
+            Height, pixels.
         """
         display = needed("IPython.display", "show")
         report = self.directory / "report.html"
         try:
             page = report.read_text(encoding="utf-8")
         except OSError as error:
-            raise FileError(f"{report}: cannot be read; `plica report {self.directory}` makes it") from error
+            raise FileError(f"{report}: cannot be read; write it with `plica report {self.directory}`") from error
         return display.HTML(f'<div><iframe srcdoc="{html.escape(page)}" width="100%" height="{int(height)}"></iframe></div>')
 
     def _table(self, name: str, why: str = "") -> pandas.DataFrame:
@@ -295,7 +310,7 @@ class Run:
             fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
         except BlockingIOError:
             return True
-        except OSError:  # a file system without locks
+        except OSError:  # file system without locks
             return False
         finally:
             os.close(descriptor)
@@ -315,16 +330,29 @@ class Run:
 
 
 def open_run(directory: Union[str, os.PathLike[str]]) -> Run:
-    """Opens a directory of results; ``plica.open``.
+    """Open a results directory; available as ``plica.open``.
 
     Parameters
     ----------
     directory : str or path
-        What ``plica run --out`` or ``Simulation.run(out=...)`` left there, or is still writing; of older versions, too.
+        Directory of a finished or running run, also of older versions.
 
     Returns
     -------
     Run
+
+    Raises
+    ------
+    FileError
+        If the directory does not contain a run.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile, plica
+    >>> folder = pathlib.Path(tempfile.mkdtemp()) / "run"
+    >>> _ = plica.Simulation("division-demo").run(until_min=0.1, out=folder)
+    >>> float(plica.open(folder).series["time_s"].iloc[-1])
+    6.0
     """
     return Run(directory)
 
@@ -333,7 +361,7 @@ def _short(value: Union[int, float, str]) -> str:
     return f"{value:.6g}" if isinstance(value, float) and math.isfinite(value) else str(value)
 
 
-# VTK's XML of unstructured grids as plica writes it: appended raw data, in blocks that zlib has compressed.
+# VTK XML of unstructured grids as plica writes it: appended raw data in zlib-compressed blocks.
 TYPES = {"Float64": "<f8", "Float32": "<f4", "Int64": "<i8", "Int32": "<i4", "UInt8": "u1", "Int8": "i1"}
 
 

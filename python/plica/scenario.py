@@ -1,4 +1,4 @@
-"""What is simulated: a scenario, as data that can be read and changed."""
+"""Scenarios: parameters of a simulation that can be read and changed."""
 from __future__ import annotations
 
 import contextlib
@@ -21,16 +21,16 @@ from .errors import FileError, ScenarioError, needed
 
 __all__ = ["Scenario", "Tissue", "builtin_scenarios"]
 
-GIVEN = "<Python>"  # stands in messages for the file that a scenario made of text or a dict has not
+GIVEN = "<Python>"  # in messages, the file name of a scenario made of text or a dict
 
 
 def builtin_scenarios() -> dict[str, str]:
-    """Names and titles of the scenarios that plica brings along.
+    """Return the names and titles of the built-in scenarios.
 
     Returns
     -------
     dict of str to str
-        Title by name.
+        Titles by name.
 
     Examples
     --------
@@ -42,24 +42,24 @@ def builtin_scenarios() -> dict[str, str]:
 
 
 class Tissue:
-    """A tissue of one's own: hexahedral cells, one layer of them, as arrays.
+    """Tissue given as arrays: one layer of hexahedral cells.
 
     Parameters
     ----------
     points : array_like of float, shape (n, 3)
-        Places of the nodes at rest, µm.
+        Node positions in the reference state, µm.
     hexahedra : array_like of int, shape (cells, 8)
-        The nodes of each cell, from 0, in VTK's order of a hexahedron.
+        Node indices of each cell, from 0, in VTK order.
     apical_faces : array_like of int, shape (cells,), optional
-        Which of its six faces is each cell's apical one: 0 to 5 for its nodes (0,4,7,3), (1,2,6,5), (0,1,5,4), (3,7,6,2),
-        (0,3,2,1), (4,5,6,7). Without it the cells must form one closed layer, and apical is outside.
+        Apical face of each cell: 0 to 5 for nodes (0,4,7,3), (1,2,6,5), (0,1,5,4), (3,7,6,2), (0,3,2,1), (4,5,6,7). If
+        omitted, the cells must form one closed layer, whose outer surface is apical.
     regions : mapping of str to array_like of bool, shape (cells,), optional
-        Named sets of cells, which the scenario's tables can then be about.
+        Named cell sets, to which tables of the scenario can refer.
 
     Raises
     ------
     ValueError
-        Arrays of another shape or type, numbers that are not finite, nodes that there are not.
+        If an array has the wrong shape or type, or contains non-finite numbers or missing nodes.
 
     Examples
     --------
@@ -98,42 +98,42 @@ class Tissue:
         if apical_faces is not None:
             faces = _whole_numbers(apical_faces, "apical_faces")
             if faces.shape != (len(self.hexahedra),) or faces.min() < 0 or faces.max() > 5:
-                raise ValueError("apical_faces: give one number from 0 to 5 a cell")
+                raise ValueError("apical_faces: give one number from 0 to 5 per cell")
             self.apical_faces = faces
         self.regions = {name: _mask(mask, len(self.hexahedra), f"region {name}") for name, mask in (regions or {}).items()}
 
         for array in (self.points, self.hexahedra):
-            array.flags.writeable = False  # a scenario that has it does not change
+            array.flags.writeable = False  # so that scenarios with this tissue stay unchanged
 
     @classmethod
     def from_file(cls, path: Union[str, os.PathLike[str]], *, apical_array: str = "") -> Tissue:
-        """Reads hexahedral cells through meshio: VTK's ``.vtu`` and ``.vtk``, Abaqus, Gmsh, XDMF and what else it knows.
+        """Read hexahedral cells with meshio: VTK (``.vtu``, ``.vtk``), Abaqus, Gmsh, XDMF and others.
 
         Parameters
         ----------
         path : str or path
-            The file. Coordinates are taken as µm.
+            Mesh file with coordinates in µm.
         apical_array : str, optional
-            The cell array that says which face of each cell is apical, as in ``embryo.apical_array``.
+            Cell array with the apical face of each cell (0 to 5), as in ``embryo.apical_array``.
 
         Returns
         -------
         Tissue
-            Every other cell array of one number a cell is a region: the cells where it is neither 0 nor NaN.
+            Each other cell array with one number per cell becomes a region: cells where it is neither 0 nor NaN.
 
         Raises
         ------
         FileError
-            The file cannot be read, or holds other than hexahedra.
+            If the file cannot be read or contains other cells.
         MissingExtra
-            meshio is not installed.
+            If meshio is not installed.
         """
         meshio = needed("meshio", f"reading {Path(path).name}")
         if not Path(path).is_file():
             raise FileError(f"{path}: cannot be read: {'it is a directory' if Path(path).is_dir() else 'there is no such file'}")
         said = io.StringIO()
         try:
-            # Of a file that it does not know, meshio prints what is wrong and exits.
+            # For an unknown format, meshio prints the error and exits.
             with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
                 mesh = meshio.read(path)
         except (Exception, SystemExit) as error:
@@ -147,7 +147,7 @@ class Tissue:
         single = {name: values.reshape(-1) for name, values in arrays.items() if values.size == len(values)}
         if apical_array and apical_array not in single:
             there = ", ".join(single) or "none"
-            raise FileError(f"{path}: there is no cell array {apical_array!r} of one number a cell; there are: {there}")
+            raise FileError(f"{path}: no cell array {apical_array!r} with one number per cell; there are: {there}")
         faces = single.pop(apical_array) if apical_array else None
         try:
             if faces is not None and (faces == np.floor(faces)).all():
@@ -176,23 +176,23 @@ class Tissue:
 
 
 class Scenario:
-    """Everything that a simulation is made from. It is always a valid one: what would break a rule is refused.
+    """Complete, valid description of a simulation; invalid changes are rejected.
 
     Parameters
     ----------
     source : str, path or mapping
-        The name of a built-in scenario, a TOML file, TOML text (of several lines, or with an "="), or the same as a dict.
+        Name of a built-in scenario, TOML file, TOML text (several lines, or containing "="), or nested dict.
     tissue : Tissue, optional
-        Cells of one's own, instead of an embryo that plica builds.
+        Cells to use instead of an embryo built by plica.
 
     Raises
     ------
     ScenarioError
-        With all that is wrong, each with its key and what would be right.
+        If the scenario is invalid; lists every error with its key and fix.
     FileError
-        The file cannot be read.
+        If the file cannot be read.
     ValueError
-        There is neither a built-in scenario nor a file of that name.
+        If `source` is neither a built-in scenario nor a file.
 
     Examples
     --------
@@ -220,7 +220,7 @@ class Scenario:
             self._changes = {"embryo.shape": '"file"', "embryo.file": f'"{GIVEN}"'}
         self._load()
 
-    # The one place where a scenario is checked. Nothing of self changes where that fails.
+    # The only place where a scenario is checked. On failure, self is unchanged.
     def _load(self, changes: Optional[dict[str, str]] = None, regions: Optional[dict[str, NDArray[np.bool_]]] = None) -> None:
         changes = self._changes if changes is None else changes
         regions = self._regions if regions is None else regions
@@ -235,31 +235,31 @@ class Scenario:
 
     @property
     def name(self) -> str:
-        """The built-in scenario's name, or that of the file without its ending."""
+        """Name of the built-in scenario, or of the file without extension."""
         return self._source[0]
 
     @property
     def title(self) -> str:
-        """What the scenario says it is."""
+        """Title given in the scenario."""
         return self._core.title
 
     @property
     def tissue(self) -> Optional[Tissue]:
-        """The tissue that it was given; None where plica builds the embryo, or reads it from a file."""
+        """Tissue given from Python; None if plica builds the embryo or reads it from a file."""
         return self._tissue
 
     def to_toml(self) -> str:
-        """The whole scenario as TOML text: every key, with its default filled in.
+        """Return the complete scenario, including defaults, as TOML text.
 
         Returns
         -------
         str
-            What a run leaves as ``scenario.toml``. It loads back to the same scenario.
+            Text as in ``scenario.toml`` of a run; it loads to an equal scenario.
         """
         return self._core.toml()
 
     def to_dict(self) -> dict[str, Any]:
-        """The whole scenario as nested dicts: every key, with its default filled in."""
+        """Return the complete scenario, including defaults, as nested dicts."""
         return tomllib.loads(self.to_toml())
 
     def __getitem__(self, key: str) -> Any:
@@ -269,7 +269,7 @@ class Scenario:
         for part in key.split("."):
             if not isinstance(value, dict) or part not in value:
                 near = difflib.get_close_matches(key, list(dict(_items(self._resolved))), 3)
-                hint = f"; near are: {', '.join(near)}" if near else ""
+                hint = f"; nearest matches: {', '.join(near)}" if near else ""
                 raise KeyError(f"{key}: has no value in this scenario{hint}")
             value = value[part]
         return value
@@ -281,21 +281,21 @@ class Scenario:
         return key in set(self.keys())
 
     def keys(self) -> Iterator[str]:
-        """All dotted keys that have a value."""
+        """Iterate over all dotted keys that have a value."""
         return (key for key, _ in _items(self.to_dict()))
 
     def update(self, changes: Mapping[str, Any]) -> None:
-        """Changes several keys at once, for changes that make sense together only.
+        """Change several keys at once, for changes that are valid only together.
 
         Parameters
         ----------
         changes : mapping of str to value
-            Dotted keys, as in ``plica run --set``, and numbers, texts, lists, tables (dicts) or booleans.
+            Dotted keys, as in ``plica run --set``, with numbers, strings, lists, dicts or booleans.
 
         Raises
         ------
         ScenarioError
-            The scenario is then what it was before.
+            If the result is invalid. The scenario is then unchanged.
 
         Examples
         --------
@@ -310,33 +310,40 @@ class Scenario:
         self._load(changes=merged)
 
     def set_region(self, name: str, cells: ArrayLike) -> None:
-        """Makes a region of the cells that an array names, in place of what the scenario says of it.
+        """Define a region by a boolean array, replacing any definition in the scenario.
 
         Parameters
         ----------
         name : str
-            Of the region, new or old.
+            Name of a new or existing region.
         cells : array_like of bool, shape (cells,)
-            True for the cells that are in it, in the order of ``Simulation.cell_data``.
+            True for cells of the region, in the order of ``Simulation.cell_data``.
 
         Raises
         ------
         ValueError
-            Not an array of booleans, or no cell is in it.
+            If `cells` is not boolean or selects no cell.
+
+        Examples
+        --------
+        >>> import plica
+        >>> s = plica.Scenario("drosophila")
+        >>> x = plica.Simulation(s).cell_data["x_um"]
+        >>> s.set_region("front", x < 0)
         """
         mask = np.asarray(cells)
         mask = _mask(mask, len(mask) if mask.ndim else 0, f"region {name}")
         if not mask.any():
-            raise ValueError(f"region {name}: no cell is in it; let at least one be True")
+            raise ValueError(f"region {name}: selects no cell; set at least one to True")
         changes = self._changes
         if name not in self.to_dict().get("region", {}):
-            # Keys may name it from now on; the array says which cells are in it.
+            # Declares the name for other keys; the array defines the cells.
             changes = {f"region.{name}.ids": f"[{int(np.argmax(mask))}]", **changes}
         self._load(changes=changes, regions={**self._regions, name: mask.copy()})
 
     @property
     def _ready(self) -> _core.Scenario:
-        """What the module makes a simulation from: where it has no VTK, with the cells of a mesh file."""
+        """Core scenario for a simulation; without VTK, includes cells read by meshio."""
         embryo = self.to_dict()["embryo"]
         if embryo["shape"] == "file" and not self._core.has_mesh and not _core.reads_meshes:
             self._core.give_mesh(Tissue.from_file(embryo["file"], apical_array=embryo.get("apical_array", ""))._mesh)
@@ -345,30 +352,34 @@ class Scenario:
     def _check_masks(self, cells: int) -> None:
         for name, mask in self._regions.items():
             if len(mask) != cells:
-                problem = f"was given as an array for {len(mask)} cells, and there are {cells}"
-                raise ScenarioError([("", 0, f"region.{name}", problem, "give one boolean a cell")])
+                problem = f"is an array for {len(mask)} cells; the tissue has {cells}"
+                raise ScenarioError([("", 0, f"region.{name}", problem, "give one boolean per cell")])
 
     def copy(self) -> Scenario:
-        """Another scenario, the same for now."""
+        """Return an independent copy."""
         other = object.__new__(Scenario)
         other.__setstate__(self.__getstate__())
         return other
 
     def diff(self, other: Scenario) -> dict[str, tuple[Any, Any]]:
-        """In which keys two scenarios differ.
+        """Return the keys in which two scenarios differ.
+
+        Parameters
+        ----------
+        other : Scenario
 
         Returns
         -------
         dict of str to (value, value)
-            This one's value and the other's; None where a scenario has none. What a built-in scenario expects of its
-            results is not compared.
+            Value in this scenario and in `other`; None where a scenario has none. Expected results of built-in scenarios
+            (``[expect]``) are not compared.
         """
         mine, others = (dict(_items(scenario.to_dict())) for scenario in (self, other))
         keys = [key for key in {**mine, **others} if not key.startswith("expect.")]
         return {key: (mine.get(key), others.get(key)) for key in keys if mine.get(key) != others.get(key)}
 
     def advice(self) -> list[str]:
-        """What is not wrong, but worth knowing before it runs: lines that begin with "warning: " or "note: "."""
+        """Return advice before a run, as lines that begin with "warning: " or "note: "."""
         return self._ready.advice()
 
     def __eq__(self, other: object) -> bool:
@@ -415,7 +426,7 @@ def _items(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, An
 def _mask(cells: Any, count: int, what: str) -> NDArray[np.bool_]:
     mask = np.asarray(cells)
     if mask.dtype != np.bool_ or mask.shape != (count,):
-        raise ValueError(f"{what}: an array of {mask.dtype} and shape {mask.shape}; give one boolean a cell ({count})")
+        raise ValueError(f"{what}: an array of {mask.dtype} and shape {mask.shape}; give one boolean per cell ({count})")
     return mask
 
 
@@ -424,7 +435,7 @@ def _whole_numbers(values: ArrayLike, what: str) -> NDArray[np.int32]:
     if not np.issubdtype(numbers.dtype, np.integer):
         raise ValueError(f"{what}: an array of {numbers.dtype}; give whole numbers")
     if numbers.size and (numbers.min() < -(2**31) or numbers.max() >= 2**31):
-        raise ValueError(f"{what}: numbers go beyond what 32 bits hold")
+        raise ValueError(f"{what}: numbers exceed the range of 32-bit integers")
     return np.array(numbers, dtype=np.int32, order="C")
 
 
@@ -435,7 +446,7 @@ def _toml_value(value: Any, key: str) -> str:
         return str(int(value))
     if isinstance(value, (float, np.floating)):
         number = float(value)
-        return repr(number) if math.isfinite(number) else str(number)  # nan and inf are TOML's, and refused there
+        return repr(number) if math.isfinite(number) else str(number)  # nan and inf are valid TOML, and rejected by the check
     if isinstance(value, (str, Path)):
         return _toml_text(str(value))
     if isinstance(value, Mapping):

@@ -1,4 +1,4 @@
-"""A run in the hand: a scenario that is taken forward, a step after another."""
+"""Simulations advanced from Python, one time step at a time."""
 from __future__ import annotations
 
 import html
@@ -29,14 +29,15 @@ log = logging.getLogger("plica")
 
 
 class Step:
-    """A step that has been taken, as it was measured.
+    """Time step that was taken, with its output variables.
 
     Attributes
     ----------
     time_s : float
-        Its end, s.
+        Time at the end of the step, s.
     measures : dict of str to float or None
-        What a row of ``series.csv`` has, units in the names (:doc:`docs/measures </measures>`); None: there is no value.
+        Output variables of ``series.csv``, units in the names (:doc:`output variables </reference/measures>`); None where a
+        variable has no value.
     """
 
     __slots__ = ("time_s", "measures")
@@ -49,12 +50,12 @@ class Step:
 
     @property
     def newton_iterations(self) -> int:
-        """How many Newton iterations it took, those of refused attempts too."""
+        """Number of Newton iterations, including those of rejected attempts."""
         return int(self.measures["newton_iterations"] or 0)
 
     @property
     def volume_error(self) -> Optional[float]:
-        """The largest relative error of a cell's volume."""
+        """Largest relative volume error of a cell."""
         return self.measures["max_volume_error"]
 
     def __repr__(self) -> str:
@@ -62,24 +63,24 @@ class Step:
 
 
 class Simulation:
-    """A scenario at a moment, and the way on from there.
+    """Simulation of a scenario, advanced step by step.
 
     Parameters
     ----------
-    scenario : Scenario, or what makes one
-        Copied: what is changed in it later does not matter here.
+    scenario : Scenario, str, path or mapping
+        The scenario or its source (see `Scenario`). It is copied: later changes to it have no effect.
     threads : int, optional
-        How many threads solve a step; by default one for every 10 000 elements. Results do not depend on it.
+        Threads per step; by default one for every 10 000 elements. Results are bitwise identical for any number.
 
     Raises
     ------
     ScenarioError
-        For what only the tissue shows to be wrong.
+        If an error shows only when the tissue is built.
 
     Notes
     -----
-    Arrays are copies of the moment when they are asked for, and cannot be written to. While a step is solved, other Python
-    threads go on. One simulation belongs to one thread at a time; two simulations do not disturb each other.
+    Arrays are read-only copies of the state at access. Other Python threads keep running while a step is solved. Use a
+    simulation from one thread at a time; simulations are independent of each other.
 
     Examples
     --------
@@ -106,30 +107,30 @@ class Simulation:
 
     @property
     def scenario(self) -> Scenario:
-        """A copy of what it was made from."""
+        """Copy of the scenario it was made from."""
         return self._scenario.copy()
 
-    # Going on
+    # Advancing
 
     def step(self, *, until_min: Optional[float] = None) -> Optional[Step]:
-        """Takes the next step.
+        """Take the next time step.
 
         Parameters
         ----------
         until_min : float, optional
-            The step ends there at the latest, minutes.
+            Latest end of the step, minutes.
 
         Returns
         -------
         Step or None
-            None when the simulation has finished, or that time has come.
+            None if the simulation has finished or has reached `until_min`.
 
         Raises
         ------
         NumericsError
-            No step could be solved, however short. The state is the last good one.
+            If no step converges, however short. The simulation stays at the last accepted state.
         KeyboardInterrupt
-            Ctrl-C came within the step, which is given up; the next call takes it again.
+            On Ctrl-C. The step is discarded; the next call repeats it.
         """
         return self._step(_seconds(until_min))
 
@@ -172,38 +173,51 @@ class Simulation:
         progress: bool = False,
         callback: Optional[Callable[[Simulation, Step], object]] = None,
     ) -> Optional[Run]:
-        """Goes on to the end, or to a time.
+        """Run to the end, or to a given time.
 
         Parameters
         ----------
         until_min : float, optional
-            A step ends there, minutes; by default the simulation goes on until it has finished.
+            End of the last step, minutes; by default the run continues until it has finished.
         out : str or path, optional
-            A directory for the same files as ``plica run`` leaves. They tell of what comes from now on.
+            Directory for the files that ``plica run`` writes. They record the run from the present state.
         overwrite : bool
-            Results that lie there are replaced; without it, that is an error.
+            Replace existing results in `out`; otherwise they raise FileError.
         resume : bool
-            Goes on from the directory's checkpoint, to the same bits; begins where there is none. Of a simulation at rest.
+            Continue from the checkpoint in `out`, bitwise identically; start a new run if there is none. The simulation must be
+            in its initial state.
         progress : bool
-            Shows a bar, in a terminal or a notebook.
+            Show a progress bar in a terminal or notebook.
         callback : callable, optional
-            Called as ``callback(simulation, step)`` after every step; may call `set_activity`. A true value ends the run.
+            Called as ``callback(simulation, step)`` after every step; may call `set_activity`. Return a true value to stop.
 
         Returns
         -------
         Run or None
-            What lies in `out` now; None without it.
+            Results in `out`; None without `out`.
 
         Raises
         ------
-        NumericsError, FileError
-            As for `step`, and of files that cannot be written.
+        NumericsError
+            If no step converges, as for `step`.
+        FileError
+            If a file cannot be written, or `out` already has results.
+        ValueError
+            If arguments conflict, such as `resume` without `out`.
         KeyboardInterrupt
-            All that is done by then is saved first; the same call with ``resume=True`` goes on.
+            On Ctrl-C, after saving. The same call with ``resume=True`` continues.
+
+        Examples
+        --------
+        >>> import plica
+        >>> sim = plica.Simulation("drosophila")
+        >>> sim.run(until_min=1, callback=lambda sim, step: step["furrow_depth_um"] > 5)
+        >>> sim.finished
+        False
         """
         end_s = _seconds(until_min)
         if out is None and (resume or overwrite):
-            raise ValueError("overwrite and resume are about the directory of the results; give it as out")
+            raise ValueError("overwrite and resume require a results directory; set out")
         if out is not None and not self._begin_record(os.fspath(out), overwrite, resume):
             return open_run(out)
         bar = _Progress(min(end_s, self._core.end_s)) if progress else None
@@ -221,53 +235,51 @@ class Simulation:
         return None if out is None else open_run(out)
 
     def _begin_record(self, out: str, overwrite: bool, resume: bool) -> bool:
-        """False where the run that lies there has finished."""
+        """Start recording; return False if the run in `out` has finished."""
         if overwrite and resume:
-            raise ValueError("give overwrite or resume, not both")
+            raise ValueError("overwrite and resume exclude each other; set one of them")
         if self._core.is_recording:
-            raise ValueError("this simulation is being recorded already; end that run first")
+            raise ValueError("this simulation is already being recorded; end that run first")
         for note in self._core.begin_record(out, "resume" if resume else "overwrite" if overwrite else "fresh"):
             log.warning("%s", note)
         return self._core.is_recording
 
     @property
     def finished(self) -> bool:
-        """Whether nothing is left to do: at rest, at the end of time, stopped by a criterion, or given up."""
+        """Whether the simulation reached equilibrium, its end time or a stop criterion, or failed."""
         return self._core.status != "under_way"
 
     @property
     def status(self) -> str:
-        """"under_way", "equilibrium", "end_time" or "failed"."""
+        """Status: "under_way", "equilibrium", "end_time" (also for stop criteria) or "failed"."""
         return self._core.status
 
     def set_activity(self, law: str, activity: Optional[ArrayLike]) -> None:
-        """From now on, cells act by a law as they are told, not by its program: light, feedback, another model.
+        """Override the activity time course of a law with per-cell values.
 
         Parameters
         ----------
         law : str
-            A contraction or a cortex: its name in the scenario, alone where only one has it ("apical"), or with its table
-            ("cortex.apical").
+            Name of a contraction or cortex: alone if unambiguous ("apical"), or with its table ("cortex.apical").
         activity : array_like of float, shape (cells,), or float, or None
-            A factor on what the scenario says of each cell, 0 or more; NaN: that cell follows its program. None: all do
-            again.
+            Factor on the strength of each cell, 0 or more. NaN: the cell follows its time course. None: all cells do.
 
         Raises
         ------
         ValueError
-            No cells act by a law of that name; another shape; a number that is negative or infinite.
+            If no active law has this name, the shape is wrong, or a value is negative or infinite.
 
         Notes
         -----
-        It holds until it is set again, in copies and saved simulations too. A large change at once costs some refused
-        steps.
+        The values hold until they are set again, also in copies and saved simulations. A large sudden change causes some
+        rejected steps. Use it for optogenetic inhibition, feedback, or coupling to another model.
 
         Examples
         --------
         >>> import numpy as np, plica
         >>> sim = plica.Simulation("drosophila")
         >>> x = sim.cell_data["x_um"]
-        >>> sim.set_activity("apical", np.where(x > 0, 0.0, np.nan))  # one half is switched off
+        >>> sim.set_activity("apical", np.where(x > 0, 0.0, np.nan))  # switch off one half
         """
         label = self._label(law)
         if activity is None:
@@ -277,24 +289,24 @@ class Simulation:
         if values.ndim == 0:
             values = np.full(count, float(values))
         if values.shape != (count,):
-            raise ValueError(f"{label}: activities of shape {values.shape}; give one a cell ({count})")
+            raise ValueError(f"{label}: activities have shape {values.shape}; give one value per cell ({count})")
         if (values < 0).any():
             cell = int(np.argmax(values < 0))
-            raise ValueError(f"{label}: the activity of cell {cell} is {values[cell]}; give a number of 0 or more")
+            raise ValueError(f"{label}: the activity of cell {cell} is {values[cell]}; give a number >= 0")
         self._core.set_activity(label, np.where(np.isnan(values), -1.0, values).tolist())
 
     def activity(self, law: str) -> NDArray[np.float64]:
-        """How active each cell is by a law now: by its program, its own state, or as it was told.
+        """Return the present activity of each cell under a law.
 
         Parameters
         ----------
         law : str
-            As for `set_activity`.
+            Name, as in `set_activity`.
 
         Returns
         -------
         ndarray of float, shape (cells,)
-            NaN for cells that do not act by it.
+            Activity by time course, cell state or `set_activity`; NaN for cells outside the region of the law.
         """
         return self._core.activity(self._label(law))
 
@@ -304,13 +316,15 @@ class Simulation:
         if name in labels:
             return name
         if len(fitting) > 1:
-            raise ValueError(f'"{name}" may be {" or ".join(fitting)}; say which')
+            raise ValueError(f'"{name}" is ambiguous; use {" or ".join(fitting)}')
         return fitting[0] if fitting else name
 
-    # Another time
+    # Copies and files
 
     def copy(self) -> Simulation:
-        """A fork in time: the same moment twice. Both go on to the same bits, until something is done to one of them.
+        """Return an independent copy of the present state, to branch the run.
+
+        Both continue bitwise identically until one is changed.
 
         Examples
         --------
@@ -325,12 +339,17 @@ class Simulation:
         return other
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Saves all that the next step depends on, for `load`.
+        """Save the complete state to a file, for `load`.
 
         Parameters
         ----------
         path : str or path
-            A file, replaced where it exists.
+            File to write; an existing one is replaced.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written.
         """
         target = Path(path)
         beside = target.with_name(target.name + ".part")
@@ -348,7 +367,7 @@ class Simulation:
         scenario = state["scenario"]
         self._begin(scenario, _core.Simulation(scenario._ready, state["threads"], state["saved"]))
 
-    # How it is now
+    # Present state
 
     @property
     def time_s(self) -> float:
@@ -362,42 +381,42 @@ class Simulation:
 
     @property
     def steps(self) -> int:
-        """How many steps it has taken."""
+        """Number of accepted time steps."""
         return self._core.steps
 
     @property
     def threads(self) -> int:
-        """How many threads solve a step."""
+        """Number of threads per step."""
         return self._core.threads
 
     @property
     def measures(self) -> dict[str, Optional[float]]:
-        """What a row of ``series.csv`` has, of now; units in the names."""
+        """Output variables of ``series.csv`` at the present time; units in the names."""
         return self._core.measures
 
     @property
     def positions(self) -> NDArray[np.float64]:
-        """Where the nodes are, µm; shape (nodes, 3)."""
+        """Node positions, µm; shape (nodes, 3)."""
         return self._core.positions
 
     @property
     def rest_positions(self) -> NDArray[np.float64]:
-        """Where the nodes are at rest, µm; shape (nodes, 3)."""
+        """Node positions in the reference state, µm; shape (nodes, 3)."""
         return self._core.rest_positions
 
     @property
     def velocities(self) -> NDArray[np.float64]:
-        """Velocities of the nodes at the end of the last step, µm/s; shape (nodes, 3)."""
+        """Node velocities at the end of the last step, µm/s; shape (nodes, 3)."""
         return self._core.velocities
 
     @property
     def hexahedra(self) -> NDArray[np.int32]:
-        """Nodes of the elements, in VTK's order, the last four on the apical side; shape (elements, 8)."""
+        """Node indices of the elements in VTK order, the last four apical; shape (elements, 8)."""
         return self._core.hexahedra
 
     @property
     def hexahedron_cell(self) -> NDArray[np.int32]:
-        """Which cell each element is of: its place in `cell_data`; shape (elements,)."""
+        """Cell of each element, as an index into `cell_data`; shape (elements,)."""
         return self._core.hexahedron_cell
 
     @property
@@ -407,57 +426,63 @@ class Simulation:
 
     @property
     def cell_data(self) -> dict[str, NDArray[np.float64]]:
-        """What ``cells.csv`` has of each cell, as arrays of shape (cells,), units in the names."""
+        """Per-cell values of ``cells.csv``, as arrays of shape (cells,), units in the names."""
         return self._core.cell_data
 
     @property
     def cells(self) -> pandas.DataFrame:
-        """The same as a table, a row a cell."""
+        """Per-cell values of `cell_data` as a table, one row per cell."""
         table: pandas.DataFrame = _pandas("cells").DataFrame({k: v.copy() for k, v in self._core.cell_data.items()})
         return table
 
     @property
     def regions(self) -> dict[str, NDArray[np.bool_]]:
-        """The scenario's regions: which cells are in each; shape (cells,)."""
+        """Regions of the scenario, as boolean arrays of shape (cells,)."""
         return self._core.regions
 
     @property
     def neighbours(self) -> NDArray[np.int32]:
-        """Pairs of cells that share a wall: places in `cell_data`, the lower one first; shape (pairs, 2)."""
+        """Pairs of cells that share a lateral face, as indices into `cell_data`, lower first; shape (pairs, 2)."""
         return self._core.neighbours
 
     @property
     def laws(self) -> list[str]:
-        """Names of the laws of mechanics at work, for `forces` and `energies`."""
+        """Names of the force laws, for `forces` and `energies`."""
         return self._core.laws(active=False)
 
     def forces(self, law: str) -> NDArray[np.float64]:
-        """What one law exerts on the nodes of the body as if it stood still.
+        """Return the nodal forces of one law at zero velocity.
 
         Parameters
         ----------
         law : str
-            One of `laws`.
+            A name in `laws`.
 
         Returns
         -------
         ndarray of float, shape (nodes, 3)
-            nN. What resists motion (drag, viscosity, dampers) has none.
+            Forces, nN; 0 for laws that resist motion (drag, viscosity, dampers).
 
         Raises
         ------
         ValueError
-            There is no such law.
+            If no law has this name.
         """
         return self._core.forces(law)
 
     @property
     def energies(self) -> dict[str, dict[str, float]]:
-        """Where energy has gone so far, by law: "active" (put in by cells), "stored", "dissipated"; nN µm."""
+        """Energies by law since the start: "active" (work done by cells), "stored" and "dissipated"; nN µm."""
         return self._core.energies
 
     def to_pyvista(self) -> Any:
-        """The mesh as it is now, with `cell_data` on its elements: a ``pyvista.UnstructuredGrid``."""
+        """Return the present mesh as a ``pyvista.UnstructuredGrid`` with `cell_data` on its elements.
+
+        Raises
+        ------
+        MissingExtra
+            If PyVista is not installed.
+        """
         cell = self.hexahedron_cell
         data = {name: values[cell] for name, values in self.cell_data.items()}
         return _grid(self.positions, self.hexahedra, {}, data)
@@ -476,21 +501,33 @@ class Simulation:
 def load(
     path: Union[str, os.PathLike[str]], *, threads: Optional[int] = None, tissue: Optional[Tissue] = None
 ) -> Simulation:
-    """A simulation that was saved, or the checkpoint of a run. It goes on to the same bits.
+    """Load a saved simulation or the checkpoint of a run; it continues bitwise identically.
 
     Parameters
     ----------
     path : str or path
-        What ``Simulation.save`` wrote, or the ``checkpoint.h5`` of a run.
+        File written by ``Simulation.save``, or the ``checkpoint.h5`` of a run.
     threads : int, optional
-        As for `Simulation`.
+        Threads per step, as for `Simulation`.
     tissue : Tissue, optional
-        The one that its scenario was given, where it was given one.
+        Tissue that the scenario was given from Python, if any.
+
+    Returns
+    -------
+    Simulation
 
     Raises
     ------
     FileError
-        The file cannot be read, is none, or is of another embryo.
+        If the file cannot be read, is damaged, or belongs to another tissue.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile, plica
+    >>> file = pathlib.Path(tempfile.mkdtemp()) / "state.h5"
+    >>> plica.Simulation("drosophila").save(file)
+    >>> plica.load(file).time_s
+    0.0
     """
     source = Path(path)
     try:
@@ -504,7 +541,7 @@ def load(
     except FileError as error:
         raise FileError(f"{source}: {error}") from error
     except UnicodeDecodeError as error:
-        raise FileError(f"{source}: is damaged: the scenario in it is no text") from error
+        raise FileError(f"{source}: is damaged: its scenario is not valid text") from error
     return simulation
 
 
@@ -517,7 +554,7 @@ def _threads(threads: Optional[int]) -> int:
 
 
 def _seconds(until_min: Optional[float]) -> float:
-    """Of a time in minutes; without one, never."""
+    """Convert minutes to seconds; None becomes infinity."""
     if until_min is None:
         return math.inf
     if isinstance(until_min, bool) or not isinstance(until_min, (int, float, np.number)) or math.isnan(float(until_min)):
@@ -526,7 +563,7 @@ def _seconds(until_min: Optional[float]) -> float:
 
 
 class _Progress:
-    """A bar: tqdm's where it is installed, which looks right in notebooks, else a line on the terminal."""
+    """Progress bar: by tqdm if installed, else one line on the terminal."""
 
     def __init__(self, end_s: float) -> None:
         self.end_min = end_s / 60

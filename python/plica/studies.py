@@ -1,4 +1,4 @@
-"""Runs beside each other, pictures of them, and values that meet targets."""
+"""Comparison of runs, rendering, and calibration."""
 from __future__ import annotations
 
 import ctypes
@@ -26,7 +26,7 @@ PathOrRun = Union[Run, str, "os.PathLike[str]"]
 
 
 class Distances(NamedTuple):
-    """How far something lies away: mean, root of the mean square, largest; µm."""
+    """Distances: mean, root mean square and maximum; µm."""
 
     mean_um: float
     rms_um: float
@@ -38,18 +38,20 @@ def _distances(lengths: NDArray[np.float64]) -> Distances:
 
 
 def _surface(grid: Any) -> Any:
-    # Newer versions ask which algorithm; older ones know one only.
+    # Newer versions require an algorithm; older ones have only one.
     known = inspect.signature(grid.extract_surface).parameters
     return grid.extract_surface(algorithm="dataset_surface") if "algorithm" in known else grid.extract_surface()
 
 
 class Comparison:
-    """Two runs beside each other, at the moments of two frames; made by `compare`.
+    """Comparison of two runs at two snapshots; created by `compare`.
 
     Attributes
     ----------
     a, b : Run
+        The two runs.
     frame_a, frame_b : Frame
+        The compared snapshots.
     """
 
     def __init__(self, a: Run, b: Run, time_min: Optional[float]) -> None:
@@ -59,12 +61,12 @@ class Comparison:
 
     @property
     def scenario(self) -> dict[str, tuple[Any, Any]]:
-        """Keys in which the scenarios differ, with both values."""
+        """Keys in which the scenarios differ, with both values (a, b)."""
         return self.a.scenario.diff(self.b.scenario)
 
     @property
     def summary(self) -> pandas.DataFrame:
-        """The numbers of both summaries: columns a, b and difference (a - b), a row a number."""
+        """Values of both summaries, one row per value; columns a, b and difference (a - b)."""
         first, second = self.a.summary, self.b.summary
 
         def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
@@ -76,14 +78,14 @@ class Comparison:
 
     @property
     def nodes(self) -> Optional[Distances]:
-        """How far nodes of the same number lie apart; None where the meshes are not the same."""
+        """Distances between nodes with equal number; None if the meshes differ."""
         if not np.array_equal(self.frame_a.hexahedra, self.frame_b.hexahedra):
             return None
         return _distances(np.linalg.norm(self.frame_a.points - self.frame_b.points, axis=1))
 
     @cached_property
     def surface(self) -> Distances:
-        """How far the nodes of a's surface lie from that of b. Needs PyVista."""
+        """Distances of the surface nodes of a from the surface of b. Requires PyVista."""
         first = _surface(self.frame_a.to_pyvista())
         second = _surface(self.frame_b.to_pyvista()).triangulate()
         return _distances(np.abs(np.asarray(first.compute_implicit_distance(second)["implicit_distance"])))
@@ -95,13 +97,14 @@ class Comparison:
 
 
 def compare(a: PathOrRun, b: PathOrRun, *, time_min: Optional[float] = None) -> Comparison:
-    """Holds two runs beside each other.
+    """Compare two runs.
 
     Parameters
     ----------
     a, b : Run or path
+        Runs or their directories.
     time_min : float, optional
-        The frames nearest to this time; by default the last ones.
+        Time of the compared snapshots, minutes; by default the last ones.
 
     Returns
     -------
@@ -125,40 +128,41 @@ def render(
     limits: Optional[tuple[float, float]] = None,
     bar: bool = True,
 ) -> Any:
-    """Draws an embryo, off screen. Needs PyVista.
+    """Draw an embryo, off screen. Requires PyVista.
 
     Parameters
     ----------
     what : Run, path, Frame or Simulation
+        Source of the mesh.
     path : str or path, optional
-        A PNG file to write.
+        PNG file to write.
     color : str
-        What colours it: displacement, speed, area-ratio, pressure, volume-error, volume, contraction, strength, generation,
-        region or self-intersections; of a frame also an array that the cells' file has, as of genes. Of a simulation, what
-        ``Simulation.cell_data`` has.
+        Quantity that colours the cells: displacement, speed, area-ratio, pressure, volume-error, volume, contraction,
+        strength, generation, region or self-intersections. Also an array of the cells, such as gene expression, for a
+        snapshot, and a name in ``Simulation.cell_data`` for a simulation.
     view : str, optional
-        antero-ventral, ventral, side, cross-section, sagittal-section or apical: at the apical side from outside. By default
-        antero-ventral, of an open sheet apical.
+        antero-ventral, ventral, side, cross-section, sagittal-section or apical (apical surface from outside). By default
+        antero-ventral, for an open sheet apical.
     time_min : float, optional
-        Of a run: the frame nearest to this time; by default the last.
+        Time of the snapshot of a run, minutes; by default the last.
     size : (int, int)
         Width and height, pixels.
     limits : (float, float), optional
-        The values of the first and the last colour, to compare pictures; by default those of what is drawn.
+        Values at the ends of the colour scale, to compare pictures; by default from the data.
     bar : bool
-        Whether to say what the colours mean.
+        Whether to draw the colour bar.
 
     Returns
     -------
     ndarray of uint8, shape (height, width, 3)
-        The picture.
+        RGB image.
 
     Raises
     ------
     ValueError
-        There is no such colour or view.
+        If the colour or view is unknown.
     PlicaError
-        There is neither a screen nor a library that draws without one.
+        If neither a display nor off-screen OpenGL is available.
     """
     pyvista = needed("pyvista", "render")
     _make_sure_of_drawing()
@@ -172,7 +176,7 @@ def render(
     else:
         frame = what if isinstance(what, Frame) else _frame_of(what, time_min)
         grid = frame.to_pyvista()
-    # What a file has measured in the cells looks like any number from 0 on.
+    # Arrays from a file are drawn as numbers from 0.
     given = {k: {**fields["volume"], "label": k, "array": k} for k in grid.cell_data.keys() if not k.startswith("region_")}
     field = _named("color", color, {**given, **fields})
     views = _core.views(np.asarray(grid.points, dtype=float), grid.cells_dict[pyvista.CellType.HEXAHEDRON].astype(np.int32))
@@ -181,7 +185,7 @@ def render(
     data = grid.point_data if field["on_nodes"] else grid.cell_data
     data["colour"] = values
     sight, up = np.array(seen["sight"], dtype=float), seen["up"]
-    if seen["cut_axis"] is not None:  # what lies before the plane is taken away
+    if seen["cut_axis"] is not None:  # remove the part in front of the plane
         origin = np.zeros(3)
         origin[seen["cut_axis"]] = seen["cut_um"]
         grid = grid.clip(normal=-sight, origin=origin)
@@ -210,12 +214,12 @@ def render(
 
 def _named(what: str, name: str, known: Mapping[str, Any]) -> Any:
     if name not in known:
-        raise ValueError(f"{what} {name!r}: there is none of that name; there are: {', '.join(known)}")
+        raise ValueError(f"{what} {name!r}: unknown; use one of: {', '.join(known)}")
     return known[name]
 
 
 def _make_sure_of_drawing() -> None:
-    """VTK ends the process where it finds nothing to draw with."""
+    """Check for OpenGL, because VTK would end the process without it. PlicaError if there is none."""
     if os.environ.get("DISPLAY"):
         return
     for library in ("libEGL.so.1", "libOSMesa.so.8", "libOSMesa.so"):
@@ -224,7 +228,7 @@ def _make_sure_of_drawing() -> None:
             return
         except OSError:
             pass
-    raise PlicaError("render needs OpenGL, and there is neither a screen nor libEGL; on Debian: apt-get install libegl1")
+    raise PlicaError("render requires OpenGL, but there is neither a display nor libEGL; on Debian: apt-get install libegl1")
 
 
 def _frame_of(run: PathOrRun, time_min: Optional[float]) -> Frame:
@@ -233,18 +237,18 @@ def _frame_of(run: PathOrRun, time_min: Optional[float]) -> Frame:
 
 
 def _values(grid: Any, field: Mapping[str, Any]) -> tuple[NDArray[np.float64], list[str]]:
-    """What colours it; and, of whole numbers, what they stand for."""
+    """Return the values that colour the mesh and, for whole numbers, their labels."""
     if field["array"] == "region":
         masks = {k.removeprefix("region_"): np.asarray(v) > 0 for k, v in grid.cell_data.items() if k.startswith("region_")}
         parts = sorted((name for name, mask in masks.items() if not mask.all()))
         values = np.zeros(grid.n_cells)
-        # The smallest region that a cell is in is drawn last.
+        # The smallest region of a cell is drawn last.
         for name in sorted(parts, key=lambda one: -int(masks[one].sum())):
             values[masks[name]] = parts.index(name) + 1
         return values, ["other cells", *parts]
     data = grid.point_data if field["on_nodes"] else grid.cell_data
     if field["array"] not in data:
-        raise ValueError(f"there is no {field['array']} in what is to be drawn; there are: {', '.join(data.keys())}")
+        raise ValueError(f"no array {field['array']}; arrays: {', '.join(data.keys())}")
     values = np.asarray(data[field["array"]], dtype=float)
     return (np.linalg.norm(values, axis=1) if values.ndim == 2 else values), []
 
@@ -260,14 +264,15 @@ class Trial(NamedTuple):
     Attributes
     ----------
     number : int
+        Number of the run, from 1.
     values : dict of str to float
-        Of the keys.
+        Values of the keys.
     found : dict of str to float or None
-        What the targets came to.
+        Values of the targets in this run.
     failure : str
-        Why there is no value; empty where all have one.
+        Reason for a missing value; empty if there is none.
     worst_miss : float
-        The largest miss, in units of its tolerance: met up to 1.
+        Largest deviation from a target, divided by its tolerance; met if <= 1.
     """
 
     number: int
@@ -278,16 +283,18 @@ class Trial(NamedTuple):
 
 
 class Calibration(NamedTuple):
-    """What a calibration came to.
+    """Result of a calibration.
 
     Attributes
     ----------
     end : str
-        "met", "not_met" (no better place nearby), or "trials_spent".
+        "met", "not_met" (local minimum above the tolerances), or "trials_spent".
     best : Trial or None
+        Trial with the smallest misfit.
     trials : list of Trial
+        All trials in order.
     scenario : Scenario or None
-        That of the best trial.
+        Scenario of the best trial.
     """
 
     end: str
@@ -304,26 +311,31 @@ def calibrate(
     most_trials: int = 40,
     callback: Optional[Callable[[Trial], object]] = None,
 ) -> Calibration:
-    """Finds values of some keys with which a scenario's results meet targets: the same search as ``plica calibrate``.
+    """Fit keys of a scenario so that results meet targets, as ``plica calibrate`` does.
 
     Parameters
     ----------
-    scenario : Scenario or what makes one
+    scenario : Scenario, str, path or mapping
+        The scenario or its source.
     vary : mapping of str to (float, float)
-        Dotted keys, and between which values each may be.
+        Dotted keys, each with its bounds.
     targets : mapping of str to (float, float)
-        Numbers of ``summary.json``, what each is to come to, and within how much.
+        Values of ``summary.json``, each with target and tolerance.
     most_trials : int
-        Runs that may be made.
+        Maximum number of runs.
     callback : callable, optional
         Called with each `Trial`.
+
+    Returns
+    -------
+    Calibration
 
     Raises
     ------
     ValueError
-        A target that a summary does not have.
+        If a target is not in the summary.
     ScenarioError
-        A key that is not known, or may not take the values of its bounds.
+        If a key is unknown, or its bounds are invalid.
 
     Examples
     --------
@@ -334,9 +346,9 @@ def calibrate(
     """
     base = scenario if isinstance(scenario, Scenario) else Scenario(scenario)
     if base.tissue is not None or base._regions:
-        raise ValueError("calibrate runs what a file can say: neither a tissue nor regions given as arrays")
+        raise ValueError("calibrate requires a scenario that a file can express: no tissue and no regions given as arrays")
     if base["embryo.shape"] == "file" and not _core.reads_meshes:
-        raise ValueError("calibrate cannot read embryo.file: this plica was built without VTK; build it with VTK for that")
+        raise ValueError("calibrate cannot read embryo.file: this build has no VTK; build plica with VTK")
     trials: list[Trial] = []
 
     def trial_of(row: Mapping[str, Any]) -> Trial:

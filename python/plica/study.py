@@ -1,4 +1,4 @@
-"""Many runs of a scenario, with keys that vary, and their table."""
+"""Parameter studies: many runs of a scenario with varied keys, and their table."""
 from __future__ import annotations
 
 import functools
@@ -31,7 +31,7 @@ __all__ = ["Study"]
 
 
 class _Spec(NamedTuple):
-    """What a worker needs to know of a study."""
+    """Description of a study for a worker."""
 
     name: str
     file: str
@@ -42,20 +42,20 @@ class _Spec(NamedTuple):
 
 
 class Study:
-    """A scenario, keys that vary, and a design of points: many runs, and a table with a row for each.
+    """Parameter study: many runs of a scenario with varied keys, and a table with one row per run.
 
     Parameters
     ----------
     source : str, path or mapping
-        A study's TOML file, TOML text (of several lines), or the same as a dict: ``scenario``, ``vary``, ``design``, and
-        ``set`` and ``keep`` if need be (docs/how-to/studies.md). Or the directory of a study that has been run, or is running.
+        TOML file of a study, TOML text (several lines) or dict with ``scenario``, ``vary``, ``design`` and optionally ``set``
+        and ``keep`` (docs/how-to/studies.md); or the directory of a finished or running study.
 
     Raises
     ------
     ScenarioError
-        With all that is wrong, each with its key and what would be right.
+        If the study is invalid; lists every error with its key and fix.
     FileError
-        The file cannot be read.
+        If the file cannot be read.
 
     Examples
     --------
@@ -96,7 +96,7 @@ class Study:
 
     @classmethod
     def _of_table(cls, source: Union[str, Mapping[str, Any]], table: pandas.DataFrame) -> Study:
-        """A study whose runs came to `table`, which has the columns and rows of ``Study(source).table``; for tests."""
+        """Make a study with given results, a table like ``Study(source).table``; for tests."""
         study = cls(source)
         lines = table.to_csv(index=False).splitlines()
         if lines[0] != study._core.header or len(lines) != len(study) + 1:
@@ -106,44 +106,47 @@ class Study:
 
     @property
     def kind(self) -> str:
-        """How its points were chosen: the kind of its design."""
+        """Kind of the design, such as "grid" or "sobol"."""
         return str(self._given["design.kind"])
 
     @property
     def _given(self) -> dict[str, Any]:
-        """What the study's file says, by dotted keys."""
+        """Contents of the study file, by dotted keys."""
         return dict(_items(tomllib.loads(self._spec.text)))
 
     def _run_directory(self, run: int) -> Path:
-        """Where what is kept of a run lies, the runs counted from 0."""
+        """Return the directory of the kept files of a run, counted from 0."""
         return Path(self._directory or ".") / "points" / self._core.name_of(run)
 
     @property
     def keys(self) -> list[str]:
-        """The keys that vary."""
+        """Keys that vary."""
         return self._core.keys
 
     @property
     def measures(self) -> list[str]:
-        """The results that the table has."""
+        """Output variables in the table."""
         return self._core.measures
 
     @property
     def points(self) -> pandas.DataFrame:
-        """The runs in their order: point, replicate, and the values of the keys."""
+        """Runs in order: point, replicate, and values of the keys."""
         table = self.table
         return table[["point", "replicate", *self.keys]]
 
     @property
     def table(self) -> pandas.DataFrame:
-        """A row a run: point, keys, replicate, status, measures, steps, wall_s, reason. What has not run is ``not_run``."""
+        """Results, one row per run: point, keys, replicate, status, output variables, steps, wall_s, reason.
+
+        Runs that have not been made have status ``not_run``.
+        """
         rows = [self._rows.get(run) or self._core.not_run(run) for run in range(len(self))]
         text = io.StringIO("\n".join([self._core.header, *rows]))
         table: pandas.DataFrame = _pandas("the table of a study").read_csv(text, float_precision="round_trip")
         return table
 
     def to_xarray(self) -> Any:
-        """The measures over the keys: of a grid with a dimension for each key, else over the points.
+        """Return output variables over the keys: one dimension per key for a grid, else over points.
 
         Returns
         -------
@@ -168,22 +171,21 @@ class Study:
         resume: bool = False,
         progress: bool = False,
     ) -> pandas.DataFrame:
-        """Runs what has not run yet.
+        """Run all runs that have not been made.
 
         Parameters
         ----------
         out : str or path, optional
-            A directory for the table and what is kept of the runs, as ``plica study --out`` leaves it. Rows are written there
-            as they come.
+            Directory for the table and kept files, as written by ``plica study --out``. Rows are written as runs end.
         jobs : int, optional
-            Processes of this machine; by default one a core.
+            Number of local processes; by default one per core.
         executor : concurrent.futures.Executor, optional
-            Whose workers run it instead: a process pool, Dask's ``Client.get_executor()``, mpi4py, submitit. They need
-            plica, and where files are kept, the same directory.
+            Executor used instead: a process pool, Dask's ``Client.get_executor()``, mpi4py, submitit. Its workers require
+            plica and, if files are kept, access to `out`.
         overwrite, resume : bool, optional
-            Replace the study in `out`; go on with it.
+            Replace, or continue, the study in `out`.
         progress : bool, optional
-            Show a bar.
+            Show a progress bar.
 
         Returns
         -------
@@ -193,14 +195,14 @@ class Study:
         Raises
         ------
         ValueError
-            Files are to be kept, and there is no `out`; or `out` holds another study.
+            If files are kept but `out` is not given, or `out` has another study.
         FileError
-            Something cannot be written.
+            If a file cannot be written.
         KeyboardInterrupt
-            Ctrl-C. What has run is in `table`, and in `out`, where it can be resumed.
+            On Ctrl-C. Finished runs are in `table` and in `out`, from which the study can be resumed.
         """
         if out is None and self._core.keeps_files:
-            raise ValueError("out is missing: keep.each of this study leaves files")
+            raise ValueError("out is missing; set it, because keep.each of this study keeps files")
         directory = None
         if out is not None:
             start = "resumed" if resume else "over" if overwrite else "fresh"
@@ -217,7 +219,7 @@ class Study:
         try:
             for run, row in rows:
                 if not row:
-                    continue  # somebody else is at it
+                    continue  # taken by another process
                 self._rows[run] = row
                 if directory is not None:
                     directory.add(run, row)
@@ -246,7 +248,7 @@ class Study:
 
 
 def _in_python(message: str) -> str:
-    """A message of the command line, with what `Study.run` takes in the place of its options."""
+    """Translate options in a message of the command line into arguments of `Study.run`."""
     for option, argument in (("--resume", "resume=True"), ("--overwrite", "overwrite=True"), ("--out", "out")):
         message = message.replace(option, argument)
     return message
@@ -270,7 +272,7 @@ def _rows_of(spec: _Spec, runs: list[int]) -> list[tuple[int, str]]:
 
 
 def _by_executor(executor: Executor, spec: _Spec, runs: list[int]) -> Iterator[tuple[int, str]]:
-    # Few enough for each worker to have several, so that they end together.
+    # Small batches, so that workers end at about the same time.
     size = max(1, min(50, len(runs) // 64))
     futures = [executor.submit(_rows_of, spec, runs[at : at + size]) for at in range(0, len(runs), size)]
     try:
@@ -296,9 +298,9 @@ def _by_processes(jobs: Optional[int], spec: _Spec, runs: list[int], study: _cor
 
 
 class _Processes:
-    """Python processes that each run one run after another. One that dies takes only its run with it, which is begun again.
+    """Pool of Python processes. If one dies, only its run is lost, and repeated.
 
-    Not multiprocessing's: that begins the caller's script anew in each process, or forks one that has threads.
+    Not from multiprocessing, which runs the script of the caller again in each process, or forks a process with threads.
     """
 
     def __init__(self, count: int, spec: _Spec, runs: Iterable[int], study: _core.Study) -> None:
@@ -348,7 +350,7 @@ class _Processes:
     def _end(self, worker: int) -> None:
         process = self.processes[worker]
         if process is not None:
-            with process:  # closes its pipes, and waits for it
+            with process:  # closes its pipes and waits for it
                 pass
 
     def _row(self, worker: int, run: int) -> tuple[Optional[str], str]:
@@ -361,7 +363,7 @@ class _Processes:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 env={**os.environ, "PYTHONPATH": path},
-                start_new_session=True,  # Ctrl-C is for the parent, which ends them
+                start_new_session=True,  # only the parent receives Ctrl-C and ends them
             )
             self.processes[worker] = process
             assert process.stdin is not None
@@ -382,7 +384,7 @@ class _Processes:
 
 
 def _work() -> None:
-    """What such a process does: numbers of runs come in, rows go out."""
+    """Main loop of such a process: read numbers of runs, write rows."""
     spec = _Spec(*pickle.load(sys.stdin.buffer))
     for line in sys.stdin.buffer:
         try:
@@ -401,7 +403,7 @@ def _bar(total: int, done: int) -> Any:
 
 
 class _Line:
-    """A line on the terminal, where tqdm is not installed."""
+    """Progress line on the terminal, without tqdm."""
 
     def __init__(self, total: int, done: int) -> None:
         self.total, self.done, self.before, self.start = total, done, done, time.monotonic()

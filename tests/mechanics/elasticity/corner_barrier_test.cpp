@@ -40,7 +40,7 @@ TEST(CornerBarrier, IsNothingAboveItsThresholdAndInfiniteAtZero) {
   EXPECT_GT(energy(1e-9), 10 * energy(r * 0.15));
 }
 
-// One corner of a soft cell is pushed in towards the opposite one: it stops before it turns inside out.
+// One corner of a soft cell is pushed in towards the opposite one: it stops before it is inverted.
 TEST(CornerBarrier, HoldsACornerUpright) {
   for (const bool with_barrier : {false, true}) {
     Model model(build_block({.length_um = 20, .width_um = 20, .cell_height_um = 20, .cells = {1, 1, 1}}));
