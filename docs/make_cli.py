@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints docs/reference/cli.md: what the program and each of its commands print for --help. Usage: make_cli.py PLICA"""
+"""Print docs/reference/cli.md: the help of the program and of each command. Usage: make_cli.py PLICA"""
 import re
 import subprocess
 import sys
@@ -15,8 +15,8 @@ commands = re.findall(r"^  ([a-z]\w*) ", whole.partition("\nSubcommands:\n")[2],
 if not commands:
     sys.exit("make_cli.py: the program's help names no commands")
 print("# Command line\n\n"
-      "For those who look for an option. What `plica --help` and the help of each command print, written by "
-      "[make_cli.py](make_cli.py).\n\n"
+      "This page lists all commands and options of `plica`: the output of `plica --help` and of the help of each command, "
+      "written by [make_cli.py](../make_cli.py).\n\n"
       f"```text\n{whole}\n```")
 for name in commands:
     print(f"\n## plica {name}\n\n```text\n{help_of(name)}\n```")

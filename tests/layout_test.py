@@ -164,7 +164,7 @@ def check_measures():
 def check_units():
     """Every column has its unit at the end of its name, or is among the pure numbers that docs/reference/measures.md lists."""
     page = root / "docs/reference/measures.md"
-    pure = set(re.findall(r"`(\w+)`", page.read_text(encoding="utf-8").partition("## Which speed")[0].
+    pure = set(re.findall(r"`(\w+)`", page.read_text(encoding="utf-8").partition("## Speeds")[0].
                           partition("pure numbers:\n")[2]))
     columns, quantities = printed("reference", "--measures").split("### Quantities of monitors")
     names = set(re.findall(r"^\| `(\w+)`", columns, re.MULTILINE))

@@ -116,7 +116,7 @@ class Export(CommandLine):
                 (("nowhere", "--out", out), 4, "nowhere"),
                 ((run, "--out", self.path("cells.stl")), 2, "neither FILE.vtp (surface) nor a directory"),
                 ((run, "--out", out, "--time", "soon"), 2, "--time soon: not a time; give 5min"),
-                ((run, "--out", out, "--time", "9min"), 2, "--time 9min: the frames go from 0 s to 0.5 s"),
+                ((run, "--out", out, "--time", "9min"), 2, "--time 9min: the run has snapshots from 0 s to 0.5 s"),
                 ((run, "--out", out, "--side", "left"), 2, "--side"),
                 ((run,), 2, "--out")]:
             self.expect(plica("export", *arguments), status, stderr=said)
