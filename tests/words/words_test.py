@@ -16,7 +16,7 @@ from pathlib import Path
 MOST_WORDS = {"README.md": 600, "user's part": 60_000}
 LONGEST_SENTENCE = 35
 FIRST_PAGES = ("README.md", "docs/index.md", "docs/start/", "docs/concepts/", "docs/gallery.md")
-FOR_DEVELOPERS = ("docs/developers/", "docs/decisions/")
+FOR_DEVELOPERS = ("docs/developers/", "docs/decisions/", "docs/pictures/")
 FOLDERS = ("src", "python", "viewer/src", "scenarios", "docs", "cmake", "packaging", "tools", "bench/data")
 SUFFIXES = (".md", ".cpp", ".hpp", ".py", ".ts", ".toml", ".html", ".css", ".sh", ".cmake")
 
