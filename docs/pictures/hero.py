@@ -9,6 +9,7 @@ import io
 import sys
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import to_rgb
 from PIL import Image
@@ -80,7 +81,7 @@ if __name__ == "__main__":
     for frame in run.frames:
         figure, _ = moment(run, frame, options.x_um)
         images.append(image_of(figure))
-        figure.clf()
+        plt.close(figure)
     palette = palette_of(images[len(images) * 3 // 4], 80)
     images[-1].quantize(palette=palette_of(images[-1], 128), dither=Image.Dither.NONE).save(options.out / "hero.png", optimize=True)
     frames = [one.quantize(palette=palette, dither=Image.Dither.NONE) for one in images]
