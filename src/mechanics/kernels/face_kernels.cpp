@@ -1,4 +1,4 @@
-// Letters as in docs/theory/cortex.md: at a Gauss point (s, t) of the bilinear face, a and b are dx/ds and dx/dt, n is
+// Letters as in docs/theory/cortex.md, but a and b for dx/ds and dx/dt: at a Gauss point (s, t) of the bilinear face, n is
 // their product and |n| the area that the point stands for. a depends on t alone, b on s alone.
 #include "mechanics/kernels/face_kernels.hpp"
 
