@@ -56,7 +56,7 @@ struct MadeStep {
 struct EnergyFlow {
   double active = 0;      // work done by cells or external loads
   double stored = 0;      // increase in the tissue
-  double dissipated = 0;  // dissipated
+  double dissipated = 0;  // lost as heat
 
   EnergyFlow& operator+=(const EnergyFlow& more) {
     active += more.active, stored += more.stored, dissipated += more.dissipated;
@@ -185,7 +185,7 @@ class Law {
   /// std::logic_error for laws that are not active.
   [[nodiscard]] virtual std::vector<double> with_activities(std::span<const double> /*internal*/,
                                                             std::span<const double> /*activities*/) const {
-    throw std::logic_error(label() + ": no cell acts by it");
+    throw std::logic_error(label() + ": is not an active law");
   }
 
   /// Return nodal masses, g; empty for none. At most one law of a model has masses.

@@ -69,8 +69,8 @@ std::size_t place_of_law(const Model& model, const std::string& label, bool acti
     labels.push_back(model.laws[l]->label());
     if (labels.back() == label) return l;
   }
-  throw UsageError(fmt::format("{} \"{}\"; {}: {}", acting ? "no cells act by" : "there is no law", label,
-                               acting ? "they do by" : "there are", fmt::join(labels, ", ")));
+  throw UsageError(fmt::format("{} \"{}\"; {}: {}", acting ? "no active law" : "no law", label,
+                               acting ? "active laws" : "laws", fmt::join(labels, ", ")));
 }
 
 std::vector<std::vector<double>> next_internals(const Model& model, const Step& step) {

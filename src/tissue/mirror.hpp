@@ -14,7 +14,7 @@ namespace plica {
 /// Mapping of nodes and cells of the full tissue to those of a side. Empty for a tissue without mirror planes, where
 /// everything is its own image.
 struct Mirror {
-  /// Return the position of that node, with one sign per axis.
+  /// Original of a node, with one sign per axis.
   struct Image {
     NodeId node;
     Vec3 signs;
@@ -52,14 +52,14 @@ struct NotSymmetric : std::runtime_error {
   std::string remedy;
 };
 
-/// Return the part of a tissue on the positive side of the planes across some axes (0, 1, 2 for x, y, z), through the
-/// origin. NotSymmetric if a node or cell has no image, a plane cuts a cell, or the sheet is periodic.
+/// One side of a symmetric tissue, with its mapping.
 struct MirroredSide {
   Tissue tissue;
   Mirror mirror;
 };
 
-/// NotSymmetric when a node or cell has no image, when a plane cuts a cell in two, and of a periodic sheet.
+/// Return the side of a tissue that is positive with respect to the planes across some axes (0, 1, 2 for x, y, z),
+/// through the origin. NotSymmetric if a node or cell has no image, a plane cuts a cell, or the sheet is periodic.
 MirroredSide side_of(const Tissue& whole, const std::array<bool, 3>& axes);
 
 }  // namespace plica

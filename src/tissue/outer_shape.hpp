@@ -25,7 +25,7 @@ class OuterShape {
   /// Return the parallel surface, offset outward.
   [[nodiscard]] OuterShape moved_out(double by_um) const;
 
-  /// Return the distance of a point inside from the surface (negative outside, um), its gradient (length 1) and Hessian
+  /// Gap of a point: distance inside from the surface (negative outside, um), its gradient (length 1) and Hessian
   /// (1/um). For surfaces other than capsules, only to first order more than a fifth of the least radius of curvature
   /// inside.
   struct Gap {

@@ -63,7 +63,7 @@ class CellVolumes final : public Constraint {
   /// Return V_c / target - 1; cells.
   [[nodiscard]] std::vector<double> relative_errors(std::span<const Vec3> positions) const;
 
-  /// Elements.
+  /// Parts of the functions: elements.
   [[nodiscard]] ConstraintParts parts() const override;
   void gradients(std::span<const Vec3> positions, std::span<Vec3> of_elements) const override;
   void for_parts(const std::function<void(std::size_t)>& body, bool shared) const override {

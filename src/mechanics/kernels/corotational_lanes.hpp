@@ -21,7 +21,7 @@ struct Elements {
   [[nodiscard]] Lanes viscous_shear() const { return rate * load(viscous->shear + lane); }
 };
 
-/// See CorotationalKernels.
+/// Write the tangent blocks of a batch (CorotationalKernels).
 void write_blocks(const CorotationalStep& step, std::size_t batch, HexahedronBlocks& blocks);
 
 /// Four vectors, one per hourglass.

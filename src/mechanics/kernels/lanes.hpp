@@ -37,7 +37,7 @@ inline Row load_row(const double* values) { return _mm256_maskload_pd(values, __
 #endif
 
 #if PLICA_LANES > 1
-/// Return lanes 2 k and 2 k + 1.
+/// Lanes 2 k and 2 k + 1.
 typedef double Pair __attribute__((vector_size(16), aligned(8), may_alias));  // NOLINT
 template <int k>
 inline Pair pair(const Lanes& a) {
@@ -53,7 +53,7 @@ inline Pair pair(const Lanes& a) {
 
 inline Lanes load(const double* values) { return *reinterpret_cast<const Lanes*>(values); }
 
-/// Load from and stores to unaligned arrays.
+/// Lanes at any address, for unaligned loads and stores.
 #if PLICA_LANES != 1
 typedef double LooseLanes __attribute__((vector_size(8 * PLICA_LANES), aligned(8), may_alias));  // NOLINT
 #else

@@ -28,7 +28,7 @@ inline constexpr std::size_t no_polygon = static_cast<std::size_t>(-1);
 /// area seen along it.
 Vec3 area_vector(const Vectors& vertices, const std::vector<std::size_t>& polygon);
 
-/// Return the area of the triangles between the sides of the polygon and `centre`, um^2, and their centroid.
+/// Area of the triangles between the sides of the polygon and `centre`, um^2, and their centroid.
 struct PolygonFan {
   double area;
   Vec3 centroid;
