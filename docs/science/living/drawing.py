@@ -1,4 +1,4 @@
-"""Sections and ventral views of runs, drawn with Matplotlib for the pictures of docs/science/living-embryo.md."""
+"""Sections of runs, drawn with Matplotlib for the pictures of docs/science/living-embryo.md."""
 import collections
 import functools
 import sys
@@ -21,9 +21,9 @@ APICAL_FACE = 1
 SAGITTAL, TRANSVERSE = 1, 0  # axis along which a section has its normal
 
 
-def few_colours(path):
-    """Reduce the picture in a file to 256 colours."""
-    Image.open(path).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
+def few_colours(path, count=256):
+    """Reduce the number of colours of the picture in a file."""
+    Image.open(path).convert("RGB").quantize(count, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 def cut(points, hexahedra, axis, at):
@@ -79,25 +79,6 @@ def draw_section(axes, folder, minute, axis, at=0.01):
     axes.add_collection(LineCollection(outlines, colors=TEXT, linewidths=0.5))
     shell = [segment for _, face, segment in cut(rest.points.copy(), rest.hexahedra, axis, at) if face == APICAL_FACE]
     axes.add_collection(LineCollection(shell, colors=VITELLINE, linewidths=0.8, zorder=0))
-    frame_axes(axes)
-
-
-def draw_ventral(axes, folder, minute):
-    """Draw apical surfaces of a run as seen from the ventral side, coloured by displacement."""
-    frame, moved = read(folder, minute)
-    surface = frame.polygons()
-    of_cell = dict(zip(frame.cell_data["cell_id"], moved[frame.hexahedra].mean(axis=1)))
-    drawn = []
-    for face, cell in zip(surface.faces, surface.cell_data["cell_id"]):
-        corners = surface.points[face]
-        normal = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
-        facing = -normal[2] / np.linalg.norm(normal)
-        if facing > 0:
-            colour = np.array(COLOURS(SCALE(of_cell[cell])))
-            colour[:3] *= 0.6 + 0.4 * facing
-            drawn.append((corners[:, 2].mean(), corners[:, :2], colour))
-    drawn.sort(key=lambda one: -one[0])  # the nearest last
-    axes.add_collection(PolyCollection([one[1] for one in drawn], facecolors=[one[2] for one in drawn], edgecolors=TEXT, linewidths=0.25))
     frame_axes(axes)
 
 

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 from drawing import few_colours
-from style import BASAL, LETTERS, TEXT
+from style import BASAL, LETTERS, TEXT, VITELLINE
 from targets import OF_EMBRYO, TARGETS
 
 HERE = Path(__file__).resolve().parent
@@ -18,15 +18,15 @@ TABLE = HERE / "fit.csv"
 SCENARIOS = {"slice": HERE / "chosen.toml", "embryo": HERE / "../../../scenarios/living/embryo.toml"}
 # (name, unit, factor to that unit) of each measure.
 NAMES = {
-    "furrow_depth_um": ("depth at 20 min", "µm", 1),
-    "knee_depth_um": ("depth at onset", "µm", 1),
-    "knee_time_s": ("onset of fast phase", "min", 60),
-    "lips_closed_time_s": ("closure", "min", 60),
-    "vml_height_um": ("height of midline cells", "µm", 1),
-    "flank_section_area_ratio": ("lateral ectoderm", "", 1),
-    "inner5.area_ratio": ("inner rows, 5 min", "", 1),
-    "inner9.area_ratio": ("inner rows, 9 min", "", 1),
-    "outer9.area_ratio": ("outer rows, 9 min", "", 1),
+    "furrow_depth_um": ("furrow depth at 20 min", "µm", 1),
+    "knee_depth_um": ("depth at onset of fast phase", "µm", 1),
+    "knee_time_s": ("time of that onset", "min", 60),
+    "lips_closed_time_s": ("time of closure", "min", 60),
+    "vml_height_um": ("greatest height, midline cells", "µm", 1),
+    "flank_section_area_ratio": ("area of lateral ectoderm", "× initial", 1),
+    "inner5.area_ratio": ("apical area at 5 min, inner rows", "× initial", 1),
+    "inner9.area_ratio": ("apical area at 9 min, inner rows", "× initial", 1),
+    "outer9.area_ratio": ("apical area at 9 min, outer rows", "× initial", 1),
 }
 
 
@@ -49,25 +49,25 @@ def run_all():
 
 
 def draw(table, picture):
-    figure, axes = plt.subplots(figsize=(760 / 72, 500 / 72))
-    figure.subplots_adjust(left=0.5, right=0.98, top=0.9, bottom=0.13)
+    figure, axes = plt.subplots(figsize=(760 / 72, 600 / 72))
+    figure.subplots_adjust(left=0.46, right=0.98, top=0.92, bottom=0.11)
     axes.axvspan(-1, 1, color="#e2e8f0")
     axes.axvline(0, color=TEXT, linewidth=1)
     for row, (measure, (name, unit, factor)) in enumerate(NAMES.items()):
         value, width = OF_EMBRYO[measure]
         first, least, most = ((table.loc["embryo", one][measure] - value) / width for one in ("first", "least", "most"))
-        axes.plot([least, most], [row, row], color=BASAL, linewidth=9, alpha=0.45, solid_capstyle="butt", label="embryos" if row == 0 else None)
+        axes.plot([least, most], [row, row], color=BASAL, linewidth=9, alpha=0.45, solid_capstyle="butt", label="ten embryos" if row == 0 else None)
         axes.plot(first, row, "o", color=BASAL, markersize=10)
         value, width = TARGETS[measure]
         x = (table.loc["slice"][measure] - value) / width
-        axes.plot(x, [row + 0.3] * len(x), "o", color=BASAL, fillstyle="none", markersize=6, mew=1.3, label="slices" if row == 0 else None)
+        axes.plot(x, [row + 0.3] * len(x), "o", color=BASAL, fillstyle="none", markersize=6, mew=1.3, label="ten slices" if row == 0 else None)
         value, width = OF_EMBRYO[measure]
-        axes.text(-0.02, row, f"{name}: {value / factor:.2g} ± {width / factor:.2g} {unit}".rstrip(), ha="right", va="center",
-                  transform=axes.get_yaxis_transform(), fontsize=LETTERS)
+        for text, y, colour in ((name, row - 0.2, TEXT), (f"target {value / factor:.2g} ± {width / factor:.2g} {unit}", row + 0.25, VITELLINE)):
+            axes.text(-0.02, y, text, color=colour, ha="right", va="center", transform=axes.get_yaxis_transform(), fontsize=LETTERS)
     axes.set_ylim(len(NAMES) - 0.4, -0.6)
     axes.set_yticks([])
     axes.spines["left"].set_visible(False)
-    axes.set_xlabel("(result − target) / width")
+    axes.set_xlabel("result − target, in widths")
     axes.legend(loc="lower right", bbox_to_anchor=(1.02, 1.0), ncols=2, frameon=False, borderpad=0, handletextpad=0.2)
     figure.savefig(picture, dpi=144)
 
