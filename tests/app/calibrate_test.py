@@ -64,7 +64,7 @@ class Calibrate(CommandLine):
         self.assertIn(f"nearest: {STIFFNESS} = 2", rest[0])
         self.assertRegex(rest[1], r"there: end.position_um = 26\.\d+ \(\+5\.\d+ %\)")
         self.assertIn("is at its bound 2", rest[2])
-        self.assertIn("# The nearest that was found", self.file.read_text())
+        self.assertIn("# Best result found", self.file.read_text())
         self.assertNotIn("expect", self.file.read_text())
 
     def test_a_run_that_gives_up_is_a_trial_without_a_value(self):
@@ -75,7 +75,7 @@ class Calibrate(CommandLine):
         vary, target = f"{STIFFNESS}=1:2", "end.position_um=28"
         cases = (
             (f"{STIFFNESS}=2:1", target, f"low is above high; write {STIFFNESS}=1:2"),
-            (f"{STIFFNESS}=2", target, "give KEY=LOW:HIGH"),
+            (f"{STIFFNESS}=2", target, "not KEY=LOW:HIGH"),
             ("contraction.all.stifness_nN_per_um=1:2", target, 'use "stiffness_nN_per_um"'),
             (f"{STIFFNESS}=-1:2", target, "out of range"),
             ("region.first.cells_along=1:2", target, "is an integer"),
@@ -115,7 +115,7 @@ class Calibrate(CommandLine):
         _, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, errors)
         self.assertIn("interrupted after", errors)
-        self.assertIn("# The nearest that was found", self.file.read_text())
+        self.assertIn("# Best result found", self.file.read_text())
 
 
 if __name__ == "__main__":
