@@ -61,7 +61,7 @@ class Calibrate(CommandLine):
         result = self.calibrate("--vary", f"{STIFFNESS}=0.1:2", "--target", "end.position_um=25", "--out", self.file, status=1)
         first, *rest = result.stderr.splitlines()
         self.assertIn("not met: no values within the bounds", first)
-        self.assertIn(f"nearest: {STIFFNESS} = 2", rest[0])
+        self.assertIn(f"best: {STIFFNESS} = 2", rest[0])
         self.assertRegex(rest[1], r"there: end.position_um = 26\.\d+ \(\+5\.\d+ %\)")
         self.assertIn("is at its bound 2", rest[2])
         self.assertIn("# Best result found", self.file.read_text())
