@@ -62,7 +62,7 @@ class Calibrate(CommandLine):
         first, *rest = result.stderr.splitlines()
         self.assertIn("not met: no values within the bounds", first)
         self.assertIn(f"best: {STIFFNESS} = 2", rest[0])
-        self.assertRegex(rest[1], r"there: end.position_um = 26\.\d+ \(\+5\.\d+ %\)")
+        self.assertRegex(rest[1], r"results: end.position_um = 26\.\d+ \(\+5\.\d+ %\)")
         self.assertIn("is at its bound 2", rest[2])
         self.assertIn("# Best result found", self.file.read_text())
         self.assertNotIn("expect", self.file.read_text())
