@@ -17,7 +17,9 @@ from pathlib import Path
 SCIENCE = Path(__file__).resolve().parent.parent / "docs/science"
 PAGE, IMAGES = SCIENCE / "reproduction.md", SCIENCE.parent / "images/reproduction"
 TABLES = {"section": "reproduction.csv", "varied": "reproduction-readings.csv", "headline": "reproduction-errors.csv"}
-SHORT = {"*reproduced*": "yes", "*reproduced under this reading*": "under this reading", "*not reproduced*": "no"}
+VERDICTS = ("reproduced", "reproduced under this reading", "not reproduced")
+SUBJECTS = {"2.1": "meshes and sizes", "2.3": "contraction", "2.5": "volume", "2.6": "cell division", "2.7": "stop", "3.1": "furrow of the pill",
+            "3.2": "furrow of the sphere", "3.3": "vitelline membrane", "4": "discussion", "5": "conclusion", "note": "notes"}
 
 
 def tables_of(text):
@@ -41,6 +43,17 @@ def fill(page, name, text):
     return filled
 
 
+def counts_of(claims):
+    """Rows of a table: how many of the claims, (section, verdict), have each verdict, by section, and in all."""
+    of_subject = {subject: [0] * len(VERDICTS) for subject in SUBJECTS}
+    for section, verdict in claims:
+        of_subject[re.match(r"note|\d(\.\d)?", section)[0]][VERDICTS.index(verdict)] += 1
+    rows = [(f"{number}, {subject}" if number != "note" else subject, counts)
+            for (number, subject), counts in zip(SUBJECTS.items(), of_subject.values())]
+    rows.append(("all", [sum(column) for column in zip(*of_subject.values())]))
+    return [[name, *map(str, counts)] for name, counts in rows]
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
@@ -50,12 +63,12 @@ def main():
         with (SCIENCE / name).open("w", newline="", encoding="utf-8") as file:
             csv.writer(file, lineterminator="\n").writerows([cell.strip("*") for cell in row] for row in tables[first])
 
-    claims = [(claim, SHORT[verdict]) for _, claim, _, _, _, verdict, _ in tables["section"][1:]]
-    page = fill(PAGE.read_text(encoding="utf-8"), "claims", table(["claim", "reproduced"], claims))
+    claims = [(row[0], row[5].strip("*")) for row in tables["section"][1:]]
+    counts = counts_of(claims)
+    page = fill(PAGE.read_text(encoding="utf-8"), "claims", table(["section", "reproduced", "under this reading", "not reproduced"], counts))
     page = fill(page, "errors", table(tables["headline"][0], tables["headline"][1:]))
-    counts = [sum(verdict == short for _, verdict in claims) for short in SHORT.values()]
     page = re.sub(r"Of \d+ claims, \d+ are reproduced, \d+ under this reading, and \d+ are not",
-                  "Of {} claims, {} are reproduced, {} under this reading, and {} are not".format(len(claims), *counts), page)
+                  "Of {} claims, {} are reproduced, {} under this reading, and {} are not".format(len(claims), *counts[-1][1:]), page)
     PAGE.write_text(page, encoding="utf-8")
 
     shutil.rmtree(IMAGES, ignore_errors=True)
