@@ -1,11 +1,11 @@
-"""Draws what pulls on what: one function per force law, and one each for a step and for its energies (docs/images/theory).
+"""Draws what pulls on what: one function per force law, and one for energies (docs/images/theory).
 
 Usage: laws.py [NAME...]; without names all. Curves are the formulas of docs/theory with the numbers given here.
 """
 import sys
 
 import numpy as np
-from matplotlib.patches import Arc, FancyBboxPatch, Polygon, Wedge
+from matplotlib.patches import Arc, Polygon, Wedge
 
 from style import (APICAL, BASAL, CELL, FAINT, FORCE, LATERAL, TEXT, VITELLINE, WHITE, YOLK, arrow, canvas, label, leader, plt,
                    save)
@@ -70,34 +70,49 @@ def ring(axes, centre, inner, outer, begin=0, end=360, cells=24, alpha=1.0):
 
 
 def contraction():
-    figure, axes = canvas(760, 320)
-    front, depth = np.array([(50, 40), (220, 40), (220, 200), (50, 200)]), np.array((95, 62))
-    polygon(axes, [front[3], front[2], front[2] + depth, front[3] + depth], edge="none")
-    polygon(axes, front, fill="#efe1c4", edge="none")
-    polygon(axes, [front[1], front[1] + depth, front[2] + depth, front[2]], fill="#e5d4b0", edge="none")
-    for a, b in ((0, 1), (0, 3), (1, 2)):
-        line(axes, front[a], front[b], color=LATERAL if a != 0 or b != 1 else BASAL, width=2)
-    line(axes, front[1], front[1] + depth, color=BASAL)
-    line(axes, front[1] + depth, front[2] + depth, color=LATERAL)
-    corners = [front[3], front[2], front[2] + depth, front[3] + depth]
-    for a, b in ((0, 1), (1, 2), (2, 3), (3, 0)):
-        spring(axes, corners[a], corners[b])
-    dots(axes, corners)
-    for here, there in ((corners[0], corners[1]), (corners[1], corners[0])):
-        way = (there - here) / np.hypot(*(there - here))
-        arrow(axes, here + (0, -16), here + way * 62 + (0, -16))
-    label(axes, (135, 182), "$T$", FORCE, BIG)
-    label(axes, (182, 300), "apical face", APICAL)
-    label(axes, (135, 100), "edge of\nlength $\\ell$")
-    curve = inset(figure, (470, 62, 270, 238), "edge length $\\ell$", "tension $T$")
+    figure, axes = canvas(760, 330)
+    wide, deep = np.array((165, 0)), np.array((75, 70))
+    for k in range(2):
+        top, bottom = np.array((25, 175)) + k * wide, np.array((25, 40)) + k * wide
+        polygon(axes, [top, top + wide, top + wide + deep, top + deep], edge="none")
+        polygon(axes, [bottom, bottom + wide, top + wide, top], fill="#efe1c4", edge="none")
+        for x in (top, top + wide):
+            line(axes, x, x - (0, 135), color=LATERAL)
+        line(axes, bottom, bottom + wide, color=BASAL)
+        corners = [top, top + wide, top + wide + deep, top + deep]
+        middle = np.mean(corners, axis=0)
+        for a, b in zip(corners, [*corners[1:], corners[0]]):
+            line(axes, a, b, color="#d8a79c", width=1.5)
+            inward = np.array((np.sign(middle[0] - (a + b)[0] / 2) * 13, 0)) if a[1] != b[1] else \
+                np.array((0, np.sign(middle[1] - a[1]) * 9))
+            spring(axes, a + 0.05 * (b - a) + inward, b - 0.05 * (b - a) + inward, sway=5, width=2)
+    right = np.array((25, 40)) + 2 * wide
+    polygon(axes, [right, right + deep, right + deep + (0, 135), right + (0, 135)], fill="#e5d4b0", edge="none")
+    line(axes, right, right + deep, color=BASAL)
+    line(axes, right + deep, right + deep + (0, 135), color=LATERAL)
+    line(axes, right, right + (0, 135), color=LATERAL)
+    nodes = [np.array((25, 175)) + k * wide + s * deep for k in range(3) for s in (0, 1)]
+    dots(axes, nodes)
+    arrow(axes, (32, 158), (92, 158))
+    arrow(axes, (183, 158), (123, 158))
+    label(axes, (107, 138), "$T$", FORCE, BIG)
+    arrow(axes, (194, 158), (351, 158), TEXT, width=2, head=10, arrowstyle="<|-|>,head_length=0.3,head_width=0.17")
+    label(axes, (272, 138), "$\\ell$", TEXT, BIG)
+    leader(axes, (228, 275), (228, 210), APICAL, dot=False)
+    label(axes, (228, 298), "shared edge: two springs", APICAL)
+    label(axes, (107, 90), "cell 1")
+    label(axes, (272, 90), "cell 2")
+    curve = inset(figure, (515, 62, 230, 248), "edge length $\\ell$", "tension $T$")
     length = np.linspace(0, 3, 200)
     for a in (1, 0.5):
         curve.plot(length, a * (np.maximum(0, length - 1) + 0.7), color=APICAL, alpha=0.4 + 0.6 * (a == 1))
-    curve.set(xlim=(0, 3.3), ylim=(0, 3))
+    curve.plot(length, length, color=TEXT, linewidth=2, linestyle=(0, (3, 2)))
+    curve.set(xlim=(0, 3.3), ylim=(0, 3.2))
     curve.set_xticks([1], ["$U$"])
     curve.set_yticks([0.35, 0.7], ["$P/2$", "$P$"])
-    label(curve, (2.3, 2.45), "$a=1$", APICAL)
-    label(curve, (2.75, 0.85), "$a=0.5$", APICAL)
+    label(curve, (2.85, 1.95), "$a=1$", APICAL)
+    label(curve, (2.6, 0.8), "$a=0.5$", APICAL)
+    label(curve, (1.25, 2.6), "default:\n$U=P=0$", TEXT)
     save(figure, "theory/contraction.svg")
 
 
@@ -113,17 +128,17 @@ def cortex():
         inside = np.array((160, 152)) - (a + b) / 2
         inside = inside / np.hypot(*inside) * 14
         skip = 36 if color == LATERAL else 14
-        arrow(axes, a + inside + skip * way, a + inside + (skip + 28) * way, color, head=13)
-        arrow(axes, b + inside - skip * way, b + inside - (skip + 28) * way, color, head=13)
+        arrow(axes, a + inside + skip * way, a + inside + (skip + 28) * way, FORCE, head=13)
+        arrow(axes, b + inside - skip * way, b + inside - (skip + 28) * way, FORCE, head=13)
     label(axes, (160, 285), "apical", APICAL)
     label(axes, (160, 24), "basal", BASAL)
     label(axes, (338, 150), "lateral", LATERAL)
-    curve = inset(figure, (455, 62, 285, 245), "face area $A/A_r$", "tension $T$")
+    curve = inset(figure, (455, 62, 285, 245), "face area $A/A_0$", "tension $T$")
     area = np.linspace(0.05, 1.75, 400)
     active, elastic, crowding = area / (area + 0.25), 0.9 * (area - 1) * np.where(area < 1, 0.5, 1), -0.02 / area**2
     curve.axhline(0, color=FAINT, linewidth=1.5)
-    for values, color, text, at in ((active, APICAL, "active", (1.45, 1.0)), (elastic, BASAL, "elastic", (1.45, 0.12)),
-                                    (crowding, LATERAL, "crowding", (0.62, -0.62))):
+    for values, color, text, at in ((active, "#b7791f", "active", (1.45, 0.66)), (elastic, "#0e7c86", "elastic", (1.45, 0.12)),
+                                    (crowding, "#9b2c6f", "crowding", (0.62, -0.62))):
         curve.plot(area, values, color=color, linewidth=2.5)
         label(curve, at, text, color)
     total = active + elastic + crowding
@@ -179,7 +194,7 @@ def corotational():
     label(axes, (205, 192), "turn by $R$")
     arrow(axes, (165, 150), (250, 150), TEXT)
     placed = turned(square, 35) + here
-    now = turned(square * (1.25, 0.9) + [(-8, 6), (10, -12), (-4, 8), (-14, -8)], 35) + here
+    now = turned(square * (1.2, 0.9) + [(-14, 4), (12, -12), (16, 8), (-14, 0)], 35) + here
     polygon(axes, now)
     polygon(axes, placed, fill="none", edge="#5a6b80", linestyle=(0, (4, 3)))
     for a, b in zip(placed, now):
@@ -194,7 +209,7 @@ def corotational():
         arrow(axes, b, b + 2.2 * (a - b) + 0.01, FORCE, head=14)
     dots(axes, now)
     label(axes, here, "$f_i=-R\\,g_i$", FORCE)
-    label(axes, (690, 275), "forces", FORCE)
+    label(axes, (625, 22), "forces", FORCE)
     arrow(axes, (472, 150), (520, 150), TEXT)
     save(figure, "theory/corotational.svg")
 
@@ -219,7 +234,8 @@ def neo_hookean():
     curve.plot([0, *time], [0, *np.exp(-time)], color=TEXT)
     curve.set(xlim=(-0.8, 3.5), ylim=(-0.02, 1.15))
     curve.set_xticks([0, 1, 3], ["0", "$\\tau$", "$3\\tau$"])
-    label(curve, (1.75, 0.62), "$e^{-t/\\tau}$", TEXT, BIG)
+    label(curve, (1.95, 0.72), "$e^{-t/\\tau}$", TEXT, BIG)
+    label(curve, (1.95, 0.98), "small strain:", TEXT)
     save(figure, "theory/neo_hookean.svg")
 
 
@@ -250,23 +266,25 @@ def shape_memory():
 
 def corner_barrier():
     figure, axes = canvas(760, 300)
-    for number, (ratio, text) in enumerate(((1, "1"), (0.05, "0.05"), (0.0, "0"))):
+    for number, (ratio, text) in enumerate(((1, "1"), (0.15, "0.15"), (0.0, "0"))):
         x = 25 + 140 * number
         corner = np.array((50 + 50 * ratio, 50 + 50 * ratio)) + (x, 110)
         points = [np.array(p) + (x, 110) for p in ((0, 0), (100, 0))] + [corner, np.array((x, 210))]
         polygon(axes, points)
         dots(axes, [corner], APICAL, 12)
+        line(axes, points[1], points[3], color="#5a6b80", width=1.5, linestyle=(0, (4, 3)), zorder=8)
         if ratio < 0.15:
             arrow(axes, corner, corner + (38, 38))
         label(axes, (x + 52, 78), text)
     label(axes, (217, 38), "corner Jacobian $J/J_0$")
-    label(axes, (217, 262), "a corner becomes flat", APICAL)
+    label(axes, (217, 262), "a corner becomes flat (dashed)", APICAL)
     curve = inset(figure, (510, 62, 230, 225), "$J/J_0$", "energy $E$")
     r = np.linspace(0.012, 2, 400)
     curve.plot(0.15 * r, np.where(r < 1, -(r - 1)**2 * np.log(r), 0), color=FORCE)
     curve.set(xlim=(0, 0.3), ylim=(-0.05, 3))
     curve.set_xticks([0, 0.15, 0.3], ["0", "0.15", "0.3"])
-    label(curve, (0.155, 1.7), "$-(r-1)^2\\,\\ln\\,r$", FORCE)
+    label(curve, (0.165, 2.2), "$-(r-1)^2\\,\\ln\\,r$", FORCE)
+    label(curve, (0.165, 1.5), "$r=J/(0.15J_0)$", FORCE)
     save(figure, "theory/corner_barrier.svg")
 
 
@@ -308,9 +326,9 @@ def vitelline():
     dots(axes, apex)
     arrow(axes, at(places[4], radius), at(places[4], radius - 46), TEXT, head=10, arrowstyle="<|-|>,head_length=0.3,head_width=0.17")
     label(axes, at(np.radians(77.8), radius - 25), "$g$", TEXT, BIG)
-    label(axes, (252, 165), "$\\mu$", FORCE, BIG, rim=CELL)
+    label(axes, (146, 150), "$N$", FORCE, BIG, rim=CELL)
     label(axes, (230, 278), "vitelline membrane", VITELLINE)
-    curve = inset(figure, (540, 62, 200, 225), "gap $g$", "contact force $\\mu$")
+    curve = inset(figure, (540, 62, 200, 225), "gap $g$", "contact force $N$")
     curve.plot([0, 0, 1], [1, 0, 0], color=FORCE, linewidth=6, clip_on=False, solid_capstyle="round")
     curve.set(xlim=(0, 1), ylim=(0, 1))
     label(curve, (0.07, 0.7), "in contact", FORCE, ha="left")
@@ -359,45 +377,85 @@ def coulomb():
     curve.set(xlim=(0, 3), ylim=(0, 1.25))
     curve.set_xticks([1], ["$s$"])
     curve.set_yticks([0, 1], ["0", "$\\mu N$"])
-    label(curve, (0.62, 0.2), "sticks", rim="#e2e8f0")
-    label(curve, (2, 0.2), "slides")
+    label(curve, (0.5, 0.14), "creeps", rim="#e2e8f0")
+    label(curve, (2.1, 0.14), "slides")
     save(figure, "theory/coulomb.svg")
 
 
 def self_contact():
-    figure, axes = canvas(760, 330)
-    left = [(40, 300), (120, 272), (168, 205), (178, 120), (150, 30)]
-    right = [(420, 300), (335, 275), (280, 190), (268, 110), (300, 30)]
-    polygon(axes, [(20, 300), *left, (20, 30)], edge="none")
-    polygon(axes, [(440, 300), *right, (440, 30)], edge="none")
+    figure, axes = canvas(760, 540)
+    left = [(40, 510), (120, 482), (168, 415), (178, 330), (150, 260)]
+    right = [(420, 510), (335, 485), (280, 405), (266, 300), (300, 260)]
+    polygon(axes, [(20, 510), *left, (20, 260)], edge="none")
+    polygon(axes, [(440, 510), *right, (440, 260)], edge="none")
     line(axes, *left, color=APICAL, width=5)
     line(axes, *right, color=APICAL, width=5)
     dots(axes, left[1:4] + right[1:4], TEXT, 8)
-    point = np.array(right[2], float)
-    a, b = np.array(left[2], float), np.array(left[3], float)
-    way = (b - a) / np.hypot(*(b - a))
-    foot = a + way * np.dot(point - a, way)
-    line(axes, foot, point, color=TEXT, width=2, linestyle=(0, (2, 2)))
-    dots(axes, [foot], WHITE, 10, markeredgecolor=TEXT, markeredgewidth=2)
-    arrow(axes, point, point + 0.62 * (point - foot))
-    arrow(axes, foot, foot - 0.62 * (point - foot))
-    label(axes, point + (4, 28), "$p$", TEXT, BIG)
-    label(axes, foot + (-18, 26), "$q$", TEXT, BIG)
+
+    def push(point, one, other, on_q=True):
+        """The nearest place q of a point on a segment, and forces on both."""
+        point, one, other = (np.array(x, float) for x in (point, one, other))
+        way = (other - one) / np.hypot(*(other - one))
+        foot = one + way * np.dot(point - one, way)
+        line(axes, foot, point, color=TEXT, width=2, linestyle=(0, (2, 2)))
+        dots(axes, [foot], WHITE, 10, markeredgecolor=TEXT, markeredgewidth=2)
+        length = 58 * (point - foot) / np.hypot(*(point - foot))
+        arrow(axes, point, point + length)
+        if on_q:
+            arrow(axes, foot, foot - length)
+        return point, foot
+    point, foot = push(right[2], left[2], left[3])
+    label(axes, point + (6, 30), "$p$", TEXT, BIG)
+    label(axes, foot + (-18, 24), "$q$", TEXT, BIG)
     label(axes, (point + foot) / 2 + (0, 17), "$g$", TEXT, BIG)
-    label(axes, (75, 90), "facet")
-    leader(axes, (105, 92), (172, 145), TEXT)
-    label(axes, (372, 90), "point")
-    leader(axes, (345, 98), point + (2, -6), TEXT, dot=False)
-    label(axes, (228, 316), "two lips of a furrow", APICAL)
-    curve = inset(figure, (540, 62, 200, 240), "gap $g$", "pressure")
+    point, foot = push(left[3], right[2], right[3])
+    label(axes, point + (-26, -22), "$p$", TEXT, BIG)
+    label(axes, foot + (18, -26), "$q$", TEXT, BIG)
+    label(axes, (72, 425), "facet")
+    leader(axes, (104, 428), (138, 452), TEXT, dot=False)
+    label(axes, (228, 526), "two lips of a furrow", APICAL)
+
+    # Three cases.
+    line(axes, (20, 232), (740, 232), color=FAINT, width=1.5)
+    polygon(axes, [(20, 150), (128, 65), (236, 150), (236, 50), (20, 50)], edge="none")
+    line(axes, (20, 150), (128, 65), (236, 150), color=APICAL, width=4)
+    polygon(axes, [(70, 215), (128, 110), (186, 215)], edge="none")
+    line(axes, (70, 215), (128, 110), (186, 215), color=APICAL, width=4)
+    for one, other in (((20, 150), (128, 65)), ((128, 65), (236, 150))):
+        push((128, 110), one, other, on_q=False)
+    dots(axes, [(128, 110)], TEXT, 9)
+    label(axes, (128, 24), "ridge: two places")
+
+    polygon(axes, [(275, 125), (485, 125), (485, 50), (275, 50)], edge="none")
+    line(axes, (275, 125), (485, 125), color=APICAL, width=4)
+    polygon(axes, [(325, 215), (380, 95), (435, 215)], edge="none", alpha=0.8)
+    line(axes, (325, 215), (380, 95), (435, 215), color=APICAL, width=4)
+    arrow(axes, (380, 95), (380, 165))
+    dots(axes, [(380, 95)], TEXT, 9)
+    dots(axes, [(380, 125)], WHITE, 10, markeredgecolor=TEXT, markeredgewidth=2)
+    label(axes, (432, 92), "$g<0$", TEXT, BIG)
+    label(axes, (380, 24), "behind: pushed out")
+
+    polygon(axes, [(525, 130), (722, 145), (630, 60)], edge="none", fill="#eab0a0", alpha=0.7)
+    polygon(axes, [(525, 130), (722, 145), (600, 215)], edge="none", fill="#eab0a0", alpha=0.7)
+    polygon(axes, [(570, 55), (680, 215), (740, 110)], edge="none", fill=CELL, alpha=0.85)
+    polygon(axes, [(570, 55), (680, 215), (545, 190)], edge="none", fill=CELL, alpha=0.85)
+    line(axes, (525, 130), (722, 145), color=APICAL, width=4)
+    line(axes, (570, 55), (680, 215), color=APICAL, width=4)
+    dots(axes, [(625, 137)], WHITE, 11, markeredgecolor=TEXT, markeredgewidth=2, zorder=10)
+    label(axes, (540, 148), "$a$", TEXT, BIG)
+    label(axes, (668, 170), "$b$", TEXT, BIG)
+    label(axes, (632, 24), "edges, from above")
+
+    curve = inset(figure, (525, 300, 215, 225), "gap $g$", "pressure")
     curve.plot([-0.25, 1, 1.6], [1.25, 0, 0], color=FORCE)
-    curve.plot([-0.25, 0.5, 1.6], [0.75, 0, 0], color=BASAL, linestyle=(0, (3, 2)))
+    curve.plot([-0.25, 0.5, 1.6], [0.75, 0, 0], color="#b7791f", linestyle=(0, (3, 2)))
     curve.axvline(0, color=FAINT, linewidth=1.5)
     curve.set(xlim=(-0.25, 1.6), ylim=(-0.02, 1.3))
     curve.set_xticks([0, 0.5, 1], ["0", "$d/2$", "$d$"])
-    label(curve, (1.0, 0.85), "points:\n$k\\,(d-g)$", FORCE)
-    label(curve, (1.25, 0.24), "edges", BASAL)
-    curve.plot([0.97, 0.3], [0.24, 0.21], color=BASAL, linewidth=1.5)
+    label(curve, (1.0, 0.95), "points of one\nside: $k\\,(d-g)$", FORCE)
+    label(curve, (1.25, 0.3), "edges", "#b7791f")
+    curve.plot([1.0, 0.3], [0.28, 0.21], color="#b7791f", linewidth=1.5)
     save(figure, "theory/self_contact.svg")
 
 
@@ -441,21 +499,25 @@ def surroundings():
 
 def ties():
     figure, axes = canvas(760, 320)
-    planes = []
+    planes, inside = [], []
     for shift in ((0, 0), (210, 50)):
         centre = np.array((190, 130)) + shift
         planes.append([centre + (95 * np.cos(w), 95 * np.sin(w)) for w in np.radians(np.arange(0, 360, 30))])
         inner = [centre + (62 * np.cos(w), 62 * np.sin(w)) for w in np.radians(np.arange(0, 360, 30))]
+        inside.append(inner)
         for k in range(12):
             n = (k + 1) % 12
             cell(axes, planes[-1][k], planes[-1][n], inner[n], inner[k], width=3)
     for k in range(1, 12, 2):
         spring(axes, planes[0][k], planes[1][k], FORCE, turns=7, sway=6, width=2)
-    for plane in planes:
+    for k in (4, 10):
+        spring(axes, inside[0][k], inside[1][k], FORCE, turns=7, sway=6, width=2)
+    for plane, inner in zip(planes, inside):
         dots(axes, plane[1::2], TEXT, 8)
+        dots(axes, [inner[4], inner[10]], TEXT, 8)
     label(axes, (190, 22), "first plane, $x_a$")
     label(axes, (430, 300), "other plane, $x_b$")
-    label(axes, (640, 175), "tie: both planes\nmove alike", FORCE)
+    label(axes, (640, 175), "tie: one at every\nnode (some drawn)", FORCE)
     arrow(axes, (560, 70), (680, 98), TEXT)
     label(axes, (640, 62), "axis $x$", ha="left")
     save(figure, "theory/ties.svg")
@@ -465,6 +527,7 @@ def mirror():
     figure, axes = canvas(760, 330)
     centre = (250, 165)
     axes.add_patch(Wedge(centre, 100, -90, 90, facecolor=YOLK, edgecolor="none"))
+    axes.add_patch(Wedge(centre, 100, 90, 270, facecolor=YOLK, edgecolor="none", alpha=0.28))
     ring(axes, centre, 100, 145, -90, 90, 12)
     ring(axes, centre, 100, 145, 90, 270, 12, alpha=0.28)
     line(axes, (250, 5), (250, 325), color=FORCE, width=3, linestyle=(0, (5, 3)))
@@ -517,42 +580,6 @@ def plain(axes, at, text, color=TEXT, size=17, **how):
     axes.text(*at, text, color=color, fontsize=size, zorder=10, **{"ha": "center", "va": "center", "linespacing": 1.15, **how})
 
 
-def box(axes, at, text, color=TEXT, width=200, height=62, fill=WHITE):
-    axes.add_patch(FancyBboxPatch((at[0] - width / 2 + 8, at[1] - height / 2 + 8), width - 16, height - 16,
-                                  boxstyle="round,pad=8", facecolor=fill, edgecolor=color, linewidth=2.5, zorder=5))
-    plain(axes, at, text, color)
-
-
-def step():
-    figure, axes = canvas(760, 470)
-    axes.add_patch(FancyBboxPatch((160, 128), 440, 232, boxstyle="round,pad=8", facecolor="#f7f5fc", edgecolor=FAINT, linewidth=1.5))
-    plain(axes, (584, 345), "Newton iteration", FORCE, ha="right")
-    box(axes, (380, 425), "predictor: extrapolate positions and pressures", width=470, height=60, fill=CELL)
-    box(axes, (270, 285), "residual and\ntangent of all laws", width=206, height=74)
-    box(axes, (490, 285), "linear solve\n$dx,\\ d\\lambda$", width=176, height=74)
-    box(axes, (490, 175), "line search", width=176, height=60)
-    box(axes, (270, 175), "nodes in contact\nupdated", width=206, height=74)
-    box(axes, (150, 45), "shorter step", APICAL, 206, 60)
-    box(axes, (388, 45), "error < tolerance?", TEXT, 216, 60)
-    box(axes, (640, 45), "accept; next\nstep length", LATERAL, 196, 74)
-    arrow(axes, (270, 395), (270, 324), TEXT)
-    arrow(axes, (374, 285), (400, 285), TEXT, head=14)
-    arrow(axes, (490, 247), (490, 206), TEXT, head=14)
-    arrow(axes, (401, 175), (375, 175), TEXT, head=14)
-    arrow(axes, (270, 213), (270, 247), TEXT, head=14)
-    arrow(axes, (388, 119), (388, 76), TEXT)
-    label(axes, (404, 98), "converged", LATERAL, ha="left")
-    arrow(axes, (200, 119), (200, 76), TEXT)
-    label(axes, (188, 98), "fails", APICAL, ha="right")
-    arrow(axes, (279, 45), (254, 45), TEXT, head=14)
-    arrow(axes, (497, 45), (541, 45), TEXT, head=14)
-    line(axes, (46, 45), (24, 45), (24, 425), width=3)
-    arrow(axes, (24, 425), (144, 425), TEXT)
-    line(axes, (700, 83), (700, 425), width=3)
-    arrow(axes, (700, 425), (616, 425), TEXT)
-    save(figure, "theory/step.svg")
-
-
 def energy():
     figure, axes = canvas(760, 330)
 
@@ -577,7 +604,7 @@ def energy():
 
 
 LAWS = (contraction, cortex, division, corotational, neo_hookean, shape_memory, corner_barrier, cell_volume, vitelline, shell_drag,
-        coulomb, self_contact, enclosed_volume, surroundings, ties, mirror, periodic, step, energy)
+        coulomb, self_contact, enclosed_volume, surroundings, ties, mirror, periodic, energy)
 
 if __name__ == "__main__":
     for law in LAWS:
