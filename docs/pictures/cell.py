@@ -26,8 +26,8 @@ def named(axes, side, y, name, tables, target, color):
 
 
 def sheet():
-    """Three columnar cells of a sheet, cut along their front, in oblique projection."""
-    figure, axes = canvas(760, 560)
+    """Three columnar cells of a sheet in oblique projection."""
+    figure, axes = canvas(760, 480)
     width, height, depth = 74, 190, np.array([34, 46])
     left, base = 250, 158
     corners = [np.array([left + width * number, base]) for number in range(4)]
@@ -70,21 +70,21 @@ def sheet():
     bracket = base - 90
     axes.plot([left, left, left + 2 * width, left + 2 * width], [bracket + 12, bracket, bracket, bracket + 12], color=TEXT, linewidth=2)
 
-    named(axes, "left", 530, "vitelline membrane", ["[vitelline]"], (left + 20, shell + 12), VITELLINE)
-    named(axes, "left", 466, "laser cut", ["[ablation.NAME]"], corners[0] + top + depth + (28, -4), TEXT)
-    named(axes, "left", 396, "apical face", ["[cortex.NAME]", 'faces = "apical"'], corners[0] + top + (13, 12), APICAL)
-    named(axes, "left", 300, "lateral face", ["[cortex.NAME]", 'faces = "lateral"', "shared by 2 cells"], corners[0] + (0, 120), LATERAL)
-    named(axes, "left", 186, "basal face", ["[cortex.NAME]", 'faces = "basal"'], corners[0] + (12, 0), BASAL)
-    label(axes, corners[0] + (width / 2, 88), "neighbour", rotation=90)
+    named(axes, "left", 452, "vitelline membrane", ["[vitelline]"], (left + 4, shell + 10), VITELLINE)
+    named(axes, "left", 390, "apical face", ["[cortex.NAME]", 'faces = "apical"'], corners[0] + top + (31, 28), APICAL)
+    named(axes, "left", 316, "laser cut", ["[ablation.NAME]"], corners[0] + top + (18, -10), TEXT)
+    named(axes, "left", 252, "cell interior", ["[elasticity]", "[volume]"], corners[0] + (37, 80), TEXT)
+    named(axes, "left", 168, "basal face", ["[cortex.NAME]", 'faces = "basal"'], corners[0] + (14, 0), BASAL)
     label(axes, (left + width, bracket - 20), "set of cells", weight="bold")
     key(axes, (left + width, bracket - 42), "[region.NAME]")
 
-    named(axes, "right", 530, "perivitelline gap", ["[vitelline] gap_um"], (left + 3 * width + 20, shell - 12), VITELLINE)
-    named(axes, "right", 466, "contraction", ["[contraction.NAME]", 'edges = "apical"'], middle + (width / 2 + 6, 0), FORCE)
-    named(axes, "right", 380, "division plane", ["[division.NAME]"], corners[2] + (width / 2, 165), TEXT)
-    named(axes, "right", 310, "cell interior", ["[elasticity]", "[volume]"], corners[1] + (50, 100), TEXT)
-    named(axes, "right", 222, "viscous drag", ["[dynamics]"], corners[3] + (4, -2), TEXT)
-    named(axes, "right", 150, "yolk or lumen", ["[enclosed.yolk]"], corners[3] + (-10, -40), "#8a6d00")
+    named(axes, "right", 404, "perivitelline gap", ["[vitelline] gap_um"], (left + 3 * width + 28, shell - 13), VITELLINE)
+    named(axes, "right", 342, "contraction", ["[contraction.NAME]", 'edges = "apical"'], middle + (width / 2 + 6, 0), FORCE)
+    named(axes, "right", 264, "lateral face", ["[cortex.NAME]", 'faces = "lateral"'], end + (18, 110), LATERAL)
+    named(axes, "right", 190, "division plane", ["[division.NAME]"], corners[2] + (width / 2, 40), TEXT)
+    named(axes, "right", 132, "viscous drag", ["[dynamics]"], end + (4, -2), TEXT)
+    label(axes, (left + 133, base - 22), "yolk or lumen", "#6b5200", weight="bold")
+    key(axes, (left + 133, base - 46), "[enclosed.yolk]")
     save(figure, "concepts/cell.svg")
 
 
@@ -126,14 +126,14 @@ def embryo():
     label(axes, (18, centre[1] + 78), "anterior", ha="left")
     label(axes, (282, centre[1] + 78), "posterior", ha="right")
     label(axes, centre + (0, -86), "ventral")
-    origin = np.array([70, 96])
+    origin = np.array([46, 110])
     arrow(axes, origin, origin + (80, 0), TEXT, 2.5, 15)
     arrow(axes, origin, origin + (0, 66), TEXT, 2.5, 15)
     axes.plot(*origin, "o", color=WHITE, markeredgecolor=TEXT, markersize=16, markeredgewidth=2, zorder=9)
     axes.plot(*origin, "x", color=TEXT, markersize=9, markeredgewidth=2, zorder=10)
     label(axes, origin + (0, 82), "z: dorsal")
     label(axes, origin + (88, 0), "x: posterior", ha="left")
-    label(axes, origin + (-14, -28), "y: right (away from you)", ha="left")
+    label(axes, origin + (-14, -28), "y: right, into the page", ha="left")
 
     # Cut at x = 0, from the front: the embryo's right is on the left.
     middle, scale = np.array([458, 246]), 132 / 90
@@ -154,13 +154,13 @@ def embryo():
     for below, above in ((378, 400), (62, 112)):
         axes.plot([middle[0]] * 2, [below, above], color=TEXT, linewidth=2, linestyle=(0, (4, 3)), zorder=3)
     once = [tuple(np.round(place, 2)) for corners in cells[contract] for place in corners[2:]]
-    for lip in sorted(place for place in once if once.count(place) == 1):
-        leader(axes, (350, 96), lip, APICAL)
-    label(axes, (346, 90), "lips", APICAL, weight="bold", ha="right")
+    for border in sorted(place for place in once if once.count(place) == 1):
+        leader(axes, (350, 96), border, APICAL)
+    label(axes, (344, 96), "border of", APICAL, weight="bold", ha="right")
+    label(axes, (344, 74), "mesoderm", APICAL, weight="bold", ha="right")
     label(axes, (middle[0] + 40, 478), "cut at x = 0, from the front", weight="bold")
-    label(axes, middle + (0, 190), "dorsal")
-    label(axes, middle + (0, 166), "midline, y = 0")
-    label(axes, middle + (0, -198), "ventral")
+    label(axes, middle + (0, 168), "dorsal")
+    label(axes, middle + (0, -198), "ventral midline, y = 0")
     label(axes, middle + (-150, 0), "R")
     label(axes, middle + (0, 62), "yolk", weight="bold")
     key(axes, middle + (0, 36), "[enclosed.yolk]")
@@ -170,7 +170,7 @@ def embryo():
     label(axes, (column, 240), "L", ha="left")
     for y, lines, table, target, color in (
             (196, ["furrow bottom"], "", (2, -76), APICAL),
-            (150, ["closure"], "[self_contact]", (0, -106), APICAL),
+            (150, ["closed lips"], "[self_contact]", (0, -106), APICAL),
             (84, ["vitelline", "membrane"], "[vitelline]", (22, -131), VITELLINE)):
         for number, line in enumerate(lines):
             label(axes, (column - 8, y - 22 * number), line, color, weight="bold", ha="left")
@@ -217,18 +217,22 @@ def step():
     down(386, 350)
     box(324, ["Balanced, volumes kept?"], question, FORCE, h=48)
     down(300, 262, "yes")
-    box(238, ["Error below tolerance_um?"], question, FORCE, h=48)
+    box(238, ["Error acceptable?"], question, FORCE, h=48)
     down(214, 176, "yes")
     box(146, ["Accept the step", "one row in series.csv"], "#d9f0e2", LATERAL)
     down(116, 84)
-    box(60, ["Equilibrium, or end time?"], question, FORCE, h=48)
+    box(60, ["Equilibrium, end or [stop]?"], question, FORCE, h=48)
     arrow(axes, (middle + wide / 2, 60), (middle + wide / 2 + 80, 60), TEXT, 2, 14)
     label(axes, (middle + wide / 2 + 36, 76), "yes")
     box(60, ["End"], x=middle + wide / 2 + 120, w=80, h=44)
     back(middle + wide / 2 + 60, 324, 508, ["no: iterate"], FORCE)
     back(168, 238, 590, ["no: rejected,", "shorter step"], APICAL)
     axes.plot([168, middle - wide / 2], [324, 324], color=APICAL, linewidth=2, zorder=3)
-    label(axes, (200, 338), "fails", APICAL)
+    label(axes, (158, 324), "not solved", APICAL, ha="right")
+    box(508, ["exit status 3"], WHITE, APICAL, x=88, w=136, h=40)
+    label(axes, (88, 472), "too short", APICAL)
+    axes.plot([168, 160], [508, 508], color=APICAL, linewidth=2, zorder=3)
+    arrow(axes, (168, 508), (156, 508), APICAL, 2, 14)
     back(16, 60, 610, [], LATERAL)
     label(axes, (28, 108), "no: next step,", LATERAL, ha="left")
     label(axes, (28, 86), "length by error", LATERAL, ha="left")
