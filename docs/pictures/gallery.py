@@ -17,7 +17,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parent))
-from style import APICAL, BASAL, CELL, IMAGES, LATERAL, TEXT, VITELLINE, canvas, label  # noqa: E402
+from style import APICAL, BASAL, CELL, IMAGES, LATERAL, TEXT, VITELLINE, arrow, canvas, label  # noqa: E402
 from tissue import Camera, cut, draw_cut, draw_half, draw_outside, fill_inside, palette_of, rings_of  # noqa: E402
 
 import plica  # noqa: E402
@@ -123,14 +123,17 @@ def by_cell(frame, name):
     return values
 
 
-def section(axes, frame, place, axis=0, at=0.0, colour_of_cell=None, width=2.0, yolk=True, rest=None, plain=False):
-    """Draws a cut of a closed embryo, with its yolk and, from the frame at rest, the vitelline membrane."""
+def section(axes, frame, place, axis=0, at=0.0, colour_of_cell=None, width=2.0, yolk=True, rest=None, plain=False, row=False):
+    """Draws a cut of a closed embryo, with its yolk and, from the frame at rest, the vitelline membrane.
+
+    row: cut the cells that were in the plane at rest, so that all of them are of one row.
+    """
     def placed(points):
         return place(np.asarray(points))
     if rest is not None:
         for ring in rings_of(cut(rest.points, rest.hexahedra, cells_of(rest), axis, at)[2]["apical"]):
             axes.plot(*placed(ring * 1.015).T, color=VITELLINE, linewidth=1.5, zorder=1)
-    pieces = cut(frame.points, frame.hexahedra, cells_of(frame), axis, at)
+    pieces = cut(frame.points, frame.hexahedra, cells_of(frame), axis, at, rest.points if row else None)
     if yolk:
         fill_inside(axes, pieces[2], placed)
     draw_cut(axes, *pieces, colour_of_cell, width, placed, plain=plain)
@@ -144,7 +147,7 @@ def area_colours(frame):
 
 
 def closing():
-    """The closing furrow's cross-section, moving."""
+    """The closing furrow's cross-section, moving; one moment of it, and the first page's door to the first furrow."""
     run = result("slice", "furrow-slice", output__frame_every_min=0.5)
     rest, images = run.frames[0], []
     for frame in run.frames:
@@ -158,6 +161,9 @@ def closing():
         images.append(image_of(figure))
         if abs(frame.time_min - 14) < 0.01:
             write(figure, "slice")
+            figure, axes = new(500, 300)
+            section(axes, frame, at_place((250, 150), 1.56), rest=rest, width=1.8)
+            write(figure, "door-fold", 64, 700)
     write_movie(images, "slice")
 
 
@@ -182,15 +188,16 @@ def measured():
 
 
 def living():
-    """Three cross-sections of a whole embryo."""
+    """Three rows of cells of a whole embryo, from the middle towards a pole."""
     run = result("living", "drosophila-living", embryo__mirror=["x", "y"])
     figure, axes = new()
-    frame = run.frames.at(20)
-    for number, at in enumerate((-125, 0, 125)):
+    frame, rest = run.frames.at(20), run.frames[0]
+    for number, at in enumerate((3.15, 129.2, 173.9)):
         x = 142 + 258 * number
-        section(axes, frame, at_place((x, 265), 1.36), at=at, colour_of_cell=area_colours(frame), width=2, rest=run.frames[0],
-                plain=True)
-        label(axes, (x, 435), f"x = {at} µm".replace("-", "−"), size=LETTERS - 2)
+        section(axes, frame, at_place((x, 265), 1.36), at=at, colour_of_cell=area_colours(frame), width=2, rest=rest, plain=True, row=True)
+        label(axes, (x, 440), f"x = {at:.0f} µm", size=LETTERS - 2)
+    label(axes, (22, 400), "D", size=LETTERS - 2)
+    label(axes, (22, 130), "V", size=LETTERS - 2)
     area_bar(axes, 480, 52)
     bar(axes, 60, 48, 50, 1.36)
     write(figure, "living")
@@ -209,12 +216,17 @@ def deep():
     run = result("deep", "drosophila-deep")
     figure, axes = new()
     frame, rest = run.frames[-1], run.frames[0]
-    draw_half(axes, frame, area_colours(frame), VIEW, SUN, 0.01, (235, 290, 430, 350), rest, 2.0)
+    scale = draw_half(axes, frame, area_colours(frame), VIEW, SUN, 0.01, (235, 290, 430, 350), rest, 2.0)
     for one, y in ((rest, 375), (frame, 200)):
         section(axes, one, at_place((628, y), 0.6), axis=1, at=0.01, width=1.8)
         label(axes, (628, y), f"{one.time_min:.1f} min".replace(".0", ""), size=LETTERS - 4)
+        label(axes, (477, y), "A", size=LETTERS - 4)
+        label(axes, (778, y), "P", size=LETTERS - 4)
+    for place, letter in (((115, 448), "D"), ((205, 180), "V"), ((645, 430), "D"), ((645, 318), "V")):
+        label(axes, place, letter, size=LETTERS - 4, rim="white")
     area_bar(axes, 40, 52)
-    bar(axes, 570, 48, 100, 0.6)
+    bar(axes, 345, 48, 100, scale)
+    bar(axes, 600, 48, 100, 0.6)
     write(figure, "deep")
 
 
@@ -266,6 +278,9 @@ def wing_disc():
     bar(axes, 60, 48, 50, 2.95)
     area_bar(axes, 480, 52)
     write(figure, "wing-disc")
+    figure, axes = new(500, 300)
+    sheet_picture(axes, frame, at_place((250, 150), 2.05), camera, start.centres[:, 0] < 20)
+    write(figure, "door-gallery", 96, 700)
 
 
 def endless():
@@ -283,14 +298,14 @@ def endless():
 
 
 def sphere():
-    """A sphere of cells cut in half, at rest and at the end."""
-    run = result("xenopus", "xenopus")
+    """The same cells and forces on a pill and on a sphere, both cut across at equilibrium."""
     figure, axes = new()
-    for number, frame in enumerate((run.frames[0], run.frames[-1])):
-        box = (205 + 390 * number, 262, 330, 286)
-        scale = draw_half(axes, frame, area_colours(frame), VIEW, SUN, 0.01, box, run.frames[0], 2.2)
-        time = f"{frame.time_min:.1f} min".replace(".0", "")
-        label(axes, (30 + 390 * number, 445), time, size=LETTERS, weight="bold", ha="left")
+    for number, name in enumerate(("drosophila", "xenopus")):
+        run = result(name, name)
+        frame, rest = run.frames[-1], run.frames[0]
+        box = ((185, 262, 380, 300), (590, 262, 380, 300 * 0.907))[number]
+        scale = draw_half(axes, frame, area_colours(frame), VIEW, SUN, 0.01, box, rest, 2.2)
+        label(axes, (30 + 400 * number, 450), ("pill", "sphere")[number], size=LETTERS, weight="bold", ha="left")
     area_bar(axes, 480, 52)
     bar(axes, 60, 48, 100, scale)
     write(figure, "sphere")
@@ -301,7 +316,7 @@ def ablation():
     run = result("cut", scenario_of_page("gallery.md", "cut"))
     figure, axes = new(800, 480)
     camera = Camera(back=(0, 0, 1), up=(1, 0, 0))
-    for number, (minutes, text) in enumerate(((50 / 60, "before"), (70 / 60, "10 s after"), (3.5, "equilibrium"))):
+    for number, (minutes, text) in enumerate(((50 / 60, "before"), (70 / 60, "10 s after"), (3.5, "2.5 min after"))):
         frame = run.frames.at(minutes)
         apical = frame.polygons("apical")
         x = 140 + 260 * number
@@ -329,6 +344,8 @@ def light():
         x = 210 + 380 * number
         section(axes, run.frames[-1], at_place((x, 235), 1.95), width=2.4, rest=run.frames[0])
         label(axes, (x, 448), f"inhibited from {minutes} min", size=LETTERS, weight="bold")
+    label(axes, (400, 400), "D", size=LETTERS)
+    label(axes, (400, 100), "V", size=LETTERS)
     bar(axes, 352, 25, 50, 1.95)
     write(figure, "light")
 
@@ -356,15 +373,15 @@ def feedback():
     figure, axes = new()
     camera = Camera(back=(-0.25, -1, 0.25), up=(0, 0, 1))
     for number, minutes in enumerate((1, 2, 3)):
-        frame, x, y = run.frames.at(minutes), 165 + 235 * number, 360 - 75 * number
+        frame, x, y = run.frames.at(minutes), 150 + 250 * number, 355 - 65 * number
         apical = frame.polygons("apical")
         colours = colormaps["YlOrRd"](Normalize(0, 1.2)(apical.cell_data["activity"]))[:, :3]
         draw_outside(axes, [apical.points[one] for one in apical.faces], colours, camera, (-0.2, -1, 0.5), width=0.8,
-                     place=at_place((x, y), 0.58))
-        label(axes, (x, y + 100), f"{minutes} min", size=LETTERS, weight="bold")
+                     place=at_place((x, y), 0.5))
+        label(axes, (x, y + 95), f"{minutes} min", size=LETTERS, weight="bold")
     shades = LinearSegmentedColormap.from_list("activity", colormaps["YlOrRd"](np.linspace(0, 1 / 1.2, 64)))
     colour_bar(axes, 60, 52, shades, 0, 1, "activity", 260, (0, 0.5, 1))
-    bar(axes, 620, 48, 100, 0.58)
+    bar(axes, 620, 48, 100, 0.5)
     write(figure, "feedback")
 
 
@@ -410,7 +427,7 @@ def labels():
     write(figure, "labels")
 
 
-VERDICTS = {"closed": "#2f855a", "furrowed": "#2b6cb0", "flattened": "#f3cf6b"}
+VERDICTS = {"closed": "#44337a", "furrowed": "#a78bd4", "flattened": "#cfd4dc"}  # none of the colours of a cell
 
 
 def phases():
@@ -436,12 +453,12 @@ def phases():
     for line in range(len(ys)):
         label(axes, (left - 12, low + high * (line + 0.5)), f"{ys[line]:.3g}", size=LETTERS - 6, ha="right")
     label(axes, (left + wide * len(xs) / 2, low - 58), "lateral tension (mN/m)", size=LETTERS - 5)
-    label(axes, (30, low + high * len(ys) / 2), "Young's modulus (Pa)", size=LETTERS - 5, rotation=90)
+    label(axes, (24, low + high * len(ys) / 2), "Young's modulus (Pa, log)", size=LETTERS - 5, rotation=90)
     for number, (word, points) in enumerate((word, chosen[word]) for word in VERDICTS if word in chosen):
         frame = plica.open(RESULTS / f"phases/points/{points[len(points) // 2]:06d}").frames[-1]
         y = 375 - 145 * number
         section(axes, frame, at_place((590, y), 0.68), width=1.2)
-        label(axes, (665, y), word, VERDICTS[word] if word != "flattened" else "#a87f12", size=LETTERS - 6, weight="bold", ha="left")
+        label(axes, (665, y), word, {"closed": "#44337a", "furrowed": "#7a5bb5", "flattened": "#5a6472"}[word], size=LETTERS - 6, weight="bold", ha="left")
     write(figure, "phases")
 
 
@@ -458,40 +475,37 @@ def report():
 
 
 def doors():
-    """What plica simulates and what it does not: a sheet that folds; cells that exchange neighbours; several layers."""
-    figure, axes = new()
+    """The first page's door to what plica can do: cells that fold; cells that exchange neighbours, before and after."""
+    figure, axes = new(500, 300)
 
     def cell(corners, mark=None):
-        axes.fill(*np.transpose(corners), facecolor=mark or CELL, edgecolor=LATERAL, linewidth=2.5, zorder=3)
+        axes.fill(*np.transpose(corners), facecolor=mark or CELL, edgecolor=LATERAL, linewidth=3, zorder=3)
 
-    def ring(centre, inner, outer, begin, end, number):
-        angles = np.linspace(begin, end, number + 1)
-        for one, other in zip(angles, angles[1:]):
-            turn = np.array([[np.cos(one), np.sin(one)], [np.cos(other), np.sin(other)]])
-            cell([*(centre + inner * turn), *(centre + outer * turn)[::-1]])
-        for radius, colour in ((inner, APICAL), (outer, BASAL)):
-            curve = np.linspace(begin, end, 60)
-            axes.plot(centre[0] + radius * np.cos(curve), centre[1] + radius * np.sin(curve), color=colour, linewidth=5, zorder=5, solid_capstyle="round")
-
-    ring(np.array([135, 290]), 22, 92, np.pi, 2 * np.pi, 7)  # a groove between two shoulders
+    centre, inner, outer = np.array([100, 150]), 18, 75  # a groove between two shoulders
+    angles = np.linspace(np.pi, 2 * np.pi, 8)
+    for one, other in zip(angles, angles[1:]):
+        turn = np.array([[np.cos(one), np.sin(one)], [np.cos(other), np.sin(other)]])
+        cell([*(centre + inner * turn), *(centre + outer * turn)[::-1]])
     for side in (-1, 1):
-        for y in (290, 325):
-            cell([(135 + side * 22, y), (135 + side * 92, y), (135 + side * 92, y + 35), (135 + side * 22, y + 35)])
-        axes.plot([135 + side * 22] * 2, [290, 360], color=APICAL, linewidth=5, zorder=5)
-        axes.plot([135 + side * 92] * 2, [290, 360], color=BASAL, linewidth=5, zorder=5)
-    centre = np.array([400, 290])  # four cells about a new junction
-    for corners in ([(-80, 40), (-20, 0), (20, 0), (80, 40), (80, 90), (-80, 90)], [(-80, -40), (-20, 0), (20, 0), (80, -40), (80, -90), (-80, -90)]):
-        cell(centre + np.array(corners), "#cfe3d6")
-    for sign in (-1, 1):
-        cell(centre + np.array([(sign * 20, 0), (sign * 80, 40), (sign * 80, -40)]))
-    for layer in range(3):  # layers
-        for number in range(4):
-            x, y = 585 + 40 * number + 20 * (layer % 2), 210 + 55 * layer
-            cell([(x, y), (x + 40, y), (x + 40, y + 55), (x, y + 55)])
-    for x, sign, colour, words in ((135, "✓", LATERAL, "one layer\nfolds"), (400, "✗", APICAL, "neighbours\nexchange"), (675, "✗", APICAL, "several\nlayers")):
-        label(axes, (x, 430), sign, colour, size=LETTERS + 22, weight="bold")
-        label(axes, (x, 105), words, size=LETTERS)
-    write(figure, "doors", 64)
+        cell([(100 + side * inner, 150), (100 + side * outer, 150), (100 + side * outer, 190), (100 + side * inner, 190)])
+    curve = np.linspace(np.pi, 2 * np.pi, 60)
+    for radius, colour in ((inner, APICAL), (outer, BASAL)):
+        line = [(100 - radius, 190), *(centre + radius * np.column_stack([np.cos(curve), np.sin(curve)])), (100 + radius, 190)]
+        axes.plot(*np.transpose(line), color=colour, linewidth=6, zorder=5, solid_capstyle="round")
+
+    half, grey, blue = 55, "#d5dae2", "#8fb3dd"  # four cells: the blue ones touch before, the grey ones after
+    for x, turned in ((285, False), (435, True)):
+        def placed(corners, x=x, turned=turned):
+            return np.array([x, 132]) + np.array([(b, a) if turned else (a, b) for a, b in corners])
+
+        for sign in (-1, 1):
+            cell(placed([(-half, sign * 25), (-14, 0), (14, 0), (half, sign * 25), (half, sign * half), (-half, sign * half)]), grey if turned else blue)
+            cell(placed([(sign * 14, 0), (sign * half, 25), (sign * half, -25)]), blue if turned else grey)
+    arrow(axes, (346, 132), (374, 132), TEXT)
+    for x, sign, colour, text in ((100, "✓", LATERAL, "folding"), (360, "✗", APICAL, "swapping places")):
+        label(axes, (x, 250), sign, colour, size=54, weight="bold")
+        label(axes, (x, 34), text, size=27)
+    write(figure, "door-decide", 64, 700)
 
 
 def readme():

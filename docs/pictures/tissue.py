@@ -10,13 +10,14 @@ FACES = {"basal": (0, 1, 2, 3), "apical": (4, 5, 6, 7), "side 0": (0, 1, 5, 4), 
          "side 2": (2, 3, 7, 6), "side 3": (3, 0, 4, 7)}
 
 
-def cut(points, hexahedra, cells, axis, at):
-    """Cells in the plane where coordinate `axis` is `at`.
+def cut(points, hexahedra, cells, axis, at, rest=None):
+    """Cells in the plane where coordinate `axis` is `at`; with `rest`, of one row: what was in this plane at rest.
 
     Returns the polygons of the cut elements (shape (corners, 2)), their cells, and segments by kind: apical, basal, lateral.
     """
     across = [one for one in range(3) if one != axis]
-    place = points[hexahedra, axis]
+    level = (points if rest is None else rest)[:, axis]
+    place = level[hexahedra]
     touched = np.flatnonzero((place.min(axis=1) < at) & (place.max(axis=1) >= at))
     faces_of = {}  # elements of each side face, to tell walls of cells from faces inside a cell
     for element in touched:
@@ -26,7 +27,7 @@ def cut(points, hexahedra, cells, axis, at):
     polygons, owners, segments = [], [], {"apical": [], "basal": [], "lateral": []}
 
     def crossing(one, other):
-        share = (at - points[one, axis]) / (points[other, axis] - points[one, axis])
+        share = (at - level[one]) / (level[other] - level[one])
         return (points[one] + share * (points[other] - points[one]))[across]
 
     for element in touched:
@@ -35,13 +36,16 @@ def cut(points, hexahedra, cells, axis, at):
         for name, corners in FACES.items():
             ring = [nodes[corner] for corner in corners]
             cuts = [tuple(sorted(edge)) for edge in zip(ring, ring[1:] + ring[:1])
-                    if (points[edge[0], axis] < at) != (points[edge[1], axis] < at)]
+                    if (level[edge[0]] < at) != (level[edge[1]] < at)]
             for one, other in zip(cuts[::2], cuts[1::2]):
                 links.setdefault(one, []).append(other)
                 links.setdefault(other, []).append(one)
                 kind = name
                 if name.startswith("side"):
                     kind = "lateral" if faces_of[frozenset(ring)].count(cells[element]) == 1 else None
+                    if rest is not None:  # a wall to the next row, which the plane barely touched
+                        normal = np.cross(rest[ring[2]] - rest[ring[0]], rest[ring[3]] - rest[ring[1]])
+                        kind = None if abs(normal[axis]) > 0.7 * np.linalg.norm(normal) else kind
                 if kind:
                     segments[kind].append((crossing(*one), crossing(*other)))
         while links:
