@@ -45,16 +45,16 @@ with tempfile.TemporaryDirectory() as folder:
     frames = sorted(path.name for path in (theirs / "frames").iterdir())
     assert frames and all((ours / "frames" / name).read_bytes() == (theirs / "frames" / name).read_bytes() for name in frames)
     lacking = {path.name for path in theirs.iterdir()} - {path.name for path in ours.iterdir()}
-    assert lacking == {"checkpoint.h5", "report.html"}, lacking
+    assert {name for name in lacking if not name.startswith("checkpoint")} == {"report.html"} and "checkpoint.h5" in lacking, lacking
 
-    refuses(4, "HDF5", "run", "drosophila", "--out", ours, "--resume")
+    refuses(2, "HDF5", "run", "drosophila", "--out", ours, "--resume")
     refuses(4, "VTK", "render", ours, "--out", Path(folder) / "fold.png")
     refuses(4, "VTK", "compare", ours, theirs)
-    refuses(4, "page", "report", ours, "--out", Path(folder) / "report.html")
+    refuses(4, "VTK", "report", ours, "--out", Path(folder) / "report.html")
     mesh = Path(folder) / "mesh.vtu"
     assert run(whole, "mesh", "drosophila", "--out", mesh).returncode == 0
     scenario = Path(folder) / "own.toml"
-    scenario.write_text('format = 1\nbase = "drosophila"\n[embryo]\nshape = "file"\nfile = "mesh.vtu"\n', encoding="utf-8")
+    scenario.write_text('format = 1\n[embryo]\nshape = "file"\nfile = "mesh.vtu"\n', encoding="utf-8")
     refuses(4, "VTK", "run", scenario, "--out", Path(folder) / "own")
 
 print(f"The same results in {len(frames)} frames and 3 tables; {refused} things refused.")
