@@ -267,7 +267,7 @@ TEST_F(MeshFileTest, WhatIsWrongWithACellIsSaid) {
       {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, -1}}), "cell 0 uses node -1; nodes are 0 to 7"},
       {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, 6}}),
        "cell 0 at (0.625, 0.5, 0.5) um uses node 6 twice; a hexahedron has eight"},
-      {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6}}), "cell 0 is a hexahedron with 7 nodes"},
+      {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6}}), "cell 0 is a hexahedron with 7 nodes; 8 are required"},
       {binary_cube(std::nan("")), "node 6 of cell 0 is at (1, 1, nan); coordinates must be finite, in um"},
       {legacy(with(6, "1 1 1e200"), {cube}),
        "node 6 of cell 0 is at (1, 1, 1e+200); coordinates must be finite, in um"},
