@@ -165,7 +165,7 @@ TEST(VertexModel, SaysWhatIsWrong) {
     expect_mesh_error([&] { polygons_of(tables); }, said);
   };
   expect([](auto& t) { t.vertices.columns.erase("y"); }, "the table of vertices has no numeric column \"y\"; it has x");
-  expect([](auto& t) { t.edges.columns.erase("srce"); }, "the table of edges has no column \"srce\"");
+  expect([](auto& t) { t.edges.columns.erase("srce"); }, "the table of edges has no numeric column \"srce\"");
   expect([](auto& t) { t.vertices.index[1] = 10; }, "the table of vertices has two rows 10");
   expect([](auto& t) { t.edges.columns["trgt"][1] = 99; }, "an edge names row 99 of vertices, which does not exist");
   expect([](auto& t) { t.edges.columns["face"][1] = 99; }, "an edge names row 99 of faces, which does not exist");
