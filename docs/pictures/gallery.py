@@ -147,7 +147,7 @@ def area_colours(frame):
 
 
 def closing():
-    """The closing furrow's cross-section, moving; one moment of it, and the first page's door to the first furrow."""
+    """The closing furrow's cross-section, moving; and the first page's door to the first furrow."""
     run = result("slice", "furrow-slice", output__frame_every_min=0.5)
     rest, images = run.frames[0], []
     for frame in run.frames:
@@ -160,7 +160,6 @@ def closing():
         label(axes, (40, 40), "V", size=LETTERS)
         images.append(image_of(figure))
         if abs(frame.time_min - 14) < 0.01:
-            write(figure, "slice")
             figure, axes = new(500, 300)
             section(axes, frame, at_place((250, 150), 1.56), rest=rest, width=1.8)
             write(figure, "door-fold", 64, 700)
@@ -285,7 +284,7 @@ def wing_disc():
 
 def endless():
     """One period of an endless fold."""
-    run = result("endless", scenario_of_page("gallery.md", "endless"))
+    run = result("endless", scenario_of_page("how-to/sheet.md", "endless"))
     figure, axes = new()
     camera = Camera(back=(0.75, -0.3, 0.6), up=(0, 0, 1))
     for frame, place in ((run.frames[0], (250, 355)), (run.frames[-1], (555, 225))):
@@ -313,7 +312,7 @@ def sphere():
 
 def ablation():
     """A cut in a sheet under tension."""
-    run = result("cut", scenario_of_page("gallery.md", "cut"))
+    run = result("experiments-cut", scenario_of_page("how-to/experiments.md", "cut"))
     figure, axes = new(800, 480)
     camera = Camera(back=(0, 0, 1), up=(1, 0, 0))
     for number, (minutes, text) in enumerate(((50 / 60, "before"), (70 / 60, "10 s after"), (3.5, "2.5 min after"))):
@@ -330,17 +329,12 @@ def ablation():
     write(figure, "ablation")
 
 
-OWN = {"cortex__shortening__trigger__measure": "apical_area_ratio", "cortex__shortening__trigger__below": 0.3,
-       "cortex__shortening__program__time_min": [0, 11], "cortex__floor__trigger__measure": "apical_area_ratio",
-       "cortex__floor__trigger__below": 0.3, "cortex__floor__stiffness_program__time_min": [0, 7],
-       "ablation__light__region": "mesoderm", "ablation__light__only": ["cortex.apical"]}
-
-
 def light():
     """Slices in which myosin was inhibited from 5 and from 8 min on."""
+    scenario = scenario_of_page("how-to/experiments.md", "light")
     figure, axes = new()
     for number, minutes in enumerate((5, 8)):
-        run = result(f"light-{minutes}", "furrow-slice", **OWN, ablation__light__at_min=minutes)
+        run = result(f"light-{minutes}", scenario, ablation__light__at_min=minutes)
         x = 210 + 380 * number
         section(axes, run.frames[-1], at_place((x, 235), 1.95), width=2.4, rest=run.frames[0])
         label(axes, (x, 448), f"inhibited from {minutes} min", size=LETTERS, weight="bold")
@@ -385,6 +379,33 @@ def feedback():
     write(figure, "feedback")
 
 
+LABELS = """\
+format = 1
+region.bright = { array = "reporter", above = 0.5 }
+elasticity = { corner_barrier_Pa = 100 }
+time = { end_min = 20, integrator = "bdf2" }
+
+[contraction.apical]
+region = "bright"
+edges = "apical"
+stiffness_nN_per_um = 10
+profile = { shape = "array", array = "reporter", from = 0.2, to = 1 }
+program = { time_min = [0, 3], activity = [0, 1] }
+
+[contraction.lateral]
+region = "bright"
+edges = "lateral"
+stiffness_nN_per_um = 0.5
+program = { time_min = [0, 3], activity = [0, 1] }
+
+[embryo]
+shape = "surface"
+file = "cells.ply"
+cell_height_um = 25
+rim = "held"
+"""
+
+
 def labels():
     """A label image whose cells are bright along a band, and the sheet that these cells fold."""
     from scipy.spatial import cKDTree
@@ -408,8 +429,7 @@ def labels():
         cells.cell_data["reporter"] = level[cells.cell_data["label"].astype(int) - 1]
         middle = (cells.points.min(axis=0) + cells.points.max(axis=0)) / 2
         plica.Polygons(cells.points - middle, cells.faces, cells.cell_data).write(RESULTS / "cells.ply")
-        (text,) = re.findall(r"^```toml\n(# labels.toml\n.*?)^```", (ROOT / "docs/gallery.md").read_text(encoding="utf-8"), re.M | re.S)
-        (RESULTS / "labels.toml").write_text(text, encoding="utf-8")
+        (RESULTS / "labels.toml").write_text(LABELS, encoding="utf-8")
         plica.Simulation(RESULTS / "labels.toml").run(out=RESULTS / "labels", overwrite=True)
     frame = plica.open(RESULTS / "labels").frames[-1]
     figure, axes = new()
