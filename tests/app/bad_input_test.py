@@ -235,7 +235,7 @@ class BadSurface(CommandLine):
             ("a.obj", corners + "f 1 2 3 4\nf 1 2 5\nf 2 1 6\n", "belongs to 3 faces, 0, 1 and 2"),
             ("a.obj", corners + "v 9 9 9\nv 9 8 9\nv 8 8 9\nf 1 2 3 4\nf 7 8 9\n", "not one piece"),
             ("a.obj", corners + "v .1 .1 0\nf 1 2 7 4\nf 2 5 6 3 7\nf 7 3 4\n", "is not convex"),
-            ("a.obj", corners.replace("v 1 1 0", "v 1 1 nan") + "f 1 2 3 4\n", "coordinates are finite"),
+            ("a.obj", corners.replace("v 1 1 0", "v 1 1 nan") + "f 1 2 3 4\n", "coordinates must be finite"),
             ("a.obj", corners.replace("v 1 1 0", "v 1 1 1").replace("v 0 0 0", "v 0 0 1") + "f 1 2 3 4\n", "is far from flat"),
             ("a.off", "OFF\n3 1 0\n0 0 0\n", "the file ends after 1 of 3 vertices"),
             ("a.ply", "ply\nformat ascii 1.0\nelement face 1\nend_header\n", "faces must have one list"),
@@ -251,13 +251,13 @@ class BadSurface(CommandLine):
         (self.folder / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
         scenario = self.SCENARIO.replace("NAME", "a.obj")
         self.assert_refused(scenario + 'cell_height_array = "height"\n', "remove cell_height_array", line=7, key="embryo.cell_height_array")
-        self.assert_refused(scenario + "[vitelline]\nenabled = true\n", "the surface has a rim", line=8, key="vitelline.enabled")
+        self.assert_refused(scenario + "[vitelline]\nenabled = true\n", "the surface has a boundary", line=8, key="vitelline.enabled")
         self.assert_refused(scenario + "scale = [1, 2]\n", "has length 2", line=7, key="embryo.scale")
         self.assert_refused(scenario + 'rim = "loose"\n', "free | held", line=7, key="embryo.rim")
         self.assert_refused(scenario + "length_um = 3\n", "is not used", line=7, key="embryo.length_um")
         sheet = 'format = 1\n[embryo]\nshape = "sheet"\nlength_um = 50\nwidth_um = 50\ncell_count = 20\ncell_height_um = 9\n'
         self.assert_refused(sheet + "curvature_per_um = [0.1]\n", "set curvature_per_um to two", line=8, key="embryo.curvature_per_um")
-        self.assert_refused(sheet + "curvature_per_um = [0.3, 0]\n", "close upon itself", line=2)
+        self.assert_refused(sheet + "curvature_per_um = [0.3, 0]\n", "would overlap itself", line=2)
         self.assert_refused(sheet + "mend = false\n", "is not used", line=8, key="embryo.mend")
         self.assert_refused(sheet + "[vitelline]\nenabled = true\n", "a sheet is open", line=9, key="vitelline.enabled")
         self.assert_refused(sheet + '[enclosed.yolk]\nsurface = "basal"\n', "a sheet encloses no volume", line=8)

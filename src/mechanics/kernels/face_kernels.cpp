@@ -1,5 +1,5 @@
-// Letters as in docs/theory/cortex.md, but a and b for dx/ds and dx/dt: at a Gauss point (s, t) of the bilinear face, n is
-// their product and |n| the area that the point stands for. a depends on t alone, b on s alone.
+// Letters as in docs/theory/cortex.md, but a and b for dx/ds and dx/dt: at a Gauss point (s, t) of the bilinear face, n
+// is their product and |n| the area that the point stands for. a depends on t alone, b on s alone.
 #include "mechanics/kernels/face_kernels.hpp"
 
 #include "mechanics/kernels/hexahedron_lanes.hpp"
