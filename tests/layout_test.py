@@ -21,7 +21,7 @@ MOST_LINES = 500
 NOT_A_LAW = {"law", "constraint", "obstacle", "model", "program", "turning_elements", "cell_pattern", "own_state", "given_activities",
              "hexahedron_stiffness", "of_elements", "closest_point", "contact_pair", "edge_pairs", "box_grid"}
 MEASURES_MARK = "<!-- Below: what plica reference --measures prints. -->\n"
-UNIT_AT_END = re.compile(r"_(um|um2|um3|s|um_per_s|nN|nN_um|deg|Pa)$")
+UNIT_AT_END = re.compile(r"_(um|um2|um3|s|um_per_s|nN|nN_um|deg|Pa|ratio|error)$")
 MARKDOWN_LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -162,7 +162,7 @@ def check_measures():
 
 
 def check_units():
-    """Every column has its unit at the end of its name, or is among the pure numbers that docs/reference/measures.md lists."""
+    """Every column ends with its unit, ratio or error, or is among the pure numbers that docs/reference/measures.md lists."""
     page = root / "docs/reference/measures.md"
     pure = set(re.findall(r"`(\w+)`", page.read_text(encoding="utf-8").partition("## Speeds")[0].
                           partition("pure numbers:\n")[2]))
