@@ -477,7 +477,7 @@ def enclosed_volume():
 
 def surroundings():
     figure, axes = canvas(760, 280)
-    for x, title, formula, color in ((130, "drag", "$-D_i\\,v_i$", TEXT), (380, "inertia", "$-m_i\\,\\dot v_i,\\ m_i=\\rho V_e/8$", TEXT),
+    for x, title, formula, color in ((130, "drag", "$-c_i\\,v_i$", TEXT), (380, "inertia", "$-m_i\\,\\dot v_i,\\ m_i=\\rho V_e/8$", TEXT),
                                      (630, "pressure", "$-p\\int N_i\\,n\\,dA$", TEXT)):
         if title == "drag":
             polygon(axes, [(x - 105, 60), (x + 105, 60), (x + 105, 225), (x - 105, 225)], fill="#dbe7f5", edge="none")
