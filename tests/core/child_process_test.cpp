@@ -48,7 +48,8 @@ TEST(OutputOfChild, IsNotWaitedForWhenItStandsStill) {
         1.5);
     FAIL() << "came back";
   } catch (const FileError& error) {
-    EXPECT_TRUE(std::string_view(error.what()).starts_with("waiting for Godot stood still for 2 s")) << error.what();
+    EXPECT_TRUE(std::string_view(error.what()).starts_with("waiting for Godot made no progress for 2 s"))
+        << error.what();
   }
 }
 

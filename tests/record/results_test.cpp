@@ -51,8 +51,8 @@ TEST_F(ResultsTest, WhatIsNoSeriesNamesItsLine) {
            {"time_s,a\n0,1\n1\n", ":3: has 1 fields for 2 columns"},
            {"time_s,a\n0,x\n", ":2: \"x\" is not a number"},
            {"time_s,a\n0,nan\n", ":2: \"nan\" is not a number"},
-           {"time_s,a\n1,0\n1,0\n", ":3: its time"},
-           {"time_s,a\n,0\n", ":2: its time"},
+           {"time_s,a\n1,0\n1,0\n", ":3: time missing"},
+           {"time_s,a\n,0\n", ":2: time missing"},
        }) {
     const fs::path file = write("series.csv", text);
     try {

@@ -81,7 +81,8 @@ TEST(CalibrationProblem, IsCheckedBeforeTheFirstRun) {
             std::string::npos);
   EXPECT_NE(said({"elasticity.poisson_ratio=0.3:0.7"}, {"end.position_um=28"}).find("out of range"), std::string::npos)
       << "the upper bound too";
-  EXPECT_NE(said({"region.x.cells_along=1:3"}, {"end.position_um=28"}).find("whole numbers"), std::string::npos);
+  EXPECT_NE(said({"region.x.cells_along=1:3"}, {"end.position_um=28"}).find("vary a real-valued key"),
+            std::string::npos);
   EXPECT_NE(said({stiffness}, {"end.positon_um=28"}).find("use \"end.position_um\" (nearest match)"),
             std::string::npos);
   EXPECT_NE(said({stiffness}, {"wall_s=1"}).find("differs between runs"), std::string::npos);

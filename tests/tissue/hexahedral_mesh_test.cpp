@@ -104,8 +104,8 @@ TEST(TissueFromMesh, RefusesWhatDoesNotFit) {
     EXPECT_NE(mesh_error(mesh).find(part), std::string::npos) << mesh_error(mesh) << "; expected: " << part;
     ++cases;
   };
-  expect_error("coordinates are finite", [](auto& m) { m.points[3].y() = std::nan(""); });
-  expect_error("coordinates are finite", [](auto& m) { m.points[3].y() = INFINITY; });
+  expect_error("coordinates must be finite", [](auto& m) { m.points[3].y() = std::nan(""); });
+  expect_error("coordinates must be finite", [](auto& m) { m.points[3].y() = INFINITY; });
   expect_error("cell 7 uses node", [](auto& m) { m.cells[7][2] = NodeId(100'000); });
   expect_error("cell 7 uses node -1", [](auto& m) { m.cells[7][2] = NodeId(-1); });
   expect_error("apical faces are given", [](auto& m) { m.apical_faces = {5}; });

@@ -196,7 +196,7 @@ test("what a page of many runs says of each is said once: ends before the time s
   const { page, done } = await open("uneven.html");
   assert.match(await page.textContent("#headline"), /^6 runs; .*; 1 failed$/);
   assert.match(await page.textContent("#thinned"), /^This page shows only some snapshots of 6 of 6 runs \(every 2nd, /);
-  assert.match(await page.textContent("#crossing"), /^In 5 of 6 runs \(their status says which\), the first from [\d.]+ min on, /);
+  assert.match(await page.textContent("#crossing"), /^In 5 of 6 runs \(see their status\), the first from [\d.]+ min on, /);
   assert.match(await page.locator("#texts .note").nth(1).textContent(), /\d+ of \d+ snapshots are in this page/);
   // Why one has failed is more than one line has room for: it comes after all numbers.
   const columns = await page.locator(".runs thead th").evaluateAll((heads) => heads.map((head) => head.dataset.key));

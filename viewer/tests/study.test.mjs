@@ -202,7 +202,7 @@ test("verdicts colour the plots where the study has what they need", async () =>
   assert.equal(await page.inputValue("#colour-by"), "verdict");
   const verdicts = await page.locator('.rows td[data-key="verdict"]').allTextContents();
   assert.deepEqual(verdicts, ["closed", "furrowed", "furrowed", "flattened", "passes through itself", "–"]);
-  assert.match(await page.textContent(".told"), /15 µm or more deep; flattened: less/);
+  assert.match(await page.textContent(".told"), /or 15 µm deep; flattened: less/);
   const legend = await page.textContent("#runs-bar .ramp");
   for (const word of ["closed", "furrowed", "flattened", "passes through itself"]) assert.ok(legend.includes(word), `${word} in ${legend}`);
   assert.ok(!(await saved(page, "#save-table")).bytes.toString().includes("verdict"), "it is no column of runs.csv");
