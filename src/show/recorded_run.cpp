@@ -50,7 +50,7 @@ RecordedRun::RecordedRun(fs::path out, const Scenario& scenario, const ScenarioS
   if (simulation.divisions() > 0)
     throw UsageError("cells have already divided; start a record before the first division");
   if (start == Start::resumed && simulation.steps() > 0)
-    throw UsageError("the simulation has already taken steps; resume a run with one in its reference state");
+    throw UsageError("the simulation has already taken steps; resume a run with a new Simulation");
   lock_ = std::make_unique<DirectoryLock>(out_);
   if (start == Start::resumed) look_for_checkpoint(scenario);
   is_finished_ = checkpoint_ && has_ended(checkpoint_->run, simulation.controls()) && holds_ending(out_, can_report());

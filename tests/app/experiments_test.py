@@ -215,7 +215,7 @@ hit = [0.4, 0.6]
             self.assertIn(words, self.assert_messages(result)[0])
         self.write("contraction.apical.stiffness_nN_per_um\n4\n-5\n", "draws.csv")
         message = self.assert_messages(self.reproduce(status=2))[0]
-        self.assertRegex(message, r"draws.csv:3: column 1 \(contraction.apical.stiffness_nN_per_um\): .*; give")
+        self.assertRegex(message, r"draws.csv:3: column 1 \(contraction.apical.stiffness_nN_per_um\): -5 is out of range; set ")
         self.assertFalse(self.out.exists())
         self.write(DRAWS, "draws.csv")
         self.out.mkdir()

@@ -97,7 +97,7 @@ class Directories(Resuming):
         self.resumed(block)
         self.assert_same(self.out, whole)
         before = tree(self.out)
-        self.assertIn("finished", self.resumed(block).stdout)
+        self.assertIn("already complete", self.resumed(block).stdout)
         self.assertEqual(tree(self.out), before)
 
     def test_an_ending_that_was_not_written_is_made_up_for(self):
@@ -231,7 +231,7 @@ class Damage(Resuming):
         self.newest.write_bytes(content)
         result = self.resumed(self.block, "--quiet")
         message = self.assert_messages(result)[0]
-        for part in ("checkpoint.h5", "damaged", "before it"):
+        for part in ("checkpoint.h5", "damaged", "the previous checkpoint"):
             self.assertIn(part, message)
         self.assert_same(self.out, whole)
 

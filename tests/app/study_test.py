@@ -64,7 +64,7 @@ class Study(CommandLine):
 
     def test_the_table(self):
         result = self.study("--jobs", 1)
-        self.assertRegex(result.stdout, r"24 runs: 24 end_time in .*; .* sum of run times .* s\n  table in .*runs\.csv(; open .*report\.html in a browser)?\n")
+        self.assertRegex(result.stdout, r"24 runs: 24 end_time in .*; sum of run times .* s\n  table in .*runs\.csv(; open .*report\.html in a browser)?\n")
         rows = self.table()
         self.assertEqual(list(rows[0]), ["point", "contraction.apical.stiffness_nN_per_um", "replicate", "status",
                                          "furrow_depth_um", "max_volume_error", "steps", "reason"])
@@ -142,7 +142,7 @@ class Study(CommandLine):
         self.assertIn("2 x ", result.stdout)
         checked = plica("check", self.file)
         self.assertEqual(checked.returncode, 0, checked.stderr)
-        self.assertIn("2 points are no valid scenario", checked.stdout)
+        self.assertIn("2 points are invalid", checked.stdout)
         self.assertIn("estimate for all runs", checked.stdout)
 
     def test_what_each_run_leaves(self):

@@ -181,7 +181,7 @@ def test_record_resumes(tmp_path):
     again = sim.run(out=tmp_path / "parts", resume=True)
     assert sim.steps == 0 and again.status == "end_time"
     sim.step()
-    with pytest.raises(ValueError, match="at rest"):
+    with pytest.raises(ValueError, match="a new Simulation"):
         sim.run(out=tmp_path / "parts", resume=True)
 
 
