@@ -87,7 +87,7 @@ TEST(PictureLayout, SaysWhatIsShown) {
   const Layout layout = make_layout(picture_of(pill(), {"ventral", "cross-section"}, 2));
   const std::vector<std::string> texts = texts_of(layout);
   for (const char* text :
-       {"0 min", "1 min", "ventral", "cross-section", "displacement, µm", "0", "30", "100 µm", "A", "P", "D", "V"})
+       {"0 min", "1 min", "ventral", "cross-section", "displacement,", "µm", "0", "30", "100 µm", "A", "P", "D", "V"})
     EXPECT_TRUE(contains(texts, text)) << text;
   EXPECT_EQ(std::ranges::count(texts, "L"), 2);  // at the upper end from below, at the right one from the front
   Picture plain = picture_of(pill(), {"ventral"}, 1);
@@ -151,7 +151,7 @@ TEST(RoundLength, IsOneTwoOrFiveTimesAPowerOfTen) {
 }
 
 TEST(Wrapped, BreaksBetweenWords) {
-  EXPECT_EQ(wrapped("displacement from rest, µm", 13), (std::vector<std::string>{"displacement, µm"}));
+  EXPECT_EQ(wrapped("displacement from rest, µm", 13), (std::vector<std::string>{"displacement,", "µm"}));
   EXPECT_EQ(wrapped("incompressibility", 5), (std::vector<std::string>{"incompressibility"}));
   EXPECT_EQ(wrapped("", 5), (std::vector<std::string>{""}));
 }
