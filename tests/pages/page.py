@@ -66,7 +66,8 @@ def prepare(place, program):
     (place / "build").mkdir(parents=True, exist_ok=True)
     (place / "build/release").symlink_to(program.resolve().parent)
     shutil.copytree(ROOT / "docs", place / "docs")
-    for name in ("bench", "scenarios", "src", "tests", "tools"):
+    shutil.copytree(ROOT / "tools", place / "tools")  # they write into the docs beside them
+    for name in ("bench", "scenarios", "src", "tests"):
         (place / name).symlink_to(ROOT / name)
 
 
