@@ -1,9 +1,9 @@
-"""The extremes of docs/developers/hostile_input.md one by one: each run ends, or says where, when and why it cannot go on."""
+"""The extremes of docs/developers/hostile_input.md one by one: each run ends, or reports where, when and why it failed."""
 import support
 from support import SPHERE, CommandLine
 
 STRONG = SPHERE.replace("stiffness_nN_per_um = 8", "stiffness_nN_per_um = 80").replace("end_s = 0.3", "end_s = 600")
-GAVE_UP = r"solver failed: .*cell \d+.* at t = [\d.e+-]+ s, with steps down to"
+SOLVER_FAILED = r"solver failed: .*cell \d+.* at t = [\d.e+-]+ s, with steps down to"
 
 
 class Stress(CommandLine):
@@ -15,7 +15,7 @@ class Stress(CommandLine):
         self.assert_whole(self.out)
         summary = self.summary()
         if result.returncode == 3:
-            self.assertRegex(self.assert_messages(result)[0], GAVE_UP)
+            self.assertRegex(self.assert_messages(result)[0], SOLVER_FAILED)
             self.assertEqual(summary["status"], "failed")
         else:
             self.assertIn(summary["status"], ("equilibrium", "end_time"))
