@@ -151,7 +151,7 @@ TEST(RoundLength, IsOneTwoOrFiveTimesAPowerOfTen) {
 }
 
 TEST(Wrapped, BreaksBetweenWords) {
-  EXPECT_EQ(wrapped("displacement from rest, µm", 13), (std::vector<std::string>{"displacement,", "µm"}));
+  EXPECT_EQ(wrapped("displacement from rest, µm", 13), (std::vector<std::string>{"displacement", "from rest, µm"}));
   EXPECT_EQ(wrapped("incompressibility", 5), (std::vector<std::string>{"incompressibility"}));
   EXPECT_EQ(wrapped("", 5), (std::vector<std::string>{""}));
 }
