@@ -14,7 +14,8 @@ from .emulator import Emulator
 from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaError, ScenarioError
 from .experiments import reproduce
 from .indices import SobolIndices
-from .polygons import Polygons, polygons_of_labels
+from .labels import polygons_of_labels
+from .polygons import Polygons
 from .posteriors import Posterior, posterior
 from .results import Frame, Frames, Run
 from .results import open_run as open
