@@ -78,13 +78,13 @@ def without_pieces(numbers: Numbers, given: Numbers, names: NDArray[Any], keep_c
     edges = needed("skimage.segmentation", "polygons of labels").find_boundaries(numbers, mode="inner")
     width = ndimage.maximum(ndimage.distance_transform_edt(~edges), pieces, piece)
     large = (area > SMALL * largest[of]) & (area > np.where(width < THIN_PX, SMALL, SPECK) * usual)
-    whole = large if keep_cut else large & ~np.isin(piece, np.concatenate([pieces[0], pieces[-1], pieces[:, 0], pieces[:, -1]]))
-    torn = (np.bincount(of[large], minlength=len(largest)) > 1) & (np.bincount(of[whole], minlength=len(largest)) > 0)
+    cut = np.isin(piece, np.concatenate([pieces[0], pieces[-1], pieces[:, 0], pieces[:, -1]])) & (not keep_cut)
+    torn = (np.bincount(of[large], minlength=len(largest)) > 1) & (np.bincount(of[large & ~cut], minlength=len(largest)) > 0)
     if torn.any():
         _refuse_pieces(np.flatnonzero(torn[of] & large), len(piece), area, of, first, names)
     # Pieces without a given pixel are left by the closing of gaps.
     drawn = np.bincount(pieces.ravel(), weights=(given == numbers).ravel())[piece].astype(np.int64)
-    for one in np.flatnonzero(~large & (drawn > 0)):
+    for one in np.flatnonzero(~large & ~cut & (drawn > 0)):
         piece_of = "piece of " if largest[of[one]] > area[one] else ""
         (row, column), cell = first[one], names[of[one] - 1]
         remarks.append(f"{piece_of}cell {cell} ({_pixels(drawn[one])} at row {row}, column {column})")
@@ -126,3 +126,13 @@ def without_holes(numbers: Numbers, names: NDArray[Any], of_cells: bool, remarks
         filled[box][holes] = region.label
         remarks.append(where)
     return filled
+
+
+def openings(numbers: Numbers) -> NDArray[np.int64]:
+    """Return row, column and pixels of the patches of background that cells surround, the largest first; shape (patches, 3)."""
+    ndimage = needed("scipy.ndimage", "polygons of labels")
+    patches, count = ndimage.label(np.pad(numbers == 0, 1, constant_values=True), structure=np.ones((3, 3)))
+    inside = np.setdiff1d(np.arange(1, count + 1), patches[0, 0])
+    areas = np.bincount(patches.ravel(), minlength=count + 1)[inside]
+    places = np.array(ndimage.maximum_position(patches > 0, patches, inside) if len(inside) else [], dtype=np.int64).reshape(-1, 2) - 1
+    return np.column_stack([places, areas])[np.argsort(-areas, kind="stable")]

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import needed
 from .label_images import LabelImage, numbered
-from .label_repair import repaired, without_gaps
+from .label_repair import openings, repaired, without_gaps
 from .polygons import Polygons, one_piece
 
 __all__ = ["polygons_of_labels"]
@@ -82,7 +82,7 @@ def polygons_of_labels(
     repairs: list[str] = []
     closed = repaired(given.numbers, given.names, gap_px, keep_cut, repairs)
     polygons = traced(closed, keep_cut)
-    if _open_walls(given, closed, gap_px) > OPEN_WALLS:
+    if open_walls(given.numbers, closed, gap_px) > OPEN_WALLS:
         raise ValueError(f"image: lines of background remain between cells: they are wider than {2 * gap_px} pixels"
                          f"{_advice(given, gap_px, keep_cut, 0.5)}")
     if len(polygons) == 0:
@@ -93,6 +93,11 @@ def polygons_of_labels(
     if repairs:
         more = f", and {len(repairs) - 3} more" if len(repairs) > 3 else ""
         given.remarks.append(f"image: given to their surroundings: {', '.join(repairs[:3])}{more}")
+    opened = openings(closed)
+    if len(opened):
+        row, column, size = opened[0]
+        given.remarks.append(f"image: openings in the tissue: {len(opened)}, the largest of {size} pixels at row {row}, column {column}; "
+                             f"label missing cells, or, if these are gaps, raise gap_px, now {gap_px}")
     for remark in given.remarks:
         warnings.warn(remark, stacklevel=2)
     polygons.points = um_per_pixel * (polygons.points + [0, len(closed) - 1, 0])
@@ -111,18 +116,18 @@ def _advice(given: LabelImage, gap_px: float, keep_cut: bool, share: float) -> s
         except ValueError:
             continue
         joined = len(polygons) > 1 and (polygons.pieces == 0).mean() >= share
-        if joined and _open_walls(given, closed, wider) <= OPEN_WALLS:
+        if joined and open_walls(given.numbers, closed, wider) <= OPEN_WALLS:
             return f"; set gap_px = {wider}"
     return ""
 
 
-def _open_walls(given: LabelImage, closed: NDArray[Any], gap_px: float) -> float:
+def open_walls(given: NDArray[Any], closed: NDArray[Any], gap_px: float) -> float:
     """Return the share of walls between cells that closing wider gaps would close."""
     if not (closed == 0).any():
         return 0.0
     margin = int(2 * gap_px + 2)  # lines that end at the border stay open there
     within = (slice(margin, -margin), slice(margin, -margin))
-    narrow, wide = closed[within], without_gaps(given.numbers, 2 * gap_px + 1, [])[within]
+    narrow, wide = closed[within], without_gaps(given, 2 * gap_px + 1, [])[within]
 
     def sides(numbers: NDArray[Any]) -> list[NDArray[Any]]:
         return [(numbers == 0)[1:] != (numbers == 0)[:-1], (numbers == 0)[:, 1:] != (numbers == 0)[:, :-1]]
@@ -173,8 +178,8 @@ def _junctions(padded: NDArray[Any], measure: Any) -> tuple[list[NDArray[np.floa
 
 def _face(region: Any, padded: NDArray[Any], vertices: list[int], corners: list[NDArray[np.float64]], measure: Any) -> list[int]:
     """Return the corners of a cell, counter-clockwise with y upwards. Bends of its free outline are appended to `corners`."""
-    (outline,) = measure.find_contours(np.pad(region.image, 1).astype(float), 0.5, fully_connected="high")
-    outline = outline[:-1] + region.bbox[:2] - 1
+    outlines = measure.find_contours(np.pad(region.image, 1).astype(float), 0.5, fully_connected="high")
+    outline = max(outlines, key=len)[:-1] + region.bbox[:2] - 1
     stops = sorted((int(np.argmin(((outline - corners[vertex]) ** 2).sum(axis=1))), vertex) for vertex in vertices)
     # Points of an outline lie between a pixel of the cell and one of a neighbour.
     sides = [padded[tuple(side(outline).astype(int).T)] for side in (np.floor, np.ceil)]
@@ -185,13 +190,14 @@ def _face(region: Any, padded: NDArray[Any], vertices: list[int], corners: list[
             farthest = int(np.argmax(((outline - origin) ** 2).sum(axis=1)))
             stops = sorted([*stops, (farthest, len(corners))])
             corners.append(outline[farthest])
+    inward = -np.sign((outline[:, 0] * np.roll(outline[:, 1], -1) - np.roll(outline[:, 0], -1) * outline[:, 1]).sum())
     face: list[int] = []
     for number, (start, vertex) in enumerate(stops):
         face.append(vertex)
         end = stops[number + 1][0] if number + 1 < len(stops) else stops[0][0] + len(outline)
         between = np.arange(start, end) % len(outline)
         if len(between) and free[between].mean() > 0.5:
-            bends = _bends(outline[np.append(between, end % len(outline))], max(1.5, RIM_TOLERANCE * region.area**0.5), measure)
+            bends = _bends(outline[np.append(between, end % len(outline))], max(1.5, RIM_TOLERANCE * region.area**0.5), inward, measure)
             face += range(len(corners), len(corners) + len(bends))
             corners += bends
     rows, columns = np.reshape([corners[vertex] for vertex in face], (-1, 2)).T
@@ -199,15 +205,20 @@ def _face(region: Any, padded: NDArray[Any], vertices: list[int], corners: list[
     return face if turns < 0 else face[::-1]
 
 
-def _bends(line: NDArray[np.float64], tolerance: float, measure: Any) -> list[NDArray[np.float64]]:
-    """Return the inner points of a polyline that keep it within `tolerance`, less those on the way between their neighbours."""
+def _bends(line: NDArray[np.float64], tolerance: float, inward: float, measure: Any) -> list[NDArray[np.float64]]:
+    """Return the inner points of a polyline that keep it within `tolerance`, less those on the way between their neighbours.
+
+    Points at which the cell would be concave are omitted as well: `inward` is the sign of a turn there.
+    """
     bends = list(measure.approximate_polygon(line, tolerance))
     number = 1
     while number < len(bends) - 1:
         before, here, after = bends[number - 1:number + 2]
         way = after - before
-        if abs(way[0] * (here - before)[1] - way[1] * (here - before)[0]) < tolerance * np.linalg.norm(way):
+        turn = inward * (way[0] * (here - before)[1] - way[1] * (here - before)[0])
+        if turn < tolerance * np.linalg.norm(way):
             del bends[number]
+            number = max(number - 1, 1)
         else:
             number += 1
     return bends[1:-1]
