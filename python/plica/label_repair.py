@@ -88,9 +88,15 @@ def without_pieces(numbers: Numbers, given: Numbers, names: NDArray[Any], keep_c
         piece_of = "piece of " if largest[of[one]] > area[one] else ""
         (row, column), cell = first[one], names[of[one] - 1]
         remarks.append(f"{piece_of}cell {cell} ({_pixels(drawn[one])} at row {row}, column {column})")
-    small = np.isin(pieces, piece[~large])
-    nearest = ndimage.distance_transform_edt(small, return_distances=False, return_indices=True)
-    return np.asarray(numbers[tuple(nearest)]) if small.any() else numbers
+    return given_away(numbers, np.isin(pieces, piece[~large]))
+
+
+def given_away(numbers: Numbers, pixels: NDArray[np.bool_]) -> Numbers:
+    """Give pixels the number of the nearest other pixel, which may be background."""
+    if not pixels.any():
+        return numbers
+    nearest = needed("scipy.ndimage", "polygons of labels").distance_transform_edt(pixels, return_distances=False, return_indices=True)
+    return np.asarray(numbers[tuple(nearest)])
 
 
 def _refuse_pieces(torn: NDArray[Any], count: int, area: NDArray[Any], of: NDArray[Any], first: NDArray[Any],

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import needed
 from .label_images import LabelImage, numbered
-from .label_repair import openings, repaired, without_gaps
-from .polygons import Polygons, one_piece
+from .label_repair import SMALL, given_away, openings, repaired, without_gaps
+from .polygons import Polygons, one_piece, parted, too_small
 
 __all__ = ["polygons_of_labels"]
 
@@ -80,8 +80,7 @@ def polygons_of_labels(
         raise ValueError(f"keep: {keep!r}; give \"all\" or \"largest\"")
     given = numbered(image, background)
     repairs: list[str] = []
-    closed = repaired(given.numbers, given.names, gap_px, keep_cut, repairs)
-    polygons = traced(closed, keep_cut)
+    closed, polygons = _without_slivers(repaired(given.numbers, given.names, gap_px, keep_cut, repairs), keep_cut, given.names, repairs)
     if open_walls(given.numbers, closed, gap_px) > OPEN_WALLS:
         raise ValueError(f"image: lines of background remain between cells: they are wider than {2 * gap_px} pixels"
                          f"{_advice(given, gap_px, keep_cut, 0.5)}")
@@ -90,6 +89,8 @@ def polygons_of_labels(
                          f"{_advice(given, gap_px, keep_cut, 0.5) or '; give a label image of more cells, or set keep_cut = True'}")
     polygons.cell_data["label"] = given.names[polygons.cell_data["label"] - 1]
     polygons = one_piece(polygons, keep, "image", lambda: _advice(given, gap_px, keep_cut, 1))
+    if count := parted(polygons, 1.0):
+        given.remarks.append(f"image: cells that met at a point only were parted there by a pixel, at {count} places")
     if repairs:
         more = f", and {len(repairs) - 3} more" if len(repairs) > 3 else ""
         given.remarks.append(f"image: given to their surroundings: {', '.join(repairs[:3])}{more}")
@@ -102,6 +103,25 @@ def polygons_of_labels(
         warnings.warn(remark, stacklevel=2)
     polygons.points = um_per_pixel * (polygons.points + [0, len(closed) - 1, 0])
     return polygons
+
+
+def _without_slivers(closed: NDArray[Any], keep_cut: bool, names: NDArray[Any],
+                     repairs: list[str]) -> tuple[NDArray[Any], Polygons]:
+    """Return numbers and polygons without cells that are too thin for their corners to be told apart."""
+    polygons = traced(closed, keep_cut)
+    while (slivers := too_small(polygons)).any():
+        thin = polygons.cell_data["label"][slivers]
+        sizes = np.bincount(closed.ravel(), minlength=len(names) + 1)
+        large = thin[sizes[thin] > SMALL * np.median(sizes[1:][sizes[1:] > 0])]
+        if len(large):
+            raise ValueError(f"image: cell {names[large[0] - 1]} is too thin or winding for corners with its neighbours; correct it, or "
+                             "smooth all: skimage.filters.rank.majority(image.astype(\"uint16\"), skimage.morphology.disk(2))")
+        for cell in thin:
+            row, column = np.argwhere(closed == cell)[0]
+            repairs.append(f"cell {names[cell - 1]} ({sizes[cell]} pixels at row {row}, column {column})")
+        closed = given_away(closed, np.isin(closed, thin))
+        polygons = traced(closed, keep_cut)
+    return closed, polygons
 
 
 def _advice(given: LabelImage, gap_px: float, keep_cut: bool, share: float) -> str:
@@ -206,7 +226,7 @@ def _face(region: Any, padded: NDArray[Any], vertices: list[int], corners: list[
 
 
 def _bends(line: NDArray[np.float64], tolerance: float, inward: float, measure: Any) -> list[NDArray[np.float64]]:
-    """Return the inner points of a polyline that keep it within `tolerance`, less those on the way between their neighbours.
+    """Return the inner points of a polyline that keep it within `tolerance`, without those on the way between their neighbours.
 
     Points at which the cell would be concave are omitted as well: `inward` is the sign of a turn there.
     """

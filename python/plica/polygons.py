@@ -78,11 +78,15 @@ class Polygons:
             for spokes in (self.points[face] - centre for face, centre in zip(self.faces, self.centres))
         ])
 
+    def _half_edges(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return the ends, shape (n, 2), and the polygons of all half-edges."""
+        ends = np.array([pair for one in self.faces for pair in zip(one, np.roll(one, -1))], dtype=np.int64).reshape(-1, 2)
+        return ends, np.repeat(np.arange(len(self.faces)), [len(one) for one in self.faces])
+
     @property
     def pieces(self) -> NDArray[np.int64]:
         """Piece of each polygon, from 0, the largest; polygons that share an edge are in one; shape (faces,)."""
-        face = np.repeat(np.arange(len(self.faces)), [len(one) for one in self.faces])
-        ends = np.array([pair for one in self.faces for pair in zip(one, np.roll(one, -1))], dtype=np.int64).reshape(-1, 2)
+        ends, face = self._half_edges()
         edge = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)[1].ravel()
         order = np.argsort(edge, kind="stable")
         shared = edge[order][1:] == edge[order][:-1]
@@ -238,6 +242,42 @@ def _numbers(name: str, values: ArrayLike, count: int) -> NDArray[Any]:
         raise ValueError(f"cell_data: {name} has no number for polygon {int(np.argmax(missing))}, and for {int(missing.sum())} of {count} "
                          "in all; give numbers, or leave these polygons out: select(numpy.isfinite(values))")
     return array
+
+
+def too_small(polygons: Polygons) -> NDArray[np.bool_]:
+    """Return for each polygon whether it is the smallest of those that run along an edge in the same direction."""
+    ends, face = polygons._half_edges()
+    areas = polygons.areas
+    order = np.lexsort((areas[face], ends[:, 1], ends[:, 0]))
+    alike = (ends[order][1:] == ends[order][:-1]).all(axis=1)
+    found = np.zeros(len(polygons), dtype=bool)
+    found[face[order][:-1][alike]] = True
+    return found
+
+
+def parted(polygons: Polygons, step: float) -> int:
+    """Part polygons that meet at a vertex but share no edge there, by moving it `step` into each side. Return how often."""
+    ends, face = polygons._half_edges()
+    edges = {(start, end): cell for (start, end), cell in zip(ends.tolist(), face.tolist())}
+    free = np.array([pair[::-1] not in edges for pair in edges], dtype=bool)
+    starts = np.bincount(np.array(list(edges), dtype=np.int64).reshape(-1, 2)[free, 0], minlength=len(polygons.points))
+    pinched = np.flatnonzero(starts > 1)
+    points = list(polygons.points)
+    for vertex in pinched.tolist():
+        at = {start: cell for (start, end), cell in edges.items() if end == vertex}  # by the corner before the vertex
+        after = {cell: end for (start, end), cell in edges.items() if start == vertex}
+        place = points[vertex]
+        for number, first in enumerate(start for start in at if (vertex, start) not in edges):
+            side = [at[first]]
+            while after[side[-1]] in at:  # the next polygon around the vertex
+                side.append(at[after[side[-1]]])
+            way = np.mean([polygons.points[polygons.faces[cell]].mean(axis=0) for cell in side], axis=0) - place
+            now = vertex if number == 0 else len(points)
+            points[now:now + 1] = [place + step * way / np.linalg.norm(way)]
+            for cell in side:
+                polygons.faces[cell] = np.where(polygons.faces[cell] == vertex, now, polygons.faces[cell])
+    polygons.points = np.array(points).reshape(-1, 3)
+    return len(pinched)
 
 
 def one_piece(polygons: Polygons, keep: str, what: str, advice: Callable[[], str]) -> Polygons:

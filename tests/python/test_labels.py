@@ -244,6 +244,32 @@ def test_cells_at_the_rim_are_whole():
     assert plica.polygons_of_labels(labels, 1).areas == pytest.approx([1600], rel=0.06)
 
 
+def test_openings_that_meet_at_a_point_are_parted(tmp_path):
+    rows, columns = np.mgrid[:150, :150]
+    labels = 1 + rows // 30 * 5 + columns // 30
+    labels[(labels == 7) | (labels == 13)] = 0
+    with pytest.warns(UserWarning, match="cells that met at a point only were parted there by a pixel, at 1 places"):
+        cells = plica.polygons_of_labels(labels, 1, keep_cut=True)
+    assert len(cells) == 23 and len(cells.points) == 37 and cells.areas == pytest.approx(900, rel=0.08)
+    cells.write(tmp_path / "cells.ply")
+    embryo = {"shape": "surface", "file": str(tmp_path / "cells.ply"), "cell_height_um": 20}
+    assert len(plica.Simulation(plica.Scenario({"format": 1, "embryo": embryo})).cell_data["x_um"]) == 23
+
+
+def test_a_thin_cell_is_refused_with_a_filter_that_helps():
+    skimage = pytest.importorskip("skimage")
+    rng = np.random.default_rng(76)
+    image = bricks(120, 20)
+    image[np.isin(image, rng.choice(np.unique(image), 12))] = 0
+    at = rng.integers(0, 120, (2, 400))
+    image[tuple(at)] = rng.choice(np.unique(image), 400)
+    with pytest.raises(ValueError, match="cell 44 is too thin or winding") as refused:
+        quietly(image, keep_cut=True, keep="largest")
+    pytest.importorskip("skimage.filters.rank"), pytest.importorskip("skimage.morphology")
+    filtered = eval(str(refused.value).split("smooth all: ")[1], {"image": image, "skimage": skimage})
+    assert len(quietly(filtered, keep_cut=True, keep="largest")) == 28
+
+
 def test_a_stack_is_projected_by_the_call_that_the_error_names():
     flat = bricks()
     image = np.zeros((5, *flat.shape), dtype=np.int32)

@@ -151,6 +151,15 @@ def test_centres_of_a_curved_sheet(tmp_path):
     sheet(cells, tmp_path)
 
 
+@pytest.mark.parametrize("z", ["0", "1000"])
+def test_points_of_an_open_sheet_name_this_function(tmp_path, z):
+    _, centres = cells_of_voronoi()
+    lines = [f"{x},{y},{z}" for x, y in centres - centres.mean(axis=0)]
+    (tmp_path / "centres.csv").write_text("\n".join(["x_um,y_um,z_um", *lines]))
+    with pytest.raises(plica.ScenarioError, match="an open sheet is made by Python's plica.polygons_of_centres"):
+        plica.Simulation(plica.Scenario({"format": 1, "embryo": {"shape": "points", "file": str(tmp_path / "centres.csv")}}))
+
+
 def test_bad_centres():
     _, centres = cells_of_voronoi()
     near = np.concatenate([centres, centres + [83, 0]])
@@ -215,6 +224,8 @@ def test_monolayer_files(tmp_path):
         for name, table in monolayer().items():
             table.to_hdf(tmp_path / "layer.hf5", key=name)
     assert plica.polygons_of_monolayer(tmp_path / "layer.hf5").cell_data["height"] == pytest.approx([6.5, 7.5])
+    with pytest.raises(plica.ScenarioError, match="three-dimensional cells; .*plica.polygons_of_monolayer"):
+        plica.Simulation(plica.Scenario({"format": 1, "embryo": {"shape": "surface", "file": str(tmp_path / "layer.hf5")}}))
     (tmp_path / "bad.hf5").write_text("no HDF5")
     with pytest.raises(plica.FileError, match="bad.hf5: is no HDF5 file with tables vert, edge, face"):
         plica.polygons_of_monolayer(tmp_path / "bad.hf5")
