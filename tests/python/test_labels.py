@@ -18,7 +18,7 @@ def voronoi(count, size, seed):
     pixels = np.stack(np.mgrid[:size, :size], axis=-1).reshape(-1, 2)
     for _ in range(4):
         nearest = spatial.cKDTree(points).query(pixels)[1]
-        points = np.array([pixels[nearest == k].mean(axis=0) for k in range(count)])
+        points = np.column_stack([np.bincount(nearest, pixels[:, axis], count) / np.bincount(nearest, minlength=count) for axis in (0, 1)])
     return 1 + spatial.cKDTree(points).query(pixels)[1].reshape(size, size), points
 
 
@@ -105,9 +105,9 @@ def test_bad_labels(image, um, said):
         plica.polygons_of_labels(image, um)
 
 
-def lined(width, size=200, spacing=30.0):
+def lined(width, size=160, spacing=30.0):
     """Hexagons with lines of background, `width` pixels wide, along their walls."""
-    steps = np.arange(-1, 10)
+    steps = np.arange(-1, 8)
     centres = np.array([[row * spacing * 0.75**0.5, (column + row % 2 / 2) * spacing] for row in steps for column in steps])
     centres += np.random.default_rng(4).normal(0, 2.5, centres.shape)
     pixels = np.indices((size, size)).reshape(2, -1).T
@@ -136,7 +136,7 @@ def test_wider_lines_name_a_gap_that_closes_them(width, gap_px):
     with pytest.raises(ValueError, match=f"wider than {2 * gap_px} pixels; set gap_px = ") as refused:
         plica.polygons_of_labels(image, 1, gap_px=gap_px)
     named = int(re.search(r"set gap_px = (\d+)", str(refused.value))[1])
-    assert len(plica.polygons_of_labels(image, 1, gap_px=named)) >= 25 and named <= width / 2 + 1
+    assert len(plica.polygons_of_labels(image, 1, gap_px=named)) >= 15 and named <= width / 2 + 1
 
 
 def test_an_opening_stays_open():
