@@ -10,11 +10,15 @@ from __future__ import annotations
 
 from ._core import version as __version__
 from .answers import verdict
+from .centres import polygons_of_centres
 from .emulator import Emulator
 from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaError, ScenarioError
 from .experiments import reproduce
 from .indices import SobolIndices
-from .polygons import Polygons, polygons_of_labels
+from .labels import polygons_of_labels
+from .monolayers import polygons_of_monolayer
+from .outlines import polygons_of_outlines
+from .polygons import Polygons
 from .posteriors import Posterior, posterior
 from .results import Frame, Frames, Run
 from .results import open_run as open
@@ -51,7 +55,10 @@ __all__ = [
     "compare",
     "load",
     "open",
+    "polygons_of_centres",
     "polygons_of_labels",
+    "polygons_of_monolayer",
+    "polygons_of_outlines",
     "posterior",
     "render",
     "reproduce",

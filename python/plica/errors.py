@@ -94,7 +94,7 @@ class MissingExtra(PlicaError, ImportError):
 
 EXTRAS = {"pandas": "plot", "matplotlib": "plot", "pyvista": "plot", "meshio": "plot", "IPython": "notebook",
           "xarray": "study", "SALib": "study", "sklearn": "study", "threadpoolctl": "study",
-          "skimage": "image", "scipy": "image"}
+          "skimage": "image", "scipy": "image", "tables": "tyssue"}
 
 
 def needed(package: str, what: str) -> Any:

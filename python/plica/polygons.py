@@ -1,8 +1,9 @@
-"""Cells as polygons, from a snapshot or from a label image."""
+"""Cells as polygons."""
 from __future__ import annotations
 
+import contextlib
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Union
 from xml.sax.saxutils import quoteattr
@@ -15,7 +16,7 @@ from .errors import FileError, needed
 if TYPE_CHECKING:
     import pandas
 
-__all__ = ["Polygons", "polygons_of_labels"]
+__all__ = ["Polygons"]
 
 
 class Polygons:
@@ -38,7 +39,7 @@ class Polygons:
     Raises
     ------
     ValueError
-        If a shape is wrong, a number is not finite, or a vertex does not exist.
+        If a shape is wrong, a number is masked, missing or not finite, or a vertex does not exist.
 
     Examples
     --------
@@ -60,10 +61,9 @@ class Polygons:
         for number, face in enumerate(self.faces):
             if len(face) < 3 or face.min() < 0 or face.max() >= len(self.points):
                 raise ValueError(f"faces: polygon {number} has vertices {face}; give three or more, 0 to {len(self.points) - 1}")
-        self.cell_data: dict[str, NDArray[Any]] = {name: np.asarray(values) for name, values in (cell_data or {}).items()}
-        for name, values in self.cell_data.items():
-            if values.shape != (len(self.faces),):
-                raise ValueError(f"cell_data: {name} has shape {values.shape}; give one number for each of {len(self.faces)} polygons")
+        self.cell_data: dict[str, NDArray[Any]] = {}
+        for name, values in (cell_data or {}).items():
+            self.cell_data[name] = _numbers(name, values, len(self.faces))
 
     @property
     def centres(self) -> NDArray[np.float64]:
@@ -77,6 +77,53 @@ class Polygons:
             0.5 * np.linalg.norm(np.cross(spokes, np.roll(spokes, -1, axis=0)), axis=1).sum()
             for spokes in (self.points[face] - centre for face, centre in zip(self.faces, self.centres))
         ])
+
+    def _half_edges(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return the ends, shape (n, 2), and the polygons of all half-edges."""
+        ends = np.array([pair for one in self.faces for pair in zip(one, np.roll(one, -1))], dtype=np.int64).reshape(-1, 2)
+        return ends, np.repeat(np.arange(len(self.faces)), [len(one) for one in self.faces])
+
+    @property
+    def pieces(self) -> NDArray[np.int64]:
+        """Piece of each polygon, from 0, the largest; polygons that share an edge are in one; shape (faces,)."""
+        ends, face = self._half_edges()
+        edge = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)[1].ravel()
+        order = np.argsort(edge, kind="stable")
+        shared = edge[order][1:] == edge[order][:-1]
+        one, other = face[order][1:][shared], face[order][:-1][shared]
+        first = np.arange(len(self.faces))  # of the piece, when all is done
+        while (first[one] != first[other]).any():
+            lower = np.minimum(first[one], first[other])
+            for ends_of in (one, other):
+                np.minimum.at(first, first[ends_of], lower)
+            first = first[first]
+        size = np.bincount(first, minlength=len(self.faces))
+        by_size = np.argsort(-size, kind="stable")
+        rank = np.empty_like(by_size)
+        rank[by_size] = np.arange(len(by_size))
+        return np.asarray(rank[first])
+
+    def select(self, cells: ArrayLike) -> Polygons:
+        """Return some of the polygons, with their arrays.
+
+        Parameters
+        ----------
+        cells : array_like of bool, shape (faces,)
+            True for polygons to keep.
+
+        Raises
+        ------
+        ValueError
+            If `cells` is not one boolean per polygon.
+        """
+        mask = np.asarray(cells)
+        if mask.shape != (len(self.faces),) or mask.dtype != bool:
+            raise ValueError(f"cells: shape {mask.shape} of {mask.dtype}; give one boolean for each of {len(self.faces)} polygons")
+        faces = [face for face, chosen in zip(self.faces, mask) if chosen]
+        used, renumbered = np.unique(np.concatenate([*faces, []]).astype(np.int64), return_inverse=True)
+        ends = np.cumsum([len(face) for face in faces])[:-1]
+        return Polygons(self.points[used], np.split(renumbered, ends) if faces else [],
+                        {name: values[mask] for name, values in self.cell_data.items()})
 
     def to_pyvista(self) -> Any:
         """Return the surface as a ``pyvista.PolyData``."""
@@ -127,12 +174,14 @@ class Polygons:
         Raises
         ------
         ValueError
-            If the extension is another, or, for ``.ply``, an array name is not one word.
+            If the extension is another, a number is missing in `cell_data`, or, for ``.ply``, an array name is not one word.
         """
         file = Path(path)
         texts = {".ply": self._ply, ".vtp": self._vtp, ".obj": self._obj}
         if file.suffix not in texts:
             raise ValueError(f"{file}: the file's name must end in .ply, .vtp or .obj")
+        for name, values in self.cell_data.items():
+            _numbers(name, values, len(self.faces))
         try:
             file.write_text(texts[file.suffix](), encoding="utf-8")
         except OSError as error:
@@ -176,121 +225,68 @@ class Polygons:
         return f"Polygons({len(self.faces)} cells, {len(self.points)} vertices)"
 
 
-def polygons_of_labels(
-    image: ArrayLike,
-    um_per_pixel: float,
-    *,
-    background: int = 0,
-    gap_px: int = 2,
-    keep_cut: bool = False,
-) -> Polygons:
-    """Return the polygons of a label image, with straight edges between points where three labels meet.
-
-    Parameters
-    ----------
-    image : array_like of int, shape (rows, columns)
-        Label image: cell number of each pixel, seen from the apical side.
-    um_per_pixel : float
-        Pixel size, µm.
-    background : int
-        Label of pixels outside all cells.
-    gap_px : int
-        Background lines between cells, up to twice this width, are assigned to the nearest cells; 0: none.
-    keep_cut : bool
-        Whether to keep cells cut by the border of the image.
-
-    Returns
-    -------
-    Polygons
-        Polygons with x to the right, y upwards, z = 0, and the origin at the centre of the lower left pixel. `cell_data`
-        has the ``label`` of each. Cells with fewer than three corners are omitted.
-
-    Raises
-    ------
-    ValueError
-        If the image has the wrong shape or type, a cell is in several pieces or has a hole, or no cell has three corners.
-
-    Examples
-    --------
-    >>> import numpy as np, plica
-    >>> rows, columns = np.mgrid[:60, :60]
-    >>> labels = 1 + (rows // 20) * 3 + (columns + 10 * (rows // 20 % 2)) // 20
-    >>> plica.polygons_of_labels(labels, um_per_pixel=0.5)  # doctest: +SKIP
-    Polygons(1 cells, 6 vertices)
-    """
-    labels = np.asarray(image)
-    if labels.ndim != 2 or not np.issubdtype(labels.dtype, np.integer):
-        raise ValueError(f"image: shape {labels.shape} of {labels.dtype}; give whole numbers of shape (rows, columns)")
-    if not (np.isfinite(um_per_pixel) and um_per_pixel > 0):
-        raise ValueError(f"um_per_pixel: {um_per_pixel}; give the size of a pixel in µm, above 0")
-    measure = needed("skimage.measure", "polygons of labels")
-    # Labels from 1, 0 for background, and a frame with its own label around the image.
-    names, numbers = np.unique(labels, return_inverse=True)
-    numbers = numbers.reshape(labels.shape) + 1
-    numbers[labels == background] = 0
-    numbers = _without_gaps(numbers, gap_px)
-    outside = len(names) + 1
-    padded = np.pad(numbers, 1, constant_values=outside)
-    places, of_label = _junctions(padded, measure)
-    cut = {0, outside}
-    if not keep_cut:
-        for rim in (numbers[0], numbers[-1], numbers[:, 0], numbers[:, -1]):
-            cut.update(rim.tolist())
-    faces: list[list[int]] = []
-    kept: list[int] = []
-    for region in measure.regionprops(padded):
-        vertices = of_label.get(region.label, [])
-        if region.label in cut or len(vertices) < 3:
-            continue
-        faces.append(_in_order(region, places, vertices, names[region.label - 1], measure))
-        kept.append(int(names[region.label - 1]))
-    if not faces:
-        raise ValueError("image: no cell has three corners where three labels meet; give a label image without gaps of more "
-                         f"than {2 * gap_px} pixels between cells, or change gap_px or keep_cut")
-    used, renumbered = np.unique(np.concatenate(faces), return_inverse=True)
-    ends = np.cumsum([len(face) for face in faces])[:-1]
-    rows, columns = places[used].T
-    points = um_per_pixel * np.column_stack([columns - 1, labels.shape[0] - rows, np.zeros(len(used))])
-    return Polygons(points, np.split(renumbered, ends), {"label": np.array(kept)})
+def _numbers(name: str, values: ArrayLike, count: int) -> NDArray[Any]:
+    """Return an array with one finite number for each of `count` polygons. ValueError names the first that is not."""
+    array = np.asarray(values)
+    if array.shape != (count,):
+        raise ValueError(f"cell_data: {name} has shape {array.shape}; give one number for each of {count} polygons")
+    missing = np.broadcast_to(values.mask if isinstance(values, np.ma.MaskedArray) else False, count)
+    if array.dtype.kind not in "biuf":
+        numbers = np.full(count, np.nan)
+        for cell, value in enumerate(array):
+            with contextlib.suppress(TypeError, ValueError):
+                numbers[cell] = float(value)
+        array = numbers
+    missing = missing | ~np.isfinite(array)
+    if missing.any():
+        raise ValueError(f"cell_data: {name} has no number for polygon {int(np.argmax(missing))}, and for {int(missing.sum())} of {count} "
+                         "in all; give numbers, or leave these polygons out: select(numpy.isfinite(values))")
+    return array
 
 
-def _without_gaps(numbers: NDArray[Any], gap_px: int) -> NDArray[Any]:
-    """Assign background between cells, but not outside the tissue, to the nearest cell."""
-    if gap_px <= 0 or not (numbers == 0).any():
-        return numbers
-    grown: NDArray[Any] = needed("skimage.segmentation", "polygons of labels").expand_labels(numbers, distance=gap_px)
-    if (grown == 0).any():
-        far = needed("scipy.ndimage", "polygons of labels").distance_transform_edt(grown != 0)
-        grown[(numbers == 0) & (far <= gap_px)] = 0
-    return grown
+def too_small(polygons: Polygons) -> NDArray[np.bool_]:
+    """Return for each polygon whether it is the smallest of those that run along an edge in the same direction."""
+    ends, face = polygons._half_edges()
+    areas = polygons.areas
+    order = np.lexsort((areas[face], ends[:, 1], ends[:, 0]))
+    alike = (ends[order][1:] == ends[order][:-1]).all(axis=1)
+    found = np.zeros(len(polygons), dtype=bool)
+    found[face[order][:-1][alike]] = True
+    return found
 
 
-def _junctions(padded: NDArray[Any], measure: Any) -> tuple[NDArray[np.float64], dict[int, list[int]]]:
-    """Return the points where three or more labels meet, by row and column, and those of each label."""
-    windows = np.stack([padded[:-1, :-1], padded[:-1, 1:], padded[1:, :-1], padded[1:, 1:]])
-    in_order = np.sort(windows, axis=0)
-    meets = 1 + (np.diff(in_order, axis=0) != 0).sum(axis=0) >= 3
-    groups, count = measure.label(meets, connectivity=2, return_num=True)
-    rows, columns = np.nonzero(groups)
-    members = groups[rows, columns] - 1
-    size = np.bincount(members, minlength=count)
-    places = np.column_stack([np.bincount(members, weights=at + 0.5, minlength=count) / size for at in (rows, columns)])
-    found: dict[int, set[int]] = {}
-    for member, labels in zip(members.tolist(), windows[:, rows, columns].T.tolist()):
-        for label in labels:
-            found.setdefault(label, set()).add(member)
-    return places, {label: sorted(vertices) for label, vertices in found.items()}
+def parted(polygons: Polygons, step: float) -> int:
+    """Part polygons that meet at a vertex but share no edge there, by moving it `step` into each side. Return how often."""
+    ends, face = polygons._half_edges()
+    edges = {(start, end): cell for (start, end), cell in zip(ends.tolist(), face.tolist())}
+    free = np.array([pair[::-1] not in edges for pair in edges], dtype=bool)
+    starts = np.bincount(np.array(list(edges), dtype=np.int64).reshape(-1, 2)[free, 0], minlength=len(polygons.points))
+    pinched = np.flatnonzero(starts > 1)
+    points = list(polygons.points)
+    for vertex in pinched.tolist():
+        at = {start: cell for (start, end), cell in edges.items() if end == vertex}  # by the corner before the vertex
+        after = {cell: end for (start, end), cell in edges.items() if start == vertex}
+        place = points[vertex]
+        for number, first in enumerate(start for start in at if (vertex, start) not in edges):
+            side = [at[first]]
+            while after[side[-1]] in at:  # the next polygon around the vertex
+                side.append(at[after[side[-1]]])
+            way = np.mean([polygons.points[polygons.faces[cell]].mean(axis=0) for cell in side], axis=0) - place
+            now = vertex if number == 0 else len(points)
+            points[now:now + 1] = [place + step * way / np.linalg.norm(way)]
+            for cell in side:
+                polygons.faces[cell] = np.where(polygons.faces[cell] == vertex, now, polygons.faces[cell])
+    polygons.points = np.array(points).reshape(-1, 3)
+    return len(pinched)
 
 
-def _in_order(region: Any, places: NDArray[np.float64], vertices: list[int], name: Any, measure: Any) -> list[int]:
-    """Return the vertices of a cell along its outline, counter-clockwise with y upwards."""
-    outlines = measure.find_contours(np.pad(region.image, 1).astype(float), 0.5, fully_connected="high")
-    if len(outlines) != 1:
-        raise ValueError(f"image: cell {name} has {len(outlines)} outlines: it is in several pieces, or has a hole; correct the "
-                         "labels, by skimage.morphology.remove_small_objects for instance")
-    outline = outlines[0] + np.array(region.bbox[:2]) - 1
-    nearest = [int(np.argmin(((outline - places[vertex]) ** 2).sum(axis=1))) for vertex in vertices]
-    ordered = [vertex for _, vertex in sorted(zip(nearest, vertices))]
-    rows, columns = places[ordered].T
-    turns = float((columns * np.roll(rows, -1) - np.roll(columns, -1) * rows).sum())
-    return ordered if turns < 0 else ordered[::-1]
+def one_piece(polygons: Polygons, keep: str, what: str, advice: Callable[[], str]) -> Polygons:
+    """Return the polygons if they are one piece, or the largest piece. `advice` gives another remedy, or nothing."""
+    pieces = polygons.pieces
+    sizes = np.bincount(pieces)
+    if keep == "largest" or len(sizes) == 1:
+        return polygons.select(pieces == 0)
+    numbers = ", ".join(map(str, sizes[:5])) + (", …" if len(sizes) > 5 else "")
+    label = polygons.cell_data["label"][np.argmax(pieces == 1)]
+    raise ValueError(f"{what}: the tissue is in {len(sizes)} pieces, which share no edge, of {numbers} cells (cell {label} is in the "
+                     f"second){advice()}; keep = \"largest\" omits all but the first")

@@ -1,4 +1,4 @@
-"""Cells as polygons: of frames, and of label images."""
+"""Cells as polygons: of frames, and in files."""
 import numpy as np
 import plica
 import pytest
@@ -142,80 +142,6 @@ def test_ply_keeps_arrays(tmp_path):
     assert not (tmp_path / "other.ply").exists()
 
 
-def voronoi_labels(count, size, seed):
-    """Labels of evened random points, and the points, by row and column."""
-    spatial = pytest.importorskip("scipy.spatial")
-    points = np.random.default_rng(seed).uniform(0, size, (count, 2))
-    pixels = np.stack(np.mgrid[:size, :size], axis=-1).reshape(-1, 2)
-    for _ in range(4):
-        nearest = spatial.cKDTree(points).query(pixels)[1]
-        points = np.array([pixels[nearest == k].mean(axis=0) for k in range(count)])
-    return 1 + spatial.cKDTree(points).query(pixels)[1].reshape(size, size), points
-
-
-def test_labels_give_back_voronoi_polygons():
-    pytest.importorskip("skimage")
-    from scipy.spatial import Voronoi, cKDTree
-
-    size, um = 400, 0.25
-    labels, seeds = voronoi_labels(150, size, 1)
-    found = plica.polygons_of_labels(labels, um)
-    true = Voronoi(seeds)
-    rim = {*labels[0], *labels[-1], *labels[:, 0], *labels[:, -1]}
-    assert set(found.cell_data["label"]) == set(range(1, 151)) - rim
-    same = 0
-    for face, label, area in zip(found.faces, found.cell_data["label"], found.areas):
-        corners = true.vertices[true.regions[true.point_region[label - 1]]]
-        corners = um * np.column_stack([corners[:, 1], size - 1 - corners[:, 0]])
-        ours = found.points[face][:, :2]
-        # To 1.5 pixels: edges shorter than that are one corner.
-        assert max(cKDTree(ours).query(corners)[0].max(), cKDTree(corners).query(ours)[0].max()) < 1.5 * um
-        assert area == pytest.approx((labels == label).sum() * um**2, rel=0.06)
-        x, y = ours.T
-        assert (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() > 0
-        same += len(corners) == len(ours)
-    assert same > 0.7 * len(found)
-    # Neighbours share their edges: every half-edge inside has its opposite.
-    edges = found.to_tables()["edge"]
-    assert ((edges["opposite"] >= 0).sum() / len(edges)) > 0.7
-
-
-def test_lines_between_labels_are_shared_out():
-    segmentation = pytest.importorskip("skimage.segmentation")
-    labels, _ = voronoi_labels(60, 300, 2)
-    lines = labels.copy()
-    lines[segmentation.find_boundaries(labels, mode="inner")] = 0
-    plain, closed = plica.polygons_of_labels(labels, 1), plica.polygons_of_labels(lines, 1)
-    assert list(plain.cell_data["label"]) == list(closed.cell_data["label"])
-    assert np.allclose(plain.areas, closed.areas, rtol=0.15)
-    # Outside of the tissue there is nothing: cells at its rim do not grow.
-    island = np.where((np.indices(labels.shape) - 150).astype(float).__pow__(2).sum(axis=0) < 100**2, labels, 0)
-    whole = plica.polygons_of_labels(island, 1)
-    assert np.linalg.norm(whole.points[:, :2] - [150, 149], axis=1).max() < 101.5
-
-
-@pytest.mark.parametrize(("image", "um", "said"), [
-    (np.zeros((4, 4, 4), int), 1, "whole numbers of shape"),
-    (np.zeros((4, 4)), 1, "whole numbers of shape"),
-    (np.ones((4, 4), int), 0, "um_per_pixel: 0"),
-    (np.ones((4, 4), int), float("nan"), "um_per_pixel: nan"),
-    (np.ones((9, 9), int), 1, "no cell has three corners"),
-])
-def test_bad_labels(image, um, said):
-    pytest.importorskip("skimage")
-    with pytest.raises(ValueError, match=said):
-        plica.polygons_of_labels(image, um)
-
-
-def test_cells_in_pieces_are_named():
-    pytest.importorskip("skimage")
-    labels, _ = voronoi_labels(60, 300, 2)
-    inner = plica.polygons_of_labels(labels, 1).cell_data["label"]
-    labels[labels == inner[0]] = inner[-1]
-    with pytest.raises(ValueError, match=f"cell {inner[-1]} has 2 outlines"):
-        plica.polygons_of_labels(labels, 1)
-
-
 @pytest.mark.parametrize(("points", "faces", "data", "said"), [
     ([[0, 0]], [], {}, "points: give finite numbers"),
     ([[0, 0, np.nan]], [], {}, "points: give finite numbers"),
@@ -226,3 +152,35 @@ def test_cells_in_pieces_are_named():
 def test_bad_polygons(points, faces, data, said):
     with pytest.raises(ValueError, match=said):
         plica.Polygons(points, faces, data)
+
+
+def test_missing_numbers_are_named(tmp_path):
+    """A mask, NaN or NA of an array: refused, since such a cell would have another's value, or be in no region."""
+    pandas = pytest.importorskip("pandas")
+    corners, faces = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]]
+    for values in (np.ma.masked_array([3, 4], [False, True]), [3, np.nan], pandas.array([3, pandas.NA], dtype="Int64"), [3, None]):
+        with pytest.raises(ValueError, match="cell_data: signal has no number for polygon 1, and for 1 of 2 in all; give numbers, or"):
+            plica.Polygons(corners, faces, {"signal": values})
+        square = plica.Polygons(corners, faces)
+        square.cell_data["signal"] = values
+        for name in ("cells.ply", "cells.vtp"):
+            with pytest.raises(ValueError, match="no number for polygon 1"):
+                square.write(tmp_path / name)
+    # The remedy.
+    square = plica.Polygons(corners, faces)
+    values = np.array([3, np.nan])
+    left = square.select(np.isfinite(values))
+    left.cell_data["signal"] = values[np.isfinite(values)]
+    left.write(tmp_path / "cells.ply")
+    assert list(plica.Polygons(corners, faces, {"signal": pandas.array([3, 4], dtype="Int64")}).cell_data["signal"]) == [3, 4]
+
+
+def test_pieces_and_selection():
+    strip = np.array([[x, y, 0] for x in range(8) for y in (0, 1)])
+    quads = [[2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1] for k in (0, 2, 3, 5, 4, 6)]
+    cells = plica.Polygons(strip, quads, {"number": np.arange(6)})
+    assert list(cells.pieces) == [1, 0, 0, 0, 0, 0]
+    assert list(cells.select(cells.pieces == 1).cell_data["number"]) == [0] and len(cells.select(cells.pieces == 1).points) == 4
+    assert len(cells.select(np.zeros(6, dtype=bool))) == 0
+    with pytest.raises(ValueError, match="one boolean for each of 6"):
+        cells.select([0, 1])

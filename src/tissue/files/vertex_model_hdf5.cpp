@@ -137,7 +137,10 @@ std::string table_bytes(const std::filesystem::path& path) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file.is_open()) throw MeshError("not an HDF5 file");
-  if (has(file, "cell")) throw MeshError("it contains three-dimensional cells; give a surface with one cell per face");
+  if (has(file, "cell"))
+    throw MeshError(
+        "it contains three-dimensional cells; give a surface with one cell per face: of a monolayer, Python's "
+        "plica.polygons_of_monolayer takes apical faces and heights");
   std::string bytes;
   for (const char* name : {"vert", "edge", "face"}) put_table(table_in(file, name), bytes);
   return bytes;

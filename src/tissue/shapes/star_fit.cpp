@@ -35,7 +35,7 @@ void check_points(const Vectors& points) {
     if (nearest < widest_hole_cosine)
       throw MeshError(
           fmt::format("no point lies toward ({:.2f}, {:.2f}, {:.2f}), seen from the origin; points must "
-                      "surround the origin: shift them",
+                      "surround the origin: shift them; an open sheet is made by Python's plica.polygons_of_centres",
                       direction.x(), direction.y(), direction.z()));
   }
 }
@@ -69,7 +69,9 @@ Frame frame_of(const Vectors& points) {
     half_axes = (3 * solver.eigenvalues()).cwiseMax(0).cwiseSqrt();
   }
   if (half_axes.minCoeff() < 1e-3)
-    throw MeshError("the points lie in a plane; give points on a closed surface around the origin");
+    throw MeshError(
+        "the points lie in a plane; give points on a closed surface around the origin; an open sheet is made by "
+        "Python's plica.polygons_of_centres");
   Frame frame{solver.eigenvectors(), scale * half_axes};
   if (frame.axes.determinant() < 0) frame.axes.col(2) *= -1;
   return frame;
