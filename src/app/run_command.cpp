@@ -17,6 +17,7 @@
 #include "scenario/advice.hpp"
 #include "show/recorded_run.hpp"
 #include "show/report.hpp"
+#include "simulation/bending_warning.hpp"
 #include "simulation/crossing_warning.hpp"
 
 namespace plica {
@@ -106,6 +107,8 @@ void report_ending(const Simulation& simulation, const nlohmann::ordered_json& s
         "warning: equilibrium after the first step: no node is faster than stop.equilibrium_speed_um_per_min ({:g}); "
         "lower it, increase the forces or reduce the drag\n",
         simulation.controls().equilibrium_speed_um_per_s * units::minute);
+  if (const std::string bending = bending_warning(simulation); !bending.empty())
+    fmt::print(stderr, "warning: {}\n", bending);
   if (simulation.status() == RunStatus::under_way && can_archive())
     fmt::print(stderr, "plica: interrupted; to continue, repeat the command with --resume\n");
   if (!options.quiet) print_result(summary, options.out);

@@ -113,7 +113,7 @@ TEST(ContractionOfKites, IsThatOfAGrid) {
   };
   int cases = 0;
   for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
-    const ContractionRule rule{side, 2, 1.5, 0.4, false, 0.3, 1, 3, 0.7};
+    const ContractionRule rule{side, 2, 1.5, 0.4, false, 0.3, 1, 3};
     const auto forces_on = [&](const Tissue& tissue) {
       Motion motion = at_rest(tissue);
       for (Vec3& x : motion.positions) x = moved(x);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "mechanics/active/contractile_lines.hpp"
 #include "mechanics/active/given_activities.hpp"
+#include "tissue/contractile_lines.hpp"
 #include "tissue/division.hpp"
 
 namespace plica {

@@ -1,4 +1,4 @@
-#include "mechanics/active/contractile_lines.hpp"
+#include "tissue/contractile_lines.hpp"
 
 #include <algorithm>
 #include <map>
