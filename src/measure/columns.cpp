@@ -342,14 +342,12 @@ std::span<const Column> columns() {
        "Waviness (buckling) of the furrow bottom along its length: root-mean-square deviation of the depths of "
        "contractile midline cells, middle half, from a quartic polynomial. None with fewer than ten cells.",
        [](const M& m) { return midline_waviness_um(m.model.tissue, m.sites, m.state.positions); }},
-      {"bending_error_percent", series, last,
-       "Estimated excess of bending from few elements through the height: 14 times the difference of basal and apical "
-       "area ratio of a cell, divided by its elements through the height, weighted by that difference "
+      {"bending_error", series, last,
+       "Estimated relative error of bending from few elements through the height: 0.14 times the difference of basal "
+       "and "
+       "apical area ratio of a cell, divided by its elements through the height, weighted by that difference "
        "([convergence](../developers/convergence.md#bending-at-finite-strain)). None without corotational elasticity.",
-       [](const M& m) -> std::optional<double> {
-         const auto error = bending_error(m.model, m.state.positions);
-         return error ? std::optional(100 * *error) : std::nullopt;
-       }},
+       [](const M& m) { return bending_error(m.model, m.state.positions); }},
   };
   return all;
 }
