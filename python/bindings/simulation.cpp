@@ -19,6 +19,7 @@
 #include "record/checkpoint.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/print.hpp"
+#include "simulation/bending_warning.hpp"
 #include "simulation/crossing_warning.hpp"
 #include "thread_count.hpp"
 #include "tissue/faces.hpp"
@@ -246,6 +247,9 @@ void bind_simulation(nb::module_& module) {
       .def_prop_ro("computing_s", looks([](const Simulation& s) { return s.computing_s(); }))
       .def_prop_ro("measures", looks(measures))
       .def_prop_ro("crossing_warning", looks(crossing_warning))
+      .def_prop_ro(
+          "bending_warning",
+          [](S& self) { return self.with([&](const Simulation& s) { return bending_warning(self.scenario(), s); }); })
       .def_prop_ro("positions", of_state(&State::positions))
       .def_prop_ro("velocities", of_state(&State::velocities))
       .def_prop_ro("pressures", looks(pressures_Pa))

@@ -232,6 +232,8 @@ class Simulation:
                 bar.close()
             if self._core.is_recording:
                 self._core.end_record()
+        if self.finished and self._core.bending_warning:
+            log.warning("%s", self._core.bending_warning)
         return None if out is None else open_run(out)
 
     def _begin_record(self, out: str, overwrite: bool, resume: bool) -> bool:

@@ -17,6 +17,7 @@
 #include "scenario/advice.hpp"
 #include "show/recorded_run.hpp"
 #include "show/report.hpp"
+#include "simulation/bending_warning.hpp"
 #include "simulation/crossing_warning.hpp"
 
 namespace plica {
@@ -91,7 +92,7 @@ auto with_a_way_on(const Work& work) {
   }
 }
 
-void report_ending(const Simulation& simulation, const nlohmann::ordered_json& summary,
+void report_ending(const Scenario& scenario, const Simulation& simulation, const nlohmann::ordered_json& summary,
                    const std::vector<std::string>& missed, const RunOptions& options) {
   for (const std::string& line : missed) fmt::print(stderr, "{}\n", line);
   if (!simulation.failure().empty())
@@ -106,6 +107,8 @@ void report_ending(const Simulation& simulation, const nlohmann::ordered_json& s
         "warning: equilibrium after the first step: no node is faster than stop.equilibrium_speed_um_per_min ({:g}); "
         "lower it, increase the forces or reduce the drag\n",
         simulation.controls().equilibrium_speed_um_per_s * units::minute);
+  if (const std::string bending = bending_warning(scenario, simulation); !bending.empty())
+    fmt::print(stderr, "warning: {}\n", bending);
   if (simulation.status() == RunStatus::under_way && can_archive())
     fmt::print(stderr, "plica: interrupted; to continue, repeat the command with --resume\n");
   if (!options.quiet) print_result(summary, options.out);
@@ -145,7 +148,7 @@ int run_scenario(const RunOptions& options) {
   std::vector<std::string> missed;
   if (simulation.status() == RunStatus::equilibrium || simulation.status() == RunStatus::end_time)
     missed = missed_expectations(scenario, summary);
-  report_ending(simulation, summary, missed, options);
+  report_ending(scenario, simulation, summary, missed, options);
   return exit_status(simulation.status(), !missed.empty());
 }
 

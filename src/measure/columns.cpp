@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/units.hpp"
+#include "measure/bending_error.hpp"
 #include "measure/cells.hpp"
 #include "measure/observation.hpp"
 #include "measure/self_intersections.hpp"
@@ -152,7 +153,8 @@ std::span<const Column> columns() {
        [](const M& m) { return m.state.time_s; }},
       {"furrow_depth_um", series, last,
        "Furrow depth: largest inward distance from the vitelline membrane over the apical midline (plane y = 0) of the "
-       "furrow cells, minus the reference value of the same material point. Inward: against the mean reference apical "
+       "furrow cells, without the middles of polygons, minus the reference value of the same material point. Inward: "
+       "against the mean reference apical "
        "normal of these cells. Without an embryo shape (a block): inward displacement.",
        [](const M& m) { return m.furrow.depth_um; }},
       {"furrow_depth_below_lips_um", series, last,
@@ -340,6 +342,12 @@ std::span<const Column> columns() {
        "Waviness (buckling) of the furrow bottom along its length: root-mean-square deviation of the depths of "
        "contractile midline cells, middle half, from a quartic polynomial. None with fewer than ten cells.",
        [](const M& m) { return midline_waviness_um(m.model.tissue, m.sites, m.state.positions); }},
+      {"bending_error", series, last,
+       "Estimated relative error of bending from few elements through the height: 0.14 times the difference of basal "
+       "and "
+       "apical area ratio of a cell, divided by its elements through the height, weighted by that difference "
+       "([convergence](../developers/convergence.md#bending-at-finite-strain)). None without corotational elasticity.",
+       [](const M& m) { return bending_error(m.model, m.state.positions); }},
   };
   return all;
 }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "measure/cells.hpp"
+#include "tissue/inner_nodes.hpp"
 
 namespace plica {
 namespace {
@@ -60,6 +61,19 @@ double depth_of(const Tissue& tissue, const Vec3& rest, const Vec3& now, const V
 double depth_of(const Tissue& tissue, const MaterialPoint& point, const Vec3& outward,
                 std::span<const Vec3> positions) {
   return depth_of(tissue, point.at(tissue.rest_positions), point.at(positions), outward);
+}
+
+// Cut of the surface without the dimples of single faces: points that no inner node of a polygon moves.
+std::vector<SurfacePoint> cut_without_dimples(const Tissue& tissue, std::span<const Vec3> positions, int axis,
+                                              const std::vector<bool>& wanted) {
+  const std::vector<bool> is_inner = inner_nodes_of_polygons(tissue);
+  std::vector<SurfacePoint> points = cut_apical_surface(tissue, positions, axis, wanted);
+  std::erase_if(points, [&](const SurfacePoint& point) {
+    for (int i = 0; i < 4; ++i)
+      if (point.weights[i] != 0 && is_inner[point.nodes[i].index()]) return true;
+    return false;
+  });
+  return points;
 }
 
 // Cells with an apical facet that meets y = 0 in the reference state.
@@ -149,7 +163,7 @@ void follow_division(FurrowSites& sites, const Tissue& tissue, const Division& d
 
 FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions) {
   FurrowShape shape;
-  for (const SurfacePoint& point : cut_apical_surface(tissue, positions, axis_y, facets_of(tissue, sites.contractile)))
+  for (const SurfacePoint& point : cut_without_dimples(tissue, positions, axis_y, facets_of(tissue, sites.contractile)))
     shape.depth_um = std::max(shape.depth_um.value_or(-1e300), depth_of(tissue, point, sites.outward, positions));
   if (!sites.has_lips) return shape;
 
@@ -159,7 +173,8 @@ FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::sp
   const auto height = [&](const Vec3& p) { return p.dot(sites.outward); };
   Vec3 before(0, -1e300, 0), after(0, 1e300, 0);
   Vec3 highest_left = -1e300 * sites.outward, highest_right = highest_left;
-  for (const SurfacePoint& cut : cut_apical_surface(tissue, positions, axis_x, outward_facets(tissue, sites.outward))) {
+  for (const SurfacePoint& cut :
+       cut_without_dimples(tissue, positions, axis_x, outward_facets(tissue, sites.outward))) {
     const Vec3 p = cut.at(positions);
     if (p.y() <= 0 && p.y() > before.y()) before = p;
     if (p.y() >= 0 && p.y() < after.y()) after = p;
@@ -190,7 +205,7 @@ std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, const Fu
   for (Vec3& x : snapped)
     if (std::abs(x[axis_y]) < at_plane_um) x[axis_y] = 0;
   std::map<CellId, Sum> sums;
-  for (const SurfacePoint& point : cut_apical_surface(tissue, snapped, axis_y, facets_of(tissue, wanted))) {
+  for (const SurfacePoint& point : cut_without_dimples(tissue, snapped, axis_y, facets_of(tissue, wanted))) {
     Sum& sum = sums[tissue.apical_facets[point.facet].cell];
     sum.depth += depth_of(tissue, point, sites.outward, positions);
     ++sum.points;

@@ -10,6 +10,7 @@
 
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
+#include "scenario/abrupt_loads.hpp"
 #include "scenario/acting.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/words.hpp"
@@ -174,6 +175,7 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   if (scenario.time.step_s && *scenario.time.step_s > scenario.time.end_s)
     warn("time.step_s: the time step is longer than the run; reduce step_s or increase end_s");
   advise_on_profiles(scenario, model.tissue, warn);
+  for (std::string& load : abrupt_loads(scenario, model.tissue)) warn(std::move(load));
   advise_on_shape_memory(scenario, model, note, warn);
   if (method_of(scenario.volume) == VolumeMethod::coupled &&
       model_of(scenario.elasticity) != ElasticModel::shape_memory)

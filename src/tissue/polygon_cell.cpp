@@ -84,23 +84,28 @@ std::vector<OutlineQuad> best_split(const OutlineRing& places,
   return best;
 }
 
+Vec3 outward_of(const Cell& cell, const Vectors& positions) {
+  const auto corners = cell.apical_corners();
+  Vec3 outward = Vec3::Zero();
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    outward += positions[corners[i].index()].cross(positions[corners[(i + 1) % corners.size()].index()]);
+  return outward.normalized();
+}
+
+double alignment_with_x(const Vec3& way, const Vec3& outward) {
+  const Vec3 axis = Vec3::UnitX() - outward.x() * outward;
+  if (axis.norm() < 1e-6) return 0.5;
+  return std::min(1.0, way.dot(axis) * way.dot(axis) / (way.squaredNorm() * axis.squaredNorm()));
+}
+
 void set_polygon_edges(const PolygonChains& chains, const Vectors& rest_positions, Cell& cell) {
   const auto at = [&](NodeId node) -> const Vec3& { return rest_positions[node.index()]; };
-  const std::size_t n = chains.apical.size();
-  Vec3 outward = Vec3::Zero();
-  for (std::size_t i = 0; i < n; ++i)
-    outward += at(chains.apical[i].front()).cross(at(chains.apical[(i + 1) % n].front()));
-  outward.normalize();
-  const Vec3 axis = Vec3::UnitX() - outward.x() * outward;
+  const Vec3 outward = outward_of(cell, rest_positions);
   cell.edges.clear();
   for (const CellSide side : {CellSide::basal, CellSide::apical})
     for (const auto& chain : side == CellSide::apical ? chains.apical : chains.basal) {
       CellEdge edge{chain, EdgeDirection::along, side};
-      const Vec3 way = at(chain.back()) - at(chain.front());
-      // At a pole, nothing is along more than across.
-      edge.along = axis.norm() < 1e-6
-                       ? 0.5
-                       : std::min(1.0, way.dot(axis) * way.dot(axis) / (way.squaredNorm() * axis.squaredNorm()));
+      edge.along = alignment_with_x(at(chain.back()) - at(chain.front()), outward);
       if (edge.along < 0.5) edge.direction = EdgeDirection::across;
       cell.edges.push_back(std::move(edge));
     }

@@ -53,6 +53,13 @@ inline PrismCorners prism_of(std::span<const Vec3> corners) {
 /// Return the rest shape of the cell.
 inline PrismCorners rest_prism(const Cell& cell) { return prism_of(cell.rest_shape); }
 
+/// Return the mean outward normal of the cell: that of its apical corners.
+Vec3 outward_of(const Cell& cell, const Vectors& positions);
+
+/// Return the alignment with x of a way on the surface with that normal: squared cosine of the angle to the projection
+/// of x; 0.5 at a pole, where that is a point.
+double alignment_with_x(const Vec3& way, const Vec3& outward);
+
 /// Set edges and lines. Edge directions follow from reference positions of their ends.
 void set_polygon_edges(const PolygonChains& chains, const Vectors& rest_positions, Cell& cell);
 

@@ -72,7 +72,7 @@ SERIES = (
     "self_intersections refused_steps vml_height_um min_apical_area_ratio min_corner_jacobian_ratio "
     "enclosed_volume_ratio yolk_pressure_Pa shell_fluid_um3 flank_volume_ratio contact_pairs min_contact_distance_um "
     "closed_length_ratio lips_closed active_work_nN_um stored_energy_nN_um dissipated_energy_nN_um "
-    "energy_imbalance_ratio flank_section_area_ratio short_edges midline_waviness_um"
+    "energy_imbalance_ratio flank_section_area_ratio short_edges midline_waviness_um bending_error"
 ).split()
 CELLS = (
     "time_s cell_id mother_id generation x_um y_um z_um volume_um3 apical_area_um2 basal_area_um2 height_um "
@@ -90,7 +90,7 @@ SUMMARY = (
     "vml_displacement_at_equal_speed_um vce_displacement_at_equal_speed_um max_volume_error "
     "max_shell_penetration_um min_scaled_jacobian self_intersections "
     "min_apical_area_ratio min_corner_jacobian_ratio closed_length_ratio lips_closed_time_s knee_depth_um energy_imbalance_ratio "
-    "energy_by_law_nN_um tension_by_law_mN_per_m provenance"
+    "bending_error energy_by_law_nN_um tension_by_law_mN_per_m provenance"
 ).split()
 POINT_DATA = {"displacement_um", "velocity_um_per_s", "force_nN"}
 CELL_DATA = {

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <set>
 
+#include "measure/cells.hpp"
+#include "support/prisms.hpp"
 #include "tissue/shapes/embryo.hpp"
 
 namespace plica {
@@ -137,6 +139,28 @@ TEST(Furrow, DepthIsTheShiftOfTheMiddle) {
     ++cases;
   }
   RecordProperty("cases", cases);
+}
+
+// A dimple of single faces is no furrow: the middles of polygons move and depth does not, but their corners count.
+TEST(Furrow, DepthIsWithoutDimples) {
+  const Tissue tissue = tissue_from_prisms(support::honeycomb(5, 5, 6, 12), PolygonSplit::kites, 1);
+  const CellSet all(tissue.cells.size(), true);
+  const FurrowSites sites = choose_furrow_sites(tissue, all, 2);
+  Vectors dimpled = tissue.rest_positions, lowered = tissue.rest_positions;
+  int middles = 0;
+  for (const Cell& cell : tissue.cells) {
+    const Vec3 middle = mean_apical(cell, tissue.rest_positions);
+    for (std::size_t n = 0; n < tissue.node_count(); ++n)
+      if ((tissue.rest_positions[n] - middle).norm() < 1e-9) dimpled[n].z() -= 2, ++middles;
+  }
+  for (Vec3& x : lowered) x.z() -= 3;
+  EXPECT_EQ(middles, 25);
+  const FurrowShape rest = furrow_shape(tissue, sites, tissue.rest_positions);
+  const FurrowShape shape = furrow_shape(tissue, sites, dimpled);
+  EXPECT_NEAR(shape.depth_um.value(), 0, 1e-12);
+  EXPECT_NEAR(shape.depth_below_lips_um.value(), rest.depth_below_lips_um.value(), 1e-12);
+  for (const auto& depth : cell_depths_um(tissue, sites, sites.midline, dimpled)) EXPECT_NEAR(depth.value(), 0, 1e-12);
+  EXPECT_NEAR(furrow_shape(tissue, sites, lowered).depth_um.value(), 3, 1e-12);
 }
 
 TEST(Furrow, LipsMoveWithTheTissue) {

@@ -1,6 +1,7 @@
 // Every law on cells that are polygons: a sheet of irregular ones, bent over a hill.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "mechanics/active/contraction.hpp"
@@ -17,6 +18,7 @@
 #include "support/constraint_law.hpp"
 #include "support/law_checks.hpp"
 #include "support/prisms.hpp"
+#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {
@@ -89,6 +91,86 @@ TEST_P(LawsOnPolygons, ATensionIsThatOfTheSheet) {
   const Mat3 along = of(0);
   EXPECT_NEAR(along(0, 0), 0.75 * 1.5, 1e-12);
   EXPECT_NEAR(along(1, 1), 0.25 * 1.5, 1e-12);
+}
+
+/// A square cell of a sheet of polygons, and the same cell of a grid: 2 x 2 x 1 elements each.
+std::pair<Tissue, Tissue> squares() {
+  PrismSheet square;
+  square.apical = {{-5, -4, 6}, {5, -4, 6}, {5, 4, 6}, {-5, 4, 6}};
+  square.cells = {{0, 1, 2, 3}};
+  for (const Vec3& x : square.apical) square.basal.push_back(x - 12 * Vec3::UnitZ());
+  return {
+      tissue_from_prisms(square, PolygonSplit::kites, 1),
+      build_block(
+          {.length_um = 10, .width_um = 8, .cell_height_um = 12, .cells = {1, 1, 1}, .elements_per_cell = {2, 2, 1}})};
+}
+
+// Decision 5: a polygon with four corners, split into kites, is a cell of 2 x 2 elements.
+TEST(ContractionOfKites, IsThatOfAGrid) {
+  const auto [polygon, grid] = squares();
+  const auto moved = [](const Vec3& x) {
+    return Vec3(0.8 * x.x() + 0.01 * x.y() * x.y(), 0.7 * x.y() - 0.02 * x.x() * x.x(), x.z() + 0.03 * x.x() * x.y());
+  };
+  int cases = 0;
+  for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
+    const ContractionRule rule{side, 2, 1.5, 0.4, false, 0.3, 1, 3};
+    const auto forces_on = [&](const Tissue& tissue) {
+      Motion motion = at_rest(tissue);
+      for (Vec3& x : motion.positions) x = moved(x);
+      return forces_of(Contraction(contraction_springs(tissue, CellSet{true}, rule), {}), motion.step());
+    };
+    const Vectors of_polygon = forces_on(polygon), of_grid = forces_on(grid);
+    for (std::size_t n = 0; n < polygon.node_count(); ++n)
+      for (std::size_t m = 0; m < grid.node_count(); ++m)
+        if (polygon.rest_positions[n].isApprox(grid.rest_positions[m])) {
+          EXPECT_LE((of_polygon[n] - of_grid[m]).norm(), 1e-12 * largest(of_grid));
+          ++cases;
+        }
+  }
+  EXPECT_EQ(cases, 3 * 18);
+}
+
+// No node of a face is slack: the film holds a free middle in its plane, and walls shorten between corners too.
+TEST_P(LawsOnPolygons, ContractionPullsOnEveryFreeNodeOfAFace) {
+  const Tissue flat = tissue_from_prisms(honeycomb(3, 3, 8, 20), GetParam(), 1);
+  const CellSet cells(flat.cells.size(), true);
+  int cases = 0;
+  for (const CellSide side : {CellSide::apical, CellSide::lateral}) {
+    const Contraction law(contraction_springs(flat, cells, {.side = side, .stiffness = 1}), {});
+    for (std::size_t n = 0; n < flat.free_node_count(); ++n) {
+      const bool is_middle = std::ranges::none_of(flat.cells, [&](const Cell& cell) {
+        return std::ranges::any_of(cell.edges, [&](const CellEdge& edge) {
+          return std::ranges::find(edge.nodes, NodeId(n)) != edge.nodes.end();
+        });
+      });
+      if (flat.rest_positions[n].z() != 0 || (is_middle && side == CellSide::lateral)) continue;
+      Motion motion = at_rest(flat);
+      motion.positions[n].z() += 1;
+      EXPECT_LT(forces_of(law, motion.step())[n].z(), -0.1) << "node " << n;
+      ++cases;
+    }
+  }
+  EXPECT_GT(cases, 50);
+}
+
+// The energy of an even stretch is that of the edges: kites and diagonals have one.
+TEST(ContractionOfKites, HasTheEnergyOfTheEdges) {
+  const PrismSheet sheet = irregular_polygons(4, 4, 8, 20, 0.1, 3);
+  int cases = 0;
+  for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
+    std::vector<double> energies;
+    for (const PolygonSplit split : {PolygonSplit::diagonals, PolygonSplit::kites}) {
+      const Tissue tissue = tissue_from_prisms(sheet, split, 2);
+      Motion motion = at_rest(tissue);
+      for (Vec3& x : motion.positions) x = Vec3(0.7 * x.x(), 0.7 * x.y(), 0.8 * x.z());
+      const ContractionRule rule{.side = side, .stiffness = 2, .rest_length_ratio = 0.3, .preload = 9, .damping = 3};
+      energies.push_back(
+          Contraction(contraction_springs(tissue, CellSet(tissue.cells.size(), true), rule), {}).energy(motion.step()));
+      ++cases;
+    }
+    EXPECT_NEAR(energies[1], energies[0], 1e-12 * energies[0]);
+  }
+  EXPECT_EQ(cases, 6);
 }
 
 TEST_P(LawsOnPolygons, OwnStateIsThatOfTheWholeCell) {

@@ -79,6 +79,50 @@ TEST(Advice, AFurrowBesideTheMidlineIsTold) {
   EXPECT_TRUE(told("\"all\"").empty());
 }
 
+// A stripe, or half, of a sheet of polygons with a constant tension, and tables whose tension ends softly.
+std::vector<std::string> advice_on_stripe(const std::string& region, const std::string& table,
+                                          const std::vector<std::string>& overrides = {}) {
+  const std::string sheet =
+      "format = 1\n[embryo]\nshape = \"sheet\"\nlength_um = 50\nwidth_um = 50\ncell_count = 100\ncell_height_um = 15\n";
+  const Scenario scenario =
+      load_scenario({"stripe", "stripe.toml", sheet + "[region.stripe]\n" + region + "\n" + table}, overrides);
+  return lines_with("no limit under refinement", advice(scenario, *make_model(scenario)));
+}
+
+TEST(Advice, AConstantTensionThatEndsAbruptlyIsToldWithAProfileThatDoesNot) {
+  const std::string springs = "[contraction.apical]\nregion = \"stripe\"\n",
+                    cortex = "[cortex.apical]\nregion = \"stripe\"\ntension_mN_per_m = 2\n";
+  int told = 0;
+  for (const auto& [region, table, axis] : {std::tuple("y_um = [-12, 12]", springs + "tension_mN_per_m = 2", "across"),
+                                            {"y_um = [-12, 12]", springs + "preload_nN = 20", "across"},
+                                            {"x_um = [-12, 12]", cortex, "along"}}) {
+    const auto lines = advice_on_stripe(region, table);
+    ASSERT_EQ(lines.size(), 1U) << table;
+    const std::string before = "refinement; set ", after = ".profile = ";
+    const std::size_t begin = lines[0].find(before), middle = lines[0].find(after);
+    ASSERT_LT(middle, lines[0].size()) << lines[0];
+    EXPECT_NE(lines[0].find(axis), std::string::npos) << lines[0];
+    // The remedy, as it stands.
+    const std::string profile = "profile = " + lines[0].substr(middle + after.size()) + "\n";
+    EXPECT_TRUE(advice_on_stripe(region, table + "\n" + profile).empty()) << lines[0].substr(begin);
+    ++told;
+  }
+  EXPECT_EQ(told, 3);
+  EXPECT_TRUE(advice_on_stripe("y_um = [-12, 12]", springs + "stiffness_nN_per_um = 2").empty());
+  EXPECT_TRUE(advice_on_stripe("y_um = [-12, 12]", cortex + "saturation_ratio = 0.2").empty());
+  EXPECT_TRUE(advice_on_stripe("y_um = [-99, 99]", cortex).empty());
+}
+
+TEST(Advice, BuiltInTensionsEndSoftly) {
+  int cases = 0;
+  for (const std::string name : {"drosophila", "wing-disc", "furrow-slice"}) {
+    const Scenario scenario = load_scenario(find_scenario(name), {});
+    EXPECT_TRUE(lines_with("no limit under refinement", advice(scenario, *make_model(scenario))).empty()) << name;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
 TEST(Advice, AProgramThatTheRunCutsOffIsTold) {
   const Scenario scenario = load_scenario(find_scenario("furrow-slice"), {"time.end_min=15"});
   const auto warnings = lines_with("program extends beyond", advice(scenario, *make_model(scenario)));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mechanics/active/given_activities.hpp"
+#include "tissue/contractile_lines.hpp"
 #include "tissue/division.hpp"
 
 namespace plica {
@@ -49,14 +50,15 @@ std::vector<double> rest_face_areas(const Tissue& tissue, CellSide side) {
 // The width that a line of the cell's stands for, for each of its shares: the face's area over the lengths of all lines
 // of that side and direction. A polygon's lines run every way: pulling alike they carry the same tension both along and
 // across, to which each contributes, so it is twice the area over the lengths of all.
-double width_of(const Tissue& tissue, const Cell& cell, const CellEdge& like, double area) {
+double width_of(const Tissue& tissue, const Cell& cell, std::span<const ContractileLine> lines,
+                const ContractileLine& like, double area) {
   double shares = 0, length = 0;
-  for (const auto& [line, share] : cell.lines) {
-    if (line.side != like.side || (cell.is_of_grid && line.direction != like.direction)) continue;
-    shares += share;
-    length += share * chain_length(line.nodes, tissue.rest_positions);
+  for (const ContractileLine& line : lines) {
+    if (cell.is_of_grid && line.direction != like.direction) continue;
+    shares += line.share;
+    length += line.share * chain_length(line.nodes, tissue.rest_positions);
   }
-  if (!cell.is_of_grid && like.side != CellSide::lateral) return 2 * area / length;
+  if (!cell.is_of_grid && like.direction != EdgeDirection::lateral) return 2 * area / length;
   return area / (length / shares) / shares;
 }
 
@@ -66,10 +68,10 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
   std::vector<Spring> springs;
   double factor = 1, delay = 0;  // of the cell at hand
   // One spring a segment, in series: a part of the chain is stiffer than the whole by as much as it is shorter.
-  const auto add = [&](std::size_t cell, const std::vector<NodeId>& chain, double ratio, double share,
-                       double tension = 0) {
+  const auto add = [&](std::size_t cell, const std::vector<NodeId>& chain, double ratio, double share, double in_series,
+                       double tension) {
     if (ratio <= 0) return;
-    const double strength = factor * share * ratio, whole = chain_length(chain, tissue.rest_positions);
+    const double strength = factor * share * ratio, whole = in_series * chain_length(chain, tissue.rest_positions);
     for (std::size_t s = 1; s < chain.size(); ++s) {
       Spring spring{.nodes = {chain[s - 1], chain[s]}, .delay_s = delay, .cell = CellId(cell)};
       const double length = chain_length(spring.nodes, tissue.rest_positions), shorter = whole / length;
@@ -81,23 +83,24 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
     }
   };
   const std::vector<double> areas = rest_face_areas(tissue, rule.side);
+  const auto lines = contractile_lines(tissue, rule.side);
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     if (!pattern.cells[c]) continue;
     const Cell& cell = tissue.cells[c];
     factor = pattern.strengths[c];
     delay = pattern.delays_s[c];
-    for (const auto& [line, share] : cell.lines) {
-      if (line.side != rule.side) continue;
+    for (const ContractileLine& line : lines[c]) {
       const double ratio =
-          line.side == CellSide::lateral ? 1 : line.along * rule.along_ratio + (1 - line.along) * rule.across_ratio;
+          rule.side == CellSide::lateral ? 1 : line.along * rule.along_ratio + (1 - line.along) * rule.across_ratio;
       // Each line carries its share of tension times width.
-      const double tension = rule.tension > 0 ? rule.tension * width_of(tissue, cell, line, areas[c]) : 0;
-      add(c, line.nodes, ratio, share, tension);
+      const double tension = rule.tension > 0 ? rule.tension * width_of(tissue, cell, lines[c], line, areas[c]) : 0;
+      add(c, line.nodes, ratio, line.share, line.in_series, tension);
     }
     if (rule.diagonals && rule.side != CellSide::lateral && cell.sides() == 4) {
       const int first = rule.side == CellSide::apical ? 4 : 0;
       for (const int i : {0, 1})
-        add(c, {cell.corners[first + i], cell.corners[first + i + 2]}, 0.5 * (rule.along_ratio + rule.across_ratio), 1);
+        add(c, {cell.corners[first + i], cell.corners[first + i + 2]}, 0.5 * (rule.along_ratio + rule.across_ratio), 1,
+            1, 0);
     }
   }
   return springs;

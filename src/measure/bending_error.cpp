@@ -1,0 +1,51 @@
+#include "measure/bending_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mechanics/elasticity/corotational.hpp"
+
+namespace plica {
+namespace {
+
+std::vector<double> area_ratios(const Tissue& tissue, std::span<const Facet> facets, std::span<const Vec3> positions) {
+  std::vector<double> now(tissue.cells.size(), 0.0), rest(tissue.cells.size(), 0.0);
+  for (const Facet& facet : facets) {
+    now[facet.cell.index()] += facet_area(gather(positions, facet));
+    rest[facet.cell.index()] += facet_area(rest_corners(tissue, facet));
+  }
+  for (std::size_t c = 0; c < now.size(); ++c) now[c] = rest[c] > 0 ? now[c] / rest[c] : 1;
+  return now;
+}
+
+int elements_through_height(const Cell& cell) {
+  const auto edge = std::ranges::find(cell.edges, CellSide::lateral, &CellEdge::side);
+  return static_cast<int>(edge->nodes.size()) - 1;
+}
+
+}  // namespace
+
+std::optional<double> bending_error(const Model& model, std::span<const Vec3> positions) {
+  constexpr double error_per_area_ratio = 0.14, least_bending = 1e-9;
+  const auto is_corotational = [](const auto& law) { return dynamic_cast<const Corotational*>(law.get()) != nullptr; };
+  if (std::ranges::none_of(model.laws, is_corotational)) return std::nullopt;
+  const Tissue& tissue = model.tissue;
+  const std::vector<double> apical = area_ratios(tissue, tissue.apical_facets, positions),
+                            basal = area_ratios(tissue, tissue.basal_facets, positions);
+  double bending = 0, wrong = 0;
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+    const double of_cell = std::abs(basal[c] - apical[c]);
+    bending += of_cell;
+    wrong += of_cell * error_per_area_ratio * of_cell / elements_through_height(tissue.cells[c]);
+  }
+  if (bending <= least_bending * static_cast<double>(tissue.cells.size())) return std::nullopt;
+  return wrong / bending;
+}
+
+int elements_through_height(const Tissue& tissue) {
+  int most = 1;
+  for (const Cell& cell : tissue.cells) most = std::max(most, elements_through_height(cell));
+  return most;
+}
+
+}  // namespace plica
