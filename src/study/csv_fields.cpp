@@ -1,5 +1,7 @@
 #include "study/csv_fields.hpp"
 
+#include "core/byte_order_mark.hpp"
+
 namespace plica {
 
 std::string csv_field(std::string_view text) {
@@ -10,6 +12,7 @@ std::string csv_field(std::string_view text) {
 }
 
 std::vector<std::vector<std::string>> csv_fields(std::string_view text) {
+  text = without_byte_order_mark(text);
   std::vector<std::vector<std::string>> rows;
   std::vector<std::string> row(1);
   bool is_quoted = false;

@@ -46,9 +46,7 @@ void each_array(vtkDataSetAttributes& data, int components, std::size_t count, c
 /// Serialise a snapshot in the child process, for read_frame.
 std::string frame_bytes(const fs::path& file) {
   const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
-  Vectors points;
-  std::vector<std::array<NodeId, 8>> elements;
-  copy_hexahedra(*grid, points, elements);
+  const auto [points, elements, cells, remark] = hexahedra_of(*grid);
   std::vector<double> time;
   vtkDataArray* value = grid->GetFieldData()->GetArray("TimeValue");
   if (value != nullptr && value->GetNumberOfTuples() == 1) time.push_back(value->GetTuple1(0));
@@ -72,9 +70,10 @@ std::string frame_bytes(const fs::path& file) {
     put(name, vectors);
     put(values, vectors);
   });
-  each_array(*grid->GetCellData(), 1, elements.size(), [&](const std::string& name, vtkDataArray& array) {
-    std::vector<double> values(elements.size());
-    for (std::size_t e = 0; e < values.size(); ++e) values[e] = array.GetTuple1(static_cast<vtkIdType>(e));
+  const auto cell_count = static_cast<std::size_t>(grid->GetNumberOfCells());
+  each_array(*grid->GetCellData(), 1, cell_count, [&, &cells = cells](const std::string& name, vtkDataArray& array) {
+    std::vector<double> values;
+    for (const vtkIdType cell : cells) values.push_back(array.GetTuple1(cell));
     put(name, scalars);
     put(values, scalars);
   });

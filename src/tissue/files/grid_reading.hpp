@@ -7,6 +7,7 @@
 
 #include <array>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "tissue/files/child_reading.hpp"
@@ -32,7 +33,16 @@ vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& file);
 /// STL, PLY and OBJ by extension.
 vtkSmartPointer<vtkPolyData> read_triangles(const std::filesystem::path& file);
 
-/// Copy nodes and cells of a grid of hexahedra. MeshError for other cells or inconsistent lists.
-void copy_hexahedra(vtkUnstructuredGrid& grid, Vectors& points, std::vector<std::array<NodeId, 8>>& hexahedra);
+/// Hexahedra among the cells of a grid, which may also have faces, lines and vertices.
+struct GridHexahedra {
+  Vectors points;
+  std::vector<std::array<NodeId, 8>> hexahedra;  // corners
+  std::vector<long long> cells;                  // hexahedra: number in the grid
+  std::string remark;                            // what was omitted; empty if nothing
+};
+
+/// Copy the hexahedra of a grid; of quadratic ones, only the corners. MeshError for other volumes or inconsistent
+/// lists.
+GridHexahedra hexahedra_of(vtkUnstructuredGrid& grid);
 
 }  // namespace plica

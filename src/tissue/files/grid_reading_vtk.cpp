@@ -1,8 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <vtkCellArray.h>
 #include <vtkCellTypes.h>
+#include <vtkDataReader.h>
 #include <vtkDataSet.h>
 #include <vtkDataSetSurfaceFilter.h>
+#include <vtkGenericCell.h>
 #include <vtkGenericDataObjectReader.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
@@ -21,14 +24,17 @@
 #include <vtkXMLGenericDataObjectReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <sstream>
 #include <system_error>
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "core/one_thread_vtk.hpp"
 #include "tissue/files/grid_reading.hpp"
+#include "tissue/files/plain_text.hpp"
 
 namespace plica {
 namespace {
@@ -77,12 +83,30 @@ vtkStandardNewMacro(ErrorWindow)
     throw_unread(file, std::generic_category().message(errno != 0 ? errno : EIO));
   start.resize(static_cast<std::size_t>(stream.gcount()));
   if (start.empty()) throw_unread(file, "it is empty");
+  start = plain_text(start);
   if (start.starts_with("# vtk DataFile")) return false;
-  if (start.starts_with("\xEF\xBB\xBF")) start.erase(0, 3);
   const std::size_t first = start.find_first_not_of(" \t\r\n");
   if (first == std::string::npos || start[first] != '<')
-    throw_unread(file, "neither a VTK XML file (.vtu) nor a legacy VTK file (.vtk)");
+    throw_unread(
+        file,
+        "neither a VTK XML file (.vtu) nor a legacy VTK file (.vtk); from Python, plica.Tissue.from_file reads Abaqus, "
+        "Gmsh and others");
   return true;
+}
+
+/// Lets a reader of legacy files read all arrays, not only the first, and pass over a byte-order mark. It reads the
+/// result, if that is not empty.
+std::string prepare_legacy(const std::filesystem::path& file, vtkDataReader& reader) {
+  reader.ReadAllScalarsOn();
+  reader.ReadAllFieldsOn();
+  std::string text;
+  std::string start(3, '\0');
+  std::ifstream(file, std::ios::binary).read(start.data(), 3);
+  if (!without_byte_order_mark(start).empty()) return text;
+  text = read_file(file).substr(3);
+  reader.ReadFromInputStringOn();
+  reader.SetBinaryInputString(text.data(), static_cast<int>(text.size()));
+  return text;
 }
 
 /// Output of `last`, a reader or a filter behind it.
@@ -110,24 +134,60 @@ vtkSmartPointer<vtkPolyData> triangles_of(const std::filesystem::path& file, Rea
   return output_of<vtkPolyData>(file, reader, *triangles);
 }
 
-void check_hexahedra(vtkUnstructuredGrid& grid) {
+/// Whether the first eight nodes are the corners of a hexahedron, and others may follow.
+bool is_quadratic(int type) {
+  return type == VTK_QUADRATIC_HEXAHEDRON || type == VTK_TRIQUADRATIC_HEXAHEDRON ||
+         type == VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON || type == VTK_LAGRANGE_HEXAHEDRON;
+}
+
+/// Whether cells of this type are volumes, or unknown.
+bool is_volume(int type) {
+  const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+  return cell == nullptr || cell->GetCellDimension() > 2;
+}
+
+/// Numbers of the hexahedra among the cells.
+std::vector<long long> hexahedra_among(vtkUnstructuredGrid& grid) {
   const vtkIdType count = grid.GetNumberOfCells();
   if (count > largest_mesh_elements)
     throw MeshError(fmt::format("the mesh has {} cells; at most {} are allowed", count, largest_mesh_elements));
-  if (count == 0) return;
+  if (count == 0) return {};
   vtkCellArray* cells = grid.GetCells();
   const vtkUnsignedCharArray* types = grid.GetCellTypesArray();
   if (cells == nullptr || types == nullptr || !cells->IsValid() || types->GetNumberOfTuples() != count)
     throw MeshError("the lists of cells, nodes and types have inconsistent lengths");
+  std::vector<long long> hexahedra;
   for (vtkIdType cell = 0; cell < count; ++cell) {
     const int type = grid.GetCellType(cell);
-    if (type != VTK_HEXAHEDRON)
-      throw MeshError(fmt::format("cell {} is a {} (VTK type {}); every cell must be a vtkHexahedron (type {})", cell,
-                                  vtkCellTypes::GetClassNameFromTypeId(type), type, int{VTK_HEXAHEDRON}));
-    if (cells->GetCellSize(cell) != 8)
-      throw MeshError(
-          fmt::format("cell {} is a hexahedron with {} nodes; 8 are required", cell, cells->GetCellSize(cell)));
+    if (type == VTK_HEXAHEDRON || is_quadratic(type)) {
+      if (cells->GetCellSize(cell) < 8 || (type == VTK_HEXAHEDRON && cells->GetCellSize(cell) != 8))
+        throw MeshError(
+            fmt::format("cell {} is a hexahedron with {} nodes; 8 are required", cell, cells->GetCellSize(cell)));
+      hexahedra.push_back(cell);
+    } else if (is_volume(type)) {
+      throw MeshError(fmt::format(
+          "cell {} is a {} (VTK type {}); every volume must be a vtkHexahedron (type {}): mesh one layer of "
+          "hexahedra, in Gmsh for example, or set embryo.shape to \"surface\" and give apical polygons",
+          cell, vtkCellTypes::GetClassNameFromTypeId(type), type, int{VTK_HEXAHEDRON}));
+    }
   }
+  if (hexahedra.empty())
+    throw MeshError(fmt::format(
+        "none of its {} cells is a hexahedron, cell 0 is a {}; for polygons, set embryo.shape to \"surface\"", count,
+        vtkCellTypes::GetClassNameFromTypeId(grid.GetCellType(0))));
+  return hexahedra;
+}
+
+std::string remark_on(vtkUnstructuredGrid& grid, const std::vector<long long>& hexahedra) {
+  const auto quadratic =
+      std::ranges::count_if(hexahedra, [&](long long cell) { return is_quadratic(grid.GetCellType(cell)); });
+  const auto others = grid.GetNumberOfCells() - static_cast<vtkIdType>(hexahedra.size());
+  std::vector<std::string> parts;
+  if (others > 0)
+    parts.push_back(fmt::format("{} faces, lines and vertices beside the hexahedra were omitted", others));
+  if (quadratic > 0)
+    parts.push_back(fmt::format("{} hexahedra have nodes between corners: only their corners are used", quadratic));
+  return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 }  // namespace
@@ -138,8 +198,7 @@ vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& file
     return output_of<vtkUnstructuredGrid>(file, *reader, *reader);
   }
   vtkNew<vtkUnstructuredGridReader> reader;
-  reader->ReadAllScalarsOn();  // by default, the first array only
-  reader->ReadAllFieldsOn();
+  const std::string text = prepare_legacy(file, *reader);
   return output_of<vtkUnstructuredGrid>(file, *reader, *reader);
 }
 
@@ -149,8 +208,7 @@ vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& file) {
     return output_of<vtkDataSet>(file, *reader, *reader);
   }
   vtkNew<vtkGenericDataObjectReader> reader;
-  reader->ReadAllScalarsOn();
-  reader->ReadAllFieldsOn();
+  const std::string text = prepare_legacy(file, *reader);
   return output_of<vtkDataSet>(file, *reader, *reader);
 }
 
@@ -163,26 +221,29 @@ vtkSmartPointer<vtkPolyData> read_triangles(const std::filesystem::path& file) {
   return triangles_of(file, *vtkNew<vtkGenericDataObjectReader>());
 }
 
-void copy_hexahedra(vtkUnstructuredGrid& grid, Vectors& points, std::vector<std::array<NodeId, 8>>& hexahedra) {
-  check_hexahedra(grid);
-  const vtkIdType point_count = grid.GetNumberOfPoints(), cell_count = grid.GetNumberOfCells();
+GridHexahedra hexahedra_of(vtkUnstructuredGrid& grid) {
+  GridHexahedra found;
+  found.cells = hexahedra_among(grid);
+  found.remark = remark_on(grid, found.cells);
+  const vtkIdType point_count = grid.GetNumberOfPoints();
   if (point_count > 8 * largest_mesh_elements)
     throw MeshError(
         fmt::format("the mesh has {} nodes; at most {} are allowed", point_count, 8 * largest_mesh_elements));
-  points.resize(static_cast<std::size_t>(point_count));
-  for (vtkIdType i = 0; i < point_count; ++i) grid.GetPoints()->GetPoint(i, points[i].data());
-  hexahedra.resize(static_cast<std::size_t>(cell_count));
+  found.points.resize(static_cast<std::size_t>(point_count));
+  for (vtkIdType i = 0; i < point_count; ++i) grid.GetPoints()->GetPoint(i, found.points[i].data());
   vtkNew<vtkIdList> nodes;
-  for (vtkIdType cell = 0; cell < cell_count; ++cell) {
+  for (const vtkIdType cell : found.cells) {
     grid.GetCells()->GetCellAtId(cell, nodes);
+    auto& hexahedron = found.hexahedra.emplace_back();
     for (int i = 0; i < 8; ++i) {
       // Before VTK's number is made shorter.
       const vtkIdType node = nodes->GetId(i);
       if (node < 0 || node >= point_count)
         throw MeshError(fmt::format("cell {} uses node {}; nodes are 0 to {}", cell, node, point_count - 1));
-      hexahedra[cell][i] = NodeId(static_cast<std::size_t>(node));
+      hexahedron[i] = NodeId(static_cast<std::size_t>(node));
     }
   }
+  return found;
 }
 
 }  // namespace plica

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
@@ -9,6 +10,7 @@
 #include <limits>
 #include <set>
 
+#include "core/bytes.hpp"
 #include "core/errors.hpp"
 #include "core/one_thread_vtk.hpp"
 #include "tissue/files/grid_reading.hpp"
@@ -18,9 +20,9 @@
 namespace plica {
 namespace {
 
-std::vector<int> apical_faces(vtkDataArray& array) {
+std::vector<int> apical_faces(vtkDataArray& array, const std::vector<long long>& cells) {
   std::vector<int> faces;
-  for (vtkIdType cell = 0; cell < array.GetNumberOfTuples(); ++cell) {
+  for (const vtkIdType cell : cells) {
     const double value = array.GetComponent(cell, 0);
     if (!(value >= 0 && value <= 5 && value == std::floor(value)))
       throw MeshError(
@@ -30,8 +32,9 @@ std::vector<int> apical_faces(vtkDataArray& array) {
   return faces;
 }
 
-/// Arrays of one number a cell: 0 where it is not finite, or as the faces that are apical.
-void copy_arrays(vtkUnstructuredGrid& grid, const std::string& apical_array, HexahedralMesh& mesh) {
+/// Arrays of one number a cell, NaN where it is not finite; one names the faces that are apical.
+void copy_arrays(vtkUnstructuredGrid& grid, const std::vector<long long>& cells, const std::string& apical_array,
+                 HexahedralMesh& mesh) {
   std::string names;
   for (int a = 0; a < grid.GetCellData()->GetNumberOfArrays(); ++a) {
     vtkDataArray* array = grid.GetCellData()->GetArray(a);
@@ -42,13 +45,13 @@ void copy_arrays(vtkUnstructuredGrid& grid, const std::string& apical_array, Hex
                                   grid.GetNumberOfCells()));
     names += names.empty() ? name : ", " + name;
     if (name == apical_array) {
-      mesh.apical_faces = apical_faces(*array);
+      mesh.apical_faces = apical_faces(*array, cells);
       continue;
     }
     CellArray& values = mesh.arrays[name];
-    for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell) {
-      const double value = array->GetComponent(static_cast<vtkIdType>(cell), 0);
-      values.push_back(std::isfinite(value) ? value : 0);
+    for (const vtkIdType cell : cells) {
+      const double value = array->GetComponent(cell, 0);
+      values.push_back(std::isfinite(value) ? value : std::nan(""));
     }
   }
   if (!apical_array.empty() && mesh.apical_faces.empty())
@@ -88,29 +91,43 @@ void copy_groups(vtkUnstructuredGrid& grid, HexahedralMesh& mesh) {
         "cell_corner_counts and cell_corners, as `plica mesh` writes them, or remove cell_id if each hexahedron is a "
         "cell",
         mesh.cells.size(), cells.size()));
+  if (mesh.cells.size() != static_cast<std::size_t>(grid.GetNumberOfCells()))
+    throw MeshError("cells of several hexahedra leave no room for other cells; remove faces and lines from the file");
   groups.cell_of = whole_numbers(grid.GetCellData()->GetArray("cell_id"));
   mesh.groups = std::move(groups);
 }
 
-/// Serialise the mesh in the child process.
 HexahedralMesh mesh_in(const std::filesystem::path& file, const std::string& apical_array) {
-  HexahedralMesh mesh;
   const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
-  copy_hexahedra(*grid, mesh.points, mesh.cells);
+  GridHexahedra found = hexahedra_of(*grid);
+  HexahedralMesh mesh;
+  mesh.points = std::move(found.points);
+  mesh.cells = std::move(found.hexahedra);
+  if (!found.remark.empty()) mesh.remarks.push_back(std::move(found.remark));
   if (!mesh.cells.empty()) {
-    copy_arrays(*grid, apical_array, mesh);
+    copy_arrays(*grid, found.cells, apical_array, mesh);
     copy_groups(*grid, mesh);
   }
   return mesh;
 }
 
+/// Serialise the mesh and its remarks in the child process.
+std::string bytes_of(const HexahedralMesh& mesh) {
+  std::string bytes;
+  put(fmt::format("{}", fmt::join(mesh.remarks, "\n")), bytes);
+  return bytes + mesh_to_bytes(mesh);
+}
+
 }  // namespace
 
-Tissue read_mesh_file(const std::filesystem::path& file, const std::string& apical_array,
-                      const std::array<int, 3>& elements_per_cell) {
+Tissue read_mesh_file(const std::filesystem::path& file, const std::string& apical_array, const MeshOptions& options) {
   try {
-    const std::string bytes = read_in_child(file, [&] { return mesh_to_bytes(mesh_in(file, apical_array)); });
-    return tissue_from_mesh(mesh_from_bytes(bytes), elements_per_cell);
+    const std::string bytes = read_in_child(file, [&] { return bytes_of(mesh_in(file, apical_array)); });
+    std::string_view rest = bytes;
+    const auto remark = take<std::string>(rest);
+    HexahedralMesh mesh = mesh_from_bytes(rest);
+    if (!remark.empty()) mesh.remarks.push_back(remark);
+    return tissue_from_mesh(std::move(mesh), options);
   } catch (const MeshError& error) {
     throw MeshError(fmt::format("{}: {}", file.string(), error.what()));
   }

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "tissue/files/plain_text.hpp"
 #include "tissue/files/polygon_file.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 
@@ -234,6 +235,7 @@ void check_properties(const Element& element) {
 }  // namespace
 
 PolygonFile polygons_in_ply(std::string_view bytes) {
+  bytes = plain_text(bytes);
   const Header header(bytes);
   Numbers numbers(bytes, *header.format);
   PolygonFile file;

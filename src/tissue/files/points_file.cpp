@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cmath>
+#include <optional>
 
 #include "core/files.hpp"
 #include "core/numbers.hpp"
+#include "tissue/files/plain_text.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
@@ -30,51 +34,89 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   }
 }
 
+/// Column of a table. Text is kept until it is known whether the column holds numbers.
+struct Column {
+  std::string_view name;
+  CellArray values;
+  bool has_number = false;
+  int text_line = 0;  // of the first text, 0: none
+  std::string_view text;
+};
+
+constexpr std::array<std::string_view, 3> axes = {"x_um", "y_um", "z_um"};
+
+bool is_missing(std::string_view field) {
+  std::string lower(field);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::array<std::string_view, 7> words = {"", "nan", "na", "n/a", "null", "none", "inf"};
+  return std::ranges::find(words, lower.starts_with('-') ? lower.substr(1) : lower) != words.end();
+}
+
+[[noreturn]] void throw_text(const Column& column) {
+  throw MeshError(
+      fmt::format("line {}: \"{}\" of column {} is not a number", column.text_line, column.text, column.name));
+}
+
+void read_field(std::string_view field, int line, Column& column) {
+  std::optional<double> number = number_in(field);
+  if (!number && (field == "true" || field == "True" || field == "TRUE")) number = 1;
+  if (!number && (field == "false" || field == "False" || field == "FALSE")) number = 0;
+  const bool is_axis = std::ranges::find(axes, column.name) != axes.end();
+  if (!number && column.text_line == 0 && (is_axis || !is_missing(field))) {
+    column.text_line = line;
+    column.text = field;
+    if (is_axis) throw_text(column);
+  }
+  column.has_number |= number.has_value();
+  column.values.push_back(number.value_or(std::nan("")));
+}
+
+std::vector<Column> named_columns(const std::vector<std::string_view>& names, int line) {
+  for (const std::string_view axis : axes)
+    if (std::ranges::count(names, axis) != 1)
+      throw MeshError(
+          fmt::format("line {}: must name the columns, including x_um, y_um and z_um once each; it "
+                      "names {}",
+                      line, fmt::join(names, ", ")));
+  std::vector<Column> columns;
+  for (const std::string_view name : names) columns.push_back({.name = name, .values = {}, .text = {}});
+  return columns;
+}
+
 }  // namespace
 
 PointTable points_in_csv(std::string_view text) {
-  constexpr std::array<std::string_view, 3> axes = {"x_um", "y_um", "z_um"};
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // spreadsheets mark UTF-8 so
-  std::vector<std::string_view> names;
-  std::vector<std::vector<double>> columns;
+  text = plain_text(text);
+  std::vector<Column> columns;
   for (int line_number = 1; !text.empty(); ++line_number) {
     const std::size_t end = text.find('\n');
     const std::string_view line = trimmed(text.substr(0, end));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     if (line.empty() || line.front() == '#') continue;
     const std::vector<std::string_view> fields = fields_of(line);
-    if (names.empty()) {
-      names = fields;
-      columns.resize(names.size());
-      for (const std::string_view axis : axes)
-        if (std::ranges::count(names, axis) != 1)
-          throw MeshError(
-              fmt::format("line {}: must name the columns, including x_um, y_um and z_um once each; it "
-                          "names {}",
-                          line_number, fmt::join(names, ", ")));
+    if (columns.empty()) {
+      columns = named_columns(fields, line_number);
       continue;
     }
-    if (fields.size() != names.size())
+    if (fields.size() != columns.size())
       throw MeshError(
-          fmt::format("line {}: has {} fields; the first line has {}", line_number, fields.size(), names.size()));
-    for (std::size_t f = 0; f < fields.size(); ++f) {
-      const std::optional<double> number = number_in(fields[f]);
-      if (!number)
-        throw MeshError(fmt::format("line {}: \"{}\" of column {} is not a number", line_number, fields[f], names[f]));
-      columns[f].push_back(*number);
-    }
+          fmt::format("line {}: has {} fields; the first line has {}", line_number, fields.size(), columns.size()));
+    for (std::size_t f = 0; f < fields.size(); ++f) read_field(fields[f], line_number, columns[f]);
   }
-  if (names.empty()) throw MeshError("is empty; the first line must name the columns, including x_um, y_um and z_um");
+  if (columns.empty()) throw MeshError("is empty; the first line must name the columns, including x_um, y_um and z_um");
   PointTable table;
-  table.points.assign(columns.front().size(), Vec3::Zero());
-  for (std::size_t f = 0; f < names.size(); ++f) {
-    const auto axis = std::ranges::find(axes, names[f]);
-    if (axis == axes.end()) {
-      table.arrays[std::string(names[f])] = std::move(columns[f]);
-      continue;
+  table.points.assign(columns.front().values.size(), Vec3::Zero());
+  for (Column& column : columns) {
+    if (const auto axis = std::ranges::find(axes, column.name); axis != axes.end()) {
+      for (std::size_t row = 0; row < table.points.size(); ++row)
+        table.points[row][axis - axes.begin()] = column.values[row];
+    } else if (column.text_line == 0) {
+      table.arrays[std::string(column.name)] = std::move(column.values);
+    } else if (column.has_number) {
+      throw_text(column);
+    } else {
+      table.remarks.push_back(fmt::format("column {} contains text and is not an array", column.name));
     }
-    for (std::size_t row = 0; row < table.points.size(); ++row)
-      table.points[row][axis - axes.begin()] = columns[f][row];
   }
   return table;
 }

@@ -13,11 +13,12 @@ namespace plica {
 
 struct PointTable {
   Vectors points;                                     // um; one per row
-  std::map<std::string, std::vector<double>> arrays;  // other columns
+  std::map<std::string, std::vector<double>> arrays;  // other columns; NaN: no value
+  std::vector<std::string> remarks = {};              // what was omitted
 };
 
-/// Parse a CSV table whose first line names its columns, including x_um, y_um and z_um. MeshError names the line and
-/// the problem.
+/// Parse a CSV table whose first line names its columns, including x_um, y_um and z_um. Empty fields, nan, na and null
+/// are missing values; columns without a number are omitted. MeshError names the line and the problem.
 PointTable points_in_csv(std::string_view text);
 PointTable read_points_file(const std::filesystem::path& file);
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/files.hpp"
+#include "tissue/files/plain_text.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
@@ -17,7 +18,7 @@ namespace {
 /// Lines that hold something, without comments, and the words of each.
 class Lines {
  public:
-  explicit Lines(std::string_view text) : text_(text) {}
+  explicit Lines(std::string_view text) : text_(plain_text(text)) {}
 
   /// The next line's words; nothing at the end.
   [[nodiscard]] std::optional<std::vector<std::string_view>> next() {
@@ -146,7 +147,7 @@ PolygonFile read_by_ending(const std::filesystem::path& path) {
   if (ending == ".h5" || ending == ".hdf5" || ending == ".hf5") return read_vertex_model(path);
   throw MeshError(
       fmt::format("\"{}\" is not the extension of a polygon file; readable are .obj, .off, .ply, .vtp, .vtk, .vtu, and "
-                  ".h5, .hdf5 and .hf5 by tyssue",
+                  ".h5, .hdf5 and .hf5 by tyssue: save the polygons as PLY or OBJ, in MeshLab or ParaView for example",
                   ending));
 }
 
@@ -157,7 +158,7 @@ PolygonFile read_polygon_file(const std::filesystem::path& path) {
     PolygonFile file = read_by_ending(path);
     for (auto& [name, values] : file.arrays)
       for (double& value : values)
-        if (!std::isfinite(value)) value = 0;  // as in the arrays of a mesh of hexahedra
+        if (!std::isfinite(value)) value = std::nan("");
     return file;
   } catch (const MeshError& error) {
     throw MeshError(fmt::format("{}: {}", path.string(), error.what()));

@@ -35,7 +35,8 @@ std::vector<vtkIdType> faces_of_grid(vtkDataSet& grid) {
       continue;
     throw MeshError(fmt::format("cell {} is a {} (VTK type {}); a surface consists of polygons{}", cell,
                                 vtkCellTypes::GetClassNameFromTypeId(type), type,
-                                type == VTK_HEXAHEDRON ? "; for hexahedra, set embryo.shape to \"file\"" : ""));
+                                type == VTK_HEXAHEDRON ? "; for hexahedra, set embryo.shape to \"file\""
+                                                       : ": extract the apical faces, by Extract Surface in ParaView"));
   }
   return faces;
 }

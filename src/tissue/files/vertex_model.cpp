@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "core/names.hpp"
@@ -40,6 +41,37 @@ class Rows {
   std::unordered_map<double, std::size_t> rows_;
 };
 
+struct HalfEdge {
+  std::size_t from, to;
+};
+
+// The corners of a face, in the direction of most of its edges. Counts those that run the other way; empty if they do
+// not form one ring.
+std::vector<std::size_t> ring_of(const std::vector<HalfEdge>& edges, std::size_t& backwards) {
+  std::map<std::size_t, std::vector<std::size_t>> edges_at;  // vertices
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    edges_at[edges[e].from].push_back(e);
+    edges_at[edges[e].to].push_back(e);
+  }
+  if (edges_at.size() != edges.size() || edges_at.begin()->second.size() != 2) return {};
+  std::vector<std::size_t> ring;
+  std::size_t along = 0, edge = 0, at = edges[0].from;
+  do {
+    if (edges_at[at].size() != 2) return {};
+    ring.push_back(at);
+    const bool is_along = edges[edge].from == at;
+    along += is_along ? 1 : 0;
+    at = is_along ? edges[edge].to : edges[edge].from;
+    const auto& both = edges_at[at];
+    edge = both[0] == edge ? both[1] : both[0];
+  } while (edge != 0 && ring.size() < edges.size());
+  if (edge != 0 || ring.size() != edges.size()) return {};
+  if (2 * along < ring.size()) std::ranges::reverse(ring);
+  std::ranges::rotate(ring, std::ranges::min_element(ring));
+  backwards += std::min(along, ring.size() - along);
+  return ring;
+}
+
 }  // namespace
 
 PolygonFile polygons_of(const VertexModelTables& tables) {
@@ -52,32 +84,25 @@ PolygonFile polygons_of(const VertexModelTables& tables) {
   const auto &from = column(tables.edges, "srce", "edges"), &to = column(tables.edges, "trgt", "edges"),
              &face = column(tables.edges, "face", "edges");
   const Rows vertex_rows(tables.vertices, "vertices"), face_rows(tables.faces, "faces");
-  std::vector<std::map<std::size_t, std::size_t>> next(
-      tables.faces.index.size());  // of each face, from vertex to vertex
+  std::vector<std::vector<HalfEdge>> edges(tables.faces.index.size());
   for (std::size_t e = 0; e < from.size(); ++e)
-    if (!next[face_rows.row(face[e])].emplace(vertex_rows.row(from[e]), vertex_rows.row(to[e])).second)
-      throw MeshError(
-          fmt::format("two edges of face {} begin at vertex {}; edges of a face must form one ring", face[e], from[e]));
+    edges[face_rows.row(face[e])].push_back({vertex_rows.row(from[e]), vertex_rows.row(to[e])});
 
   // tyssue leaves cells that have gone in its tables.
   const auto alive = tables.faces.columns.find("is_alive");
   const auto is_alive = [&](std::size_t f) { return alive == tables.faces.columns.end() || alive->second[f] != 0; };
   std::vector<std::size_t> kept;
-  for (std::size_t f = 0; f < next.size(); ++f) {
-    if (next[f].empty() || !is_alive(f)) continue;
-    std::vector<std::size_t> ring = {next[f].begin()->first};
-    for (auto step = next[f].begin(); ring.size() <= next[f].size() && step != next[f].end();
-         step = next[f].find(step->second)) {
-      if (step->second == ring.front()) break;
-      ring.push_back(step->second);
-    }
-    const auto last = next[f].find(ring.back());
-    if (ring.size() != next[f].size() || last == next[f].end() || last->second != ring.front())
+  std::size_t backwards = 0;
+  for (std::size_t f = 0; f < edges.size(); ++f) {
+    if (edges[f].empty() || !is_alive(f)) continue;
+    file.surface.polygons.push_back(ring_of(edges[f], backwards));
+    if (file.surface.polygons.back().empty())
       throw MeshError(
-          fmt::format("the {} edges of face {} do not form one ring", next[f].size(), tables.faces.index[f]));
-    file.surface.polygons.push_back(std::move(ring));
+          fmt::format("the {} edges of face {} do not form one ring; correct them, or set is_alive of the face to 0",
+                      edges[f].size(), tables.faces.index[f]));
     kept.push_back(f);
   }
+  if (backwards > 0) file.remarks.push_back(fmt::format("{} half-edges that ran backwards were reversed", backwards));
   for (const auto& [name, values] : tables.faces.columns) {
     CellArray& array = file.arrays[name];
     for (const std::size_t f : kept) array.push_back(values[f]);

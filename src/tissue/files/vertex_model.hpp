@@ -22,7 +22,8 @@ struct VertexModelTables {
 };
 
 /// Return faces in the order of their table, with its columns as arrays; faces without edges are omitted. MeshError if
-/// columns or referenced rows are missing, or the edges of a face do not form one ring.
+/// columns or referenced rows are missing, or the edges of a face do not form one ring. Edges of a ring that run
+/// against most others are reversed.
 PolygonFile polygons_of(const VertexModelTables& tables);
 
 }  // namespace plica

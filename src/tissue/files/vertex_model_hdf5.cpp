@@ -49,22 +49,24 @@ std::optional<Shape> shape_of(hid_t data) {
   return Shape{sizes[0], sizes[1]};
 }
 
-bool is_of_numbers(hid_t data) {
-  const Handle type(H5Dget_type(data), H5Tclose);
-  const H5T_class_t kind = H5Tget_class(type);
-  return kind == H5T_INTEGER || kind == H5T_FLOAT;
-}
-
-// Empty where it holds no numbers.
+// Empty where it holds no numbers. Booleans, of a byte each, are numbers.
 std::vector<double> numbers_in(hid_t group, const std::string& name, Shape& shape) {
   const Handle data(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!data.is_open() || !is_of_numbers(data)) return {};
+  if (!data.is_open()) return {};
+  const Handle type(H5Dget_type(data), H5Tclose);
+  const H5T_class_t kind = H5Tget_class(type);
+  const bool is_boolean = (kind == H5T_BITFIELD || kind == H5T_ENUM) && H5Tget_size(type) == 1;
+  if (!is_boolean && kind != H5T_INTEGER && kind != H5T_FLOAT) return {};
   const std::optional<Shape> found = shape_of(data);
   if (!found) return {};
   shape = *found;
   std::vector<double> values(shape.rows * shape.columns);
-  if (!values.empty() && H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+  std::vector<unsigned char> bytes(is_boolean ? values.size() : 0);
+  void* const to = is_boolean ? static_cast<void*>(bytes.data()) : values.data();
+  const hid_t type_read = is_boolean ? hid_t{type} : H5T_NATIVE_DOUBLE;
+  if (!values.empty() && H5Dread(data, type_read, H5S_ALL, H5S_ALL, H5P_DEFAULT, to) < 0)
     throw MeshError(fmt::format("HDF5 cannot read {}; save it without compression, or with gzip", name));
+  if (is_boolean) values.assign(bytes.begin(), bytes.end());
   return values;
 }
 

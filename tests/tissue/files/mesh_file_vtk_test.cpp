@@ -33,7 +33,7 @@ class MeshFileTest : public testing::Test {
     testing::internal::CaptureStderr();
     std::string text;
     try {
-      (void)read_mesh_file(file, apical_array, elements);
+      (void)read_mesh_file(file, apical_array, {elements});
     } catch (const Error& caught) {
       text = caught.what();
     }
@@ -202,7 +202,9 @@ TEST_F(MeshFileTest, WhatIsNoMeshIsAFileErrorInOneLine) {
     return text;
   };
   EXPECT_EQ(refused(""), "cannot be read: it is empty");
-  EXPECT_EQ(refused("length_um = 460\n"), "cannot be read: neither a VTK XML file (.vtu) nor a legacy VTK file (.vtk)");
+  EXPECT_EQ(refused("length_um = 460\n"),
+            "cannot be read: neither a VTK XML file (.vtu) nor a legacy VTK file (.vtk); from Python, "
+            "plica.Tissue.from_file reads Abaqus, Gmsh and others");
   for (const char* text :
        {"<html><body/></html>", "<VTKFile type=\"PolyData\"></VTKFile>", "<?xml version=\"1.0\"?>\n<VTKFile",
         "# vtk DataFile Version 3.0\n", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n"})
@@ -262,7 +264,10 @@ TEST_F(MeshFileTest, WhatIsWrongWithACellIsSaid) {
   const std::vector<Case> cases = {
       {legacy(cube_points, {}), "the mesh has no cells"},
       {legacy(cube_points, {{0, 1, 3, 4}}, 10),
-       "cell 0 is a vtkTetra (VTK type 10); every cell must be a vtkHexahedron (type 12)"},
+       "cell 0 is a vtkTetra (VTK type 10); every volume must be a vtkHexahedron (type 12): mesh one layer of "
+       "hexahedra, in Gmsh for example, or set embryo.shape to \"surface\" and give apical polygons"},
+      {legacy(cube_points, {{0, 1, 2, 3}}, 9),
+       "none of its 1 cells is a hexahedron, cell 0 is a vtkQuad; for polygons, set embryo.shape to \"surface\""},
       {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, 8}}), "cell 0 uses node 8; nodes are 0 to 7"},
       {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, -1}}), "cell 0 uses node -1; nodes are 0 to 7"},
       {legacy(cube_points, {{0, 1, 2, 3, 4, 5, 6, 6}}),
@@ -348,7 +353,67 @@ TEST_F(MeshFileTest, WhatIsNoClosedLayerNeedsTheArray) {
   for (const char* point : {"5 0 0", "6 0 0", "6 1 0", "5 1 0", "5 0 1", "6 0 1", "6 1 1", "5 1 1"})
     points.emplace_back(point);
   write_file(file, legacy(points, {cube, {8, 9, 10, 11, 12, 13, 14, 15}}));
-  EXPECT_TRUE(error<MeshError>().starts_with("the mesh is two separate bodies and not one closed layer; "));
+  EXPECT_EQ(error<MeshError>(),
+            "the mesh is not one closed layer but 2 pieces of 1 and 1 cells: set embryo.keep = \"largest\"");
+}
+
+TEST_F(MeshFileTest, TheLargestPieceIsKept) {
+  HexahedralMesh mesh;
+  const Tissue block = build_block({60, 20, 40, {3, 1, 1}, {1, 1, 1}});
+  mesh.points = block.rest_positions;
+  mesh.cells = block.elements;
+  const std::size_t far = mesh.points.size();
+  for (int i = 0; i < 8; ++i)
+    mesh.points.push_back(block.rest_positions[block.elements[0][i].index()] + Vec3(0, 99, 0));
+  mesh.cells.insert(mesh.cells.begin(), std::array<NodeId, 8>{});
+  for (std::size_t i = 0; i < 8; ++i) mesh.cells[0][i] = NodeId(far + i);
+  mesh.apical_faces = {5, 5, 5, 5};
+  mesh.arrays["gene"] = {9, 1, 2, 3};
+  EXPECT_EQ(tissue_from_mesh(mesh, {}).remarks,
+            (std::vector<std::string>{"the mesh has 2 pieces of 3 and 1 cells that share no face; embryo.keep = "
+                                      "\"largest\" omits all but the largest"}));
+  const Tissue kept = tissue_from_mesh(mesh, {.keep_largest = true});
+  EXPECT_EQ(kept.cell_arrays.at("gene"), (CellArray{1, 2, 3}));
+  EXPECT_EQ(kept.rest_positions, block.rest_positions);
+  EXPECT_EQ(kept.remarks, (std::vector<std::string>{"the largest of 2 pieces of 3 and 1 cells was kept"}));
+}
+
+// A cube with a quadrilateral before it, in a file of types one by one.
+TEST_F(MeshFileTest, FacesBesideHexahedraAreOmittedAndArraysKeepTheirCells) {
+  std::string text = legacy(cube_points, {{0, 1, 2, 3}, cube}, 12,
+                            "SCALARS apical int 1\nLOOKUP_TABLE default\n9\n5\n"
+                            "SCALARS gene float 1\nLOOKUP_TABLE default\n7\n2\n");
+  text.replace(text.find("CELL_TYPES 2\n12"), 15, "CELL_TYPES 2\n9");
+  for (const std::string& content : {text, "\xef\xbb\xbf" + text}) {
+    write_file(file, content);
+    const Tissue read = read_mesh_file(file, "apical", {1, 1, 1});
+    ASSERT_EQ(read.cells.size(), 1U);
+    EXPECT_EQ(read.cell_arrays.at("gene"), CellArray{2});
+    EXPECT_EQ(read.remarks,
+              (std::vector<std::string>{"1 faces, lines and vertices beside the hexahedra were omitted"}));
+  }
+  write_file(file, binary_cube(1).insert(0, "\xef\xbb\xbf"));
+  EXPECT_NE(error<MeshError>().find("the mesh has a single surface"), std::string::npos);
+}
+
+TEST_F(MeshFileTest, OfQuadraticHexahedraTheCornersAreKept) {
+  int cases = 0;
+  for (const auto& [type, nodes] : {std::pair(25, 20), {29, 27}, {33, 24}}) {
+    auto points = cube_points;
+    std::vector<int> cell = cube;
+    for (int node = 8; node < nodes; ++node) {
+      points.emplace_back("0.5 0.5 0.5");
+      cell.push_back(node);
+    }
+    write_file(file, legacy(points, {cell}, type, apical_lines("5")));
+    const Tissue read = read_mesh_file(file, "apical", {1, 1, 1});
+    EXPECT_EQ(read.node_count(), 8U);
+    EXPECT_NEAR(total_volume(read), 1, 1e-12);
+    EXPECT_EQ(read.remarks,
+              (std::vector<std::string>{"1 hexahedra have nodes between corners: only their corners are used"}));
+    ++cases;
+  }
+  std::cout << cases << " types\n";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 
@@ -15,6 +16,8 @@
 
 namespace plica {
 namespace {
+
+const std::string mark = "\xef\xbb\xbf";  // byte-order mark
 
 // A square pyramid without its base, with a triangle and a square.
 void expect_two_faces(const PolygonFile& file) {
@@ -91,6 +94,16 @@ TEST(PolygonFile, PlyAsBytes) {
     EXPECT_THROW(polygons_in_ply(whole.substr(0, length)), MeshError) << length;
 }
 
+TEST(PolygonFile, ByteOrderMarksArePassedOver) {
+  EXPECT_EQ(polygons_in_obj(mark + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").surface.vertices.size(), 3U);
+  EXPECT_EQ(polygons_in_off(mark + "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").surface.polygons.size(), 1U);
+  expect_two_faces(polygons_in_ply(mark + binary_ply(false)));
+  for (const char* utf16 : {"\xff\xfev", "\xfe\xffv"}) {
+    expect_mesh_error([&] { polygons_in_obj(utf16); }, "is UTF-16 text; save it as UTF-8");
+    expect_mesh_error([&] { polygons_in_ply(utf16); }, "is UTF-16 text; save it as UTF-8");
+  }
+}
+
 TEST(PolygonFile, SaysWhatIsWrongAndWhere) {
   const auto obj = [](const char* text, const char* said) { expect_mesh_error([&] { polygons_in_obj(text); }, said); };
   obj("v 0 0\n", "line 1: a vertex must have three coordinates");
@@ -158,6 +171,17 @@ TEST(VertexModel, CellsThatHaveGoneAreLeftOut) {
   EXPECT_EQ(file.arrays.at("area"), CellArray{0.25});
 }
 
+TEST(VertexModel, HalfEdgesThatRunBackwardsAreReversed) {
+  VertexModelTables tables = two_triangles();
+  EXPECT_TRUE(polygons_of(tables).remarks.empty());
+  std::swap(tables.edges.columns["srce"][1], tables.edges.columns["trgt"][1]);
+  std::swap(tables.edges.columns["srce"][5], tables.edges.columns["trgt"][5]);
+  const PolygonFile file = polygons_of(tables);
+  EXPECT_EQ(file.surface.polygons.size(), 2U);
+  for (const auto& polygon : file.surface.polygons) EXPECT_GT(area_vector(file.surface.vertices, polygon).z(), 0);
+  EXPECT_EQ(file.remarks, (std::vector<std::string>{"2 half-edges that ran backwards were reversed"}));
+}
+
 TEST(VertexModel, SaysWhatIsWrong) {
   const auto expect = [](const auto& spoil, const char* said) {
     VertexModelTables tables = two_triangles();
@@ -171,7 +195,7 @@ TEST(VertexModel, SaysWhatIsWrong) {
   expect([](auto& t) { t.edges.columns["face"][1] = 99; }, "an edge names row 99 of faces, which does not exist");
   expect([](auto& t) { t.edges.columns["trgt"][1] = 40; }, "the 3 edges of face 6 do not form one ring");
   expect([](auto& t) { t.edges.columns["trgt"][2] = 20; }, "the 3 edges of face 6 do not form one ring");
-  expect([](auto& t) { t.edges.columns["srce"][1] = 10; }, "two edges of face 6 begin at vertex 10");
+  expect([](auto& t) { t.edges.columns["srce"][1] = 10; }, "the 3 edges of face 6 do not form one ring");
 }
 
 TEST(PolygonFile, IsReadByItsEnding) {
@@ -182,6 +206,12 @@ TEST(PolygonFile, IsReadByItsEnding) {
   write_file(folder / "a.stl", "solid\n");
   expect_mesh_error([&] { read_polygon_file(folder / "a.stl"); },
                     "a.stl: \".stl\" is not the extension of a polygon file");
+  write_file(folder / "b.ply",
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty int y\nproperty int z\nelement face 2\n"
+             "property list int int vertex_indices\nproperty float a\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 nan\n"
+             "3 0 1 2 -inf\n");
+  const PolygonFile missing = read_polygon_file(folder / "b.ply");
+  for (const double value : missing.arrays.at("a")) EXPECT_TRUE(std::isnan(value));
   EXPECT_THROW(read_polygon_file(folder / "nowhere.ply"), FileError);
   write_file(folder / "a.h5", "no HDF5");
   try {
