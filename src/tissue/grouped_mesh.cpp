@@ -291,6 +291,7 @@ Tissue tissue_from_groups(const HexahedralMesh& mesh) {
   Tissue tissue =
       mesh.groups.elements_per_cell.empty() ? from_polygons(mesh, sorted, faces) : from_grid(mesh, sorted, faces);
   for (const auto& [name, values] : mesh.arrays) tissue.cell_arrays[name] = of_cells(values, sorted);
+  tissue.remarks = mesh.remarks;
   return tissue;
 }
 

@@ -8,6 +8,7 @@
 #include "tissue/lattice.hpp"
 #include "tissue/mesh_faces.hpp"
 #include "tissue/mesh_orientation.hpp"
+#include "tissue/pieces.hpp"
 #include "tissue/place.hpp"
 
 namespace plica {
@@ -186,20 +187,71 @@ void check_elements(const Tissue& tissue) {
                       cell_at(tissue, tissue.element_cell[e])));
 }
 
+Vec3 volume_centroid(const HexahedralMesh& mesh) {
+  Vec3 sum = Vec3::Zero();
+  double volume = 0;
+  for (const auto& cell : mesh.cells) {
+    const HexPoints points = gather(mesh.points, cell);
+    const double of_cell = hex_volume(points);
+    for (const Vec3& point : points) sum += of_cell / 8 * point;
+    volume += of_cell;
+  }
+  return sum / volume;
+}
+
+/// Keeps the largest piece, or remarks on several. Returns whether cells were dropped.
+bool look_at_pieces(HexahedralMesh& mesh, const MeshFaces& faces, bool keep_largest) {
+  const Pieces pieces = pieces_of(mesh.cells.size(), [&](std::size_t cell, const auto& take) {
+    for (int face = 0; face < 6; ++face)
+      if (const auto beyond = faces.neighbour({cell, face})) take(beyond->cell);
+  });
+  if (pieces.is_one()) return false;
+  const std::string text = pieces.text("cells");
+  if (!keep_largest) {
+    if (mesh.apical_faces.empty())
+      throw MeshError(fmt::format("the mesh is not one closed layer but {}: set embryo.keep = \"largest\"", text));
+    mesh.remarks.push_back(
+        fmt::format("the mesh has {} that share no face; embryo.keep = \"largest\" omits all but the largest", text));
+    return false;
+  }
+  mesh.remarks.push_back(fmt::format("the largest of {} was kept", text));
+  const std::size_t largest = pieces.largest();
+  const auto keep = [&](auto& of_cells) {
+    std::size_t kept = 0;
+    for (std::size_t cell = 0; cell < of_cells.size(); ++cell)
+      if (pieces.piece_of[cell] == largest) of_cells[kept++] = of_cells[cell];
+    of_cells.resize(kept);
+  };
+  keep(mesh.cells);
+  keep(mesh.apical_faces);
+  for (auto& [name, values] : mesh.arrays) keep(values);
+  return true;
+}
+
 }  // namespace
 
-Tissue tissue_from_mesh(const HexahedralMesh& mesh, const std::array<int, 3>& elements_per_cell) {
+Tissue tissue_from_mesh(HexahedralMesh mesh, const MeshOptions& options) {
+  const std::array<int, 3>& elements_per_cell = options.elements_per_cell;
   check_size(mesh, elements_per_cell);
   check_arrays(mesh);
+  options.placement.turn(mesh.points);
   check_cells(mesh);
+  const auto centre = [&] {
+    if (options.placement.centre) move_to_origin(mesh.points, volume_centroid(mesh));
+  };
   if (!mesh.groups.is_empty()) {
     if (elements_per_cell != std::array{1, 1, 1})
       throw MeshError(
           "elements_per_cell divides cells of one hexahedron; cells of this file already have several: omit it");
+    if (options.keep_largest)
+      throw MeshError("cells of several hexahedra cannot be selected by pieces: omit embryo.keep");
+    centre();
     return tissue_from_groups(mesh);
   }
-  const MeshFaces faces(mesh.cells, mesh.points);
+  MeshFaces faces(mesh.cells, mesh.points);
   check_welded(mesh, faces);
+  if (look_at_pieces(mesh, faces, options.keep_largest)) faces = MeshFaces(mesh.cells, mesh.points);
+  centre();
   const std::vector<int> apical = mesh.apical_faces.empty() ? outer_faces(mesh, faces) : mesh.apical_faces;
   check_apical_faces(mesh, faces, apical);
 
@@ -219,7 +271,8 @@ Tissue tissue_from_mesh(const HexahedralMesh& mesh, const std::array<int, 3>& el
   positions = drop_unused_nodes(positions, lattices);
   Tissue tissue = tissue_from_lattices(lattices, std::move(positions));
   check_elements(tissue);
-  tissue.cell_arrays = mesh.arrays;
+  tissue.cell_arrays = std::move(mesh.arrays);
+  tissue.remarks = std::move(mesh.remarks);
   return tissue;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "tissue/placement.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -38,20 +39,28 @@ struct HexahedralMesh {
   Vectors points;                            // um; unused ones are dropped
   std::vector<std::array<NodeId, 8>> cells;  // VTK order, any face may be apical
   std::vector<int> apical_faces;             // cells; 0-5 in the order of hex_faces. Empty: find the outer surface
-  std::map<std::string, CellArray> arrays;   // by name; one number per hexahedron
+  std::map<std::string, CellArray> arrays;   // by name; one number per hexahedron, NaN: no value
   CellGroups groups = {};                    // empty: each hexahedron is a cell
+  std::vector<std::string> remarks = {};     // what its reader omitted
+};
+
+/// How a mesh becomes a tissue.
+struct MeshOptions {
+  std::array<int, 3> elements_per_cell = {1, 1, 1};  // along, across, basal to apical
+  Placement placement = {};                          // centred on the centroid of its volume
+  bool keep_largest = false;                         // of pieces that share no face, keep only the largest
 };
 
 /// Largest number of elements of a mesh.
 inline constexpr long long largest_mesh_elements = 20'000'000;
 
-/// Make a tissue. With groups, makes their cells, in order of their numbers; arrays that vary within a cell are
-/// averaged. Otherwise each hexahedron becomes a cell whose nodes 4-7 are apical, subdivided trilinearly into
-/// `elements_per_cell` (along, across, basal to apical) elements; the first two must agree, since cells of a file have
-/// no common direction. The volume does not change. Nodes keep their order; those of refined elements follow. Without
-/// `apical_faces` the mesh must be one closed layer, one cell thick, whose outer side is apical. MeshError if the mesh
-/// is unusable.
-Tissue tissue_from_mesh(const HexahedralMesh& mesh, const std::array<int, 3>& elements_per_cell);
+/// Make a tissue of a mesh after its placement. With groups, makes their cells, in order of their numbers; arrays that
+/// vary within a cell are averaged. Otherwise each hexahedron becomes a cell whose nodes 4-7 are apical, subdivided
+/// trilinearly into `elements_per_cell` (along, across, basal to apical) elements; the first two must agree, since
+/// cells of a file have no common direction. The volume does not change. Nodes keep their order; those of refined
+/// elements follow. Without `apical_faces` the mesh must be one closed layer, one cell thick, whose outer side is
+/// apical. MeshError if the mesh is unusable.
+Tissue tissue_from_mesh(HexahedralMesh mesh, const MeshOptions& options);
 
 /// Make the tissue of a mesh with groups whose hexahedra and points have been checked: grouped_mesh.cpp.
 Tissue tissue_from_groups(const HexahedralMesh& mesh);

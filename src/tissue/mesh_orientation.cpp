@@ -58,9 +58,7 @@ std::size_t outer_component(const HexahedralMesh& mesh, const std::vector<CellFa
     throw MeshError(
         fmt::format("the mesh has {} separate surfaces; one closed layer has two: {}", volume.size(), apical_remedy));
   const auto [first, first_volume] = *volume.begin();
-  const auto [second, second_volume] = *volume.rbegin();
-  if ((first_volume > 0) == (second_volume > 0))
-    throw MeshError(fmt::format("the mesh is two separate bodies and not one closed layer; {}", apical_remedy));
+  const std::size_t second = volume.rbegin()->first;
   return first_volume > 0 ? first : second;
 }
 

@@ -7,11 +7,11 @@
 #include <map>
 #include <numbers>
 #include <numeric>
-#include <queue>
 #include <set>
 #include <utility>
 
 #include "tissue/hexahedral_mesh.hpp"
+#include "tissue/pieces.hpp"
 #include "tissue/place.hpp"
 #include "tissue/shapes/vertex_bends.hpp"
 
@@ -39,7 +39,9 @@ void check_corners(const PolygonSurface& surface) {
   for (std::size_t face = 0; face < surface.polygons.size(); ++face) {
     std::vector<std::size_t> corners = surface.polygons[face];
     if (corners.size() < 3)
-      throw MeshError(fmt::format("face {} has {} corners; a cell requires at least three", face, corners.size()));
+      throw MeshError(
+          fmt::format("face {} has {} corners; a cell requires at least three: remove the face, or correct it", face,
+                      corners.size()));
     for (const std::size_t vertex : corners) {
       const Vec3& p = surface.vertices[vertex];
       if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest_coordinate_um)
@@ -51,6 +53,19 @@ void check_corners(const PolygonSurface& surface) {
       throw MeshError(fmt::format("{} has vertex {} twice, at {}", face_at(surface, face), *twice,
                                   place_text(surface.vertices[*twice])));
   }
+}
+
+// Corners that repeat the one before: rings that are closed twice, edges whose ends were merged.
+std::size_t drop_repeated_corners(PolygonSurface& surface) {
+  std::size_t dropped = 0;
+  for (auto& polygon : surface.polygons) {
+    const std::size_t before = polygon.size();
+    const auto repeated = std::ranges::unique(polygon);
+    polygon.erase(repeated.begin(), repeated.end());
+    while (polygon.size() > 1 && polygon.front() == polygon.back()) polygon.pop_back();
+    dropped += before - polygon.size();
+  }
+  return dropped;
 }
 
 double mean_side(const PolygonSurface& surface) {
@@ -154,32 +169,49 @@ std::vector<std::vector<Across>> faces_across(const PolygonSurface& surface) {
   return across;
 }
 
-// Faces to reverse so that all wind like the first. MeshError when that cannot be, or there is a face that
-// the first is not joined to.
+// Keeps the largest piece, or MeshError when there are several. Returns the faces that stay.
+std::vector<std::size_t> keep_one_piece(PolygonSurface& surface, bool keep_largest, std::vector<std::string>& remarks) {
+  const auto across = faces_across(surface);
+  const Pieces pieces = pieces_of(across.size(), [&](std::size_t face, const auto& take) {
+    for (const Across& other : across[face]) take(other.face);
+  });
+  std::vector<std::size_t> kept(surface.polygons.size());
+  std::iota(kept.begin(), kept.end(), std::size_t{0});
+  if (pieces.is_one()) return kept;
+  const std::size_t largest = pieces.largest();
+  std::erase_if(kept, [&](std::size_t face) { return pieces.piece_of[face] != largest; });
+  if (!keep_largest) {
+    const auto apart = static_cast<std::size_t>(
+        std::ranges::find_if(pieces.piece_of, [&](std::size_t piece) { return piece != largest; }) -
+        pieces.piece_of.begin());
+    throw MeshError(
+        fmt::format("the surface is not one piece but {}; {} is joined to the largest by no edge: set embryo.keep = "
+                    "\"largest\", or join them (corners of neighbours may lie at most {:.2g} um apart)",
+                    pieces.text("cells"), face_at(surface, apart), same_place * mean_side(surface)));
+  }
+  remarks.push_back(fmt::format("the largest of {} was kept", pieces.text("cells")));
+  std::vector<std::vector<std::size_t>> polygons;
+  for (const std::size_t face : kept) polygons.push_back(std::move(surface.polygons[face]));
+  surface.polygons = std::move(polygons);
+  return kept;
+}
+
+// Faces to reverse so that all wind like the first, to which all are joined. MeshError when that cannot be.
 std::vector<bool> unlike_first(const PolygonSurface& surface) {
   const auto across = faces_across(surface);
   std::vector<int> turn(surface.polygons.size(), -1);
-  std::queue<std::size_t> next;
+  std::vector<std::size_t> reached = {0};
   turn[0] = 0;
-  next.push(0);
-  std::size_t reached = 0;
-  for (; !next.empty(); next.pop(), ++reached)
-    for (const Across& other : across[next.front()]) {
-      const int wanted = turn[next.front()] ^ static_cast<int>(other.runs_alike);
+  for (std::size_t i = 0; i < reached.size(); ++i)
+    for (const Across& other : across[reached[i]]) {
+      const int wanted = turn[reached[i]] ^ static_cast<int>(other.runs_alike);
       if (turn[other.face] == 1 - wanted)
         throw MeshError(fmt::format("{} and face {} cannot both face outward: the surface is one-sided",
-                                    face_at(surface, next.front()), other.face));
+                                    face_at(surface, reached[i]), other.face));
       if (turn[other.face] == wanted) continue;
       turn[other.face] = wanted;
-      next.push(other.face);
+      reached.push_back(other.face);
     }
-  if (reached < turn.size()) {
-    const auto apart = static_cast<std::size_t>(std::ranges::find(turn, -1) - turn.begin());
-    throw MeshError(
-        fmt::format("the surface is not one piece: {} of {} faces are joined to face 0 by edges, {} is "
-                    "not; corners shared by neighbours may lie at most {:.2g} um apart",
-                    reached, turn.size(), face_at(surface, apart), same_place * mean_side(surface)));
-  }
   return {turn.begin(), turn.end()};
 }
 
@@ -368,16 +400,21 @@ MendedPolygons mend_shapes(PolygonSurface& surface, const PolygonOptions& option
 
 }  // namespace
 
-MendedSurface check_and_mend(PolygonSurface& surface, bool mend, const PolygonOptions& options) {
+MendedSurface check_and_mend(PolygonSurface& surface, bool mend, const PolygonOptions& options, bool keep_largest) {
   MendedSurface result;
   const auto remark = [&](std::size_t count, const char* what) {
     if (count > 0) result.remarks.push_back(fmt::format("{} {}", count, what));
   };
+  std::size_t repeated = drop_repeated_corners(surface);
   check_corners(surface);
   const std::size_t merged = merge_vertices(surface, mend);
   remark(merged, "coincident vertices were merged");
+  repeated += drop_repeated_corners(surface);
+  remark(repeated, "corners in the place of the one before them were removed");
   check_corners(surface);
   remark(drop_unused(surface, merged), "unused vertices were removed");
+  result.kept = keep_one_piece(surface, keep_largest, result.remarks);
+  drop_unused(surface, 0);
   const std::size_t turned = turn_faces(surface, mend, result.is_closed);
   remark(turned, "faces were reversed");
   if (turned > 0 && !result.is_closed) result.remarks.back() += apical_side_text(surface);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include "tissue/hexahedral_mesh.hpp"
@@ -48,7 +49,7 @@ OuterShape shape_around(const StarSurface& smooth, const Vectors& vertices) {
   return OuterShape(std::make_shared<const StarSurface>(smooth)).moved_out(outside);
 }
 
-void move_to_origin(PolygonSurface& surface) {
+Vec3 area_centroid(const PolygonSurface& surface) {
   Vec3 sum = Vec3::Zero();
   double area = 0;
   for (const auto& polygon : surface.polygons) {
@@ -58,17 +59,26 @@ void move_to_origin(PolygonSurface& surface) {
     sum += fan.area * fan.centroid;
     area += fan.area;
   }
-  for (Vec3& vertex : surface.vertices) vertex -= sum / area;
+  return sum / area;
 }
 
 }  // namespace
 
+CellArray of_kept(const CellArray& of_faces, const std::vector<std::size_t>& kept) {
+  CellArray values;
+  for (const std::size_t face : kept) values.push_back(of_faces[face]);
+  return values;
+}
+
 SurfaceTissue build_under_surface(GivenSurface given, const PolygonCells& cells) {
   PolygonSurface& surface = given.surface;
-  for (Vec3& vertex : surface.vertices) vertex = vertex.cwiseProduct(given.scale);
-  const MendedSurface mended = check_and_mend(surface, given.mend, {.least_edge = cells.least_edge_ratio});
-  if (given.centre) move_to_origin(surface);
+  const std::size_t face_count = surface.polygons.size();
+  given.placement.turn(surface.vertices);
+  const MendedSurface mended =
+      check_and_mend(surface, given.mend, {.least_edge = cells.least_edge_ratio}, given.keep_largest);
+  if (given.placement.centre) move_to_origin(surface.vertices, area_centroid(surface));
   SurfaceTissue result;
+  result.kept = mended.kept;
   std::optional<StarSurface> smooth;
   try {
     if (!mended.is_closed) throw MeshError("the surface has a boundary; give a closed surface");
@@ -76,7 +86,8 @@ SurfaceTissue build_under_surface(GivenSurface given, const PolygonCells& cells)
   } catch (const MeshError& error) {
     result.why_no_shape = error.what();
   }
-  const std::vector<double> heights_um = given.heights_um.empty() ? std::vector{cells.height_um} : given.heights_um;
+  std::vector<double> heights_um = given.heights_um.empty() ? std::vector{cells.height_um} : given.heights_um;
+  if (heights_um.size() == face_count) heights_um = of_kept(heights_um, mended.kept);
   const ExtrudedSheet sheet =
       extrude(surface, smooth ? vertex_bends(surface, *smooth) : vertex_bends(surface), heights_um);
   result.tissue = tissue_from_prisms(sheet, cells.split, cells.layers);
@@ -97,7 +108,9 @@ Tissue build_about_points(const MeasuredPoints& measured, const PolygonCells& ce
     const StarFit below = fit_star_surface(points);
     for (Vec3& point : points) point += measured.depth_um * below.surface.closest(point).normal;
   }
-  for (Vec3& point : points) point = point.cwiseProduct(measured.scale);
+  measured.placement.turn(points);
+  if (measured.placement.centre && !points.empty())
+    move_to_origin(points, std::accumulate(points.begin(), points.end(), Vec3(0, 0, 0)) / points.size());
   const StarFit fit = fit_star_surface(points);
   Tissue tissue = build_on(fit.surface, points, cells);
   tissue.remarks.insert(

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tissue/placement.hpp"
 #include "tissue/prisms.hpp"
 #include "tissue/shapes/egg_surface.hpp"
 #include "tissue/shapes/polygon_surface.hpp"
@@ -23,9 +24,9 @@ struct PolygonCells {
 Tissue build_egg(const EggShape& shape, std::size_t count, std::uint64_t seed, const PolygonCells& cells);
 
 struct MeasuredPoints {
-  Vectors points;          // um; one per cell, on a closed surface around the origin
-  double depth_um = 0;     // depth below the apical surface
-  Vec3 scale = {1, 1, 1};  // scale afterwards, along x, y, z
+  Vectors points;       // um; one per cell, on a closed surface around the origin
+  double depth_um = 0;  // depth below the apical surface, before the placement
+  Placement placement = {};
 };
 
 /// Build one cell per point, in order; the apical surface is a smooth one through the points. MeshError names rows.
@@ -34,9 +35,9 @@ Tissue build_about_points(const MeasuredPoints& measured, const PolygonCells& ce
 struct GivenSurface {
   PolygonSurface surface;               // apical faces of the cells
   std::vector<double> heights_um = {};  // cells; empty: as in PolygonCells
-  Vec3 scale = {1, 1, 1};               // scale of its vertices, along x, y, z
-  bool centre = false;                  // move its area centroid to the origin
+  Placement placement = {};             // centred on its area centroid
   bool mend = true;                     // see given_surface.hpp
+  bool keep_largest = false;            // likewise
 };
 
 /// Tissue with the given apical surface, and the reason if it has no `outer_shape`, the smooth surface through the
@@ -44,10 +45,14 @@ struct GivenSurface {
 struct SurfaceTissue {
   Tissue tissue;
   std::string why_no_shape;
+  std::vector<std::size_t> kept;  // faces that became cells
 };
 
-/// Build one cell per face, in order: inward along the normals of that smooth surface, else along the mean normals of
-/// the faces. MeshError as check_and_mend and extrude.
+/// Return the values of the kept faces.
+CellArray of_kept(const CellArray& of_faces, const std::vector<std::size_t>& kept);
+
+/// Build one cell per face that is kept, in order: inward along the normals of that smooth surface, else along the mean
+/// normals of the faces. MeshError as check_and_mend and extrude.
 SurfaceTissue build_under_surface(GivenSurface given, const PolygonCells& cells);
 
 }  // namespace plica

@@ -143,6 +143,42 @@ TEST(GivenSurface, NeighboursOfAFileOfFiveDigitsAreJoined) {
   EXPECT_EQ(all(check_and_mend(surface, true)), "2 coincident vertices were merged\n");
 }
 
+TEST(GivenSurface, CornersInOnePlaceAreOne) {
+  // The corner of four squares as an edge of a ten thousandth of the mean, and one much shorter; rings closed twice.
+  for (const double length : {1e-5, 1e-9, 0.0}) {
+    PolygonSurface surface = squares(2, 2);
+    surface.vertices.emplace_back(1 + length, 1, 0);
+    surface.polygons = {{0, 1, 4, 3, 0}, {1, 2, 5, 9, 4}, {3, 4, 7, 6}, {4, 9, 5, 8, 7, 7}};
+    surface.polygons[3] = {4, 9, 5, 8, 7, 7, 4};
+    EXPECT_EQ(all(check_and_mend(surface, true)),
+              "1 coincident vertices were merged\n5 corners in the place of the one before them were removed\n");
+    for (const Face& polygon : surface.polygons) EXPECT_EQ(polygon.size(), 4U);
+  }
+  // A ring that is closed twice moves nothing, so it needs no repair.
+  PolygonSurface surface = squares(2, 1);
+  surface.polygons[0].push_back(surface.polygons[0][0]);
+  EXPECT_EQ(all(check_and_mend(surface, false)), "1 corners in the place of the one before them were removed\n");
+  EXPECT_EQ(surface.polygons, squares(2, 1).polygons);
+  // What is left of a face is no cell.
+  surface = squares(2, 1);
+  surface.vertices[2] = surface.vertices[5];
+  surface.polygons[1] = {1, 2, 5};
+  expect_mesh_error([&] { check_and_mend(surface, true); }, "face 1 has 2 corners; a cell requires at least three");
+}
+
+TEST(GivenSurface, TheLargestPieceIsKept) {
+  PolygonSurface surface = squares(3, 2);
+  for (const auto& [x, y] : {std::pair(9.0, 0.0), {10.0, 0.0}, {9.0, 1.0}}) surface.vertices.emplace_back(x, y, 0);
+  surface.polygons.insert(surface.polygons.begin(), {12, 13, 14});
+  PolygonSurface as_given = surface;
+  expect_mesh_error([&] { check_and_mend(as_given, true); },
+                    "the surface is not one piece but 2 pieces of 6 and 1 cells; face 0 at (9.333, 0.3333, 0) um");
+  const MendedSurface mended = check_and_mend(surface, true, {}, true);
+  EXPECT_EQ(all(mended), "the largest of 2 pieces of 6 and 1 cells was kept\n");
+  EXPECT_EQ(mended.kept, (Face{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(surface.polygons, squares(3, 2).polygons);
+}
+
 // The smallest surfaces that are wrong each in one way.
 TEST(GivenSurface, SaysWhatIsWrongAndWhere) {
   const auto expect = [](PolygonSurface surface, const std::string& said) {
@@ -160,7 +196,6 @@ TEST(GivenSurface, SaysWhatIsWrongAndWhere) {
   expect(spoilt([](auto& s) { s.polygons[1] = {1, 2}; }), "face 1 has 2 corners; a cell requires at least three");
   expect(spoilt([](auto& s) { s.polygons[1] = {}; }), "face 1 has 0 corners");
   expect(spoilt([](auto& s) { s.polygons[1] = {1, 2, 5, 2}; }), "face 1 at (1.75, 0.25, 0) um has vertex 2 twice");
-  expect(spoilt([](auto& s) { s.vertices[2] = s.vertices[5]; }), "has vertex 2 twice");
   expect(spoilt([](auto& s) {
            s.vertices.emplace_back(1, 0.5, 1);
            s.polygons.push_back({1, 4, 6});
@@ -170,7 +205,8 @@ TEST(GivenSurface, SaysWhatIsWrongAndWhere) {
            for (const double x : {9, 10, 9}) s.vertices.emplace_back(x, s.vertices.size() == 8, 0);
            s.polygons.push_back({6, 7, 8});
          }),
-         "the surface is not one piece: 2 of 3 faces are joined to face 0 by edges, face 2 at (9.333, 0.3333, 0)");
+         "the surface is not one piece but 2 pieces of 2 and 1 cells; face 2 at (9.333, 0.3333, 0) um is joined to the "
+         "largest by no edge: set embryo.keep = \"largest\", or join them");
   // A ring of squares, but for one corner: those beside it touch in one vertex.
   PolygonSurface ring = squares(3, 3);
   ring.polygons.erase(ring.polygons.begin() + 4);

@@ -78,7 +78,7 @@ TEST(PolygonEmbryo, AboutPointsHasTheirSurface) {
   const StarSurface egg = egg_surface({300, 150, 150, {}, {}});
   Vectors points = even_points(egg, 600, 2);
   for (Vec3& point : points) point -= 8 * egg.closest(point).normal;
-  const Tissue tissue = build_about_points({points, 8, {1.5, 1, 1}}, {25, PolygonSplit::diagonals, 1});
+  const Tissue tissue = build_about_points({points, 8, {{1.5, 1, 1}}}, {25, PolygonSplit::diagonals, 1});
   ASSERT_EQ(tissue.cells.size(), points.size());
   double longest = 0, widest = 0;
   for (const Vec3& x : tissue.rest_positions)
@@ -153,7 +153,7 @@ TEST_P(PolygonEmbryo, UnderAFootballHasItsAreaAndVolume) {
   ASSERT_EQ(football.polygons.size(), 32U);
   const double edge = 10, height = 8;
   const SurfaceTissue made =
-      build_under_surface({.surface = football, .scale = Vec3::Constant(edge / 2)}, {height, GetParam(), 2});
+      build_under_surface({.surface = football, .placement = {Vec3::Constant(edge / 2)}}, {height, GetParam(), 2});
   const Tissue& tissue = made.tissue;
   EXPECT_EQ(made.why_no_shape, "");
   EXPECT_EQ(tissue.cells.size(), 32U);
@@ -193,7 +193,8 @@ TEST(SurfaceEmbryo, TakesAHeightACellAndMovesToTheMiddle) {
   const SurfaceTissue off = build_under_surface({.surface = football, .heights_um = heights}, {});
   EXPECT_NE(off.why_no_shape.find("points must surround the origin"), std::string::npos) << off.why_no_shape;
   EXPECT_FALSE(off.tissue.outer_shape);
-  const SurfaceTissue centred = build_under_surface({.surface = football, .heights_um = heights, .centre = true}, {});
+  const SurfaceTissue centred =
+      build_under_surface({.surface = football, .heights_um = heights, .placement = {.centre = true}}, {});
   EXPECT_EQ(centred.why_no_shape, "");
   const auto height = [&](std::size_t c) {
     const Cell& cell = centred.tissue.cells[c];
