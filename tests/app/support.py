@@ -5,6 +5,7 @@ What its tests share: scenarios, the names of the contract, running the program,
 Nothing of plica is linked or read here: the program is run as a black box on small blocks and spheres.
 Run: FILE_test.py [PROGRAM] [unittest options], or with PLICA=PROGRAM in the environment.
 """
+import base64
 import csv
 import json
 import math
@@ -144,31 +145,39 @@ def tree(folder):
 
 
 def read_vtu(path):
-    """The arrays of a .vtu that VTK's own writer made (appended raw data, zlib or none): name -> (section, values)."""
+    """The arrays of a .vtu (appended data, base64 or raw, zlib or none): name -> (section, values)."""
     data = Path(path).read_bytes()
     start_of_data = data.index(b"_", data.index(b"<AppendedData")) + 1
+    is_base64 = b'encoding="base64"' in data[data.index(b"<AppendedData") : start_of_data]
     head = data[: data.index(b"<AppendedData")] + b"</VTKFile>"
     root = xml.etree.ElementTree.fromstring(head)
     word = {"UInt64": "Q", "UInt32": "I"}[root.get("header_type")]
     size_of_word = struct.calcsize(word)
 
-    def words(offset, count):
-        return struct.unpack_from(f"<{count}{word}", data, offset)
+    def take(at, count):
+        """Bytes from a place in the file on, and the place after them."""
+        length = -(-count // 3) * 4 if is_base64 else count
+        taken = data[at : at + length]
+        return (base64.b64decode(taken)[:count] if is_base64 else taken), at + length
+
+    def words(at, count):
+        return struct.unpack(f"<{count}{word}", take(at, count * size_of_word)[0])
 
     arrays = {}
     for section in root.iter():
         for array in section.findall("DataArray"):
             at = start_of_data + int(array.get("offset"))
             if root.get("compressor"):
-                blocks, _, _ = words(at, 3)
-                sizes = words(at + 3 * size_of_word, blocks)
-                at += (3 + blocks) * size_of_word
+                blocks = words(at, 1)[0]
+                sizes = words(at, 3 + blocks)[3:]
+                packed = take(take(at, (3 + blocks) * size_of_word)[1], sum(sizes))[0]
                 raw = b""
                 for size in sizes:
-                    raw += zlib.decompress(data[at : at + size])
-                    at += size
+                    raw += zlib.decompress(packed[:size])
+                    packed = packed[size:]
             else:
-                raw = data[at + size_of_word : at + size_of_word + words(at, 1)[0]]
+                length = words(at, 1)[0]
+                raw = take(at, size_of_word + length)[0][size_of_word:]
             letter = {"Float64": "d", "Float32": "f", "Int64": "q", "Int32": "i", "UInt8": "B", "Int8": "b"}[array.get("type")]
             values = struct.unpack(f"<{len(raw) // struct.calcsize(letter)}{letter}", raw)
             arrays[array.get("Name")] = (section.tag, values)
