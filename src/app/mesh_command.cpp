@@ -13,6 +13,7 @@
 #include "core/files.hpp"
 #include "core/names.hpp"
 #include "record/mesh_writer.hpp"
+#include "scenario/cell_size.hpp"
 #include "scenario/rest_arrays.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/suggest.hpp"
@@ -61,7 +62,6 @@ void print_quality(const Tissue& tissue) {
   print_shares("corners", polygons.corner_counts);
   print_shares("neighbours", polygons.neighbours);
   if (polygons.rim_cells > 0) fmt::print("{:<24}{:>10}\n", "cells at the rim", polygons.rim_cells);
-  for (const std::string& remark : tissue.remarks) fmt::print("{}\n", remark);
 }
 
 struct MeshCommand {
@@ -119,6 +119,9 @@ void mesh(const MeshCommand& command) {
   else
     write_mesh(command.out, tissue, tissue.rest_positions, arrays);
   print_quality(tissue);
+  for (const std::string& remark : tissue.remarks) fmt::print("{}\n", remark);
+  if (const std::string doubt = unit_warning(scenario.embryo, tissue); !doubt.empty())
+    fmt::print(stderr, "warning: {}\n", doubt);
 }
 
 }  // namespace

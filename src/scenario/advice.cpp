@@ -12,6 +12,7 @@
 #include "mechanics/elasticity/shape_memory.hpp"
 #include "scenario/abrupt_loads.hpp"
 #include "scenario/acting.hpp"
+#include "scenario/cell_size.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/words.hpp"
 #include "tissue/mesh_quality.hpp"
@@ -212,6 +213,7 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
                       axis == 1 ? "y" : "z"));
   }
 
+  if (std::string text = unit_warning(scenario.embryo, model.tissue); !text.empty()) warn(std::move(text));
   for (const std::string& remark : model.tissue.remarks) note(remark);
   const std::vector<std::string> regions = contracting_regions(scenario, model.tissue);
   const std::string& measured = scenario.furrow.region;

@@ -10,6 +10,7 @@
 #include "measure/self_intersections.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "scenario/acting.hpp"
+#include "scenario/cell_size.hpp"
 #include "scenario/materials.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/words.hpp"
@@ -150,7 +151,7 @@ void check_arrays(const Scenario& scenario, const Tissue& tissue, std::vector<Di
         if (cells[c] && !std::isfinite(array->second[c])) {
           errors.push_back(diagnostic_at(
               scenario, key,
-              fmt::format("array \"{}\" is not finite in {}", input.profile.array, cell_at(tissue, CellId(c))),
+              fmt::format("array \"{}\" has no value in {}", input.profile.array, cell_at(tissue, CellId(c))),
               "provide a number for every cell of the region"));
           break;
         }
@@ -190,12 +191,14 @@ void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vecto
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
     if (!(hex_scaled_jacobian(tissue.element_rest_shape[e]) > 0)) {
       const bool has_grid = is_of_grid(shape_of(scenario.embryo));
+      const std::string doubt = unit_warning(scenario.embryo, tissue);
       errors.push_back(diagnostic_at(scenario, has_grid ? "embryo.cells" : "embryo.cell_height_um",
                                      fmt::format("the mesh is invalid: {} is inverted or flat in the reference state",
                                                  cell_at(tissue, tissue.element_cell[e])),
-                                     has_grid
-                                         ? "increase cells, or reduce cell_height_um"
-                                         : "reduce cell_height_um, or use a surface with a lower curvature there"));
+                                     has_grid ? "increase cells, or reduce cell_height_um"
+                                     : doubt.empty()
+                                         ? "reduce cell_height_um, or use a surface with a lower curvature there"
+                                         : doubt));
       return;
     }
 }

@@ -49,6 +49,15 @@ std::pair<double, double> extent_along(const Tissue& tissue) {
   return extent;
 }
 
+/// Remarks once on cells without a value of an array.
+void note_missing(const std::string& name, const CellArray& values, std::vector<std::string>& remarks) {
+  const auto missing = std::ranges::count_if(values, [](double value) { return std::isnan(value); });
+  if (missing == 0) return;
+  const std::string remark = fmt::format(
+      "array \"{}\" has no value in {} cells, which belong to no region by it; result files omit it", name, missing);
+  if (std::ranges::find(remarks, remark) == remarks.end()) remarks.push_back(remark);
+}
+
 }  // namespace
 
 Diagnostic diagnostic_at(const Scenario& scenario, const std::string& key, std::string problem, std::string remedy) {
@@ -91,10 +100,12 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
                                                      : fmt::format("set array to one of: {}", fmt::join(names, ", "))));
       } else {
         const auto is_wanted = [&](double value) {
+          if (std::isnan(value)) return false;
           if (!region.above && !region.below) return value != 0;
           return (!region.above || value > *region.above) && (!region.below || value < *region.below);
         };
         for (std::size_t c = 0; c < cells; ++c) set[c] = set[c] && is_wanted(array->second[c]);
+        note_missing(region.array, array->second, tissue.remarks);
       }
     }
     // A union without other selectors starts empty; otherwise the set starts from the selected cells.
@@ -109,6 +120,13 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
     return tissue.regions[name] = std::move(set);
   };
   for (const auto& [name, region] : scenario.regions) {
+    if (const auto none = std::ranges::find_if(region.ids, [&](int id) { return id >= static_cast<int>(cells); });
+        none != region.ids.end()) {
+      errors.push_back(diagnostic_at(scenario, fmt::format("region.{}.ids", name),
+                                     fmt::format("cell {} does not exist", *none),
+                                     fmt::format("set ids to numbers from 0 to {}", cells - 1)));
+      continue;
+    }
     const CellSet& set = resolve(name);
     if (std::ranges::find(set, true) == set.end())
       errors.push_back(diagnostic_at(scenario, "region." + name, "contains no cell of the embryo",

@@ -60,8 +60,11 @@ struct EmbryoInput {
   std::vector<std::string> periodic;                // sheet: x, y: periodic directions
   std::string cell_height_array;                    // surface: array of heights; empty: cell_height_um
   bool mend = true;                                 // surface: whether the mesh is repaired
-  bool centre = false;                              // surface: whether its centre is moved to the origin
-  std::vector<double> scale = {1, 1, 1};            // points, surface
+  bool centre = false;                              // from a file: whether its centre is moved to the origin
+  std::vector<double> scale = {1, 1, 1};            // from a file
+  std::vector<double> rotate_deg = {0, 0, 0};       // from a file: about x, then y, then z
+  std::string keep = "all";                         // surface, file: all | largest: pieces that become cells
+  std::string label_array;                          // surface: faces of one number are a cell; empty: each face is
   double points_depth_um = 0;                       // points: below the apical surface, before scaling
   std::string file;          // "file": hexahedral mesh read by VTK; "points": table; "surface": polygons
   std::string apical_array;  // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;

@@ -24,6 +24,7 @@ std::vector<std::string_view> quantity_names() {
 constexpr double max_count = 100000;
 const std::vector<std::string_view> of_grid = {"pill", "sphere", "slice", "block"};  // shapes with cells on a grid
 const std::vector<std::string_view> of_polygons = {"egg", "points", "sheet", "surface"};
+const std::vector<std::string_view> of_file = {"file", "points", "surface"};
 const std::vector<std::string_view> built = {"pill", "sphere", "slice", "block",  // shapes built by plica
                                              "egg",  "points", "sheet", "surface"};
 
@@ -105,8 +106,18 @@ std::vector<Row> make_rows() {
       embryo("points_depth_um", &E::points_depth_um, not_negative,
              "Depth of the points below the apical surface (µm), before `scale`.", {.shapes = {"points"}}),
       embryo("scale", &E::scale, positive, "Factors on measured x, y and z: shrinkage by fixation, or units.",
-             {.shapes = {"points", "surface"}}),
-      embryo("centre", &E::centre, anything, "Move the centre of the surface to the origin, after `scale`.",
+             {.shapes = of_file}),
+      embryo("rotate_deg", &E::rotate_deg, between(-360, 360), "Rotation about x, then y, then z (°), after `scale`.",
+             {.shapes = of_file}),
+      embryo("centre", &E::centre, anything,
+             "Move the centre to the origin, after `rotate_deg`: of the surface, of the volume, or the mean of points.",
+             {.shapes = of_file}),
+      embryo("keep", &E::keep, one_of(words::keeps),
+             "Separate pieces of the file: `all`, or only the `largest`. A surface must be one piece.",
+             {.shapes = {"surface", "file"}}),
+      embryo("label_array", &E::label_array, anything,
+             "Array of the file with the cell of each face: faces with one label form one cell, those with 0 or less "
+             "none.",
              {.shapes = {"surface"}}),
       embryo("mend", &E::mend, anything,
              "Mesh repair: merges duplicate vertices, reorients faces, drops vertices along lateral faces, lengthens "
@@ -123,7 +134,7 @@ std::vector<Row> make_rows() {
           "file", &E::file, anything,
           "Path relative to the scenario file. Shape `file`: hexahedral mesh. `points`: CSV table with columns `x_um`, "
           "`y_um`, `z_um`; others become cell arrays. `surface`: polygons in OBJ, OFF, PLY, VTP, VTK or tyssue HDF5.",
-          {.is_path = true, .shapes = {"file", "points", "surface"}}),
+          {.is_path = true, .shapes = of_file}),
       embryo("apical_array", &E::apical_array, anything,
              "Cell array with the index of the apical face (0 to 5, VTK order); default: the outer surface is apical.",
              {.shapes = {"file"}}),

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <set>
 
@@ -31,6 +32,7 @@
 #include "scenario/symmetry.hpp"
 #include "scenario/words.hpp"
 #include "tissue/faces.hpp"
+#include "tissue/files/labelled_faces.hpp"
 #include "tissue/files/mesh_file.hpp"
 #include "tissue/files/points_file.hpp"
 #include "tissue/files/polygon_file.hpp"
@@ -43,11 +45,16 @@ namespace {
 
 Program make_program(const ProgramInput& input) { return {input.time_s, input.activity}; }
 
+Placement placement_of(const EmbryoInput& e) {
+  return {Vec3(e.scale[0], e.scale[1], e.scale[2]), Vec3(e.rotate_deg[0], e.rotate_deg[1], e.rotate_deg[2]), e.centre};
+}
+
 Tissue read_tissue(const Scenario& scenario) {
   const EmbryoInput& embryo = scenario.embryo;
   try {
-    Tissue tissue = embryo.mesh ? tissue_from_mesh(*embryo.mesh, embryo.elements_per_cell)
-                                : read_mesh_file(embryo.file, embryo.apical_array, embryo.elements_per_cell);
+    const MeshOptions options{embryo.elements_per_cell, placement_of(embryo), meaning_of(words::keeps, embryo.keep)};
+    Tissue tissue = embryo.mesh ? tissue_from_mesh(*embryo.mesh, options)
+                                : read_mesh_file(embryo.file, embryo.apical_array, options);
     if (scenario.vitelline.enabled) tissue.outer_shape = enclosing_capsule(tissue.rest_positions);
     return tissue;
   } catch (const MeshError& error) {
@@ -80,9 +87,9 @@ Tissue polygonal_tissue(const Scenario& scenario) {
       return build_sheet(sheet, e.cell_count, e.seed, cells);
     }
     const PointTable table = table_of(e.file);
-    Tissue tissue =
-        build_about_points({table.points, e.points_depth_um, Vec3(e.scale[0], e.scale[1], e.scale[2])}, cells);
+    Tissue tissue = build_about_points({table.points, e.points_depth_um, placement_of(e)}, cells);
     tissue.cell_arrays = table.arrays;
+    tissue.remarks.insert(tissue.remarks.end(), table.remarks.begin(), table.remarks.end());
     return tissue;
   } catch (const FileError& error) {
     throw ScenarioError(
@@ -93,7 +100,14 @@ Tissue polygonal_tissue(const Scenario& scenario) {
 std::vector<double> heights_of(const Scenario& scenario, const PolygonFile& file) {
   const std::string& name = scenario.embryo.cell_height_array;
   if (name.empty()) return {};
-  if (const auto found = file.arrays.find(name); found != file.arrays.end()) return found->second;
+  if (const auto found = file.arrays.find(name); found != file.arrays.end()) {
+    const auto missing = std::ranges::find_if(found->second, [](double height) { return std::isnan(height); });
+    if (missing == found->second.end()) return found->second;
+    throw ScenarioError(
+        {diagnostic_at(scenario, "embryo.cell_height_array",
+                       fmt::format("array \"{}\" has no value in face {}", name, missing - found->second.begin()),
+                       "provide a height for every face")});
+  }
   const std::string remedy =
       file.arrays.empty() ? "remove cell_height_array, since the file has none"
                           : fmt::format("set cell_height_array to one of: {}", fmt::join(keys_of(file.arrays), ", "));
@@ -112,15 +126,19 @@ Tissue surface_tissue(const Scenario& scenario) {
   } catch (const FileError& error) {
     complain(error.what());
   }
+  const std::string advice = e.label_array.empty() ? label_advice(file) : "";
   SurfaceTissue result;
   try {
+    if (!e.label_array.empty()) file = cells_of_labels(file, e.label_array);
     result = build_under_surface(
-        {file.surface, heights_of(scenario, file), Vec3(e.scale[0], e.scale[1], e.scale[2]), e.centre, e.mend},
+        {file.surface, heights_of(scenario, file), placement_of(e), e.mend, meaning_of(words::keeps, e.keep)},
         cells_of(e));
   } catch (const MeshError& error) {
-    complain(fmt::format("{}: {}", e.file, error.what()));
+    complain(fmt::format("{}: {}{}{}", e.file, error.what(), advice.empty() ? "" : "; ", advice));
   }
-  result.tissue.cell_arrays = std::move(file.arrays);
+  if (!advice.empty()) file.remarks.push_back(advice);
+  for (const auto& [name, values] : file.arrays) result.tissue.cell_arrays[name] = of_kept(values, result.kept);
+  result.tissue.remarks.insert(result.tissue.remarks.begin(), file.remarks.begin(), file.remarks.end());
   if (scenario.vitelline.enabled && !result.tissue.outer_shape)
     throw ScenarioError({diagnostic_at(scenario, "vitelline.enabled",
                                        "no vitelline membrane fits: " + result.why_no_shape, "set enabled to false")});

@@ -82,6 +82,9 @@ void check_embryo(Scenario& scenario, Input& input) {
     if (embryo.scale.size() != 3 && sound("scale"))
       input.report("embryo.scale", fmt::format("has length {}", embryo.scale.size()),
                    "set scale to three numbers, along x, y and z");
+    if (embryo.rotate_deg.size() != 3 && sound("rotate_deg"))
+      input.report("embryo.rotate_deg", fmt::format("has length {}", embryo.rotate_deg.size()),
+                   "set rotate_deg to three angles, about x, y and z");
     return;
   }
   if (embryo.curvature_per_um.size() != 2 && sound("curvature_per_um"))
@@ -279,7 +282,12 @@ class RegionCheck {
     if (region.empty() || !input_.sound("region") || !input_.sound(address)) return;
     if (!input_.sound("region." + region)) return;  // not read; already reported
     if (std::ranges::find(names_, region) != names_.end()) return;
-    input_.report(address, fmt::format("region \"{}\" does not exist", region), did_you_mean(region, names_));
+    const bool has_arrays = input_.sound("embryo.shape") && is_from_file(shape_of(scenario_.embryo));
+    input_.report(
+        address, fmt::format("region \"{}\" does not exist", region),
+        did_you_mean(region, names_) +
+            (has_arrays ? fmt::format("; if it is an array of the file, add [region.{0}] with array = \"{0}\"", region)
+                        : ""));
   }
 
   void check_references() {

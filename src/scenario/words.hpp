@@ -94,6 +94,9 @@ inline constexpr auto projection_surfaces =
 inline constexpr auto projection_weights = std::to_array<Word<ProjectionRule::Weights>>(
     {{"equal", ProjectionRule::Weights::equal}, {"mobility", ProjectionRule::Weights::mobility}});
 
+// [embryo] keep: whether only the largest piece is kept.
+inline constexpr auto keeps = std::to_array<Word<bool>>({{"all", false}, {"largest", true}});
+
 // [contraction.NAME]
 inline constexpr auto edges = std::to_array<Word<CellSide>>(
     {{"apical", CellSide::apical}, {"basal", CellSide::basal}, {"lateral", CellSide::lateral}});

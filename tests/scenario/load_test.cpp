@@ -329,7 +329,8 @@ TEST(LoadScenario, ReportsAllErrorsAtOnceInOrderOfLines) {
             "test.toml:6: embryo.length_um: true has the wrong type; set length_um to a number > 0\n"
             "test.toml:7: embryo.hue: unknown key; use one of: shape, length_um, diameter_um, width_um, "
             "cell_height_um, cells, elements_per_cell, cell_count, seed, curvature_per_um, rim, periodic, "
-            "belly_sag_um, back_sag_um, elements, least_edge_ratio, layers, points_depth_um, scale, centre, mend, "
+            "belly_sag_um, back_sag_um, elements, least_edge_ratio, layers, points_depth_um, scale, rotate_deg, "
+            "centre, keep, label_array, mend, "
             "cell_height_array, mirror, file, apical_array\n"
             "--set: time.max_step_s: 0 is out of range; set max_step_s to a number > 0");
 }
