@@ -36,7 +36,8 @@ using Whole = nb::ndarray<const int, nb::c_contig, nb::device::cpu>;
 /// Make a mesh from arrays whose shapes and numbers have been checked.
 std::shared_ptr<const HexahedralMesh> mesh_of(const Numbers& points, const Whole& hexahedra,
                                               const std::vector<int>& apical_faces,
-                                              const std::map<std::string, std::vector<double>>& arrays) {
+                                              const std::map<std::string, std::vector<double>>& arrays,
+                                              const std::vector<std::string>& remarks) {
   auto mesh = std::make_shared<HexahedralMesh>();
   for (std::size_t n = 0; n < points.shape(0); ++n)
     mesh->points.emplace_back(points.data()[3 * n], points.data()[3 * n + 1], points.data()[3 * n + 2]);
@@ -46,6 +47,7 @@ std::shared_ptr<const HexahedralMesh> mesh_of(const Numbers& points, const Whole
   }
   mesh->apical_faces = apical_faces;
   for (const auto& [name, values] : arrays) mesh->arrays[name] = values;
+  mesh->remarks = remarks;
   return mesh;
 }
 
@@ -127,7 +129,7 @@ nb::dict colour_fields_by_name() {
 /// Return the views of a tissue, the default view first.
 nb::dict views_by_name(const Numbers& points, const Whole& hexahedra) {
   nb::dict views;
-  const auto mesh = mesh_of(points, hexahedra, {}, {});
+  const auto mesh = mesh_of(points, hexahedra, {}, {}, {});
   Frame frame;
   frame.positions = mesh->points;
   frame.elements = mesh->cells;
@@ -160,7 +162,8 @@ NB_MODULE(_core, module) {
   module.attr("reads_meshes") = false;
 #endif
   nb::class_<HexahedralMesh>(module, "Mesh");
-  module.def("mesh", &mesh_of, nb::arg("points"), nb::arg("hexahedra"), nb::arg("apical_faces"), nb::arg("arrays"));
+  module.def("mesh", &mesh_of, nb::arg("points"), nb::arg("hexahedra"), nb::arg("apical_faces"), nb::arg("arrays"),
+             nb::arg("remarks"));
   nb::class_<CheckedScenario>(module, "Scenario")
       .def_prop_ro("has_mesh", [](const CheckedScenario& s) { return s.scenario.embryo.mesh != nullptr; })
       .def(

@@ -80,7 +80,8 @@ def mesh(
     points: NDArray[np.float64],
     hexahedra: NDArray[np.int32],
     apical_faces: Sequence[int],
-    arrays: Mapping[str, Sequence[bool]],
+    arrays: Mapping[str, Sequence[float]],
+    remarks: Sequence[str],
 ) -> Mesh: ...
 def find(name_or_path: str) -> tuple[str, str, str]: ...
 def load(

@@ -1,12 +1,15 @@
 """Scenarios: parameters of a simulation that can be read and changed."""
 from __future__ import annotations
 
+import codecs
 import contextlib
 import difflib
 import html
 import io
 import math
 import os
+import shutil
+import tempfile
 import tomllib
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -54,12 +57,15 @@ class Tissue:
         Apical face of each cell: 0 to 5 for nodes (0,4,7,3), (1,2,6,5), (0,1,5,4), (3,7,6,2), (0,3,2,1), (4,5,6,7). If
         omitted, the cells must form one closed layer, whose outer surface is apical.
     regions : mapping of str to array_like of bool, shape (cells,), optional
-        Named cell sets, to which tables of the scenario can refer.
+        Named cell sets. A scenario uses one by ``[region.NAME]`` with ``array = "NAME"``.
+    cell_data : mapping of str to array_like of float, shape (cells,), optional
+        Named numbers per cell, for regions and profiles by ``array``. NaN or masked: no value; the cell belongs to no region
+        by this array, and profiles refuse it.
 
     Raises
     ------
     ValueError
-        If an array has the wrong shape or type, or contains non-finite numbers or missing nodes.
+        If an array has the wrong shape or type, or points are not finite, masked or missing.
 
     Examples
     --------
@@ -80,8 +86,9 @@ class Tissue:
         *,
         apical_faces: Optional[ArrayLike] = None,
         regions: Optional[Mapping[str, ArrayLike]] = None,
+        cell_data: Optional[Mapping[str, ArrayLike]] = None,
     ) -> None:
-        self.points = np.array(points, dtype=np.float64, order="C")
+        self.points = np.array(_unmasked(points, "points"), dtype=np.float64, order="C")
         self.hexahedra = _whole_numbers(hexahedra, "hexahedra")
         if self.points.ndim != 2 or self.points.shape[1] != 3:
             raise ValueError(f"points: shape {self.points.shape}; give (n, 3): x, y, z of each node, in µm")
@@ -101,6 +108,8 @@ class Tissue:
                 raise ValueError("apical_faces: give one number from 0 to 5 per cell")
             self.apical_faces = faces
         self.regions = {name: _mask(mask, len(self.hexahedra), f"region {name}") for name, mask in (regions or {}).items()}
+        self.cell_data = {name: _numbers(values, len(self.hexahedra), f"cell_data {name}") for name, values in (cell_data or {}).items()}
+        self.remarks: list[str] = []
 
         for array in (self.points, self.hexahedra):
             array.flags.writeable = False  # so that scenarios with this tissue stay unchanged
@@ -112,49 +121,50 @@ class Tissue:
         Parameters
         ----------
         path : str or path
-            Mesh file with coordinates in µm.
+            Mesh file. Coordinates are in µm, or ``embryo.scale`` converts them.
         apical_array : str, optional
             Cell array with the apical face of each cell (0 to 5), as in ``embryo.apical_array``.
 
         Returns
         -------
         Tissue
-            Each other cell array with one number per cell becomes a region: cells where it is neither 0 nor NaN.
+            Other arrays with one number per cell become `cell_data`; element sets and named physical groups become `regions`.
+            Faces, lines and vertices beside the hexahedra are omitted; of quadratic hexahedra, only the corners are used.
+            Both are listed in `remarks`, and among the advice of a scenario.
 
         Raises
         ------
         FileError
-            If the file cannot be read or contains other cells.
+            If the file cannot be read, or has other volumes than hexahedra.
         MissingExtra
             If meshio is not installed.
         """
-        meshio = needed("meshio", f"reading {Path(path).name}")
-        if not Path(path).is_file():
-            raise FileError(f"{path}: cannot be read: {'it is a directory' if Path(path).is_dir() else 'there is no such file'}")
-        said = io.StringIO()
-        try:
-            # For an unknown format, meshio prints the error and exits.
-            with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-                mesh = meshio.read(path)
-        except (Exception, SystemExit) as error:
-            why = " ".join(said.getvalue().split()) or f"{type(error).__name__}: {error}"
-            raise FileError(f"{path}: cannot be read: {why}") from error
-        others = sorted({block.type for block in mesh.cells} - {"hexahedron"})
-        if others or not mesh.cells:
-            found = f"cells of type {', '.join(others)}" if others else "no cells"
-            raise FileError(f"{path}: has {found}; every cell must be a hexahedron")
-        arrays = {name: np.concatenate(blocks) for name, blocks in mesh.cell_data.items()}
+        mesh = _read_by_meshio(path)
+        chosen = [number for number, block in enumerate(mesh.cells) if block.type.startswith("hexahedron")]
+        others = {block.type: block.dim for number, block in enumerate(mesh.cells) if number not in chosen}
+        volumes = sorted(name for name, dimension in others.items() if dimension > 2)
+        if volumes or not chosen:
+            found = f"cells of type {', '.join(volumes or sorted(others))}" if others else "no cells"
+            raise FileError(f"{path}: has {found}; every cell must be a hexahedron: mesh one layer of hexahedra, in Gmsh for "
+                            "example, or save the apical polygons as PLY and set embryo.shape to \"surface\"")
+        arrays = {name: np.concatenate([np.ma.asarray(blocks[number]) for number in chosen]) for name, blocks in mesh.cell_data.items()}
         single = {name: values.reshape(-1) for name, values in arrays.items() if values.size == len(values)}
         if apical_array and apical_array not in single:
             there = ", ".join(single) or "none"
             raise FileError(f"{path}: no cell array {apical_array!r} with one number per cell; there are: {there}")
         faces = single.pop(apical_array) if apical_array else None
         try:
-            if faces is not None and (faces == np.floor(faces)).all():
+            if faces is not None:
+                faces = np.ma.filled(faces.astype(np.float64), np.nan)
+                if (wrong := ~np.isin(faces, range(6))).any():
+                    cell = int(np.argmax(wrong))
+                    raise ValueError(f"the apical face of cell {cell} is {faces[cell]:g} in \"{apical_array}\"; faces are 0 to 5")
                 faces = faces.astype(np.int64)
-            regions = {name: (values != 0) & ~np.isnan(values) for name, values in single.items()}
-            hexahedra = np.concatenate([block.data for block in mesh.cells])
-            return cls(mesh.points, hexahedra.astype(np.int64), apical_faces=faces, regions=regions)
+            hexahedra = np.concatenate([mesh.cells[number].data[:, :8] for number in chosen])
+            numeric = {name: values for name, values in single.items() if values.dtype.kind in "biuf"}
+            tissue = cls(mesh.points, hexahedra.astype(np.int64), apical_faces=faces, regions=_sets_of(mesh, chosen), cell_data=numeric)
+            tissue.remarks = _remarks_on(mesh, chosen)
+            return tissue
         except (ValueError, TypeError) as error:
             raise FileError(f"{path}: {error}") from error
 
@@ -164,15 +174,17 @@ class Tissue:
             self.points,
             self.hexahedra,
             [] if self.apical_faces is None else self.apical_faces.tolist(),
-            {name: mask.tolist() for name, mask in self.regions.items()},
+            {name: values.tolist() for name, values in {**self.cell_data, **self.regions}.items()},
+            self.remarks,
         )
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_mesh"}
 
     def __repr__(self) -> str:
-        regions = f", regions: {', '.join(self.regions)}" if self.regions else ""
-        return f"Tissue({len(self.hexahedra)} cells, {len(self.points)} nodes{regions})"
+        named = {"regions": self.regions, "arrays": self.cell_data}
+        listed = "".join(f", {what}: {', '.join(entries)}" for what, entries in named.items() if entries)
+        return f"Tissue({len(self.hexahedra)} cells, {len(self.points)} nodes{listed})"
 
 
 class Scenario:
@@ -331,8 +343,7 @@ class Scenario:
         >>> x = plica.Simulation(s).cell_data["x_um"]
         >>> s.set_region("front", x < 0)
         """
-        mask = np.asarray(cells)
-        mask = _mask(mask, len(mask) if mask.ndim else 0, f"region {name}")
+        mask = _mask(cells, np.shape(cells)[0] if np.ndim(cells) else 0, f"region {name}")
         if not mask.any():
             raise ValueError(f"region {name}: selects no cell; set at least one to True")
         changes = self._changes
@@ -423,15 +434,75 @@ def _items(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, An
             yield before + key, value
 
 
+def _read_by_meshio(path: Union[str, os.PathLike[str]]) -> Any:
+    """Return the meshio.Mesh in a file; a byte-order mark is omitted."""
+    meshio = needed("meshio", f"reading {Path(path).name}")
+    if not Path(path).is_file():
+        raise FileError(f"{path}: cannot be read: {'it is a directory' if Path(path).is_dir() else 'there is no such file'}")
+    said = io.StringIO()
+    try:
+        # For an unknown format, meshio prints the error and exits.
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), tempfile.TemporaryDirectory() as folder:
+            with open(path, "rb") as file:
+                marked = file.read(3) == codecs.BOM_UTF8
+            if marked:
+                path = shutil.copy(path, folder)
+                Path(path).write_bytes(Path(path).read_bytes()[3:])
+            return meshio.read(path)
+    except (Exception, SystemExit) as error:
+        why = " ".join(said.getvalue().split()) or f"{type(error).__name__}: {error}"
+        raise FileError(f"{path}: cannot be read: {why}") from error
+
+
+def _sets_of(mesh: Any, chosen: list[int]) -> dict[str, NDArray[np.bool_]]:
+    """Return element sets and named physical groups that contain some of the chosen blocks' cells."""
+    first = np.cumsum([0] + [len(mesh.cells[number].data) for number in chosen])
+    sets = {}
+    for name, of_blocks in mesh.cell_sets.items():
+        mask = np.zeros(first[-1], dtype=bool)
+        for begin, number in zip(first.tolist(), chosen):
+            cells = of_blocks[number] if number < len(of_blocks) and not name.startswith("gmsh:") else None
+            mask[begin + np.asarray([] if cells is None else cells, dtype=np.int64)] = True
+        sets[name] = mask
+    groups = mesh.cell_data.get("gmsh:physical")
+    for name, (tag, dimension) in mesh.field_data.items() if groups is not None else ():
+        if dimension == 3 and name not in sets:
+            sets[name] = np.concatenate([groups[number] for number in chosen]) == tag
+    return {name: mask for name, mask in sets.items() if mask.any()}
+
+
+def _remarks_on(mesh: Any, chosen: list[int]) -> list[str]:
+    """Say what of a file is not used, in the words of the reader of VTK files."""
+    others = sum(len(block.data) for number, block in enumerate(mesh.cells) if number not in chosen)
+    quadratic = sum(len(mesh.cells[number].data) for number in chosen if mesh.cells[number].data.shape[1] > 8)
+    remarks = [f"{others} faces, lines and vertices beside the hexahedra were omitted"] if others else []
+    return remarks + ([f"{quadratic} hexahedra have nodes between corners: only their corners are used"] if quadratic else [])
+
+
+def _unmasked(values: ArrayLike, what: str) -> ArrayLike:
+    if np.ma.is_masked(values):
+        raise ValueError(f"{what}: {int(np.ma.count_masked(values))} values are masked; give a value for each")
+    return values
+
+
+def _numbers(values: ArrayLike, count: int, what: str) -> NDArray[np.float64]:
+    """Return numbers per cell; NaN where they are masked."""
+    numbers = np.ma.asarray(values)
+    if numbers.dtype.kind not in "biuf" or numbers.shape != (count,):
+        raise ValueError(f"{what}: an array of {numbers.dtype} and shape {numbers.shape}; give one number per cell ({count})")
+    filled: NDArray[np.float64] = np.ma.filled(numbers.astype(np.float64), np.nan)
+    return np.where(np.isfinite(filled), filled, np.nan)
+
+
 def _mask(cells: Any, count: int, what: str) -> NDArray[np.bool_]:
-    mask = np.asarray(cells)
+    mask = np.asarray(_unmasked(cells, what))
     if mask.dtype != np.bool_ or mask.shape != (count,):
         raise ValueError(f"{what}: an array of {mask.dtype} and shape {mask.shape}; give one boolean per cell ({count})")
     return mask
 
 
 def _whole_numbers(values: ArrayLike, what: str) -> NDArray[np.int32]:
-    numbers = np.asarray(values)
+    numbers = np.asarray(_unmasked(values, what))
     if not np.issubdtype(numbers.dtype, np.integer):
         raise ValueError(f"{what}: an array of {numbers.dtype}; give whole numbers")
     if numbers.size and (numbers.min() < -(2**31) or numbers.max() >= 2**31):

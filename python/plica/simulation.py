@@ -264,7 +264,7 @@ class Simulation:
         law : str
             Name of a contraction or cortex: alone if unambiguous ("apical"), or with its table ("cortex.apical").
         activity : array_like of float, shape (cells,), or float, or None
-            Factor on the strength of each cell, 0 or more. NaN: the cell follows its time course. None: all cells do.
+            Factor on the strength of each cell, 0 or more. NaN or masked: the cell follows its time course. None: all cells do.
 
         Raises
         ------
@@ -287,7 +287,7 @@ class Simulation:
         if activity is None:
             return self._core.set_activity(label, [])
         count = len(self._core.activity(label))
-        values = np.asarray(activity, dtype=np.float64)
+        values: NDArray[np.float64] = np.ma.filled(np.ma.asarray(activity, dtype=np.float64), np.nan)
         if values.ndim == 0:
             values = np.full(count, float(values))
         if values.shape != (count,):

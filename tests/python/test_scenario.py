@@ -150,6 +150,10 @@ def test_a_tissue_of_arrays():
         (dict(apical_faces=[6] * 4), "apical_faces"),
         (dict(regions={"left": [1, 0, 0, 0]}), "left"),
         (dict(regions={"left": [True]}), "left"),
+        (dict(regions={"left": np.ma.masked_array([True] * 4, [0, 0, 1, 0])}), "region left: 1 values are masked"),
+        (dict(points=np.ma.masked_less(box()[0], 1)), "points: 24 values are masked"),
+        (dict(cell_data={"gene": [1.0]}), r"cell_data gene: an array of float64 and shape \(1,\)"),
+        (dict(cell_data={"kind": ["a"] * 4}), "cell_data kind: an array of <U1"),
     ],
 )
 def test_wrong_arrays(change, told):
@@ -180,7 +184,7 @@ def test_a_mesh_file_without_vtk(tmp_path, monkeypatch):
     assert np.array_equal(sims[0].positions, sims[-1].positions)
 
     tissue = plica.Tissue.from_file(tmp_path / "box.vtu", apical_array="top")
-    assert repr(tissue) == "Tissue(4 cells, 20 nodes, regions: left)"
+    assert repr(tissue) == "Tissue(4 cells, 20 nodes, arrays: left)"
     with pytest.raises(ValueError, match="calibrate"):
         plica.calibrate(tmp_path / "box.toml", {"time.end_min": (1, 2)}, {"steps": (5, 2)})
 
