@@ -280,6 +280,12 @@ def parted(polygons: Polygons, step: float) -> int:
     return len(pinched)
 
 
+def check_keep(keep: object) -> None:
+    """Raise ValueError unless a value of `keep` is known."""
+    if not isinstance(keep, str) or keep not in ("all", "largest"):
+        raise ValueError(f"keep: {keep!r:.60}; give \"all\" or \"largest\"")
+
+
 def one_piece(polygons: Polygons, keep: str, what: str, advice: Callable[[], str]) -> Polygons:
     """Return the polygons if they are one piece, or the largest piece. `advice` gives another remedy, or nothing."""
     pieces = polygons.pieces
