@@ -206,12 +206,12 @@ def _read(source: Any, remarks: list[str]) -> list[Outline]:
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         raise ValueError(f"{name}: no outlines: {error}; give x and y of corners, or GeoJSON of type Polygon or MultiPolygon") from error
     flat = [cell for cell in cells if cell.ring.ndim != 2 or cell.ring.shape[1] != 2 or not np.isfinite(cell.ring).all()
-            or len(np.unique(cell.ring, axis=0)) < 3]
+            or len(np.unique(cell.ring, axis=0)) < 3 or _area(cell.ring) == 0]
     if is_geojson and flat:
-        remarks.append(f"{len(flat)} have fewer than three corners and were omitted, the first at place {flat[0].place}")
+        remarks.append(f"{len(flat)} have fewer than three corners, or no area, and were omitted, the first at place {flat[0].place}")
         cells = [cell for cell in cells if not any(cell is one for one in flat)]
     elif flat:
-        raise ValueError(f"{name}: outline {flat[0].place} has shape {flat[0].ring.shape}; give x and y of three or more corners, finite")
+        raise ValueError(f"{name}: outline {flat[0].place} has shape {flat[0].ring.shape}; give finite x and y of three or more corners around an area")
     if not cells:
         raise ValueError(f"{name}: no outlines; give x and y of corners, or GeoJSON of type Polygon or MultiPolygon")
     return cells

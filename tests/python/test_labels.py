@@ -89,6 +89,8 @@ def test_lines_between_labels_are_shared_out():
 @pytest.mark.parametrize(("image", "um", "said"), [
     (np.zeros((4, 5, 6), int), 1, r"a stack of planes; only flat label images of shape \(rows, columns\)"),
     (np.zeros((4, 4), complex), 1, "whole numbers of shape"),
+    (np.zeros((0, 4), int), 1, "whole numbers of shape"),
+    (np.zeros((9, 9), int), 1, "no cell has three corners"),
     (np.full((4, 4), 0.5), 1, r"0.5 at \(0, 0\); give whole numbers"),
     (np.where(np.eye(4) > 0, np.nan, 1.0), 1, r"4 pixels are not finite, the first at \(0, 0\)"),
     (np.ma.masked_equal(np.eye(4, dtype=int), 1), 1, r"4 pixels are masked, the first at \(0, 0\); image.filled\(0\)"),
