@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import needed
 from .label_images import LabelImage, numbered
 from .label_repair import SMALL, given_away, openings, repaired, without_gaps
-from .polygons import Polygons, check_keep, one_piece, parted, too_small
+from .polygons import Polygons, check_keep, check_number, one_piece, parted, too_small
 
 __all__ = ["polygons_of_labels"]
 
@@ -74,10 +74,9 @@ def polygons_of_labels(
     >>> plica.polygons_of_labels(labels, um_per_pixel=0.5)  # doctest: +SKIP
     Polygons(1 cells, 6 vertices)
     """
-    if not (np.isfinite(um_per_pixel) and um_per_pixel > 0):
-        raise ValueError(f"um_per_pixel: {um_per_pixel}; give the size of a pixel in µm, above 0")
-    if not (np.isfinite(gap_px) and gap_px >= 0):
-        raise ValueError(f"gap_px: {gap_px}; give a width in pixels, 0 or more")
+    check_number(um_per_pixel, "um_per_pixel", "the size of a pixel in µm, above 0", 0, allowed=False)
+    check_number(gap_px, "gap_px", "a width in pixels, 0 or more", 0)
+    check_number(background, "background", "one label", -np.inf)
     check_keep(keep)
     given = numbered(image, background)
     repairs: list[str] = []
