@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import needed
 from .label_repair import without_gaps
 from .labels import traced
-from .polygons import Polygons, one_piece
+from .polygons import Polygons, check_keep, check_number, one_piece, parted
 
 __all__ = ["polygons_of_centres"]
 
@@ -68,8 +68,7 @@ def polygons_of_centres(
     if not np.isfinite(places).all():
         row = int(np.argwhere(~np.isfinite(places))[0, 0])
         raise ValueError(f"centres: row {row} is {places[row]}; give finite numbers")
-    if keep not in ("all", "largest"):
-        raise ValueError(f"keep: {keep!r}; give \"all\" or \"largest\"")
+    check_keep(keep)
     places = np.column_stack([places, np.zeros((len(places), 3 - places.shape[1]))])
     given = Polygons(np.zeros((3, 3)), [[0, 1, 2]] * len(places), cell_data).cell_data  # checked
     axes, flat = _flattened(places)
@@ -77,12 +76,13 @@ def polygons_of_centres(
     distance = float(np.median(tree.query(flat[:, :2], NEIGHBOURS + 1)[0][:, 1:].mean(axis=1)))
     _refuse_overhang(flat, tree, distance)
     reach = USUAL_REACH * distance if reach_um is None else reach_um
-    if not (np.isfinite(reach) and reach >= distance / 2):
-        raise ValueError(f"reach_um: {reach_um}; give at least half the distance of neighbours, {distance / 2:.3g} µm")
+    check_number(reach, "reach_um", f"at least half the distance of neighbours, {distance / 2:.3g} µm", distance / 2)
     polygons = _around(flat, tree, distance, reach)
     polygons.points = polygons.points @ axes + places.mean(axis=0)
     polygons.cell_data.update({name: values[polygons.cell_data["label"]] for name, values in given.items()})
-    return one_piece(polygons, keep, "centres", lambda: _advice(flat, tree, distance, reach))
+    polygons = one_piece(polygons, keep, "centres", lambda: _advice(flat, tree, distance, reach))
+    parted(polygons, distance / PIXELS)
+    return polygons
 
 
 def _advice(flat: NDArray[np.float64], tree: Any, distance: float, reach: float) -> str:

@@ -16,7 +16,7 @@ class LabelImage(NamedTuple):
     """Numbers of cells by pixel, shape (rows, columns); 0 is background. `names` has the label of each number from 1."""
 
     numbers: NDArray[np.int64]
-    names: NDArray[Any]
+    names: NDArray[np.int64]
     remarks: list[str]
 
 
@@ -31,7 +31,7 @@ def numbered(image: ArrayLike, background: int) -> LabelImage:
         names, numbers = np.unique(outlined[0], return_inverse=True)
         numbers, background = numbers.reshape(labels.shape), 0
         remarks.append(outlined[1])
-    return LabelImage(np.where(names == background, 0, np.arange(1, len(names) + 1))[numbers], names, remarks)
+    return LabelImage(np.where(names == background, 0, np.arange(1, len(names) + 1))[numbers], names.astype(np.int64), remarks)
 
 
 def _flat(image: ArrayLike) -> tuple[NDArray[Any], str]:
@@ -55,7 +55,7 @@ def _flat(image: ArrayLike) -> tuple[NDArray[Any], str]:
             f"image: shape {labels.shape}: a stack of planes; only flat label images of shape (rows, columns) are read. With "
             "planes from apical to basal, numpy.take_along_axis(image, (image != 0).argmax(axis=0)[None], axis=0)[0] gives the "
             "uppermost cell of each pixel; for tubes and cysts, make centres of cells a table for shape = \"points\"")
-    if labels.ndim != 2 or labels.dtype.kind not in "biuf":
+    if labels.ndim != 2 or labels.size == 0 or labels.dtype.kind not in "biuf":
         raise ValueError(f"image: shape {labels.shape} of {labels.dtype}; give whole numbers of shape (rows, columns)")
     if labels.dtype.kind == "f":
         labels = _whole(labels)

@@ -65,6 +65,8 @@ def without_pieces(numbers: Numbers, given: Numbers, names: NDArray[Any], keep_c
 
     Labels whose pieces of similar size are all cut by the border of the image stay as they are, unless `keep_cut`.
     """
+    if not numbers.any():
+        return numbers
     measure, ndimage = (needed(package, "polygons of labels") for package in ("skimage.measure", "scipy.ndimage"))
     pieces = measure.label(numbers, background=0, connectivity=2)
     found = measure.regionprops_table(pieces, properties=("label", "area", "coords"))

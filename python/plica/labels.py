@@ -10,13 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import needed
 from .label_images import LabelImage, numbered
 from .label_repair import SMALL, given_away, openings, repaired, without_gaps
-from .polygons import Polygons, one_piece, parted, too_small
+from .polygons import Polygons, check_keep, check_number, one_piece, parted, too_small
 
 __all__ = ["polygons_of_labels"]
 
 RIM_TOLERANCE = 0.1  # of the root of a cell's area: how far its free outline may be from the edges that replace it
 OPEN_WALLS = 0.3     # share of walls; more of them left open are an error
 FURTHER_PX = 8       # gaps of up to twice this width more are tried, to advise one
+THIN_CELL = ("image: cell {} is too thin or winding for corners with its neighbours; correct it, or smooth all: "
+             "skimage.filters.rank.majority(image.astype(\"uint16\"), skimage.morphology.disk(2))")
 
 
 def polygons_of_labels(
@@ -72,15 +74,14 @@ def polygons_of_labels(
     >>> plica.polygons_of_labels(labels, um_per_pixel=0.5)  # doctest: +SKIP
     Polygons(1 cells, 6 vertices)
     """
-    if not (np.isfinite(um_per_pixel) and um_per_pixel > 0):
-        raise ValueError(f"um_per_pixel: {um_per_pixel}; give the size of a pixel in µm, above 0")
-    if not (np.isfinite(gap_px) and gap_px >= 0):
-        raise ValueError(f"gap_px: {gap_px}; give a width in pixels, 0 or more")
-    if keep not in ("all", "largest"):
-        raise ValueError(f"keep: {keep!r}; give \"all\" or \"largest\"")
+    check_number(um_per_pixel, "um_per_pixel", "the size of a pixel in µm, above 0", 0, allowed=False)
+    check_number(gap_px, "gap_px", "a width in pixels, 0 or more", 0)
+    check_number(background, "background", "one label", -np.inf)
+    check_keep(keep)
     given = numbered(image, background)
     repairs: list[str] = []
-    closed, polygons = _without_slivers(repaired(given.numbers, given.names, gap_px, keep_cut, repairs), keep_cut, given.names, repairs)
+    closed = repaired(given.numbers, given.names, gap_px, keep_cut, repairs)
+    closed, polygons = without_slivers(closed, keep_cut, given.names, repairs, THIN_CELL)
     if open_walls(given.numbers, closed, gap_px) > OPEN_WALLS:
         raise ValueError(f"image: lines of background remain between cells: they are wider than {2 * gap_px} pixels"
                          f"{_advice(given, gap_px, keep_cut, 0.5)}")
@@ -105,17 +106,16 @@ def polygons_of_labels(
     return polygons
 
 
-def _without_slivers(closed: NDArray[Any], keep_cut: bool, names: NDArray[Any],
-                     repairs: list[str]) -> tuple[NDArray[Any], Polygons]:
-    """Return numbers and polygons without cells that are too thin for their corners to be told apart."""
+def without_slivers(closed: NDArray[Any], keep_cut: bool, names: NDArray[Any],
+                    repairs: list[str], refusal: str) -> tuple[NDArray[Any], Polygons]:
+    """Return numbers and polygons without cells that are too thin for their corners to be told apart. Large ones are refused."""
     polygons = traced(closed, keep_cut)
     while (slivers := too_small(polygons)).any():
         thin = polygons.cell_data["label"][slivers]
         sizes = np.bincount(closed.ravel(), minlength=len(names) + 1)
         large = thin[sizes[thin] > SMALL * np.median(sizes[1:][sizes[1:] > 0])]
         if len(large):
-            raise ValueError(f"image: cell {names[large[0] - 1]} is too thin or winding for corners with its neighbours; correct it, or "
-                             "smooth all: skimage.filters.rank.majority(image.astype(\"uint16\"), skimage.morphology.disk(2))")
+            raise ValueError(refusal.format(names[large[0] - 1]))
         for cell in thin:
             row, column = np.argwhere(closed == cell)[0]
             repairs.append(f"cell {names[cell - 1]} ({sizes[cell]} pixels at row {row}, column {column})")

@@ -104,7 +104,7 @@ def _tables(source: Any) -> Mapping[str, Any]:
             raise FileError(f"{os.fspath(source)}: is no HDF5 file with tables {', '.join(TABLES)}: {why}; write it by tyssue's "
                             "save_datasets") from error
     tables: Mapping[str, Any] = getattr(source, "datasets", source)
-    lacking = [name for name in TABLES if not isinstance(tables, Mapping) or name not in tables]
+    lacking = [name for name in TABLES if not isinstance(tables, Mapping) or not hasattr(tables.get(name), "groupby")]
     if lacking:
         raise ValueError(f"monolayer: there is no table {', '.join(lacking)}; give a file, tables {', '.join(TABLES)}, or a tyssue Monolayer")
     return tables

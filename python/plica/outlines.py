@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import FileError, needed
 from .label_repair import openings, without_gaps
-from .labels import OPEN_WALLS, open_walls, traced
-from .polygons import Polygons, one_piece
+from .labels import OPEN_WALLS, open_walls, traced, without_slivers
+from .polygons import Polygons, check_keep, check_number, one_piece, parted
 
 __all__ = ["polygons_of_outlines"]
 
@@ -23,6 +23,7 @@ MOST_PIXELS = 4e7
 USUAL_TOLERANCE = 0.2  # of the size of a usual cell
 LARGEST_OVERLAP = 0.5  # of a cell; more of it within another means that one cell was traced twice
 WIDER = (1.25, 1.5, 2, 3, 4)  # tolerances that are tried, to advise one
+THIN_OUTLINE = "outlines: outline {} is too thin or winding for corners with its neighbours; omit or correct it"
 TOLD = 0.005           # of the tissue's area: smaller repairs are within the accuracy
 
 
@@ -83,18 +84,15 @@ def polygons_of_outlines(
     >>> plica.polygons_of_outlines([left, right], tolerance_um=1)  # doctest: +SKIP
     Polygons(2 cells, 6 vertices)
     """
-    if not (np.isfinite(um_per_unit) and um_per_unit > 0):
-        raise ValueError(f"um_per_unit: {um_per_unit}; give the unit of the coordinates in µm, above 0")
-    if keep not in ("all", "largest"):
-        raise ValueError(f"keep: {keep!r}; give \"all\" or \"largest\"")
+    check_number(um_per_unit, "um_per_unit", "the unit of the coordinates in µm, above 0", 0, allowed=False)
+    check_keep(keep)
     remarks: list[str] = []
     cells = _read(outlines, remarks)
     scale = np.array([1, 1 if y_down else -1]) * um_per_unit
     rings = [cell.ring * scale for cell in cells]
     size = float(np.sqrt(np.median([_area(ring) for ring in rings])))
     tolerance = USUAL_TOLERANCE * size if tolerance_um is None else tolerance_um
-    if not (np.isfinite(tolerance) and tolerance >= 0):
-        raise ValueError(f"tolerance_um: {tolerance_um}; give a width in µm, 0 or more")
+    check_number(tolerance, "tolerance_um", "a width in µm, 0 or more", 0)
     drawn = _drawn(rings, size / PIXELS, tolerance, remarks, [cell.place for cell in cells])
     gap_px = tolerance / drawn.pixel / 2
     closed = without_gaps(drawn.numbers, gap_px, [])
@@ -108,10 +106,14 @@ def polygons_of_outlines(
         x, y = drawn.pixel * opened[0, 1::-1] + drawn.origin
         remarks.append(f"openings in the tissue: {len(opened)}, the largest of {opened[0, 2] * drawn.pixel**2:.3g} µm² at x = {x:.4g}, "
                        f"y = {-y:.4g} µm; add missing cells, or, if these are gaps, raise tolerance_um, now {tolerance:.3g}")
-    polygons = traced(closed, True)
+    thin: list[str] = []
+    polygons = without_slivers(closed, True, np.array([cell.place for cell in cells]), thin, THIN_OUTLINE)[1]
+    if thin:
+        remarks.append(f"{len(thin)} that are too thin for corners of their own were given to their neighbours")
     polygons.points = polygons.points * drawn.pixel + [drawn.origin[0], -drawn.origin[1], 0]
     _take_numbers(polygons, cells, remarks)
     polygons = one_piece(polygons, keep, "outlines", lambda: _advice(drawn, tolerance))
+    parted(polygons, drawn.pixel)
     for remark in remarks:
         warnings.warn(f"outlines: {remark}", stacklevel=2)
     return polygons
@@ -187,20 +189,29 @@ def _take_numbers(polygons: Polygons, cells: list[Outline], remarks: list[str]) 
 
 
 def _read(source: Any, remarks: list[str]) -> list[Outline]:
+    """Return the outlines of a source. Those of a file without an area are omitted; others are refused."""
+    name = "outlines"
     if isinstance(source, (str, os.PathLike)):
+        name = os.fspath(source)
         try:
             source = json.loads(Path(source).read_text(encoding="utf-8-sig"))
         except (OSError, ValueError) as error:
-            raise FileError(f"{os.fspath(source)}: is no GeoJSON: {error}; of other formats, make GeoJSON by geopandas or QuPath") from error
-    if isinstance(source, Mapping) or (isinstance(source, list) and source and isinstance(source[0], Mapping)):
-        cells = list(_of_geojson(source, remarks))
-    else:
-        cells = [Outline(np.asarray(ring, dtype=np.float64), place, {}) for place, ring in enumerate(source)]
+            raise FileError(f"{name}: is no GeoJSON: {error}; of other formats, make GeoJSON by geopandas or QuPath") from error
+    is_geojson = isinstance(source, Mapping) or (isinstance(source, list) and source and isinstance(source[0], Mapping))
+    try:
+        cells = list(_of_geojson(source, remarks)) if is_geojson else [
+            Outline(np.array(ring, dtype=np.float64), place, {}) for place, ring in enumerate(source)]
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"{name}: no outlines: {error}; give x and y of corners, or GeoJSON of type Polygon or MultiPolygon") from error
+    flat = [cell for cell in cells if cell.ring.ndim != 2 or cell.ring.shape[1] != 2 or not np.isfinite(cell.ring).all()
+            or len(np.unique(cell.ring, axis=0)) < 3 or _area(cell.ring) == 0]
+    if is_geojson and flat:
+        remarks.append(f"{len(flat)} have fewer than three corners, or no area, and were omitted, the first at place {flat[0].place}")
+        cells = [cell for cell in cells if not any(cell is one for one in flat)]
+    elif flat:
+        raise ValueError(f"{name}: outline {flat[0].place} has shape {flat[0].ring.shape}; give finite x and y of three or more corners around an area")
     if not cells:
-        raise ValueError("outlines: there is none; give polygons, or GeoJSON with geometries of type Polygon or MultiPolygon")
-    for cell in cells:
-        if cell.ring.ndim != 2 or cell.ring.shape[1] != 2 or len(np.unique(cell.ring, axis=0)) < 3 or not np.isfinite(cell.ring).all():
-            raise ValueError(f"outlines: outline {cell.place} has shape {cell.ring.shape}; give x and y of three or more corners, finite")
+        raise ValueError(f"{name}: no outlines; give x and y of corners, or GeoJSON of type Polygon or MultiPolygon")
     return cells
 
 
@@ -215,11 +226,11 @@ def _of_geojson(content: Any, remarks: list[str]) -> Iterator[Outline]:
         if (any(are_cells) and not are_cells[place]) or geometry.get("type") not in ("Polygon", "MultiPolygon"):
             continue
         polygons = geometry["coordinates"] if geometry["type"] == "MultiPolygon" else [geometry["coordinates"]]
-        rings = [np.array([corner[:2] for corner in polygon[0]], dtype=np.float64).reshape(-1, 2) for polygon in polygons]
+        rings = [np.array([corner[:2] for corner in polygon[0]], dtype=np.float64).reshape(-1, 2) for polygon in polygons if polygon]
         parts += len(rings) > 1
-        yield Outline(max(rings, key=_area), place, _numbers_of(feature))
+        yield Outline(max(rings, key=_area, default=np.empty((0, 2))), place, _numbers_of(feature))
     if parts:
-        remarks.append(f"{parts} cells have several parts, of which the largest was kept")
+        remarks.append(f"{parts} have several parts, of which the largest was kept")
 
 
 def _properties(feature: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -89,6 +89,8 @@ def test_lines_between_labels_are_shared_out():
 @pytest.mark.parametrize(("image", "um", "said"), [
     (np.zeros((4, 5, 6), int), 1, r"a stack of planes; only flat label images of shape \(rows, columns\)"),
     (np.zeros((4, 4), complex), 1, "whole numbers of shape"),
+    (np.zeros((0, 4), int), 1, "whole numbers of shape"),
+    (np.zeros((9, 9), int), 1, "no cell has three corners"),
     (np.full((4, 4), 0.5), 1, r"0.5 at \(0, 0\); give whole numbers"),
     (np.where(np.eye(4) > 0, np.nan, 1.0), 1, r"4 pixels are not finite, the first at \(0, 0\)"),
     (np.ma.masked_equal(np.eye(4, dtype=int), 1), 1, r"4 pixels are masked, the first at \(0, 0\); image.filled\(0\)"),
@@ -292,3 +294,34 @@ def test_colours_become_labels_by_the_call_that_the_error_names():
     call = re.search(r"give (image\[.*2\]) after", str(refused.value))[1]
     cells = plica.polygons_of_labels(eval(call, {"image": image.astype(int)}), 1)
     assert len(cells) == len(plica.polygons_of_labels(flat, 1))
+
+
+def test_damaged_images_become_a_tissue_or_an_error_with_a_remedy(tmp_path):
+    """Lines, salt, missing cells, a region cut out, merged labels: plica accepts what comes out."""
+    ndimage = pytest.importorskip("scipy.ndimage")
+    segmentation = pytest.importorskip("skimage.segmentation")
+    accepted = 0
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        image = bricks(140, 20)
+        if rng.random() < 0.5:
+            image[ndimage.distance_transform_edt(~segmentation.find_boundaries(image, mode="inner")) < rng.uniform(0.5, 3)] = 0
+        if rng.random() < 0.5:
+            image[tuple(rng.integers(0, 140, (2, 150)))] = rng.choice(np.unique(image), 150)
+        if rng.random() < 0.4:
+            image[np.isin(image, rng.choice(np.unique(image), 4))] = 0
+        if rng.random() < 0.4:
+            image[((np.indices(image.shape) - rng.uniform(50, 90, 2)[:, None, None]) ** 2).sum(axis=0) > rng.uniform(40, 70) ** 2] = 0
+        if rng.random() < 0.2:
+            one, other = rng.choice(np.unique(image[image > 0]), 2)
+            image[image == one] = other
+        try:
+            cells = quietly(image, keep_cut=bool(rng.random() < 0.5), keep="largest")
+        except ValueError as error:
+            assert re.match("image: .*; ", str(error))
+            continue
+        cells.write(tmp_path / "cells.ply")
+        embryo = {"shape": "surface", "file": str(tmp_path / "cells.ply"), "cell_height_um": 12}
+        plica.Simulation(plica.Scenario({"format": 1, "embryo": embryo}))
+        accepted += 1
+    assert accepted >= 6

@@ -86,7 +86,7 @@ def test_geojson(tmp_path):
     geometries = [{"type": "Polygon", "cell": 100 + cell, "coordinates": [ring.tolist()]} for cell, ring in enumerate(rings)]
     files = {"qupath": {"type": "FeatureCollection", "features": [region, *new]}, "old qupath": [*old, region],
              "baysor": {"type": "FeatureCollection", "features": [feature(ring, {}) for ring in rings]},
-             "old baysor": {"type": "GeometryCollection", "geometries": geometries}}
+             "old baysor": {"type": "GeometryCollection", "geometries": [*geometries, {"type": "Polygon", "cell": 0, "coordinates": [[[3, 4], [3, 4]]]}]}}
     for name, content in files.items():
         (tmp_path / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
         with warnings.catch_warnings(record=True) as told:
@@ -100,6 +100,7 @@ def test_geojson(tmp_path):
             assert list(cells.cell_data["Nucleus_Area_µm_2"]) == list(range(count))
         if name == "old baysor":
             assert list(cells.cell_data["cell"]) == list(range(100, 100 + count))
+        assert any("1 have fewer than three corners, or no area, and were omitted" in str(one.message) for one in told) == (name == "old baysor")
         assert any("1 arrays, such as Max, lack the number of a cell" in str(one.message) for one in told) == (name == "qupath")
 
 
@@ -113,7 +114,7 @@ def test_bad_outlines(tmp_path):
     with pytest.raises(ValueError, match=r"in 2 pieces, which share no edge, of 25, 1 cells .*keep = \"largest\""):
         plica.polygons_of_outlines(far)
     assert len(plica.polygons_of_outlines(far, keep="largest")) == 25
-    for bad, said in (([], "there is none"), ([[[0, 0], [1, 1]]], "outline 0 has shape"), ([[[0, 0], [1, 1], [np.nan, 0]]], "outline 0 has shape")):
+    for bad, said in (([], "no outlines"), (7, "no outlines: .*give x and y"), ({"type": "Point"}, "no outlines"), ({"features": [7]}, "no outlines"), ([[[0, 0], [1, 1]]], "outline 0 has shape"), ([[[0, 0], [1, 1], [2, 2]]], "around an area"), ([[[0, 0], [1, 1], [np.nan, 0]]], "outline 0 has shape")):
         with pytest.raises(ValueError, match=said):
             plica.polygons_of_outlines(bad)
     with pytest.raises(ValueError, match="a part of the tissue"):
