@@ -8,11 +8,13 @@
 #include <set>
 #include <string>
 
+#include "measure/bending_error.hpp"
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
 #include "scenario/abrupt_loads.hpp"
 #include "scenario/acting.hpp"
 #include "scenario/cell_size.hpp"
+#include "scenario/finer_mesh.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/words.hpp"
 #include "tissue/mesh_quality.hpp"
@@ -178,6 +180,12 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   advise_on_profiles(scenario, model.tissue, warn);
   for (std::string& load : abrupt_loads(scenario, model.tissue)) warn(std::move(load));
   advise_on_shape_memory(scenario, model, note, warn);
+  if ((pulls || is_tense) && model_of(scenario.elasticity) == ElasticModel::corotational &&
+      elements_through_height(model.tissue) == 1)
+    note(
+        fmt::format("one element through the height bends too easily where cells bend far, so depth at given forces is "
+                    "uncertain by 5 to 20 %; compare with {}",
+                    finer_mesh(scenario, 1)));
   if (method_of(scenario.volume) == VolumeMethod::coupled &&
       model_of(scenario.elasticity) != ElasticModel::shape_memory)
     note(

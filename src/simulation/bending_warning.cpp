@@ -3,23 +3,9 @@
 #include <fmt/format.h>
 
 #include "measure/bending_error.hpp"
-#include "scenario/words.hpp"
+#include "scenario/finer_mesh.hpp"
 
 namespace plica {
-namespace {
-
-// Twice as many elements through the height, by the key that this scenario has.
-std::string finer_mesh(const Scenario& scenario, int elements) {
-  if (!scenario.divisions.empty()) return "runs of this mesh only (cells that divide have one element)";
-  const EmbryoShape shape = shape_of(scenario.embryo);
-  if (shape == EmbryoShape::file) return fmt::format("a mesh of {} elements through the height", 2 * elements);
-  if (!is_of_grid(shape)) return fmt::format("embryo.layers = {}", 2 * elements);
-  const auto& [along, across, high] = scenario.embryo.elements_per_cell;
-  return fmt::format("embryo.elements_per_cell = [{}, {}, {}]", along, across, 2 * high);
-}
-
-}  // namespace
-
 std::string bending_warning(const Scenario& scenario, const Simulation& simulation) {
   constexpr double worth_telling = 0.05;
   const Model& model = simulation.model();

@@ -113,6 +113,29 @@ TEST(Advice, AConstantTensionThatEndsAbruptlyIsToldWithAProfileThatDoesNot) {
   EXPECT_TRUE(advice_on_stripe("y_um = [-99, 99]", cortex).empty());
 }
 
+// The key is one that the scenario has, and it ends the note.
+TEST(Advice, OneElementThroughTheHeightIsTold) {
+  const std::string stripe =
+      "[region.stripe]\ny_um = [-12, 12]\n[contraction.apical]\nregion = \"stripe\"\n"
+      "stiffness_nN_per_um = 1\n";
+  int cases = 0;
+  for (const auto& [shape, key] : {std::pair("sheet\"\ncell_count = 50\n", "embryo.layers = 2"),
+                                   {"block\"\ncells = [5, 8, 1]\n", "embryo.elements_per_cell = [1, 1, 2]"}}) {
+    const std::string text = "format = 1\n[embryo]\nlength_um = 30\nwidth_um = 50\ncell_height_um = 12\nshape = \"" +
+                             std::string(shape) + stripe;
+    const auto lines = [&](const std::vector<std::string>& overrides) {
+      const Scenario scenario = load_scenario({"stripe", "stripe.toml", text}, overrides);
+      return lines_with("one element through the height", advice(scenario, *make_model(scenario)));
+    };
+    ASSERT_EQ(lines({}).size(), 1U) << shape;
+    EXPECT_NE(lines({})[0].find(key), std::string::npos) << lines({})[0];
+    EXPECT_TRUE(lines({key}).empty()) << key;
+    EXPECT_TRUE(lines({"elasticity.model=neo-hookean"}).empty());
+    ++cases;
+  }
+  EXPECT_EQ(cases, 2);
+}
+
 TEST(Advice, BuiltInTensionsEndSoftly) {
   int cases = 0;
   for (const std::string name : {"drosophila", "wing-disc", "furrow-slice"}) {
