@@ -11,7 +11,7 @@ import os
 import shutil
 import tempfile
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Optional, Union
@@ -24,6 +24,7 @@ from .errors import FileError, ScenarioError, needed
 
 __all__ = ["Scenario", "Tissue", "builtin_scenarios"]
 
+MASKS: Any = np.ma  # numpy gives it no types
 GIVEN = "<Python>"  # in messages, the file name of a scenario made of text or a dict
 
 
@@ -147,7 +148,7 @@ class Tissue:
             found = f"cells of type {', '.join(volumes or sorted(others))}" if others else "no cells"
             raise FileError(f"{path}: has {found}; every cell must be a hexahedron: mesh one layer of hexahedra, in Gmsh for "
                             "example, or save the apical polygons as PLY and set embryo.shape to \"surface\"")
-        arrays = {name: np.concatenate([np.ma.asarray(blocks[number]) for number in chosen]) for name, blocks in mesh.cell_data.items()}
+        arrays = {name: np.concatenate([MASKS.asarray(blocks[number]) for number in chosen]) for name, blocks in mesh.cell_data.items()}
         single = {name: values.reshape(-1) for name, values in arrays.items() if values.size == len(values)}
         if apical_array and apical_array not in single:
             there = ", ".join(single) or "none"
@@ -155,7 +156,7 @@ class Tissue:
         faces = single.pop(apical_array) if apical_array else None
         try:
             if faces is not None:
-                faces = np.ma.filled(faces.astype(np.float64), np.nan)
+                faces = MASKS.filled(faces.astype(np.float64), np.nan)
                 if (wrong := ~np.isin(faces, range(6))).any():
                     cell = int(np.argmax(wrong))
                     raise ValueError(f"the apical face of cell {cell} is {faces[cell]:g} in \"{apical_array}\"; faces are 0 to 5")
@@ -182,8 +183,8 @@ class Tissue:
         return {name: value for name, value in self.__dict__.items() if name != "_mesh"}
 
     def __repr__(self) -> str:
-        named = {"regions": self.regions, "arrays": self.cell_data}
-        listed = "".join(f", {what}: {', '.join(entries)}" for what, entries in named.items() if entries)
+        named: dict[str, Iterable[str]] = {"regions": self.regions, "arrays": self.cell_data}
+        listed = "".join(f", {what}: {', '.join(names)}" for what, names in named.items() if names)
         return f"Tissue({len(self.hexahedra)} cells, {len(self.points)} nodes{listed})"
 
 
@@ -480,17 +481,17 @@ def _remarks_on(mesh: Any, chosen: list[int]) -> list[str]:
 
 
 def _unmasked(values: ArrayLike, what: str) -> ArrayLike:
-    if np.ma.is_masked(values):
-        raise ValueError(f"{what}: {int(np.ma.count_masked(values))} values are masked; give a value for each")
+    if MASKS.is_masked(values):
+        raise ValueError(f"{what}: {int(MASKS.count_masked(values))} values are masked; give a value for each")
     return values
 
 
 def _numbers(values: ArrayLike, count: int, what: str) -> NDArray[np.float64]:
     """Return numbers per cell; NaN where they are masked."""
-    numbers = np.ma.asarray(values)
+    numbers = MASKS.asarray(values)
     if numbers.dtype.kind not in "biuf" or numbers.shape != (count,):
         raise ValueError(f"{what}: an array of {numbers.dtype} and shape {numbers.shape}; give one number per cell ({count})")
-    filled: NDArray[np.float64] = np.ma.filled(numbers.astype(np.float64), np.nan)
+    filled: NDArray[np.float64] = MASKS.filled(numbers.astype(np.float64), np.nan)
     return np.where(np.isfinite(filled), filled, np.nan)
 
 

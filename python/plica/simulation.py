@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .errors import FileError
 from .results import Run, _grid, _pandas, open_run
-from .scenario import Scenario, Tissue
+from .scenario import MASKS, Scenario, Tissue
 
 if TYPE_CHECKING:
     import pandas
@@ -287,7 +287,7 @@ class Simulation:
         if activity is None:
             return self._core.set_activity(label, [])
         count = len(self._core.activity(label))
-        values: NDArray[np.float64] = np.ma.filled(np.ma.asarray(activity, dtype=np.float64), np.nan)
+        values: NDArray[np.float64] = MASKS.filled(MASKS.asarray(activity, dtype=np.float64), np.nan)
         if values.ndim == 0:
             values = np.full(count, float(values))
         if values.shape != (count,):
