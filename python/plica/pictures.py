@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Optional, Union
 
@@ -96,11 +96,8 @@ def render(
         raise ValueError(f"path: {file.name}; the file's name must end in .png")
     source = Source(what)
     times = _times(source, time_min, strip or sections)
-    wanted: list[Optional[str]] = [] if view is None else [*texts_of(view, "view")]
-    places = [] if at_x_um is None else [number(x, "at_x_um") for x in np.atleast_1d(np.asarray(at_x_um, dtype=object))]
-    if not wanted and not places and not sections:
-        wanted = [None, "cross-section"] if strip else [None]
-    scene = Scene(source, color, wanted, places, sections, size, edges, shell, bar)
+    rows = _rows(view, at_x_um, sections, [None, "cross-section"] if strip else [None])
+    scene = Scene(source, color, *rows, sections, size, edges, shell, bar)
     image = scene.draw([source.moment(time) for time in times], None if limits is None else _limits(limits))
     if file is not None:
         _write(file, lambda target: needed("matplotlib.image", "render").imsave(target, image, format="png"))
@@ -160,16 +157,12 @@ def movie(
     if kind == ".mp4":
         needed("imageio_ffmpeg", "a movie in MP4")
     source = Source(run if isinstance(run, Run) else open_run(path_of(run, "run")))
-    places = [] if at_x_um is None else [number(x, "at_x_um") for x in np.atleast_1d(np.asarray(at_x_um, dtype=object))]
-    wanted: list[Optional[str]] = [] if view is None else [*texts_of(view, "view")]
-    if not wanted and not places and not sections:
-        wanted = [None]
-    scene = Scene(source, color, wanted, places, sections, size, edges, shell, bar)
+    scene = Scene(source, color, *_rows(view, at_x_um, sections, [None]), sections, size, edges, shell, bar)
     options = {"fps": rate, "macro_block_size": 1} if kind == ".mp4" else {"duration": 1000 / rate, "loop": 0}
     ends = scene.range_over(source) if limits is None else _limits(limits)
 
     def save(target: Path) -> None:
-        with writers.get_writer(target, format=kind[1:].upper() if kind == ".gif" else "FFMPEG", mode="I", **options) as writer:
+        with writers.get_writer(target, format="GIF" if kind == ".gif" else "FFMPEG", mode="I", **options) as writer:
             for index in range(len(source.frames)):
                 image = scene.draw([source.moment(index)], ends)
                 odd = [(0, side % 2) for side in image.shape[:2]] if kind == ".mp4" else [(0, 0), (0, 0)]
@@ -191,6 +184,18 @@ def _write(file: Path, save: Any) -> None:
             beside.unlink(missing_ok=True)
 
 
+def _rows(view: Any, at_x_um: Any, sections: bool, usual: list[Optional[str]]) -> tuple[list[Optional[str]], list[float]]:
+    """Return the names of the views, None for the default view, and the places of cross-sections."""
+    places = [] if at_x_um is None else _numbers(at_x_um, "at_x_um")
+    if view is not None:
+        return [*texts_of(view, "view")], places
+    return ([] if places or sections else usual), places
+
+
+def _numbers(values: Any, what: str) -> list[float]:
+    return [number(one, what) for one in np.atleast_1d(np.asarray(values, dtype=object)).ravel()]
+
+
 def _times(source: Source, time_min: Any, telling: bool) -> list[int]:
     """Return the numbers of the snapshots to draw."""
     if source.single is not None:
@@ -199,7 +204,7 @@ def _times(source: Source, time_min: Any, telling: bool) -> list[int]:
         return [0]
     if time_min is None:
         return source.telling() if telling else [len(source.frames) - 1]
-    minutes = [number(one, "time_min") for one in np.atleast_1d(np.asarray(time_min, dtype=object))]
+    minutes = _numbers(time_min, "time_min")
     if not minutes:
         raise ValueError("time_min: is empty; give a time in minutes, or several")
     return [min(range(len(source.times_s)), key=lambda i: abs(source.times_s[i] - 60 * one)) for one in minutes]
