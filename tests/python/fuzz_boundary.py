@@ -187,6 +187,9 @@ class Fuzzer:
                                    self.or_odd(lambda: {"a": [1]})),
             lambda: plica.polygons_of_labels(self.or_odd(lambda: np.arange(16).reshape(4, 4)), self.or_odd(lambda: 1.0),
                                              gap_px=self.or_odd(lambda: 2)),
+            lambda: plica.polygons_of_outlines(self.or_odd(lambda: [[[0, 0], [1, 0], [0, 1]]]), self.odd(), tolerance_um=self.odd()),
+            lambda: plica.polygons_of_centres(self.or_odd(lambda: np.arange(18).reshape(9, 2) ** 2 % 7), reach_um=self.odd(), cell_data=self.odd()),
+            lambda: plica.polygons_of_monolayer(self.odd()),
             lambda: plica.Tissue.from_file(self.odd(), apical_array=self.odd()),
         ]
 
