@@ -17,9 +17,11 @@
 #include "core/version.hpp"
 #include "errors.hpp"
 #include "record/checkpoint.hpp"
+#include "record/run_scenario.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/builtin.hpp"
 #include "scenario/print.hpp"
+#include "scenario/setup.hpp"
 #include "show/looks.hpp"
 #include "signals.hpp"
 #include "simulation.hpp"
@@ -33,14 +35,20 @@ namespace {
 using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 using Whole = nb::ndarray<const int, nb::c_contig, nb::device::cpu>;
 
+Vectors positions_of(const Numbers& points) {
+  Vectors positions;
+  for (std::size_t n = 0; n < points.shape(0); ++n)
+    positions.emplace_back(points.data()[3 * n], points.data()[3 * n + 1], points.data()[3 * n + 2]);
+  return positions;
+}
+
 /// Make a mesh from arrays whose shapes and numbers have been checked.
 std::shared_ptr<const HexahedralMesh> mesh_of(const Numbers& points, const Whole& hexahedra,
                                               const std::vector<int>& apical_faces,
                                               const std::map<std::string, std::vector<double>>& arrays,
                                               const std::vector<std::string>& remarks) {
   auto mesh = std::make_shared<HexahedralMesh>();
-  for (std::size_t n = 0; n < points.shape(0); ++n)
-    mesh->points.emplace_back(points.data()[3 * n], points.data()[3 * n + 1], points.data()[3 * n + 2]);
+  mesh->points = positions_of(points);
   for (std::size_t c = 0; c < hexahedra.shape(0); ++c) {
     auto& cell = mesh->cells.emplace_back();
     for (std::size_t i = 0; i < 8; ++i) cell[i] = NodeId(hexahedra.data()[8 * c + i]);
@@ -53,14 +61,26 @@ std::shared_ptr<const HexahedralMesh> mesh_of(const Numbers& points, const Whole
 
 CheckedScenario load(const std::string& name, const std::string& file, const std::string& text,
                      const std::vector<std::string>& overrides, const std::map<std::string, std::vector<int>>& regions,
+                     const std::map<std::string, std::vector<double>>& arrays,
                      const std::shared_ptr<const HexahedralMesh>& mesh) {
   CheckedScenario checked{{name, file, text}, load_scenario({name, file, text}, overrides)};
   for (const auto& [region, ids] : regions) {
     checked.scenario.regions[region] = {};
     checked.scenario.regions[region].ids = ids;
   }
+  checked.scenario.embryo.arrays = arrays;
   checked.scenario.embryo.mesh = mesh;
   return checked;
+}
+
+/// Number of cells of the embryo, whatever arrays and regions it is given.
+std::size_t count_cells(const CheckedScenario& checked) {
+  Scenario bare = checked.scenario;
+  bare.regions.clear();
+  bare.embryo.arrays.clear();
+  const nb::gil_scoped_release free;
+  const SafeThreadCount count(1);
+  return make_tissue(bare).cells.size();
 }
 
 nb::dict calibration(const CheckedScenario& scenario, const std::vector<std::string>& overrides,
@@ -171,6 +191,15 @@ NB_MODULE(_core, module) {
           [](CheckedScenario& s, const std::shared_ptr<const HexahedralMesh>& mesh) { s.scenario.embryo.mesh = mesh; },
           nb::arg("mesh"))
       .def_prop_ro("title", [](const CheckedScenario& s) { return s.scenario.title; })
+      .def_prop_ro("cell_count", &count_cells)
+      .def(
+          "shell",
+          [](const CheckedScenario& s, const Numbers& rest_positions) -> std::optional<std::pair<double, double>> {
+            const auto shell = shell_of_run(s.scenario, positions_of(rest_positions));
+            if (!shell) return {};
+            return std::pair(shell->half_axis_um, shell->radius_um);
+          },
+          nb::arg("rest_positions"))
       .def("toml", [](const CheckedScenario& s) { return resolved_toml(s.scenario); })
       .def("advice", [](const CheckedScenario& s) {
         const nb::gil_scoped_release free;
@@ -185,7 +214,7 @@ NB_MODULE(_core, module) {
       },
       nb::arg("name_or_path"));
   module.def("load", &load, nb::arg("name"), nb::arg("file"), nb::arg("text"), nb::arg("overrides"), nb::arg("regions"),
-             nb::arg("mesh").none());
+             nb::arg("arrays"), nb::arg("mesh").none());
   module.def("calibrate", &calibration, nb::arg("scenario"), nb::arg("overrides"), nb::arg("vary"), nb::arg("targets"),
              nb::arg("most_trials"), nb::arg("on_trial"));
   module.def(

@@ -51,6 +51,9 @@ nb::dict cell_data(const Simulation& simulation) {
   const MeasuredCells measured(simulation.model(), simulation.state());
   for (const CellColumn& column : cell_columns())
     if (column.in_csv) result[std::string(column.name).c_str()] = array_of(column.values(measured));
+  for (const auto* arrays : {&simulation.model().tissue.cell_arrays, &simulation.outside_arrays()})
+    for (const auto& [name, values] : *arrays)
+      if (!result.contains(name.c_str())) result[name.c_str()] = array_of(values);
   return result;
 }
 
@@ -179,6 +182,11 @@ void SimulationOf::set_activity(const std::string& law, std::vector<double> acti
   simulation_->set_activity(law, std::move(activities));
 }
 
+void SimulationOf::set_cell_array(const std::string& name, std::vector<double> values) {
+  const Turn turn(*this);
+  simulation_->set_cell_array(name, std::move(values));
+}
+
 nb::bytes SimulationOf::save() {
   const Turn turn(*this);
   Checkpoint checkpoint{version(), resolved_toml(scenario_->scenario), at_rest_, simulation_->memory(), {}};
@@ -230,6 +238,7 @@ void bind_simulation(nb::module_& module) {
       .def("copy", &S::copy)
       .def("step", &S::step, nb::arg("until_s"))
       .def("set_activity", &S::set_activity, nb::arg("law"), nb::arg("activities"))
+      .def("set_cell_array", &S::set_cell_array, nb::arg("name"), nb::arg("values"))
       .def("save", &S::save)
       .def("begin_record", &S::begin_record, nb::arg("out"), nb::arg("start"))
       .def("end_record", &S::end_record)

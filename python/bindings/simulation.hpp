@@ -38,6 +38,7 @@ class SimulationOf {
   /// GaveUp.
   bool step(double until_s);
   void set_activity(const std::string& law, std::vector<double> activities);
+  void set_cell_array(const std::string& name, std::vector<double> values);
   [[nodiscard]] nb::bytes save();
 
   /// Begin recording; return notes on the checkpoint from which it continues.

@@ -18,14 +18,16 @@ from .indices import SobolIndices
 from .labels import polygons_of_labels
 from .monolayers import polygons_of_monolayer
 from .outlines import polygons_of_outlines
+from .pictures import movie, render
 from .polygons import Polygons
 from .posteriors import Posterior, posterior
 from .results import Frame, Frames, Run
 from .results import open_run as open
-from .scenario import Scenario, Tissue, builtin_scenarios
+from .scenario import Scenario, builtin_scenarios
 from .simulation import Simulation, Step, load
 from .study import Study
-from .studies import Calibration, Comparison, Trial, calibrate, compare, render
+from .studies import Calibration, Comparison, Trial, calibrate, compare
+from .tissue import Tissue
 
 __all__ = [
     "Calibration",
@@ -54,6 +56,7 @@ __all__ = [
     "calibrate",
     "compare",
     "load",
+    "movie",
     "open",
     "polygons_of_centres",
     "polygons_of_labels",

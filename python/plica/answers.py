@@ -3,17 +3,19 @@ from __future__ import annotations
 
 import difflib
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .arguments import mapping_of, number, text_of, told, whole
 from .errors import PlicaError, needed
+from .names import label as _label
+from .pictures import render
 from .results import open_run
 from .scenario import Scenario, _items
-from .studies import render
 
 if TYPE_CHECKING:
     import pandas
@@ -35,8 +37,6 @@ VERDICTS = {"closed": "closed: its lips have met",
             "furrowed": f"furrowed: floor {FURROWED_UM:g} µm or more below its lips,\nor {DEEP_UM:g} µm or more deep",
             "flattened": "flattened: less", "passes through itself": "passes through itself"}
 OTHER_COLOURS = ("#56B4E9", "#E69F00", "#CC79A7", "#8C6D31", "#6A51A3", "#31A354", "#843C39", "#17BECF")
-UNITS = {"um": "µm", "um2": "µm²", "um3": "µm³", "m": "m", "m3": "m³", "s": "s", "min": "min", "nN": "nN", "mN": "mN", "Pa": "Pa",
-         "kPa": "kPa", "deg": "°", "kg": "kg", "MB": "MB", "percent": "%"}
 
 
 def verdict(row: Any) -> str:
@@ -68,14 +68,17 @@ def verdict(row: Any) -> str:
     ...                "furrow_depth_below_lips_um": 12.0, "furrow_depth_um": 40.0})
     'furrowed'
     """
-    missing = [name for name in VERDICT_COLUMNS if name not in row]
+    if not hasattr(row, "keys"):
+        raise TypeError(f"row: {told(row)}; give a row of Study.table, or a mapping")
+    missing = [name for name in (*VERDICT_COLUMNS, "status") if name not in row.keys()]
     if missing:
         raise ValueError(f"a verdict requires {', '.join(missing)}; add it to keep.measures, or colour by an output variable that is kept")
-    if row["status"] in ("not_run", "refused"):
-        return str(row["status"]).replace("_", " ")
-    if row["status"] not in FINISHED:
+    status = text_of(row["status"], "status")
+    if status in ("not_run", "refused"):
+        return status.replace("_", " ")
+    if status not in FINISHED:
         return "failed"
-    intersections, closed_s, below_lips_um, depth_um = (_number(row[name]) for name in VERDICT_COLUMNS)
+    intersections, closed_s, below_lips_um, depth_um = (_number(row[name], name) for name in VERDICT_COLUMNS)
     if intersections > 0:
         return "passes through itself"
     if np.isfinite(closed_s):
@@ -222,14 +225,20 @@ def phase_diagram(
     >>> study.phase_diagram(thumbnails=4).savefig("phases.png")                  # doctest: +SKIP
     """
     plt, colors = needed("matplotlib.pyplot", "phase_diagram"), needed("matplotlib.colors", "phase_diagram")
+    if not callable(measure):
+        text_of(measure, "measure")
+    text_of(view, "view")
     table, (x, y) = study.table, _two_keys(study, x, y)
-    for key, value in (at or {}).items():
+    for key, value in mapping_of({} if at is None else at, "at", "a mapping of keys to values").items():
         if key not in study.keys:
             raise ValueError(f"at: {key} does not vary in the study; keys: {', '.join(study.keys)}")
         table = table[table[key] == value]
     _check_is_plane(study, table, x, y)
     columns, rows = _in_order(table[x]), _in_order(table[y])
-    shown = list(thumbnails) if not isinstance(thumbnails, int) else _diagonal(table, x, y, columns, rows, thumbnails)
+    if isinstance(thumbnails, Iterable):
+        shown = [whole(one, "thumbnails", 0) for one in thumbnails]
+    else:
+        shown = _diagonal(table, x, y, columns, rows, whole(thumbnails, "thumbnails", 0))
     if len(shown) > len(LETTERS):
         raise ValueError(f"thumbnails: {len(shown)} embryos; give at most {len(LETTERS)}")
     if shown and (study._directory is None or study._given.get("keep.each") != "full"):
@@ -261,6 +270,9 @@ def phase_diagram(
 
 
 def _two_keys(study: Study, x: Optional[str], y: Optional[str]) -> tuple[str, str]:
+    for key in (x, y):
+        if key is not None:
+            text_of(key, "phase_diagram: x and y")
     free = [key for key in study.keys if key not in (x, y)]
     x = x or (free.pop(0) if free else "")
     y = y or (free.pop(0) if free else "")
@@ -374,7 +386,7 @@ def _add_thumbnails(study: Study, table: pandas.DataFrame, ax: Any, below: Any, 
 
 def _results(table: pandas.DataFrame, measure: str, others: Sequence[str] = ()) -> pandas.Series[float]:
     """Output variable of finished runs; NaN for others, whose last accepted state is not a result."""
-    if measure not in table or not _is_number(table[measure]):
+    if text_of(measure, "measure") not in table or not _is_number(table[measure]):
         known = [*others, *list(table.columns)[list(table.columns).index("status") + 1 : -2]]
         raise ValueError(f"the study has no output variable {measure!r}{_did_you_mean(measure, known)}; it has {', '.join(known)}")
     return table[measure].astype(float).where(table.status.isin(FINISHED))
@@ -412,8 +424,8 @@ def _is_number(values: pandas.Series[Any]) -> bool:
     return values.dtype.kind in "iuf"
 
 
-def _number(value: Any) -> float:
-    return float("nan") if value is None else float(value)
+def _number(value: Any, what: str) -> float:
+    return float("nan") if value is None else number(value, what, "a number or None", finite=False)
 
 
 def _in_order(values: pandas.Series[Any]) -> list[Any]:
@@ -425,24 +437,6 @@ def _shown(value: Any) -> str:
     if isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
         return str(value)
     return np.format_float_positional(float(value), precision=3, fractional=False, trim="-")
-
-
-def _name_and_unit(name: str) -> tuple[str, str]:
-    """Split a column or key into name and unit: stiffness_nN_per_um becomes stiffness and nN/µm."""
-    words = name.split("_")
-    for first in range(1, len(words)):
-        end = words[first:]
-        if end[0] != "per" and end[-1] != "per" and all(word in UNITS or word == "per" for word in end):
-            unit = " ".join(UNITS.get(word, "/") for word in end).replace(" / ", "/")
-            return "_".join(words[:first]), unit
-    return name, ""
-
-
-def _label(name: str, with_unit: bool = True) -> str:
-    text, unit = _name_and_unit(name)
-    if "." not in text:  # keys are written as in a scenario
-        text = text.replace("_", " ")
-    return f"{text} ({unit})" if unit and with_unit else text
 
 
 def _axis_label(study: Study, key: str) -> str:

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union
 import numpy as np
 from numpy.typing import NDArray
 
-from .answers import _is_number, _label, _results
+from .answers import _is_number, _results
+from .arguments import texts_of, told, whole
 from .errors import needed
+from .names import label as _label
 
 if TYPE_CHECKING:
     import pandas
@@ -91,6 +93,8 @@ class Emulator:
         ValueError
             If a key is missing, or a value is outside the range of the runs.
         """
+        if not hasattr(points, "columns"):
+            raise TypeError(f"points: {told(points)}; give a pandas.DataFrame")
         for key, (low, high, _) in self.ranges.items():
             if key not in points:
                 raise ValueError(f"predict: column {key} is missing; give {', '.join(self.keys)}")
@@ -173,7 +177,8 @@ def emulator(study: Study, measures: Union[str, Sequence[str]], *, folds: int = 
     """
     processes = needed("sklearn.gaussian_process", "emulator")
     pandas = needed("pandas", "emulator")
-    table, names = study.table, [measures] if isinstance(measures, str) else list(measures)
+    folds, seed = whole(folds, "folds", 2), whole(seed, "seed", 0, 2**32 - 1)
+    table, names = study.table, texts_of(measures, "measures")
     ranges = {key: _range(study, table, key) for key in study.keys}
     models: dict[str, Any] = {}
     held_out: dict[str, Any] = {}

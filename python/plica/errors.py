@@ -82,25 +82,34 @@ class FileError(PlicaError, OSError):
 
 
 class MissingExtra(PlicaError, ImportError):
-    """Missing optional package; the message names the extra to install."""
+    """Missing optional package; the message names the command that installs it."""
 
     def __init__(self, what: str, package: str, extra: str) -> None:
-        super().__init__(f"{what} needs {package}, which is not installed; to have it, where plica was checked out: pip install '.[{extra}]'")
+        super().__init__(f"{what} needs {package}, which is not installed; pip install {package}, or all of its kind: "
+                         f"pip install 'plica[{extra}]'")
         self.what, self.package, self.extra = what, package, extra
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         return type(self), (self.what, self.package, self.extra)
 
 
-EXTRAS = {"pandas": "plot", "matplotlib": "plot", "pyvista": "plot", "meshio": "plot", "IPython": "notebook",
-          "xarray": "study", "SALib": "study", "sklearn": "study", "threadpoolctl": "study",
-          "skimage": "image", "scipy": "image", "tables": "tyssue"}
+# Modules: the package that has them, and the extra of pyproject.toml that includes it.
+PACKAGES = {"pandas": ("pandas", "plot"), "matplotlib": ("matplotlib", "plot"), "pyvista": ("pyvista", "plot"),
+            "meshio": ("meshio", "plot"), "IPython": ("ipython", "notebook"), "xarray": ("xarray", "study"),
+            "SALib": ("SALib", "study"), "sklearn": ("scikit-learn", "study"), "threadpoolctl": ("threadpoolctl", "study"),
+            "skimage": ("scikit-image", "image"), "scipy": ("scipy", "image"), "imageio": ("imageio", "movie"),
+            "imageio_ffmpeg": ("imageio-ffmpeg", "movie"), "tables": ("tables", "tyssue")}
 
 
-def needed(package: str, what: str) -> Any:
-    """Import an optional package. MissingExtra if it is not installed."""
+def needed(module: str, what: str) -> Any:
+    """Import a module of an optional package. MissingExtra if it is not installed, PlicaError if its import fails."""
+    root = module.split(".")[0]
+    package, extra = PACKAGES[root]
     try:
-        return importlib.import_module(package)
-    except ImportError:
-        name = package.split(".")[0]
-        raise MissingExtra(what, name, EXTRAS[name]) from None
+        return importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        if str(error.name).split(".")[0] == root:
+            raise MissingExtra(what, package, extra) from None
+        raise PlicaError(f"{what} needs {package}, whose import fails: {error}") from error
+    except ImportError as error:
+        raise PlicaError(f"{what} needs {package}, whose import fails: {error}") from error

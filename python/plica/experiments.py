@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional, Union
 
 from ._core import version
+from .arguments import path_of, whole
 from .errors import FileError, PlicaError
 from .results import _pandas
 
@@ -82,10 +83,11 @@ def reproduce(
     >>> table.loc[0, "judgement"]
     'hit'
     """
-    if os.fspath(what) == "paper":
+    what, out = path_of(what, "what"), path_of(out, "out")
+    if what == "paper":
         raise ValueError("what: the paper has no table of outcomes; run `plica reproduce --out DIR` on the command line")
-    command = [_program(), "reproduce", os.fspath(what), "--out", os.fspath(out)]
-    command += ["--jobs", str(jobs)] if jobs is not None else []
+    command = [_program(), "reproduce", what, "--out", out]
+    command += ["--jobs", str(whole(jobs, "jobs"))] if jobs is not None else []
     command += [f"--{name}" for name, given in (("quick", quick), ("overwrite", overwrite)) if given]
     # With progress, stderr is needed, so only stdout is discarded.
     command += [] if progress else ["--quiet"]

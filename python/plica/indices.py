@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .answers import _label, _results
+from .answers import _results
+from .arguments import number, text_of, whole
 from .errors import needed
+from .names import label as _label
 
 if TYPE_CHECKING:
     import pandas
@@ -50,6 +52,9 @@ class SobolIndices(NamedTuple):
             first, total = (f"{row[name]:.2f} ({row[name + '_low']:.2f} to {row[name + '_high']:.2f})" for name in ("first", "total"))
             lines.append(f"{key!s:{wide}}  {first:18}{total}")
         return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        return str(self)
 
     def plot(self, ax: Any = None) -> Any:
         """Plot both indices of each key as bars with confidence intervals.
@@ -130,6 +135,10 @@ def sobol_indices(
     Traceback (most recent call last):
     ValueError: sobol_indices: cells is the same in all runs, so no key has an effect on it
     """
+    text_of(measure, "measure")
+    resamples, seed = whole(resamples, "resamples", 2), whole(seed, "seed", 0, 2**31)
+    if not 0 < number(confidence, "confidence") < 1:
+        raise ValueError(f"confidence: {confidence!r}; give a number between 0 and 1")
     if study.kind != "sobol-indices":
         raise ValueError(f'sobol_indices: the study is of kind "{study.kind}"; use kind "sobol-indices"')
     table, keys = study.table, study.keys

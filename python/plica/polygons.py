@@ -11,6 +11,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .arguments import integers, mapping_of, numbers, path_of, told
 from .errors import FileError, needed
 
 if TYPE_CHECKING:
@@ -54,15 +55,17 @@ class Polygons:
     def __init__(
         self, points: ArrayLike, faces: Iterable[ArrayLike], cell_data: Optional[Mapping[str, ArrayLike]] = None
     ) -> None:
-        self.points: NDArray[np.float64] = np.array(points, dtype=np.float64)
+        self.points: NDArray[np.float64] = numbers(points, "points", "finite numbers of shape (n, 3)")
         if self.points.ndim != 2 or self.points.shape[1] != 3 or not np.isfinite(self.points).all():
             raise ValueError("points: give finite numbers of shape (n, 3): x, y, z of each vertex, in µm")
-        self.faces: list[NDArray[np.int64]] = [np.array(face, dtype=np.int64) for face in faces]
+        if not isinstance(faces, Iterable):
+            raise TypeError(f"faces: {told(faces)}; give the vertices of each polygon")
+        self.faces: list[NDArray[np.int64]] = [integers(face, "faces").astype(np.int64) for face in faces]
         for number, face in enumerate(self.faces):
-            if len(face) < 3 or face.min() < 0 or face.max() >= len(self.points):
+            if face.ndim != 1 or len(face) < 3 or face.min() < 0 or face.max() >= len(self.points):
                 raise ValueError(f"faces: polygon {number} has vertices {face}; give three or more, 0 to {len(self.points) - 1}")
         self.cell_data: dict[str, NDArray[Any]] = {}
-        for name, values in (cell_data or {}).items():
+        for name, values in mapping_of({} if cell_data is None else cell_data, "cell_data", "a mapping of names to arrays").items():
             self.cell_data[name] = _numbers(name, values, len(self.faces))
 
     @property
@@ -176,7 +179,7 @@ class Polygons:
         ValueError
             If the extension is another, a number is missing in `cell_data`, or, for ``.ply``, an array name is not one word.
         """
-        file = Path(path)
+        file = Path(path_of(path, "path"))
         texts = {".ply": self._ply, ".vtp": self._vtp, ".obj": self._obj}
         if file.suffix not in texts:
             raise ValueError(f"{file}: the file's name must end in .ply, .vtp or .obj")

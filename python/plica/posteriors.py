@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy as np
 
-from .answers import _label, _results, _set_log
+from .answers import _results, _set_log
+from .arguments import pairs_of, text_of, whole
 from .emulator import Array, Emulator, Range, _range
 from .errors import needed
+from .names import in_columns, label as _label
 from .scenario import Scenario
 from .study import Study
 
@@ -49,6 +51,22 @@ class Posterior(NamedTuple):
     targets: pandas.DataFrame
     ranges: dict[str, Range]
     effective_size: float
+
+    def __repr__(self) -> str:
+        """Summary: mean, standard deviation and central 90 % of each key, and the targets."""
+        heads = ("key", "mean", "sd", "5 %", "95 %")
+        sd = np.sqrt(np.diag(self.covariance))
+        rows = [(key, *(f"{one:.4g}" for one in (self.mean[key], sd[k], *self._quantiles(key, (0.05, 0.95)))))
+                for k, key in enumerate(self.keys)]
+        goals = [(str(name), *(f"{row[one]:.4g}" for one in ("value", "sd", "mean", "posterior_sd")))
+                 for name, row in self.targets.iterrows()]
+        return "\n".join([f"Posterior of {len(self.samples)} samples, worth {self.effective_size:.0f}", *in_columns(rows, heads),
+                          *in_columns(goals, ("target", "value", "sd", "mean", "posterior sd"))])
+
+    def _quantiles(self, key: str, parts: tuple[float, ...]) -> Array:
+        values, weights = (np.asarray(self.samples[name], dtype=float) for name in (key, "weight"))
+        order = np.argsort(values)
+        return np.asarray(np.interp(parts, np.cumsum(weights[order]) - 0.5 * weights[order], values[order]))
 
     @property
     def keys(self) -> list[str]:
@@ -167,16 +185,20 @@ def posterior(
     ...                         targets={"furrow_depth_um": (55, 3), "lips_closed_time_s": (900, 60)})  # doctest: +SKIP
     >>> found.mean, found.plot()                                                                        # doctest: +SKIP
     """
-    if not targets or not all(sd > 0 for _, sd in targets.values()):
+    targets = pairs_of({} if targets is None else targets, "targets", "(value, sd)")
+    if not targets or not all(np.isfinite(value) and 0 < sd < np.inf for value, sd in targets.values()):
         raise ValueError("posterior: give targets as {output: (value, sd)}, each sd > 0")
-    if on not in ("emulator", "runs"):
+    keys = pairs_of({} if keys is None else keys, "keys", "(low, high)")
+    whole(samples, "samples", 2), whole(seed, "seed", 0, 2**32 - 1)
+    if text_of(on, "on") not in ("emulator", "runs"):
         raise ValueError(f'posterior: on={on!r}; give "emulator" or "runs"')
     if isinstance(source, Study):
-        study, keys = source, keys or {}
+        study = source
     else:
         if not keys:
             raise ValueError("posterior: give keys as {key: (low, high)}")
-        study = _made(source, keys, list(targets), runs or 20 * len(keys), seed, jobs, progress)
+        count = 20 * len(keys) if runs is None else whole(runs, "runs")
+        study = _made(source, keys, list(targets), count, seed, jobs, progress)
     ranges = _prior(study, keys)
     found = _of_runs(study, ranges, targets) if on == "runs" else _on_emulator(study, ranges, targets, samples, seed)
     if found.effective_size < FEW:
@@ -192,8 +214,7 @@ def posterior(
 def _made(source: Union[Scenario, str], keys: Mapping[str, tuple[float, float]], measures: list[str], runs: int, seed: int,
           jobs: Optional[int], progress: bool) -> Study:
     scenario = source if isinstance(source, Scenario) else Scenario(source)
-    if scenario.tissue is not None or scenario._regions:
-        raise ValueError("posterior requires a scenario that a file can express: no tissue and no regions given as arrays")
+    scenario._require_file("posterior")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "scenario.toml"
         file.write_text(scenario.to_toml(), encoding="utf-8")

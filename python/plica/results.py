@@ -10,12 +10,14 @@ import xml.etree.ElementTree as xml
 import zlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional, Union, overload
+from typing import TYPE_CHECKING, Any, Union, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .arguments import number, path_of, texts_of, told, whole
 from .errors import FileError, needed
+from .names import label
 from .polygons import Polygons
 from .scenario import Scenario
 
@@ -93,8 +95,8 @@ class Frame:
         FileError
             If an older version of plica wrote the file without polygons.
         """
-        if side not in ("apical", "basal"):
-            raise ValueError(f'side: {side!r}; give "apical" or "basal"')
+        if not isinstance(side, str) or side not in ("apical", "basal"):
+            raise ValueError(f'side: {told(side)}; give "apical" or "basal"')
         count = len(self.hexahedra)
         if "polygon_ends" in self.field_data:
             nodes, ends = self.field_data[f"polygon_{side}"], self.field_data["polygon_ends"]
@@ -140,6 +142,7 @@ class Frames(Sequence[Frame]):
 
     def at(self, time_min: float) -> Frame:
         """Return the snapshot nearest to a time in minutes. FileError if the run has none."""
+        time_min = number(time_min, "time_min")
         if not self._files:
             raise FileError("the run has no frames")
         return self[min(range(len(self)), key=lambda i: abs(self._files[i][0] - 60 * time_min))]
@@ -154,7 +157,10 @@ class Frames(Sequence[Frame]):
     def __getitem__(self, index: Union[int, slice]) -> Union[Frame, list[Frame]]:
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(len(self)))]
-        time_s, path = self._files[index]
+        try:
+            time_s, path = self._files[index]
+        except TypeError:
+            raise TypeError(f"frames[{told(index)}]: give a whole number or a slice") from None
         return Frame(path, time_s)
 
     def __repr__(self) -> str:
@@ -178,7 +184,7 @@ class Run:
     """
 
     def __init__(self, directory: Union[str, os.PathLike[str]]) -> None:
-        self.directory = Path(directory)
+        self.directory = Path(path_of(directory, "directory"))
         if not self.directory.is_dir():
             raise FileError(f"{self.directory}: there is no such directory")
         if not (self.directory / "series.csv").is_file():
@@ -246,7 +252,7 @@ class Run:
         columns : str or sequence of str
             Column names.
         ax : matplotlib Axes, or sequence of them, optional
-            Axes to draw into; by default a new figure is made.
+            Axes to draw into, one per column; by default a new figure is made.
 
         Returns
         -------
@@ -260,7 +266,9 @@ class Run:
             If pandas or matplotlib is not installed.
         """
         plt = needed("matplotlib.pyplot", "plot")
-        names = [columns] if isinstance(columns, str) else list(columns)
+        names = texts_of(columns, "columns")
+        if not names:
+            raise ValueError("columns: is empty; give the name of a column")
         series = self.series
         missing = [name for name in names if name not in series]
         if missing:
@@ -270,10 +278,12 @@ class Run:
             axes = list(drawn[:, 0])
         else:
             axes = list(np.ravel(np.asarray(ax, dtype=object)))
+            if len(axes) != len(names) or not all(hasattr(one, "set_ylabel") for one in axes):
+                raise ValueError(f"ax: {told(ax)}; give one matplotlib Axes per column ({len(names)})")
             figure = axes[0].figure
         for name, one in zip(names, axes):
             one.plot(series["time_s"] / 60, series[name])
-            one.set_ylabel(name)
+            one.set_ylabel(label(name))
         axes[-1].set_xlabel("time (min)")
         figure.tight_layout()
         return figure
@@ -286,13 +296,14 @@ class Run:
         height : int
             Height, pixels.
         """
+        high = whole(height, "height")
         display = needed("IPython.display", "show")
         report = self.directory / "report.html"
         try:
             page = report.read_text(encoding="utf-8")
         except OSError as error:
             raise FileError(f"{report}: cannot be read; write it with `plica report {self.directory}`") from error
-        return display.HTML(f'<div><iframe srcdoc="{html.escape(page)}" width="100%" height="{int(height)}"></iframe></div>')
+        return display.HTML(f'<div><iframe srcdoc="{html.escape(page)}" width="100%" height="{high}"></iframe></div>')
 
     def _table(self, name: str, why: str = "") -> pandas.DataFrame:
         path = self.directory / name

@@ -1,12 +1,11 @@
 """Simulations advanced from Python, one time step at a time."""
 from __future__ import annotations
 
+import contextlib
 import html
 import logging
 import math
 import os
-import sys
-import time
 import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -16,9 +15,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .arguments import callable_of, number, path_of, per_cell, text_of, whole
+from .cell_data import CellData
 from .errors import FileError
+from .progress import Progress, moment
 from .results import Run, _grid, _pandas, open_run
-from .scenario import MASKS, Scenario, Tissue
+from .scenario import Scenario
+from .tissue import Tissue
 
 if TYPE_CHECKING:
     import pandas
@@ -26,6 +29,13 @@ if TYPE_CHECKING:
 __all__ = ["Simulation", "Step", "load"]
 
 log = logging.getLogger("plica")
+told_once: set[str] = set()  # warnings shown by this process
+
+
+def _warn_once(line: str) -> None:
+    if line not in told_once:
+        told_once.add(line)
+        log.warning("%s", line.removeprefix("warning: "))
 
 
 class Step:
@@ -59,7 +69,7 @@ class Step:
         return self.measures["max_volume_error"]
 
     def __repr__(self) -> str:
-        return f"Step(to {self.time_s / 60:.4g} min, {self.newton_iterations} Newton iterations)"
+        return f"Step(to {moment(self.time_s)}, {self.newton_iterations} Newton iterations)"
 
 
 class Simulation:
@@ -103,7 +113,7 @@ class Simulation:
         self._has_crossed = False
         for line in core.advice if core.steps == 0 else []:
             if line.startswith("warning: "):
-                log.warning("%s", line.removeprefix("warning: "))
+                _warn_once(line)
 
     @property
     def scenario(self) -> Scenario:
@@ -216,15 +226,16 @@ class Simulation:
         False
         """
         end_s = _seconds(until_min)
+        callable_of(callback, "callback")
         if out is None and (resume or overwrite):
             raise ValueError("overwrite and resume require a results directory; set out")
-        if out is not None and not self._begin_record(os.fspath(out), overwrite, resume):
+        if out is not None and not self._begin_record(path_of(out, "out"), overwrite, resume):
             return open_run(out)
-        bar = _Progress(min(end_s, self._core.end_s)) if progress else None
+        bar = Progress(min(end_s, self._core.end_s)) if progress else None
         try:
             while (step := self._step(end_s)) is not None:
                 if bar is not None:
-                    bar.show(step)
+                    bar.show(step.time_s, step.measures)
                 if callback is not None and callback(self, step):
                     break
         finally:
@@ -269,7 +280,7 @@ class Simulation:
         Raises
         ------
         ValueError
-            If no active law has this name, the shape is wrong, or a value is negative or infinite.
+            If no active law has this name, the shape is wrong, or a value is negative, infinite or masked.
 
         Notes
         -----
@@ -286,12 +297,7 @@ class Simulation:
         label = self._label(law)
         if activity is None:
             return self._core.set_activity(label, [])
-        count = len(self._core.activity(label))
-        values: NDArray[np.float64] = MASKS.filled(MASKS.asarray(activity, dtype=np.float64), np.nan)
-        if values.ndim == 0:
-            values = np.full(count, float(values))
-        if values.shape != (count,):
-            raise ValueError(f"{label}: activities have shape {values.shape}; give one value per cell ({count})")
+        values = per_cell(activity, len(self._core.activity(label)), label)
         if (values < 0).any():
             cell = int(np.argmax(values < 0))
             raise ValueError(f"{label}: the activity of cell {cell} is {values[cell]}; give a number >= 0")
@@ -313,6 +319,7 @@ class Simulation:
         return self._core.activity(self._label(law))
 
     def _label(self, name: str) -> str:
+        text_of(name, "law")
         labels = self._core.laws(active=True)
         fitting = [label for label in labels if label == name or label.partition(".")[2] == name]
         if name in labels:
@@ -353,13 +360,14 @@ class Simulation:
         FileError
             If the file cannot be written.
         """
-        target = Path(path)
-        beside = target.with_name(target.name + ".part")
+        target = Path(path_of(path, "path"))
+        beside = target.parent / (target.name + ".part")
         try:
             beside.write_bytes(self._core.save())
             os.replace(beside, target)
         except OSError as error:
-            beside.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                beside.unlink(missing_ok=True)
             raise FileError(f"{target}: cannot be written: {error.strerror}") from error
 
     def __getstate__(self) -> dict[str, Any]:
@@ -427,13 +435,26 @@ class Simulation:
         return self._core.pressures
 
     @property
-    def cell_data(self) -> dict[str, NDArray[np.float64]]:
-        """Per-cell values of ``cells.csv``, as arrays of shape (cells,), units in the names."""
-        return self._core.cell_data
+    def cell_data(self) -> CellData:
+        """Per-cell values of ``cells.csv`` and arrays of the tissue, of shape (cells,), units in the names.
+
+        Assign an array of your own to keep it: `save`, `copy` and the snapshots of later steps include it, and daughters inherit
+        it. No law reads it (see `set_activity`). The report colours cells by arrays that exist when the run begins. ValueError
+        for a wrong shape, a value that is not finite, or the name of another array.
+
+        Examples
+        --------
+        >>> import numpy as np, plica
+        >>> sim = plica.Simulation("drosophila")
+        >>> sim.cell_data["signal"] = np.exp(-sim.cell_data["x_um"] ** 2 / 2e4)
+        >>> float(sim.cell_data["signal"].max().round(1))
+        1.0
+        """
+        return CellData(self._core)
 
     @property
     def cells(self) -> pandas.DataFrame:
-        """Per-cell values of `cell_data` as a table, one row per cell."""
+        """Per-cell values of `cell_data`, as a table with one row per cell."""
         table: pandas.DataFrame = _pandas("cells").DataFrame({k: v.copy() for k, v in self._core.cell_data.items()})
         return table
 
@@ -470,7 +491,7 @@ class Simulation:
         ValueError
             If no law has this name.
         """
-        return self._core.forces(law)
+        return self._core.forces(text_of(law, "law"))
 
     @property
     def energies(self) -> dict[str, dict[str, float]]:
@@ -490,7 +511,7 @@ class Simulation:
         return _grid(self.positions, self.hexahedra, {}, data)
 
     def __repr__(self) -> str:
-        return f"Simulation({self._scenario.name!r}, at {self.time_min:.4g} min after {self.steps} steps, {self.status})"
+        return f"Simulation({self._scenario.name!r}, at {moment(self.time_s)} after {self.steps} steps, {self.status})"
 
     def _repr_html_(self) -> str:
         told = {name: value for name, value in self.measures.items() if value is not None}
@@ -501,7 +522,11 @@ class Simulation:
 
 
 def load(
-    path: Union[str, os.PathLike[str]], *, threads: Optional[int] = None, tissue: Optional[Tissue] = None
+    path: Union[str, os.PathLike[str]],
+    *,
+    threads: Optional[int] = None,
+    tissue: Optional[Tissue] = None,
+    arrays: Optional[Mapping[str, ArrayLike]] = None,
 ) -> Simulation:
     """Load a saved simulation or the checkpoint of a run; it continues bitwise identically.
 
@@ -511,8 +536,8 @@ def load(
         File written by ``Simulation.save``, or the ``checkpoint.h5`` of a run.
     threads : int, optional
         Threads per step, as for `Simulation`.
-    tissue : Tissue, optional
-        Tissue that the scenario was given from Python, if any.
+    tissue, arrays : optional
+        Tissue and arrays that the scenario was given from Python, if any.
 
     Returns
     -------
@@ -531,13 +556,13 @@ def load(
     >>> plica.load(file).time_s
     0.0
     """
-    source = Path(path)
+    source = Path(path_of(path, "path"))
     try:
         saved = source.read_bytes()
     except OSError as error:
         raise FileError(f"{source}: cannot be read: {error.strerror}") from error
     try:
-        scenario = Scenario(_core.scenario_of_saved(saved), tissue=tissue)
+        scenario = Scenario(_core.scenario_of_saved(saved), tissue=tissue, arrays=arrays)
         simulation = object.__new__(Simulation)
         simulation._begin(scenario, _core.Simulation(scenario._ready, _threads(threads), saved))
     except FileError as error:
@@ -548,49 +573,11 @@ def load(
 
 
 def _threads(threads: Optional[int]) -> int:
-    if threads is None:
-        return 0
-    if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads <= 1024:
-        raise ValueError(f"threads: {threads!r}; give a whole number from 1 to 1024")
-    return int(threads)
+    return 0 if threads is None else whole(threads, "threads", 1, 1024)
 
 
 def _seconds(until_min: Optional[float]) -> float:
     """Convert minutes to seconds; None becomes infinity."""
-    if until_min is None:
+    if until_min is None or (isinstance(until_min, float) and until_min == math.inf):
         return math.inf
-    if isinstance(until_min, bool) or not isinstance(until_min, (int, float, np.number)) or math.isnan(float(until_min)):
-        raise ValueError(f"until_min: {until_min!r}; give a number")
-    return 60 * float(until_min)
-
-
-class _Progress:
-    """Progress bar: by tqdm if installed, else one line on the terminal."""
-
-    def __init__(self, end_s: float) -> None:
-        self.end_min = end_s / 60
-        self.last = 0.0
-        self.bar: Any = None
-        try:
-            from tqdm.auto import tqdm
-
-            self.bar = tqdm(total=round(self.end_min, 3), unit="min", bar_format="{l_bar}{bar}| {n:.2f}/{total:.2f} min {postfix}")
-        except ImportError:
-            pass
-
-    def show(self, step: Step) -> None:
-        minutes, depth = step.time_s / 60, step.measures.get("furrow_depth_um")
-        told = "" if depth is None else f"furrow {depth:.1f} µm deep"
-        if self.bar is not None:
-            self.bar.set_postfix_str(told, refresh=False)
-            self.bar.update(minutes - self.bar.n)
-        elif time.monotonic() - self.last > 0.1:
-            self.last = time.monotonic()
-            sys.stderr.write(f"\r{minutes:6.2f} of {self.end_min:.2f} min  {told}  ")
-            sys.stderr.flush()
-
-    def close(self) -> None:
-        if self.bar is not None:
-            self.bar.close()
-        else:
-            sys.stderr.write("\n")
+    return 60 * number(until_min, "until_min", "a number")

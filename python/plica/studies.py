@@ -1,8 +1,6 @@
-"""Comparison of runs, rendering, and calibration."""
+"""Comparison of runs, and calibration."""
 from __future__ import annotations
 
-import ctypes
-import inspect
 import os
 from collections.abc import Callable, Mapping
 from functools import cached_property
@@ -12,15 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from .errors import PlicaError, needed
+from .arguments import callable_of, number, pairs_of, whole
+from .errors import FileError
+from .names import in_columns
 from .results import Frame, Run, _pandas, open_run
 from .scenario import Scenario
-from .simulation import Simulation
+from .scene import surface_of
 
 if TYPE_CHECKING:
     import pandas
 
-__all__ = ["Comparison", "Calibration", "Trial", "compare", "render", "calibrate"]
+__all__ = ["Comparison", "Calibration", "Trial", "compare", "calibrate"]
+
+COSTS = ("wall_", "peak_memory", "newton_", "linear_")  # numbers of the computation rather than of the tissue
+MOST_SHOWN = 12
 
 PathOrRun = Union[Run, str, "os.PathLike[str]"]
 
@@ -37,12 +40,6 @@ def _distances(lengths: NDArray[np.float64]) -> Distances:
     return Distances(float(lengths.mean()), float(np.sqrt((lengths**2).mean())), float(lengths.max()))
 
 
-def _surface(grid: Any) -> Any:
-    # Newer versions require an algorithm; older ones have only one.
-    known = inspect.signature(grid.extract_surface).parameters
-    return grid.extract_surface(algorithm="dataset_surface") if "algorithm" in known else grid.extract_surface()
-
-
 class Comparison:
     """Comparison of two runs at two snapshots; created by `compare`.
 
@@ -56,6 +53,9 @@ class Comparison:
 
     def __init__(self, a: Run, b: Run, time_min: Optional[float]) -> None:
         self.a, self.b = a, b
+        for run in (a, b):
+            if not run.frames:
+                raise FileError(f"{run.directory}: the run has no frames")
         self.frame_a: Frame = a.frames[-1] if time_min is None else a.frames.at(time_min)
         self.frame_b: Frame = b.frames[-1] if time_min is None else b.frames.at(time_min)
 
@@ -67,12 +67,7 @@ class Comparison:
     @property
     def summary(self) -> pandas.DataFrame:
         """Values of both summaries, one row per value; columns a, b and difference (a - b)."""
-        first, second = self.a.summary, self.b.summary
-
-        def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
-            return {k: float(v) for k, v in summary.items() if isinstance(v, (int, float)) and not isinstance(v, bool)}
-
-        table: pandas.DataFrame = _pandas("summary").DataFrame({"a": numbers(first), "b": numbers(second)})
+        table: pandas.DataFrame = _pandas("summary").DataFrame({"a": _numbers(self.a.summary), "b": _numbers(self.b.summary)})
         table["difference"] = table["a"] - table["b"]
         return table
 
@@ -86,14 +81,36 @@ class Comparison:
     @cached_property
     def surface(self) -> Distances:
         """Distances of the surface nodes of a from the surface of b. Requires PyVista."""
-        first = _surface(self.frame_a.to_pyvista())
-        second = _surface(self.frame_b.to_pyvista()).triangulate()
+        first = surface_of(self.frame_a.to_pyvista())
+        second = surface_of(self.frame_b.to_pyvista()).triangulate()
         return _distances(np.abs(np.asarray(first.compute_implicit_distance(second)["implicit_distance"])))
 
     def __repr__(self) -> str:
         apart = self.nodes
         told = "" if apart is None else f", nodes up to {apart.max_um:.3g} µm apart"
         return f"Comparison({self.a.directory.name} and {self.b.directory.name}, {len(self.scenario)} keys differ{told})"
+
+    def __str__(self) -> str:
+        """Keys and results that differ, the largest relative differences first."""
+        lines = [repr(self), *in_columns([(key, *map(_short, values)) for key, values in self.scenario.items()], ("key", "a", "b"))]
+        first, second = _numbers(self.a.summary), _numbers(self.b.summary)
+        apart = {name: first[name] - second[name] for name in first if name in second and not name.startswith(COSTS)}
+        apart = {name: difference for name, difference in apart.items() if difference != 0}
+        order = sorted(apart, key=lambda name: -abs(apart[name]) / max(abs(first[name]), abs(second[name])))
+        rows = [(name, *map(_short, (first[name], second[name], apart[name]))) for name in order[:MOST_SHOWN]]
+        lines += in_columns(rows, ("result", "a", "b", "difference"))
+        if len(order) > MOST_SHOWN:
+            lines.append(f"and {len(order) - MOST_SHOWN} more: see .summary")
+        return "\n".join(lines)
+
+
+def _numbers(summary: Mapping[str, Any]) -> dict[str, float]:
+    return {k: float(v) for k, v in summary.items() if isinstance(v, (int, float)) and not isinstance(v, bool)}
+
+
+def _short(value: Any) -> str:
+    text = "none" if value is None else f"{value:.5g}" if isinstance(value, float) else str(value)
+    return text if len(text) <= 40 else text[:37] + "..."
 
 
 def compare(a: PathOrRun, b: PathOrRun, *, time_min: Optional[float] = None) -> Comparison:
@@ -109,153 +126,11 @@ def compare(a: PathOrRun, b: PathOrRun, *, time_min: Optional[float] = None) -> 
     Returns
     -------
     Comparison
+        ``print`` shows what differs.
     """
-    return Comparison(_run_of(a), _run_of(b), time_min)
-
-
-def _run_of(run: PathOrRun) -> Run:
-    return run if isinstance(run, Run) else open_run(run)
-
-
-def render(
-    what: Union[PathOrRun, Frame, Simulation],
-    path: Optional[Union[str, os.PathLike[str]]] = None,
-    *,
-    color: str = "displacement",
-    view: Optional[str] = None,
-    time_min: Optional[float] = None,
-    size: tuple[int, int] = (1000, 700),
-    limits: Optional[tuple[float, float]] = None,
-    bar: bool = True,
-) -> Any:
-    """Draw an embryo, off screen. Requires PyVista.
-
-    Parameters
-    ----------
-    what : Run, path, Frame or Simulation
-        Source of the mesh.
-    path : str or path, optional
-        PNG file to write.
-    color : str
-        Quantity that colours the cells: displacement, speed, area-ratio, pressure, volume-error, volume, contraction,
-        strength, generation, region or self-intersections. Also an array of the cells, such as gene expression, for a
-        snapshot, and a name in ``Simulation.cell_data`` for a simulation.
-    view : str, optional
-        antero-ventral, ventral, side, cross-section, sagittal-section or apical (apical surface from outside). By default
-        antero-ventral, for an open sheet apical.
-    time_min : float, optional
-        Time of the snapshot of a run, minutes; by default the last.
-    size : (int, int)
-        Width and height, pixels.
-    limits : (float, float), optional
-        Values at the ends of the colour scale, to compare pictures; by default from the data.
-    bar : bool
-        Whether to draw the colour bar.
-
-    Returns
-    -------
-    ndarray of uint8, shape (height, width, 3)
-        RGB image.
-
-    Raises
-    ------
-    ValueError
-        If the colour or view is unknown.
-    PlicaError
-        If neither a display nor off-screen OpenGL is available.
-    """
-    pyvista = needed("pyvista", "render")
-    _make_sure_of_drawing()
-    fields = _core.colour_fields()
-    if isinstance(what, Simulation):
-        grid = what.to_pyvista()
-        grid.point_data["displacement_um"] = what.positions - what.rest_positions
-        grid.point_data["velocity_um_per_s"] = what.velocities
-        for region, cells in what.regions.items():
-            grid.cell_data[f"region_{region}"] = cells[what.hexahedron_cell]
-    else:
-        frame = what if isinstance(what, Frame) else _frame_of(what, time_min)
-        grid = frame.to_pyvista()
-    # Arrays from a file are drawn as numbers from 0.
-    given = {k: {**fields["volume"], "label": k, "array": k} for k in grid.cell_data.keys() if not k.startswith("region_")}
-    field = _named("color", color, {**given, **fields})
-    views = _core.views(np.asarray(grid.points, dtype=float), grid.cells_dict[pyvista.CellType.HEXAHEDRON].astype(np.int32))
-    seen = _named("view", view or next(iter(views)), views)
-    values, names = _values(grid, field)
-    data = grid.point_data if field["on_nodes"] else grid.cell_data
-    data["colour"] = values
-    sight, up = np.array(seen["sight"], dtype=float), seen["up"]
-    if seen["cut_axis"] is not None:  # remove the part in front of the plane
-        origin = np.zeros(3)
-        origin[seen["cut_axis"]] = seen["cut_um"]
-        grid = grid.clip(normal=-sight, origin=origin)
-    low, high = limits or _core.colour_range(color, float(np.nanmin(values)), float(np.nanmax(values)))
-    if not low < high:
-        raise ValueError(f"limits {limits!r}: give two numbers, the lower one first")
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(size))
-    plotter.background_color = "white"
-    steps = field["kind"] == "steps"
-    colours = _colours(field["colours"][: max(2, len(names))] if names else field["colours"], steps)
-    legend: dict[str, Any] = {"title": field["label"] + "\n", "color": "black", "position_x": 0.2, "position_y": 0.08}
-    options: dict[str, Any] = {"scalar_bar_args": legend, "show_scalar_bar": bar}
-    if names:
-        options["annotations"] = dict(enumerate(names))
-        legend["n_labels"] = 0
-        low, high = -0.5, max(2, len(names)) - 0.5
-    plotter.add_mesh(_surface(grid), scalars="colour", cmap=colours, clim=(low, high), show_edges=True,
-                     edge_color="#404040", line_width=0.5, **options)
-    plotter.enable_parallel_projection()
-    plotter.camera_position = [tuple(-1000 * sight / np.linalg.norm(sight)), (0.0, 0.0, 0.0), up]
-    plotter.reset_camera()
-    picture = plotter.screenshot(None if path is None else os.fspath(path), return_img=True)
-    plotter.close()
-    return picture
-
-
-def _named(what: str, name: str, known: Mapping[str, Any]) -> Any:
-    if name not in known:
-        raise ValueError(f"{what} {name!r}: unknown; use one of: {', '.join(known)}")
-    return known[name]
-
-
-def _make_sure_of_drawing() -> None:
-    """Check for OpenGL, because VTK would end the process without it. PlicaError if there is none."""
-    if os.environ.get("DISPLAY"):
-        return
-    for library in ("libEGL.so.1", "libOSMesa.so.8", "libOSMesa.so"):
-        try:
-            ctypes.CDLL(library)
-            return
-        except OSError:
-            pass
-    raise PlicaError("render requires OpenGL, but there is neither a display nor libEGL; on Debian: apt-get install libegl1")
-
-
-def _frame_of(run: PathOrRun, time_min: Optional[float]) -> Frame:
-    frames = _run_of(run).frames
-    return frames[-1] if time_min is None else frames.at(time_min)
-
-
-def _values(grid: Any, field: Mapping[str, Any]) -> tuple[NDArray[np.float64], list[str]]:
-    """Return the values that colour the mesh and, for whole numbers, their labels."""
-    if field["array"] == "region":
-        masks = {k.removeprefix("region_"): np.asarray(v) > 0 for k, v in grid.cell_data.items() if k.startswith("region_")}
-        parts = sorted((name for name, mask in masks.items() if not mask.all()))
-        values = np.zeros(grid.n_cells)
-        # The smallest region of a cell is drawn last.
-        for name in sorted(parts, key=lambda one: -int(masks[one].sum())):
-            values[masks[name]] = parts.index(name) + 1
-        return values, ["other cells", *parts]
-    data = grid.point_data if field["on_nodes"] else grid.cell_data
-    if field["array"] not in data:
-        raise ValueError(f"no array {field['array']}; arrays: {', '.join(data.keys())}")
-    values = np.asarray(data[field["array"]], dtype=float)
-    return (np.linalg.norm(values, axis=1) if values.ndim == 2 else values), []
-
-
-def _colours(colours: list[tuple[float, float, float]], of_steps: bool) -> Any:
-    maps = needed("matplotlib.colors", "render")
-    return maps.ListedColormap(colours) if of_steps else maps.LinearSegmentedColormap.from_list("plica", colours)
+    when = None if time_min is None else number(time_min, "time_min")
+    first, second = (run if isinstance(run, Run) else open_run(run) for run in (a, b))
+    return Comparison(first, second, when)
 
 
 class Trial(NamedTuple):
@@ -302,6 +177,12 @@ class Calibration(NamedTuple):
     trials: list[Trial]
     scenario: Optional[Scenario]
 
+    def __repr__(self) -> str:
+        best = "none" if self.best is None else ", ".join(f"{key} = {value:.6g}" for key, value in self.best.values.items())
+        found = {} if self.best is None else self.best.found
+        told = ", ".join(f"{name} = {'none' if value is None else f'{value:.6g}'}" for name, value in found.items())
+        return f"Calibration({self.end} in {len(self.trials)} trials; best: {best}{'; ' if told else ''}{told})"
+
 
 def calibrate(
     scenario: Union[Scenario, str],
@@ -344,9 +225,9 @@ def calibrate(
     >>> found.end
     'met'
     """
+    callable_of(callback, "callback")
     base = scenario if isinstance(scenario, Scenario) else Scenario(scenario)
-    if base.tissue is not None or base._regions:
-        raise ValueError("calibrate requires a scenario that a file can express: no tissue and no regions given as arrays")
+    base._require_file("calibrate")
     if base["embryo.shape"] == "file" and not _core.reads_meshes:
         raise ValueError("calibrate cannot read embryo.file: this build has no VTK; build plica with VTK")
     trials: list[Trial] = []
@@ -362,9 +243,9 @@ def calibrate(
     result = _core.calibrate(
         base._core,
         [f"{key}={value}" for key, value in base._changes.items()],
-        {key: (float(low), float(high)) for key, (low, high) in vary.items()},
-        {name: (float(value), float(within)) for name, (value, within) in targets.items()},
-        int(most_trials),
+        pairs_of(vary, "vary", "(low, high)"),
+        pairs_of(targets, "targets", "(value, tolerance)"),
+        whole(most_trials, "most_trials"),
         take,
     )
     best = None if result["best"] is None else trial_of(result["best"])

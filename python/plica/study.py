@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 from . import _core, answers
+from .arguments import callable_of, path_of, text_of, whole
 from .emulator import emulator as emulator_of
 from .errors import FileError, needed
 from .indices import sobol_indices as sobol_indices_of
@@ -78,9 +79,9 @@ class Study:
         if isinstance(source, Mapping):
             name, file, text = "study", GIVEN, _toml_of(source)
         elif isinstance(source, str) and "\n" in source:
-            name, file, text = "study", GIVEN, source
+            name, file, text = "study", GIVEN, text_of(source, "source")
         else:
-            path = Path(source)
+            path = Path(path_of(source, "source"))
             name, file, text = path.stem, str(path), "" if path.is_dir() else _text_of(path)
         self._rows: dict[int, str] = {}
         self._directory: Optional[Path] = None
@@ -201,13 +202,17 @@ class Study:
         KeyboardInterrupt
             On Ctrl-C. Finished runs are in `table` and in `out`, from which the study can be resumed.
         """
+        if jobs is not None:
+            jobs = whole(jobs, "jobs")
+        if executor is not None:
+            callable_of(getattr(executor, "submit", executor), "executor.submit")
         if out is None and self._core.keeps_files:
             raise ValueError("out is missing; set it, because keep.each of this study keeps files")
         directory = None
         if out is not None:
             start = "resumed" if resume else "over" if overwrite else "fresh"
             try:
-                directory = _core.StudyDirectory.begin(os.fspath(out), self._core, start)
+                directory = _core.StudyDirectory.begin(path_of(out, "out"), self._core, start)
             except (ValueError, FileError) as error:
                 raise type(error)(_in_python(str(error))) from None
             self._directory = Path(out)
@@ -285,8 +290,6 @@ def _by_executor(executor: Executor, spec: _Spec, runs: list[int]) -> Iterator[t
 
 def _by_processes(jobs: Optional[int], spec: _Spec, runs: list[int], study: _core.Study) -> Iterator[tuple[int, str]]:
     count = min(jobs or len(os.sched_getaffinity(0)), len(runs))
-    if jobs is not None and jobs < 1:
-        raise ValueError(f"jobs: {jobs}; give 1 or more")
     if count <= 1:
         yield from ((run, row) for one in runs for run, row in _rows_of(spec, [one]))
         return

@@ -15,7 +15,7 @@
 #include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "core/units.hpp"
+#include "core/words.hpp"
 #include "scenario/setup.hpp"
 #include "study/calibrate.hpp"
 
@@ -78,8 +78,7 @@ class TrialTable {
     const auto now = std::chrono::steady_clock::now();
     if (!on_terminal_ || now - last_ < std::chrono::milliseconds(100)) return;
     last_ = now;
-    fmt::print(stderr, "\r{:>5}  {}: t = {:.2f} min\033[K", number, values_text(problem_, values),
-               row.time_s() / units::minute);
+    fmt::print(stderr, "\r{:>5}  {}: t = {}\033[K", number, values_text(problem_, values), moment(row.time_s()));
     std::fflush(stderr);
   }
 
@@ -210,8 +209,7 @@ void add_calibrate_command(CLI::App& app, int& status) {
       ->allow_extra_args(false);
   command->add_option("--out,--output,-o", options->out, "FILE.toml to write: the fitted scenario");
   command->add_option("--trials", options->trials, "maximum number of runs (40)")->check(CLI::Range(1, 100000));
-  command->add_option("--threads", options->threads, "number of threads; results do not depend on it")
-      ->check(CLI::Range(1, 1024));
+  add_threads_option(*command, options->threads);
   command->add_flag("--overwrite", options->overwrite, "replace an existing file");
   command->footer(
       "Example: plica calibrate drosophila --vary contraction.apical.stiffness_nN_per_um=3:7 --target "

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <omp.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -9,6 +11,7 @@
 #include "app/delayed_notice.hpp"
 #include "app/interruption.hpp"
 #include "app/scenario_options.hpp"
+#include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/threads.hpp"
@@ -37,8 +40,8 @@ std::string bytes_text(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.0f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
 }
 
-void check_study(const StudyInput& input) {
-  const ThreadCount one(1);
+void check_study(const StudyInput& input, int threads) {
+  const ThreadCount count(std::max(1, threads));
   const Study study(input);
   for (const Diagnostic& note : study.notes()) fmt::print(stderr, "note: {}\n", note.text());
   fmt::print(stderr, "running the first point to estimate the cost (Ctrl-C skips this)\n");
@@ -67,10 +70,13 @@ void add_check_command(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
       "check", "validate a scenario and print it with all defaults; or validate a study and estimate its cost");
   auto options = std::make_shared<ScenarioOptions>();
+  auto threads = std::make_shared<int>(0);
   options->add_to(*command);
+  add_threads_option(*command, *threads);
   command->footer("Example: plica check my.toml --set embryo.elements_per_cell=[2,2,2]");
-  command->callback([options] {
-    if (const std::optional<StudyInput> study = study_in(*options)) return check_study(*study);
+  command->callback([options, threads] {
+    if (*threads > 0) omp_set_num_threads(*threads);
+    if (const std::optional<StudyInput> study = study_in(*options)) return check_study(*study, *threads);
     const Scenario scenario = options->load();
     std::optional<DelayedNotice> notice(std::in_place);
     const auto model = make_model(scenario);

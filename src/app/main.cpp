@@ -1,14 +1,59 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <csignal>
 #include <exception>
+#include <iterator>
 #include <new>
+#include <optional>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "app/commands.hpp"
 #include "core/errors.hpp"
 #include "core/memory.hpp"
 #include "core/version.hpp"
+#include "scenario/suggest.hpp"
+
+namespace plica {
+namespace {
+
+// Name the nearest command or option to one that does not exist; CLI11 only misses another.
+std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
+  const auto commands = [](const CLI::App& of) {
+    std::vector<std::string> names;
+    for (const CLI::App* one : of.get_subcommands({})) names.push_back(one->get_name());
+    return names;
+  };
+  const CLI::App* command = &app;
+  for (const std::string& word : words) {
+    if (const std::vector<std::string> names = commands(*command); std::ranges::count(names, word) > 0) {
+      command = command->get_subcommand(word);
+    } else if (command == &app && !word.starts_with('-')) {
+      return fmt::format("unknown command \"{}\"; {}", word, did_you_mean(word, names));
+    } else if (word.starts_with("--") && word.size() > 2) {
+      const std::string given = word.substr(2, word.find('=') - 2);
+      std::vector<std::string> known;
+      for (const CLI::Option* option : command->get_options())
+        std::ranges::copy(option->get_lnames(), std::back_inserter(known));
+      const std::optional<std::string> nearest = nearest_name(given, known);
+      if (std::ranges::count(known, given) == 0 && nearest)
+        return fmt::format("unknown option --{}; use --{} (nearest match)", given, *nearest);
+    }
+  }
+  return "";
+}
+
+int refuse(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& words) {
+  const std::string unknown = error.get_exit_code() == 0 ? "" : unknown_word(app, words);
+  if (unknown.empty()) return app.exit(error) == 0 ? exit_done : exit_usage;
+  fmt::print(stderr, "plica: {}\n", printable(unknown));
+  return exit_usage;
+}
+
+}  // namespace
+}  // namespace plica
 
 int main(int argc, char** argv) {
   using namespace plica;
@@ -36,7 +81,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_done : exit_usage;
+    return refuse(app, error, {argv + 1, argv + argc});
   } catch (const ScenarioError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return exit_usage;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <memory>
@@ -9,6 +10,7 @@
 #include "app/delayed_notice.hpp"
 #include "app/output_file.hpp"
 #include "app/scenario_options.hpp"
+#include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/names.hpp"
@@ -68,6 +70,7 @@ struct MeshCommand {
   ScenarioOptions scenario;
   std::string out, colour = "region";
   std::vector<std::string> views;
+  int threads = 0;
   bool overwrite = false;
 };
 
@@ -92,6 +95,7 @@ void mesh(const MeshCommand& command) {
   if (!as_picture && !command.out.ends_with(".vtu"))
     throw UsageError("--out " + command.out + ": the file's name must end in .vtu, or in .png for a picture");
   require_free(command.out, command.overwrite);
+  if (command.threads > 0) omp_set_num_threads(command.threads);
   const Scenario scenario = command.scenario.load();
   const Tissue tissue = [&] {
     const DelayedNotice notice;
@@ -144,6 +148,7 @@ void add_mesh_command(CLI::App& app, int&) {
                                fmt::join(names_of(views()), ", ")))
       ->delimiter(',')
       ->type_name("NAME,...");
+  add_threads_option(*command, options->threads);
   command->add_flag("--overwrite", options->overwrite, "replace an existing file");
   command->footer(
       "Examples: plica mesh drosophila --out rest.vtu\n"

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/units.hpp"
+#include "core/words.hpp"
 
 namespace plica {
 namespace {
@@ -40,9 +41,9 @@ void Progress::show(const Observation& row) {
   constexpr int width = 24;
   const int filled = static_cast<int>(std::lround(part * width));
   const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');
-  const std::string line = fmt::format(
-      "[{}] {:3.0f} %  t = {:6.2f} min  depth {:6.2f} um  fastest node {:9.3g} um/min  {}", bar, 100 * part,
-      row.time_s() / units::minute, row["furrow_depth_um"].value_or(0), fastest_node(row) / units::um_per_minute, left);
+  const std::string line = fmt::format("[{}] {:3.0f} %  t = {:>10}  depth {:6.2f} um  fastest node {:9.3g} um/min  {}",
+                                       bar, 100 * part, moment(row.time_s()), row["furrow_depth_um"].value_or(0),
+                                       fastest_node(row) / units::um_per_minute, left);
   // Clear to the end of the line, since the next line may be shorter.
   fmt::print(stderr, "{}{}{}", on_terminal_ ? "\r" : "", line, on_terminal_ ? "\033[K" : "\n");
   std::fflush(stderr);

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <sstream>
 
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
@@ -124,6 +126,15 @@ std::string movie_command(const std::string& stem, std::size_t count, bool even)
                      count, even ? "" : " -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white'", quoted(stem + ".mp4"));
 }
 
+/// Way to ffmpeg without the system's packages; empty if it is there.
+std::string way_to_ffmpeg() {
+  std::istringstream folders(std::getenv("PATH") == nullptr ? "" : std::getenv("PATH"));
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (::access((fs::path(folder) / "ffmpeg").c_str(), X_OK) == 0) return "";
+  return "ffmpeg is not installed; after pip install imageio-ffmpeg, write for it:\n"
+         "  \"$(python3 -c 'import imageio_ffmpeg as f; print(f.get_ffmpeg_exe())')\"\n";
+}
+
 /// Draw all frames into numbered files; on a terminal with a live progress line.
 int draw_movie(const RenderCommand& command, const RunPictures& run, bool even) {
   const std::vector<double>& times_s = run.times_s();
@@ -142,12 +153,17 @@ int draw_movie(const RenderCommand& command, const RunPictures& run, bool even) 
     if (interrupted()) return interrupted_status();
   }
   if (!command.quiet)
-    fmt::print("{}_00000.png to {}\nMake a movie of them with:\n  {}\n", stem, file_of(times_s.size() - 1).string(),
-               movie_command(stem, times_s.size(), even));
+    fmt::print("{}_00000.png to {}\nMake a movie of them with:\n  {}\n{}", stem, file_of(times_s.size() - 1).string(),
+               movie_command(stem, times_s.size(), even), way_to_ffmpeg());
   return exit_done;
 }
 
 int render(const RenderCommand& command) {
+  if (command.out.ends_with(".gif") || command.out.ends_with(".mp4"))
+    throw UsageError(
+        fmt::format("--out {0}: the file's name must end in .png; to write a movie, pip install 'plica[movie]' and, in "
+                    "Python, plica.movie(\"{1}\", \"{0}\")",
+                    command.out, command.directory));
   if (!command.out.ends_with(".png") || fs::path(command.out).stem().empty())
     throw UsageError("--out " + command.out + ": the file's name must end in .png");
   if (command.movie && (command.strip || !command.times.empty()))

@@ -8,6 +8,7 @@
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
 #include "app/runs_progress.hpp"
+#include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/threads.hpp"
 #include "core/words.hpp"
@@ -20,7 +21,7 @@ namespace {
 struct ReproduceCommand {
   std::string what = "paper", out;
   bool quick = false, overwrite = false, quiet = false;
-  int at_a_time = 2;
+  Workers workers = {.processes = 2};
 };
 
 // Refuse a directory with results unless --overwrite; nothing is removed.
@@ -40,7 +41,7 @@ int reproduce_paper(const ReproduceCommand& command) {
   catch_interruptions();
   std::optional<RunsProgress> progress;
   const ReproduceOutcome outcome = reproduce(
-      {command.out, command.quick, command.at_a_time},
+      {command.out, command.quick, command.workers},
       [&](std::size_t done, std::size_t count) {
         if (!progress) progress.emplace(0, count, command.quiet);
         progress->show(done);
@@ -83,7 +84,7 @@ int reproduce_experiments(const ReproduceCommand& command) {
     fmt::print(stderr, "{}: {}, {} complete\n", experiments.name, plural(results.runs(), "run"), results.ended());
   RunsProgress progress(results.ended(), results.runs(), command.quiet);
   const auto on_run = [&] { progress.show(results.ended(), results.not_solved().size()); };
-  run_experiments(results, command.at_a_time, {on_run, interrupted});
+  run_experiments(results, command.workers, {on_run, interrupted});
   progress.finish();
   if (interrupted()) {
     fmt::print(stderr, "plica: interrupted; to continue, repeat the command\n");
@@ -105,9 +106,10 @@ void add_reproduce_command(CLI::App& app, int& status) {
   command->add_option("WHAT", options->what, "paper, living (the living embryo), or a file of experiments")
       ->capture_default_str();
   command->add_option("--out,--output,-o", options->out, "directory for the page, figures and runs")->required();
-  command->add_option("--jobs", options->at_a_time, "simultaneous runs, one thread each")
+  command->add_option("--jobs", options->workers.processes, "simultaneous runs")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+  add_threads_option(*command, options->workers.threads, "threads per run (1)");
   command->add_flag("--quick", options->quick,
                     "paper: few runs, coarse steps; experiments: first draw only, none marked slow");
   command->add_flag("--overwrite", options->overwrite, "replace the results in DIR");

@@ -13,6 +13,7 @@
 #include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
+#include "core/words.hpp"
 #include "record/archive.hpp"
 #include "scenario/advice.hpp"
 #include "show/recorded_run.hpp"
@@ -37,14 +38,14 @@ void print_result(const nlohmann::ordered_json& summary, const std::string& out)
   const std::string criterion = summary.at("stopped_by").is_string() && summary.at("stopped_by") != "equilibrium"
                                     ? fmt::format(" (stopped by {})", summary.at("stopped_by").get<std::string>())
                                     : "";
-  fmt::print("{}: {}{} at {:.2f} min after {} step{} in {:.1f} s\n", summary.at("scenario").get<std::string>(),
-             summary.at("status").get<std::string>(), criterion, summary.at("time_s").get<double>() / units::minute,
+  fmt::print("{}: {}{} at {} after {} step{} in {:.1f} s\n", summary.at("scenario").get<std::string>(),
+             summary.at("status").get<std::string>(), criterion, moment(summary.at("time_s").get<double>()),
              summary.at("steps").get<int>(), summary.at("steps") == 1 ? "" : "s", summary.at("wall_s").get<double>());
   const nlohmann::ordered_json &closed_s = summary.at("lips_closed_time_s"), &closed = summary.at("lips_closed");
   const std::string lips = closed.is_null() ? ""
                            : closed_s.is_number()
-                               ? fmt::format(", lips {} at {:.2f} min", closed == 1 ? "closed" : "open again, closed",
-                                             closed_s.get<double>() / units::minute)
+                               ? fmt::format(", lips {} at {}", closed == 1 ? "closed" : "open again, closed",
+                                             moment(closed_s.get<double>()))
                                : ", lips open";
   fmt::print("  furrow depth {}, apical area ratio {} (midline centre), peak speed ratio {} (end/centre){}\n",
              value("furrow_depth_um", " um"), value("vml_apical_area_ratio", ""), value("peak_speed_ratio", ""), lips);
@@ -124,7 +125,7 @@ int run_scenario(const RunOptions& options) {
   notice.reset();
   use_threads(options.threads, simulation.model().tissue.elements.size(), options.scenario.name_or_path);
 
-  if (!options.quiet)
+  if (!options.quiet && !options.resume)  // a resumed run has shown them
     for (const std::string& line : advice(scenario, simulation.model()))
       if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
 
@@ -159,8 +160,7 @@ void add_run_command(CLI::App& app, int& status) {
   auto options = std::make_shared<RunOptions>();
   options->scenario.add_to(*command);
   command->add_option("--out,--output,-o", options->out, "directory for the results")->required();
-  command->add_option("--threads", options->threads, "number of threads; results do not depend on it")
-      ->check(CLI::Range(1, 1024));
+  add_threads_option(*command, options->threads);
   command->add_flag("--quiet", options->quiet, "print only warnings and errors");
   auto* overwrite = command->add_flag("--overwrite", options->overwrite, "replace the results in DIR");
   command->add_flag("--resume", options->resume, "continue from the checkpoint in DIR; without one, start")

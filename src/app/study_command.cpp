@@ -8,6 +8,7 @@
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
 #include "app/runs_progress.hpp"
+#include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/threads.hpp"
 #include "core/words.hpp"
@@ -23,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 struct StudyOptions {
   std::string study, out, engine = "local";
-  int jobs = 0;
+  int jobs = 0, threads = 1;
   bool resume = false, overwrite = false, quiet = false, wait = false;
   std::vector<std::string> sbatch;
 };
@@ -67,15 +68,16 @@ int ended(const Study& study, const StudyDirectory& directory, const StudyOption
 }
 
 int run_here(const Study& study, StudyDirectory& directory, const StudyOptions& options, Clock::time_point start) {
-  const int jobs =
-      options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int jobs = options.jobs > 0
+                       ? options.jobs
+                       : std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / options.threads);
   StudyStatus status = status_of(directory, study);
   RunsProgress progress(status.ended(), study.runs(), options.quiet);
   const auto on_row = [&](std::size_t, const std::string& row) {
     status.add(row, study);
     progress.show(status.ended(), status.without_result());
   };
-  run_study(study, directory, jobs, {}, {on_row, interrupted});
+  run_study(study, directory, {jobs, options.threads}, {}, {on_row, interrupted});
   progress.finish();
   return ended(study, directory, options, start);
 }
@@ -107,10 +109,12 @@ int run_on_slurm(const Study& study, StudyDirectory& directory, const StudyOptio
 int run(const StudyOptions& options) {
   if (options.study.empty()) throw UsageError("STUDY: missing; give STUDY.toml, or see plica study --help");
   if (options.out.empty()) throw UsageError("--out: missing; give the directory for the results");
+  if (options.engine == "slurm" && options.threads > 1)
+    throw UsageError("--threads: not available with --engine slurm, whose tasks have one thread each; remove it");
   const auto start = Clock::now();
   const ThreadCount one(1);
   const Study study(read_study(options.study));
-  if (!options.quiet)
+  if (!options.quiet && !options.resume)
     for (const Diagnostic& note : study.notes()) fmt::print(stderr, "note: {}\n", note.text());
   using Start = StudyDirectory::Start;
   StudyDirectory directory = StudyDirectory::begin(options.out, study,
@@ -128,7 +132,7 @@ int work(const std::string& out, int task) {
   const ThreadCount one(1);
   auto [directory, study] = StudyDirectory::open_to_run(out);
   catch_interruptions();
-  run_study(study, directory, 1, runs_of_task(directory, task), {{}, interrupted});
+  run_study(study, directory, {}, runs_of_task(directory, task), {{}, interrupted});
   return interrupted() ? interrupted_status() : exit_done;
 }
 
@@ -161,8 +165,9 @@ void add_study_command(CLI::App& app, int& status) {
   auto options = std::make_shared<StudyOptions>();
   command->add_option("STUDY", options->study, "TOML file: scenario, varied keys, design");
   command->add_option("--out,--output,-o", options->out, "directory for the table, runs.csv");
-  command->add_option("--jobs,-j", options->jobs, "simultaneous runs (default: one per core)")
+  command->add_option("--jobs,-j", options->jobs, "simultaneous runs (default: as many as cores allow)")
       ->check(CLI::Range(1, 4096));
+  add_threads_option(*command, options->threads, "threads per run (1)");
   auto* overwrite = command->add_flag("--overwrite", options->overwrite, "replace the study in DIR");
   command->add_flag("--resume", options->resume, "continue the study in DIR; without one, start")->excludes(overwrite);
   command->add_flag("--quiet", options->quiet, "print only warnings and errors");

@@ -37,6 +37,10 @@ void restart_with_short_waits(const std::string& scenario) {
 
 }  // namespace
 
+void add_threads_option(CLI::App& command, int& threads, const char* meaning) {
+  command.add_option("--threads", threads, meaning)->check(CLI::Range(1, 1024));
+}
+
 void use_threads(int asked, std::size_t elements, const std::string& scenario) {
   const int threads = threads_for(asked, elements);
   if (threads > 1) restart_with_short_waits(scenario);

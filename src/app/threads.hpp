@@ -1,10 +1,15 @@
 // Number of threads of a run.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <string>
 
 namespace plica {
+
+/// Add the option --threads.
+void add_threads_option(CLI::App& command, int& threads,
+                        const char* meaning = "number of threads; results do not depend on it");
 
 /// Set the number of threads: `asked`, else OMP_NUM_THREADS, else as many as the mesh can keep busy. Results do not
 /// depend on it.

@@ -17,4 +17,9 @@ inline std::string duration(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
+/// Simulated time in the unit that shows it.
+inline std::string moment(double time_s) {
+  return time_s < 60 ? fmt::format("{:.3g} s", time_s) : fmt::format("{:.2f} min", time_s / 60);
+}
+
 }  // namespace plica

@@ -204,7 +204,7 @@ void begin_experiments(const fs::path& directory, const Experiments& experiments
   write_file(directory / "experiments.toml", experiments.text);
 }
 
-void run_experiments(ExperimentResults& results, int jobs, const ExperimentHooks& hooks) {
+void run_experiments(ExperimentResults& results, Workers workers, const ExperimentHooks& hooks) {
   const ThreadCount one(1);
   const std::vector<ExperimentResults::Run> open = results.open_runs();
   std::vector<std::size_t> pieces(open.size());
@@ -212,6 +212,7 @@ void run_experiments(ExperimentResults& results, int jobs, const ExperimentHooks
   // Answers of a worker: empty if stopped, "ended", or the reason of a refusal.
   constexpr const char* ended = "ended";
   const auto make = [&](std::size_t piece) -> std::string {
+    const ThreadCount count(workers.threads);
     const auto reason = results.make(open[piece], worker_is_to_stop);
     return !reason ? "" : reason->empty() ? ended : *reason;
   };
@@ -223,7 +224,7 @@ void run_experiments(ExperimentResults& results, int jobs, const ExperimentHooks
       results.take(open[piece], crash.empty() ? "refused" : "crashed", crash.empty() ? answer : crash);
     if (hooks.on_run) hooks.on_run();
   };
-  work_in_processes(jobs, pieces, make, {take, hooks.stop_requested});
+  work_in_processes(workers.processes, pieces, make, {take, hooks.stop_requested});
   write_file(results.directory() / "experiments.csv", results.csv());
 }
 

@@ -17,6 +17,7 @@
 
 #include "experiments/experiments.hpp"
 #include "experiments/judgement.hpp"
+#include "study/worker_pool.hpp"
 
 namespace plica {
 
@@ -92,7 +93,7 @@ struct ExperimentHooks {
 /// contains other files.
 void begin_experiments(const std::filesystem::path& directory, const Experiments& experiments, bool overwrite);
 
-/// Make the unfinished runs, `jobs` at a time, and write experiments.csv, also when stopped.
-void run_experiments(ExperimentResults& results, int jobs, const ExperimentHooks& hooks);
+/// Make the unfinished runs and write experiments.csv, also when stopped.
+void run_experiments(ExperimentResults& results, Workers workers, const ExperimentHooks& hooks);
 
 }  // namespace plica

@@ -9,7 +9,9 @@ namespace plica {
 struct SurfaceDistance::Search {};
 
 SurfaceDistance::SurfaceDistance(const TriangleSurface&) {
-  throw FileError("distances to a surface are not available (built without VTK)");
+  throw FileError(
+      "distances to a surface are not available (built without VTK); in Python: pip install pyvista, and "
+      "plica.compare(A, B).surface");
 }
 
 SurfaceDistance::~SurfaceDistance() = default;

@@ -10,7 +10,7 @@ ReproduceOutcome reproduce(const ReproduceOptions& options,
   const Plan plan = make_plan(options.quick);
   tell(0, plan.runs.size());
   const std::vector<BatchOutcome> ends = run_batch(
-      options.directory, plan.runs, options.at_a_time,
+      options.directory, plan.runs, options.workers,
       [&](std::size_t done, const BatchRun&) { tell(done, plan.runs.size()); }, interrupted);
   ReproduceOutcome outcome;
   outcome.interrupted = interrupted();

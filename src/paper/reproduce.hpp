@@ -13,7 +13,7 @@ namespace plica {
 struct ReproduceOptions {
   std::filesystem::path directory;
   bool quick = false;
-  int at_a_time = 2;
+  Workers workers = {};
 };
 
 struct ReproduceOutcome {

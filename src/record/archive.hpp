@@ -44,6 +44,7 @@ class ArchiveReader {
   ArchiveReader(const ArchiveReader&) = delete;
   ArchiveReader& operator=(const ArchiveReader&) = delete;
 
+  [[nodiscard]] bool has(const std::string& name) const;
   [[nodiscard]] std::vector<double> doubles(const std::string& name) const;
   [[nodiscard]] std::vector<int> integers(const std::string& name) const;
   [[nodiscard]] std::vector<char> bytes(const std::string& name) const;

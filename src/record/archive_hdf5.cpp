@@ -168,6 +168,7 @@ struct ArchiveReader::File {
 ArchiveReader::ArchiveReader(std::string_view image) : file_(std::make_unique<File>(image)) {}
 ArchiveReader::~ArchiveReader() = default;
 
+bool ArchiveReader::has(const std::string& name) const { return H5Lexists(file_->file, name.c_str(), H5P_DEFAULT) > 0; }
 std::vector<double> ArchiveReader::doubles(const std::string& name) const {
   std::vector<double> values = file_->get<double>(name, H5T_FLOAT, H5T_NATIVE_DOUBLE);
   if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))

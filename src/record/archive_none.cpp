@@ -25,6 +25,7 @@ std::string ArchiveWriter::image() { return {}; }
 
 ArchiveReader::ArchiveReader(std::string_view) { refuse(); }
 ArchiveReader::~ArchiveReader() = default;
+bool ArchiveReader::has(const std::string&) const { return false; }
 std::vector<double> ArchiveReader::doubles(const std::string&) const { return {}; }
 std::vector<int> ArchiveReader::integers(const std::string&) const { return {}; }
 std::vector<char> ArchiveReader::bytes(const std::string&) const { return {}; }

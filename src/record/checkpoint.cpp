@@ -290,6 +290,30 @@ std::vector<std::shared_ptr<const PastDivision>> load_divisions(const ArchiveRea
   return past;
 }
 
+// Absent from checkpoints of earlier versions and of runs without such arrays.
+void save_arrays(ArchiveWriter& archive, const std::map<std::string, CellArray>& arrays) {
+  if (arrays.empty()) return;
+  Saving save(archive);
+  save("run/outside_names", in_lines(keys_of(arrays)));
+  std::vector<std::vector<double>> values;
+  for (const auto& [name, list] : arrays) values.push_back(list);
+  save("run/outside_values", values);
+}
+
+std::map<std::string, CellArray> load_arrays(const ArchiveReader& archive) {
+  std::map<std::string, CellArray> arrays;
+  if (!archive.has("run/outside_names")) return arrays;
+  Loading load(archive);
+  std::string names;
+  std::vector<std::vector<double>> values;
+  load("run/outside_names", names);
+  load("run/outside_values", values);
+  const std::vector<std::string> lines = of_lines(names);
+  if (lines.size() != values.size()) Loading::refuse("run/outside_names");
+  for (std::size_t a = 0; a < lines.size(); ++a) arrays[lines[a]] = std::move(values[a]);
+  return arrays;
+}
+
 /// Limit of processor time: some seconds, plus one per 10 MB, a hundred times the usual duration.
 void limit_time(std::size_t bytes) {
   const rlim_t seconds = 3 + bytes / 10'000'000;
@@ -337,6 +361,7 @@ std::string CheckpointBytes::operator()(const Checkpoint& checkpoint) {
   visit(save, checkpoint);
   save_divisions(*archive, checkpoint.run.past_divisions);
   save_rows(*archive, checkpoint.record.rows);
+  save_arrays(*archive, checkpoint.run.outside_arrays);
   std::string bytes = archive->image();
   if (bytes.size() <= most_kept_bytes) archive_ = std::move(archive);
   return bytes += trailer(bytes);
@@ -360,6 +385,7 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
     checkpoint.record.rows = load_rows(archive);  // first: they reveal another version
     visit(load, checkpoint);
     checkpoint.run.past_divisions = load_divisions(archive);
+    checkpoint.run.outside_arrays = load_arrays(archive);
     return checkpoint;
   };
   read_on_trial([&] { (void)read(); }, image.size());

@@ -65,11 +65,12 @@ void FrameTaker::follow_division() {
   section_cells_ = section_cells(model_.tissue, sites_.outward);
 }
 
-FrameRecord FrameTaker::take(const State& state) const {
+FrameRecord FrameTaker::take(const State& state, const std::map<std::string, CellArray>& outside) const {
   FrameRecord frame{state.time_s, cells_, state.positions, {}, {}, {}, {}, {}, {}};
   for (const NodeColumn& column : node_columns()) frame.vectors.emplace_back(column.name, column.values(model_, state));
   const MeasuredCells measured(model_, state);
   add_cells(measured, frame);
+  frame.scalars.insert(frame.scalars.end(), outside.begin(), outside.end());
   add_midline(measured, frame);
   add_sections(measured, frame);
   return frame;

@@ -1,6 +1,7 @@
 // Snapshot of a run, copied from model and state so that it can be written while these change.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -19,7 +20,7 @@ struct FrameCells {
   std::vector<CellId> element_cell;
   std::size_t cells = 0, nodes = 0;
   std::vector<std::pair<std::string, std::vector<int>>> regions;   // cells, by array name
-  std::vector<std::pair<std::string, std::vector<double>>> given;  // cells: measured data from an input file
+  std::vector<std::pair<std::string, std::vector<double>>> given;  // cells: measured data of the scenario
   FramePolygons polygons;
 
   explicit FrameCells(const Tissue& tissue);
@@ -46,7 +47,8 @@ class FrameTaker {
   /// `with_cell_rows`: snapshots include the rows of cells.csv.
   FrameTaker(const Model& model, const FurrowSites& sites, bool with_cell_rows);
 
-  [[nodiscard]] FrameRecord take(const State& state) const;
+  /// `outside`: arrays of cells besides those of the model (Simulation::outside_arrays).
+  [[nodiscard]] FrameRecord take(const State& state, const std::map<std::string, CellArray>& outside) const;
 
   [[nodiscard]] bool with_cell_rows() const { return with_cell_rows_; }
 

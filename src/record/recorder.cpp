@@ -114,7 +114,7 @@ void Recorder::step_accepted(const AcceptedStep& step, const Observation& measur
     const auto record = step_record();
     if (step.frame_is_due) {
       last_frame_s_ = step.state.time_s;
-      record->frame = std::make_shared<const FrameRecord>(frame_taker_.take(step.state));
+      record->frame = std::make_shared<const FrameRecord>(frame_taker_.take(step.state, simulation_.outside_arrays()));
     }
     writing_.add([this, record] { write(*record); });
   } else if (step.frame_is_due) {
@@ -164,8 +164,8 @@ void Recorder::append_series(const Observation& row) { series_->append(series_ro
 
 void Recorder::save_frame() {
   last_frame_s_ = simulation_.time_s();
-  writing_.add(
-      [this, frame = std::make_shared<const FrameRecord>(frame_taker_.take(simulation_.state()))] { write(*frame); });
+  writing_.add([this, frame = std::make_shared<const FrameRecord>(
+                          frame_taker_.take(simulation_.state(), simulation_.outside_arrays()))] { write(*frame); });
 }
 
 void Recorder::write(const FrameRecord& frame) {

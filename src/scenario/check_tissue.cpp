@@ -142,7 +142,7 @@ void check_arrays(const Scenario& scenario, const Tissue& tissue, std::vector<Di
         const std::vector<std::string> names = keys_of(tissue.cell_arrays);
         errors.push_back(diagnostic_at(
             scenario, key, fmt::format("the embryo has no array \"{}\"", input.profile.array),
-            names.empty() ? "use an embryo from a file (shape \"points\", \"surface\" or \"file\") with this array"
+            names.empty() ? "set embryo.cell_arrays to a table with this column, or use a file with this array"
                           : fmt::format("set array to one of: {}", fmt::join(names, ", "))));
         continue;
       }

@@ -93,24 +93,41 @@ std::string trimmed(const std::string& text) {
   return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
+/// Whether the key takes a text, whose quotes the shell may have removed.
+bool takes_text(const std::string& key) {
+  const Row* row = row_of_key(key);
+  const std::string type = row == nullptr ? "" : row->type();
+  return type == "text" || type == "word";
+}
+
+/// Parses a value in TOML, or a text without quotes; nothing if it is neither.
+std::optional<toml::table> parse_value(const std::string& key, const std::string& value) {
+  toml::table document;
+  try {
+    document = toml::parse("v = " + value);
+    if (document.size() != 1) return {};
+    const toml::node& node = *document.get("v");
+    if (node.is_string() || !node.is_value() || !takes_text(key)) return document;
+  } catch (const toml::parse_error&) {
+    const auto in_bare_word = [](char c) { return is_plain_name({&c, 1}) || c == '.' || c == '/'; };
+    const bool is_broken = value.empty() || std::string_view("\"'[{").find(value.front()) != std::string_view::npos;
+    if (is_broken || (!takes_text(key) && !std::ranges::all_of(value, in_bare_word))) return {};
+  }
+  document.insert_or_assign("v", value);
+  return document;
+}
+
 /// Converts "dotted.key=value" to a TOML document; nothing if it cannot be parsed.
 std::optional<toml::table> parse_override(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || line_of_too_deep_key(text) > 0) return {};
   const std::string key = trimmed(text.substr(0, equals)), value = trimmed(text.substr(equals + 1));
-  toml::table document;
-  try {
-    document = toml::parse("v = " + value);
-    if (document.size() != 1) return {};
-  } catch (const toml::parse_error&) {
-    const auto in_bare_word = [](char c) { return is_plain_name({&c, 1}) || c == '.' || c == '/'; };
-    if (value.empty() || !std::ranges::all_of(value, in_bare_word)) return {};
-    document.insert_or_assign("v", value);
-  }
+  std::optional<toml::table> document = parse_value(key, value);
+  if (!document) return {};
   // The innermost key gets the value; each further key a table around it.
   const std::size_t last = key.rfind('.');
   toml::table nested;
-  nested.insert_or_assign(last == std::string::npos ? key : key.substr(last + 1), std::move(*document.get("v")));
+  nested.insert_or_assign(last == std::string::npos ? key : key.substr(last + 1), std::move(*document->get("v")));
   for (std::size_t end = last; end != std::string::npos;) {
     const std::size_t dot = end == 0 ? std::string::npos : key.rfind('.', end - 1);
     const std::size_t begin = dot == std::string::npos ? 0 : dot + 1;

@@ -95,8 +95,9 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
       if (array == tissue.cell_arrays.end()) {
         const std::vector<std::string> names = keys_of(tissue.cell_arrays);
         errors.push_back(diagnostic_at(scenario, "region." + name + ".array",
-                                       fmt::format("the file has no array \"{}\"", region.array),
-                                       names.empty() ? "use a file with this array"
+                                       fmt::format("the embryo has no array \"{}\"", region.array),
+                                       names.empty() ? "set embryo.cell_arrays to a table with this column, or use a "
+                                                       "file with this array"
                                                      : fmt::format("set array to one of: {}", fmt::join(names, ", "))));
       } else {
         const auto is_wanted = [&](double value) {

@@ -69,7 +69,9 @@ struct EmbryoInput {
   std::string file;          // "file": hexahedral mesh read by VTK; "points": table; "surface": polygons
   std::string apical_array;  // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;
                              // empty: the outer surface
-  std::shared_ptr<const HexahedralMesh> mesh;  // replaces the file; set by programs, not in TOML
+  std::string cell_arrays;   // table with one row per cell; its columns become arrays
+  std::shared_ptr<const HexahedralMesh> mesh;         // replaces the file; set by programs, not in TOML
+  std::map<std::string, std::vector<double>> arrays;  // cells; besides those of files; set by programs, not in TOML
 };
 
 enum class ElasticModel { corotational, shape_memory, neo_hookean };

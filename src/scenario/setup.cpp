@@ -168,6 +168,27 @@ Tissue build_tissue(const Scenario& scenario) {
   return read_tissue(scenario);
 }
 
+/// Adds arrays given per cell, by a table or by a program, to those of the tissue's own file.
+void add_arrays(const Scenario& scenario, Tissue& tissue) {
+  const auto add = [&](const std::map<std::string, CellArray>& arrays, const std::string& whose) {
+    for (const auto& [name, values] : arrays)
+      if (values.size() != tissue.cells.size())
+        throw ScenarioError({diagnostic_at(
+            scenario, "embryo.cell_arrays",
+            fmt::format("{} {} values for {} cells", whose, values.size(), tissue.cells.size()),
+            "give one per cell, in the order of cell_id; `plica mesh` writes the cells with their positions")});
+      else
+        tissue.cell_arrays[name] = values;
+  };
+  const std::string& file = scenario.embryo.cell_arrays;
+  try {
+    if (!file.empty()) add(read_cell_table(file), file + " has");
+  } catch (const FileError& error) {
+    throw ScenarioError({diagnostic_at(scenario, "embryo.cell_arrays", error.what(), "")});
+  }
+  add(scenario.embryo.arrays, "an array given has");
+}
+
 /// Whole tissue, in which cells are counted from the midline, and the part of it that is solved.
 struct Origin {
   const Tissue& whole;
@@ -408,6 +429,7 @@ void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model)
 
 Tissue make_tissue(const Scenario& scenario) {
   Tissue tissue = build_tissue(scenario);
+  add_arrays(scenario, tissue);
   std::vector<Diagnostic> errors;
   check_rest_shape(scenario, tissue, errors);
   add_regions(scenario, tissue, errors);

@@ -45,7 +45,7 @@ void drop_unfit_selectors(Scenario& scenario, Input& input) {
   const EmbryoShape shape = shape_of(scenario.embryo);
   std::set<std::string_view> unfit;
   if (!is_of_grid(shape)) unfit = {"face", "cells_along", "cells_across"};
-  if (!is_from_file(shape)) unfit.insert({"array", "above", "below"});
+  if (!is_from_file(shape) && scenario.embryo.cell_arrays.empty()) unfit.insert({"array", "above", "below"});
   const std::vector<const Row*> rows = rows_of("region.*");
   for (const auto& named : scenario.regions) {
     const std::string& name = named.first;
@@ -334,10 +334,6 @@ class RegionCheck {
                     "set neighbours_of to the region inside the rings");
     if (!input_.sound("embryo.shape")) return;
     const EmbryoShape shape = shape_of(scenario_.embryo);
-    if (!region.array.empty() && !is_from_file(shape)) {
-      input_.report(path + ".array", "a built embryo has no arrays",
-                    "remove array, or use shape \"file\", \"points\" or \"surface\"" + instead_of(path + ".array"));
-    }
     for (const auto& [key, value] : {std::pair("above", region.above), {"below", region.below}})
       if (value && region.array.empty() && input_.sound(path + ".array"))
         input_.report(fmt::format("{}.{}", path, key), "is not used without array", "set array");

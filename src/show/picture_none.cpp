@@ -8,7 +8,10 @@ namespace plica {
 
 struct Painter::Screen {};
 
-Painter::Painter() { throw FileError("pictures are not available (built without VTK)"); }
+Painter::Painter() {
+  throw FileError(
+      "pictures are not available (built without VTK); in Python: pip install pyvista, and plica.render(DIR, FILE)");
+}
 Painter::~Painter() = default;
 std::string Painter::png(const Picture&) { return ""; }
 

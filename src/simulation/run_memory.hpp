@@ -1,6 +1,7 @@
 // State of a run between two steps, as stored in checkpoints and copied by branches.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -34,6 +35,7 @@ struct RunMemory {
   FactorMemory factor;
   std::vector<std::shared_ptr<const PastDivision>> past_divisions;
   std::vector<std::vector<double>> whole_internals;  // with mirror planes: internal variables of the full model
+  std::map<std::string, CellArray> outside_arrays;   // cells (all, with mirror planes): set from outside for output
 };
 
 /// Whether the run has ended.

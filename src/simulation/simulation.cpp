@@ -10,6 +10,7 @@
 
 #include "core/clock.hpp"
 #include "core/errors.hpp"
+#include "measure/cell_columns.hpp"
 #include "mechanics/active/given_activities.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"
@@ -158,6 +159,25 @@ void Simulation::set_activity(const std::string& label, std::vector<double> acti
   now_.equilibrium_time_s.reset();
 }
 
+void Simulation::set_cell_array(const std::string& name, CellArray values) {
+  const Tissue& tissue = model().tissue;
+  const bool is_taken = is_plicas(name) || tissue.cell_arrays.contains(name) ||
+                        std::ranges::count(cell_columns(), name, &CellColumn::name) > 0;
+  const bool is_text = std::ranges::none_of(name, [](unsigned char c) { return c < ' '; });
+  if (name.empty() || is_taken || !is_text)
+    throw UsageError(fmt::format(
+        "array \"{}\": {}; choose another name", name,
+        is_taken ? "is an output variable or an array of the embryo" : "the name is empty or has control characters"));
+  if (values.size() != tissue.cells.size())
+    throw UsageError(fmt::format("array \"{}\": {} values for {} cells; give one per cell", name, values.size(),
+                                 tissue.cells.size()));
+  for (std::size_t c = 0; c < values.size(); ++c)
+    if (!std::isfinite(values[c]))
+      throw UsageError(fmt::format("array \"{}\": the value of cell {} is {}; give a finite number", name,
+                                   id_of(model(), CellId(c)), values[c]));
+  now_.outside_arrays[name] = std::move(values);
+}
+
 void Simulation::go_on_from(RunMemory memory, Observation measures) {
   for (const auto& past : memory.past_divisions) {
     if (const auto why = why_unfit(*past, *model_)) throw UnfitMemory(*why);
@@ -169,6 +189,8 @@ void Simulation::go_on_from(RunMemory memory, Observation measures) {
   if (const auto why = why_unfit(memory, *model_)) throw UnfitMemory(*why);
   if (memory.whole_internals.size() != (full_model_ ? full_model_->model().laws.size() : 0))
     throw UnfitMemory("its mirror planes do not fit this embryo");
+  for (const auto& [name, values] : memory.outside_arrays)
+    if (values.size() != model().tissue.cells.size()) throw UnfitMemory("its cell arrays do not fit this embryo");
   now_ = std::move(memory);
   if (full_model_) full_model_->go_to(*model_, now_.state, std::move(now_.whole_internals));
   measures_ = std::move(measures);
@@ -194,6 +216,7 @@ void Simulation::divide(const std::vector<PlannedDivision>& due) {
   now_.divisions += static_cast<int>(due.size());
   now_.equilibrium_time_s.reset();  // it counts only after the last division
   const Division division = make_division(now_.state, due);
+  for (auto& [name, values] : now_.outside_arrays) values = inherited(division, values);
   renew_stepper();
   step_length_ = StepLength(controls_);
   for (SimulationListener* listener : listeners_) listener->cells_divided(division);

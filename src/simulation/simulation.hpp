@@ -110,6 +110,12 @@ class Simulation {
   /// Throws UsageError for an unknown identifier, a wrong size or value, and asymmetric factors if one side is solved.
   void set_activity(const std::string& label, std::vector<double> activities);
 
+  /// Keep values of cells that snapshots and checkpoints carry along and no law reads, such as the state of a coupled
+  /// model; daughters inherit them. Throws UsageError for the name of another array, a wrong size, or a value that is
+  /// not finite.
+  void set_cell_array(const std::string& name, CellArray values);
+  [[nodiscard]] const std::map<std::string, CellArray>& outside_arrays() const { return now_.outside_arrays; }
+
   void listen(SimulationListener& listener) { listeners_.push_back(&listener); }
   void stop_listening(SimulationListener& listener) { std::erase(listeners_, &listener); }
 

@@ -22,8 +22,8 @@ fs::path error_file(const fs::path& directory, const BatchRun& run) {
   return directory / "runs" / (run.id + ".stderr.txt");
 }
 
-// Start `plica run` on one thread. Returns -1 if no process can be started.
-pid_t start(const fs::path& directory, const BatchRun& run) {
+// Start `plica run`. Returns -1 if no process can be started.
+pid_t start(const fs::path& directory, const BatchRun& run, int threads) {
   const std::string program = fs::read_symlink("/proc/self/exe").string();
   std::vector<std::string> words = {"plica",
                                     "run",
@@ -33,7 +33,7 @@ pid_t start(const fs::path& directory, const BatchRun& run) {
                                     "--quiet",
                                     "--overwrite",
                                     "--threads",
-                                    "1"};
+                                    std::to_string(threads)};
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
@@ -62,7 +62,7 @@ BatchOutcome outcome_of(const fs::path& directory, const BatchRun& run, int stat
 
 }  // namespace
 
-std::vector<BatchOutcome> run_batch(const fs::path& directory, const std::vector<BatchRun>& runs, int at_a_time,
+std::vector<BatchOutcome> run_batch(const fs::path& directory, const std::vector<BatchRun>& runs, Workers workers,
                                     const std::function<void(std::size_t done, const BatchRun& run)>& tell,
                                     const std::function<bool()>& interrupted) {
   std::error_code error;
@@ -77,9 +77,9 @@ std::vector<BatchOutcome> run_batch(const fs::path& directory, const std::vector
       stopping = true;
       for (const auto& [child, index] : under_way) ::kill(child, SIGTERM);
     }
-    while (!stopping && next < runs.size() && under_way.size() < static_cast<std::size_t>(at_a_time)) {
+    while (!stopping && next < runs.size() && under_way.size() < static_cast<std::size_t>(workers.processes)) {
       write_file(directory / "runs" / (runs[next].id + ".toml"), resolved_toml(runs[next].scenario));
-      const pid_t child = start(directory, runs[next]);
+      const pid_t child = start(directory, runs[next], workers.threads);
       if (child > 0)
         under_way[child] = next;
       else

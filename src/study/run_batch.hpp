@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scenario/scenario.hpp"
+#include "study/worker_pool.hpp"
 
 namespace plica {
 
@@ -26,7 +27,7 @@ struct BatchOutcome {
 /// are in the order of the runs. `tell` is called after each run with their number so far. Once `interrupted` is true,
 /// runs under way are terminated and no more start. Throws FileError if DIR cannot be written.
 std::vector<BatchOutcome> run_batch(const std::filesystem::path& directory, const std::vector<BatchRun>& runs,
-                                    int at_a_time,
+                                    Workers workers,
                                     const std::function<void(std::size_t done, const BatchRun& run)>& tell,
                                     const std::function<bool()>& interrupted);
 

@@ -8,7 +8,6 @@
 
 #include "core/errors.hpp"
 #include "core/threads.hpp"
-#include "study/worker_pool.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;
@@ -28,7 +27,7 @@ void require_room(const fs::path& directory, const std::string& run, std::size_t
 
 }  // namespace
 
-void run_study(const Study& study, StudyDirectory& directory, int jobs, const std::vector<std::size_t>& runs,
+void run_study(const Study& study, StudyDirectory& directory, Workers workers, const std::vector<std::size_t>& runs,
                const StudyHooks& hooks) {
   std::vector<std::size_t> open = runs;
   if (runs.empty()) {
@@ -40,6 +39,7 @@ void run_study(const Study& study, StudyDirectory& directory, int jobs, const st
 
   const ThreadCount one(1);
   const auto row_of = [&](std::size_t run) -> std::string {
+    const ThreadCount count(workers.threads);
     const std::optional<RunRow> row = study.run(run, directory.path(), worker_is_to_stop);
     return row ? study.line_of(run, *row) : "";
   };
@@ -55,7 +55,7 @@ void run_study(const Study& study, StudyDirectory& directory, int jobs, const st
     if (!std::exchange(has_room, true)) require_room(directory.path(), study.name_of(run), left);
     if (hooks.on_row) hooks.on_row(run, row);
   };
-  work_in_processes(jobs, open, row_of, {take, hooks.stop_requested});
+  work_in_processes(workers.processes, open, row_of, {take, hooks.stop_requested});
 }
 
 }  // namespace plica

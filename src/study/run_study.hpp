@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "study/study_directory.hpp"
+#include "study/worker_pool.hpp"
 
 namespace plica {
 
@@ -13,9 +14,9 @@ struct StudyHooks {
   std::function<bool()> stop_requested;                                 // polled often; once true, runs are abandoned
 };
 
-/// Make the runs of `runs` (empty: all) that have no row yet, `jobs` at a time, one thread each, and add their rows to
-/// the directory. Throws FileError if a row cannot be written; nothing is lost then.
-void run_study(const Study& study, StudyDirectory& directory, int jobs, const std::vector<std::size_t>& runs,
+/// Make the runs of `runs` (empty: all) that have no row yet and add their rows to the directory. Throws FileError if a
+/// row cannot be written; nothing is lost then.
+void run_study(const Study& study, StudyDirectory& directory, Workers workers, const std::vector<std::size_t>& runs,
                const StudyHooks& hooks);
 
 }  // namespace plica

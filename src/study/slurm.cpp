@@ -136,7 +136,7 @@ SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, c
   SlurmSubmission plan;
   const std::vector<std::size_t> open = open_runs(study, directory);
   if (!open.empty())
-    run_study(study, directory, 1, {open.front()},
+    run_study(study, directory, {}, {open.front()},
               {[&](std::size_t, const std::string& row) {
                  const auto fields = csv_fields(row).front();
                  plan.run_s = number_in(fields[fields.size() - 2]).value_or(0);

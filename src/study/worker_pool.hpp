@@ -7,6 +7,11 @@
 
 namespace plica {
 
+/// Number of worker processes, and of threads in each. Results depend on neither.
+struct Workers {
+  int processes = 1, threads = 1;
+};
+
 struct WorkerHooks {
   /// Receives the answer to a piece of work; empty if its process ended twice, with the `reason`.
   std::function<void(std::size_t work, const std::string& answer, const std::string& reason)> on_answer;

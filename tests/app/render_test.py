@@ -2,6 +2,7 @@
 import math
 import os
 import re
+import shutil
 import signal
 import struct
 import time
@@ -230,6 +231,10 @@ class Render(CommandLine):
         result = plica("render", self.out, "--out", self.folder / "picture.jpg")
         self.assertEqual(result.returncode, 2)
         self.assertIn(".png", self.assert_messages(result)[0])
+        for movie in ("fold.gif", "fold.mp4"):
+            result = plica("render", self.out, "--out", movie)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(f'plica.movie("{self.out}", "{movie}")', self.assert_messages(result)[0])
 
     def test_a_file_that_is_there_is_kept(self):
         self.picture.write_text("mine")
@@ -254,6 +259,8 @@ class Render(CommandLine):
         self.assertRegex(result.stdout, r"ffmpeg .*picture_%05d.png' -frames:v 4 .*pad")
         self.assertEqual(len({(self.folder / name).read_bytes() for name in frames}), 4)
         self.assertIn("picture_00000.png", self.assert_messages(self.render("--movie", status=4))[0])
+        if shutil.which("ffmpeg") is None:
+            self.assertIn("pip install imageio-ffmpeg", result.stdout)
 
     def test_no_end_leaves_anything_running(self):
         for how, status in ((None, 0), (signal.SIGTERM, 143), (signal.SIGINT, 130), (signal.SIGKILL, -9)):

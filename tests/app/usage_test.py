@@ -59,6 +59,35 @@ class Usage(CommandLine):
                     shutil.rmtree(path) if path.is_dir() else path.unlink()
                 self.assertEqual(written, [], "something was written")
 
+    def test_a_misspelt_command_or_option_is_answered_with_the_nearest(self):
+        for arguments, said in (
+            (["runn", "drosophila"], 'unknown command "runn"; use "run" (nearest match)'),
+            (["zzz"], 'unknown command "zzz"; use one of: run, compare, calibrate'),
+            (["run", "drosophila", "--outt", "x"], "unknown option --outt; use --out (nearest match)"),
+            (["mesh", "drosophila", "--out", "x.vtu", "--thread=2"], "unknown option --thread; use --threads (nearest match)"),
+            (["study", "status", "--hepl"], "unknown option --hepl; use --help (nearest match)"),
+        ):
+            result = plica(*arguments)
+            self.assertEqual((result.returncode, result.stderr.startswith(f"plica: {said}")), (2, True), result.stderr)
+
+    def test_threads_are_an_option_of_whatever_computes(self):
+        scenario = self.write(BLOCK)
+        self.assertEqual(plica("check", scenario, "--threads", "2").stdout, plica("check", scenario).stdout)
+        self.assertEqual(plica("mesh", scenario, "--threads", "2", "--out", self.folder / "rest.vtu").returncode, 0)
+        for command in ("run", "check", "mesh", "calibrate", "study", "reproduce"):
+            self.assertIn("--threads", plica(command, "--help").stdout, command)
+
+    def test_early_times_are_in_seconds(self):
+        result = self.run_scenario(BLOCK, "--set", "time.end_s=0.1")
+        self.assertRegex(result.stdout, r"end_time at 0\.1 s after")
+
+    def test_a_warning_is_shown_once_a_run(self):
+        late = [BLOCK, "--set", "time.end_s=1", "--set", "division.late.region=all", "--set", "division.late.plane=transverse",
+                "--set", "division.late.at_s=5"]
+        first, again = self.run_scenario(*late), self.run_scenario(*late, "--resume")
+        self.assertIn("warning: division.late", first.stderr)
+        self.assertNotIn("warning", again.stderr)
+
     def test_an_unknown_scenario_is_answered_with_the_nearest(self):
         result = plica("run", "drosophla", "--out", self.out)
         self.assertEqual(result.returncode, 2)
@@ -84,7 +113,7 @@ class Usage(CommandLine):
 
     def test_set_reaches_named_tables_and_the_last_one_counts(self):
         result = plica("check", self.write(BLOCK), "--set", "contraction.all.stiffness_nN_per_um=2.5", "--set", "time.end_s=7",
-                       "--set", "time.end_s=9", "--set", "region.first.ids=[0, 1]", "--set", 'title="Another title"')
+                       "--set", "time.end_s=9", "--set", "region.first.ids=[0, 1]", "--set", "title=Another title")
         self.assertEqual(result.returncode, 0, result.stderr)
         for line in ("stiffness_nN_per_um = 2.5", "end_s = 9", "ids = [0, 1]", 'title = "Another title"'):
             self.assertIn(line, result.stdout.splitlines())

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import plica
-from plica.answers import _name_and_unit
+from plica.names import name_and_unit
 from plica.emulator import Range
 from plica.posteriors import _proposed, population_monte_carlo
 
@@ -64,7 +64,7 @@ def test_a_table_has_to_be_that_of_the_study():
     ("depth_20um_time_s", ("depth_20um_time", "s")), ("enclosed_um3", ("enclosed", "µm³")), ("s", ("s", "")),
 ])
 def test_units_of_names(name, found):
-    assert _name_and_unit(name) == found
+    assert name_and_unit(name) == found
 
 
 # Curves
@@ -393,6 +393,8 @@ def hold_against_the_exact_one(found, tolerance):
 def test_posterior_of_a_linear_model():
     pytest.importorskip("sklearn")
     found = plica.posterior(linear(32), targets=TARGETS)
+    assert len(str(found).splitlines()) == 3 + len(found.keys) + len(TARGETS)
+    assert f"{found.mean.iloc[0]:.4g}" in repr(found) and DEPTH in repr(found)
     assert found.effective_size > 1000 and found.samples.weight.sum() == pytest.approx(1)
     hold_against_the_exact_one(found, 0.1)
     assert np.allclose(found.targets["mean"], found.targets.value, atol=0.1) and np.allclose(found.targets.posterior_sd, SD, rtol=0.1)
@@ -478,6 +480,6 @@ def test_runs_that_are_no_prior():
 def test_a_missing_package_is_named(monkeypatch):
     import sys
     monkeypatch.setitem(sys.modules, "sklearn.gaussian_process", None)
-    with pytest.raises(plica.MissingExtra, match=r"emulator needs sklearn.* pip install '\.\[study\]'") as told:
+    with pytest.raises(plica.MissingExtra, match=r"needs scikit-learn.*pip install scikit-learn,.*pip install 'plica\[study\]'") as told:
         linear(32).emulator(DEPTH)
     assert told.value.__suppress_context__  # one traceback

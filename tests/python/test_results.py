@@ -38,7 +38,9 @@ def test_frames(run):
 def test_looks(run):
     assert "end_time" in repr(run) and "furrow_depth_um" in run._repr_html_()
     figure = run.plot("furrow_depth_um")
-    assert figure.axes[0].get_ylabel() == "furrow_depth_um"
+    assert figure.axes[0].get_ylabel() == "furrow depth (µm)"
+    with pytest.raises(ValueError, match="one matplotlib Axes per column .2"):
+        run.plot(ax=figure.axes[0])
     with pytest.raises(ValueError, match="furrow_depth_um"):
         run.plot("depth")
 
@@ -61,6 +63,9 @@ def test_compare(run, tmp_path):
     assert plica.compare(run, run.directory).nodes.max_um == 0
     assert plica.compare(run, other, time_min=0).nodes.max_um == 0
     assert "keys differ" in repr(comparison)
+    told = str(comparison)
+    assert "contraction.apical.stiffness_nN_per_um" in told and "furrow_depth_um" in told and len(told.splitlines()) < 20
+    assert "wall_s" not in told and str(plica.compare(run, run)).count("\n") == 0
 
 
 def test_render(run, tmp_path):
@@ -76,6 +81,51 @@ def test_render(run, tmp_path):
     assert (same[0] == plica.render(run.frames[-1], color="area-ratio", size=(200, 150))).all() and (same[1] != same[2]).any()
     with pytest.raises(ValueError, match="the lower one first"):
         plica.render(run, limits=(1, 1))
+
+
+def test_render_of_several_times_and_views(run, tmp_path):
+    pytest.importorskip("pyvista")
+    quick = {"size": (300, 200), "bar": False}
+    one, two = plica.render(run, view="ventral", **quick), plica.render(run, view=["ventral"], time_min=[0, 1], **quick)
+    assert one.shape == two.shape == (200, 300, 3) and (one != two).any()
+    assert (plica.render(run, edges=False, **quick) != plica.render(run, **quick)).any()
+    assert (plica.render(run, shell=True, **quick) != plica.render(run, **quick)).any()
+    for options in ({"strip": True}, {"sections": True, "time_min": 1}, {"at_x_um": [-100, 0]}):
+        assert plica.render(run, tmp_path / "fold.png", **options, **quick).std() > 1
+    sim = plica.Simulation(run.scenario)
+    sim.cell_data["signal"] = sim.cell_data["x_um"] ** 2
+    assert (plica.render(sim, color="signal", **quick) != plica.render(sim, **quick)).any()
+    for options, said in (({"at_x_um": 900}, "outside the tissue"), ({"size": (3, 4)}, "from 100"), ({"view": ["nowhere"]}, "ventral"),
+                          ({"time_min": "soon"}, "time_min"), ({"path": "fold.jpg"}, r"\.png")):
+        with pytest.raises((ValueError, TypeError), match=said):
+            plica.render(run, **options)
+    with pytest.raises(ValueError, match="require a run"):
+        plica.render(sim, strip=True)
+
+
+def test_movie(run, tmp_path):
+    pytest.importorskip("pyvista")
+    images = pytest.importorskip("imageio.v3")
+    pytest.importorskip("imageio_ffmpeg")
+    for name, plugin in (("fold.gif", "pillow"), ("fold.mp4", "FFMPEG")):
+        plica.movie(run, tmp_path / name, size=(201, 151), bar=False)
+        assert len(images.imread(tmp_path / name, plugin=plugin)) == len(run.frames)
+    with pytest.raises(ValueError, match=r"\.gif or \.mp4"):
+        plica.movie(run, tmp_path / "fold.avi")
+    with pytest.raises(plica.FileError, match="cannot be written"):
+        plica.movie(run, tmp_path / "nowhere" / "fold.gif")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["fold.gif", "fold.mp4"]
+
+
+@pytest.mark.parametrize("call, said", [
+    (lambda run: plica.render(run), "render needs pyvista, which is not installed; pip install pyvista, .*'plica\\[plot\\]'"),
+    (lambda run: plica.movie(run, "fold.gif"), "movie needs imageio, .* pip install imageio, .*'plica\\[movie\\]'"),
+])
+def test_missing_packages_are_named(run, monkeypatch, call, said):
+    for name in ("pyvista", "imageio.v2"):
+        monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(plica.MissingExtra, match=said):
+        call(run)
 
 
 def test_surface_distance(run):

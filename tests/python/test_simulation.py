@@ -5,6 +5,7 @@ import os
 import pickle
 import signal
 import subprocess
+import sys
 import threading
 import time
 
@@ -272,7 +273,7 @@ def test_a_fork_after_use_does_not_hang(sim):
 
 def test_looks(sim):
     sim.run(until_min=0.2)
-    assert "drosophila" in repr(sim) and "0.2 min" in repr(sim)
+    assert "drosophila" in repr(sim) and "12 s" in repr(sim)
     assert "furrow_depth_um" in sim._repr_html_()
     assert "Newton" in repr(sim.step())
 
@@ -308,3 +309,55 @@ def test_wrong_times(sim):
             sim.run(until_min=wrong)
     with pytest.raises(ValueError, match="out"):
         sim.run(resume=True)
+
+
+def test_arrays_of_ones_own_are_kept(sim, tmp_path):
+    signal = np.random.default_rng(1).random(756)
+    sim.cell_data["signal"] = signal
+    assert (sim.cell_data["signal"] == signal).all() and (sim.cells["signal"] == signal).all()
+
+    def grow(one, step):
+        one.cell_data["signal"] = one.cell_data["signal"] + 1
+
+    run = sim.run(out=tmp_path / "run", callback=grow)
+    first, last = (frame.cell_data["signal"] for frame in (run.frames[0], run.frames[-1]))
+    assert np.allclose(first, signal) and np.allclose(last, signal + sim.steps - 1)  # assigned before its step
+    for other in (sim.copy(), pickle.loads(pickle.dumps(sim)), plica.load(tmp_path / "run" / "checkpoint.h5")):
+        assert np.allclose(other.cell_data["signal"] % 1, signal)
+    data = sim.cell_data
+    data |= {"more": 2}
+    assert (sim.cell_data["more"] == 2).all() and type(copy.deepcopy(data)) is dict
+    with pytest.raises(TypeError, match="cannot be removed"):
+        del data["more"]
+
+
+def test_arrays_of_ones_own_go_on_with_a_run(tmp_path):
+    first = plica.Simulation(scenario())
+    first.cell_data["signal"] = np.arange(756)
+    first.run(out=tmp_path / "run", until_min=0.4)
+    again = plica.Simulation(scenario())
+    run = again.run(out=tmp_path / "run", resume=True)
+    assert run.status == "end_time" and (run.frames[-1].cell_data["signal"] == np.arange(756)).all()
+
+
+@pytest.mark.parametrize("name, values, said", [
+    ("signal", np.ones(3), r"cell_data\['signal'\]: .*\(3,\); give one number per cell \(756\)"),
+    ("signal", np.full(756, np.nan), "cell 0 is nan; give a finite number"),
+    ("signal", ["a"] * 756, "one number per cell"),
+    ("signal", None, "None"),
+    ("x_um", 1, "is an output variable"),
+    (3, 1, "give a str"),
+])
+def test_arrays_that_do_not_fit_are_refused(sim, name, values, said):
+    with pytest.raises((ValueError, TypeError), match=said):
+        sim.cell_data[name] = values
+    assert "signal" not in sim.cell_data
+
+
+def test_a_warning_is_shown_once_a_process():
+    code = ("import logging, plica\n"
+            "logging.basicConfig(format='%(message)s')\n"
+            "s = plica.Scenario('division-demo'); s['time.end_s'] = 6\n"
+            "sims = [plica.Simulation(s), plica.Simulation(s), plica.Simulation(s).copy()]\n")
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stderr.splitlines()
+    assert len(told) == len(set(told)) > 0, told

@@ -285,9 +285,6 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "most 9"},
       {"[region.a]\nids = [756]",
        "test.toml:2: region.a.ids: cell 756 does not exist; set ids to numbers from 0 to 755"},
-      {"[region.a]\narray = \"x\"",
-       "test.toml:2: region.a.array: a built embryo has no arrays; remove array, or use shape \"file\", \"points\" or "
-       "\"surface\""},
       // Expectations.
       {"[expect]\nfurrow_depth_um = 28.89",
        "test.toml:2: expect.furrow_depth_um: 28.89 has no tolerance; write { value = ..., within_percent = ... } or { "
@@ -331,7 +328,7 @@ TEST(LoadScenario, ReportsAllErrorsAtOnceInOrderOfLines) {
             "cell_height_um, cells, elements_per_cell, cell_count, seed, curvature_per_um, rim, periodic, "
             "belly_sag_um, back_sag_um, elements, least_edge_ratio, layers, points_depth_um, scale, rotate_deg, "
             "centre, keep, label_array, mend, "
-            "cell_height_array, mirror, file, apical_array\n"
+            "cell_height_array, mirror, file, cell_arrays, apical_array\n"
             "--set: time.max_step_s: 0 is out of range; set max_step_s to a number > 0");
 }
 
@@ -407,6 +404,16 @@ TEST(LoadScenario, OverridesGoLast) {
   EXPECT_EQ(scenario.title, "two words");
 }
 
+// A shell removes the quotes of a text.
+TEST(LoadScenario, OverridesOfTextsNeedNoQuotes) {
+  const std::string surface = "[embryo]\nshape = \"surface\"\n";
+  for (const std::string name :
+       {"off_1e+05.obj", "two words.obj", "a=b (1).obj", "1e5", "2024-01-01", "x#1.obj", "true"})
+    EXPECT_TRUE(load(surface, {"embryo.file=" + name}).embryo.file.ends_with("/" + name)) << name;
+  EXPECT_EQ(load("", {"title=50 % less"}).title, "50 % less");
+  EXPECT_EQ(errors_of("", {"embryo.shape=a ball"}).find("--set: embryo.shape: \"a ball\" is unknown"), 0U);
+}
+
 TEST(LoadScenario, ReportsWrongOverrides) {
   const auto not_understood = [](const std::string& key) {
     return "--set: " + key +
@@ -418,7 +425,7 @@ TEST(LoadScenario, ReportsWrongOverrides) {
       {"time.end_s=5,5", not_understood("time.end_s")},
       {"time.end_s=5 s", not_understood("time.end_s")},
       {"time.end_s=", not_understood("time.end_s")},
-      {"title=two words", not_understood("title")},
+      {"title=\"two words", not_understood("title")},
       {"title=1\nformat=2", not_understood("title")},
       {"time.ends=3", "--set: time.ends: unknown key; use \"end_s\" (nearest match)"},
       {"base=drosophila", "--set: base: base cannot be set on the command line; write base in the scenario's file"},

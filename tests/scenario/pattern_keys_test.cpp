@@ -154,7 +154,7 @@ TEST(PatternKeys, WhatIsWrongIsSaidWithItsKey) {
   expect(act("profile = { shape = \"array\", from = 0, to = 1 }"),
          "test.toml:11: contraction.a.profile.array: is missing; set array to a cell array");
   expect(act("profile = { shape = \"array\", array = \"twi\", from = 0, to = 1 }"),
-         "contraction.a.profile.array: the embryo has no array \"twi\"; use an embryo from a file");
+         "contraction.a.profile.array: the embryo has no array \"twi\"; set embryo.cell_arrays to a table");
   expect(act("profile = { shape = \"array\", array = \"twi\", to = 1 }"),
          "contraction.a.profile.from: is missing; set `from`");
   expect(act("profile = { shape = \"array\", array = \"twi\", from = 1, to = 1 }"),

@@ -132,7 +132,8 @@ TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
   expect(egg + "elements = \"triangles\"\n", "embryo.elements: ");
   expect(egg + "least_edge_ratio = 0.9\n", "embryo.least_edge_ratio: ");
   expect(egg + "[region.r]\nface = \"ventral\"\n", "region.r.face: cells of this shape have no named faces");
-  expect(egg + "[region.r]\narray = \"sna\"\n", "region.r.array: a built embryo has no arrays");
+  expect(egg + "[region.r]\narray = \"sna\"\n",
+         "region.r.array: the embryo has no array \"sna\"; set embryo.cell_arrays to a table with this column");
   expect(egg + "[region.r]\nx_um = [-10, 10]\nabove = 2\n", "region.r.above: is not used without array");
   expect(egg + "[region.r]\nangle_deg = [170, 175]\nlength_percent = [0, 0.1]\n",
          "region.r: contains no cell of the embryo");

@@ -66,7 +66,7 @@ struct Fields {
 
   void take_run(const RunMemory& run) {
     const auto& [state, steps, divisions, equilibrium_time_s, at_equilibrium, criterion_met, wanted_step_s, computing_s,
-                 energies, factor, past_divisions, whole_internals] = run;
+                 energies, factor, past_divisions, whole_internals, outside_arrays] = run;
     take_state(state);
     take_factor(factor);
     take("steps", steps), take("divisions", divisions), take("equilibrium_time_s", equilibrium_time_s);
@@ -76,6 +76,8 @@ struct Fields {
     for (const auto& [active, stored, dissipated] : energies)
       take("energies", active), take("energies", stored), take("energies", dissipated);
     take("whole_internals", whole_internals);
+    numbers["outside_arrays"];
+    for (const auto& [name, values] : outside_arrays) take("outside_arrays", name), take("outside_arrays", values);
     numbers["past_divisions"];
     for (const auto& past : past_divisions) {
       const auto& [time_s, positions, planned] = *past;
@@ -119,6 +121,7 @@ Checkpoint marked(Checkpoint checkpoint) {
   run.state.contact_forces = {0.5, 0, 2};
   run.state.in_contact = {1, 0, 1};
   run.state.internals = {{1, 2}, {}, {3}};
+  run.outside_arrays = {{"signal", {0.5, 2}}, {"time of birth", {1, 3}}};
   run.whole_internals = {{6}, {7, 8}, {}};
   run.state.trend.step_s = 0.75;
   run.state.trend.earlier_s = 0.125;

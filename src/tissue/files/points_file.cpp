@@ -71,9 +71,9 @@ void read_field(std::string_view field, int line, Column& column) {
   column.values.push_back(number.value_or(std::nan("")));
 }
 
-std::vector<Column> named_columns(const std::vector<std::string_view>& names, int line) {
+std::vector<Column> named_columns(const std::vector<std::string_view>& names, int line, bool of_points) {
   for (const std::string_view axis : axes)
-    if (std::ranges::count(names, axis) != 1)
+    if (of_points && std::ranges::count(names, axis) != 1)
       throw MeshError(
           fmt::format("line {}: must name the columns, including x_um, y_um and z_um once each; it "
                       "names {}",
@@ -83,9 +83,8 @@ std::vector<Column> named_columns(const std::vector<std::string_view>& names, in
   return columns;
 }
 
-}  // namespace
-
-PointTable points_in_csv(std::string_view text) {
+// Columns of a table whose first line names them; that of points has all axes.
+std::vector<Column> columns_in_csv(std::string_view text, bool of_points) {
   text = plain_text(text);
   std::vector<Column> columns;
   for (int line_number = 1; !text.empty(); ++line_number) {
@@ -95,7 +94,7 @@ PointTable points_in_csv(std::string_view text) {
     if (line.empty() || line.front() == '#') continue;
     const std::vector<std::string_view> fields = fields_of(line);
     if (columns.empty()) {
-      columns = named_columns(fields, line_number);
+      columns = named_columns(fields, line_number, of_points);
       continue;
     }
     if (fields.size() != columns.size())
@@ -103,7 +102,26 @@ PointTable points_in_csv(std::string_view text) {
           fmt::format("line {}: has {} fields; the first line has {}", line_number, fields.size(), columns.size()));
     for (std::size_t f = 0; f < fields.size(); ++f) read_field(fields[f], line_number, columns[f]);
   }
-  if (columns.empty()) throw MeshError("is empty; the first line must name the columns, including x_um, y_um and z_um");
+  if (columns.empty())
+    throw MeshError(fmt::format("is empty; the first line must name the columns{}",
+                                of_points ? ", including x_um, y_um and z_um" : ""));
+  return columns;
+}
+
+template <class Parse>
+auto parsed(const std::filesystem::path& file, const Parse& parse) {
+  const std::string text = read_file(file);
+  try {
+    return parse(text);
+  } catch (const MeshError& error) {
+    throw MeshError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+}  // namespace
+
+PointTable points_in_csv(std::string_view text) {
+  std::vector<Column> columns = columns_in_csv(text, true);
   PointTable table;
   table.points.assign(columns.front().values.size(), Vec3::Zero());
   for (Column& column : columns) {
@@ -121,12 +139,19 @@ PointTable points_in_csv(std::string_view text) {
   return table;
 }
 
-PointTable read_points_file(const std::filesystem::path& file) {
-  try {
-    return points_in_csv(read_file(file));
-  } catch (const MeshError& error) {
-    throw MeshError(fmt::format("{}: {}", file.string(), error.what()));
-  }
+PointTable read_points_file(const std::filesystem::path& file) { return parsed(file, points_in_csv); }
+
+std::map<std::string, CellArray> read_cell_table(const std::filesystem::path& file) {
+  return parsed(file, [](std::string_view text) {
+    std::map<std::string, CellArray> arrays;
+    std::vector<Column> columns = columns_in_csv(text, false);
+    for (Column& column : columns) {
+      if (column.text_line > 0) throw_text(column);
+      if (!arrays.emplace(column.name, std::move(column.values)).second)
+        throw MeshError(fmt::format("line 1: names column {} twice", column.name));
+    }
+    return arrays;
+  });
 }
 
 }  // namespace plica

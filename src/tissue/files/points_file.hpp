@@ -1,4 +1,4 @@
-// Reading of tables of measured points.
+// Reading of tables of measured points, and of values per cell.
 #pragma once
 
 #include <filesystem>
@@ -21,5 +21,8 @@ struct PointTable {
 /// are missing values; columns without a number are omitted. MeshError names the line and the problem.
 PointTable points_in_csv(std::string_view text);
 PointTable read_points_file(const std::filesystem::path& file);
+
+/// Read a CSV table of numbers whose first line names its columns. Throws MeshError as above.
+std::map<std::string, std::vector<double>> read_cell_table(const std::filesystem::path& file);
 
 }  // namespace plica

@@ -1,10 +1,14 @@
 #include "tissue/files/points_file.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
 
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
@@ -48,6 +52,16 @@ TEST(PointsFile, SaysInWhichLineWhatIsWrong) {
   expect("\xff\xfex_um", "is UTF-16 text; save it as UTF-8");
   expect("x_um,y_um,z_um\n1,nan,3\n", "line 2: \"nan\" of column y_um is not a number");
   EXPECT_THROW(read_points_file("/nowhere/points.csv"), FileError);
+}
+
+TEST(CellTable, HasAnArrayPerColumn) {
+  const std::string file = testing::TempDir() + "plica_cell_table_" + std::to_string(::getpid()) + ".csv";
+  write_file(file, "myosin, calcium\n1,2\n0.5,-1e-3\n");
+  EXPECT_EQ(read_cell_table(file),
+            (std::map<std::string, std::vector<double>>{{"calcium", {2, -1e-3}}, {"myosin", {1, 0.5}}}));
+  write_file(file, "myosin,myosin\n1,2\n");
+  EXPECT_THROW((void)read_cell_table(file), MeshError);
+  std::filesystem::remove(file);
 }
 
 }  // namespace

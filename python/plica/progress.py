@@ -1,0 +1,43 @@
+"""Progress of a simulation on the terminal or in a notebook."""
+from __future__ import annotations
+
+import sys
+import time
+from typing import Any, Optional
+
+
+def moment(time_s: float) -> str:
+    """Return a time in the unit that shows it."""
+    return f"{time_s:.3g} s" if time_s < 60 else f"{time_s / 60:.4g} min"
+
+
+class Progress:
+    """Progress bar: by tqdm if installed, else one line on the terminal."""
+
+    def __init__(self, end_s: float) -> None:
+        self.end_min = end_s / 60
+        self.last = 0.0
+        self.bar: Any = None
+        try:
+            from tqdm.auto import tqdm
+
+            self.bar = tqdm(total=round(self.end_min, 3), unit="min", bar_format="{l_bar}{bar}| {n:.2f}/{total:.2f} min {postfix}")
+        except ImportError:
+            pass
+
+    def show(self, time_s: float, measures: dict[str, Optional[float]]) -> None:
+        minutes, depth = time_s / 60, measures.get("furrow_depth_um")
+        told = "" if depth is None else f"furrow {depth:.1f} µm deep"
+        if self.bar is not None:
+            self.bar.set_postfix_str(told, refresh=False)
+            self.bar.update(minutes - self.bar.n)
+        elif time.monotonic() - self.last > 0.1:
+            self.last = time.monotonic()
+            sys.stderr.write(f"\r{minutes:6.2f} of {self.end_min:.2f} min  {told}  ")
+            sys.stderr.flush()
+
+    def close(self) -> None:
+        if self.bar is not None:
+            self.bar.close()
+        else:
+            sys.stderr.write("\n")
