@@ -14,6 +14,7 @@
 #include "core/errors.hpp"
 #include "core/units.hpp"
 #include "record/archive.hpp"
+#include "record/run_scenario.hpp"
 #include "scenario/advice.hpp"
 #include "show/recorded_run.hpp"
 #include "show/report.hpp"
@@ -117,7 +118,8 @@ void report_ending(const Scenario& scenario, const Simulation& simulation, const
 int run_scenario(const RunOptions& options) {
   const Recorder::Clock::time_point start = Recorder::Clock::now();
   const ScenarioSource source = find_scenario(options.scenario.name_or_path);
-  const Scenario scenario = load_scenario(source, options.scenario.overrides);
+  const Scenario loaded = load_scenario(source, options.scenario.overrides);
+  const Scenario scenario = options.resume ? as_begun(loaded, options.out) : loaded;
   std::optional<DelayedNotice> notice;
   if (!options.quiet) notice.emplace();
   Simulation simulation(scenario);

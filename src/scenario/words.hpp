@@ -152,8 +152,9 @@ inline constexpr auto division_planes =
 // [time]
 inline constexpr auto schemes = std::to_array<Word<StepScheme::Forces>>(
     {{"newton", StepScheme::Forces::newton}, {"linearly-implicit", StepScheme::Forces::linearly_implicit}});
-inline constexpr auto integrators =
-    std::to_array<Word<TimeOrder>>({{"backward-euler", TimeOrder::first}, {"bdf2", TimeOrder::second}});
+// "automatic" is replaced by one of the others when a scenario is loaded.
+inline constexpr auto integrators = std::to_array<Word<TimeOrder>>(
+    {{"automatic", TimeOrder::first}, {"backward-euler", TimeOrder::first}, {"bdf2", TimeOrder::second}});
 inline constexpr auto linear_solvers = std::to_array<Word<LinearMethod>>({{"automatic", LinearMethod::automatic},
                                                                           {"direct", LinearMethod::direct},
                                                                           {"cholesky", LinearMethod::cholesky},
