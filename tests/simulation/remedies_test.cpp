@@ -153,6 +153,15 @@ TEST(Remedies, ACellHeldAtAllItsCornersCannotGrow) {
     EXPECT_NE(ran(division, {override}).status(), RunStatus::failed) << override;
 }
 
+// The run command warns of an equilibrium after the first step, and names three remedies.
+TEST(Remedies, ATissueThatHardlyMoves) {
+  const std::string weak = block + "[contraction.c]\nregion = \"all\"\nstiffness_nN_per_um = 1e-4\n";
+  EXPECT_EQ(ran(weak).steps(), 1);
+  for (const char* override : {"stop.equilibrium_speed_um_per_min=1e-4", "contraction.c.stiffness_nN_per_um=1",
+                               "dynamics.surface_drag_Pa_s_per_um=0.1"})
+    EXPECT_GT(ran(weak, {override}).steps(), 1) << override;
+}
+
 // A message never names a key that the scenario lacks: each remedy loads, whatever the shape and the failure.
 TEST(Remedies, NameKeysOfTheScenario) {
   using Status = StepReport::Status;
