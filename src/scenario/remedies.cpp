@@ -41,7 +41,7 @@ WeakerForces weaker_forces(const Scenario& scenario) {
   WeakerForces weaker;
   for (const auto& [name, input] : scenario.contractions) {
     weaker.reduce(fmt::format("contraction.{}.stiffness_nN_per_um", name), input.stiffness_nN_per_um, stress * height);
-    weaker.reduce(fmt::format("contraction.{}.preload_nN", name), input.preload_nN, 0.1 * stress * height * height);
+    weaker.reduce(fmt::format("contraction.{}.preload_nN", name), input.preload_nN, 0.01 * stress * height * height);
     weaker.reduce(fmt::format("contraction.{}.tension_mN_per_m", name), input.tension_mN_per_m, stress * height);
   }
   for (const auto& [name, input] : scenario.cortices)

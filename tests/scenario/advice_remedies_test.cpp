@@ -102,7 +102,7 @@ TEST(AdviceRemedies, EachEndsItsMessage) {
       ++tried;
     }
   }
-  EXPECT_EQ(tried, 35);
+  EXPECT_EQ(tried, 33);
 }
 
 // Each shape has its own keys.
