@@ -19,6 +19,7 @@
 #include "record/checkpoint.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/builtin.hpp"
+#include "scenario/default_shell.hpp"
 #include "scenario/print.hpp"
 #include "show/looks.hpp"
 #include "signals.hpp"
@@ -60,6 +61,7 @@ CheckedScenario load(const std::string& name, const std::string& file, const std
     checked.scenario.regions[region].ids = ids;
   }
   checked.scenario.embryo.mesh = mesh;
+  set_default_shell(checked.scenario);
   return checked;
 }
 
@@ -168,7 +170,10 @@ NB_MODULE(_core, module) {
       .def_prop_ro("has_mesh", [](const CheckedScenario& s) { return s.scenario.embryo.mesh != nullptr; })
       .def(
           "give_mesh",
-          [](CheckedScenario& s, const std::shared_ptr<const HexahedralMesh>& mesh) { s.scenario.embryo.mesh = mesh; },
+          [](CheckedScenario& s, const std::shared_ptr<const HexahedralMesh>& mesh) {
+            s.scenario.embryo.mesh = mesh;
+            set_default_shell(s.scenario);
+          },
           nb::arg("mesh"))
       .def_prop_ro("title", [](const CheckedScenario& s) { return s.scenario.title; })
       .def("toml", [](const CheckedScenario& s) { return resolved_toml(s.scenario); })

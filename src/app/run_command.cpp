@@ -102,6 +102,8 @@ void report_ending(const Scenario& scenario, const Simulation& simulation, const
         "plica: solver failed: {0}; last accepted state saved in {1}; view it with: plica render {1} --time last --out "
         "last.png\n",
         simulation.failure(), options.out);
+  for (const auto& [topic, text] : summary.at("warnings").items())
+    fmt::print(stderr, "warning: {}\n", text.get<std::string>());
   if (simulation.status() == RunStatus::equilibrium && summary.at("steps") == 1)
     fmt::print(
         stderr,

@@ -18,6 +18,7 @@
 #include "scenario/remedies.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/words.hpp"
+#include "tissue/faces.hpp"
 #include "tissue/mesh_quality.hpp"
 
 namespace plica {
@@ -115,6 +116,24 @@ void advise_on_profiles(const Scenario& scenario, const Tissue& tissue, const Me
   look("pressure", scenario.pressures);
 }
 
+// Says along what the profiles run: the arc or y, by the tissue.
+void note_profile_axes(const Scenario& scenario, const Tissue& tissue, const MessageSink& note) {
+  const char* across =
+      goes_round(tissue) ? "the arc about x, since the tissue goes round it" : "y, since the tissue is open";
+  const auto look = [&](const std::string& tables, const auto& inputs) {
+    for (const auto& [name, input] : inputs)
+      if (const std::string& axis = input.profile.axis; !input.profile.shape.empty() && !axis.empty())
+        note(fmt::format("{}.{}: profile runs along {}", tables, name,
+                         axis == "along"    ? "x"
+                         : axis == "across" ? across
+                                            : "the angle about x from ventral"));
+  };
+  look("elasticity", scenario.region_elasticities);
+  look("contraction", scenario.contractions);
+  look("cortex", scenario.cortices);
+  look("pressure", scenario.pressures);
+}
+
 void advise_on_ablations(const Scenario& scenario, const Tissue& tissue, const MessageSink& warn) {
   for (const auto& [name, ablation] : scenario.ablations) {
     if (*ablation.at_s >= scenario.time.end_s)
@@ -202,6 +221,7 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
     warn("time.step_s: the time step is longer than the run; reduce step_s or increase end_s");
   advise_on_profiles(scenario, model.tissue, warn);
   for (std::string& load : abrupt_loads(scenario, model.tissue)) warn(std::move(load));
+  note_profile_axes(scenario, model.tissue, note);
   advise_on_shape_memory(scenario, model, note, warn);
   if ((pulls || is_tense) && model_of(scenario.elasticity) == ElasticModel::corotational &&
       elements_through_height(model.tissue) == 1)

@@ -177,8 +177,8 @@ std::vector<Row> make_rows() {
              "approaches `coupled` for short steps."),
 
       vitelline("enabled", &VitellineInput::enabled, anything,
-                "Rigid membrane around a closed embryo (unilateral constraint); default false for a block, sheet or "
-                "surface."),
+                "Rigid membrane around a closed embryo (unilateral constraint); default false for a block, sheet, "
+                "surface, or open mesh of shape `file`."),
       vitelline("gap_um", &VitellineInput::gap_um, not_negative,
                 "Perivitelline gap above the apical nodes at t = 0 (µm)."),
       vitelline("drag_Pa_s_per_um", &VitellineInput::drag_Pa_s_per_um, not_negative,
