@@ -20,6 +20,7 @@
 #include "record/run_scenario.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/builtin.hpp"
+#include "scenario/default_shell.hpp"
 #include "scenario/print.hpp"
 #include "scenario/setup.hpp"
 #include "show/looks.hpp"
@@ -70,6 +71,7 @@ CheckedScenario load(const std::string& name, const std::string& file, const std
   }
   checked.scenario.embryo.arrays = arrays;
   checked.scenario.embryo.mesh = mesh;
+  set_default_shell(checked.scenario);
   return checked;
 }
 
@@ -188,7 +190,10 @@ NB_MODULE(_core, module) {
       .def_prop_ro("has_mesh", [](const CheckedScenario& s) { return s.scenario.embryo.mesh != nullptr; })
       .def(
           "give_mesh",
-          [](CheckedScenario& s, const std::shared_ptr<const HexahedralMesh>& mesh) { s.scenario.embryo.mesh = mesh; },
+          [](CheckedScenario& s, const std::shared_ptr<const HexahedralMesh>& mesh) {
+            s.scenario.embryo.mesh = mesh;
+            set_default_shell(s.scenario);
+          },
           nb::arg("mesh"))
       .def_prop_ro("title", [](const CheckedScenario& s) { return s.scenario.title; })
       .def_prop_ro("cell_count", &count_cells)

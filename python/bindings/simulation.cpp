@@ -21,6 +21,7 @@
 #include "scenario/print.hpp"
 #include "simulation/bending_warning.hpp"
 #include "simulation/crossing_warning.hpp"
+#include "simulation/energy_warning.hpp"
 #include "thread_count.hpp"
 #include "tissue/faces.hpp"
 
@@ -259,6 +260,7 @@ void bind_simulation(nb::module_& module) {
       .def_prop_ro(
           "bending_warning",
           [](S& self) { return self.with([&](const Simulation& s) { return bending_warning(self.scenario(), s); }); })
+      .def_prop_ro("energy_warning", looks(energy_warning))
       .def_prop_ro("positions", of_state(&State::positions))
       .def_prop_ro("velocities", of_state(&State::velocities))
       .def_prop_ro("pressures", looks(pressures_Pa))

@@ -151,6 +151,8 @@ class Simulation:
         if not self._has_crossed and (measures["self_intersections"] or 0) > 0:
             self._has_crossed = True
             warnings.warn(self._core.crossing_warning, stacklevel=3)
+        if energy_warning := self._core.energy_warning:
+            warnings.warn(energy_warning, stacklevel=3)
         return Step(self._core.time_s, measures)
 
     @overload
@@ -216,6 +218,11 @@ class Simulation:
             If arguments conflict, such as `resume` without `out`.
         KeyboardInterrupt
             On Ctrl-C, after saving. The same call with ``resume=True`` continues.
+
+        Warns
+        -----
+        UserWarning
+            If the tissue first intersects itself, or if time steps of a finished run lost or added more than 1 % of its energy.
 
         Examples
         --------
@@ -474,7 +481,7 @@ class Simulation:
         return self._core.laws(active=False)
 
     def forces(self, law: str) -> NDArray[np.float64]:
-        """Return the nodal forces of one law at zero velocity.
+        """Return the nodal forces of one law in the present state, at zero velocity.
 
         Parameters
         ----------
@@ -484,7 +491,8 @@ class Simulation:
         Returns
         -------
         ndarray of float, shape (nodes, 3)
-            Forces, nN; 0 for laws that resist motion (drag, viscosity, dampers).
+            Forces, nN; 0 for laws that resist motion (drag, viscosity, dampers), and at hanging nodes, whose forces act on the
+            free nodes that carry them.
 
         Raises
         ------

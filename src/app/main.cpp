@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "plica: standard output cannot be written: {}\n", error.code().message());
     return exit_files;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "plica: out of memory; reduce the number of cells or embryo.elements_per_cell\n");
+    fmt::print(stderr, "plica: out of memory; use fewer cells, or fewer elements per cell\n");
     return exit_gave_up;
   } catch (const std::exception& error) {
     fmt::print(stderr, "plica: {}\n", error.what());

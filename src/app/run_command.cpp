@@ -15,6 +15,7 @@
 #include "core/units.hpp"
 #include "core/words.hpp"
 #include "record/archive.hpp"
+#include "record/run_scenario.hpp"
 #include "scenario/advice.hpp"
 #include "show/recorded_run.hpp"
 #include "show/report.hpp"
@@ -102,6 +103,8 @@ void report_ending(const Scenario& scenario, const Simulation& simulation, const
         "plica: solver failed: {0}; last accepted state saved in {1}; view it with: plica render {1} --time last --out "
         "last.png\n",
         simulation.failure(), options.out);
+  for (const auto& [topic, text] : summary.at("warnings").items())
+    fmt::print(stderr, "warning: {}\n", text.get<std::string>());
   if (simulation.status() == RunStatus::equilibrium && summary.at("steps") == 1)
     fmt::print(
         stderr,
@@ -118,7 +121,8 @@ void report_ending(const Scenario& scenario, const Simulation& simulation, const
 int run_scenario(const RunOptions& options) {
   const Recorder::Clock::time_point start = Recorder::Clock::now();
   const ScenarioSource source = find_scenario(options.scenario.name_or_path);
-  const Scenario scenario = load_scenario(source, options.scenario.overrides);
+  const Scenario loaded = load_scenario(source, options.scenario.overrides);
+  const Scenario scenario = options.resume ? as_begun(loaded, options.out) : loaded;
   std::optional<DelayedNotice> notice;
   if (!options.quiet) notice.emplace();
   Simulation simulation(scenario);

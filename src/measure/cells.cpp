@@ -144,16 +144,15 @@ double max_volume_error(const Model& model, std::span<const Vec3> positions) {
 
 namespace {
 
-// Step without motion, for static forces.
+// Static forces on free nodes.
 template <class Counts>
 Vectors forces_of_laws(const Model& model, const State& state, const Counts& counts) {
   Vectors forces(state.positions.size(), Vec3::Zero());
   const Vectors no_velocity = forces;
-  Step still{state.positions, state.positions, no_velocity, 1, state.time_s};
-  still.internals = state.internals;
-  for_laws(model, still, [&](const Law& law, const Step& own) {
+  for_laws(model, motionless(state, no_velocity), [&](const Law& law, const Step& own) {
     if (counts(law)) law.add_forces(own, forces);
   });
+  model.tissue.carry_hanging(forces);
   return forces;
 }
 
@@ -168,16 +167,12 @@ Vectors forces_of_law(const Model& model, const State& state, const Law& law) {
 }
 
 Vectors driving_forces(const Model& model, const State& state) {
-  Vectors forces = forces_of_laws(model, state, [](const Law&) { return true; });
-  model.tissue.carry_hanging(forces);
-  return forces;
+  return forces_of_laws(model, state, [](const Law&) { return true; });
 }
 
 std::vector<std::pair<std::string, double>> mean_tensions(const Model& model, const State& state) {
   std::vector<std::pair<std::string, double>> result;
-  Step still{state.positions, state.positions, state.velocities, no_time_s, state.time_s};
-  still.internals = state.internals;
-  for_laws(model, still, [&](const Law& law, const Step& own) {
+  for_laws(model, motionless(state, state.velocities), [&](const Law& law, const Step& own) {
     const auto* cortex = dynamic_cast<const Cortex*>(&law);
     if (cortex == nullptr || cortex->faces().empty()) return;
     const std::vector<double> areas = cortex->areas(state.positions), tensions = cortex->tensions(own);

@@ -53,7 +53,8 @@ double shell_penetration(const Model& model, std::span<const Vec3> positions);
 /// Largest |V/V_target - 1| of a cell.
 double max_volume_error(const Model& model, std::span<const Vec3> positions);
 
-/// Force of active laws without their dampers, nN; nodes.
+/// Forces of active laws without their dampers, nN; nodes. These and the forces below are those of the present state
+/// and memory of the laws; forces on hanging nodes act on the free nodes that carry them.
 Vectors active_forces(const Model& model, const State& state);
 
 /// Static driving forces, nN; nodes: elasticity, contractions without dampers, applied pressures. Excludes drag,

@@ -319,8 +319,9 @@ std::span<const Column> columns() {
        "changes.",
        energy(&EnergyFlow::dissipated)},
       {"energy_imbalance_ratio", series, last,
-       "(Active work − stored − dissipated) / active work: error of finite time steps, of the order of "
-       "`time.integrator`; large in the first steps. None without active work.",
+       "(Active work − stored − dissipated) / active work: a defect of finite time steps, of either sign and of the "
+       "order "
+       "of `time.integrator`, not a bound on their error ([energy](../theory/energy.md)). None without active work.",
        [](const M& m) -> std::optional<double> {
          if (m.step == nullptr || m.step->energy.active <= 0) return std::nullopt;
          const auto& [active, stored, dissipated] = m.step->energy;

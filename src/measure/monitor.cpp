@@ -10,6 +10,7 @@
 #include "measure/cells.hpp"
 #include "measure/cross_section.hpp"
 #include "measure/energy_norm.hpp"
+#include "mechanics/energy.hpp"
 #include "tissue/part.hpp"
 
 namespace plica {
@@ -59,13 +60,13 @@ Vectors forces_of_cells(const Model& model, const State& state, const CellSet& c
   Tissue part = model.tissue;
   const Division kept = keep_only(part, cells);
   const Vectors no_velocity(state.positions.size(), Vec3::Zero());
-  const Step still{state.positions, state.positions, no_velocity, 1, state.time_s};
+  const Step now = motionless(state, no_velocity);
   const std::vector<double> volumes =
       inherited(kept, std::vector<double>(model.volumes().targets().begin(), model.volumes().targets().end()));
   Vectors forces(state.positions.size(), Vec3::Zero());
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
     const std::vector<double> internal = model.laws[l]->internal_after_division(state.internals[l], part, kept);
-    Step own = still;
+    Step own = now;
     own.internal = internal;
     const auto law = model.laws[l]->after_division(part, kept, state.positions);
     law->take_cell_volumes(part, volumes);

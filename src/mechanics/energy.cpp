@@ -3,15 +3,6 @@
 namespace plica {
 namespace {
 
-Step at_rest(const State& state) {
-  Step step;
-  step.positions = step.previous_positions = state.positions;
-  step.previous_velocities = state.velocities;
-  step.rate_s = no_time_s;
-  step.end_time_s = state.time_s;
-  return step;
-}
-
 std::span<const double> internal_of(const State& state, std::size_t law) {
   return law < state.internals.size() ? std::span<const double>(state.internals[law]) : std::span<const double>{};
 }
@@ -28,13 +19,23 @@ double work_of_pressures(const Model& model, const State& before, const State& a
 
 }  // namespace
 
+Step motionless(const State& state, std::span<const Vec3> velocities) {
+  Step step;
+  step.positions = step.previous_positions = state.positions;
+  step.previous_velocities = velocities;
+  step.rate_s = no_time_s;
+  step.end_time_s = state.time_s;
+  step.internals = state.internals;
+  return step;
+}
+
 EnergyFlow viscous_energy_flow(const Law& law, const MadeStep& made) {
   const double now = law.energy(made.end);
   return {.stored = now - law.energy(made.begin), .dissipated = 2 * (law.energy(made.whole) - now)};
 }
 
 std::vector<EnergyFlow> energy_flows(const Model& model, const State& before, const State& after) {
-  MadeStep made{at_rest(before), at_rest(after), {}};
+  MadeStep made{motionless(before, before.velocities), motionless(after, after.velocities), {}};
   made.whole.positions = after.positions;
   made.whole.previous_positions = before.positions;
   made.whole.previous_velocities = before.velocities;

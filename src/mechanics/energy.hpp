@@ -11,6 +11,10 @@ namespace plica {
 /// Duration of a step in which nothing moves: rates vanish, and it is too short for relaxation.
 inline constexpr double no_time_s = 1e-9;
 
+/// Return the step of duration `no_time_s` in which nodes stay where they are, at these velocities (nodes, um/s): laws
+/// have the forces and energies of the state and its internal states.
+Step motionless(const State& state, std::span<const Vec3> velocities);
+
 /// Return the flow of a law that resists rates linearly: twice its energy is dissipated.
 EnergyFlow viscous_energy_flow(const Law& law, const MadeStep& made);
 

@@ -191,9 +191,16 @@ void write_mesh(const std::filesystem::path& file, const MeshElements& mesh, std
 
 FramePolygons polygons_of(const Tissue& tissue) {
   FramePolygons polygons;
+  const auto add = [&](NodeId basal, NodeId apical) {
+    polygons.basal.push_back(basal.number());
+    polygons.apical.push_back(apical.number());
+  };
   for (const Cell& cell : tissue.cells) {
-    for (const NodeId node : cell.basal_corners()) polygons.basal.push_back(node.number());
-    for (const NodeId node : cell.apical_corners()) polygons.apical.push_back(node.number());
+    // After divisions three cells also meet at stops within a wall.
+    for (const auto& stops : cell.walls)
+      for (std::size_t i = 0; i + 1 < stops.size(); ++i) add(stops[i].basal, stops[i].apical);
+    for (std::size_t i = 0; cell.walls.empty() && i < cell.sides(); ++i)
+      add(cell.basal_corners()[i], cell.apical_corners()[i]);
     polygons.ends.push_back(static_cast<int>(polygons.apical.size()));
     polygons.elements.push_back(cell.first_element.number());
   }

@@ -38,6 +38,8 @@ struct MeshArrays {
   std::vector<std::pair<std::string, std::vector<int>>> lists = {};  // field data
 };
 
+/// Return the polygons of the cells: corners, and places on their walls where a neighbour was cut, which both cells of
+/// a wall have.
 FramePolygons polygons_of(const Tissue& tissue);
 
 /// Polygonal surface with data.

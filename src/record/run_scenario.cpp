@@ -19,6 +19,15 @@ std::optional<Scenario> scenario_of_run(const std::filesystem::path& directory) 
   }
 }
 
+Scenario as_begun(Scenario scenario, const std::filesystem::path& directory) {
+  const std::optional<Scenario> before = scenario_of_run(directory);
+  if (!before) return scenario;
+  if (!scenario.given_at.contains("elasticity.corner_barrier_Pa"))
+    scenario.elasticity.corner_barrier_Pa = before->elasticity.corner_barrier_Pa;
+  if (!scenario.given_at.contains("time.integrator")) scenario.time.integrator = before->time.integrator;
+  return scenario;
+}
+
 std::optional<Capsule> shell_of_run(const Scenario& scenario, const Vectors& rest_positions) {
   const EmbryoInput& embryo = scenario.embryo;
   const EmbryoShape shape = shape_of(embryo);

@@ -17,6 +17,7 @@
 #include "scenario/print.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/words.hpp"
+#include "simulation/energy_warning.hpp"
 
 namespace plica {
 namespace {
@@ -55,6 +56,13 @@ Json energy_by_law(const Simulation& simulation) {
   return table;
 }
 
+// Reasons to doubt the results, by topic.
+Json warnings_of(const Simulation& simulation) {
+  Json texts = Json::object();
+  if (const std::string text = energy_warning(simulation); !text.empty()) texts["energy_imbalance"] = text;
+  return texts;
+}
+
 // Last value of a monitor.
 std::optional<double> last_value(const std::vector<Observation>& rows, std::size_t monitor) {
   std::optional<double> value;
@@ -87,6 +95,7 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   summary["status"] = simulation.status() == RunStatus::under_way ? "interrupted" : word(simulation.status());
   summary["stopped_by"] = stopped_by(scenario, simulation, last);
   summary["failure"] = simulation.failure().empty() ? Json(nullptr) : Json(simulation.failure());
+  summary["warnings"] = warnings_of(simulation);
   summary["time_s"] = last.time_s();
   summary["equilibrium_time_s"] = number(simulation.equilibrium_time_s());
   summary["cells"] = tissue.cells.size();

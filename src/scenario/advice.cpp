@@ -15,8 +15,10 @@
 #include "scenario/acting.hpp"
 #include "scenario/cell_size.hpp"
 #include "scenario/finer_mesh.hpp"
+#include "scenario/remedies.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/words.hpp"
+#include "tissue/faces.hpp"
 #include "tissue/mesh_quality.hpp"
 
 namespace plica {
@@ -36,8 +38,30 @@ void advise_on_shape_memory(const Scenario& scenario, const Model& model, const 
       if (model.tissue.elements.size() > model.tissue.cells.size())
         warn(
             "shape memory acts on whole cells, so with several elements per cell the sheet bends up to three times "
-            "more easily; use one element per cell (docs/theory/shape_memory.md)");
+            "more easily (docs/theory/shape_memory.md); " +
+            remedies_text({is_of_grid(shape_of(scenario.embryo))
+                               ? Remedy{{{"embryo.elements_per_cell", "[1, 1, 1]"}}, "one element per cell"}
+                               : Remedy{{{"elasticity.model", "\"corotational\""}}, "another law"}}));
     }
+}
+
+// Warns that one element per cell is too soft for neo-Hookean cells.
+void advise_on_neo_hookean(const Scenario& scenario, const Tissue& tissue, const MessageSink& warn) {
+  const ElasticityInput& elasticity = scenario.elasticity;
+  if (model_of(elasticity) != ElasticModel::neo_hookean || elasticity.poisson_ratio <= 0.1 ||
+      tissue.elements.size() != tissue.cells.size())
+    return;
+  std::vector<Remedy> remedies;
+  if (scenario.divisions.empty())
+    remedies.push_back({{{"embryo.elements_per_cell", "[1, 1, 2]"}}, "two elements through the height"});
+  const auto relaxes = [](const auto& named) { return named.second.relaxation_s.has_value(); };
+  if (!elasticity.relaxation_s && std::ranges::none_of(scenario.region_elasticities, relaxes))
+    remedies.push_back({{{"elasticity.model", "\"corotational\""}}, "another law"});
+  const std::string remedy = remedies_text(remedies);
+  warn(
+      fmt::format("neo-hookean cells of one element bend {:.0f} % more easily than Poisson's ratio {} implies "
+                  "(docs/theory/neo_hookean.md){}{}",
+                  100 * elasticity.poisson_ratio, elasticity.poisson_ratio, remedy.empty() ? "" : "; ", remedy));
 }
 
 std::set<std::string> used_regions(const Scenario& scenario) {
@@ -87,6 +111,24 @@ void advise_on_profiles(const Scenario& scenario, const Tissue& tissue, const Me
                        range));
     }
   };
+  look("contraction", scenario.contractions);
+  look("cortex", scenario.cortices);
+  look("pressure", scenario.pressures);
+}
+
+// Says along what the profiles run: the arc or y, by the tissue.
+void note_profile_axes(const Scenario& scenario, const Tissue& tissue, const MessageSink& note) {
+  const char* across =
+      goes_round(tissue) ? "the arc about x, since the tissue goes round it" : "y, since the tissue is open";
+  const auto look = [&](const std::string& tables, const auto& inputs) {
+    for (const auto& [name, input] : inputs)
+      if (const std::string& axis = input.profile.axis; !input.profile.shape.empty() && !axis.empty())
+        note(fmt::format("{}.{}: profile runs along {}", tables, name,
+                         axis == "along"    ? "x"
+                         : axis == "across" ? across
+                                            : "the angle about x from ventral"));
+  };
+  look("elasticity", scenario.region_elasticities);
   look("contraction", scenario.contractions);
   look("cortex", scenario.cortices);
   look("pressure", scenario.pressures);
@@ -179,6 +221,7 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
     warn("time.step_s: the time step is longer than the run; reduce step_s or increase end_s");
   advise_on_profiles(scenario, model.tissue, warn);
   for (std::string& load : abrupt_loads(scenario, model.tissue)) warn(std::move(load));
+  note_profile_axes(scenario, model.tissue, note);
   advise_on_shape_memory(scenario, model, note, warn);
   if ((pulls || is_tense) && model_of(scenario.elasticity) == ElasticModel::corotational &&
       elements_through_height(model.tissue) == 1)
@@ -191,13 +234,9 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
     note(
         "cell volumes are conserved exactly, so Poisson's ratio affects only the shear modulus and the dilatation "
         "within a cell");
-  if (const double poisson = scenario.elasticity.poisson_ratio;
-      model_of(scenario.elasticity) == ElasticModel::neo_hookean && poisson > 0.1 &&
-      model.tissue.elements.size() == model.tissue.cells.size())
-    warn(fmt::format(
-        "neo-hookean cells of one element bend {:.0f} % more easily than Poisson's ratio {} implies; use two elements "
-        "through the height, or set elasticity.model to \"corotational\" (docs/theory/neo_hookean.md)",
-        100 * poisson, poisson));
+  advise_on_neo_hookean(scenario, model.tissue, warn);
+  if (const auto onset = gradual_onset(scenario); onset && !is_of_grid(shape_of(scenario.embryo)))
+    note("forces act in full from t = 0, so the first steps are short and lose energy; " + remedies_text({*onset}));
   if (method_of(scenario.volume) == VolumeMethod::projection) {
     note("volumes are projected after the forces act, so the equilibrium depends on time.step_s");
     if (!scenario.time.step_s && scenario.volume.projection_weights == "equal")

@@ -163,6 +163,16 @@ void check_arrays(const Scenario& scenario, const Tissue& tissue, std::vector<Di
   check("elasticity", scenario.region_elasticities);
 }
 
+// Names keys that the shape has, for cells that cannot divide.
+std::string how_to_divide(const Scenario& scenario, const Tissue& tissue) {
+  const EmbryoInput& embryo = scenario.embryo;
+  if (cell_between_layers(tissue)) return "use one layer of cells";
+  if (!is_of_grid(shape_of(embryo)) && shape_of(embryo) != EmbryoShape::file)
+    return "set embryo.elements to \"diagonals\" and embryo.layers to 1";
+  if (embryo.elements_per_cell != EmbryoInput().elements_per_cell) return "set embryo.elements_per_cell to [1, 1, 1]";
+  return "use a mesh with one element per cell";
+}
+
 // Rejects profiles that reduce the modulus of a cell to 0.
 void check_moduli(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   for (const auto& [name, input] : scenario.region_elasticities) {
@@ -213,8 +223,7 @@ void check_tissue(const Scenario& scenario, const Tissue& tissue) {
   check_holds(scenario, tissue, errors);
   if (const auto why = why_indivisible(tissue); why && !scenario.divisions.empty())
     errors.push_back(diagnostic_at(scenario, "division." + scenario.divisions.begin()->first,
-                                   "the cells of this embryo cannot divide: " + *why,
-                                   "use one element per cell and one layer of cells"));
+                                   "the cells of this embryo cannot divide: " + *why, how_to_divide(scenario, tissue)));
   if (scenario.volume.projection_surface == "embryo") check_encloses(scenario, tissue, errors);
   check_encloses_yolk(scenario, tissue, errors);
   if (method_of(scenario.volume) == VolumeMethod::projection) check_is_one_layer(scenario, tissue, errors);

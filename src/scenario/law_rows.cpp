@@ -59,9 +59,10 @@ std::vector<Row> law_rows() {
                  "Pre-tension of these springs, independent of length (nN)."),
       elasticity("attractor_preload_length_um", &E::attractor_preload_length_um, positive,
                  "Spring length at which 0.7 of the pre-tension acts (µm); its direction is undefined at 0."),
-      elasticity("corner_barrier_Pa", &E::corner_barrier_Pa, not_negative,
+      elasticity("corner_barrier_Pa", &E::corner_barrier_Pa, {.low = 0, .word_for_none = "automatic"},
                  "Inversion barrier (Pa): energy that diverges as a corner Jacobian vanishes, active below 0.15 of its "
-                 "reference value; 0: off. For tight folds of soft cells, about Young's modulus."),
+                 "reference value; 0: off. `automatic`: a tenth of Young's modulus if cells are polygons, come from a "
+                 "file or divide, else 0."),
       of_region("region", &R::region, anything, "Cells with these values.", {.required = true}),
       of_region("height_percent", &R::height_percent, between(0, 100),
                 "Layer: only elements with their centre in this part of the cell height (0: basal, 100: apical). "

@@ -9,6 +9,7 @@
 #include "core/files.hpp"
 #include "core/names.hpp"
 #include "scenario/builtin.hpp"
+#include "scenario/default_shell.hpp"
 #include "scenario/nesting.hpp"
 #include "scenario/read_layer.hpp"
 #include "scenario/suggest.hpp"
@@ -229,6 +230,7 @@ Scenario load_scenario(const ScenarioSource& source, const std::vector<std::stri
     throw ScenarioError(std::move(input.diagnostics));
   }
   for (const auto& [address, place] : input.places) scenario.given_at[address] = {place.file, place.line};
+  set_default_shell(scenario);
   return scenario;
 }
 

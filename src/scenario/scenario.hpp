@@ -83,7 +83,7 @@ struct ElasticityInput {
   std::optional<double> attractor_stiffness_nN_per_um;  // shape-memory; empty: derived from the two above
   double attractor_preload_nN = 0;                      // shape-memory
   double attractor_preload_length_um = 0.5;             // shape-memory: distance above which it acts in full
-  double corner_barrier_Pa = 0;
+  std::optional<double> corner_barrier_Pa;              // empty: automatic, which validate() replaces
   std::optional<double> relaxation_s;  // neo-hookean; TOML: relaxation_s or relaxation_min; empty: "none"
 };
 
@@ -242,16 +242,16 @@ struct DivisionInput {
 };
 
 struct TimeInput {
-  std::optional<double> step_s;               // empty: "adaptive"
-  double first_step_s = 0.05;                 // adaptive
-  double max_step_s = 30;                     // adaptive
-  double tolerance_um = 0.05;                 // adaptive: local error on positions
-  double end_s = 3600;                        // TOML: end_s or end_min
-  std::string scheme = "newton";              // newton | linearly-implicit
-  std::string integrator = "backward-euler";  // backward-euler | bdf2
-  std::string linear_solver = "automatic";    // newton: automatic | direct | cholesky | multigrid
-  double cg_tolerance = 1e-6;                 // linearly-implicit
-  int cg_max_iterations = 2000;               // linearly-implicit
+  std::optional<double> step_s;             // empty: "adaptive"
+  double first_step_s = 0.05;               // adaptive
+  double max_step_s = 30;                   // adaptive
+  double tolerance_um = 0.05;               // adaptive: local error on positions
+  double end_s = 3600;                      // TOML: end_s or end_min
+  std::string scheme = "newton";            // newton | linearly-implicit
+  std::string integrator = "automatic";     // backward-euler | bdf2 | automatic, which validate() replaces
+  std::string linear_solver = "automatic";  // newton: automatic | direct | cholesky | multigrid
+  double cg_tolerance = 1e-6;               // linearly-implicit
+  int cg_max_iterations = 2000;             // linearly-implicit
 };
 
 struct StopInput {

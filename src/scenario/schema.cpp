@@ -179,8 +179,8 @@ std::vector<Row> make_rows() {
              "approaches `coupled` for short steps."),
 
       vitelline("enabled", &VitellineInput::enabled, anything,
-                "Rigid membrane around a closed embryo (unilateral constraint); default false for a block, sheet or "
-                "surface."),
+                "Rigid membrane around a closed embryo (unilateral constraint); default false for a block, sheet, "
+                "surface, or open mesh of shape `file`."),
       vitelline("gap_um", &VitellineInput::gap_um, not_negative,
                 "Perivitelline gap above the apical nodes at t = 0 (µm)."),
       vitelline("drag_Pa_s_per_um", &VitellineInput::drag_Pa_s_per_um, not_negative,
@@ -227,7 +227,8 @@ std::vector<Row> make_rows() {
       time("scheme", &T::scheme, one_of(words::schemes),
            "Step solver: Newton's method, or one linear system by conjugate gradients (the paper)."),
       time("integrator", &T::integrator, one_of(words::integrators),
-           "First or second order in time. `bdf2` requires scheme `newton`, no inertia and no projection."),
+           "First or second order in time. `bdf2` requires scheme `newton`, no inertia and no projection. `automatic`: "
+           "`backward-euler`."),
       time("linear_solver", &T::linear_solver, one_of(words::linear_solvers),
            "Linear solver in Newton's method: factorization of the whole system (`direct`), or a Krylov method with a "
            "factorization of its positive definite part (`cholesky`) or with multigrid; `automatic`: by size. Results "

@@ -397,9 +397,8 @@ void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model)
   const Tissue& tissue = model.tissue;
   model.volumes().hold(method_of(scenario.volume) == VolumeMethod::coupled);
   add_elasticity(scenario, origin, model);
-  if (scenario.elasticity.corner_barrier_Pa > 0)
-    model.laws.push_back(
-        std::make_unique<CornerBarrier>(tissue, scenario.elasticity.corner_barrier_Pa * units::pascal));
+  if (const double barrier_Pa = scenario.elasticity.corner_barrier_Pa.value_or(0); barrier_Pa > 0)
+    model.laws.push_back(std::make_unique<CornerBarrier>(tissue, barrier_Pa * units::pascal));
   add_contractions(scenario, origin, model);
   add_cortices(scenario, origin, model);
   add_enclosed(scenario, model);

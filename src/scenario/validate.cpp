@@ -205,6 +205,15 @@ void check_scheme(const Scenario& scenario, Input& input) {
                  "set projection_surface to \"cells\" or \"tissue\"");
 }
 
+/// Replaces "automatic" by the value that fits the scenario. Call on a valid scenario.
+void resolve_automatic(Scenario& scenario) {
+  const bool may_invert = !is_of_grid(shape_of(scenario.embryo)) || !scenario.divisions.empty();
+  if (!scenario.elasticity.corner_barrier_Pa)
+    scenario.elasticity.corner_barrier_Pa =
+        may_invert && !is_as_in_the_paper(scenario) ? scenario.elasticity.young_modulus_Pa / 10 : 0;
+  if (scenario.time.integrator == "automatic") scenario.time.integrator = "backward-euler";
+}
+
 void check_integrator(const Scenario& scenario, Input& input) {
   if (!input.sound("time.integrator") || scenario.time.integrator != "bdf2") return;
   const auto refuse = [&](const std::string& why) {
@@ -470,6 +479,7 @@ void validate(Scenario& scenario, Input& input) {
   for (const auto& [name, region] : scenario.regions) regions.check_selectors(name, region);
   regions.check_references();
   regions.check_circles();
+  if (input.diagnostics.empty()) resolve_automatic(scenario);
 }
 
 }  // namespace plica

@@ -7,7 +7,8 @@
 namespace plica {
 
 /// Reports inconsistent keys to `input` and sets defaults that depend on other keys: fields that the embryo's shape
-/// does not use, the length of a sphere (its diameter), the vitelline membrane of a block (none).
+/// does not use, the length of a sphere (its diameter), the vitelline membrane of a block (none), values that are
+/// "automatic".
 void validate(Scenario& scenario, Input& input);
 
 // Parts of validate().

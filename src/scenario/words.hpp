@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -152,8 +153,9 @@ inline constexpr auto division_planes =
 // [time]
 inline constexpr auto schemes = std::to_array<Word<StepScheme::Forces>>(
     {{"newton", StepScheme::Forces::newton}, {"linearly-implicit", StepScheme::Forces::linearly_implicit}});
-inline constexpr auto integrators =
-    std::to_array<Word<TimeOrder>>({{"backward-euler", TimeOrder::first}, {"bdf2", TimeOrder::second}});
+// Loading a scenario replaces "automatic" by one of the others.
+inline constexpr auto integrators = std::to_array<Word<std::optional<TimeOrder>>>(
+    {{"automatic", std::nullopt}, {"backward-euler", TimeOrder::first}, {"bdf2", TimeOrder::second}});
 inline constexpr auto linear_solvers = std::to_array<Word<LinearMethod>>({{"automatic", LinearMethod::automatic},
                                                                           {"direct", LinearMethod::direct},
                                                                           {"cholesky", LinearMethod::cholesky},

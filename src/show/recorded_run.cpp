@@ -7,6 +7,7 @@
 #include "record/archive.hpp"
 #include "record/results.hpp"
 #include "record/run_directory.hpp"
+#include "record/run_scenario.hpp"
 #include "scenario/print.hpp"
 #include "show/report.hpp"
 
@@ -122,8 +123,9 @@ nlohmann::ordered_json RecordedRun::finish() {
 
 nlohmann::ordered_json run_recorded(const fs::path& out, const Scenario& scenario, const ScenarioSource& source,
                                     const std::function<bool()>& stop) {
-  Simulation simulation(scenario);
-  RecordedRun record(out, scenario, source, simulation, RecordedRun::Start::resumed);
+  const Scenario begun = as_begun(scenario, out);
+  Simulation simulation(begun);
+  RecordedRun record(out, begun, source, simulation, RecordedRun::Start::resumed);
   if (record.is_finished()) return read_summary(out);
   record.begin();
   simulation.stop_when([&] { return stop() || record.has_failed(); });

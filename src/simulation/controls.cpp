@@ -30,7 +30,7 @@ DivisionRule make_division_rule(const DivisionInput& input) {
 StepScheme make_scheme(const Scenario& scenario) {
   StepScheme scheme;
   scheme.forces = meaning_of(words::schemes, scenario.time.scheme);
-  scheme.order = meaning_of(words::integrators, scenario.time.integrator);
+  scheme.order = meaning_of(words::integrators, scenario.time.integrator).value_or(TimeOrder::first);
   scheme.linear_method = meaning_of(words::linear_solvers, scenario.time.linear_solver);
   scheme.linear_tolerance = scenario.time.cg_tolerance;
   scheme.most_linear_iterations = scenario.time.cg_max_iterations;

@@ -14,6 +14,7 @@
 #include "mechanics/active/given_activities.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"
+#include "scenario/remedies.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/watch.hpp"
 
@@ -48,7 +49,8 @@ std::optional<CellId> held_cell_that_grows(const Model& model, const State& stat
   return std::nullopt;
 }
 
-std::string failure_text(StepReport report, const Model& model, const State& state, double duration_s) {
+std::string failure_text(StepReport report, const Model& model, const State& state, double duration_s,
+                         const Scenario* scenario) {
   const std::optional<CellId> held = held_cell_that_grows(model, state);
   if (report.cell) report.cell = CellId(id_of(model, *report.cell));
   std::string text =
@@ -58,8 +60,8 @@ std::string failure_text(StepReport report, const Model& model, const State& sta
                       "; cell {} must change its volume, but all its corners are fixed: fix fewer nodes, or "
                       "exclude it from division and growth",
                       id_of(model, *held));
-  if (const std::string remedy = report.remedy(); !remedy.empty()) text += "; " + remedy;
-  return text;
+  const std::string remedies = scenario ? remedies_text(remedies_of(*scenario, {report.status, state.time_s})) : "";
+  return remedies.empty() ? text : text + "; " + remedies;
 }
 
 }  // namespace
@@ -70,6 +72,7 @@ Simulation::Parts parts_of(const Scenario& scenario) {
   parts.controls = make_controls(scenario);
   parts.sites = make_furrow_sites(scenario, parts.model->tissue);
   parts.watch = make_watch(scenario, parts.model->tissue);
+  parts.scenario = std::make_shared<const Scenario>(scenario);
   if (auto side = make_solved_side(scenario, *parts.model))
     parts.full_model.emplace(std::exchange(parts.model, std::move(side->model)), std::move(side->mirror));
   return parts;
@@ -78,7 +81,8 @@ Simulation::Parts parts_of(const Scenario& scenario) {
 Simulation::Simulation(const Scenario& scenario) : Simulation(parts_of(scenario)) {}
 
 Simulation::Simulation(Parts parts)
-    : model_(std::move(parts.model)),
+    : scenario_(std::move(parts.scenario)),
+      model_(std::move(parts.model)),
       full_model_(std::move(parts.full_model)),
       controls_(std::move(parts.controls)),
       step_length_(controls_),
@@ -93,7 +97,8 @@ Simulation::Simulation(Parts parts)
 }
 
 Simulation::Simulation(const Simulation& other)
-    : model_(std::make_unique<Model>(*other.model_)),
+    : scenario_(other.scenario_),
+      model_(std::make_unique<Model>(*other.model_)),
       full_model_(other.full_model_),
       controls_(other.controls_),
       now_(other.memory()),
@@ -339,7 +344,7 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
     stepper_->forget_factor();
     if (step_length_.halve(controls_, duration_s)) continue;
     if (report.cell) failed_cell_ = id_of(*model_, *report.cell);
-    failure_ = failure_text(report, *model_, now_.state, duration_s);
+    failure_ = failure_text(report, *model_, now_.state, duration_s, scenario_.get());
     break;
   }
   grow(*model_, now_.state.time_s);

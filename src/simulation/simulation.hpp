@@ -53,6 +53,7 @@ class Simulation {
     FurrowSites sites = {};
     Watch watch = {};
     std::optional<FullModel> full_model = {};
+    std::shared_ptr<const Scenario> scenario = {};  // names remedies of a failure; null: none
   };
   explicit Simulation(Parts parts);
 
@@ -132,6 +133,7 @@ class Simulation {
   void renew_stepper();
   void recall_factor();
 
+  std::shared_ptr<const Scenario> scenario_;
   std::unique_ptr<Model> model_;         // the solved model; `now_` is its state
   std::optional<FullModel> full_model_;  // of which `model_` is one side, if any
   RunControls controls_;

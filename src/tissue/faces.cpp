@@ -140,6 +140,8 @@ bool encloses(const Tissue& tissue, std::span<const Facet> facets) {
   return !tissue.is_periodic() && rim_of(tissue, facets).empty();
 }
 
+bool goes_round(const Tissue& tissue) { return tissue.is_endless || encloses(tissue, tissue.apical_facets); }
+
 std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue) {
   std::vector<std::vector<CellId>> neighbours(tissue.cells.size());
   for (const Face& face : all_lateral_faces(tissue))

@@ -31,6 +31,10 @@ std::vector<std::pair<NodeId, NodeId>> rim_of(const Tissue& tissue, std::span<co
 /// Whether a surface of facets encloses a volume: it has no boundary and is not periodic.
 bool encloses(const Tissue& tissue, std::span<const Facet> facets);
 
+/// Whether the tissue goes round its axis x, so that places across it are arcs: a slice, or a tissue that is closed,
+/// whose apical surface encloses a volume. Independent of a vitelline membrane.
+bool goes_round(const Tissue& tissue);
+
 /// Return the cells that share a lateral face with each cell, ascending.
 std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue);
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double nothing_um = 1e-6;  // rounding
 
 // 0 of a cell that the midline cuts, 1 of one that it runs along, else -1.
-int start_at_midline(const Tissue& tissue, const Cell& cell) {
+int start_at_midline(const Tissue& tissue, const Cell& cell, bool has_back) {
   double low = std::numeric_limits<double>::infinity(), high = -low, height = 0;
   int on_it = 0;
   for (const NodeId corner : cell.apical_corners()) {
@@ -21,7 +21,7 @@ int start_at_midline(const Tissue& tissue, const Cell& cell) {
     height += x.z();
     on_it += static_cast<int>(std::abs(x.y()) < nothing_um);
   }
-  if (tissue.outer_shape && height >= 0) return -1;
+  if (has_back && height >= 0) return -1;
   if (low < -nothing_um && high > nothing_um) return 0;
   return on_it > 1 ? 1 : -1;
 }
@@ -49,7 +49,8 @@ void spread(const Tissue& tissue, int step, int most, std::vector<int>& numbers)
 
 std::vector<int> half_cells_from_midline(const Tissue& tissue) {
   std::vector<int> numbers;
-  for (const Cell& cell : tissue.cells) numbers.push_back(start_at_midline(tissue, cell));
+  const bool has_back = goes_round(tissue);
+  for (const Cell& cell : tissue.cells) numbers.push_back(start_at_midline(tissue, cell, has_back));
   spread(tissue, 2, std::numeric_limits<int>::max() - 2, numbers);
   return numbers;
 }

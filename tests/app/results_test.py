@@ -43,7 +43,7 @@ class Outcomes(CommandLine):
         self.assertTrue({"version", "commit", "compiler", "threads"} <= set(summary["provenance"]))
         for key, value in summary.items():
             self.assertNotIsInstance(value, list)
-            tables = ("provenance", "energy_by_law_nN_um", "tension_by_law_mN_per_m")
+            tables = ("provenance", "energy_by_law_nN_um", "tension_by_law_mN_per_m", "warnings")
             self.assertTrue(key in tables or not isinstance(value, dict), "flat")
 
     def test_rest_from_the_first_step_on_is_no_success_in_silence(self):
@@ -154,6 +154,14 @@ frame_every_s = 0.1
         self.run_scenario(text.replace("0.5, within_percent = 1", f"{value}, within_percent = 0.001"), "--overwrite")
         # What never happened cannot meet an expectation.
         self.run_scenario(BLOCK + "[expect]\nequilibrium_time_s = { value = 1, within = 1e9 }\n", "--overwrite", status=1)
+
+    def test_a_run_that_loses_energy_warns(self):
+        text = ('format = 1\n[embryo]\nshape = "block"\ncells = [1, 2, 1]\nlength_um = 8\nwidth_um = 16\ncell_height_um = 12\n'
+                '[contraction.apical]\nregion = "all"\nstiffness_nN_per_um = 2\n[time]\nstep_s = 2\n')
+        stderr = self.run_scenario(text, "--quiet").stderr
+        line, = [one for one in stderr.splitlines() if one.startswith("warning: time steps")]
+        self.assertRegex(line, r'^warning: time steps lose \d+ % of the energy .*; set time.step_s to "adaptive"')
+        self.assertEqual(self.summary()["warnings"], {"energy_imbalance": line.removeprefix("warning: ")})
 
     def test_mesh_writes_regions_and_can_be_read_back_as_a_scenario(self):
         mesh = self.folder / "rest.vtu"

@@ -104,8 +104,8 @@ class BackFromAFile(CommandLine):
 
     def test_polygons_and_grids(self):
         sheet = ('format = 1\n[embryo]\nshape = "sheet"\nlength_um = 60\nwidth_um = 40\ncell_count = 40\ncell_height_um = 9\n'
-                 "[vitelline]\nenabled = false\n"
-                 "[region.left]\nx_um = [-100, 0]\n[contraction.a]\nregion = \"left\"\nstiffness_nN_per_um = 0.3\n[time]\nend_s = 2\n")
+                 "[region.left]\nx_um = [-100, 0]\n[contraction.a]\nregion = \"left\"\nstiffness_nN_per_um = 0.3\n"
+                 "profile = { shape = \"gaussian\", axis = \"across\", sigma_um = 8 }\n[time]\nend_s = 2\n")
         block = (sheet.replace('"sheet"', '"block"').replace("cell_count = 40", "cells = [3, 2, 1]\nelements_per_cell = [2, 2, 3]"))
         for name, text in (("diagonals", sheet), ("kites", sheet.replace("cell_count", 'elements = "kites"\nlayers = 2\ncell_count')),
                            ("grid", block)):
@@ -124,6 +124,26 @@ class BackFromAFile(CommandLine):
                     self.assertEqual(result.returncode, 0, result.stderr)
                     series.append((out / "series.csv").read_bytes())
                 self.assertEqual(*series)
+
+    def test_a_shell_is_there_by_default_only_where_the_tissue_is_closed(self):
+        for shape, extra, closed in (("sheet", "width_um = 40\ncell_count = 40\n", False), ("sphere", "cells = [2, 2, 2]\n", True)):
+            with self.subTest(shape):
+                size = "diameter_um = 60\n" if shape == "sphere" else "length_um = 60\n"
+                rest = self.folder / f"{shape}.vtu"
+                built = self.write(f'format = 1\n[embryo]\nshape = "{shape}"\n{size}{extra}cell_height_um = 9\n')
+                self.assertEqual(plica("mesh", built, "--out", rest).returncode, 0)
+                acting = ('[region.r]\nids = [0, 1]\n[cortex.a]\nregion = "r"\ntension_mN_per_m = 1\n'
+                          'profile = { shape = "linear", axis = "across", half_width_um = 9 }\n')
+                text = f'format = 1\n[embryo]\nshape = "file"\nfile = "{rest.name}"\n{acting}'
+                result = plica("check", self.write(text))
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertIn(f"[vitelline]\nenabled = {str(closed).lower()}\n", result.stdout)
+                self.assertIn("cortex.a: profile runs along " + ("the arc about x" if closed else "y, since"), result.stderr)
+                drag = text + "[vitelline]\ndrag_Pa_s_per_um = 5\n"
+                if closed:
+                    self.assertEqual(plica("check", self.write(drag)).returncode, 0)
+                else:
+                    self.assert_refused(drag, "an open tissue has none by default", line=12, key="vitelline.drag_Pa_s_per_um")
 
     def test_without_corners_it_is_refused(self):
         sheet = 'format = 1\n[embryo]\nshape = "sheet"\nlength_um = 60\nwidth_um = 40\ncell_count = 40\ncell_height_um = 9\n'

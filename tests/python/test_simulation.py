@@ -53,6 +53,31 @@ def test_same_bits_and_files_as_the_command_line(tmp_path):
     assert run.summary["furrow_depth_um"] == plica.open(tmp_path / "program").summary["furrow_depth_um"]
 
 
+def test_a_run_that_loses_energy_warns(tmp_path):
+    sim = plica.Simulation({"embryo": {"shape": "block", "cells": [1, 2, 1], "length_um": 8, "width_um": 16, "cell_height_um": 12},
+                            "contraction": {"apical": {"region": "all", "stiffness_nN_per_um": 2}}, "time": {"step_s": 2}})
+    with pytest.warns(UserWarning, match="time steps lose .* % of the energy .*; set time.step_s to \"adaptive\"") as warned:
+        run = sim.run(out=tmp_path / "run")
+    assert {"energy_imbalance": str(warned[0].message)} == run.summary["warnings"]
+
+
+def test_forces_are_of_now():
+    """A cortex whose rest area flows within a second pulls as its mean tension says."""
+    sim = plica.Simulation({"embryo": {"shape": "block", "cells": [1, 1, 1], "length_um": 10, "width_um": 10, "cell_height_um": 10},
+                            "pressure": {"p": {"region": "all", "pressure_Pa": 300}},
+                            "cortex": {"top": {"region": "all", "stiffness_mN_per_m": 1, "relaxation_s": 1}},
+                            "time": {"end_min": 1, "step_s": 0.01, "integrator": "backward-euler"}, "dynamics": {"surface_drag_Pa_s_per_um": 1}}, threads=1)
+    top, rest_area, r = sim.hexahedra[0][4:], 100, 0.01
+    for _ in range(40):
+        sim.step()
+        a, b, c, d = sim.positions[top]
+        area = np.linalg.norm(np.cross(c - a, d - b)) / 2
+        rest_area = (rest_area + r * area) / (1 + r)
+    tension = area / rest_area - 1
+    assert tension > 0.02
+    assert np.abs(sim.forces("cortex.top")[top, 0]) == pytest.approx(tension * np.sqrt(area) / 2, rel=1e-6)
+
+
 def test_any_number_of_threads(sim):
     other = plica.Simulation(scenario(), threads=2)
     sim.run()

@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
 #include <sstream>
 
 #include "core/errors.hpp"
+#include "measure/furrow.hpp"
+#include "simulation/division_rules.hpp"
 #include "support/prisms.hpp"
+#include "tissue/faces.hpp"
 
 namespace plica {
 namespace {
@@ -51,6 +55,46 @@ TEST(SurfaceMesh, IsThatOfTheCells) {
       }
     }
   EXPECT_EQ(cases, 8);
+}
+
+// A wall is the same line in both of its cells, also where one of them was cut: no vertex lies beside an edge, no edge
+// within the tissue has one side, and areas are those of the cells.
+TEST(SurfaceMesh, OfDividedCellsHasNoGaps) {
+  Tissue tissue = tissue_from_prisms(irregular_polygons(6, 6, 8, 12, 0.1, 3), PolygonSplit::diagonals, 1);
+  Vectors positions = tissue.rest_positions;
+  for (int round = 0; round < 2; ++round) {
+    std::vector<CellCut> cuts;
+    for (std::size_t c = 7; c < tissue.cells.size(); c += 4)
+      cuts.push_back(cut_by(DivisionPlane::longest_axis, tissue, CellId(c), positions));
+    const Division division = divide(tissue, cuts, 0, positions);
+    positions = with_new_nodes(tissue, division, positions);
+    for (Vec3& x : positions) x += Vec3(0.3 * std::sin(x.y()), 0.3 * std::cos(2 * x.x()), 0);
+    tissue.place_hanging(positions);
+  }
+  Frame frame = frame_of_tissue(tissue);
+  frame.positions = positions;
+  for (const bool apical : {true, false}) {
+    const SurfaceMesh surface = surface_of(frame, apical);
+    std::set<std::pair<int, int>> edges;
+    std::vector<double> areas;
+    int first = 0;
+    for (const int end : surface.ends) {
+      double area = 0;
+      for (int i = first; i < end; ++i) {
+        const int from = surface.corners[i], to = surface.corners[i + 1 < end ? i + 1 : first];
+        EXPECT_TRUE(edges.emplace(from, to).second);
+        area += 0.5 * surface.points[from].cross(surface.points[to]).z();
+      }
+      areas.push_back(area);
+      first = end;
+    }
+    const auto lonely = std::ranges::count_if(edges, [&](const auto& edge) {
+      return !edges.contains({edge.second, edge.first});
+    });
+    EXPECT_EQ(lonely, static_cast<long>(rim_of(tissue, apical ? tissue.apical_facets : tissue.basal_facets).size()));
+    const std::vector<double> of_cells = apical ? apical_areas(tissue, positions) : basal_areas(tissue, positions);
+    for (std::size_t c = 0; c < areas.size(); ++c) EXPECT_NEAR(areas[c], of_cells[c], 1e-9 * of_cells[c]) << c;
+  }
 }
 
 TEST(SurfaceMesh, TablesNameVerticesEdgesAndFaces) {

@@ -109,7 +109,8 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
       {"[self_contact]\nsurface = \"apical\"\ndistance_um = 10",
        "test.toml:1: self_contact.search_um: 6 is below twice distance_um; set search_um to several times distance_um"},
       {"[elasticity]\ncorner_barrier_Pa = -1",
-       "test.toml:2: elasticity.corner_barrier_Pa: -1 is out of range; set corner_barrier_Pa to a number >= 0"},
+       "test.toml:2: elasticity.corner_barrier_Pa: -1 is out of range; set corner_barrier_Pa to a number >= 0 or "
+       "\"automatic\""},
       {"[self_contact]\nsurface = \"apical\"\nfriction = -0.1",
        "test.toml:3: self_contact.friction: -0.1 is out of range; set friction to a number >= 0"},
       {"[self_contact]\nfriction = 0.3",

@@ -90,9 +90,10 @@ TEST(GivenActivity, OfAMotherIsHerDaughters) {
   ASSERT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
   ASSERT_GT(simulation.divisions(), 0);
   const Model& model = simulation.model();
+  const std::size_t law = place_of_law(model, "contraction.apical", true);
   for (std::size_t c = 0; c < model.tissue.cells.size(); ++c)
     if (model.tissue.regions.at("middle")[c]) {
-      EXPECT_EQ(model.laws[2]->activity_of(CellId(c), simulation.time_s(), simulation.state().internals[2]), 0.6);
+      EXPECT_EQ(model.laws[law]->activity_of(CellId(c), simulation.time_s(), simulation.state().internals[law]), 0.6);
     }
 }
 

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <optional>
 
+#include "tissue/faces.hpp"
+
 namespace plica {
 namespace {
 
@@ -24,12 +26,13 @@ std::vector<double> coordinates(const Tissue& tissue, const CellSet& cells, Patt
   // Angles about x from the belly (-z) towards the right (+y). A region all around has no mean direction: the belly.
   const auto angle = [](const Vec3& v) { return std::atan2(v.y(), -v.z()); };
   const double middle = mean.norm() > 1e-6 ? angle(mean) : 0;
+  const bool is_arc = axis == PatternAxis::across && goes_round(tissue);
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (axis == PatternAxis::along) {
       result.push_back(cell_centre(tissue.cells[c], tissue.rest_positions).x());
     } else if (axis == PatternAxis::angle) {
       result.push_back(degrees * angle(from_axis(c)));
-    } else if (!tissue.outer_shape) {
+    } else if (!is_arc) {
       result.push_back(from_axis(c).y());
     } else {
       const double turn = std::remainder(angle(from_axis(c)) - middle, 2 * std::numbers::pi);

@@ -14,7 +14,7 @@
 namespace plica {
 
 /// Axis of a profile. along: the axis of the embryo, x. across: arc length about the axis through the cell centre, from
-/// the mean direction of the region to the right (+y) on the ventral side; y in a tissue without outer shape. angle:
+/// the mean direction of the region to the right (+y) on the ventral side; y in an open tissue (goes_round). angle:
 /// about the axis, in degrees, 0 ventral, to the right.
 enum class PatternAxis { along, across, angle };
 

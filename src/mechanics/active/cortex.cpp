@@ -69,6 +69,11 @@ Cortex::Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kerne
     rest_areas_.push_back(area_at_rest(tissue, face));
     strengths_.push_back(strength_of(face, pattern_));
   }
+  stretches_.assign(faces_.size(), 1);
+  take_rest_areas();
+}
+
+void Cortex::take_rest_areas() {
   constexpr double blunt = 0.05;  // of the area at rest that a Gauss point has
   for (std::size_t place = 0; place < batches_.size() * batch_size; ++place) {
     const std::size_t face = std::min(place, faces_.size() - 1);
@@ -89,7 +94,8 @@ std::optional<double> Cortex::activity_of(CellId cell, double time_s, std::span<
 
 double Cortex::rest_area_before(std::size_t face, const Step& step) const {
   if (!flows()) return rest_areas_[face];
-  return (1 + step.ahead) * step.internal[face] - step.ahead * step.internal[faces_.size() + face];
+  return rest_areas_[face] *
+         ((1 + step.ahead) * step.internal[face] - step.ahead * step.internal[faces_.size() + face]);
 }
 
 // Activity of a cell, without its strength.
@@ -268,10 +274,7 @@ NodeGroups Cortex::node_groups(std::span<const double> /*internal*/) const {
 
 std::vector<double> Cortex::first_internal(const Tissue& tissue) const {
   std::vector<double> internal;
-  if (flows()) {
-    internal = rest_areas_;
-    internal.insert(internal.end(), rest_areas_.begin(), rest_areas_.end());
-  }
+  if (flows()) internal.assign(2 * faces_.size(), 1);
   return joined(std::move(internal), own_.numbers(tissue.rest_positions, 0, {}));
 }
 
@@ -281,7 +284,7 @@ std::vector<double> Cortex::next_internal(const Step& step) const {
     internal = areas(step.positions);
     const double r = step.rate_s / rule_.relaxation_s;
     for (std::size_t f = 0; f < faces_.size(); ++f)
-      internal[f] = (rest_area_before(f, step) + r * internal[f]) / (1 + r);
+      internal[f] = (rest_area_before(f, step) + r * internal[f]) / ((1 + r) * rest_areas_[f]);
     internal.insert(internal.end(), step.internal.begin(),
                     step.internal.begin() + static_cast<std::ptrdiff_t>(faces_.size()));
   }
@@ -296,45 +299,85 @@ std::vector<double> Cortex::with_activities(std::span<const double> internal,
   return GivenActivities::put(internal, own_numbers(), activities);
 }
 
+// A face comes from the one with its nodes, else from all between its cells. A face between daughters comes from none.
+class Cortex::Origins {
+ public:
+  Origins(const Cortex& before, const Division& division) : before_(before), division_(division) {
+    for (std::size_t f = 0; f < before.faces_.size(); ++f) {
+      const Face& face = before.faces_[f];
+      by_nodes_[sorted(face.nodes)] = f;
+      by_cells_[cells_of(face.cell, face.beyond)].push_back(f);
+    }
+  }
+
+  [[nodiscard]] std::vector<std::size_t> of(const Face& face) const {
+    // Hanging nodes are numbered again when cells divide.
+    const std::array<NodeId, 4> nodes = sorted(face.nodes);
+    const bool are_known = division_.daughters.empty() || nodes.back().index() < division_.free_nodes_before;
+    if (const auto same = by_nodes_.find(nodes); are_known && same != by_nodes_.end()) return {same->second};
+    const auto origin = [&](CellId cell) { return division_.origin[cell.index()]; };
+    const auto found =
+        by_cells_.find(cells_of(origin(face.cell), face.beyond ? std::optional(origin(*face.beyond)) : std::nullopt));
+    return found == by_cells_.end() ? std::vector<std::size_t>() : found->second;
+  }
+
+  /// Mean of values of these faces, weighted by their reference areas.
+  [[nodiscard]] double mean(std::span<const std::size_t> faces, std::span<const double> values) const {
+    double sum = 0, area = 0;
+    for (const std::size_t f : faces) sum += before_.rest_areas_[f] * values[f], area += before_.rest_areas_[f];
+    return sum / area;
+  }
+
+ private:
+  static std::array<NodeId, 4> sorted(std::array<NodeId, 4> nodes) {
+    std::ranges::sort(nodes);
+    return nodes;
+  }
+
+  const Cortex& before_;
+  const Division& division_;
+  std::map<std::array<NodeId, 4>, std::size_t> by_nodes_;
+  std::map<std::pair<int, int>, std::vector<std::size_t>> by_cells_;
+};
+
+void Cortex::inherit_faces(const Origins& origins, const Cortex& before, std::span<const Vec3> positions) {
+  const std::vector<double> now = areas(positions);
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const std::vector<std::size_t> from = origins.of(faces_[f]);
+    stretches_[f] = from.empty() ? now[f] / rest_areas_[f] : origins.mean(from, before.stretches_);
+    rest_areas_[f] *= stretches_[f];
+    // In a part of a tissue, the neighbour that is left out keeps its half of a wall.
+    if (from.empty() || faces_[f].beyond || !before.faces_[from.front()].beyond) continue;
+    faces_[f].share *= 0.5;
+    strengths_[f] *= 0.5;
+  }
+  take_rest_areas();
+}
+
 std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const Division& division,
-                                            std::span<const Vec3>) const {
-  return std::make_unique<Cortex>(tissue, pattern_.after_division(division), rule_, kernels_);
+                                            std::span<const Vec3> positions) const {
+  auto after = std::make_unique<Cortex>(tissue, pattern_.after_division(division), rule_, kernels_);
+  after->inherit_faces(Origins(*this, division), *this, positions);
+  return after;
 }
 
 std::vector<double> Cortex::internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                     const Division& division) const {
   std::vector<double> after;
-  if (flows()) after = rest_areas_after_division(internal, tissue, division);
+  if (flows()) {
+    const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_division(division));
+    const Origins origins(*this, division);
+    for (const std::size_t first : {std::size_t{0}, faces_.size()})
+      for (const Face& face : faces) {
+        const std::vector<std::size_t> from = origins.of(face);
+        after.push_back(from.empty() ? 1 : origins.mean(from, internal.subspan(first, faces_.size())));
+      }
+  }
   if (own_.is_used()) {
     const std::span<const double> own = internal.subspan(area_numbers(), pattern_.cells.size());
     after = joined(std::move(after), inherited(division, std::vector(own.begin(), own.end())));
   }
   return joined(std::move(after), given(internal).after_division(division));
-}
-
-std::vector<double> Cortex::rest_areas_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                      const Division& division) const {
-  const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_division(division));
-  std::vector<double> after;
-  for (const std::size_t first : {std::size_t{0}, faces_.size()}) {
-    struct Areas {
-      double now = 0, at_rest = 0;
-    };
-    std::map<std::pair<int, int>, Areas> before;  // by the cells of faces
-    for (std::size_t f = 0; f < faces_.size(); ++f) {
-      Areas& areas = before[cells_of(faces_[f].cell, faces_[f].beyond)];
-      areas.now += internal[first + f];
-      areas.at_rest += rest_areas_[f];
-    }
-    for (const Face& face : faces) {
-      const auto origin = [&](CellId cell) { return division.origin[cell.index()]; };
-      const auto found =
-          before.find(cells_of(origin(face.cell), face.beyond ? std::optional(origin(*face.beyond)) : std::nullopt));
-      const double strain = found == before.end() ? 1 : found->second.now / found->second.at_rest;
-      after.push_back(strain * area_at_rest(tissue, face));
-    }
-  }
-  return after;
 }
 
 std::vector<double> Cortex::program_points_s() const {

@@ -50,13 +50,13 @@ class Cortex final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
 
-  /// Return, if areas relax, stress-free areas at the beginning of this step and of the previous one; then cell
-  /// states, if used; then overridden activities, if any.
+  /// Return, if areas relax, stress-free / reference areas at the beginning of this step and of the previous one; then
+  /// cell states, if used; then overridden activities, if any.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
 
-  /// Keep the strain of the mother in faces of daughters (stress-free / reference area). The face between daughters
-  /// starts in its reference state.
+  /// Faces keep their reference area, per area in the undeformed tissue, and their strain (stress-free / reference
+  /// area), also as parts of a face that was cut. The reference area of a face between daughters is its present one.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
@@ -91,8 +91,9 @@ class Cortex final : public Law {
   [[nodiscard]] Pull pull(const Step& step) const;
   [[nodiscard]] bool flows() const { return rule_.relaxation_s > 0; }
   [[nodiscard]] double rest_area_before(std::size_t face, const Step& step) const;
-  [[nodiscard]] std::vector<double> rest_areas_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                              const Division& division) const;
+  class Origins;  // faces before a division that faces after it come from
+  void take_rest_areas();
+  void inherit_faces(const Origins& origins, const Cortex& before, std::span<const Vec3> positions);
   [[nodiscard]] std::size_t area_numbers() const { return flows() ? 2 * faces_.size() : 0; }
   [[nodiscard]] std::size_t own_numbers() const {
     return area_numbers() + (own_.is_used() ? pattern_.cells.size() : 0);
@@ -109,6 +110,7 @@ class Cortex final : public Law {
   Kernels kernels_;
   std::vector<Face> faces_;         // faces with nonzero strength
   std::vector<double> rest_areas_;  // faces; um^2: A_r
+  std::vector<double> stretches_;   // faces; A_r / area in the undeformed tissue: 1 unless born after it
   std::vector<double> strengths_;   // faces
   OwnState own_;
   ElementChunks chunks_;

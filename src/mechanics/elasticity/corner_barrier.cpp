@@ -32,7 +32,7 @@ CornerBarrier::CornerBarrier(const Tissue& tissue, double modulus, double thresh
       threshold_(threshold),
       chunks_(tissue, tissue.elements),
       elements_(tissue.elements),
-      rest_jacobians_(tissue.elements.size()),
+      scales_(tissue.elements.size()),
       rest_volumes_(tissue.elements.size()) {
   for (std::size_t e = 0; e < elements_.size(); ++e) fit(tissue, e);
 }
@@ -40,7 +40,9 @@ CornerBarrier::CornerBarrier(const Tissue& tissue, double modulus, double thresh
 void CornerBarrier::fit(const Tissue& tissue, std::size_t e) {
   const HexPoints& rest = tissue.element_rest_shape[e];
   rest_volumes_[e] = hex_volume(rest);
-  rest_jacobians_[e] = hex_corner_jacobians(rest);
+  const std::array<double, 8> jacobians = hex_corner_jacobians(rest);
+  for (int corner = 0; corner < 8; ++corner)
+    scales_[e][corner] = handedness[corner] / (8 * threshold_ * jacobians[corner]);
 }
 
 void CornerBarrier::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
@@ -65,11 +67,12 @@ struct CornerBarrier::Corner {
 
 template <class Take>
 void CornerBarrier::for_pushed(std::span<const Vec3> positions, std::size_t e, const Take& take) const {
+  const HexPoints points = gather(positions, elements_[e]);
+  const auto at = [&](int i) -> const Vec3& { return points[i]; };
+#pragma GCC unroll 8
   for (int corner = 0; corner < 8; ++corner) {
-    const auto at = [&](int i) -> const Vec3& { return positions[elements_[e][i].index()]; };
     const Edges edges = edges_of(corner, at);
-    const double scale = handedness[corner] / (8 * threshold_ * rest_jacobians_[e][corner]);
-    const double r = scale * edges.product();
+    const double scale = scales_[e][corner], r = scale * edges.product();
     if (r >= 1) continue;
     const double k = modulus_ * rest_volumes_[e] / 8, log = std::log(r), less = r - 1;
     Corner pushed;

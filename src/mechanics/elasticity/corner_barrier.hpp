@@ -39,8 +39,8 @@ class CornerBarrier final : public Law {
   double modulus_, threshold_;
   ElementChunks chunks_;
   std::vector<std::array<NodeId, 8>> elements_;
-  std::vector<std::array<double, 8>> rest_jacobians_;  // elements, corners; um^3: 1/8 of the triple product of edges
-  std::vector<double> rest_volumes_;                   // elements; um^3
+  std::vector<std::array<double, 8>> scales_;  // elements, corners; 1/um^3: r over the triple product of edges
+  std::vector<double> rest_volumes_;           // elements; um^3
 };
 
 }  // namespace plica

@@ -18,9 +18,7 @@ std::string StepReport::reason() const {
     case Status::no_linear_convergence:
       return "conjugate gradients do not converge; largest force in " + where;
     case Status::singular_system:
-      return "the linear system is singular (redundant constraints, or an unconstrained rigid-body motion); largest "
-             "force in " +
-             where;
+      return "the linear system is singular; largest force in " + where;
     case Status::not_projected:
       return fmt::format(
           "the projection does not converge in {} sweeps: relative error {:.1e} in the volume of {}, a node {:.1e} um "
@@ -32,26 +30,6 @@ std::string StepReport::reason() const {
       return "interrupted";
   }
   return "";
-}
-
-std::string StepReport::remedy() const {
-  switch (status) {
-    case Status::inverted_element:
-      return "set elasticity.corner_barrier_Pa (100, say), and let forces rise over minutes (`program`); only if both "
-             "fail, reduce the forces there or raise elasticity.young_modulus_Pa";
-    case Status::no_convergence:
-      return "set elasticity.corner_barrier_Pa (100, say), and let forces rise over minutes (`program`); only if both "
-             "fail, reduce the forces there or shorten time.max_step_s";
-    case Status::no_linear_convergence:
-      return "shorten time.step_s, or raise time.cg_max_iterations";
-    case Status::not_projected:
-      return "shorten time.step_s";
-    case Status::singular_system:
-      return "hold each node once (`[hold.NAME]`), or hold or drag what can move freely "
-             "(dynamics.surface_drag_Pa_s_per_um)";
-    default:
-      return "";
-  }
 }
 
 std::optional<CellId> cell_with_largest(const Tissue& tissue, std::span<const Vec3> vectors) {

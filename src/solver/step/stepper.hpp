@@ -40,8 +40,6 @@ struct StepReport {
   [[nodiscard]] bool converged() const { return status == Status::converged; }
   /// Cause of a failure, for example "cell 37 becomes inverted".
   [[nodiscard]] std::string reason() const;
-  /// Suggested remedy with the relevant keys of the scenario; empty if unknown.
-  [[nodiscard]] std::string remedy() const;
 };
 
 /// Time stepper of one model.
