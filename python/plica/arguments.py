@@ -147,7 +147,7 @@ def integers(values: Any, what: str) -> NDArray[np.int32]:
 def _refuse_masked(array: NDArray[Any], what: str) -> None:
     masked = np.count_nonzero(getattr(array, "mask", False))
     if masked:
-        raise ValueError(f"{what}: {masked} of {array.size} values are masked; fill them first, by values.filled(0) for instance")
+        raise ValueError(f"{what}: {masked} values are masked; give a value for each, by values.filled(0) for instance")
 
 
 def per_cell(values: Any, count: int, what: str) -> NDArray[np.float64]:

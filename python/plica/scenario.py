@@ -241,12 +241,12 @@ class Scenario:
         name : str
             Name of the array; an array of this name from a file is replaced.
         values : array_like of float, shape (cells,)
-            One number per cell, in the order of ``Simulation.cell_data``; NaN where there is none.
+            One number per cell, in the order of ``Simulation.cell_data``; NaN or masked where there is none.
 
         Raises
         ------
         ValueError
-            If there is not one number per cell, or one is infinite or masked.
+            If there is not one number per cell, or one is infinite.
         ScenarioError
             If the embryo cannot be built.
 

@@ -287,7 +287,7 @@ class Simulation:
         Raises
         ------
         ValueError
-            If no active law has this name, the shape is wrong, or a value is negative, infinite or masked.
+            If no active law has this name, the shape is wrong, or a value is negative or infinite.
 
         Notes
         -----

@@ -8,8 +8,7 @@
 namespace plica {
 
 /// Add the option --threads.
-void add_threads_option(CLI::App& command, int& threads,
-                        const char* meaning = "number of threads; results do not depend on it");
+void add_threads_option(CLI::App& command, int& threads, const char* meaning = "number of threads");
 
 /// Set the number of threads: `asked`, else OMP_NUM_THREADS, else as many as the mesh can keep busy. Results do not
 /// depend on it.

@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
-
 #include <cmath>
+#include <filesystem>
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
