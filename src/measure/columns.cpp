@@ -108,6 +108,11 @@ Column::OfRun reaching(std::string_view column, double level) {
   };
 }
 
+std::optional<double> first_self_intersection(std::span<const Observation> rows) {
+  const auto first = std::ranges::find_if(rows, [](const Observation& row) { return row["self_intersections"] > 0; });
+  return first == rows.end() ? std::nullopt : std::optional(first->time_s());
+}
+
 template <class Of, class Value>
 std::optional<double> part(const std::optional<Of>& of, Value Of::*value) {
   if (!of) return std::nullopt;
@@ -348,6 +353,18 @@ std::span<const Column> columns() {
        "apical area ratio of a cell, divided by its elements through the height, weighted by that difference "
        "([convergence](../developers/convergence.md#bending-at-finite-strain)). None without corotational elasticity.",
        [](const M& m) { return bending_error(m.model, m.state.positions); }},
+      {"max_displacement_um", series, last, "Largest distance of a node from its reference position.",
+       [](const M& m) { return max_displacement(m.model.tissue, m.state.positions); }},
+      {"mean_height_um", series, last, "Mean height of all cells: mean length of their apicobasal edges.",
+       [](const M& m) { return mean_height(m.model.tissue, m.state.positions); }},
+      costly({"tissue_volume_ratio", series, last, "Volume of all cells / reference volume: 1 unless cells grow.",
+              [](const M& m) { return tissue_volume(m.model, m.state.positions) / m.rest.tissue_volume_um3; }}),
+      {"self_intersections_time_s",
+       no_series,
+       whole_run,
+       "First time with `self_intersections` > 0.",
+       {},
+       first_self_intersection},
   };
   return all;
 }

@@ -12,7 +12,7 @@ const margin = 6; // pixels
 
 class RunSections {
   readonly box = element("figure", { class: "sections" });
-  private readonly canvases = places.map(() => element("canvas", { role: "img", "aria-label": "Cross-section of the embryo" }));
+  private readonly canvases = places.map(() => element("canvas", { role: "img", "aria-label": "Cross-section of the tissue" }));
   private readonly captions = places.map(() => element("span"));
   private cuts: number[] | null = null; // um
 
@@ -84,6 +84,12 @@ class RunSections {
   }
 }
 
+// The end of x that is nearest to the viewer; "the front" of an embryo.
+function frontOf(run: Run): string {
+  const [front] = run.data.axes[0];
+  return front === "anterior" ? "the front" : front;
+}
+
 /** Cross-sections, only for few runs; drawn when visible. */
 export function showSections(runs: Run[], page: PageData, state: State): void {
   const shown = runs.filter((run) => run.hasFrames);
@@ -91,7 +97,7 @@ export function showSections(runs: Run[], page: PageData, state: State): void {
   const all = shown.map((run) => new RunSections(run, page, state, shown.length > 1));
   const holder = byId("sections");
   holder.append(
-    element("h2", {}, "Cross-sections at 25, 50 and 75 % of the length, from the front"),
+    element("h2", {}, `Cross-sections at 25, 50 and 75 % of the length, from ${frontOf(shown[0])}`),
     ...all.map(({ box }) => box),
   );
   let waits = false;
