@@ -80,8 +80,11 @@ std::string outcome_text(const Scenario& scenario, const Tissue& tissue, const J
 std::string crossing_text(const Scenario& scenario, const Json& summary) {
   const auto time_s = number_of(summary, "self_intersections_time_s");
   if (!time_s) return "";
-  const bool is_prevented = scenario.self_contact.surface == "both";
-  const char* remedy = is_prevented ? "" : "; set self_contact.surface to \"both\" to prevent it";
+  // The rim of an open tissue is no contact surface.
+  const bool is_open = !number_of(summary, "lumen_volume_ratio");
+  const char* remedy = scenario.self_contact.surface == "both" ? ""
+                       : is_open ? "; self_contact.surface = \"both\" prevents it, except at the rim"
+                                 : "; set self_contact.surface to \"both\" to prevent it";
   return fmt::format("self-intersects since {:.4g} min ({} pairs of faces at most); later results are unphysical{}",
                      *time_s / units::minute, summary.at("self_intersections").get<int>(), remedy);
 }
