@@ -1,7 +1,7 @@
 // Cross-sections at 25, 50 and 75 % of the length, at the time of the page.
 import { colourAt, css, partOf } from "./colour";
 import { byId, element, whenNear } from "./dom";
-import { fewRuns, type PageData } from "./page_data";
+import { fewRuns, type PageData, titleOf } from "./page_data";
 import type { Run, Topology } from "./run";
 import { cutByPlane, cutOutlines } from "./section";
 import type { State } from "./state";
@@ -96,8 +96,13 @@ export function showSections(runs: Run[], page: PageData, state: State): void {
   if (shown.length === 0 || shown.length > fewRuns) return;
   const all = shown.map((run) => new RunSections(run, page, state, shown.length > 1));
   const holder = byId("sections");
+  const legend = element("p", { class: "note" });
+  const showLegend = () => (legend.textContent = `Colour: ${titleOf(state.now.field)}, on the scale of the picture.`);
+  state.on(["field"], showLegend);
+  showLegend();
   holder.append(
     element("h2", {}, `Cross-sections at 25, 50 and 75 % of the length, from ${frontOf(shown[0])}`),
+    legend,
     ...all.map(({ box }) => box),
   );
   let waits = false;
