@@ -10,7 +10,7 @@ import { pointWith, type State } from "./state";
 
 const clickTolerance = 4; // pixels between press and release
 const turnStep = 0.12; // rad a key press
-const closeUpSize = 3.5; // half of a close-up's height / radius of its cell
+const closeUpSize = 2.5; // half of a close-up's height / radius of its cell
 const settleTime = 200; // ms without a change after which a picture is drawn finely
 
 /** View of all runs. Throws without WebGL. */

@@ -21,7 +21,7 @@ function oneRun(run: Run, named: boolean): string {
 // What the tissue did.
 function outcomeOf(run: Run): string {
   const { furrow_depth_um: depth, lips_closed_time_s: closed_s, outcome } = run.data.summary!;
-  if (run.depthWord !== "furrow") return typeof outcome === "string" && outcome !== "" ? `, ${outcome.replaceAll(" um", " µm")}` : "";
+  if (run.depthWord !== "furrow") return typeof outcome === "string" && outcome !== "" ? `, ${outcome.replaceAll(" um", " µm").replaceAll(" -", " −")}` : "";
   const closed = typeof closed_s === "number" ? `, closed at ${time(closed_s)}` : "";
   return typeof depth === "number" ? `, furrow ${number(depth)} µm deep${closed}` : "";
 }

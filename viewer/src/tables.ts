@@ -36,6 +36,7 @@ function onePiece(heads: string[], rows: Row[]): HTMLElement {
 const ofFurrow = /^(vml_|vce_|furrow_|lip|peak_speed|ends_lead|highest_points|closed_length|knee_|depth_20um|midline_|flank_)/;
 
 function fits(runs: Run[], key: string): boolean {
+  if (key === "max_shell_penetration_um") return runs.some((run) => run.data.shell !== null);
   if (key === "furrow_depth_um") return runs.some((run) => run.depthWord !== "");
   return !ofFurrow.test(key) || runs.some((run) => run.depthWord === "furrow");
 }
