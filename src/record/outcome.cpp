@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double least_change = 0.005;  // of a ratio that is told
+constexpr double least_change = 0.005;  // smallest reported change of a ratio
 
 bool is_open_sheet(const Tissue& tissue) {
   Facing facing;

@@ -76,7 +76,7 @@ function monitorGroups(runs: Run[]): Group[] {
 }
 
 /** The plots of series.csv that fit the tissue and change: quantities of one unit and kind together, then the scenario's
- * monitors by unit. Of many runs a plot a quantity. */
+ * monitors by unit; with many runs, one plot per quantity. */
 export function seriesCharts(runs: Run[], looks: RunLooks): ChartContent[] {
   let groups = [...usualGroups, ...monitorGroups(runs)];
   const isFew = runs.length <= fewRuns;
