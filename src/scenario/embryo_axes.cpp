@@ -16,7 +16,6 @@ constexpr std::string_view minus = "\u2212", plus = "+";
 // Ends of "low-high", or of one word: −word and +word.
 std::optional<std::array<std::string, 2>> ends_of(const std::string& axis) {
   const std::size_t hyphen = axis.find('-');
-  if (axis.empty()) return std::nullopt;
   if (hyphen == std::string::npos) return {{fmt::format("{}{}", minus, axis), fmt::format("{}{}", plus, axis)}};
   const std::string low = axis.substr(0, hyphen), high = axis.substr(hyphen + 1);
   if (low.empty() || high.empty() || high.find('-') != std::string::npos) return std::nullopt;

@@ -44,7 +44,7 @@ TEST(EmbryoAxes, OtherListsAreRefused) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {R"(["x", "y"])", "has 2 names, not three"},
       {R"(["x"])", "has 1 name, not three"},
-      {R"(["x", "y", ""])", R"("" is neither "low-high" nor one word)"},
+      {R"(["x", "y", "-z"])", R"("-z" is neither "low-high" nor one word)"},
       {R"(["a-b", "c-", "z"])", R"("c-" is neither "low-high" nor one word)"},
       {R"(["a-b", "c-d-e", "z"])", R"("c-d-e" is neither "low-high" nor one word)"},
       {R"(["a-b", "b-c", "z"])", R"("b" names two ends)"},
