@@ -586,7 +586,7 @@ class _Progress:
 
     def show(self, step: Step) -> None:
         minutes, depth = step.time_s / 60, step.measures.get("furrow_depth_um")
-        told = "" if depth is None else f"furrow {depth:.1f} µm deep"
+        told = f"displacement {step.measures['max_displacement_um']:.1f} µm" if depth is None else f"depth {depth:.1f} µm"
         if self.bar is not None:
             self.bar.set_postfix_str(told, refresh=False)
             self.bar.update(minutes - self.bar.n)

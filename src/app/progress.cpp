@@ -5,12 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "core/units.hpp"
 
 namespace plica {
 namespace {
+
+// Depth of the furrow or fold or, without one, the largest displacement.
+std::string extent(const Observation& row) {
+  const std::optional<double> depth = row["furrow_depth_um"];
+  return fmt::format("{} {:6.2f} um", depth ? "depth" : "displacement",
+                     depth.value_or(row["max_displacement_um"].value_or(0)));
+}
 
 double fastest_node(const Observation& row) { return row["max_node_speed_um_per_s"].value_or(0); }
 
@@ -40,9 +48,9 @@ void Progress::show(const Observation& row) {
   constexpr int width = 24;
   const int filled = static_cast<int>(std::lround(part * width));
   const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');
-  const std::string line = fmt::format(
-      "[{}] {:3.0f} %  t = {:6.2f} min  depth {:6.2f} um  fastest node {:9.3g} um/min  {}", bar, 100 * part,
-      row.time_s() / units::minute, row["furrow_depth_um"].value_or(0), fastest_node(row) / units::um_per_minute, left);
+  const std::string line =
+      fmt::format("[{}] {:3.0f} %  t = {:6.2f} min  {}  fastest node {:9.3g} um/min  {}", bar, 100 * part,
+                  row.time_s() / units::minute, extent(row), fastest_node(row) / units::um_per_minute, left);
   // Clear to the end of the line, since the next line may be shorter.
   fmt::print(stderr, "{}{}{}", on_terminal_ ? "\r" : "", line, on_terminal_ ? "\033[K" : "\n");
   std::fflush(stderr);
