@@ -24,9 +24,15 @@ const Tissue& closed() {
   return tissue;
 }
 
-const Json contracted = {{"furrow_depth_um", 28.9},       {"vml_apical_area_ratio", 0.68}, {"peak_speed_ratio", nullptr},
-                         {"lips_closed", nullptr},        {"divisions", 0},                {"max_displacement_um", 32.5},
-                         {"min_apical_area_ratio", 0.52}, {"lumen_volume_ratio", nullptr}, {"tissue_volume_ratio", 1}};
+const Json contracted = {{"furrow_depth_um", 28.9},
+                         {"vml_apical_area_ratio", 0.68},
+                         {"peak_speed_ratio", nullptr},
+                         {"lips_closed", nullptr},
+                         {"divisions", 0},
+                         {"max_displacement_um", 32.5},
+                         {"min_apical_area_ratio", 0.52},
+                         {"lumen_volume_ratio", nullptr},
+                         {"tissue_volume_ratio", 1}};
 
 Json with(const Json& changes) {
   Json summary = contracted;

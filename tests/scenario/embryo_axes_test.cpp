@@ -24,8 +24,7 @@ TEST(EmbryoAxes, AreAnatomicalForEmbryosAndPlainForOtherTissues) {
 }
 
 TEST(EmbryoAxes, AreThoseOfTheScenario) {
-  const EmbryoAxes axes =
-      axes_in("shape = \"sheet\"\naxes = [\"proximal-distal\", \"anterior-posterior\", \"depth\"]");
+  const EmbryoAxes axes = axes_in("shape = \"sheet\"\naxes = [\"proximal-distal\", \"anterior-posterior\", \"depth\"]");
   EXPECT_EQ(axes, (EmbryoAxes{{{"proximal", "distal"}, {"anterior", "posterior"}, {"\u2212depth", "+depth"}}}));
   EXPECT_TRUE(have_furrow(axes_in("shape = \"sheet\"\naxes = [\"x\", \"y\", \"ventral-dorsal\"]")));
 }

@@ -171,8 +171,7 @@ TEST_F(ReportRunTest, NamesFitTheTissue) {
     return nlohmann::json{run["axes"][0], run["letters"][0], run["depth_word"], data["views"][2]["title"]};
   };
   const std::string sheet = "[embryo]\nshape = \"sheet\"\n";
-  EXPECT_EQ(told(sheet),
-            nlohmann::json::parse(R"([["\u2212x", "+x"], ["\u2212x", "+x"], "fold", "from \u2212z"])"));
+  EXPECT_EQ(told(sheet), nlohmann::json::parse(R"([["\u2212x", "+x"], ["\u2212x", "+x"], "fold", "from \u2212z"])"));
   EXPECT_EQ(told(sheet + "axes = [\"proximal-distal\", \"left-right\", \"ventral-dorsal\"]\n"),
             nlohmann::json::parse(R"([["proximal", "distal"], ["P", "Di"], "furrow", "from ventral"])"));
   EXPECT_EQ(told(""), nlohmann::json::parse(R"([["anterior", "posterior"], ["A", "P"], "furrow", "ventral"])"));
