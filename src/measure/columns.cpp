@@ -168,8 +168,7 @@ std::span<const Column> columns() {
        "for the convex reference shape; below 1 µm the ventral side is flat, not furrowed.",
        [](const M& m) { return m.furrow.depth_below_lips_um; }},
       {"lip_distance_um", series, last,
-       "Distance between the furrow lips: the material points that bound the contractile region at x = 0 in the "
-       "reference state. For contact, see `lips_closed`.",
+       "Distance between the lips, which are material points. For contact, see `lips_closed`.",
        [](const M& m) { return m.furrow.lip_distance_um; }},
       {"highest_points_distance_um", no_series, last,
        "Distance between the outermost points left and right of the midline at x = 0 (the paper's definition); may "
