@@ -27,7 +27,7 @@ class Progress:
 
     def show(self, time_s: float, measures: dict[str, Optional[float]]) -> None:
         minutes, depth = time_s / 60, measures.get("furrow_depth_um")
-        told = "" if depth is None else f"furrow {depth:.1f} µm deep"
+        told = f"displacement {measures['max_displacement_um']:.1f} µm" if depth is None else f"depth {depth:.1f} µm"
         if self.bar is not None:
             self.bar.set_postfix_str(told, refresh=False)
             self.bar.update(minutes - self.bar.n)

@@ -6,6 +6,7 @@ import html
 import json
 import math
 import os
+import re
 import xml.etree.ElementTree as xml
 import zlib
 from collections.abc import Iterator, Sequence
@@ -28,6 +29,16 @@ __all__ = ["Run", "Frame", "Frames", "open_run"]
 
 def _pandas(what: str) -> Any:
     return needed("pandas", what)
+
+
+# Output variables that describe a furrow. Of other tissues, only the fold depth of a sheet is shown.
+_OF_FURROW = re.compile("vml_|vce_|furrow_|lip|peak_speed|speed_ratio|ends_lead|highest_points|closed_length|knee_|depth_20um|"
+                        "midline_|flank_")
+
+
+def _fits(name: str, depth: str) -> bool:
+    """Whether an output variable fits a tissue whose ``furrow_depth_um`` is of a "furrow", a "fold" or nothing ("")."""
+    return depth == "furrow" or not _OF_FURROW.match(name) or (depth == "fold" and name == "furrow_depth_um")
 
 
 def _grid(points: NDArray[Any], hexahedra: NDArray[Any], point_data: dict[str, Any], cell_data: dict[str, Any]) -> Any:
@@ -328,14 +339,17 @@ class Run:
         return False
 
     def __repr__(self) -> str:
-        return f"Run({str(self.directory)!r}, {self.status}, {len(self.frames)} frames)"
+        outcome = self.summary.get("outcome", "")
+        return f"Run({str(self.directory)!r}, {self.status}, {len(self.frames)} frames{outcome and ': '}{outcome})"
 
     def _repr_html_(self) -> str:
         summary = self.summary
+        told = str(summary.get("outcome", "furrow"))  # runs of older versions are of furrows
+        depth = "furrow" if told.startswith("furrow") else "fold" if told.startswith("fold") else ""
         rows = "".join(
             f"<tr><td style='text-align:left'>{html.escape(name)}</td><td>{html.escape(_short(value))}</td></tr>"
             for name, value in summary.items()
-            if isinstance(value, (int, float, str)) and not isinstance(value, bool)
+            if isinstance(value, (int, float, str)) and not isinstance(value, bool) and _fits(name, depth)
         )
         return f"{html.escape(repr(self))}<details><summary>summary</summary><table>{rows}</table></details>"
 

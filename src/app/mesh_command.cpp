@@ -74,7 +74,7 @@ struct MeshCommand {
   bool overwrite = false;
 };
 
-void draw(const MeshCommand& command, Frame frame, bool is_embryo) {
+void draw(const MeshCommand& command, Frame frame, const EmbryoAxes& axes) {
   const std::vector<std::string> colours = colours_of_mesh(frame);
   if (std::ranges::find(colours, command.colour) == colours.end()) {
     const auto nearest = nearest_name(command.colour, colours);
@@ -83,11 +83,12 @@ void draw(const MeshCommand& command, Frame frame, bool is_embryo) {
                                  fmt::join(colours, ", ")));
   }
   std::vector<View> wanted;
-  const std::vector<View> known = views_of(frame);
+  std::vector<View> known = views_of(frame);
+  name_views(known, axes);
   for (const std::string& name : command.views) wanted.push_back(named("--view", name, known));
   if (wanted.empty()) wanted.push_back(known.front());
   Painter painter;
-  write_file(command.out, painter.png(rest_picture(std::move(frame), command.colour, wanted, is_embryo)));
+  write_file(command.out, painter.png(rest_picture(std::move(frame), command.colour, wanted, axes)));
 }
 
 void mesh(const MeshCommand& command) {
@@ -119,7 +120,7 @@ void mesh(const MeshCommand& command) {
                                    {"hanging_nodes", groups.hanging}})
     if (!list.empty()) arrays.lists.emplace_back(name, list);
   if (as_picture)
-    draw(command, frame_of(tissue, tissue.rest_positions, arrays), shape_of(scenario.embryo) != EmbryoShape::block);
+    draw(command, frame_of(tissue, tissue.rest_positions, arrays), axes_of(scenario.embryo));
   else
     write_mesh(command.out, tissue, tissue.rest_positions, arrays);
   print_quality(tissue);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "core/units.hpp"
@@ -12,6 +13,13 @@
 
 namespace plica {
 namespace {
+
+// Depth of the furrow or fold or, without one, the largest displacement.
+std::string extent(const Observation& row) {
+  const std::optional<double> depth = row["furrow_depth_um"];
+  return fmt::format("{} {:6.2f} um", depth ? "depth" : "displacement",
+                     depth.value_or(row["max_displacement_um"].value_or(0)));
+}
 
 double fastest_node(const Observation& row) { return row["max_node_speed_um_per_s"].value_or(0); }
 
@@ -41,9 +49,9 @@ void Progress::show(const Observation& row) {
   constexpr int width = 24;
   const int filled = static_cast<int>(std::lround(part * width));
   const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');
-  const std::string line = fmt::format("[{}] {:3.0f} %  t = {:>10}  depth {:6.2f} um  fastest node {:9.3g} um/min  {}",
-                                       bar, 100 * part, moment(row.time_s()), row["furrow_depth_um"].value_or(0),
-                                       fastest_node(row) / units::um_per_minute, left);
+  const std::string line =
+      fmt::format("[{}] {:3.0f} %  t = {:>10}  {}  fastest node {:9.3g} um/min  {}", bar, 100 * part,
+                  moment(row.time_s()), extent(row), fastest_node(row) / units::um_per_minute, left);
   // Clear to the end of the line, since the next line may be shorter.
   fmt::print(stderr, "{}{}{}", on_terminal_ ? "\r" : "", line, on_terminal_ ? "\033[K" : "\n");
   std::fflush(stderr);

@@ -15,6 +15,7 @@
 #include "core/units.hpp"
 #include "core/words.hpp"
 #include "record/archive.hpp"
+#include "record/outcome.hpp"
 #include "record/run_scenario.hpp"
 #include "scenario/advice.hpp"
 #include "show/recorded_run.hpp"
@@ -32,24 +33,15 @@ struct RunOptions {
   bool quiet = false, overwrite = false, resume = false;
 };
 
-void print_result(const nlohmann::ordered_json& summary, const std::string& out) {
-  const auto value = [&](const char* key, const char* unit) {
-    return summary.at(key).is_number() ? fmt::format("{:.2f}{}", summary.at(key).get<double>(), unit) : "none";
-  };
+void print_result(const Scenario& scenario, const nlohmann::ordered_json& summary, const std::string& out) {
   const std::string criterion = summary.at("stopped_by").is_string() && summary.at("stopped_by") != "equilibrium"
                                     ? fmt::format(" (stopped by {})", summary.at("stopped_by").get<std::string>())
                                     : "";
   fmt::print("{}: {}{} at {} after {} step{} in {:.1f} s\n", summary.at("scenario").get<std::string>(),
              summary.at("status").get<std::string>(), criterion, moment(summary.at("time_s").get<double>()),
              summary.at("steps").get<int>(), summary.at("steps") == 1 ? "" : "s", summary.at("wall_s").get<double>());
-  const nlohmann::ordered_json &closed_s = summary.at("lips_closed_time_s"), &closed = summary.at("lips_closed");
-  const std::string lips = closed.is_null() ? ""
-                           : closed_s.is_number()
-                               ? fmt::format(", lips {} at {}", closed == 1 ? "closed" : "open again, closed",
-                                             moment(closed_s.get<double>()))
-                               : ", lips open";
-  fmt::print("  furrow depth {}, apical area ratio {} (midline centre), peak speed ratio {} (end/centre){}\n",
-             value("furrow_depth_um", " um"), value("vml_apical_area_ratio", ""), value("peak_speed_ratio", ""), lips);
+  fmt::print("  {}\n", summary.at("outcome").get<std::string>());
+  if (const std::string crossing = crossing_text(scenario, summary); !crossing.empty()) fmt::print("  {}\n", crossing);
   fmt::print("  results in {0}{1}\n", out, can_report() ? fmt::format("; open {}/report.html in a browser", out) : "");
 }
 
@@ -115,7 +107,7 @@ void report_ending(const Scenario& scenario, const Simulation& simulation, const
     fmt::print(stderr, "warning: {}\n", bending);
   if (simulation.status() == RunStatus::under_way && can_archive())
     fmt::print(stderr, "plica: interrupted; to continue, repeat the command with --resume\n");
-  if (!options.quiet) print_result(summary, options.out);
+  if (!options.quiet) print_result(scenario, summary, options.out);
 }
 
 int run_scenario(const RunOptions& options) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"
@@ -134,6 +135,24 @@ double shell_penetration(const Model& model, std::span<const Vec3> positions) {
   for (const auto& obstacle : model.obstacles)
     for (const NodeId n : obstacle->nodes()) deepest = std::max(deepest, -obstacle->gap(positions[n.index()]).value);
   return deepest;
+}
+
+double tissue_volume(const Model& model, std::span<const Vec3> positions) {
+  const std::vector<double> volumes = model.volumes().volumes(positions);
+  return std::accumulate(volumes.begin(), volumes.end(), 0.0);
+}
+
+double mean_height(const Tissue& tissue, std::span<const Vec3> positions) {
+  double sum = 0;
+  for (const Cell& cell : tissue.cells) sum += cell_height(cell, positions);
+  return sum / static_cast<double>(tissue.cells.size());
+}
+
+double max_displacement(const Tissue& tissue, std::span<const Vec3> positions) {
+  double largest = 0;
+  for (std::size_t n = 0; n < positions.size(); ++n)
+    largest = std::max(largest, (positions[n] - tissue.rest_positions[n]).squaredNorm());
+  return std::sqrt(largest);
 }
 
 double max_volume_error(const Model& model, std::span<const Vec3> positions) {

@@ -50,6 +50,15 @@ std::optional<double> volume_inside_apices(const Tissue& tissue, std::span<const
 /// Largest distance of a node beyond an obstacle (outside the shell), um; 0 if there is none.
 double shell_penetration(const Model& model, std::span<const Vec3> positions);
 
+/// Volume of all cells, um^3.
+double tissue_volume(const Model& model, std::span<const Vec3> positions);
+
+/// Mean length of the apico-basal edges of all cells, um.
+double mean_height(const Tissue& tissue, std::span<const Vec3> positions);
+
+/// Largest distance of a node from its reference position, um.
+double max_displacement(const Tissue& tissue, std::span<const Vec3> positions);
+
 /// Largest |V/V_target - 1| of a cell.
 double max_volume_error(const Model& model, std::span<const Vec3> positions);
 

@@ -108,6 +108,11 @@ Column::OfRun reaching(std::string_view column, double level) {
   };
 }
 
+std::optional<double> first_self_intersection(std::span<const Observation> rows) {
+  const auto first = std::ranges::find_if(rows, [](const Observation& row) { return row["self_intersections"] > 0; });
+  return first == rows.end() ? std::nullopt : std::optional(first->time_s());
+}
+
 template <class Of, class Value>
 std::optional<double> part(const std::optional<Of>& of, Value Of::*value) {
   if (!of) return std::nullopt;
@@ -163,8 +168,7 @@ std::span<const Column> columns() {
        "for the convex reference shape; below 1 µm the ventral side is flat, not furrowed.",
        [](const M& m) { return m.furrow.depth_below_lips_um; }},
       {"lip_distance_um", series, last,
-       "Distance between the furrow lips: the material points that bound the contractile region at x = 0 in the "
-       "reference state. For contact, see `lips_closed`.",
+       "Distance between the lips, which are material points. For contact, see `lips_closed`.",
        [](const M& m) { return m.furrow.lip_distance_um; }},
       {"highest_points_distance_um", no_series, last,
        "Distance between the outermost points left and right of the midline at x = 0 (the paper's definition); may "
@@ -349,6 +353,18 @@ std::span<const Column> columns() {
        "apical area ratio of a cell, divided by its elements through the height, weighted by that difference "
        "([convergence](../developers/convergence.md#bending-at-finite-strain)). None without corotational elasticity.",
        [](const M& m) { return bending_error(m.model, m.state.positions); }},
+      {"max_displacement_um", series, last, "Largest distance of a node from its reference position.",
+       [](const M& m) { return max_displacement(m.model.tissue, m.state.positions); }},
+      {"mean_height_um", series, last, "Mean height of all cells.",
+       [](const M& m) { return mean_height(m.model.tissue, m.state.positions); }},
+      costly({"tissue_volume_ratio", series, last, "Volume of all cells / reference volume.",
+              [](const M& m) { return tissue_volume(m.model, m.state.positions) / m.rest.tissue_volume_um3; }}),
+      {"self_intersections_time_s",
+       no_series,
+       whole_run,
+       "First time with `self_intersections` > 0.",
+       {},
+       first_self_intersection},
   };
   return all;
 }

@@ -24,6 +24,7 @@ struct Observation;
 /// Measures of the reference state, computed once.
 struct RestMeasures {
   std::optional<double> lumen_volume_um3, flank_volume_um3, flank_section_um2;
+  double tissue_volume_um3 = 0;
 };
 
 /// Data shared by the variables of a step, computed once.

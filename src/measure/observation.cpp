@@ -19,7 +19,8 @@ Observer::Observer(const Model& model, FurrowSites sites, Watch watch)
       sites_(std::move(sites)),
       watch_(std::move(watch)),
       rest_{rest_lumen_volume(model.tissue), flank_volume(model.tissue, model.tissue.rest_positions),
-            flank_section_area(model.tissue, model.tissue.rest_positions)} {
+            flank_section_area(model.tissue, model.tissue.rest_positions),
+            tissue_volume(model, model.tissue.rest_positions)} {
   sites_.contractile.resize(model.tissue.cells.size(), false);  // if there are no sites
 }
 

@@ -99,7 +99,7 @@ Figure ReproductionPictures::division_demo() {
   }
   picture.field = named(colour_fields(), "generation");
   picture.range = colour_range(picture.field, 0, 1);
-  picture.anatomy = false;
+  picture.letters = {};
   return drawn(
       "fig4-division", picture,
       "**Fig. 4.** Division of the middle one of three cells: (a) reference state; (b) points of the cut; (c) the "

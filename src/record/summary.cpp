@@ -14,6 +14,7 @@
 #include "core/version.hpp"
 #include "measure/cells.hpp"
 #include "mechanics/energy.hpp"
+#include "record/outcome.hpp"
 #include "scenario/print.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/words.hpp"
@@ -96,6 +97,7 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   summary["stopped_by"] = stopped_by(scenario, simulation, last);
   summary["failure"] = simulation.failure().empty() ? Json(nullptr) : Json(simulation.failure());
   summary["warnings"] = warnings_of(simulation);
+  summary["failed_cell"] = simulation.failed_cell() ? Json(*simulation.failed_cell()) : Json(nullptr);
   summary["time_s"] = last.time_s();
   summary["equilibrium_time_s"] = number(simulation.equilibrium_time_s());
   summary["cells"] = tissue.cells.size();
@@ -115,6 +117,7 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   const bool projects = method_of(scenario.volume) == VolumeMethod::projection;
   for (const auto& [column, value] : values)
     if (column->of_projection) summary[column->name] = projects ? in_json(*column, value) : Json(nullptr);
+  summary["outcome"] = outcome_text(scenario, tissue, summary);
   summary["energy_by_law_nN_um"] = energy_by_law(simulation);
   summary["tension_by_law_mN_per_m"] = Json::object();  // nN/um is the same
   for (const auto& [law, tension] : mean_tensions(simulation.model(), simulation.state()))

@@ -14,6 +14,7 @@
 #include "scenario/abrupt_loads.hpp"
 #include "scenario/acting.hpp"
 #include "scenario/cell_size.hpp"
+#include "scenario/embryo_axes.hpp"
 #include "scenario/finer_mesh.hpp"
 #include "scenario/remedies.hpp"
 #include "scenario/setup.hpp"
@@ -264,22 +265,25 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   for (const std::string& remark : model.tissue.remarks) note(remark);
   const std::vector<std::string> regions = contracting_regions(scenario, model.tissue);
   const std::string& measured = scenario.furrow.region;
+  const bool is_furrow = have_furrow(axes_of(scenario.embryo));
+  const char* fold = is_furrow ? "furrow" : "fold";
   if (measured.empty() && regions.size() > 1)
     warn(
-        fmt::format("contractions act on the regions {}, and the furrow is measured on the largest, {}; set "
+        fmt::format("contractions act on the regions {}, and the {} is measured on the largest, {}; set "
                     "furrow.region to measure another",
-                    fmt::join(regions, ", "), regions.front()));
+                    fmt::join(regions, ", "), fold, regions.front()));
   if (!measured.empty() && !regions.empty() && std::ranges::find(regions, measured) == regions.end())
     warn(
-        fmt::format("furrow.region: the furrow is measured on region {}, but apical surfaces contract in {}; set "
+        fmt::format("furrow.region: the {} is measured on region {}, but apical surfaces contract in {}; set "
                     "furrow.region to a contracting region",
-                    measured, fmt::join(regions, ", ")));
+                    fold, measured, fmt::join(regions, ", ")));
   if (!measured.empty() || !regions.empty())
     if (make_furrow_sites(scenario, model.tissue).vml.empty())
       warn(
-          fmt::format("region {} does not intersect the plane y = 0, so furrow depth, furrow lips and VML have no "
-                      "value; use [monitor.NAME] to measure any region",
-                      measured.empty() ? regions.front() : measured));
+          fmt::format("region {} does not intersect the plane y = 0, so {} no value; use [monitor.NAME] to measure any "
+                      "region",
+                      measured.empty() ? regions.front() : measured,
+                      is_furrow ? "furrow depth, furrow lips and VML have" : "the fold depth has"));
 
   const MeshQuality quality = mesh_quality(model.tissue, model.tissue.rest_positions);
   note(fmt::format(

@@ -66,10 +66,11 @@ struct EmbryoInput {
   std::string keep = "all";                         // surface, file: all | largest: pieces that become cells
   std::string label_array;                          // surface: faces of one number are a cell; empty: each face is
   double points_depth_um = 0;                       // points: below the apical surface, before scaling
-  std::string file;          // "file": hexahedral mesh read by VTK; "points": table; "surface": polygons
-  std::string apical_array;  // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;
-                             // empty: the outer surface
-  std::string cell_arrays;   // table with one row per cell; its columns become arrays
+  std::string file;               // "file": hexahedral mesh read by VTK; "points": table; "surface": polygons
+  std::string apical_array;       // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;
+                                  // empty: the outer surface
+  std::string cell_arrays;        // table with one row per cell; its columns become arrays
+  std::vector<std::string> axes;  // names of the ends of x, y, z ("low-high", or one word); empty: by the shape
   std::shared_ptr<const HexahedralMesh> mesh;         // replaces the file; set by programs, not in TOML
   std::map<std::string, std::vector<double>> arrays;  // cells; besides those of files; set by programs, not in TOML
 };

@@ -141,6 +141,11 @@ std::vector<Row> make_rows() {
       embryo("apical_array", &E::apical_array, anything,
              "Cell array with the index of the apical face (0 to 5, VTK order); default: the outer surface is apical.",
              {.shapes = {"file"}}),
+      embryo("axes", &E::axes, anything,
+             "Names of x, y and z in reports and pictures: `low-high`, or one word. Default: `[\"x\", \"y\", \"z\"]` "
+             "for a "
+             "block, sheet, points or surface, else `[\"anterior-posterior\", \"left-right\", \"ventral-dorsal\"]`. "
+             "`ventral-dorsal` as z: reports describe a furrow."),
 
       region("face", &R::face, one_of(words::sides), "Side of a built embryo."),
       region("cells_along", &R::cells_along, between(1, max_count),

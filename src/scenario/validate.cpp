@@ -9,6 +9,7 @@
 
 #include "core/clock.hpp"
 #include "core/names.hpp"
+#include "scenario/embryo_axes.hpp"
 #include "scenario/suggest.hpp"
 #include "scenario/words.hpp"
 
@@ -106,6 +107,12 @@ void check_embryo(Scenario& scenario, Input& input) {
                  fmt::format("set cell_height_um below half of diameter_um, {}", embryo.diameter_um / 2));
   }
   if (is_of_grid(shape_of(embryo)) && sound("cells") && sound("elements_per_cell")) check_element_count(embryo, input);
+}
+
+void check_axes(const EmbryoInput& embryo, Input& input) {
+  if (embryo.axes.empty() || !input.sound("embryo.axes")) return;
+  if (const std::string problem = axes_problem(embryo.axes); !problem.empty())
+    input.report("embryo.axes", problem, "write, for example, [\"proximal-distal\", \"anterior-posterior\", \"z\"]");
 }
 
 void check_shell_drag(const Scenario& scenario, Input& input) {
@@ -436,6 +443,7 @@ void validate(Scenario& scenario, Input& input) {
   check_mirror(scenario, input);
   check_periods(scenario, input);
   check_vitelline(scenario, input);
+  check_axes(scenario.embryo, input);
   check_shell_drag(scenario, input);
   check_elasticity(scenario, input);
   check_region_elasticities(scenario, input);

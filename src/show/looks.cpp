@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/errors.hpp"
 #include "core/names.hpp"
 #include "measure/cell_columns.hpp"
 #include "show/boundary_surface.hpp"
+#include "tissue/facing.hpp"
 #include "tissue/hexahedron.hpp"
 
 namespace plica {
@@ -216,31 +218,45 @@ const std::vector<View>& views() {
 }
 
 std::vector<View> views_of(const Frame& rest) {
-  constexpr double least_open = 0.2;  // |sum of area vectors| / sum of areas: 0 for a closed surface, 1 for a flat one
   std::vector<View> views = plica::views();
-  Vec3 vectors = Vec3::Zero();
-  double area = 0;
+  Facing facing;
   for (const auto& element : rest.elements) {
     std::array<Vec3, 4> apex;
     for (int i = 0; i < 4; ++i) apex[i] = rest.positions[element[hex_faces[apical_face][i]].index()];
-    const Vec3 vector = facet_area_vector(apex);
-    vectors += vector;
-    area += vector.norm();
+    facing.add(apex);
   }
-  if (!(vectors.norm() > least_open * area)) return views;
+  if (!facing.is_one_way()) return views;
   // x to the right, projected across the viewing direction; if parallel to it, y.
   const auto apical = std::ranges::find(views, "apical", &View::name);
-  apical->sight = -vectors.normalized();
+  apical->sight = -facing.area_vectors.normalized();
   const bool along_x = std::abs(apical->sight.x()) > 0.9;
   apical->up = (along_x ? Vec3::UnitY() : Vec3::UnitX()).cross(apical->sight);
   std::rotate(views.begin(), apical, apical + 1);
   return views;
 }
 
-View cross_section_at(double x_um) {
+void name_views(std::vector<View>& views, const EmbryoAxes& axes) {
+  if (axes == anatomical_axes()) return;
+  const std::string &front = axes[0][0], &left = axes[1][0], &below = axes[2][0];
+  const std::string along = fmt::format(", {} to the left", front);
+  const std::map<std::string, std::array<std::string, 2>> words = {
+      {"antero-ventral", {"oblique", fmt::format("obliquely from {} and {}", below, front)}},
+      {"ventral", {"from " + below, fmt::format("from {}{}", below, along)}},
+      {"side", {"from " + left, fmt::format("from {}{}", left, along)}},
+      {"cross-section", {"cut at x", fmt::format("cut across the middle, from {}", front)}},
+      {"sagittal-section", {"cut at y", "cut along the middle" + along}}};
+  for (View& view : views)
+    if (const auto found = words.find(view.name); found != words.end())
+      view.title = found->second[0], view.label = found->second[1];
+}
+
+EmbryoAxes picture_letters(const EmbryoAxes& axes) { return axes == plain_axes() ? EmbryoAxes{} : letters_of(axes); }
+
+View cross_section_at(double x_um, const EmbryoAxes& axes) {
   View view = *std::ranges::find(views(), "cross-section", &View::name);
   view.name = fmt::format("x = {}{:.4g} µm", x_um < 0 ? "\u2212" : "", std::abs(x_um));
-  view.label = fmt::format("cut across at {}, from the front", view.name);
+  view.label =
+      fmt::format("cut across at {}, from {}", view.name, axes == anatomical_axes() ? "the front" : axes[0][0]);
   view.cut_um += x_um;
   return view;
 }

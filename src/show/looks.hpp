@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scenario/embryo_axes.hpp"
 #include "tissue/files/frame_file.hpp"
 
 namespace plica {
@@ -89,6 +90,8 @@ struct View {
   Vec3 sight, up;               // viewing direction and upward direction; any length, not parallel
   std::optional<int> cut_axis;  // 0 or 1: normal of a section plane, in front of which everything is removed
   double cut_um = view_cut_um;  // position of that plane from the origin
+  std::string title = "";       // heading in pictures and reports; empty: the name
+  [[nodiscard]] const std::string& heading() const { return title.empty() ? name : title; }
 };
 
 /// Built-in views: antero-ventral, ventral, side, cross-section, sagittal-section, apical.
@@ -98,7 +101,13 @@ const std::vector<View>& views();
 /// or `apical` for an open sheet.
 std::vector<View> views_of(const Frame& rest);
 
+/// Adapt titles and labels of views to the axes: "from −z" for "ventral" of a tissue without a ventral side.
+void name_views(std::vector<View>& views, const EmbryoAxes& axes);
+
+/// Letters at the ends of a tissue in pictures; none for plain axes.
+EmbryoAxes picture_letters(const EmbryoAxes& axes);
+
 /// Cross-section at another position along the embryo, named "x = 125 µm".
-View cross_section_at(double x_um);
+View cross_section_at(double x_um, const EmbryoAxes& axes = anatomical_axes());
 
 }  // namespace plica

@@ -35,12 +35,12 @@ struct Picture {
   std::vector<PictureRow> rows;
   ColourField field;
   ColourRange range;
-  std::vector<std::string> step_names = {};  // names of the integers of a field of steps, from 0
-  std::optional<Frame> rest = {};            // grey reference outline in sections, unless the shell is drawn
-  std::optional<Capsule> shell = {};         // drawn around the embryo
-  bool edges = true;                         // outlines of cells
-  bool anatomy = true;                       // A, P, D, V, L, R at the ends of the embryo, in the first column
-  int width_px = 0, height_px = 0;           // 0: width by the number of columns; height by the content
+  std::vector<std::string> step_names = {};            // names of the integers of a field of steps, from 0
+  std::optional<Frame> rest = {};                      // grey reference outline in sections, unless the shell is drawn
+  std::optional<Capsule> shell = {};                   // drawn around the embryo
+  bool edges = true;                                   // outlines of cells
+  EmbryoAxes letters = letters_of(anatomical_axes());  // at the ends of the tissue, in the first column; may be empty
+  int width_px = 0, height_px = 0;                     // 0: width by the number of columns; height by the content
 };
 
 inline constexpr int smallest_picture_px = 200, largest_picture_px = 6000;  // of a side

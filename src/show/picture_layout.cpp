@@ -47,23 +47,23 @@ std::vector<std::string> heading_lines(const std::string& name, bool broken) {
   return {name.substr(0, hyphen + 1), name.substr(hyphen + 1)};
 }
 
-// Anatomical ends that a view shows at its border, with their directions on the screen.
+// Letters of axis ends that a view shows at its border, with their directions on the screen.
 struct Mark {
   std::string text;
   std::array<double, 2> direction;  // unit
 };
-std::vector<Mark> marks_of(const View& view) {
+std::vector<Mark> marks_of(const View& view, const EmbryoAxes& letters) {
   constexpr double most_along_sight = 0.6;  // cosine
   const auto [right, up] = screenwise(view);
   const Vec3 sight = view.sight.normalized();
-  const std::array<std::array<const char*, 2>, 3> names = {{{"A", "P"}, {"L", "R"}, {"V", "D"}}};
   std::vector<Mark> marks;
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(sight[axis]) > most_along_sight) continue;
     const double length = std::hypot(right[axis], up[axis]);
     for (const int side : {0, 1}) {
+      if (letters[axis][side].empty()) continue;
       const double sign = (side == 0 ? -1 : 1) / length;
-      marks.push_back({names[axis][side], {sign * right[axis], sign * up[axis]}});
+      marks.push_back({letters[axis][side], {sign * right[axis], sign * up[axis]}});
     }
   }
   return marks;
@@ -80,8 +80,7 @@ class Composer {
     for (const PictureRow& row : picture.rows) {
       half_width_um_ = std::max(half_width_um_, row.half_size_um[0] + extra);
       half_heights_um_.push_back(row.half_size_um[1] + extra);
-      if (!picture.anatomy) continue;
-      for (const Mark& mark : marks_of(row.view)) {
+      for (const Mark& mark : marks_of(row.view, picture.letters)) {
         if (std::abs(mark.direction[0]) > 0.5) side_marks_ = std::round(mark_em * em_);
         if (std::abs(mark.direction[1]) > 0.5) upper_marks_ = std::round(mark_em * em_);
       }
@@ -174,7 +173,7 @@ class Composer {
 
   [[nodiscard]] bool names_fit() const {
     for (std::size_t row = 0; row < picture_.rows.size(); ++row)
-      if (width_em(picture_.rows[row].view.name) * em_ > row_height(row)) return false;
+      if (width_em(picture_.rows[row].view.heading()) * em_ > row_height(row)) return false;
     return true;
   }
 
@@ -188,23 +187,25 @@ class Composer {
       layout_.panels.push_back({panel_box(column, top - height, height), column, row});
     const double middle = top - height / 2;
     if (picture_.rows.size() > 1) {
-      const std::vector<std::string> lines = heading_lines(picture_.rows[row].view.name, broken_names_);
+      const std::vector<std::string> lines = heading_lines(picture_.rows[row].view.heading(), broken_names_);
       for (std::size_t i = 0; i < lines.size(); ++i)
         layout_.labels.push_back({lines[i], (0.3 + line_em * (static_cast<double>(i) + 0.5)) * em_, middle, em_,
                                   Align::centre, false, true});
     }
-    if (picture_.anatomy) add_marks(row, middle);
+    add_marks(row, middle);
   }
 
   void add_marks(std::size_t row, double middle) {
     const Box box = panel_box(0, 0, 0);
     const View& view = picture_.rows[row].view;
     const auto [right, up] = screenwise(view);
-    const Frame& frame = picture_.rest ? *picture_.rest : picture_.columns.front().frame;
-    for (const Mark& mark : marks_of(view)) {
+    std::vector<const Vectors*> drawn = {&picture_.columns.front().frame.positions};
+    if (picture_.rest) drawn.push_back(&picture_.rest->positions);
+    for (const Mark& mark : marks_of(view, picture_.letters)) {
       double reach_um = 0;
-      for (const Vec3& position : frame.positions)
-        reach_um = std::max(reach_um, mark.direction[0] * position.dot(right) + mark.direction[1] * position.dot(up));
+      for (const Vectors* positions : drawn)
+        for (const Vec3& position : *positions)
+          reach_um = std::max(reach_um, mark.direction[0] * position.dot(right) + mark.direction[1] * position.dot(up));
       if (picture_.shell) reach_um += 5;
       const double reach = reach_um / layout_.um_per_px + 0.75 * em_;
       layout_.labels.push_back({mark.text, box.left + box.width / 2 + reach * mark.direction[0],

@@ -65,6 +65,7 @@ ordered_json views_json(const std::vector<ReportRun>& runs) {
   ordered_json list = ordered_json::array();
   for (const View& view : runs.front().views)
     list.push_back({{"name", view.name},
+                    {"title", view.heading()},
                     {"label", view.label},
                     {"sight", {view.sight.x(), view.sight.y(), view.sight.z()}},
                     {"up", {view.up.x(), view.up.y(), view.up.z()}},

@@ -1,7 +1,8 @@
 // Data of one run for a report page: tables and texts as JSON, snapshots as packed numbers.
 //
 // JSON: `name`, `summary` or null, `scenario` (TOML), `series`, `midline` (CSV; empty if missing), `shell`
-// {half_axis_um, radius_um} or null, `frames_saved`, `every` (interval of shown snapshots), `box` and `fields`
+// {half_axis_um, radius_um} or null, `axes` and `letters` (names of the low and high ends of x, y, z), `depth_word`
+// ("furrow", "fold" or ""), `frames_saved`, `every` (interval of shown snapshots), `box` and `fields`
 // (values of 0 and 65535), `regions` (names), `coloured_regions` (those whose indices are
 // values of the field region), `arrays` (PackedArrays::index) and `topologies`: a list of {times_s,
 // nodes, elements, cells}, each for the snapshots between two divisions. Arrays of topology i, named "i/...": elements

@@ -11,7 +11,7 @@ std::vector<std::string> colours_of_mesh(const Frame& frame) {
   return names;
 }
 
-Picture rest_picture(Frame frame, const std::string& colour, const std::vector<View>& views, bool is_embryo) {
+Picture rest_picture(Frame frame, const std::string& colour, const std::vector<View>& views, const EmbryoAxes& axes) {
   Picture picture;
   const auto known = std::ranges::find(colour_fields(), colour, &ColourField::name);
   picture.field = known != colour_fields().end() ? *known : ColourField{colour, colour, "", colour};
@@ -20,7 +20,7 @@ Picture rest_picture(Frame frame, const std::string& colour, const std::vector<V
   if (picture.field.kind == ScaleKind::steps) picture.step_names = step_names(frame, picture.field, largest);
   picture.range = colour_range(picture.field, smallest, largest);
   for (const View& view : views) picture.rows.push_back({view, half_size_um(frame.positions, view)});
-  picture.anatomy = is_embryo;
+  picture.letters = picture_letters(axes);
   picture.columns.push_back({"", std::move(frame)});
   return picture;
 }

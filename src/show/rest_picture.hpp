@@ -11,7 +11,7 @@ namespace plica {
 /// Names for colouring a mesh: its arrays and `region`.
 std::vector<std::string> colours_of_mesh(const Frame& frame);
 
-/// Describe the picture. `colour`: one of these names. `is_embryo`: label anatomical ends.
-Picture rest_picture(Frame frame, const std::string& colour, const std::vector<View>& views, bool is_embryo);
+/// Describe the picture. `colour`: one of these names. Letters of named `axes` mark the ends.
+Picture rest_picture(Frame frame, const std::string& colour, const std::vector<View>& views, const EmbryoAxes& axes);
 
 }  // namespace plica

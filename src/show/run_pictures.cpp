@@ -43,8 +43,9 @@ bool passes_through_itself(const Frame& frame) {
 
 RunPictures::RunPictures(std::filesystem::path directory, PictureOptions options)
     : run_(std::move(directory)), options_(std::move(options)), times_s_(run_.times_s()) {
-  look_through();
   const std::optional<Scenario> scenario = scenario_of_run(run_.directory());
+  if (scenario) axes_ = axes_of(scenario->embryo);
+  look_through();
   is_embryo_ = !scenario || !is_patch(shape_of(scenario->embryo));
   if (!options_.shell) return;
   if (!scenario)
@@ -89,7 +90,8 @@ void RunPictures::look_through() {
 }
 
 void RunPictures::add_rows(const Frame& rest) {
-  const std::vector<View> views = views_of(rest);
+  std::vector<View> views = views_of(rest);
+  name_views(views, axes_);
   if (options_.usual_view) rows_.push_back({views.front(), {0, 0}});
   for (const View& view : options_.views) rows_.push_back({*std::ranges::find(views, view.name, &View::name), {0, 0}});
   add_cuts(rest.positions);
@@ -106,7 +108,7 @@ void RunPictures::add_cuts(const Vectors& rest) {
     if (x <= low || x >= high)
       throw UsageError(fmt::format(
           "--at-x-um: {:g} is outside the embryo; give x from {:.4g} to {:.4g} (reference state)", x, low, high));
-    View view = cross_section_at(x);
+    View view = cross_section_at(x, axes_);
     view.cut_um -= middle_.x();
     rows_.push_back({view, {0, 0}});
   }
@@ -150,7 +152,7 @@ Picture RunPictures::picture(const std::vector<double>& times_s) const {
   if (is_embryo_) picture.rest = rest_;
   picture.shell = shell_;
   picture.edges = options_.edges;
-  picture.anatomy = is_embryo_;
+  picture.letters = picture_letters(axes_);
   picture.width_px = options_.width_px;
   picture.height_px = options_.height_px;
   return picture;

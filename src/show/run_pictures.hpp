@@ -58,6 +58,7 @@ class RunPictures {
   std::vector<PictureRow> rows_;
   Vec3 middle_ = Vec3::Zero();  // centre of the undeformed body, if far from the origin
   Frame rest_;
+  EmbryoAxes axes_ = anatomical_axes();
   bool is_embryo_ = true;
   std::optional<Capsule> shell_;
 };

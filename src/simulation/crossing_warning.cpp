@@ -21,7 +21,9 @@ std::string crossing_warning(const Simulation& simulation) {
         "the tissue self-intersects: at t = {:.4g} min {} faces of cells {} and {} cross at x = {:.1f}, y = {:.1f}, "
         "z = {:.1f} um ({} pairs in all); later results are unphysical{}",
         simulation.time_s() / units::minute, side, id(one), id(other), place.x(), place.y(), place.z(), pairs.size(),
-        simulation.measures()["contact_pairs"] ? "" : "; add [self_contact] to prevent it");
+        simulation.measures()["contact_pairs"]
+            ? ""
+            : "; set self_contact.surface to \"both\" to prevent it (except at the rim of an open tissue)");
   }
   return "";
 }

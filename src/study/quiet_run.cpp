@@ -49,7 +49,7 @@ bool is_a_cost(const std::string& name) { return name == "peak_memory_MB" || nam
 std::vector<std::string> result_names(const nlohmann::ordered_json& summary) {
   std::vector<std::string> names;
   for (const auto& [name, value] : summary.items())
-    if ((value.is_number() || value.is_null()) && name != "stopped_by" && name != "failure" && !is_a_cost(name))
+    if ((value.is_number() || value.is_null()) && name != "stopped_by" && !name.starts_with("fail") && !is_a_cost(name))
       names.push_back(name);
   return names;
 }

@@ -43,9 +43,38 @@ end_min = 37
 [output]
 frame_every_min = 1
 """
+# A small ball whose belly is pushed against its back.
+BALL = """
+[embryo]
+shape = "sphere"
+diameter_um = 100
+cell_height_um = 10
+cells = [6, 6, 6]
+[region.belly]
+face = "ventral"
+[vitelline]
+enabled = false
+[pressure.push]
+region = "belly"
+face = "apical"
+pressure_Pa = 60
+program = { time_min = [0, 5], activity = [0, 1] }
+[time]
+end_min = 13
+tolerance_um = 0.5
+"""
 
 
 class Crossing(CommandLine):
+    def test_last_lines_say_since_when_and_a_remedy_that_works(self):
+        result = self.run_scenario(BALL)
+        self.assertRegex(result.stdout, r"\n  largest displacement [\d.]+ um, .*\n  self-intersects since 1[12]\.?\d* min \(20 pairs of faces "
+                                        r'at most\); later results are unphysical; set self_contact\.surface to "both" to prevent it\n')
+        self.assertTrue(660 < self.summary()["self_intersections_time_s"] < 780)
+        result = self.run_scenario(BALL, "--overwrite", "--set", "self_contact.surface=both")
+        self.assertNotIn("self-intersect", result.stdout + result.stderr)
+        self.assertEqual((self.summary()["self_intersections"], self.summary()["self_intersections_time_s"]), (0, None))
+
     def check(self, text, cells):
         result = self.run_scenario(text, "--quiet")
         warnings = [line for line in result.stderr.splitlines() if line.startswith("warning: the tissue self-intersects")]

@@ -73,7 +73,8 @@ SERIES = (
     "self_intersections refused_steps vml_height_um min_apical_area_ratio min_corner_jacobian_ratio "
     "enclosed_volume_ratio yolk_pressure_Pa shell_fluid_um3 flank_volume_ratio contact_pairs min_contact_distance_um "
     "closed_length_ratio lips_closed active_work_nN_um stored_energy_nN_um dissipated_energy_nN_um "
-    "energy_imbalance_ratio flank_section_area_ratio short_edges midline_waviness_um bending_error"
+    "energy_imbalance_ratio flank_section_area_ratio short_edges midline_waviness_um bending_error max_displacement_um "
+    "mean_height_um tissue_volume_ratio"
 ).split()
 CELLS = (
     "time_s cell_id mother_id generation x_um y_um z_um volume_um3 apical_area_um2 basal_area_um2 height_um "
@@ -85,7 +86,7 @@ SECTION = (
 ).split()
 MIDLINE = "time_s ap_um depth_um normal_speed_um_per_s apical_area_ratio".split()
 SUMMARY = (
-    "scenario status time_s equilibrium_time_s cells nodes steps wall_s wall_solver_s peak_memory_MB furrow_depth_um "
+    "scenario status failed_cell outcome time_s equilibrium_time_s cells nodes steps wall_s wall_solver_s peak_memory_MB furrow_depth_um "
     "furrow_depth_below_lips_um lip_distance_um vml_apical_area_ratio vce_apical_area_ratio vml_displacement_um "
     "vce_displacement_um peak_speed_ratio peak_speed_ratio_time_s ends_lead_until_s "
     "vml_displacement_at_equal_speed_um vce_displacement_at_equal_speed_um max_volume_error "

@@ -35,7 +35,19 @@ def test_frames(run):
     assert "elements" in repr(frame) and "Frames" in repr(frames)
 
 
+def test_words_fit_the_tissue(tmp_path):
+    sheet = {"embryo": {"shape": "sheet", "length_um": 40, "width_um": 40, "cell_count": 30, "cell_height_um": 10},
+             "region.middle.y_um": [-8, 8], "cortex.pull": {"region": "middle", "tension_mN_per_m": 0.3}, "time.end_s": 2}
+    sim = plica.Simulation(plica.Scenario(sheet))
+    flat = sim.run(out=tmp_path / "flat")
+    assert "frames: fold depth " in repr(flat) and "largest displacement" in repr(flat)
+    for looks in (flat._repr_html_(), sim._repr_html_()):
+        assert "furrow_depth_um" in looks and "max_displacement_um" in looks
+        assert "vml" not in looks and "lip" not in looks and "below_lips" not in looks
+
+
 def test_looks(run):
+    assert "frames: furrow depth" in repr(run)
     assert "end_time" in repr(run) and "furrow_depth_um" in run._repr_html_()
     figure = run.plot("furrow_depth_um")
     assert figure.axes[0].get_ylabel() == "furrow depth (µm)"

@@ -146,6 +146,25 @@ TEST(Advice, BuiltInTensionsEndSoftly) {
   EXPECT_EQ(cases, 3);
 }
 
+// A sheet has a fold, and no lips.
+TEST(Advice, WordsFitTheTissue) {
+  const Scenario scenario = load_scenario({"flat", "flat.toml", R"([embryo]
+shape = "sheet"
+length_um = 60
+width_um = 60
+cell_count = 60
+cell_height_um = 10
+[region.side]
+y_um = [10, 25]
+[contraction.apical]
+region = "side"
+stiffness_nN_per_um = 1
+)"});
+  const auto lines = lines_with("does not intersect the plane y = 0", advice(scenario, *make_model(scenario)));
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_NE(lines[0].find("so the fold depth has no value; use [monitor.NAME]"), std::string::npos) << lines[0];
+}
+
 TEST(Advice, AProgramThatTheRunCutsOffIsTold) {
   const Scenario scenario = load_scenario(find_scenario("furrow-slice"), {"time.end_min=15"});
   const auto warnings = lines_with("program extends beyond", advice(scenario, *make_model(scenario)));

@@ -328,7 +328,7 @@ TEST(LoadScenario, ReportsAllErrorsAtOnceInOrderOfLines) {
             "cell_height_um, cells, elements_per_cell, cell_count, seed, curvature_per_um, rim, periodic, "
             "belly_sag_um, back_sag_um, elements, least_edge_ratio, layers, points_depth_um, scale, rotate_deg, "
             "centre, keep, label_array, mend, "
-            "cell_height_array, mirror, file, cell_arrays, apical_array\n"
+            "cell_height_array, mirror, file, cell_arrays, apical_array, axes\n"
             "--set: time.max_step_s: 0 is out of range; set max_step_s to a number > 0");
 }
 

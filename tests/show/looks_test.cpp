@@ -141,6 +141,26 @@ TEST(Views, OfAClosedEmbryoBeginAtTheBelly) {
   EXPECT_EQ(of_embryo.front().name, "antero-ventral");
 }
 
+TEST(Views, AreNamedByTheAxes) {
+  std::vector<View> views = plica::views();
+  name_views(views, anatomical_axes());
+  EXPECT_EQ(views[1].heading(), "ventral");
+  name_views(views, plain_axes());
+  const auto heading = [&](const char* name) { return std::ranges::find(views, name, &View::name)->heading(); };
+  EXPECT_EQ(heading("antero-ventral"), "oblique");
+  EXPECT_EQ(heading("ventral"), "from \u2212z");
+  EXPECT_EQ(heading("side"), "from \u2212y");
+  EXPECT_EQ(heading("cross-section"), "cut at x");
+  EXPECT_EQ(heading("apical"), "apical");
+  EXPECT_EQ(views[1].label, "from \u2212z, \u2212x to the left");
+  for (const View& view : views)
+    for (const char* word : {"ventral", "anterior", "front", "left side", "below"})
+      EXPECT_EQ((view.heading() + view.label).find(word), std::string::npos) << view.label;
+  EXPECT_EQ(cross_section_at(5, plain_axes()).label, "cut across at x = 5 µm, from \u2212x");
+  EXPECT_EQ(picture_letters(plain_axes()), EmbryoAxes{});
+  EXPECT_EQ(picture_letters(anatomical_axes())[2][1], "D");
+}
+
 // Where regions overlap, a cell has the number of the smallest.
 TEST(FieldValues, RegionsAreNumberedByName) {
   Frame frame;

@@ -91,7 +91,7 @@ TEST(PictureLayout, SaysWhatIsShown) {
     EXPECT_TRUE(contains(texts, text)) << text;
   EXPECT_EQ(std::ranges::count(texts, "L"), 2);  // at the upper end from below, at the right one from the front
   Picture plain = picture_of(pill(), {"ventral"}, 1);
-  plain.anatomy = false;
+  plain.letters = {};
   EXPECT_FALSE(contains(texts_of(make_layout(plain)), "A"));
   plain.field = field("pressure");
   plain.range = {-200, 200};

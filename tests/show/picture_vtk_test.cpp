@@ -132,7 +132,7 @@ TEST(Picture, ColoursOfASectionAreThoseOfTheLegend) {
 
 TEST(Picture, OfASymmetricEmbryoIsSymmetric) {
   Picture picture = pill_picture({"ventral"}, "displacement");
-  picture.anatomy = false;
+  picture.letters = {};
   const Box box = make_layout(picture).panels[0].box;
   const Image image = read_png(Painter().png(picture));
   const double middle_x = box.left + box.width / 2, middle_y = box.bottom + box.height / 2;

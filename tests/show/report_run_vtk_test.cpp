@@ -162,6 +162,21 @@ TEST_F(ReportRunTest, PageOfASheetBeginsAtItsApicalSide) {
   EXPECT_LT(views[0]["sight"][2], -0.9);
 }
 
+TEST_F(ReportRunTest, NamesFitTheTissue) {
+  write_frames(1);
+  const auto told = [&](const std::string& scenario) {
+    std::ofstream(folder / "scenario.toml") << scenario;
+    const nlohmann::json data = data_of(report_page_of({folder}));
+    const nlohmann::json& run = data["runs"][0];
+    return nlohmann::json{run["axes"][0], run["letters"][0], run["depth_word"], data["views"][2]["title"]};
+  };
+  const std::string sheet = "[embryo]\nshape = \"sheet\"\n";
+  EXPECT_EQ(told(sheet), nlohmann::json::parse(R"([["\u2212x", "+x"], ["\u2212x", "+x"], "fold", "from \u2212z"])"));
+  EXPECT_EQ(told(sheet + "axes = [\"proximal-distal\", \"left-right\", \"ventral-dorsal\"]\n"),
+            nlohmann::json::parse(R"([["proximal", "distal"], ["P", "Di"], "furrow", "from ventral"])"));
+  EXPECT_EQ(told(""), nlohmann::json::parse(R"([["anterior", "posterior"], ["A", "P"], "furrow", "ventral"])"));
+}
+
 TEST_F(ReportRunTest, PageHoldsNoMarkupOfTheScenario) {
   write_frames(2);
   std::ofstream(folder / "summary.json") << R"({"title": "</script><b>&\u2028"})";

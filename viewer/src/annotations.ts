@@ -1,4 +1,4 @@
-// Annotations of a picture: scale bar, anatomical labels, time, colour legend. Drawn on a 2D canvas, so that the page and
+// Annotations of a picture: scale bar, letters of the axes, time, colour legend. Drawn on a 2D canvas, so that the page and
 // saved pictures agree.
 import * as three from "three";
 import { colourAt, css } from "./colour";
@@ -7,30 +7,25 @@ import { colouredRegions, type Field, nameOfStep, type PageData, titleOf, type V
 import { number } from "./text";
 
 const font = "system-ui, sans-serif";
-
-const marks: { text: string; axis: number; sign: number }[] = [
-  { text: "A", axis: 0, sign: -1 }, { text: "P", axis: 0, sign: 1 },
-  { text: "L", axis: 1, sign: -1 }, { text: "R", axis: 1, sign: 1 },
-  { text: "V", axis: 2, sign: -1 }, { text: "D", axis: 2, sign: 1 },
-];
+const letterSpacing = 30; // pixels; of two letters that are closer, the one across the line of sight is drawn
 
 export interface Frame {
   width: number; // CSS pixels
   height: number;
   camera: three.OrthographicCamera;
   centre: Vec3;
-  /** Extent of the embryo from its centre in a direction of the picture (right, up), um. */
+  /** Extent of the tissue from its centre in a direction of the picture (right, up), um. */
   reach: (right: three.Vector3, up: three.Vector3, along: three.Vector2) => number;
   title: string; // "": none
   time: string; // "": none
-  showMarks: boolean;
+  letters: [string, string][] | null; // at the low and high ends of x, y, z
   isSmall: boolean; // time in small letters; length of the scale beside its bar, not above it
 }
 
 export function annotate(context: CanvasRenderingContext2D, frame: Frame): void {
   context.textBaseline = "middle";
   context.fillStyle = context.strokeStyle = styleColour("ink");
-  if (frame.showMarks) drawMarks(context, frame);
+  if (frame.letters) drawMarks(context, frame, frame.letters);
   drawScaleBar(context, frame);
   context.textAlign = "left";
   context.textBaseline = "top";
@@ -48,9 +43,9 @@ function shortened(context: CanvasRenderingContext2D, text: string, width: numbe
   return short;
 }
 
-// A label lies outside the embryo in the projected direction of its axis; faint if it points away from the viewer; none
+// A letter lies outside the tissue in the projected direction of its axis; faint if it points away from the viewer; none
 // along the line of sight.
-function drawMarks(context: CanvasRenderingContext2D, frame: Frame): void {
+function drawMarks(context: CanvasRenderingContext2D, frame: Frame, letters: [string, string][]): void {
   const { camera, centre, width, height, reach } = frame;
   const pixelsPerUm = (width * camera.zoom) / (camera.right - camera.left);
   const right = new three.Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
@@ -59,14 +54,21 @@ function drawMarks(context: CanvasRenderingContext2D, frame: Frame): void {
   const middle = new three.Vector3(...centre).project(camera);
   context.font = `600 14px ${font}`;
   context.textAlign = "center";
-  for (const { text, axis, sign } of marks) {
+  const marks = letters.flatMap(([low, high], axis) => [low, high].map((text, end) => {
+    const sign = end === 0 ? -1 : 1;
     const along = new three.Vector2(right.getComponent(axis), up.getComponent(axis)).multiplyScalar(sign);
-    if (along.length() < 0.3) continue;
+    return { text, along, isBehind: sign * sight.getComponent(axis) > 0.3, length: along.length() };
+  }));
+  const taken: [number, number][] = [];
+  for (const { text, along, isBehind, length } of marks.sort((a, b) => b.length - a.length)) {
+    if (length < 0.3) continue;
     along.normalize();
-    const distance = pixelsPerUm * reach(right, up, along) + 13;
+    const distance = pixelsPerUm * reach(right, up, along) + 7 + context.measureText(text).width / 2;
     const x = ((middle.x + 1) / 2) * width + along.x * distance;
     const y = ((1 - middle.y) / 2) * height - along.y * distance;
-    context.fillStyle = styleColour(sign * sight.getComponent(axis) > 0.3 ? "faint" : "ink");
+    if (taken.some(([a, b]) => Math.hypot(a - x, b - y) < letterSpacing)) continue;
+    taken.push([x, y]);
+    context.fillStyle = styleColour(isBehind ? "faint" : "ink");
     context.fillText(text, x, y);
   }
   context.fillStyle = styleColour("ink");

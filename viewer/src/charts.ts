@@ -35,29 +35,58 @@ export interface ChartContent {
   logarithmic?: boolean; // axis of values
 }
 
-/** The plots of series.csv: quantities of one unit and kind together, then the scenario's monitors by unit. Of many runs a
- * plot a quantity. */
-export function seriesCharts(runs: Run[], looks: RunLooks): ChartContent[] {
-  let groups: { title: string; columns: string[]; logarithmic?: boolean }[] = [
-    { title: "Furrow depth and lips", columns: ["furrow_depth_um", "furrow_depth_below_lips_um", "lip_distance_um"] },
-    { title: "Speeds: furrow centre (VML), near its end (VCE)", columns: ["vml_speed_um_per_s", "vce_speed_um_per_s"], logarithmic: true },
-    { title: "Speed ratio, VCE / VML", columns: ["speed_ratio"] },
-    { title: "Apical area / reference area", columns: ["vml_apical_area_ratio", "vce_apical_area_ratio"] },
-    { title: "Displacements: VML and VCE", columns: ["vml_displacement_um", "vce_displacement_um"] },
-  ];
+interface Group {
+  title: string;
+  columns: string[];
+  of: (run: Run, isFew: boolean) => boolean; // runs that it describes
+  names?: string[]; // of the columns
+  logarithmic?: boolean;
+}
+
+const ofFurrow = (run: Run) => run.depthWord === "furrow";
+const ofFold = (run: Run) => run.depthWord === "fold";
+const ofOther = (run: Run) => run.depthWord !== "furrow";
+const ofFew = (run: Run, isFew: boolean) => isFew || ofOther(run);
+
+const usualGroups: Group[] = [
+  { title: "Furrow depth and borders", of: ofFurrow, columns: ["furrow_depth_um", "furrow_depth_below_lips_um", "lip_distance_um"] },
+  { title: "Speeds: furrow centre (VML), near its end (VCE)", of: ofFurrow, columns: ["vml_speed_um_per_s", "vce_speed_um_per_s"], logarithmic: true },
+  { title: "Speed ratio, VCE / VML", of: ofFurrow, columns: ["speed_ratio"] },
+  { title: "Apical area / reference area", of: ofFurrow, columns: ["vml_apical_area_ratio", "vce_apical_area_ratio"] },
+  { title: "Displacements: VML and VCE", of: ofFurrow, columns: ["vml_displacement_um", "vce_displacement_um"] },
+  { title: "Fold depth", of: ofFold, columns: ["furrow_depth_um"], names: ["fold depth"] },
+  { title: "Largest displacement", of: ofOther, columns: ["max_displacement_um"] },
+  { title: "Largest speed of a node", of: ofOther, columns: ["max_node_speed_um_per_s"], logarithmic: true },
+  { title: "Smallest apical area / reference area", of: ofOther, columns: ["min_apical_area_ratio"] },
+  { title: "Mean cell height", of: ofOther, columns: ["mean_height_um"] },
+  { title: "Number of cells", of: ofFew, columns: ["cells"] },
+  { title: "Volume / reference volume", of: ofOther, columns: ["tissue_volume_ratio", "lumen_volume_ratio"], names: ["cells", "lumen"] },
+  { title: "Pressure of the enclosed volume", of: ofFew, columns: ["yolk_pressure_Pa"] },
+  { title: "Energy", of: ofFew, columns: ["active_work_nN_um", "stored_energy_nN_um", "dissipated_energy_nN_um"] },
+];
+
+function monitorGroups(runs: Run[]): Group[] {
   const monitors = new Map<string, string[]>();
   for (const run of runs)
     for (const column of run.series.columns.filter((name) => name.includes("."))) {
       const unit = words(column)[1];
       if (!monitors.get(unit)?.includes(column)) monitors.set(unit, [...(monitors.get(unit) ?? []), column]);
     }
-  for (const [unit, columns] of monitors) groups.push({ title: unit === "" ? "Monitors" : `Monitors in ${unit}`, columns });
-  if (runs.length > fewRuns)
-    groups = groups.flatMap(({ columns, logarithmic }) =>
-      columns.map((column) => ({ title: capital(words(column)[0]), columns: [column], logarithmic })));
+  return [...monitors.values()].map((columns) => ({ title: "Monitors", of: () => true, columns }));
+}
+
+/** The plots of series.csv that fit the tissue and change: quantities of one unit and kind together, then the scenario's
+ * monitors by unit; with many runs, one plot per quantity. */
+export function seriesCharts(runs: Run[], looks: RunLooks): ChartContent[] {
+  let groups = [...usualGroups, ...monitorGroups(runs)];
+  const isFew = runs.length <= fewRuns;
+  if (!isFew)
+    groups = groups.flatMap(({ columns, names, ...rest }) =>
+      columns.map((column, i) => ({ ...rest, title: capital(names?.[i] ?? words(column)[0]), columns: [column] })));
   return groups
-    .map(({ title, columns, logarithmic }) => ({
-      title, logarithmic, unit: words(columns[0])[1], curves: curvesOf(runs, columns, looks),
+    .map(({ title, columns, names, of, logarithmic }) => ({
+      title, logarithmic, unit: words(columns[0])[1],
+      curves: curvesOf(runs.filter((run) => of(run, isFew)), columns, names, looks, runs.length === 1),
     }))
     .filter((chart) => chart.curves.length > 0);
 }
@@ -66,19 +95,26 @@ function capital(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
+// Whether a column has values, and monitors apart, more than rounding errors of one value.
+function changes(run: Run, column: string): boolean {
+  const values = run.series.column(column).filter((value) => value !== null);
+  const [least, greatest] = [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
+  return values.length > 0 && (column.includes(".") || greatest - least > 1e-6 * Math.max(Math.abs(least), Math.abs(greatest)));
+}
+
 // One run: one colour per column. Several: one colour per run, one dash pattern per column.
-function curvesOf(runs: Run[], columns: string[], looks: RunLooks): Curve[] {
+function curvesOf(runs: Run[], columns: string[], names: string[] | undefined, looks: RunLooks, isAlone: boolean): Curve[] {
   return runs.flatMap((run) =>
     columns
-      .filter((column) => run.series.column(column).some((value) => value !== null))
+      .filter((column) => changes(run, column))
       .map((column) => {
         const place = columns.indexOf(column);
         const times = run.series.column("time_s");
         return {
-          name: words(column)[0], column, run,
+          name: names?.[place] ?? words(column)[0], column, run,
           points: run.series.column(column).map((value, i) => ({ time: times[i]!, value })),
           look: () => {
-            if (runs.length === 1) return { colour: lineColours[place % lineColours.length], dash: [] };
+            if (isAlone) return { colour: lineColours[place % lineColours.length], dash: [] };
             const look = looks.lookOf(run);
             return columns.length === 1 ? look : { ...look, dash: dashes[place % dashes.length] };
           },

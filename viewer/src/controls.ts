@@ -6,7 +6,6 @@ import type { Cut, State } from "./state";
 import { time as timeText } from "./text";
 
 const axes = ["x", "y", "z"];
-const axisWords = ["across (x)", "along (y)", "horizontal (z)"];
 
 export interface Actions {
   savePicture: (() => void) | null;
@@ -53,7 +52,7 @@ export class Controls {
   private viewButtons(): HTMLElement {
     const group = element("div", { class: "group", role: "group", "aria-label": "View" });
     for (const view of this.page.views) {
-      const button = this.button(`view-${view.name}`, view.name.replace("-", " "), () => this.lookFrom(view.name));
+      const button = this.button(`view-${view.name}`, view.title.replace("-", " "), () => this.lookFrom(view.name));
       button.title = view.label;
       group.append(button);
     }
@@ -79,7 +78,7 @@ export class Controls {
 
   private cutChoice(): HTMLElement {
     const select = element("select", { id: "cut" }, element("option", { value: "" }, "none"));
-    axisWords.forEach((words, axis) => select.append(element("option", { value: axes[axis] }, words)));
+    axes.forEach((axis) => select.append(element("option", { value: axis }, `across ${axis}`)));
     select.addEventListener("change", () => {
       const axis = axes.indexOf(select.value);
       const keep = this.actions.sight()[axis] >= 0 ? 1 : -1;

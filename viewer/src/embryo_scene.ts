@@ -6,12 +6,13 @@ import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeome
 import { colourAt, partOf } from "./colour";
 import type { Field, PageData } from "./page_data";
 import type { Place, Run, Topology } from "./run";
-import { cutByPlane, cutOutlines, type CutPolygon } from "./section";
+import { capsuleOutline, cutByPlane, cutOutlines, type CutPolygon } from "./section";
 import type { Cut } from "./state";
 
 const texels = 256;
 const lineColour = 0x1c1c22;
 const pickedColour = 0xe6007e;
+const shellColour = 0x7f8fa6;
 
 // Colour map as a texture: values become its first coordinate, so that values, not colours, are interpolated.
 function mapTexture(map: string[], steps: boolean): three.DataTexture {
@@ -23,6 +24,19 @@ function mapTexture(map: string[], steps: boolean): three.DataTexture {
   texture.magFilter = texture.minFilter = steps ? three.NearestFilter : three.LinearFilter;
   texture.needsUpdate = true;
   return texture;
+}
+
+// A thin film: opaque where it is seen edge-on. The offset keeps it above cells that touch it.
+function membraneMaterial(): three.MeshLambertMaterial {
+  const material = new three.MeshLambertMaterial({
+    color: 0, emissive: shellColour, transparent: true, depthWrite: false, side: three.DoubleSide,
+    polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2,
+  });
+  material.onBeforeCompile = (shader) => {
+    const edge = "diffuseColor.a = 0.06 + 0.8 * pow(1.0 - abs(normal.z), 2.5);";
+    shader.fragmentShader = shader.fragmentShader.replace("#include <opaque_fragment>", `${edge}\n#include <opaque_fragment>`);
+  };
+  return material;
 }
 
 export class EmbryoScene {
@@ -38,9 +52,8 @@ export class EmbryoScene {
   });
   private readonly lineMaterial = new three.LineBasicMaterial({ color: lineColour, transparent: true, opacity: 0.6 });
   private readonly capLineMaterial = new three.LineBasicMaterial({ color: lineColour });
-  private readonly shellMaterial = new three.MeshBasicMaterial({
-    color: 0x7f8fa6, transparent: true, opacity: 0.16, depthWrite: false, side: three.BackSide,
-  });
+  private readonly shellMaterial = membraneMaterial();
+  private readonly shellCutMaterial = new LineMaterial({ color: shellColour, linewidth: 4 });
   private readonly pickedMaterial = new LineMaterial({ color: pickedColour, linewidth: 3.5 });
 
   private readonly boundary = new three.Mesh(new three.BufferGeometry(), this.skinMaterial);
@@ -49,6 +62,7 @@ export class EmbryoScene {
   private readonly capLines = new three.LineSegments(new three.BufferGeometry(), this.capLineMaterial);
   private readonly pickedLines = new LineSegments2(new LineSegmentsGeometry(), this.pickedMaterial);
   private readonly shell: three.Mesh | null;
+  private readonly shellCut = new LineSegments2(new LineSegmentsGeometry(), this.shellCutMaterial);
 
   private topology: Topology | null = null;
   private positions = new Float32Array(0);
@@ -60,7 +74,7 @@ export class EmbryoScene {
     for (const [name, map] of Object.entries(page.maps)) this.textures.set(name, mapTexture(map, name === "steps"));
     this.shell = this.makeShell();
     this.scene.add(new three.AmbientLight(0xffffff, 2.1), this.light, this.light.target);
-    for (const object of [this.boundary, this.lines, this.cap, this.capLines, this.pickedLines]) {
+    for (const object of [this.boundary, this.lines, this.cap, this.capLines, this.pickedLines, this.shellCut]) {
       object.frustumCulled = false;
       this.scene.add(object);
     }
@@ -89,6 +103,7 @@ export class EmbryoScene {
     this.lines.visible = options.edges;
     this.capLines.visible = options.edges && cut !== null;
     if (this.shell) this.shell.visible = options.shell;
+    this.shellCut.visible = options.shell && this.fillShellCut(cut);
   }
 
   /** First cell hit by a ray; -1 if none. */
@@ -103,20 +118,22 @@ export class EmbryoScene {
     return skinHit ? topology.cellOfElement[element(skinHit)] : -1;
   }
 
-  /** Extent of the nodes from the centre in a direction of the picture (right, up), um. */
+  /** Extent of the nodes, and of the membrane if it is shown, from the centre in a direction of the picture (right, up), um. */
   reach(right: three.Vector3, up: three.Vector3, along: three.Vector2): number {
     const direction = right.clone().multiplyScalar(along.x).addScaledVector(up, along.y);
     const { x, y, z } = direction;
     let reach = -Infinity;
     for (let n = 0; n < this.positions.length; n += 3)
       reach = Math.max(reach, x * this.positions[n] + y * this.positions[n + 1] + z * this.positions[n + 2]);
+    const size = this.shell?.visible ? this.run.data.shell : null;
+    if (size) reach = Math.max(reach, size.half_axis_um * Math.abs(x) + size.radius_um);
     return reach - direction.dot(new three.Vector3(...this.run.centre));
   }
 
   private makeShell(): three.Mesh | null {
     const size = this.run.data.shell;
     if (!size) return null;
-    const geometry = new three.CapsuleGeometry(size.radius_um, 2 * size.half_axis_um, 24, 64, 1).rotateZ(Math.PI / 2);
+    const geometry = new three.CapsuleGeometry(size.radius_um, 2 * size.half_axis_um, 48, 128, 1).rotateZ(Math.PI / 2);
     const shell = new three.Mesh(geometry, this.shellMaterial);
     this.scene.add(shell);
     return shell;
@@ -211,6 +228,15 @@ export class EmbryoScene {
     }
     refill(this.cap, points, parts);
     refill(this.capLines, cutOutlines(topology, this.polygons).flatMap(([a, b]) => [...a.point, ...b.point]));
+  }
+
+  // Outline of the membrane in the plane of the cut; false if there is none.
+  private fillShellCut(cut: Cut | null): boolean {
+    const size = this.run.data.shell;
+    const outline = size && cut ? capsuleOutline(size.half_axis_um, size.radius_um, cut) : [];
+    this.shellCut.geometry.dispose();
+    this.shellCut.geometry = new LineSegmentsGeometry().setPositions(outline.length > 0 ? outline : [0, 0, 0, 0, 0, 0]);
+    return outline.length > 0;
   }
 
   private fillPicked(topology: Topology, cell: number): void {

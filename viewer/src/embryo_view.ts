@@ -10,6 +10,7 @@ import { pointWith, type State } from "./state";
 
 const clickTolerance = 4; // pixels between press and release
 const turnStep = 0.12; // rad a key press
+const closeUpSize = 2.5; // half of a close-up's height / radius of its cell
 const settleTime = 200; // ms without a change after which a picture is drawn finely
 
 /** View of all runs. Throws without WebGL. */
@@ -18,6 +19,7 @@ export class EmbryoViews {
   private readonly views: RunView[];
   private readonly radius: number; // um, of a ball around every run
   private large: RunView | null = null; // enlarged one of many
+  private focus: RunView | null = null; // looks at the picked cell until a view is chosen
   private isFine = false;
   private changedAt = 0; // ms
   private shape = ""; // layout of the page that determines picture sizes
@@ -32,7 +34,10 @@ export class EmbryoViews {
     this.radius = Math.max(...this.views.map(({ run }) => Math.hypot(...run.halfSize)));
     holder.append(...this.views.map((view) => view.box));
     for (const view of this.views) this.listen(view);
-    state.on(["view"], () => this.lookFrom());
+    state.on(["view"], () => {
+      this.focus = null;
+      this.lookFrom();
+    });
     state.on(["time", "field", "cut", "edges", "shell", "marks", "picked"], () => this.makeStale());
     state.on(["field"], () => this.showLegend());
     state.on(["shown"], () => this.arrange());
@@ -140,6 +145,16 @@ export class EmbryoViews {
     this.lookFrom();
   }
 
+  /** Show a cell close up, from its apical side, at the end of its run, and mark it. */
+  async lookAtCell(run: Run, id: number): Promise<void> {
+    const view = this.views.find((candidate) => candidate.run === run);
+    if (!view) return;
+    await run.load();
+    this.focus = view;
+    this.state.set({ time: run.endTime, playing: false, cut: null, picked: { run: run.number, id } });
+    this.lookFrom();
+  }
+
   private sort(): void {
     for (const view of this.views) view.order = this.state.now.order.indexOf(view.run.number);
   }
@@ -195,6 +210,27 @@ export class EmbryoViews {
       view.moved = true;
     }
     this.fit();
+    if (this.focus) this.closeUp(this.focus);
+  }
+
+  private closeUp(view: RunView): void {
+    const { picked, time } = this.state.now;
+    const cell = picked?.run === view.run.number ? view.run.placeOfCell(picked.id, time) : null;
+    if (!cell) return;
+    const { camera, controls } = view;
+    const centre = new three.Vector3(...cell.centre);
+    const outward = new three.Vector3(...cell.outward);
+    const up = new three.Vector3(...this.state.now.view.up).projectOnPlane(outward);
+    if (up.length() < 0.1) up.set(1, 0, 0).projectOnPlane(outward);
+    camera.up.copy(up.normalize());
+    // A little from below, so that the height of the sheet is seen, too.
+    camera.position.copy(centre).addScaledVector(outward.addScaledVector(up, -0.5).normalize(), 4 * this.radius);
+    controls.target.copy(centre);
+    camera.lookAt(centre);
+    camera.updateMatrixWorld();
+    camera.zoom = this.radius / (closeUpSize * cell.radius);
+    camera.updateProjectionMatrix();
+    view.moved = true;
   }
 
   // Common scale at which the largest fits; runs not yet unpacked are assumed similar. An enlarged picture has its own.

@@ -2,7 +2,7 @@
 import { byId } from "./dom";
 import { fewRuns, type PageData } from "./page_data";
 import type { Run } from "./run";
-import { number, words } from "./text";
+import { number, time, words } from "./text";
 
 export function showHeadline(runs: Run[], page: PageData): void {
   byId("title").textContent = [...new Set(runs.map((run) => run.title))].join(" | ");
@@ -15,16 +15,24 @@ function oneRun(run: Run, named: boolean): string {
   const summary = run.data.summary;
   if (!summary) return `${run.name}: not finished`;
   const crossing = Number(summary.self_intersections ?? 0) > 0 ? ", self-intersecting" : "";
-  const depth = typeof summary.furrow_depth_um === "number" ? `, furrow ${number(summary.furrow_depth_um)} µm deep` : "";
-  return `${named ? `${run.name}: ` : ""}${summary.cells} cells, ${String(summary.status).replaceAll("_", " ")} at ${number(Number(summary.time_s) / 60)} min${depth}${crossing}`;
+  return `${named ? `${run.name}: ` : ""}${summary.cells} cells, ${String(summary.status).replaceAll("_", " ")} at ${time(Number(summary.time_s))}${outcomeOf(run)}${crossing}`;
+}
+
+// What the tissue did.
+function outcomeOf(run: Run): string {
+  const { furrow_depth_um: depth, lips_closed_time_s: closed_s, outcome } = run.data.summary!;
+  if (run.depthWord !== "furrow") return typeof outcome === "string" && outcome !== "" ? `, ${outcome.replaceAll(" um", " µm").replaceAll(" -", " −")}` : "";
+  const closed = typeof closed_s === "number" ? `, closed at ${time(closed_s)}` : "";
+  return typeof depth === "number" ? `, furrow ${number(depth)} µm deep${closed}` : "";
 }
 
 function manyRuns(runs: Run[], page: PageData): string {
   const parts = [`${runs.length} runs`];
   const keys = page.varied.map(({ key }) => words(key.slice(key.lastIndexOf(".") + 1))[0]);
   if (keys.length > 0) parts.push(`differ in ${keys.slice(0, 4).join(", ")}${keys.length > 4 ? ` and ${keys.length - 4} more keys` : ""}`);
-  const depths = runs.map((run) => run.data.summary?.furrow_depth_um).filter((depth) => typeof depth === "number");
-  if (depths.length > 0) parts.push(`furrows ${number(Math.min(...depths), 3)} to ${number(Math.max(...depths), 3)} µm deep`);
+  const ended = runs.filter((run) => !run.failed && run.depthWord !== "");
+  const depths = ended.map((run) => run.data.summary?.furrow_depth_um).filter((depth) => typeof depth === "number");
+  if (depths.length > 0) parts.push(`${ended.every((run) => run.depthWord === "fold") ? "folds" : "furrows"} ${number(Math.min(...depths), 3)} to ${number(Math.max(...depths), 3)} µm deep`);
   const failed = runs.filter((run) => run.failed).length;
   if (failed > 0) parts.push(`${failed} failed`);
   const unfinished = runs.filter((run) => !run.data.summary).length;

@@ -132,7 +132,7 @@ export class Kymograph {
       scales: { x: timeScale(this.logarithmicTime), y: { range: () => [-reach, reach] } },
       axes: [
         { ...time, grid: { show: false } },
-        { ...valueAxis(), grid: { show: false }, label: "A ← µm → P", labelSize: 16 },
+        { ...valueAxis(), grid: { show: false }, label: `${this.run.data.letters[0][0]} ← µm → ${this.run.data.letters[0][1]}`, labelSize: 16 },
       ],
       series: [{}, {}],
       hooks: {

@@ -3,6 +3,7 @@ import { CellPanel } from "./cell_panel";
 import { Controls, frameTimes, save } from "./controls";
 import { byId } from "./dom";
 import { EmbryoViews } from "./embryo_view";
+import { showFailures } from "./failure";
 import { showHeadline } from "./headline";
 import { colouredRegions, fewRuns, type PageData, readPageData } from "./page_data";
 import { Plots } from "./plots";
@@ -52,14 +53,14 @@ function startClock(state: State, end: number, draw: () => void): void {
 
 function makeViews(runs: Run[], page: PageData, state: State, looks: RunLooks): EmbryoViews | null {
   if (!runs.some((run) => run.hasFrames)) {
-    tell("No snapshots of the embryo; its numbers are below.");
+    tell("No snapshots of the tissue; its numbers are below.");
     return null;
   }
   try {
     return new EmbryoViews(runs, page, state, looks, byId("canvases"), byId("legend") as HTMLCanvasElement);
   } catch (error) {
     console.info("no picture:", error);
-    tell("The embryo cannot be drawn, since this browser has no WebGL. Plots, tables and texts below are complete.");
+    tell("The tissue cannot be drawn, since this browser has no WebGL. Plots, tables and texts below are complete.");
     byId("canvases").hidden = byId("legend").hidden = true;
     return null;
   }
@@ -90,6 +91,7 @@ async function start(): Promise<void> {
     sight: () => views?.sight() ?? [1, 1, 1],
   });
   await views?.makeReady();
+  showFailures(runs, state, views);
   views?.draw();
   performance.mark("first-picture");
   document.body.dataset.picture = views ? "drawn" : "none";

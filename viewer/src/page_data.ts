@@ -16,6 +16,7 @@ export interface Field {
 
 export interface View {
   name: string;
+  title: string;
   label: string;
   sight: Vec3;
   up: Vec3;
@@ -41,6 +42,9 @@ export interface RunData {
   series: string;
   midline: string;
   shell: { half_axis_um: number; radius_um: number } | null;
+  axes: [string, string][]; // names of the low and high ends of x, y, z
+  letters: [string, string][];
+  depth_word: "furrow" | "fold" | ""; // for furrow_depth_um; "": it has no meaning
   frames_saved: number;
   every: number;
   box: { low: Vec3; high: Vec3 };

@@ -27,7 +27,7 @@ export class Plots {
       element("label", {}, logarithmic, " logarithmic time"),
       element("div", { class: grid }, ...this.charts.map((chart) => chart.box)),
     );
-    this.withMidline = runs.filter((run) => run.midline.rows.length > 0);
+    this.withMidline = runs.filter((run) => run.depthWord !== "" && run.midline.rows.length > 0);
     this.kymographs = this.withMidline.map((run) => new Kymograph(run, this.withMidline, page, state, midlineQuantities[0]));
     if (this.withMidline.length > 0) this.showMidline(grid);
     logarithmic.addEventListener("change", () => {

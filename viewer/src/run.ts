@@ -98,6 +98,23 @@ export class Topology {
     return field.name === "region" ? (this.colourOfRegion[Math.round(value)] ?? 0) : value;
   }
 
+  /** Centre, direction from its basal to its apical side, and largest distance of a node from the centre; um. */
+  placeOfCell(cell: number, moment: number): { centre: Vec3; outward: Vec3; radius: number } {
+    const positions = new Float32Array(3 * this.nodes);
+    this.positions(moment, 0, positions);
+    const [centre, outward]: Vec3[] = [[0, 0, 0], [0, 0, 0]];
+    const nodes = this.nodesOfCell(cell);
+    nodes.forEach((node, i) => {
+      for (let k = 0; k < 3; ++k) {
+        centre[k] += positions[3 * node + k] / nodes.length;
+        outward[k] += positions[3 * node + k] * (i % 8 < 4 ? -1 : 1); // nodes 4 to 7 of an element are apical
+      }
+    });
+    const distance = (node: number) => Math.hypot(...centre.map((x, k) => positions[3 * node + k] - x));
+    const length = Math.hypot(...outward) || 1;
+    return { centre, outward: outward.map((x) => x / length) as Vec3, radius: Math.max(...nodes.map(distance)) };
+  }
+
   private array(name: string): Uint16Array {
     let array = this.arrays.get(name);
     if (!array) this.arrays.set(name, (array = this.packed.get(`${this.index}/${name}`) as Uint16Array));
@@ -161,6 +178,18 @@ export class Run {
     return this.frames.length > 0;
   }
 
+  /** Word for `furrow_depth_um`: "furrow", "fold", or "" where it has no value or no meaning. */
+  get depthWord(): "furrow" | "fold" | "" {
+    const hasDepth = this.series.column("furrow_depth_um").some((value) => value !== null);
+    return hasDepth ? this.data.depth_word : "";
+  }
+
+  /** Cell at which the solver failed, if it is one cell. */
+  get failedCell(): number | null {
+    const cell = this.data.summary?.failed_cell;
+    return typeof cell === "number" ? cell : null;
+  }
+
   get failed(): boolean {
     return this.data.summary?.status === "failed";
   }
@@ -219,6 +248,13 @@ export class Run {
       wanted = mother;
     }
     return -1;
+  }
+
+  /** Centre, apical direction and radius of a cell at a time; null after its division. */
+  placeOfCell(id: number, time: number): { centre: Vec3; outward: Vec3; radius: number } | null {
+    const { topology, moment } = this.placeAt(time);
+    const cell = this.ancestorAt(id, topology);
+    return cell < 0 ? null : topology.placeOfCell(cell, moment);
   }
 
   daughtersOf(id: number): number[] {

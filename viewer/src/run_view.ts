@@ -63,7 +63,7 @@ export class RunView {
     readonly run: Run, private readonly page: PageData, private readonly state: State, private readonly painter: Painter,
   ) {
     this.canvas = element("canvas", {
-      class: "picture", tabindex: "0", role: "img", "aria-label": `The embryo of ${run.name}: ${run.title.slice(0, 200)}`,
+      class: "picture", tabindex: "0", role: "img", "aria-label": `The tissue of ${run.name}: ${run.title.slice(0, 200)}`,
     });
     this.box.dataset.run = run.name;
     this.box.append(this.caption, this.canvas);
@@ -167,7 +167,7 @@ export class RunView {
     annotate(context, {
       width, height, camera: this.camera, centre: this.run.centre,
       reach: (right, up, along) => scene.reach(right, up, along),
-      title: this.hasCaption ? "" : title, time: this.timeShown, showMarks: this.state.now.marks,
+      title: this.hasCaption ? "" : title, time: this.timeShown, letters: this.state.now.marks ? this.run.data.letters : null,
       isSmall: this.isSmall,
     });
   }

@@ -47,6 +47,21 @@ export function cutByPlane(topology: Topology, positions: Float32Array, cut: Cut
   return polygons;
 }
 
+/** Outline of a capsule along x in a plane: pairs of points, 3 coordinates each; empty outside of it. */
+export function capsuleOutline(halfAxis: number, radius: number, cut: Cut): number[] {
+  const beyond = cut.axis === 0 ? Math.max(Math.abs(cut.at) - halfAxis, 0) : Math.abs(cut.at);
+  if (beyond >= radius) return [];
+  const [r, count] = [Math.sqrt(radius ** 2 - beyond ** 2), 96];
+  const point = (i: number): number[] => {
+    const angle = (2 * Math.PI * i) / count;
+    const [a, b] = [r * Math.cos(angle), r * Math.sin(angle)];
+    if (cut.axis === 0) return [cut.at, a, b];
+    const along = a + Math.sign(Math.round(1e6 * a)) * halfAxis;
+    return cut.axis === 1 ? [along, cut.at, b] : [along, b, cut.at];
+  };
+  return Array.from({ length: count }, (_, i) => [...point(i), ...point(i + 1)]).flat();
+}
+
 function aroundMiddle(corners: Corner[], axis: number): Corner[] {
   const [across, up] = [(axis + 1) % 3, (axis + 2) % 3];
   const mean = (i: number) => corners.reduce((sum, corner) => sum + corner.point[i], 0) / corners.length;

@@ -1,7 +1,7 @@
 // Cross-sections at 25, 50 and 75 % of the length, at the time of the page.
 import { colourAt, css, partOf } from "./colour";
 import { byId, element, whenNear } from "./dom";
-import { fewRuns, type PageData } from "./page_data";
+import { fewRuns, type PageData, titleOf } from "./page_data";
 import type { Run, Topology } from "./run";
 import { cutByPlane, cutOutlines } from "./section";
 import type { State } from "./state";
@@ -12,7 +12,7 @@ const margin = 6; // pixels
 
 class RunSections {
   readonly box = element("figure", { class: "sections" });
-  private readonly canvases = places.map(() => element("canvas", { role: "img", "aria-label": "Cross-section of the embryo" }));
+  private readonly canvases = places.map(() => element("canvas", { role: "img", "aria-label": "Cross-section of the tissue" }));
   private readonly captions = places.map(() => element("span"));
   private cuts: number[] | null = null; // um
 
@@ -84,14 +84,25 @@ class RunSections {
   }
 }
 
+// The end of x that is nearest to the viewer; "the front" of an embryo.
+function frontOf(run: Run): string {
+  const [front] = run.data.axes[0];
+  return front === "anterior" ? "the front" : front;
+}
+
 /** Cross-sections, only for few runs; drawn when visible. */
 export function showSections(runs: Run[], page: PageData, state: State): void {
   const shown = runs.filter((run) => run.hasFrames);
   if (shown.length === 0 || shown.length > fewRuns) return;
   const all = shown.map((run) => new RunSections(run, page, state, shown.length > 1));
   const holder = byId("sections");
+  const legend = element("p", { class: "note" });
+  const showLegend = () => (legend.textContent = `Colour: ${titleOf(state.now.field)}, on the scale of the picture.`);
+  state.on(["field"], showLegend);
+  showLegend();
   holder.append(
-    element("h2", {}, "Cross-sections at 25, 50 and 75 % of the length, from the front"),
+    element("h2", {}, `Cross-sections at 25, 50 and 75 % of the length, from ${frontOf(shown[0])}`),
+    legend,
     ...all.map(({ box }) => box),
   );
   let waits = false;

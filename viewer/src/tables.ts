@@ -5,7 +5,7 @@ import type { Run } from "./run";
 import type { State } from "./state";
 import { number, words } from "./text";
 
-const shownElsewhere = ["title"]; // and tables
+const shownElsewhere = ["title", "failure", "outcome"]; // and tables
 
 export function showTables(runs: Run[], state: State): void {
   if (runs.length <= fewRuns) byId("numbers").append(element("h2", {}, "Summary"), summaryTable(runs));
@@ -32,20 +32,39 @@ function onePiece(heads: string[], rows: Row[]): HTMLElement {
   return element("table", {}, element("thead", {}, head), element("tbody", {}, ...body));
 }
 
+// Columns that describe a furrow, or a fold: the depth alone.
+const ofFurrow = /^(vml_|vce_|furrow_|lip|peak_speed|ends_lead|highest_points|closed_length|knee_|depth_20um|midline_|flank_)/;
+
+function fits(runs: Run[], key: string): boolean {
+  if (key === "max_shell_penetration_um") return runs.some((run) => run.data.shell !== null);
+  if (key === "furrow_depth_um") return runs.some((run) => run.depthWord !== "");
+  return !ofFurrow.test(key) || runs.some((run) => run.depthWord === "furrow");
+}
+
+function titleOf(runs: Run[], key: string): string {
+  const [name, unit] = words(key);
+  const isFold = key === "furrow_depth_um" && runs.every((run) => run.depthWord !== "furrow");
+  return `${isFold ? "fold depth" : name}${unit === "" ? "" : `, ${unit}`}`;
+}
+
+// Quantities without a value are listed below.
 function summaryTable(runs: Run[]): HTMLElement {
   if (runs.every((run) => run.data.summary === null))
     return element("p", { class: "note" }, "No summary: the run has not ended.");
   const keys = [...new Set(runs.flatMap((run) => Object.keys(run.data.summary ?? {})))].filter(
-    (key) => !shownElsewhere.includes(key) && !runs.some((run) => isTable(run.data.summary?.[key])),
+    (key) => !shownElsewhere.includes(key) && fits(runs, key) && !runs.some((run) => isTable(run.data.summary?.[key])),
   );
-  return table(runs, keys.map((key) => {
-    const [name, unit] = words(key);
+  const isEmpty = (key: string) => runs.every((run) => (run.data.summary?.[key] ?? null) === null);
+  const rows: Row[] = keys.filter((key) => !isEmpty(key)).map((key) => {
     const cells = runs.map((run) => {
       const value = run.data.summary?.[key];
       return typeof value === "number" ? number(value, 5) : value === null || value === undefined ? "–" : String(value);
     });
-    return [element("th", { scope: "row", title: key }, unit === "" ? name : `${name}, ${unit}`), cells];
-  }));
+    return [element("th", { scope: "row", title: key }, titleOf(runs, key)), cells];
+  });
+  const empty = keys.filter(isEmpty).map((key) => titleOf(runs, key));
+  return element("div", {}, table(runs, rows),
+    element("p", { class: "note" }, empty.length > 0 ? `Without a value: ${empty.join("; ")}.` : ""));
 }
 
 // Active work, stored and dissipated energy of each law.

@@ -43,8 +43,36 @@ const units: [RegExp, string][] = [
   [/_s$/, "s"],
 ];
 
+// Columns whose names do not read as words.
+const labels = new Map<string, [string, string]>([
+  ["furrow_depth_below_lips_um", ["depth below its borders", "µm"]],
+  ["lip_distance_um", ["distance of the contractile borders", "µm"]],
+  ["highest_points_distance_um", ["distance of the outermost points", "µm"]],
+  ["ends_lead_until_s", ["ends are faster until", "s"]],
+  ["depth_20um_time_s", ["time of 20 µm depth", "s"]],
+  ["knee_depth_um", ["depth at the onset of fast invagination", "µm"]],
+  ["knee_time_s", ["onset of fast invagination", "s"]],
+  ["wall_s", ["wall time", "s"]],
+  ["wall_solver_s", ["wall time of the solver", "s"]],
+  ["max_node_speed_um_per_s", ["largest speed of a node", "µm/s"]],
+  ["max_volume_error", ["largest volume error of a cell", ""]],
+  ["max_shell_penetration_um", ["largest penetration of the membrane", "µm"]],
+  ["max_displacement_um", ["largest displacement", "µm"]],
+  ["min_scaled_jacobian", ["smallest scaled Jacobian", ""]],
+  ["min_apical_area_ratio", ["smallest apical area / reference area", ""]],
+  ["min_corner_jacobian_ratio", ["smallest corner Jacobian / reference value", ""]],
+  ["min_contact_distance_um", ["smallest contact distance", "µm"]],
+  ["newton_iterations", ["Newton iterations", ""]],
+  ["self_intersections", ["self-intersecting pairs of faces", ""]],
+  ["self_intersections_time_s", ["first self-intersection", "s"]],
+  ["shell_fluid_um3", ["perivitelline volume", "µm³"]],
+  ["cubic_three_real_roots", ["cubic equations with three real roots", ""]],
+]);
+
 /** Split a column or key into words and unit: "vml_speed_um_per_s" is ["VML speed", "µm/s"]. */
 export function words(key: string): [string, string] {
+  const label = labels.get(key);
+  if (label) return label;
   let name = key;
   let unit = "";
   for (const [ending, words] of units)
@@ -53,7 +81,7 @@ export function words(key: string): [string, string] {
       unit = words;
       break;
     }
-  name = name.replaceAll("_", " ")
+  name = name.replaceAll("_", " ").replaceAll(".", ": ")
     .replace(/\bvml\b/g, "VML").replace(/\bvce\b/g, "VCE").replace(/\bap\b/g, "position along the axis")
     .replace(/\byoung modulus\b/, "Young's modulus").replace(/\bpoisson ratio\b/, "Poisson's ratio");
   return [name, unit];

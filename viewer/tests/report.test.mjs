@@ -23,6 +23,14 @@ before(async () => {
 [dynamics]\nsurface_drag_Pa_s_per_um = 20\n[contraction.apical]\nregion = "all"\ntension_mN_per_m = 2\nacross_ratio = 0\n[time]\nend_min = 10
 [monitor.whole]\nquantity = "volume"\nover = "sum"\n`);
   run(join(folder, "curl.toml"), "curl");
+  // A dome that nothing contracts, and a low sheet whose contraction sets in at full force.
+  const sheet = (name, height, rest) =>
+    writeFileSync(join(folder, `${name}.toml`), `[embryo]\nshape = "sheet"\nlength_um = 120\nwidth_um = 100\ncell_height_um = ${height}
+cell_count = 120\n${rest}\n[time]\nend_min = 5\n[output]\nframe_every_s = 60\n`);
+  sheet("dome", 12, 'rim = "held"\n[pressure.lumen]\nregion = "all"\nface = "basal"\npressure_Pa = 40');
+  sheet("fails", 10, '[region.stripe]\ny_um = [-20, 20]\n[contraction.apical]\nregion = "stripe"\nstiffness_nN_per_um = 20');
+  run(join(folder, "dome.toml"), "dome");
+  assert.throws(() => run(join(folder, "fails.toml"), "fails"), ({ status }) => status === 3);
   report(["drosophila", "division"], "both.html");
   await begin();
 });
@@ -261,6 +269,61 @@ test("two runs: cameras and time together, curves over each other", async () => 
   await done();
 });
 
+test("the words of a sheet without contraction are not those of a furrow, and its plots are not empty", async () => {
+  const { page, done } = await open("dome/report.html");
+  const text = await page.evaluate(() => document.body.innerText.split("Scenario\n")[0]);
+  assert.doesNotMatch(text, /VML|VCE|furrow|\blips?\b|anterior|ventral|midline/i);
+  assert.match(await page.textContent("#headline"), /120 cells, end time at 5 min, largest displacement \d+\.\d+ µm, smallest/);
+  assert.deepEqual(await page.locator("[id^=view-]").allTextContents(), ["apical", "oblique", "from −z", "from −y", "cut at x", "cut at y"]);
+  const titles = await page.locator("#plots figcaption").allTextContents();
+  for (const title of ["Largest displacement, µm", "Mean cell height, µm", "Smallest apical area / reference area", "Energy, nN·µm"])
+    assert.ok(titles.includes(title), `${title} in ${titles}`);
+  assert.ok(!titles.some((title) => /Number of cells|Volume/.test(title)), "what does not change has no plot");
+  near(numberOf((await shownSeries(page)).max_displacement_um), table("dome/series.csv").at(-1).max_displacement_um, 1e-3, "displacement");
+  await done();
+});
+
+const magenta = (picture) => {
+  let [count, x, y] = [0, 0, 0];
+  for (let j = 0; j < picture.height; ++j)
+    for (let i = 0; i < picture.width; ++i) {
+      const [r, g, b] = picture.rgb(i, j);
+      if (r > 180 && g < 90 && b > 90 && b < 180) [count, x, y] = [count + 1, x + i, y + j];
+    }
+  return { count, x: x / count / picture.width, y: y / count / picture.height };
+};
+
+test("a failed run begins with what, where and when, and with its cell close up", async () => {
+  const { failure, failed_cell: cell } = JSON.parse(readFileSync(join(folder, "fails/summary.json"), "utf8"));
+  assert.ok(failure.includes(`cell ${cell} `), failure);
+  const { page, done } = await open("fails/report.html");
+  assert.match(await page.textContent("#failure"), /^Failed at 0\.\d+ s: cell \d+ is inverted/);
+  assert.ok((await page.locator("#failure").boundingBox()).y < 120, "at the head");
+  assert.equal(await page.textContent('[data-value="cell_id"]'), String(cell));
+  const close = await pixels(page, ".picture");
+  const mark = magenta(close);
+  assert.ok(mark.count > 100 && Math.abs(mark.x - 0.5) < 0.08 && Math.abs(mark.y - 0.5) < 0.12, `in the middle: ${JSON.stringify(mark)}`);
+  await page.click("[data-whole]");
+  const whole = await pixels(page, ".picture");
+  assert.ok(magenta(whole).count < 0.75 * mark.count, "smaller in the whole tissue");
+  await page.click("[data-cell]");
+  assert.ok(changed(close, await pixels(page, ".picture")) < 0.01, "and back again");
+  await done();
+});
+
+test("the vitelline membrane is seen where it is ticked", async () => {
+  const { page, done } = await open("drosophila/report.html");
+  for (const view of ["antero-ventral", "ventral", "cross-section", "sagittal-section"]) {
+    await page.click(`#view-${view}`);
+    await tick(page, "#shell", true);
+    const before = await pixels(page, ".picture");
+    await tick(page, "#shell", false);
+    const part = changed(before, await pixels(page, ".picture"));
+    assert.ok(part > 0.01, `${view}: ${part} of the picture`);
+  }
+  await done();
+});
+
 test("a hostile title is text", async () => {
   const { page, done } = await open("hostile/report.html");
   assert.equal(await page.locator("#title").textContent(), hostileTitle);
@@ -287,6 +350,8 @@ test("phone width and dark mode", async () => {
     const { page, done } = await open(file, { width: 390, height: 844, dark: true });
     const [wide, room] = await page.evaluate(() => [document.scrollingElement.scrollWidth, innerWidth]);
     assert.ok(wide <= room, `${file}: ${wide} pixels wide on ${room}`);
+    const { y } = await page.locator(".picture").first().boundingBox();
+    assert.ok(file === "both.html" || y < 844 / 4, `${file}: the picture begins at ${y} of 844 pixels`);
     const paper = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
     assert.ok(paper.match(/\d+/g).every((part) => Number(part) < 60), paper);
     await page.click("#theme");

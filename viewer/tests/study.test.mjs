@@ -49,7 +49,7 @@ function closing() {
   const out = join(folder, "closing");
   mkdirSync(out);
   const measures = ["furrow_depth_um", "furrow_depth_below_lips_um", "lips_closed_time_s", "self_intersections"];
-  const results = [[55, 40, 900, 0], [38.7, -4.2, "", 0], [3, 1.5, "", 0], [3, -2, "", 0], [60, 40, 900, 3], ["", "", "", ""]];
+  const results = [[55, 40, 900, 0], [38.7, -4.2, "", 0], [3, 1.5, "", 0], [3, -2, "", 0], [60, 40, 900, 3], [-0.1, -0.3, "", 0]]; // the last one failed
   const pairs = results.map((_, i) => [[400, 600, 800][i % 3], i < 3 ? 1 : 2]);
   const points = results.map((_, i) => `${i},${i + 1},1,${pairs[i]},`);
   const runs = results.map((row, i) => `${i + 1},${pairs[i]},1,${i < 5 ? "end_time" : "failed"},${row},10,1.5,`);
@@ -206,6 +206,19 @@ test("verdicts colour the plots where the study has what they need", async () =>
   const legend = await page.textContent("#runs-bar .ramp");
   for (const word of ["closed", "furrowed", "flattened", "passes through itself"]) assert.ok(legend.includes(word), `${word} in ${legend}`);
   assert.ok(!(await saved(page, "#save-table")).bytes.toString().includes("verdict"), "it is no column of runs.csv");
+  await done();
+});
+
+test("a failed run is crossed out, and has no value but in the saved table", async () => {
+  const { page, done } = await open("closing/report.html");
+  assert.equal(await page.getAttribute("#scatter .layers", "data-crossed"), "1");
+  assert.match(await page.textContent("#scatter"), /×: run that failed, without a result/);
+  assert.match(await page.textContent(".told"), /×: failed, no result/);
+  assert.deepEqual((await page.locator('.rows td[data-key="furrow_depth_um"]').allTextContents()).at(-1), "–");
+  await page.fill("#filter", "furrow_depth<0");
+  assert.equal(await shown(page), 0, "it does not match a filter by its last value");
+  await page.fill("#filter", "");
+  assert.match((await saved(page, "#save-table")).bytes.toString(), /failed,-0.1,-0.3,,0,/);
   await done();
 });
 

@@ -66,6 +66,11 @@ export class Colours {
   }
 }
 
+/** Colour of crosses for runs without a result. */
+export function withoutResult(): string {
+  return styleColour("accent");
+}
+
 export function colourOfStatus(status: string): string {
   return statusColours[status] ?? styleColour("faint");
 }

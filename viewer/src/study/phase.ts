@@ -1,7 +1,7 @@
 // Phase plot: results over two keys. Grids: one cell per pair of values; otherwise one point per run.
 import { element, styleColour } from "../dom";
 import { number } from "../text";
-import { Colours } from "./colours";
+import { Colours, withoutResult } from "./colours";
 import { columnSelect } from "./column_choice";
 import { drawTicks, drawTitles, type Frame, frameOf } from "./frame";
 import { Layers } from "./layers";
@@ -98,9 +98,12 @@ export class Phase {
     const cells = [...this.cells.values()];
     const most = Math.max(0, ...cells.map(({ rows }) => rows.length));
     const several = most < 2 ? "" : `Up to ${most} runs per cell, which has the colour${colour.words ? "s of all" : " of their mean"}. `;
-    const isEmpty = cells.some(({ rows }) => rows.every((row) => !colour.has(row)));
+    const { study } = this.selection;
+    const isCrossed = ({ rows }: Cell) => !rows.some((row) => study.hasResult(row));
+    const isEmpty = (cell: Cell) => !isCrossed(cell) && cell.rows.every((row) => !colour.has(row));
     const rule = colour.role === "verdict" ? `${verdictRule} ` : "";
-    return several + rule + (isEmpty ? "Hatched: no run has a value." : "");
+    const crosses = cells.some(isCrossed) ? "×: failed, no result. " : "";
+    return several + rule + crosses + (cells.some(isEmpty) ? "Hatched: no run has a value." : "");
   }
 
   private get size(): { width: number; height: number } {
@@ -119,6 +122,7 @@ export class Phase {
     const { x, y } = this.box(cell.x, cell.y);
     const [width, height] = [this.size.width - 1, this.size.height - 1];
     const values = cell.rows.map((row) => colour.values[row]).filter((value) => !Number.isNaN(value));
+    if (!cell.rows.some((row) => this.selection.study.hasResult(row))) return this.crossOut(x + width / 2, y + height / 2);
     if (values.length === 0) return this.hatch(x, y, width, height);
     if (!colour.words) {
       base.fillStyle = colours.at(mean(values));
@@ -130,6 +134,17 @@ export class Phase {
       base.fillStyle = colours.at(value);
       base.fillRect(x + (i / values.length) * width, y, width / values.length + 0.3, height);
     });
+  }
+
+  private crossOut(x: number, y: number): void {
+    const { base } = this.layers;
+    const size = Math.min(7, this.size.width / 3, this.size.height / 3);
+    base.strokeStyle = withoutResult();
+    base.lineWidth = 2;
+    base.beginPath();
+    base.moveTo(x - size, y - size), base.lineTo(x + size, y + size);
+    base.moveTo(x - size, y + size), base.lineTo(x + size, y - size);
+    base.stroke();
   }
 
   private hatch(x: number, y: number, width: number, height: number): void {

@@ -1,7 +1,7 @@
 // Plot of one point per run, one column over another. A drag selects the runs inside.
 import { element, styleColour } from "../dom";
 import { Axis } from "./axis";
-import { Colours } from "./colours";
+import { Colours, withoutResult } from "./colours";
 import { drawFrame, type Frame, frameOf } from "./frame";
 import { Layers } from "./layers";
 import type { Selection } from "./selection";
@@ -60,10 +60,11 @@ export class Points {
 
   private drawPoints(): void {
     const { base } = this.layers;
-    const { shownRows, colour } = this.selection;
+    const { shownRows, colour, study } = this.selection;
     const colours = Colours.of(colour);
     const groups: number[][] = colours.list.map(() => []);
-    for (const row of shownRows) groups[colours.placeOf(colour.values[row])].push(row);
+    const failed = shownRows.filter((row) => !study.hasResult(row));
+    for (const row of shownRows) if (study.hasResult(row)) groups[colours.placeOf(colour.values[row])].push(row);
     const isDense = shownRows.length > mostDiscs;
     const size = shownRows.length > 400 ? 2.6 : 4;
     base.globalAlpha = isDense ? 0.75 : 0.9;
@@ -82,8 +83,23 @@ export class Points {
       }
       base.fill();
     });
+    this.crossOut(failed, isDense ? 2 : size);
     base.globalAlpha = 1;
-    this.layers.box.dataset.points = String(shownRows.length);
+    Object.assign(this.layers.box.dataset, { points: String(shownRows.length), crossed: String(failed.length) });
+  }
+
+  // Runs without a result, as in figures of the Python package.
+  private crossOut(rows: number[], size: number): void {
+    const { base } = this.layers;
+    base.strokeStyle = withoutResult();
+    base.lineWidth = 1.6;
+    base.beginPath();
+    for (const row of rows) {
+      const [x, y] = this.place(row);
+      base.moveTo(x - size, y - size), base.lineTo(x + size, y + size);
+      base.moveTo(x - size, y + size), base.lineTo(x + size, y - size);
+    }
+    base.stroke();
   }
 
   private drawOver(): void {

@@ -34,5 +34,8 @@ export function makeScatter(box: HTMLElement, selection: Selection, x: Column, y
       element("span", { class: "choice" }, element("label", {}, "Across ", choice("x", x)), logX.label)),
     points.layers.box,
   );
+  const { runs } = selection.study;
+  const failed = Array.from({ length: runs }, (_, row) => row).some((row) => !selection.study.hasResult(row));
+  if (failed) box.append(element("p", { class: "note" }, "×: run that failed, without a result."));
   return points;
 }

@@ -132,7 +132,7 @@ function testOf(columns: Column[], word: string): (row: number) => boolean {
   if (asked) {
     const column = columns.find(({ name }) => isNamed(name, asked.name));
     if (!column) return () => false;
-    if (!column.words) return (row) => compares(column.exact(row), asked.sign, asked.value);
+    if (!column.words) return (row) => compares(column.has(row) ? String(column.values[row]) : "", asked.sign, asked.value);
     const fits = column.words.map((_, value) => compares(column.textOf(value).toLowerCase(), asked.sign, asked.value));
     return (row) => column.has(row) && fits[column.values[row]];
   }

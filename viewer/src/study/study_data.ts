@@ -1,7 +1,7 @@
 // Data of the page of a study, written by src/study/study_report.cpp: columns with one value per run.
 import { type ArrayEntry, inflate, PackedArrays } from "../packed";
 import { lastOf, number, words } from "../text";
-import { withVerdict } from "./verdict";
+import { hasEnded, withVerdict } from "./verdict";
 
 export type Role =
   "point" | "key" | "replicate" | "status" | "verdict" | "measure" | "steps" | "wall_s" | "reason" | "seeds" | "kept";
@@ -46,8 +46,9 @@ export class Column {
   label: string;
   readonly unit: string;
 
+  /** `written`: values as in runs.csv, where they differ. */
   constructor({ name, role, words: list }: Pick<ColumnEntry, "name" | "role" | "words">, readonly values: Float64Array,
-              readonly isLogarithmic = false) {
+              readonly isLogarithmic = false, private readonly written = values) {
     [this.name, this.role, this.words] = [name, role, list ?? null];
     [this.label, this.unit] = role === "wall_s" ? ["time taken", "s"] : words(lastOf(name));
     let [low, high, missing] = [Infinity, -Infinity, 0];
@@ -106,8 +107,9 @@ export class Column {
 
   /** Format a value as input of plica; "" if missing. */
   exact(row: number): string {
-    if (!this.has(row)) return "";
-    return this.words ? this.words[this.values[row]] : String(this.values[row]);
+    const value = this.written[row];
+    if (Number.isNaN(value)) return "";
+    return this.words ? this.words[value] : String(value);
   }
 }
 
@@ -118,12 +120,20 @@ function plainWord(word: string, role: Role): string {
 }
 
 export class Study {
+  private ended: boolean[] | null = null;
+
   constructor(readonly page: StudyPage, readonly columns: Column[]) {
     tellApart(columns.filter(({ role }) => role === "key"));
   }
 
   get runs(): number {
     return this.page.runs;
+  }
+
+  /** Whether a run has ended regularly, so that its output variables are results. */
+  hasResult(row: number): boolean {
+    this.ended ??= Array.from({ length: this.runs }, (_, run) => hasEnded(this.the("status"), run));
+    return this.ended[row];
   }
 
   of(role: Role): Column[] {
@@ -153,6 +163,17 @@ export class Study {
   }
 }
 
+// Output variables of a run that failed are not results: missing, except in the saved table.
+function withoutUnfinished(columns: Column[]): Column[] {
+  const status = columns.find(({ role }) => role === "status")!;
+  return columns.map((column) => {
+    if (column.role !== "measure") return column;
+    const values = column.values.map((value, row) => (hasEnded(status, row) ? value : NaN));
+    const { name, role, isLogarithmic } = column;
+    return new Column({ name, role }, values, isLogarithmic, column.values);
+  });
+}
+
 const usualMeasures = [
   "furrow_depth_um", "vml_apical_area_ratio", "lip_distance_um", "vml_height_um", "lips_closed_time_s", "equilibrium_time_s",
   "max_volume_error", "self_intersections", "min_scaled_jacobian",
@@ -176,7 +197,7 @@ export async function readStudy(): Promise<Study> {
   const packed = new PackedArrays(await inflate(document.getElementById("rows")!.textContent!), page.arrays);
   const columns = page.columns.map((entry, place) =>
     new Column(entry, unpacked(entry, String(place), packed), page.log_keys.includes(entry.name)));
-  return new Study(page, withVerdict(columns));
+  return new Study(page, withVerdict(withoutUnfinished(columns)));
 }
 
 function unpacked(entry: ColumnEntry, place: string, packed: PackedArrays): Float64Array {

@@ -10,6 +10,11 @@ export const verdictColours: Record<string, string> = {
   closed: "#009e73", furrowed: "#0072b2", flattened: "#e69f00", "passes through itself": "#d55e00",
 };
 
+/** Whether a run has ended regularly, by its status. */
+export function hasEnded(status: Column, row: number): boolean {
+  return ["equilibrium", "end_time"].includes(status.exact(row));
+}
+
 /** Column of verdicts, if the study has the required output variables; missing for runs without a result. */
 export function verdictColumn(columns: Column[]): Column | null {
   const named = (name: string) => columns.find((column) => column.name === name);
@@ -17,7 +22,7 @@ export function verdictColumn(columns: Column[]): Column | null {
   const [status, crossings] = [columns.find(({ role }) => role === "status"), named("self_intersections")];
   if (!closed || !belowLips || !depth || !status) return null;
   const values = Float64Array.from(status.values, (_, row) => {
-    if (!["equilibrium", "end_time"].includes(status.exact(row))) return NaN;
+    if (!hasEnded(status, row)) return NaN;
     if (crossings && crossings.values[row] > 0) return verdicts.indexOf("passes through itself");
     if (closed.has(row)) return verdicts.indexOf("closed");
     if (!belowLips.has(row) && !depth.has(row)) return NaN;
