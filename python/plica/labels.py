@@ -127,7 +127,8 @@ def without_slivers(closed: NDArray[Any], keep_cut: bool, names: NDArray[Any],
 def _advice(given: LabelImage, gap_px: float, keep_cut: bool, share: float) -> str:
     """Return as a remedy the smallest gap_px that makes at least this share of cells one tissue, if there is one."""
     label = needed("skimage.measure", "polygons of labels").label
-    for wider in range(int(gap_px) + 1, 2 * int(gap_px) + FURTHER_PX + 1):
+    widest = min(2 * int(gap_px) + FURTHER_PX, max(given.numbers.shape))
+    for wider in range(int(gap_px) + 1, widest + 1):
         try:
             closed = repaired(given.numbers, given.names, wider, keep_cut, [])
             if share == 1 and label(closed > 0, connectivity=1).max() > 1:

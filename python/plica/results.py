@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import fcntl
+import base64
 import html
 import json
 import math
@@ -386,7 +387,7 @@ def _short(value: Union[int, float, str]) -> str:
     return f"{value:.6g}" if isinstance(value, float) and math.isfinite(value) else str(value)
 
 
-# VTK XML of unstructured grids as plica writes it: appended raw data in zlib-compressed blocks.
+# VTK XML of unstructured grids as plica writes it: appended data in zlib-compressed blocks, base64, or raw in older frames.
 TYPES = {"Float64": "<f8", "Float32": "<f4", "Int64": "<i8", "Int32": "<i4", "UInt8": "u1", "Int8": "i1"}
 
 
@@ -394,6 +395,7 @@ def _read_vtu(path: Path) -> dict[str, dict[str, NDArray[Any]]]:
     try:
         content = path.read_bytes()
         head, _, rest = content.partition(b"<AppendedData")
+        blocks = _blocks if b'encoding="raw"' in rest[: rest.index(b"_")] else _base64_blocks
         appended = rest[rest.index(b"_") + 1 :]
         root = xml.fromstring(head + b"</VTKFile>")
         found: dict[str, dict[str, NDArray[Any]]] = {}
@@ -401,7 +403,7 @@ def _read_vtu(path: Path) -> dict[str, dict[str, NDArray[Any]]]:
             found[group] = {}
             where = "FieldData" if group == "FieldData" else f"Piece/{group}"
             for one in root.findall(f"./UnstructuredGrid/{where}/DataArray"):
-                values = np.frombuffer(b"".join(_blocks(appended, int(one.attrib["offset"]))), TYPES[one.attrib["type"]])
+                values = np.frombuffer(b"".join(blocks(appended, int(one.attrib["offset"]))), TYPES[one.attrib["type"]])
                 width = int(one.attrib.get("NumberOfComponents", "1"))
                 found[group][one.attrib.get("Name", group)] = values.reshape(-1, width) if width > 1 else values
         if len(found["Points"]) != 1 or "connectivity" not in found["Cells"]:
@@ -418,3 +420,13 @@ def _blocks(appended: bytes, offset: int) -> Iterator[bytes]:
     for size in map(int, sizes):
         yield zlib.decompress(appended[start : start + size])
         start += size
+
+
+def _base64_blocks(appended: bytes, offset: int) -> Iterator[bytes]:
+    # Sizes and blocks are coded apart, so the code of the sizes ends at a multiple of four letters.
+    count = int(np.frombuffer(base64.b64decode(appended[offset : offset + 32]), "<u8", 1)[0])
+    letters = 4 * -(-(24 + 8 * count) // 3)
+    header = base64.b64decode(appended[offset : offset + letters])
+    size = int(np.frombuffer(header, "<u8", count, 24).sum())
+    start = offset + letters
+    return _blocks(header + base64.b64decode(appended[start : start + 4 * -(-size // 3)]), 0)

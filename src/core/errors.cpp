@@ -13,6 +13,24 @@ std::string joined(const std::vector<Diagnostic>& diagnostics) {
   return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
+// Bytes of the UTF-8 character at this place; 0 if there is none.
+std::size_t utf8_length(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(i < text.size() ? text[i] : 0); };
+  const unsigned char first = byte(at);
+  const std::size_t length = first < 0x80   ? 1
+                             : first < 0xc2 ? 0
+                             : first < 0xe0 ? 2
+                             : first < 0xf0 ? 3
+                             : first < 0xf5 ? 4
+                                            : 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(at + i) & 0xc0) != 0x80) return 0;
+  const unsigned char second = byte(at + 1);
+  const bool is_none = (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
+                       (first == 0xf0 && second < 0x90) || (first == 0xf4 && second >= 0x90);
+  return is_none ? 0 : length;
+}
+
 }  // namespace
 
 std::string printable(const std::string& text) {
@@ -27,8 +45,11 @@ std::string printable(const std::string& text) {
     } else if (code == 0xc2 && next >= 0x80 && next < 0xa0) {  // C1 control characters in UTF-8
       line += fmt::format("\\u{:04X}", next);
       ++i;
+    } else if (const std::size_t length = utf8_length(text, i); length == 0) {
+      line += fmt::format("\\x{:02X}", code);
     } else {
-      line += text[i];
+      line += text.substr(i, length);
+      i += length - 1;
     }
   }
   return line;

@@ -7,6 +7,7 @@
 
 namespace plica {
 std::string bending_warning(const Scenario& scenario, const Simulation& simulation) {
+  if (simulation.status() == RunStatus::failed) return "";
   constexpr double worth_telling = 0.05;
   const Model& model = simulation.model();
   const double error = bending_error(model, simulation.state().positions).value_or(0);

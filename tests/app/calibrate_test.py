@@ -44,7 +44,7 @@ class Calibrate(CommandLine):
         self.assertLess(len(trials), 9)
         # The file repeats the trial, and says what was expected of it.
         again = plica("run", self.file, "--out", self.out, "--quiet")
-        self.assertEqual((again.returncode, again.stderr), (0, ""))
+        self.assertEqual(again.returncode, 0, again.stderr)
         self.assertAlmostEqual(self.summary()["end.position_um"], 28, delta=0.001)
         self.assertIn('base = "scenario.toml"', self.file.read_text())
 

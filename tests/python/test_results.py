@@ -37,7 +37,7 @@ def test_frames(run):
 
 def test_words_fit_the_tissue(tmp_path):
     sheet = {"embryo": {"shape": "sheet", "length_um": 40, "width_um": 40, "cell_count": 30, "cell_height_um": 10},
-             "region.middle.y_um": [-8, 8], "cortex.pull": {"region": "middle", "tension_mN_per_m": 0.3}, "time.end_s": 2}
+             "region": {"middle": {"y_um": [-8, 8]}}, "cortex": {"pull": {"region": "middle", "tension_mN_per_m": 0.3}}, "time": {"end_s": 2}}
     sim = plica.Simulation(plica.Scenario(sheet))
     flat = sim.run(out=tmp_path / "flat")
     assert "frames: fold depth " in repr(flat) and "largest displacement" in repr(flat)

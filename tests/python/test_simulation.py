@@ -188,7 +188,7 @@ def test_callback_and_progress(sim, capfd):
     seen = []
     sim.run(progress=True, callback=lambda s, step: seen.append(step.time_s) or len(seen) == 3)
     assert len(seen) == 3 and sim.steps == 3
-    assert "µm deep" in capfd.readouterr().err
+    assert "depth 0.0 µm" in capfd.readouterr().err
 
 
 def test_record_resumes(tmp_path):

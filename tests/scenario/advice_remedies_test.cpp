@@ -64,7 +64,7 @@ const std::vector<AdviceCase> cases = {
      {{"contraction.c.profile.middle=1"}}},
     {row + pull + "[volume]\nmethod = \"projection\"\n", "the equilibrium of a projection", {{"time.step_s=5"}}},
     {row + pull + "[contraction.d]\nregion = \"two\"\nstiffness_nN_per_um = 1\n",
-     "the furrow is measured on the largest",
+     "the fold is measured on the largest",
      {{"furrow.region=one"}, {"furrow.region=two"}}},
     {row + pull + "[furrow]\nregion = \"two\"\n", "apical surfaces contract in one", {{"furrow.region=one"}}},
     {"[embryo]\nshape = \"block\"\ncells = [3, 1, 1]\nelements_per_cell = [1, 1, 2]\n[elasticity]\nmodel = "

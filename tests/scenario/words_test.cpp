@@ -39,6 +39,7 @@ void expect_words(std::string_view table, std::string_view key, const Words& wor
 }
 
 TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
+  expect_words("embryo", "keep", words::keeps);
   expect_words("embryo", "mirror", words::mirror_planes);
   expect_words("embryo", "elements", words::polygon_splits);
   expect_words("embryo", "rim", words::rims);

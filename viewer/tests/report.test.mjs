@@ -28,7 +28,7 @@ before(async () => {
     writeFileSync(join(folder, `${name}.toml`), `[embryo]\nshape = "sheet"\nlength_um = 120\nwidth_um = 100\ncell_height_um = ${height}
 cell_count = 120\n${rest}\n[time]\nend_min = 5\n[output]\nframe_every_s = 60\n`);
   sheet("dome", 12, 'rim = "held"\n[pressure.lumen]\nregion = "all"\nface = "basal"\npressure_Pa = 40');
-  sheet("fails", 10, '[region.stripe]\ny_um = [-20, 20]\n[contraction.apical]\nregion = "stripe"\nstiffness_nN_per_um = 20');
+  sheet("fails", 10, '[elasticity]\ncorner_barrier_Pa = 0\n[region.stripe]\ny_um = [-20, 20]\n[contraction.apical]\nregion = "stripe"\nstiffness_nN_per_um = 20');
   run(join(folder, "dome.toml"), "dome");
   assert.throws(() => run(join(folder, "fails.toml"), "fails"), ({ status }) => status === 3);
   report(["drosophila", "division"], "both.html");

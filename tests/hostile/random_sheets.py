@@ -1,0 +1,169 @@
+"""Run random sheets under random loads and check that none ends with a wrong tissue in silence, and that few give up.
+
+A sheet has 20 to 2000 cells 3 to 12 um wide and 3 to 40 um high, a Young's modulus of 10 to 3000 Pa, diagonals or kites, one or
+two layers, a free or a fixed boundary. One kind of load acts in a stripe or in all cells: springs, tension or cortex of one kind
+of faces, or pressure; 0.03 to 3 times Young's modulus times height (pressure: a tenth of the modulus), in half of the sheets at
+full strength from the start. Each run must
+
+- end with cell volumes and element shapes that hold, finite numbers, and a warning where the sheet passes through itself, or
+- give up with status 3; then one of the remedies that its message names must carry the run further, alone.
+
+Usage: random_sheets.py PROGRAM [--count N] [--seed S] [--first I] [--keep DIR]
+"""
+import argparse
+import collections
+import json
+import math
+import random
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+END_S = 180
+MOST_GIVE_UP = 0.05
+
+
+class Broken(Exception):
+    """A violated guarantee."""
+
+
+def even(r, low, high):
+    """A number between two, evenly on a logarithm."""
+    return math.exp(r.uniform(math.log(low), math.log(high)))
+
+
+def draw(r):
+    """The text of one scenario and a name for its load."""
+    cells, width, height, modulus = round(even(r, 20, 2000)), even(r, 3, 12), even(r, 3, 40), even(r, 10, 3000)
+    area, aspect = cells * width**2, even(r, 0.5, 2)
+    length = math.sqrt(area * aspect)
+    load = r.choice(["springs", "tension", "cortex", "pressure"])
+    side = r.choice(["apical", "apical", "basal", "lateral"])
+    strength = even(r, 0.03, 3) * modulus * 1e-3 * height
+    if load == "pressure":
+        side = r.choice(["apical", "basal"])
+        table, keys = "pressure", f'face = "{side}"\npressure_Pa = {0.1 * strength / height * 1e3:.4g}'
+    elif load == "cortex":
+        saturation = r.choice([0, 0.16])
+        table, keys = "cortex", f'faces = "{side}"\ntension_mN_per_m = {strength:.4g}\nsaturation_ratio = {saturation}'
+    else:
+        if load == "tension" and side == "lateral":
+            load = "springs"
+        key = "stiffness_nN_per_um" if load == "springs" else "tension_mN_per_m"
+        table, keys = "contraction", f'edges = "{side}"\n{key} = {strength:.4g}'
+    if r.random() < 0.5:
+        keys += "\nprogram = { time_min = [0, 1], activity = [0, 1] }"
+    where = r.choice(["all", "stripe", "stripe"])
+    text = f"""format = 1
+[embryo]
+shape = "sheet"
+length_um = {length:.4g}
+width_um = {area / length:.4g}
+cell_count = {cells}
+cell_height_um = {height:.4g}
+seed = {r.randrange(1000)}
+elements = "{r.choice(["diagonals", "kites"])}"
+layers = {r.choice([1, 1, 2])}
+rim = "{r.choice(["free", "held"])}"
+[region.stripe]
+y_um = [{-1.5 * width:.4g}, {1.5 * width:.4g}]
+[elasticity]
+young_modulus_Pa = {modulus:.4g}
+poisson_ratio = {r.choice([0.3, 0.45])}
+[{table}.load]
+region = "{where}"
+{keys}
+[time]
+end_s = {END_S}
+[output]
+frame_every_s = 0
+"""
+    return text, f"{load}, {side}"
+
+
+def run(program, folder, text, *overrides):
+    """Return the finished process, the summary and what was said."""
+    out, scenario = folder / "out", folder / "scenario.toml"
+    shutil.rmtree(out, ignore_errors=True)
+    scenario.write_text(text)
+    sets = [word for override in overrides for word in ("--set", override)]
+    try:
+        done = subprocess.run([program, "run", scenario, "--out", out, "--threads", "1", *sets], capture_output=True, text=True,
+                              timeout=600, check=False)
+    except subprocess.TimeoutExpired:
+        raise Broken("takes more than 600 s") from None
+    said = done.stdout + done.stderr
+    if done.returncode not in (0, 3):
+        raise Broken(f"status {done.returncode}: {done.stderr.strip()[-800:]}")
+    if re.search(r"\b(nan|inf)\b", (out / "series.csv").read_text().lower()):
+        raise Broken("a number in series.csv is not finite")
+    return done, json.loads((out / "summary.json").read_text()), said
+
+
+def judge_end(summary, said):
+    """A run that ended on its own."""
+    if summary["max_volume_error"] > 1e-6 or summary["min_corner_jacobian_ratio"] <= 0:
+        raise Broken(f"ends with volumes off by {summary['max_volume_error']}, corners at {summary['min_corner_jacobian_ratio']}")
+    if summary["self_intersections"] > 0 and not re.search("self-?intersect", said):
+        raise Broken(f"{summary['self_intersections']} crossings, in silence")
+    return "passes through itself, told" if summary["self_intersections"] > 0 else summary["status"]
+
+
+def remedies(said):
+    """The settings of each remedy that a failure names: "...; set KEY = VALUE and KEY = VALUE (effect), or KEY = VALUE (effect)"."""
+    last = re.search(r"solver failed: .*; set (.*)", said)
+    alternatives = re.split(r"\), or ", last[1]) if last else []
+    return [[f"{key}={value}" for key, value in re.findall(r"([\w.]+) = (\{.*?\}|[^\s(]+)", text)] for text in alternatives]
+
+
+def judge_remedies(program, folder, text, summary, said):
+    """A run that gave up: one of its remedies must carry it further, alone."""
+    for remedy in remedies(said):
+        done, other, _ = run(program, folder, text, *remedy)
+        if done.returncode == 0 or other["time_s"] > 2 * summary["time_s"]:
+            return "gives up, helped by " + ", ".join(setting.split("=")[0] for setting in remedy)
+    raise Broken(f"gives up, and no remedy helps: {said.strip().splitlines()[-1]}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("program", type=Path)
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--first", type=int, default=0, help="number of the first sheet, to repeat one")
+    parser.add_argument("--keep", type=Path, default=Path("random_sheets_failed"), help="folder for sheets that fail or give up")
+    given = parser.parse_args()
+    counts, given_up, slowest, started = collections.Counter(), 0, (0, 0), time.monotonic()
+    with tempfile.TemporaryDirectory(prefix="plica_sheets_") as name:
+        folder = Path(name)
+        for number in range(given.first, given.first + given.count):
+            text, load = draw(random.Random(f"{given.seed}/{number}"))
+            begun = time.monotonic()
+            try:
+                done, summary, said = run(given.program.resolve(), folder, text)
+                slowest = max(slowest, (time.monotonic() - begun, number))
+                given_up += done.returncode == 3
+                if done.returncode == 3:
+                    given.keep.mkdir(parents=True, exist_ok=True)
+                    (given.keep / f"seed{given.seed}_{number}_gave_up.toml").write_text(text)
+                kind = judge_end(summary, said) if done.returncode == 0 else judge_remedies(given.program.resolve(), folder, text, summary, said)
+            except Broken as error:
+                kind = "FAILED"
+                given.keep.mkdir(parents=True, exist_ok=True)
+                kept = given.keep / f"seed{given.seed}_{number}.toml"
+                kept.write_text(text)
+                print(f"sheet {number} of seed {given.seed}, {load}: {error}\n  kept in {kept}", flush=True)
+            counts[kind] += 1
+    print(f"{given.count} sheets in {time.monotonic() - started:.0f} s, the slowest {slowest[0]:.0f} s (number {slowest[1]}); "
+          f"{given_up} gave up ({100 * given_up / given.count:.1f} %)")
+    for kind, count in counts.most_common():
+        print(f"{count:6} {kind}")
+    sys.exit(1 if counts["FAILED"] or given_up > MOST_GIVE_UP * given.count else 0)
+
+
+if __name__ == "__main__":
+    main()
