@@ -28,17 +28,15 @@ def main():
     notebooks = [Path(name) for name in sys.argv[1:]]
     if not notebooks:
         sys.exit(__doc__)
-    status = 0
     with tempfile.TemporaryDirectory() as folder:
+        sources = []
         for notebook in notebooks:
-            source = Path(folder) / f"notebook_{notebook.stem}.py"
-            source.write_text(code_of(notebook), encoding="utf-8")
-            print(notebook.name, flush=True)
-            # PyVista's types are not installed for tests; scikit-image says that it has types, and most of its functions
-            # have none. A cell may end in a value.
-            status |= subprocess.run([sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports",
-                                      "--untyped-calls-exclude=skimage", f"--cache-dir={folder}/cache", source]).returncode
-    sys.exit(status)
+            sources.append(Path(folder) / f"notebook_{notebook.stem}.py")
+            sources[-1].write_text(code_of(notebook), encoding="utf-8")
+        # PyVista's types are not installed for tests; scikit-image says that it has types, and most of its functions
+        # have none. A cell may end in a value.
+        sys.exit(subprocess.run([sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports",
+                                 "--untyped-calls-exclude=skimage", *sources]).returncode)
 
 
 if __name__ == "__main__":

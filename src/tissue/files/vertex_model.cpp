@@ -67,7 +67,7 @@ std::vector<std::size_t> ring_of(const std::vector<HalfEdge>& edges, std::size_t
   } while (edge != 0 && ring.size() < edges.size());
   if (edge != 0 || ring.size() != edges.size()) return {};
   if (2 * along < ring.size()) std::ranges::reverse(ring);
-  std::ranges::rotate(ring, std::ranges::min_element(ring));
+  std::rotate(ring.begin(), std::ranges::min_element(ring), ring.end());
   backwards += std::min(along, ring.size() - along);
   return ring;
 }

@@ -60,8 +60,7 @@ std::size_t drop_repeated_corners(PolygonSurface& surface) {
   std::size_t dropped = 0;
   for (auto& polygon : surface.polygons) {
     const std::size_t before = polygon.size();
-    const auto repeated = std::ranges::unique(polygon);
-    polygon.erase(repeated.begin(), repeated.end());
+    polygon.erase(std::unique(polygon.begin(), polygon.end()), polygon.end());
     while (polygon.size() > 1 && polygon.front() == polygon.back()) polygon.pop_back();
     dropped += before - polygon.size();
   }
