@@ -94,6 +94,14 @@ def number(value: Any, what: str, fits: str = "a finite number", finite: bool = 
     return found
 
 
+def number_from(value: Any, low: float, what: str, fits: str, above: bool = False) -> float:
+    """Return a finite number of at least `low`, or, if `above`, greater than it."""
+    found = number(value, what, fits)
+    if found < low or (above and found == low):
+        raise ValueError(f"{what}: {told(value)}; give {fits}")
+    return found
+
+
 def pair_of(value: Any, what: str, fits: str, finite: bool = True) -> tuple[float, float]:
     """Return two numbers, by default finite ones."""
     try:

@@ -7,10 +7,11 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .arguments import number_from, numbers
 from .errors import needed
 from .label_repair import without_gaps
 from .labels import traced
-from .polygons import Polygons, check_keep, check_number, one_piece, parted
+from .polygons import Polygons, check_keep, one_piece, parted
 
 __all__ = ["polygons_of_centres"]
 
@@ -62,7 +63,7 @@ def polygons_of_centres(
     >>> plica.polygons_of_centres(8 * np.column_stack([column + row % 2 / 2, 0.87 * row]))  # doctest: +SKIP
     Polygons(36 cells, 98 vertices)
     """
-    places = np.array(centres, dtype=np.float64)
+    places = numbers(centres, "centres", "(n, 2) or (n, 3), x, y and z in µm")
     if places.ndim != 2 or places.shape[1] not in (2, 3) or len(places) <= NEIGHBOURS:
         raise ValueError(f"centres: shape {places.shape}; give (n, 2) or (n, 3), x, y and z of {NEIGHBOURS + 1} or more centres, in µm")
     if not np.isfinite(places).all():
@@ -76,7 +77,7 @@ def polygons_of_centres(
     distance = float(np.median(tree.query(flat[:, :2], NEIGHBOURS + 1)[0][:, 1:].mean(axis=1)))
     _refuse_overhang(flat, tree, distance)
     reach = USUAL_REACH * distance if reach_um is None else reach_um
-    check_number(reach, "reach_um", f"at least half the distance of neighbours, {distance / 2:.3g} µm", distance / 2)
+    number_from(reach, distance / 2, "reach_um", f"at least half the distance of neighbours, {distance / 2:.3g} µm")
     polygons = _around(flat, tree, distance, reach)
     polygons.points = polygons.points @ axes + places.mean(axis=0)
     polygons.cell_data.update({name: values[polygons.cell_data["label"]] for name, values in given.items()})

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .arguments import number, number_from
 from .errors import needed
 from .label_images import LabelImage, numbered
 from .label_repair import SMALL, given_away, openings, repaired, without_gaps
-from .polygons import Polygons, check_keep, check_number, one_piece, parted, too_small
+from .polygons import Polygons, check_keep, one_piece, parted, too_small
 
 __all__ = ["polygons_of_labels"]
 
@@ -74,9 +75,9 @@ def polygons_of_labels(
     >>> plica.polygons_of_labels(labels, um_per_pixel=0.5)  # doctest: +SKIP
     Polygons(1 cells, 6 vertices)
     """
-    check_number(um_per_pixel, "um_per_pixel", "the size of a pixel in µm, above 0", 0, allowed=False)
-    check_number(gap_px, "gap_px", "a width in pixels, 0 or more", 0)
-    check_number(background, "background", "one label", -np.inf)
+    number_from(um_per_pixel, 0, "um_per_pixel", "the size of a pixel in µm, above 0", above=True)
+    number_from(gap_px, 0, "gap_px", "a width in pixels, 0 or more")
+    number(background, "background", "one label")
     check_keep(keep)
     given = numbered(image, background)
     repairs: list[str] = []

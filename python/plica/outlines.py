@@ -11,10 +11,11 @@ from typing import Any, NamedTuple, Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .arguments import number_from
 from .errors import FileError, needed
 from .label_repair import openings, without_gaps
 from .labels import OPEN_WALLS, open_walls, traced, without_slivers
-from .polygons import Polygons, check_keep, check_number, one_piece, parted
+from .polygons import Polygons, check_keep, one_piece, parted
 
 __all__ = ["polygons_of_outlines"]
 
@@ -84,7 +85,7 @@ def polygons_of_outlines(
     >>> plica.polygons_of_outlines([left, right], tolerance_um=1)  # doctest: +SKIP
     Polygons(2 cells, 6 vertices)
     """
-    check_number(um_per_unit, "um_per_unit", "the unit of the coordinates in µm, above 0", 0, allowed=False)
+    number_from(um_per_unit, 0, "um_per_unit", "the unit of the coordinates in µm, above 0", above=True)
     check_keep(keep)
     remarks: list[str] = []
     cells = _read(outlines, remarks)
@@ -92,7 +93,7 @@ def polygons_of_outlines(
     rings = [cell.ring * scale for cell in cells]
     size = float(np.sqrt(np.median([_area(ring) for ring in rings])))
     tolerance = USUAL_TOLERANCE * size if tolerance_um is None else tolerance_um
-    check_number(tolerance, "tolerance_um", "a width in µm, 0 or more", 0)
+    number_from(tolerance, 0, "tolerance_um", "a width in µm, 0 or more")
     drawn = _drawn(rings, size / PIXELS, tolerance, remarks, [cell.place for cell in cells])
     gap_px = tolerance / drawn.pixel / 2
     closed = without_gaps(drawn.numbers, gap_px, [])

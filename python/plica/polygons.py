@@ -283,13 +283,6 @@ def parted(polygons: Polygons, step: float) -> int:
     return len(pinched)
 
 
-def check_number(value: object, what: str, fits: str, low: float, allowed: bool = True) -> None:
-    """Raise ValueError unless a value is a finite number above `low`, or, if `allowed`, at it."""
-    is_number = isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
-    if not is_number or not (low < value < np.inf or (allowed and value == low)):  # type: ignore[operator]
-        raise ValueError(f"{what}: {value!r:.60}; give {fits}")
-
-
 def check_keep(keep: object) -> None:
     """Raise ValueError unless a value of `keep` is known."""
     if not isinstance(keep, str) or keep not in ("all", "largest"):

@@ -1,4 +1,4 @@
-"""Run random sheets under random loads and check that none ends with a wrong tissue in silence, and that few give up.
+"""Run random sheets under random loads and check that none ends with a wrong tissue in silence, and that few fail.
 
 A sheet has 20 to 2000 cells 3 to 12 um wide and 3 to 40 um high, a Young's modulus of 10 to 3000 Pa, diagonals or kites, one or
 two layers, a free or a fixed boundary. One kind of load acts in a stripe or in all cells: springs, tension or cortex of one kind
@@ -6,7 +6,7 @@ of faces, or pressure; 0.03 to 3 times Young's modulus times height (pressure: a
 full strength from the start. Each run must
 
 - end with cell volumes and element shapes that hold, finite numbers, and a warning where the sheet passes through itself, or
-- give up with status 3; then one of the remedies that its message names must carry the run further, alone.
+- fail with status 3; then one of the remedies that its message names must carry the run further, alone.
 
 Usage: random_sheets.py PROGRAM [--count N] [--seed S] [--first I] [--keep DIR]
 """
@@ -24,7 +24,7 @@ import time
 from pathlib import Path
 
 END_S = 180
-MOST_GIVE_UP = 0.05
+MOST_FAIL = 0.05
 
 
 class Broken(Exception):
@@ -121,12 +121,12 @@ def remedies(said):
 
 
 def judge_remedies(program, folder, text, summary, said):
-    """A run that gave up: one of its remedies must carry it further, alone."""
+    """A run that failed: one of its remedies must carry it further, alone."""
     for remedy in remedies(said):
         done, other, _ = run(program, folder, text, *remedy)
         if done.returncode == 0 or other["time_s"] > 2 * summary["time_s"]:
-            return "gives up, helped by " + ", ".join(setting.split("=")[0] for setting in remedy)
-    raise Broken(f"gives up, and no remedy helps: {said.strip().splitlines()[-1]}")
+            return "fails, helped by " + ", ".join(setting.split("=")[0] for setting in remedy)
+    raise Broken(f"fails, and no remedy helps: {said.strip().splitlines()[-1]}")
 
 
 def main():
@@ -135,9 +135,9 @@ def main():
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="number of the first sheet, to repeat one")
-    parser.add_argument("--keep", type=Path, default=Path("random_sheets_failed"), help="folder for sheets that fail or give up")
+    parser.add_argument("--keep", type=Path, default=Path("random_sheets_failed"), help="folder for sheets that fail")
     given = parser.parse_args()
-    counts, given_up, slowest, started = collections.Counter(), 0, (0, 0), time.monotonic()
+    counts, failed, slowest, started = collections.Counter(), 0, (0, 0), time.monotonic()
     with tempfile.TemporaryDirectory(prefix="plica_sheets_") as name:
         folder = Path(name)
         for number in range(given.first, given.first + given.count):
@@ -146,10 +146,10 @@ def main():
             try:
                 done, summary, said = run(given.program.resolve(), folder, text)
                 slowest = max(slowest, (time.monotonic() - begun, number))
-                given_up += done.returncode == 3
+                failed += done.returncode == 3
                 if done.returncode == 3:
                     given.keep.mkdir(parents=True, exist_ok=True)
-                    (given.keep / f"seed{given.seed}_{number}_gave_up.toml").write_text(text)
+                    (given.keep / f"seed{given.seed}_{number}_failed.toml").write_text(text)
                 kind = judge_end(summary, said) if done.returncode == 0 else judge_remedies(given.program.resolve(), folder, text, summary, said)
             except Broken as error:
                 kind = "FAILED"
@@ -159,10 +159,10 @@ def main():
                 print(f"sheet {number} of seed {given.seed}, {load}: {error}\n  kept in {kept}", flush=True)
             counts[kind] += 1
     print(f"{given.count} sheets in {time.monotonic() - started:.0f} s, the slowest {slowest[0]:.0f} s (number {slowest[1]}); "
-          f"{given_up} gave up ({100 * given_up / given.count:.1f} %)")
+          f"{failed} failed ({100 * failed / given.count:.1f} %)")
     for kind, count in counts.most_common():
         print(f"{count:6} {kind}")
-    sys.exit(1 if counts["FAILED"] or given_up > MOST_GIVE_UP * given.count else 0)
+    sys.exit(1 if counts["FAILED"] or failed > MOST_FAIL * given.count else 0)
 
 
 if __name__ == "__main__":

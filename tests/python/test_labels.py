@@ -297,7 +297,7 @@ def test_colours_become_labels_by_the_call_that_the_error_names():
 
 
 def test_damaged_images_become_a_tissue_or_an_error_with_a_remedy(tmp_path):
-    """Lines, salt, missing cells, a region cut out, merged labels: plica accepts what comes out."""
+    """Lines, salt, missing cells, a region cut out, merged labels: plica accepts the polygons."""
     ndimage = pytest.importorskip("scipy.ndimage")
     segmentation = pytest.importorskip("skimage.segmentation")
     accepted = 0

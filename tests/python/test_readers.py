@@ -163,6 +163,8 @@ def test_points_of_an_open_sheet_name_this_function(tmp_path, z):
 
 def test_bad_centres():
     _, centres = cells_of_voronoi()
+    with pytest.raises(ValueError, match="centres: 2 values are masked"):
+        plica.polygons_of_centres(np.ma.masked_array(centres, mask=np.arange(len(centres))[:, None] == [3, 3]))
     near = np.concatenate([centres, centres + [83, 0]])
     with pytest.raises(ValueError, match=r"in 2 pieces, which share no edge, of 49, 49 cells .*set reach_um = ") as refused:
         plica.polygons_of_centres(near)

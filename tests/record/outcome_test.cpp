@@ -1,4 +1,4 @@
-// The line that says what a tissue did, in words that fit it, and the one about self-intersections.
+// The line that describes what a tissue did, in words that fit it, and the one about self-intersections.
 #include "record/outcome.hpp"
 
 #include <gtest/gtest.h>

@@ -188,7 +188,7 @@ TEST(Cortex, TensionDecaysAtConstantArea) {
       model.tissue, all_cells(model.tissue), CortexRule{.side = CellSide::apical, .stiffness = 3, .relaxation_s = 10}));
   for (auto& held : model.held) held = {true, true, true};
   const Law& law = *model.laws.front();
-  // At rest the area is that of the face; the law is told that its stress-free area began at half of it.
+  // At rest the area is that of the face; the law starts with a stress-free area of half of it.
   for (const TimeOrder order : {TimeOrder::first, TimeOrder::second}) {
     std::vector<double> internal = {0.5, 0.5};
     const double h = order == TimeOrder::first ? 0.001 : 0.01;
