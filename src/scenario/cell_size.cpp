@@ -38,8 +38,7 @@ std::string unit_warning(const EmbryoInput& embryo, const Tissue& tissue) {
   const double factor = factor_for(width_um);
   return fmt::format(
       "embryo.scale: cells of the file are {:.3g} um wide (median), but coordinates are read in um; if they have "
-      "another "
-      "unit, set embryo.scale = [{:g}, {:g}, {:g}]",
+      "another unit, set embryo.scale = [{:g}, {:g}, {:g}]",
       width_um, factor * embryo.scale[0], factor * embryo.scale[1], factor * embryo.scale[2]);
 }
 
