@@ -77,7 +77,7 @@ def polygons_of_centres(
     distance = float(np.median(tree.query(flat[:, :2], NEIGHBOURS + 1)[0][:, 1:].mean(axis=1)))
     _refuse_overhang(flat, tree, distance)
     reach = USUAL_REACH * distance if reach_um is None else reach_um
-    number_from(reach, distance / 2, "reach_um", f"at least half the distance of neighbours, {distance / 2:.3g} µm")
+    reach = number_from(reach, distance / 2, "reach_um", f"at least half the distance of neighbours, {distance / 2:.3g} µm")
     polygons = _around(flat, tree, distance, reach)
     polygons.points = polygons.points @ axes + places.mean(axis=0)
     polygons.cell_data.update({name: values[polygons.cell_data["label"]] for name, values in given.items()})

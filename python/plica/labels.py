@@ -75,8 +75,8 @@ def polygons_of_labels(
     >>> plica.polygons_of_labels(labels, um_per_pixel=0.5)  # doctest: +SKIP
     Polygons(1 cells, 6 vertices)
     """
-    number_from(um_per_pixel, 0, "um_per_pixel", "the size of a pixel in µm, above 0", above=True)
-    number_from(gap_px, 0, "gap_px", "a width in pixels, 0 or more")
+    um_per_pixel = number_from(um_per_pixel, 0, "um_per_pixel", "the size of a pixel in µm, above 0", above=True)
+    gap_px = number_from(gap_px, 0, "gap_px", "a width in pixels, 0 or more")
     number(background, "background", "one label")
     check_keep(keep)
     given = numbered(image, background)
@@ -84,7 +84,7 @@ def polygons_of_labels(
     closed = repaired(given.numbers, given.names, gap_px, keep_cut, repairs)
     closed, polygons = without_slivers(closed, keep_cut, given.names, repairs, THIN_CELL)
     if open_walls(given.numbers, closed, gap_px) > OPEN_WALLS:
-        raise ValueError(f"image: lines of background remain between cells: they are wider than {2 * gap_px} pixels"
+        raise ValueError(f"image: lines of background remain between cells: they are wider than {2 * gap_px:g} pixels"
                          f"{_advice(given, gap_px, keep_cut, 0.5)}")
     if len(polygons) == 0:
         raise ValueError("image: no cell has three corners where three cells meet"
@@ -100,7 +100,7 @@ def polygons_of_labels(
     if len(opened):
         row, column, size = opened[0]
         given.remarks.append(f"image: openings in the tissue: {len(opened)}, the largest of {size} pixels at row {row}, column {column}; "
-                             f"label missing cells, or, if these are gaps, raise gap_px, now {gap_px}")
+                             f"label missing cells, or, if these are gaps, raise gap_px, now {gap_px:g}")
     for remark in given.remarks:
         warnings.warn(remark, stacklevel=2)
     polygons.points = um_per_pixel * (polygons.points + [0, len(closed) - 1, 0])

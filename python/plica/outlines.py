@@ -85,15 +85,14 @@ def polygons_of_outlines(
     >>> plica.polygons_of_outlines([left, right], tolerance_um=1)  # doctest: +SKIP
     Polygons(2 cells, 6 vertices)
     """
-    number_from(um_per_unit, 0, "um_per_unit", "the unit of the coordinates in µm, above 0", above=True)
+    um_per_unit = number_from(um_per_unit, 0, "um_per_unit", "the unit of the coordinates in µm, above 0", above=True)
     check_keep(keep)
     remarks: list[str] = []
     cells = _read(outlines, remarks)
     scale = np.array([1, 1 if y_down else -1]) * um_per_unit
     rings = [cell.ring * scale for cell in cells]
     size = float(np.sqrt(np.median([_area(ring) for ring in rings])))
-    tolerance = USUAL_TOLERANCE * size if tolerance_um is None else tolerance_um
-    number_from(tolerance, 0, "tolerance_um", "a width in µm, 0 or more")
+    tolerance = USUAL_TOLERANCE * size if tolerance_um is None else number_from(tolerance_um, 0, "tolerance_um", "a width in µm, 0 or more")
     drawn = _drawn(rings, size / PIXELS, tolerance, remarks, [cell.place for cell in cells])
     gap_px = tolerance / drawn.pixel / 2
     closed = without_gaps(drawn.numbers, gap_px, [])

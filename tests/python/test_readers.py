@@ -114,6 +114,7 @@ def test_bad_outlines(tmp_path):
     with pytest.raises(ValueError, match=r"in 2 pieces, which share no edge, of 25, 1 cells .*keep = \"largest\""):
         plica.polygons_of_outlines(far)
     assert len(plica.polygons_of_outlines(far, keep="largest")) == 25
+    assert len(plica.polygons_of_outlines(rings, 2**70)) == 25  # beyond the integers of arrays
     for bad, said in (([], "no outlines"), (7, "no outlines: .*give x and y"), ({"type": "Point"}, "no outlines"), ({"features": [7]}, "no outlines"), ([[[0, 0], [1, 1]]], "outline 0 has shape"), ([[[0, 0], [1, 1], [2, 2]]], "around an area"), ([[[0, 0], [1, 1], [np.nan, 0]]], "outline 0 has shape")):
         with pytest.raises(ValueError, match=said):
             plica.polygons_of_outlines(bad)
