@@ -13,10 +13,16 @@ from pathlib import Path
 import support
 from support import BLOCK, CommandLine, plica, start
 
+COARSE = """\
+base = "drosophila"
+embryo.cells = [12, 7, 6]
+region.furrow = { cells_along = 8, cells_across = 3 }
+furrow.vce_cell = 1
+"""
 EXPERIMENTS = """\
 format = 1
 title = "A small furrow"
-scenario = "drosophila"
+scenario = "coarse.toml"
 draws = "draws.csv"
 
 [experiment.reference]
@@ -64,6 +70,7 @@ class Experiments(CommandLine):
         super().setUp()
         self.file = self.write(EXPERIMENTS, "mine.toml")
         self.write(DRAWS, "draws.csv")
+        self.write(COARSE, "coarse.toml")
 
     def reproduce(self, *arguments, status=0, out=None):
         result = plica("reproduce", self.file, "--out", out or self.out, *arguments)
@@ -96,7 +103,7 @@ class Experiments(CommandLine):
                 self.assertEqual((row["own"], row["number"], row["judgement"]), ("", "", "hit"))
         # The same numbers as of plica run.
         alone = self.folder / "alone"
-        plica("run", "drosophila", "--set", "time.end_min=0.2", "--set", "output.frame_every_min=0.1", "--set",
+        plica("run", self.folder / "coarse.toml", "--set", "time.end_min=0.2", "--set", "output.frame_every_min=0.1", "--set",
               "contraction.apical.stiffness_nN_per_um=6", "--out", alone, "--quiet")
         self.assertEqual(float(rows[2]["own"]), self.summary(alone)["furrow_depth_um"])
         short = self.out / "runs/reference/draw-3"

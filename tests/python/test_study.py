@@ -12,14 +12,17 @@ import pytest
 
 import plica
 
-STUDY = """
+# A coarse embryo.
+SET = {"time.end_min": 1, "embryo.cells": [12, 7, 6], "region.furrow.cells_along": 8, "region.furrow.cells_across": 3, "furrow.vce_cell": 1}
+SETTINGS = "\n".join(f'"{key}" = {value}' for key, value in SET.items())
+STUDY = f"""
 format = 1
 scenario = "drosophila"
 [set]
-"time.end_min" = 1
+{SETTINGS}
 [vary]
-"elasticity.young_modulus_Pa" = { low = 400, high = 1200 }
-"elasticity.poisson_ratio" = { values = [0.3, 0.45] }
+"elasticity.young_modulus_Pa" = {{ low = 400, high = 1200 }}
+"elasticity.poisson_ratio" = {{ values = [0.3, 0.45] }}
 [design]
 kind = "sobol"
 points = 8
@@ -49,7 +52,7 @@ def test_the_table(table):
 
 def test_a_row_is_what_the_run_says(table):
     scenario = plica.Scenario("drosophila")
-    scenario.update({"time.end_min": 1, "elasticity.young_modulus_Pa": table["elasticity.young_modulus_Pa"][2],
+    scenario.update({**SET, "elasticity.young_modulus_Pa": table["elasticity.young_modulus_Pa"][2],
                      "elasticity.poisson_ratio": table["elasticity.poisson_ratio"][2]})
     sim = plica.Simulation(scenario, threads=1)
     sim.run()

@@ -42,7 +42,7 @@ export async function end() {
 }
 
 // Opens a page and watches it; `done` fails where it said or asked for something that it should not.
-export async function open(file, { width = 1280, height = 900, dark = false } = {}) {
+export async function open(file, { width = 900, height = 640, dark = false } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? "dark" : "light" });
   const page = await context.newPage();
   const wrong = [];

@@ -8,6 +8,7 @@ import { begin, changed, end, folder, near, numberOf, open, pixels, report, run,
 const moduli = [500, 750, 1000, 1500, 2000];
 const stiffnesses = [2, 3, 4, 5, 6, 7];
 const stiffnessKey = "contraction.apical.stiffness_nN_per_um";
+let thirty; // an open page that tests share; each leaves all runs shown
 
 before(async () => {
   const coarse = ["embryo.cells=[12, 7, 6]", "region.furrow.cells_along=8", "region.furrow.cells_across=3", "furrow.vce_cell=1",
@@ -29,9 +30,13 @@ before(async () => {
   report(["failed", ...ramp.slice(1)], "uneven.html");
   makeUneven("uneven.html");
   await begin();
+  thirty = await open("thirty.html");
 });
 
-after(end);
+after(async () => {
+  await thirty?.done();
+  await end();
+});
 
 // As if the run called failed had failed, half of all frames had been left out, and the others' tissue passed through itself.
 function makeUneven(file) {
@@ -63,7 +68,7 @@ const samples = (page) => page.locator(".runs tbody tr").evaluateAll((rows) => r
 }));
 
 test("a table of the runs says in what they differ and what came out, and sorts", async () => {
-  const { page, done } = await open("thirty.html");
+  const { page } = thirty;
   assert.equal(await page.locator(".runs tbody tr").count(), 30);
   const cell = (name, key) => page.locator(`.runs tr[data-run="${name}"] td[data-key="${key}"]`).textContent();
   for (const name of ["E500-k2", "E2000-k7"]) {
@@ -86,11 +91,9 @@ test("a table of the runs says in what they differ and what came out, and sorts"
     assert.equal(order[0], first, part);
   }
   assert.equal(await page.title(), "Ventral furrow of Drosophila melanogaster", "one title for all");
-  await done();
 });
 
 test("thirty runs have thirty lines; where one number differs, lightness follows it", async () => {
-  const thirty = await open("thirty.html");
   const lines = await samples(thirty.page);
   assert.equal(new Set(lines.map(({ colour, dash }) => `${colour} ${dash}`)).size, 30);
   await thirty.page.selectOption("#colour-by", stiffnessKey);
@@ -100,7 +103,6 @@ test("thirty runs have thirty lines; where one number differs, lightness follows
   const byModulus = await samples(thirty.page);
   assert.equal(new Set(byModulus.map(({ colour }) => colour)).size, 5);
   assert.equal(new Set(byModulus.map(({ colour, dash }) => `${colour} ${dash}`)).size, 30);
-  await thirty.done();
   for (const dark of [false, true]) {
     const { page, done } = await open("ramp.html", { dark });
     const light = ({ colour }) => {
@@ -115,7 +117,7 @@ test("thirty runs have thirty lines; where one number differs, lightness follows
 });
 
 test("text and ticks show and hide runs everywhere at once", async () => {
-  const { page, done } = await open("thirty.html");
+  const { page } = thirty;
   await page.fill("#filter", "k7 young>=1000");
   const wanted = ["E1000-k7", "E1500-k7", "E2000-k7"];
   for (const part of [".runs", "#canvases", "#midline", "#texts"]) assert.deepEqual((await shownRuns(page, part)).sort(), wanted, part);
@@ -137,7 +139,7 @@ test("text and ticks show and hide runs everywhere at once", async () => {
   assert.match(await page.textContent("#shown-count"), /0 of 30/);
   await page.fill("#filter", "");
   assert.equal((await shownRuns(page, "#canvases")).length, 29);
-  await done();
+  await tick(page, '.runs tr[data-run="E1500-k7"] input', true);
 });
 
 test("pictures are drawn where they are seen, all by one context; one is made large", async () => {
@@ -162,7 +164,7 @@ test("pictures are drawn where they are seen, all by one context; one is made la
 });
 
 test("what the hand points at stands out in every plot", async () => {
-  const { page, done } = await open("thirty.html");
+  const { page } = thirty;
   const before = await pixels(page, "#plots .uplot");
   await page.mouse.move(0, 0);
   await page.locator('.runs tr[data-run="E500-k7"]').dispatchEvent("pointerenter");
@@ -171,7 +173,7 @@ test("what the hand points at stands out in every plot", async () => {
   assert.ok(values.length >= 8 && values.every((value) => value.startsWith("E500-k7: ")), values.join());
   near(numberOf(values[0].split(": ")[1]), table("E500-k7/series.csv").at(-1).furrow_depth_um, 1e-3, "depth");
   assert.ok(changed(before, await pixels(page, "#plots .uplot")) > 0.002, "the others fade");
-  await done();
+  await page.locator('.runs tr[data-run="E500-k7"]').dispatchEvent("pointerleave");
 });
 
 test("a finger's tap makes a run stand out until the next one; moving the page does not", async () => {
@@ -215,7 +217,7 @@ test("what a page of many runs says of each is said once: ends before the time s
 });
 
 test("a picked cell goes with its run when that is hidden, and comes back with it", async () => {
-  const { page, done } = await open("thirty.html");
+  const { page } = thirty;
   await page.fill("#cell-id", "3");
   await page.click("#cell button");
   await page.waitForSelector("#cell dl");
@@ -225,7 +227,6 @@ test("a picked cell goes with its run when that is hidden, and comes back with i
   assert.equal(await page.locator("#cell .chart").count(), 0);
   await tick(page, `.runs tr[data-run="${name}"] input`, true);
   assert.equal(await page.locator("#cell dl").count(), 1);
-  await done();
 });
 
 test("on a phone nothing is wider than the screen, and a finger still moves the page", async () => {
@@ -242,8 +243,7 @@ test("on a phone nothing is wider than the screen, and a finger still moves the 
 test("thirty runs stay one small file, soon seen", async () => {
   const bytes = statSync(join(folder, "thirty.html")).size;
   assert.ok(bytes < 6e6, `${bytes} bytes`);
-  const { page, done } = await open("thirty.html");
+  const { page } = thirty;
   const ms = await page.evaluate(() => performance.getEntriesByName("first-picture")[0].startTime);
   console.log(`${(bytes / 1e6).toFixed(2)} MB; first picture after ${ms.toFixed(0)} ms`);
-  await done();
 });

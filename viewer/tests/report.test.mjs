@@ -12,6 +12,8 @@ import {
 
 const hostileTitle = `</script><script>window.hacked=1</script>"'<img src=x onerror="window.hacked=1">\u{1F9EC}${"fold ".repeat(2000)}`;
 
+let drosophila; // an open page that tests share; each leaves it with its last frame in the default view
+
 before(async () => {
   run("drosophila", "drosophila");
   run("division-demo", "division", "--set", "output.frame_every_s=30");
@@ -33,12 +35,16 @@ cell_count = 120\n${rest}\n[time]\nend_min = 5\n[output]\nframe_every_s = 60\n`)
   assert.throws(() => run(join(folder, "fails.toml"), "fails"), ({ status }) => status === 3);
   report(["drosophila", "division"], "both.html");
   await begin();
+  drosophila = await open("drosophila/report.html");
 });
 
-after(end);
+after(async () => {
+  await drosophila?.done();
+  await end();
+});
 
 test("values beside the plots are those of series.csv, at the end and in between", async () => {
-  const { page, done } = await open("drosophila/report.html");
+  const { page } = drosophila;
   const series = table("drosophila/series.csv");
   let compared = 0;
   for (const [frame, time] of [[null, 900], [4, 60], [20, 300]]) {
@@ -54,7 +60,7 @@ test("values beside the plots are those of series.csv, at the end and in between
   const summary = JSON.parse(readFileSync(join(folder, "drosophila/summary.json"), "utf8"));
   for (const key of ["furrow_depth_um", "max_volume_error", "peak_speed_ratio"])
     near(numberOf(await page.locator(`#numbers tr:has(th[title="${key}"]) td`).textContent()), summary[key], 1e-4, key);
-  await done();
+  await page.keyboard.press("End");
 });
 
 test("the picture is the embryo: its outline, its symmetry, its colours", async () => {
@@ -88,7 +94,7 @@ test("the picture is the embryo: its outline, its symmetry, its colours", async 
 });
 
 test("on a cut, colours are those of the scale for the cell's value", async () => {
-  const { page, done } = await open("drosophila/report.html");
+  const { page, done } = await open("drosophila/report.html", { width: 1280, height: 900 });
   await page.click("#view-cross-section");
   await page.selectOption("#field", "pressure");
   await tick(page, "#edges", false);
@@ -119,7 +125,7 @@ test("on a cut, colours are those of the scale for the cell's value", async () =
 });
 
 test("three cuts across follow time and colour; energies stand by law", async () => {
-  const { page, done } = await open("drosophila/report.html");
+  const { page } = drosophila;
   await page.locator("#sections").scrollIntoViewIfNeeded();
   await page.waitForSelector("#sections[data-drawn]");
   const captions = await page.locator("#sections span").allTextContents();
@@ -137,11 +143,11 @@ test("three cuts across follow time and colour; energies stand by law", async ()
   const cells = page.locator('#numbers tr:has(th:text-is("contraction.apical")) td');
   near(numberOf(await cells.nth(0).textContent()), active, 1e-3, "active");
   if (dissipated > 0) near(numberOf(await cells.nth(2).textContent()), dissipated, 1e-3, "dissipated");
-  await done();
+  await page.keyboard.press("End");
 });
 
 test("turning by mouse and keys, zoom, cut, colour and time each change the picture", async () => {
-  const { page, done } = await open("drosophila/report.html");
+  const { page, done } = await open("drosophila/report.html", { width: 640, height: 480 });
   let last = await pixels(page, ".picture");
   const box = await page.locator(".picture").boundingBox();
   const actions = {
@@ -206,7 +212,7 @@ test("keys and the button play, stop at a saved frame, and step", async () => {
 });
 
 test("a picked cell shows what cells.csv has of it", async () => {
-  const { page, done } = await open("drosophila/report.html");
+  const { page } = drosophila;
   await page.click("#view-ventral");
   const box = await page.locator(".picture").boundingBox();
   await page.mouse.click(box.x + box.width / 2 + 3, box.y + box.height / 2 + 3);
@@ -226,7 +232,7 @@ test("a picked cell shows what cells.csv has of it", async () => {
   await page.fill("#cell-id", "12");
   await page.press("#cell-id", "Enter");
   assert.equal(await page.locator('[data-value="cell_id"]').textContent(), "12");
-  await done();
+  await page.keyboard.press("End");
 });
 
 test("division shows when it happens, and a daughter's history goes on from her mother's", async () => {
@@ -312,8 +318,8 @@ test("a failed run begins with what, where and when, and with its cell close up"
 });
 
 test("the vitelline membrane is seen where it is ticked", async () => {
-  const { page, done } = await open("drosophila/report.html");
-  for (const view of ["antero-ventral", "ventral", "cross-section", "sagittal-section"]) {
+  const { page, done } = await open("drosophila/report.html", { width: 640, height: 480 });
+  for (const view of ["antero-ventral", "cross-section"]) {
     await page.click(`#view-${view}`);
     await tick(page, "#shell", true);
     const before = await pixels(page, ".picture");
@@ -376,7 +382,7 @@ test("numbers stay in one line on a phone, and have the units of their columns",
 });
 
 test("the picture and the table are saved", async () => {
-  const { page, done } = await open("drosophila/report.html");
+  const { page } = drosophila;
   const { name, bytes: png } = await saved(page, "#save-picture");
   assert.equal(name, "drosophila.png");
   assert.equal(png.subarray(1, 4).toString(), "PNG");
@@ -389,16 +395,14 @@ test("the picture and the table are saved", async () => {
   assert.equal(rows.length, series.length);
   const [place, last] = [head.split(",").indexOf("furrow_depth_um"), rows.at(-1).split(",")];
   assert.equal(Number(last[place]), series.at(-1).furrow_depth_um);
-  await done();
 });
 
 test("the page is small, and its first picture quick", async () => {
   const bytes = statSync(join(folder, "drosophila/report.html")).size;
   assert.ok(bytes < 5e6, `${bytes} bytes`);
-  const { page, done } = await open("drosophila/report.html");
+  const { page } = drosophila;
   const ms = await page.evaluate(() => performance.getEntriesByName("first-picture")[0].startTime);
   console.log(`${(bytes / 1e6).toFixed(2)} MB; first picture after ${ms.toFixed(0)} ms`);
-  await done();
 });
 
 test("a tissue that passes through itself is announced, and none other", async () => {
@@ -407,9 +411,7 @@ test("a tissue that passes through itself is announced, and none other", async (
   assert.ok(await crossing.page.isVisible("#crossing"));
   assert.match(await crossing.page.textContent("#headline"), /self-intersecting/);
   await crossing.done();
-  const sound = await open("drosophila/report.html");
-  assert.ok(!(await sound.page.isVisible("#crossing")));
-  await sound.done();
+  assert.ok(!(await drosophila.page.isVisible("#crossing")));
 });
 
 // The canvas of a plot: its size, where it plots (in its own pixels), and the colour at a place.

@@ -171,7 +171,7 @@ test("text, ticks, reasons, ranges and drags leave runs out everywhere", async (
 });
 
 test("a picked run shows its values and the command that makes it again", async () => {
-  const { page, done } = await open("grid/report.html");
+  const { page, done } = await open("grid/report.html", { width: 1280, height: 900 });
   const rows = runsOf("grid");
   await page.click('.rows tr[data-row="5"] th');
   assert.equal(await page.textContent("#run h2"), "Point 6");
