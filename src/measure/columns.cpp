@@ -350,8 +350,11 @@ std::span<const Column> columns() {
       {"bending_error", series, last,
        "Estimated relative error of bending from few elements through the height: 0.14 times the difference of basal "
        "and "
-       "apical area ratio of a cell, divided by its elements through the height, weighted by that difference "
-       "([convergence](../developers/convergence.md#bending-at-finite-strain)). None without corotational elasticity.",
+       "apical area ratio of a cell, divided by its elements through the height, weighted by that difference. The "
+       "depth "
+       "of one element may err five times as much ([convergence](../developers/convergence.md#meshes-of-polygons)). "
+       "None without "
+       "corotational elasticity.",
        [](const M& m) { return bending_error(m.model, m.state.positions); }},
       {"max_displacement_um", series, last, "Largest distance of a node from its reference position.",
        [](const M& m) { return max_displacement(m.model.tissue, m.state.positions); }},
