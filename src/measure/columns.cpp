@@ -348,10 +348,10 @@ std::span<const Column> columns() {
        "contractile midline cells, middle half, from a quartic polynomial. None with fewer than ten cells.",
        [](const M& m) { return midline_waviness_um(m.model.tissue, m.sites, m.state.positions); }},
       {"bending_error", series, last,
-       "Estimated relative error of bending from few elements through the height: 0.14 times the difference of basal "
-       "and "
-       "apical area ratio of a cell, divided by its elements through the height, weighted by that difference "
-       "([convergence](../developers/convergence.md#bending-at-finite-strain)). None without corotational elasticity.",
+       "Estimated relative error of bending from few elements through the height: 0.14 times the difference of a "
+       "cell's basal and apical area ratios, divided by its elements, weighted by that difference. Depth by one "
+       "element may err five times as much ([convergence](../developers/convergence.md#meshes-of-polygons)). None "
+       "without corotational elasticity.",
        [](const M& m) { return bending_error(m.model, m.state.positions); }},
       {"max_displacement_um", series, last, "Largest distance of a node from its reference position.",
        [](const M& m) { return max_displacement(m.model.tissue, m.state.positions); }},
