@@ -252,7 +252,7 @@ std::span<const Column> columns() {
               [](const M& m) { return min_apical_area_ratio(m.model.tissue, m.state.positions); }}),
       costly({"min_corner_jacobian_ratio", series, least,
               "Smallest corner Jacobian / reference value: 0 for a flat corner.",
-              [](const M& m) { return min_corner_jacobian_ratio(m.model.tissue, m.state.positions); }}),
+              [](const M& m) { return least_corner_ratio(m.model.tissue, m.state.positions).ratio; }}),
       {"enclosed_volume_ratio", series, last, "Enclosed volume (yolk or lumen, `[enclosed.NAME]`) / target volume.",
        [](const M& m) { return part(m.enclosed, &Enclosed::volume_ratio); }},
       {"yolk_pressure_Pa", series, last, "Pressure of the enclosed volume, relative to the perivitelline fluid.",

@@ -314,6 +314,24 @@ std::map<std::string, CellArray> load_arrays(const ArchiveReader& archive) {
   return arrays;
 }
 
+// Absent from checkpoints of earlier versions.
+void save_pace(ArchiveWriter& archive, const Pace& pace) {
+  Saving save(archive);
+  save("run/pace/since_s", pace.since_s);
+  save("run/pace/steps", pace.steps);
+  save("run/pace/iterations", pace.iterations);
+}
+
+Pace load_pace(const ArchiveReader& archive) {
+  Pace pace;
+  if (!archive.has("run/pace/since_s")) return pace;
+  Loading load(archive);
+  load("run/pace/since_s", pace.since_s);
+  load("run/pace/steps", pace.steps);
+  load("run/pace/iterations", pace.iterations);
+  return pace;
+}
+
 /// Limit of processor time: some seconds, plus one per 10 MB, a hundred times the usual duration.
 void limit_time(std::size_t bytes) {
   const rlim_t seconds = 3 + bytes / 10'000'000;
@@ -362,6 +380,7 @@ std::string CheckpointBytes::operator()(const Checkpoint& checkpoint) {
   save_divisions(*archive, checkpoint.run.past_divisions);
   save_rows(*archive, checkpoint.record.rows);
   save_arrays(*archive, checkpoint.run.outside_arrays);
+  save_pace(*archive, checkpoint.run.pace);
   std::string bytes = archive->image();
   if (bytes.size() <= most_kept_bytes) archive_ = std::move(archive);
   return bytes += trailer(bytes);
@@ -386,6 +405,7 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
     visit(load, checkpoint);
     checkpoint.run.past_divisions = load_divisions(archive);
     checkpoint.run.outside_arrays = load_arrays(archive);
+    checkpoint.run.pace = load_pace(archive);
     return checkpoint;
   };
   read_on_trial([&] { (void)read(); }, image.size());

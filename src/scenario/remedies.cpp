@@ -40,7 +40,10 @@ WeakerForces weaker_forces(const Scenario& scenario) {
   const double stress = scenario.elasticity.young_modulus_Pa * units::pascal, height = scenario.embryo.cell_height_um;
   WeakerForces weaker;
   for (const auto& [name, input] : scenario.contractions) {
-    weaker.reduce(fmt::format("contraction.{}.stiffness_nN_per_um", name), input.stiffness_nN_per_um, stress * height);
+    // Lateral edges are long and pull on the small area of a cell.
+    const double shape = input.edges == "lateral" ? 0.01 : 1;
+    weaker.reduce(fmt::format("contraction.{}.stiffness_nN_per_um", name), input.stiffness_nN_per_um,
+                  shape * stress * height);
     weaker.reduce(fmt::format("contraction.{}.preload_nN", name), input.preload_nN, 0.01 * stress * height * height);
     weaker.reduce(fmt::format("contraction.{}.tension_mN_per_m", name), input.tension_mN_per_m, stress * height);
   }

@@ -20,6 +20,8 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
   const State& state = run.state;
   if (state.time_s < 0 || run.steps < 0 || run.wanted_step_s < 0 || state.trend.step_s < 0 || state.trend.earlier_s < 0)
     return "its time or step is negative";
+  if (!(run.pace.since_s >= 0 && run.pace.since_s <= state.time_s) || run.pace.steps < 0 || run.pace.iterations < 0)
+    return "its pace is invalid";
   if (state.trend.step_s + state.trend.earlier_s > state.time_s * (1 + 1e-9))
     return "its steps are longer than its time";
   if (!fits(state) || state.velocities.size() != nodes || !none_or(state.trend.mean_velocities.size(), nodes) ||

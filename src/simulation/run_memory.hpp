@@ -11,6 +11,7 @@
 #include "mechanics/division.hpp"
 #include "mechanics/model.hpp"
 #include "simulation/controls.hpp"
+#include "simulation/pace.hpp"
 
 namespace plica {
 
@@ -30,6 +31,7 @@ struct RunMemory {
   bool at_equilibrium = false;               // at present
   bool criterion_met = false;                // a criterion of [stop] ended the run
   double wanted_step_s = 0;                  // length of the next step; 0: no step yet
+  Pace pace;                                 // until it is known, then from there on
   double computing_s = 0;                    // wall time of its steps
   std::vector<EnergyFlow> energies;  // sums over all steps, in the order of energy_flows; empty before the first
   FactorMemory factor;

@@ -49,6 +49,12 @@ std::optional<CellId> held_cell_that_grows(const Model& model, const State& stat
   return std::nullopt;
 }
 
+std::string with_remedies(const std::string& text, StepReport::Status status, const State& state,
+                          const Scenario* scenario) {
+  const std::string remedies = scenario ? remedies_text(remedies_of(*scenario, {status, state.time_s})) : "";
+  return remedies.empty() ? text : text + "; " + remedies;
+}
+
 std::string failure_text(StepReport report, const Model& model, const State& state, double duration_s,
                          const Scenario* scenario) {
   const std::optional<CellId> held = held_cell_that_grows(model, state);
@@ -60,8 +66,7 @@ std::string failure_text(StepReport report, const Model& model, const State& sta
                       "; cell {} must change its volume, but all its corners are fixed: fix fewer nodes, or "
                       "exclude it from division and growth",
                       id_of(model, *held));
-  const std::string remedies = scenario ? remedies_text(remedies_of(*scenario, {report.status, state.time_s})) : "";
-  return remedies.empty() ? text : text + "; " + remedies;
+  return with_remedies(text, report.status, state, scenario);
 }
 
 }  // namespace
@@ -282,6 +287,7 @@ bool Simulation::step(double until_s) {
   has_begun_ = true;
   if (status() != RunStatus::under_way) return false;
 
+  if (has_stalled()) return false;
   restart_at_a_jump();
   const auto start = std::chrono::steady_clock::now();
   State before;
@@ -315,6 +321,20 @@ bool Simulation::step(double until_s) {
   return true;
 }
 
+// Judge the pace of the last steps; if it will do, count again.
+bool Simulation::has_stalled() {
+  if (!now_.pace.is_known()) return false;
+  const auto stalled = standstill(now_.pace, controls_, *model_, now_.state);
+  if (!stalled) {
+    now_.pace = {.since_s = now_.state.time_s};
+    return false;
+  }
+  failed_cell_ = id_of(*model_, stalled->cell);
+  failure_ = with_remedies(fmt::format("{} at t = {:g} s", stalled->reason, now_.state.time_s),
+                           StepReport::Status::no_convergence, now_.state, scenario_.get());
+  return true;
+}
+
 // Advance the state by one step; `before` receives the old state. Empty, with the state unchanged, on failure or stop.
 std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
   State& next = before;
@@ -335,6 +355,8 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
     if (solved && step_length_.accept(controls_, now_.state, next)) {
       std::swap(now_.state, next);
       ++now_.steps;
+      ++now_.pace.steps;
+      now_.pace.iterations += report.newton_iterations;
       return report;
     }
     ++refused;

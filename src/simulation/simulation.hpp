@@ -125,6 +125,7 @@ class Simulation {
   void stop_when(std::function<bool()> stop_requested);
 
  private:
+  bool has_stalled();
   std::optional<StepReport> take_step(double until_s, State& before);
   void divide(const std::vector<PlannedDivision>& due);
   Division make_division(State& state, const std::vector<PlannedDivision>& planned);

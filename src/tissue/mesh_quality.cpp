@@ -82,12 +82,13 @@ double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions) {
   return least;
 }
 
-double min_corner_jacobian_ratio(const Tissue& tissue, const Vectors& positions) {
-  double least = std::numeric_limits<double>::infinity();
+CornerRatio least_corner_ratio(const Tissue& tissue, const Vectors& positions) {
+  CornerRatio least{std::numeric_limits<double>::infinity(), CellId(0)};
   for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
     const auto now = hex_corner_jacobians(gather(positions, tissue.elements[e]));
     const auto rest = hex_corner_jacobians(tissue.element_rest_shape[e]);
-    for (int corner = 0; corner < 8; ++corner) least = std::min(least, now[corner] / rest[corner]);
+    for (int corner = 0; corner < 8; ++corner)
+      if (const double ratio = now[corner] / rest[corner]; ratio < least.ratio) least = {ratio, tissue.element_cell[e]};
   }
   return least;
 }

@@ -35,7 +35,13 @@ PolygonQuality polygon_quality(const Tissue& tissue, const Vectors& positions);
 /// Return the scaled Jacobian of an element: 1 for a brick, 0 if flat.
 double min_scaled_jacobian(const Tissue& tissue, const Vectors& positions);
 
-/// Return the smallest corner Jacobian / reference value of an element: 0 if flat, negative if inverted.
-double min_corner_jacobian_ratio(const Tissue& tissue, const Vectors& positions);
+/// Corner of an element: its Jacobian / reference value (0 if flat, negative if inverted), and its cell.
+struct CornerRatio {
+  double ratio;
+  CellId cell;
+};
+
+/// Return the corner with the smallest ratio.
+CornerRatio least_corner_ratio(const Tissue& tissue, const Vectors& positions);
 
 }  // namespace plica

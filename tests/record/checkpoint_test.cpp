@@ -306,12 +306,14 @@ TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
   unfit([](RunMemory& m) { m.state.time_s = -1; });
   unfit([](RunMemory& m) { m.steps = -1; });
   unfit([](RunMemory& m) { m.wanted_step_s = -1; });
+  unfit([](RunMemory& m) { m.pace.since_s = m.state.time_s + 1; });
+  unfit([](RunMemory& m) { m.pace.steps = -1; });
   unfit([](RunMemory& m) { m.factor.at.multipliers.pop_back(); });
   unfit([](RunMemory& m) { m.factor.previous_positions.clear(); });
   unfit([](RunMemory& m) { m.factor.rate_s = 0; });
   unfit([](RunMemory& m) { m.factor.ahead = 0.5; });
   unfit([](RunMemory& m) { m.factor.changed_contacts.push_back(0); });
-  EXPECT_EQ(cases, 18);
+  EXPECT_EQ(cases, 20);
   for (const int part : {0, 1, 2, 3, 4, 5, 6}) {
     PastDivision bad = *run.last().run.past_divisions.front();
     PlannedDivision& one = bad.planned.front();

@@ -65,13 +65,15 @@ struct Fields {
   }
 
   void take_run(const RunMemory& run) {
-    const auto& [state, steps, divisions, equilibrium_time_s, at_equilibrium, criterion_met, wanted_step_s, computing_s,
-                 energies, factor, past_divisions, whole_internals, outside_arrays] = run;
+    const auto& [state, steps, divisions, equilibrium_time_s, at_equilibrium, criterion_met, wanted_step_s, pace,
+                 computing_s, energies, factor, past_divisions, whole_internals, outside_arrays] = run;
     take_state(state);
     take_factor(factor);
     take("steps", steps), take("divisions", divisions), take("equilibrium_time_s", equilibrium_time_s);
     take("at_equilibrium", at_equilibrium), take("criterion_met", criterion_met);
     take("wanted_step_s", wanted_step_s), take("computing_s", computing_s);
+    const auto& [since_s, pace_steps, iterations] = pace;
+    take("pace.since_s", since_s), take("pace.steps", pace_steps), take("pace.iterations", iterations);
     numbers["energies"];
     for (const auto& [active, stored, dissipated] : energies)
       take("energies", active), take("energies", stored), take("energies", dissipated);
@@ -121,6 +123,7 @@ Checkpoint marked(Checkpoint checkpoint) {
   run.state.contact_forces = {0.5, 0, 2};
   run.state.in_contact = {1, 0, 1};
   run.state.internals = {{1, 2}, {}, {3}};
+  run.pace.since_s = 1.5;
   run.outside_arrays = {{"signal", {0.5, 2}}, {"time of birth", {1, 3}}};
   run.whole_internals = {{6}, {7, 8}, {}};
   run.state.trend.step_s = 0.75;

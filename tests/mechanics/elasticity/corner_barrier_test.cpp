@@ -30,7 +30,7 @@ TEST(CornerBarrier, IsNothingAboveItsThresholdAndInfiniteAtZero) {
   const auto energy = [&](double height_ratio) {
     Motion motion = at_rest(tissue);
     for (Vec3& x : motion.positions) x.z() *= height_ratio;
-    EXPECT_NEAR(min_corner_jacobian_ratio(tissue, motion.positions), height_ratio, 1e-12);
+    EXPECT_NEAR(least_corner_ratio(tissue, motion.positions).ratio, height_ratio, 1e-12);
     return law.energy(motion.step());
   };
   EXPECT_EQ(energy(1), 0);
@@ -59,7 +59,7 @@ TEST(CornerBarrier, HoldsACornerUpright) {
     const StepReport report = stepper.advance(rest_state(model), 1, true, end);
     EXPECT_EQ(report.converged(), with_barrier) << report.reason();
     if (!with_barrier) continue;
-    const double ratio = min_corner_jacobian_ratio(model.tissue, end.positions);
+    const double ratio = least_corner_ratio(model.tissue, end.positions).ratio;
     EXPECT_GT(ratio, 0);
     EXPECT_LT(ratio, 0.15);
   }
