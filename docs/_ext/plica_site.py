@@ -74,7 +74,9 @@ def python_reference(names):
         thing = getattr(plica, name)
         if inspect.isclass(thing):
             fields = ", ".join(getattr(thing, "_fields", ()))  # of a named tuple: its docstring has them
-            text += f".. autoclass:: plica.{name}\n   :members:\n   :exclude-members: {fields}\n\n"
+            ours = any(base.__module__.startswith("plica") for base in thing.__bases__) and not issubclass(thing, Exception)
+            inherited = "   :inherited-members:\n" if ours else ""
+            text += f".. autoclass:: plica.{name}\n   :members:\n{inherited}   :exclude-members: {fields}\n\n"
         else:
             text += f".. autofunction:: plica.{name}\n\n"
     return f"````{{eval-rst}}\n{text}````"

@@ -16,11 +16,11 @@ from .names import label as _label
 from .pictures import render
 from .results import open_run
 from .scenario import Scenario, _items
+from .study_table import StudyTable
 
 if TYPE_CHECKING:
     import pandas
 
-    from .study import Study
 
 __all__ = ["verdict"]
 
@@ -88,7 +88,7 @@ def verdict(row: Any) -> str:
     return "furrowed" if below_lips_um >= FURROWED_UM or depth_um >= DEEP_UM else "flattened"
 
 
-def curves(study: Study, measure: str) -> Any:
+def curves(study: StudyTable, measure: str) -> Any:
     """Plot an output variable over each key, one panel per key, with the other keys as in the scenario.
 
     The values of the scenario are marked. Runs without a result are red crosses at the bottom of the panel, which interrupt
@@ -180,7 +180,7 @@ def _places(values: pandas.Series[Any]) -> tuple[pandas.Series[float], list[str]
 
 
 def phase_diagram(
-    study: Study,
+    study: StudyTable,
     x: Optional[str] = None,
     y: Optional[str] = None,
     *,
@@ -269,7 +269,7 @@ def phase_diagram(
     return figure
 
 
-def _two_keys(study: Study, x: Optional[str], y: Optional[str]) -> tuple[str, str]:
+def _two_keys(study: StudyTable, x: Optional[str], y: Optional[str]) -> tuple[str, str]:
     for key in (x, y):
         if key is not None:
             text_of(key, "phase_diagram: x and y")
@@ -283,7 +283,7 @@ def _two_keys(study: Study, x: Optional[str], y: Optional[str]) -> tuple[str, st
     return x, y
 
 
-def _check_is_plane(study: Study, table: pandas.DataFrame, x: str, y: str) -> None:
+def _check_is_plane(study: StudyTable, table: pandas.DataFrame, x: str, y: str) -> None:
     if study.kind in DRAWN_KINDS:
         raise ValueError(f'phase_diagram: the study is of kind "{study.kind}"; use a grid over the two keys')
     others = [key for key in study.keys if key not in (x, y) and table[key].nunique() > 1]
@@ -309,7 +309,7 @@ def _common(words: pandas.Series[str]) -> str:
     return str(words.iloc[0]) if words.nunique() == 1 else "replicates differ"
 
 
-def _title(study: Study, measure: Union[str, Callable[[pandas.Series[Any]], str]], runs: int, lost: int) -> str:
+def _title(study: StudyTable, measure: Union[str, Callable[[pandas.Series[Any]], str]], runs: int, lost: int) -> str:
     scenario = _scenario_of(study)
     own = not any(key.startswith("time.end_") for key in study.keys)
     until = f" until {_shown(scenario['time.end_s'] / 60)} min" if scenario is not None and own else ""
@@ -360,7 +360,7 @@ def _diagonal(table: pandas.DataFrame, x: str, y: str, columns: list[Any], rows:
     return [int(points[pair]) for pair in pairs]
 
 
-def _add_thumbnails(study: Study, table: pandas.DataFrame, ax: Any, below: Any, points: list[int], across: tuple[str, list[Any]],
+def _add_thumbnails(study: StudyTable, table: pandas.DataFrame, ax: Any, below: Any, points: list[int], across: tuple[str, list[Any]],
                     up: tuple[str, list[Any]], view: str) -> None:
     effects = needed("matplotlib.patheffects", "thumbnails")
     images: list[NDArray[np.uint8]] = []
@@ -397,7 +397,7 @@ def _did_you_mean(word: str, known: Sequence[str]) -> str:
     return f" (nearest match: {near[0]!r})" if near else ""
 
 
-def _scenario_of(study: Study) -> Optional[Scenario]:
+def _scenario_of(study: StudyTable) -> Optional[Scenario]:
     """Scenario of the study, or None if it cannot be read any more."""
     given = tomllib.loads(study._spec.text)
     try:
@@ -411,7 +411,7 @@ def _scenario_of(study: Study) -> Optional[Scenario]:
         return None
 
 
-def _own_values(study: Study) -> dict[str, Any]:
+def _own_values(study: StudyTable) -> dict[str, Any]:
     """Values of the keys in the scenario of the study."""
     scenario = _scenario_of(study)
     try:
@@ -439,7 +439,7 @@ def _shown(value: Any) -> str:
     return np.format_float_positional(float(value), precision=3, fractional=False, trim="-")
 
 
-def _axis_label(study: Study, key: str) -> str:
+def _axis_label(study: StudyTable, key: str) -> str:
     return _label(key) + (", log scale" if study._given.get(f"vary.{key}.scale") == "log" else "")
 
 

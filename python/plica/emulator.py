@@ -12,11 +12,11 @@ from .answers import _is_number, _results
 from .arguments import texts_of, told, whole
 from .errors import needed
 from .names import label as _label
+from .study_table import StudyTable
 
 if TYPE_CHECKING:
     import pandas
 
-    from .study import Study
 
 __all__ = ["Emulator"]
 
@@ -136,7 +136,7 @@ class Emulator:
         return f"Emulator({off} over {', '.join(self.keys)})"
 
 
-def emulator(study: Study, measures: Union[str, Sequence[str]], *, folds: int = 5, seed: int = 1) -> Emulator:
+def emulator(study: StudyTable, measures: Union[str, Sequence[str]], *, folds: int = 5, seed: int = 1) -> Emulator:
     """Fit a Gaussian process to each output variable, over the keys of the study. Requires scikit-learn.
 
     The covariance is a Matérn function (ν = 5/2) with one length per key, plus noise, fitted by maximum marginal likelihood
@@ -210,7 +210,7 @@ def emulator(study: Study, measures: Union[str, Sequence[str]], *, folds: int = 
     return Emulator(ranges, models, pandas.DataFrame(errors, index=pandas.Index(names, name="measure")), held_out)
 
 
-def _range(study: Study, table: pandas.DataFrame, key: str) -> Range:
+def _range(study: StudyTable, table: pandas.DataFrame, key: str) -> Range:
     if not _is_number(table[key]):
         words = ", ".join(dict.fromkeys(map(str, table[key])))
         raise ValueError(f"emulator: {key} takes words ({words}), which cannot be interpolated; use one study per word")

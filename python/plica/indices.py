@@ -11,11 +11,11 @@ from .answers import _results
 from .arguments import number, text_of, whole
 from .errors import needed
 from .names import label as _label
+from .study_table import StudyTable
 
 if TYPE_CHECKING:
     import pandas
 
-    from .study import Study
 
 __all__ = ["SobolIndices"]
 
@@ -87,7 +87,7 @@ class SobolIndices(NamedTuple):
 
 
 def sobol_indices(
-    study: Study, measure: str, *, confidence: float = 0.95, resamples: int = 1000, seed: int = 1, drop_missing: bool = False
+    study: StudyTable, measure: str, *, confidence: float = 0.95, resamples: int = 1000, seed: int = 1, drop_missing: bool = False
 ) -> SobolIndices:
     """Estimate first-order and total Sobol indices of an output variable. Requires SALib.
 

@@ -27,7 +27,7 @@ def polygons_of_labels(
     um_per_pixel: float,
     *,
     background: int = 0,
-    gap_px: int = 2,
+    gap_px: float = 2,
     keep_cut: bool = False,
     keep: str = "all",
 ) -> Polygons:
@@ -42,7 +42,7 @@ def polygons_of_labels(
         Pixel size, µm.
     background : int
         Label of pixels outside all cells.
-    gap_px : int
+    gap_px : float
         Background lines between cells, up to twice this width, are assigned to the nearest cells; 0: none.
     keep_cut : bool
         Whether to keep cells cut by the border of the image.

@@ -81,7 +81,7 @@ def test_a_process_that_is_killed_costs_its_run_only(table):
     def kill():
         while not killed:
             children = subprocess.run(["pgrep", "-P", str(os.getpid())], capture_output=True, text=True).stdout.split()
-            workers = [c for c in children if "plica.study" in Path(f"/proc/{c}/cmdline").read_text().replace("\0", " ")]
+            workers = [c for c in children if "plica.study_workers" in Path(f"/proc/{c}/cmdline").read_text().replace("\0", " ")]
             if len(workers) == 2:
                 time.sleep(0.2)
                 os.kill(int(workers[0]), signal.SIGKILL)

@@ -6,7 +6,7 @@ import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 
 const source = join(fileURLToPath(new URL(".", import.meta.url)), "../src/study");
-const modules = ["study_data", "selection", "axis", "failures", "run_panel", "filter_bar", "phase"];
+const modules = ["column", "study_data", "selection", "axis", "failures", "run_panel", "filter_bar", "phase"];
 const { outputFiles } = await build({
   stdin: { contents: modules.map((name) => `export * from "./${name}";`).join("\n"), resolveDir: source, loader: "ts" },
   bundle: true, write: false, format: "esm", target: "es2022",

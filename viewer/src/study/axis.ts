@@ -1,6 +1,6 @@
 // Mapping of values to pixels along one axis, and its ticks. Runs without a value have a separate lane before the axis.
 import { number } from "../text";
-import type { Column } from "./study_data";
+import type { Column } from "./column";
 
 export interface Tick {
   at: number; // pixels

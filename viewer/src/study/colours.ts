@@ -2,7 +2,7 @@
 import { lineColours, rampColour } from "../colour";
 import { element, styleColour } from "../dom";
 import { number } from "../text";
-import type { Column } from "./study_data";
+import type { Column } from "./column";
 import { verdictColours } from "./verdict";
 
 const rampSteps = 48;

@@ -1,6 +1,6 @@
 // Choice of one or several columns.
 import { element } from "../dom";
-import type { Column } from "./study_data";
+import type { Column } from "./column";
 
 const groupNames: [string, (column: Column) => boolean][] = [
   ["keys", ({ role }) => role === "key"],

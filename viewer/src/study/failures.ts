@@ -2,7 +2,8 @@
 import { element } from "../dom";
 import { count as countText } from "../text";
 import type { Selection } from "./selection";
-import type { Column, Study } from "./study_data";
+import type { Column } from "./column";
+import type { Study } from "./study_data";
 
 export interface Failures {
   reason: string; // numbers that differ between its runs are "…"

@@ -7,7 +7,7 @@ import { Colours, colourOfStatus, swatch } from "./colours";
 import { patternOf } from "./failures";
 import type { RowsTable } from "./rows_table";
 import type { Selection } from "./selection";
-import type { Column } from "./study_data";
+import type { Column } from "./column";
 
 export class FilterBar {
   private readonly text = element("input", { type: "search", id: "filter", "aria-label": "Filter runs" });

@@ -10,7 +10,8 @@ import { RowsTable } from "./rows_table";
 import { RunPanel } from "./run_panel";
 import { makeScatter } from "./scatter";
 import { Selection } from "./selection";
-import { type Column, readStudy, type Study } from "./study_data";
+import type { Column } from "./column";
+import { readStudy, type Study } from "./study_data";
 
 const mostAxes = 10; // of the parallel coordinates, initially
 

@@ -6,7 +6,7 @@ import { Colours } from "./colours";
 import { columnTicks } from "./column_choice";
 import { Layers, wrapped } from "./layers";
 import type { Selection } from "./selection";
-import type { Column } from "./study_data";
+import type { Column } from "./column";
 
 const room = { top: 52, bottom: 10, sides: 54 };
 const leastGap = 92; // pixels between axes; narrower places scroll

@@ -7,7 +7,7 @@ import { drawTicks, drawTitles, type Frame, frameOf } from "./frame";
 import { Layers } from "./layers";
 import { Points } from "./points";
 import type { Selection } from "./selection";
-import type { Column } from "./study_data";
+import type { Column } from "./column";
 import { verdictRule } from "./verdict";
 
 interface Cell {

@@ -5,7 +5,7 @@ import { Colours, withoutResult } from "./colours";
 import { drawFrame, type Frame, frameOf } from "./frame";
 import { Layers } from "./layers";
 import type { Selection } from "./selection";
-import type { Column } from "./study_data";
+import type { Column } from "./column";
 
 const mostDiscs = 2500; // more are drawn as squares
 const reach = 14; // pixels from the pointer to a point

@@ -3,7 +3,7 @@ import { element } from "../dom";
 import { compareValues } from "../order";
 import { colourOfStatus, swatch } from "./colours";
 import type { Selection } from "./selection";
-import type { Column } from "./study_data";
+import type { Column } from "./column";
 
 const rowHeight = 27; // pixels, as in style.css
 const rowsAround = 8; // beyond the visible ones

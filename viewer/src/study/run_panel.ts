@@ -2,7 +2,8 @@
 import { element } from "../dom";
 import { colourOfStatus, swatch } from "./colours";
 import type { Selection } from "./selection";
-import type { Column, Study } from "./study_data";
+import type { Column } from "./column";
+import type { Study } from "./study_data";
 
 /** Shell command `plica run` with all overrides of the run. */
 export function commandOf(study: Study, row: number): string {

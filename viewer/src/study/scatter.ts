@@ -3,7 +3,7 @@ import { element } from "../dom";
 import { columnSelect } from "./column_choice";
 import { Points } from "./points";
 import type { Selection } from "./selection";
-import type { Column } from "./study_data";
+import type { Column } from "./column";
 
 export function makeScatter(box: HTMLElement, selection: Selection, x: Column, y: Column): Points {
   const columns = selection.study.plottable;

@@ -1,6 +1,7 @@
 // Selection: visible, picked and highlighted runs, and their colouring.
 import { comparisonIn, compares, isNamed, isPart, wordsOf } from "../filter";
-import type { Column, Study } from "./study_data";
+import type { Column } from "./column";
+import type { Study } from "./study_data";
 
 export interface Range {
   low: number;

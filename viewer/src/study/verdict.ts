@@ -1,5 +1,5 @@
 // Verdict on an embryo by the rules of plica.verdict (docs/how-to/answers.md).
-import { Column } from "./study_data";
+import { Column, hasEnded } from "./column";
 
 const furrowed_um = 1; // below its lips
 const deep_um = 15; // below the reference position, if the lips have moved inward, too
@@ -9,11 +9,6 @@ const verdicts = ["closed", "furrowed", "flattened", "passes through itself"];
 export const verdictColours: Record<string, string> = {
   closed: "#009e73", furrowed: "#0072b2", flattened: "#e69f00", "passes through itself": "#d55e00",
 };
-
-/** Whether a run has ended regularly, by its status. */
-export function hasEnded(status: Column, row: number): boolean {
-  return ["equilibrium", "end_time"].includes(status.exact(row));
-}
 
 /** Column of verdicts, if the study has the required output variables; missing for runs without a result. */
 export function verdictColumn(columns: Column[]): Column | null {
