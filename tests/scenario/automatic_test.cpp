@@ -7,15 +7,15 @@
 namespace plica {
 namespace {
 
-Scenario scenario_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+using Overrides = std::vector<std::string>;
+
+Scenario scenario_of(const std::string& text, const Overrides& overrides = {}) {
   return load_scenario({"test", "test.toml", text}, overrides);
 }
 
-double barrier_Pa(const std::string& text, const std::vector<std::string>& overrides = {}) {
+double barrier_Pa(const std::string& text, const Overrides& overrides = {}) {
   return *scenario_of(text, overrides).elasticity.corner_barrier_Pa;
 }
-
-using Overrides = std::vector<std::string>;
 
 const std::string row = "[embryo]\nshape = \"block\"\ncells = [3, 1, 1]\n";
 const std::string cut = "[division.cut]\nregion = \"all\"\nat_s = 5\n";
