@@ -94,7 +94,7 @@ const std::vector<FailingCase> failing = {
      block + "[contraction.pull]\nregion = \"all\"\nstiffness_nN_per_um = 1e300\n",
      {"contraction.pull.stiffness_nN_per_um"}},
     {"pressure",
-     grid + "end_s = 3\n" + "[pressure.p]\nregion = \"all\"\npressure_Pa = 20000\n",
+     grid + "end_s = 3\n" + "[pressure.p]\nregion = \"all\"\npressure_Pa = 30000\n",
      {"elasticity.corner_barrier_Pa", "pressure.p.program", "pressure.p.pressure_Pa"}},
     {"conjugate gradients", block + push + "1\n" + "[volume]\nmethod = \"none\"\n", {"time.cg_max_iterations"}},
 };
