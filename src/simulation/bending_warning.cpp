@@ -7,7 +7,8 @@
 
 namespace plica {
 std::string bending_warning(const Scenario& scenario, const Simulation& simulation) {
-  if (simulation.status() == RunStatus::failed) return "";
+  const RunStatus status = simulation.status();
+  if (status == RunStatus::failed || status == RunStatus::under_way) return "";
   constexpr double worth_telling = 0.05;
   const Model& model = simulation.model();
   const double error = bending_error(model, simulation.state().positions).value_or(0);
