@@ -59,7 +59,7 @@ function showCrossings(runs: Run[]): void {
 
 // Other reasons to doubt the results.
 function showWarnings(runs: Run[]): void {
-  const warned = runs.map(({ name, data }) => ({ name, texts: Object.values<string>(data.summary?.warnings ?? {}) }))
+  const warned = runs.map(({ name, data }) => ({ name, texts: Object.values((data.summary?.warnings ?? {}) as Record<string, string>) }))
     .filter(({ texts }) => texts.length > 0);
   if (warned.length === 0) return;
   const notice = byId("warnings");

@@ -406,6 +406,9 @@ test("a tissue that passes through itself is announced, and none other", async (
   assert.match(await crossing.page.textContent("#crossing"), /^From [\d.]+ min on, the tissue self-intersects/);
   assert.ok(await crossing.page.isVisible("#crossing"));
   assert.match(await crossing.page.textContent("#headline"), /self-intersecting/);
+  const { warnings } = JSON.parse(readFileSync(join(folder, "curl/summary.json"), "utf8"));
+  assert.ok("bending" in warnings);
+  assert.deepEqual(await crossing.page.locator("#warnings p").allTextContents(), Object.values(warnings).map((text) => `Warning: ${text}.`));
   await crossing.done();
   const sound = await open("drosophila/report.html");
   assert.ok(!(await sound.page.isVisible("#crossing")));
