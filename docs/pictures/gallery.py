@@ -383,7 +383,7 @@ LABELS = """\
 format = 1
 region.bright = { array = "reporter", above = 0.5 }
 elasticity = { corner_barrier_Pa = 100 }
-time = { end_min = 20, integrator = "bdf2" }
+time = { end_min = 20 }
 
 [contraction.apical]
 region = "bright"

@@ -220,7 +220,7 @@ def division_demo():
     run = run_of("division-demo")
     figure, axes = canvas(WIDTH, 320)
     camera = Camera(back=(-0.25, -0.8, 0.45), up=(0, 0, 1))
-    for column, time in enumerate((0.5, 3, 6.4)):
+    for column, time in enumerate((0.5, 3, 6.5)):
         frame, x = run.frames.at(time), 175 + 325 * column
         cells, colours = frame.cell_data["cell_id"].astype(int), by_generation(frame)
         faces, owners = [], []

@@ -19,9 +19,8 @@
 #include "record/checkpoint.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/print.hpp"
-#include "simulation/bending_warning.hpp"
 #include "simulation/crossing_warning.hpp"
-#include "simulation/energy_warning.hpp"
+#include "simulation/run_warnings.hpp"
 #include "thread_count.hpp"
 #include "tissue/faces.hpp"
 
@@ -256,11 +255,17 @@ void bind_simulation(nb::module_& module) {
       .def_prop_ro("divisions", looks([](const Simulation& s) { return s.divisions(); }))
       .def_prop_ro("computing_s", looks([](const Simulation& s) { return s.computing_s(); }))
       .def_prop_ro("measures", looks(measures))
-      .def_prop_ro("crossing_warning", looks(crossing_warning))
       .def_prop_ro(
-          "bending_warning",
-          [](S& self) { return self.with([&](const Simulation& s) { return bending_warning(self.scenario(), s); }); })
-      .def_prop_ro("energy_warning", looks(energy_warning))
+          "crossing_warning",
+          [](S& self) { return self.with([&](const Simulation& s) { return crossing_warning(self.scenario(), s); }); })
+      .def_prop_ro("warnings",
+                   [](S& self) {
+                     std::vector<std::string> texts;
+                     for (const RunWarning& warning :
+                          self.with([&](const Simulation& s) { return run_warnings(self.scenario(), s); }))
+                       texts.push_back(warning.text);
+                     return texts;
+                   })
       .def_prop_ro("positions", of_state(&State::positions))
       .def_prop_ro("velocities", of_state(&State::velocities))
       .def_prop_ro("pressures", looks(pressures_Pa))

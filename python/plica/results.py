@@ -256,13 +256,13 @@ class Run:
         """Scenario of the run. ScenarioError if this version of plica cannot read it."""
         return Scenario(self.directory / "scenario.toml")
 
-    def plot(self, columns: Union[str, Sequence[str]] = ("furrow_depth_um", "max_node_speed_um_per_s"), ax: Any = None) -> Any:
+    def plot(self, columns: Union[str, Sequence[str], None] = None, ax: Any = None) -> Any:
         """Plot columns of `series` over time, one axes per column.
 
         Parameters
         ----------
-        columns : str or sequence of str
-            Column names.
+        columns : str or sequence of str, optional
+            Column names; by default depth of a furrow or fold, else largest displacement, and largest speed.
         ax : matplotlib Axes, or sequence of them, optional
             Axes to draw into, one per column; by default a new figure is made.
 
@@ -278,6 +278,9 @@ class Run:
             If pandas or matplotlib is not installed.
         """
         plt = needed("matplotlib.pyplot", "plot")
+        depth = self._depth()
+        if columns is None:
+            columns = ("furrow_depth_um" if depth else "max_displacement_um", "max_node_speed_um_per_s")
         names = texts_of(columns, "columns")
         if not names:
             raise ValueError("columns: is empty; give the name of a column")
@@ -295,7 +298,7 @@ class Run:
             figure = axes[0].figure
         for name, one in zip(names, axes):
             one.plot(series["time_s"] / 60, series[name])
-            one.set_ylabel(label(name))
+            one.set_ylabel(label(name).replace("furrow depth", "fold depth") if depth == "fold" else label(name))
         axes[-1].set_xlabel("time (min)")
         figure.tight_layout()
         return figure
@@ -343,10 +346,13 @@ class Run:
         outcome = self.summary.get("outcome", "")
         return f"Run({str(self.directory)!r}, {self.status}, {len(self.frames)} frames{outcome and ': '}{outcome})"
 
+    def _depth(self) -> str:
+        """Return what ``furrow_depth_um`` is of: "furrow", "fold" or nothing ("")."""
+        told = str(self.summary.get("outcome", "furrow"))  # runs of older versions are of furrows
+        return "furrow" if told.startswith("furrow") else "fold" if told.startswith("fold") else ""
+
     def _repr_html_(self) -> str:
-        summary = self.summary
-        told = str(summary.get("outcome", "furrow"))  # runs of older versions are of furrows
-        depth = "furrow" if told.startswith("furrow") else "fold" if told.startswith("fold") else ""
+        summary, depth = self.summary, self._depth()
         rows = "".join(
             f"<tr><td style='text-align:left'>{html.escape(name)}</td><td>{html.escape(_short(value))}</td></tr>"
             for name, value in summary.items()

@@ -151,8 +151,8 @@ class Simulation:
         if not self._has_crossed and (measures["self_intersections"] or 0) > 0:
             self._has_crossed = True
             warnings.warn(self._core.crossing_warning, stacklevel=3)
-        if energy_warning := self._core.energy_warning:
-            warnings.warn(energy_warning, stacklevel=3)
+        for text in self._core.warnings:
+            warnings.warn(text, stacklevel=3)
         return Step(self._core.time_s, measures)
 
     @overload
@@ -250,8 +250,6 @@ class Simulation:
                 bar.close()
             if self._core.is_recording:
                 self._core.end_record()
-        if self.finished and self._core.bending_warning:
-            log.warning("%s", self._core.bending_warning)
         return None if out is None else open_run(out)
 
     def _begin_record(self, out: str, overwrite: bool, resume: bool) -> bool:

@@ -20,7 +20,6 @@
 #include "scenario/advice.hpp"
 #include "show/recorded_run.hpp"
 #include "show/report.hpp"
-#include "simulation/bending_warning.hpp"
 #include "simulation/crossing_warning.hpp"
 
 namespace plica {
@@ -56,7 +55,7 @@ int exit_status(RunStatus status, bool missed) {
 constexpr double step_patience_s = 3;
 
 // Run to the end, or until an interruption.
-nlohmann::ordered_json simulate(Simulation& simulation, RecordedRun& record, bool quiet) {
+nlohmann::ordered_json simulate(const Scenario& scenario, Simulation& simulation, RecordedRun& record, bool quiet) {
   Progress progress(simulation.controls(), quiet);
   simulation.stop_when([&] { return interrupted_for(step_patience_s) || record.has_failed(); });
   bool has_crossed = false;
@@ -64,7 +63,7 @@ nlohmann::ordered_json simulate(Simulation& simulation, RecordedRun& record, boo
     if (!has_crossed && simulation.measures()["self_intersections"] > 0) {
       has_crossed = true;
       progress.finish();
-      fmt::print(stderr, "warning: {}\n", crossing_warning(simulation));
+      fmt::print(stderr, "warning: {}\n", crossing_warning(scenario, simulation));
     }
     progress.show(simulation.measures());
     if (interrupted()) break;
@@ -97,14 +96,6 @@ void report_ending(const Scenario& scenario, const Simulation& simulation, const
         simulation.failure(), options.out);
   for (const auto& [topic, text] : summary.at("warnings").items())
     fmt::print(stderr, "warning: {}\n", text.get<std::string>());
-  if (simulation.status() == RunStatus::equilibrium && summary.at("steps") == 1)
-    fmt::print(
-        stderr,
-        "warning: equilibrium after the first step: no node is faster than stop.equilibrium_speed_um_per_min ({:g}); "
-        "lower it, increase the forces or reduce the drag\n",
-        simulation.controls().equilibrium_speed_um_per_s * units::minute);
-  if (const std::string bending = bending_warning(scenario, simulation); !bending.empty())
-    fmt::print(stderr, "warning: {}\n", bending);
   if (simulation.status() == RunStatus::under_way && can_archive())
     fmt::print(stderr, "plica: interrupted; to continue, repeat the command with --resume\n");
   if (!options.quiet) print_result(scenario, summary, options.out);
@@ -140,7 +131,7 @@ int run_scenario(const RunOptions& options) {
   const nlohmann::ordered_json summary = with_a_way_on([&] {
     if (record.begin() && !options.quiet)
       fmt::print("resuming after step {}, t = {:g} s\n", simulation.steps(), simulation.time_s());
-    return simulate(simulation, record, options.quiet);
+    return simulate(scenario, simulation, record, options.quiet);
   });
   std::vector<std::string> missed;
   if (simulation.status() == RunStatus::equilibrium || simulation.status() == RunStatus::end_time)

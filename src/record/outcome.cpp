@@ -9,6 +9,7 @@
 #include "core/words.hpp"
 #include "record/results.hpp"
 #include "scenario/embryo_axes.hpp"
+#include "simulation/crossing_warning.hpp"
 #include "tissue/facing.hpp"
 
 namespace plica {
@@ -79,13 +80,8 @@ std::string outcome_text(const Scenario& scenario, const Tissue& tissue, const J
 std::string crossing_text(const Scenario& scenario, const Json& summary) {
   const auto time_s = number_of(summary, "self_intersections_time_s");
   if (!time_s) return "";
-  // The rim of an open tissue is no contact surface.
-  const bool is_open = !number_of(summary, "lumen_volume_ratio");
-  const char* remedy = scenario.self_contact.surface == "both" ? ""
-                       : is_open ? "; self_contact.surface = \"both\" prevents it, except at the rim"
-                                 : "; set self_contact.surface to \"both\" to prevent it";
   return fmt::format("self-intersects since {} ({} pairs of faces at most); later results are unphysical{}",
-                     moment(*time_s), summary.at("self_intersections").get<int>(), remedy);
+                     moment(*time_s), summary.at("self_intersections").get<int>(), crossing_remedy(scenario));
 }
 
 }  // namespace plica

@@ -18,7 +18,7 @@
 #include "scenario/print.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/words.hpp"
-#include "simulation/energy_warning.hpp"
+#include "simulation/run_warnings.hpp"
 
 namespace plica {
 namespace {
@@ -58,9 +58,9 @@ Json energy_by_law(const Simulation& simulation) {
 }
 
 // Reasons to doubt the results, by topic.
-Json warnings_of(const Simulation& simulation) {
+Json warnings_of(const Scenario& scenario, const Simulation& simulation) {
   Json texts = Json::object();
-  if (const std::string text = energy_warning(simulation); !text.empty()) texts["energy_imbalance"] = text;
+  for (const auto& [topic, text] : run_warnings(scenario, simulation)) texts[topic] = text;
   return texts;
 }
 
@@ -96,7 +96,7 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   summary["status"] = simulation.status() == RunStatus::under_way ? "interrupted" : word(simulation.status());
   summary["stopped_by"] = stopped_by(scenario, simulation, last);
   summary["failure"] = simulation.failure().empty() ? Json(nullptr) : Json(simulation.failure());
-  summary["warnings"] = warnings_of(simulation);
+  summary["warnings"] = warnings_of(scenario, simulation);
   summary["failed_cell"] = simulation.failed_cell() ? Json(*simulation.failed_cell()) : Json(nullptr);
   summary["time_s"] = last.time_s();
   summary["equilibrium_time_s"] = number(simulation.equilibrium_time_s());

@@ -18,6 +18,7 @@
 #include "scenario/finer_mesh.hpp"
 #include "scenario/remedies.hpp"
 #include "scenario/setup.hpp"
+#include "scenario/validate.hpp"
 #include "scenario/words.hpp"
 #include "tissue/faces.hpp"
 #include "tissue/mesh_quality.hpp"
@@ -238,6 +239,9 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   advise_on_neo_hookean(scenario, model.tissue, warn);
   if (const auto onset = gradual_onset(scenario); onset && !is_of_grid(shape_of(scenario.embryo)))
     note("forces act in full from t = 0, so the first steps are short and lose energy; " + remedies_text({*onset}));
+  if (const std::string why = what_bars_second_order(scenario);
+      !why.empty() && !scenario.given_at.contains("time.integrator"))
+    note("time.integrator is \"backward-euler\", since \"bdf2\" does not support " + why);
   if (method_of(scenario.volume) == VolumeMethod::projection) {
     note("volumes are projected after the forces act, so the equilibrium depends on time.step_s");
     if (!scenario.time.step_s && scenario.volume.projection_weights == "equal")

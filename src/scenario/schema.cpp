@@ -233,7 +233,7 @@ std::vector<Row> make_rows() {
            "Step solver: Newton's method, or one linear system by conjugate gradients (the paper)."),
       time("integrator", &T::integrator, one_of(words::integrators),
            "First or second order in time. `bdf2` requires scheme `newton`, no inertia and no projection. `automatic`: "
-           "`backward-euler`."),
+           "`bdf2` where it can be, else `backward-euler`."),
       time("linear_solver", &T::linear_solver, one_of(words::linear_solvers),
            "Linear solver in Newton's method: factorization of the whole system (`direct`), or a Krylov method with a "
            "factorization of its positive definite part (`cholesky`) or with multigrid; `automatic`: by size. Results "

@@ -218,17 +218,14 @@ void resolve_automatic(Scenario& scenario) {
   if (!scenario.elasticity.corner_barrier_Pa)
     scenario.elasticity.corner_barrier_Pa =
         may_invert && !is_as_in_the_paper(scenario) ? scenario.elasticity.young_modulus_Pa / 10 : 0;
-  if (scenario.time.integrator == "automatic") scenario.time.integrator = "backward-euler";
+  if (scenario.time.integrator == "automatic")
+    scenario.time.integrator = what_bars_second_order(scenario).empty() ? "bdf2" : "backward-euler";
 }
 
 void check_integrator(const Scenario& scenario, Input& input) {
   if (!input.sound("time.integrator") || scenario.time.integrator != "bdf2") return;
-  const auto refuse = [&](const std::string& why) {
+  if (const std::string why = what_bars_second_order(scenario); !why.empty())
     input.report("time.integrator", "\"bdf2\" does not support " + why, "set integrator to \"backward-euler\"");
-  };
-  if (scenario.time.scheme != "newton") return refuse(fmt::format("time.scheme = \"{}\"", scenario.time.scheme));
-  if (method_of(scenario.volume) == VolumeMethod::projection) return refuse("volume.method = \"projection\"");
-  if (scenario.dynamics.density_kg_per_m3 > 0) return refuse("dynamics.density_kg_per_m3 above 0");
 }
 
 void check_required_keys(const Scenario& scenario, Input& input) {
@@ -437,6 +434,13 @@ class RegionCheck {
 };
 
 }  // namespace
+
+std::string what_bars_second_order(const Scenario& scenario) {
+  if (scenario.time.scheme != "newton") return fmt::format("time.scheme = \"{}\"", scenario.time.scheme);
+  if (method_of(scenario.volume) == VolumeMethod::projection) return "volume.method = \"projection\"";
+  if (scenario.dynamics.density_kg_per_m3 > 0) return "dynamics.density_kg_per_m3 above 0";
+  return "";
+}
 
 void validate(Scenario& scenario, Input& input) {
   check_embryo(scenario, input);

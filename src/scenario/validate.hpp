@@ -11,6 +11,9 @@ namespace plica {
 /// "automatic".
 void validate(Scenario& scenario, Input& input);
 
+/// Returns what second order in time does not support in a scenario; empty if nothing.
+std::string what_bars_second_order(const Scenario& scenario);
+
 // Parts of validate().
 
 /// Resets `field` to its default. Reports an error if it was set together with, or after, a choice that does not use

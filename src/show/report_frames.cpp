@@ -169,9 +169,8 @@ void ReportFrames::add(const Frame& frame, double time_s) {
     regions_.resize(std::min(regions_.size(), most_regions));
     rest_positions_ = frame.positions;
     views_ = views_of(frame);
-    fields_ = fields_of(frame);
-    fields_.resize(std::min(fields_.size(), colour_fields().size() + most_given_arrays));
   }
+  add_new_fields(frame);
   const bool new_cells = topologies_.empty() || !shows(topologies_.back(), frame);
   if (new_cells) {
     if (!topologies_.empty()) topologies_.back().moments.back().at_division = true;
@@ -190,6 +189,20 @@ void ReportFrames::add(const Frame& frame, double time_s) {
   topology.moments.back().at_division = new_cells;
   bytes_ += bytes_of(topology.moments.back());
   thin_out();
+}
+
+void ReportFrames::add_new_fields(const Frame& frame) {
+  for (ColourField& field : fields_of(frame)) {
+    if (fields_.size() == colour_fields().size() + most_given_arrays) return;
+    if (std::ranges::find(fields_, field.name, &ColourField::name) != fields_.end()) continue;
+    fields_.push_back(std::move(field));
+    for (FrameTopology& topology : topologies_)
+      for (FrameMoment& moment : topology.moments) {
+        bytes_ -= bytes_of(moment);
+        moment.fields.emplace_back(topology.first_element.size(), 0.0F);
+        bytes_ += bytes_of(moment);
+      }
+  }
 }
 
 void ReportFrames::thin_out() {

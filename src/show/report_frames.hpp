@@ -59,6 +59,8 @@ class ReportFrames {
   void pack_into(ReportRun& run) const;
 
  private:
+  /// Add the arrays that the frame is the first to have, with 0 in snapshots before it.
+  void add_new_fields(const Frame& frame);
   void thin_out();
 
   double most_bytes_, bytes_ = 0;

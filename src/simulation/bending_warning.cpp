@@ -7,7 +7,8 @@
 
 namespace plica {
 std::string bending_warning(const Scenario& scenario, const Simulation& simulation) {
-  if (simulation.status() == RunStatus::failed) return "";
+  const RunStatus status = simulation.status();
+  if (status == RunStatus::failed || status == RunStatus::under_way) return "";
   const Model& model = simulation.model();
   const int elements = elements_through_height(model.tissue);
   // With one element, the depth errs 1 to 4.6 times as much as bending, with two 1 to 1.3 times

@@ -7,7 +7,7 @@
 
 namespace plica {
 
-std::string crossing_warning(const Simulation& simulation) {
+std::string crossing_warning(const Scenario& scenario, const Simulation& simulation) {
   const Tissue& tissue = simulation.model().tissue;
   const Vectors& positions = simulation.state().positions;
   for (const auto& [side, facets] : {std::pair("apical", &tissue.apical_facets), {"basal", &tissue.basal_facets}}) {
@@ -21,11 +21,16 @@ std::string crossing_warning(const Simulation& simulation) {
         "the tissue self-intersects: at t = {:.4g} min {} faces of cells {} and {} cross at x = {:.1f}, y = {:.1f}, "
         "z = {:.1f} um ({} pairs in all); later results are unphysical{}",
         simulation.time_s() / units::minute, side, id(one), id(other), place.x(), place.y(), place.z(), pairs.size(),
-        simulation.measures()["contact_pairs"]
-            ? ""
-            : "; set self_contact.surface to \"both\" to prevent it (except at the rim of an open tissue)");
+        crossing_remedy(scenario));
   }
   return "";
+}
+
+std::string crossing_remedy(const Scenario& scenario) {
+  // The rim of an open tissue is no contact surface.
+  return scenario.self_contact.surface == "both"
+             ? ""
+             : "; set self_contact.surface to \"both\" to prevent it (except at the rim of an open tissue)";
 }
 
 }  // namespace plica

@@ -9,12 +9,15 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/numbers.hpp"
 #include "core/version.hpp"
+#include "record/run_scenario.hpp"
+#include "scenario/embryo_axes.hpp"
 #include "show/packing.hpp"
 #include "show/report_page.hpp"
 #include "study/csv_fields.hpp"
@@ -171,6 +174,12 @@ Json packed(const std::vector<Column>& columns, PackedArrays& arrays) {
   return list;
 }
 
+// Word for `furrow_depth_um`, by the axes of the scenario.
+const char* depth_word(const fs::path& directory) {
+  const std::optional<Scenario> scenario = scenario_of_run(directory);
+  return !scenario || have_furrow(axes_of(scenario->embryo)) ? "furrow" : "fold";
+}
+
 // Description of the study from its file, if its scenario still exists; else from the scenario with all keys in the
 // directory, which makes the same runs.
 Json told(const fs::path& directory, const Json& begun) {
@@ -181,6 +190,7 @@ Json told(const fs::path& directory, const Json& begun) {
                {"design", ""},
                {"set", Json::array()},
                {"log_keys", Json::array()},
+               {"depth_word", depth_word(directory)},
                {"study", text}};
   try {
     const StudyInput input = parse_study(name, begun.value("file", "study.toml"), text);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <unordered_map>
 
 #include "tissue/lattice.hpp"
@@ -85,9 +86,9 @@ double mean_edge_length(const HexahedralMesh& mesh) {
   return sum / (12.0 * static_cast<double>(mesh.cells.size()));
 }
 
-/// Two nodes of the surface at one place: cells that look joined and are not. Nodes are sorted along a direction that
-/// no grid is likely to be square to, so that few are compared.
-void check_welded(const HexahedralMesh& mesh, const MeshFaces& faces) {
+/// Merges nodes of the surface at one place, so that cells that touch share them. Nodes are sorted along a direction
+/// that no grid is likely to be square to, so that few are compared. Returns how many were merged.
+std::size_t merge_coincident_nodes(HexahedralMesh& mesh, const MeshFaces& faces) {
   const Vec3 direction = Vec3(0.5772157, 0.2146018, 0.7878593);
   const double tolerance = 1e-6 * mean_edge_length(mesh);
   std::vector<NodeId> nodes;
@@ -99,16 +100,18 @@ void check_welded(const HexahedralMesh& mesh, const MeshFaces& faces) {
   sorted.reserve(nodes.size());
   for (const NodeId node : nodes) sorted.emplace_back(direction.dot(mesh.points[node.index()]), node);
   std::sort(sorted.begin(), sorted.end());
+  std::map<NodeId, NodeId> first;  // of a merged node: one before it at its place
   for (std::size_t i = 0; i < sorted.size(); ++i)
     for (std::size_t j = i + 1; j < sorted.size() && sorted[j].first - sorted[i].first <= tolerance; ++j) {
-      const Vec3& point = mesh.points[sorted[i].second.index()];
-      if ((mesh.points[sorted[j].second.index()] - point).norm() > tolerance) continue;
       const auto [low, high] = std::minmax(sorted[i].second, sorted[j].second);
-      throw MeshError(fmt::format(
-          "nodes {} and {} lie at the same place ({:g}, {:g}, {:g}) on the surface; cells that touch must share their "
-          "nodes: merge coincident nodes when the mesh is made",
-          low.number(), high.number(), point.x(), point.y(), point.z()));
+      if ((mesh.points[low.index()] - mesh.points[high.index()]).norm() > tolerance) continue;
+      NodeId& kept = first.try_emplace(high, low).first->second;
+      kept = std::min(kept, low);
     }
+  for (auto& cell : mesh.cells)
+    for (NodeId& node : cell)
+      for (auto found = first.find(node); found != first.end(); found = first.find(node)) node = found->second;
+  return first.size();
 }
 
 /// Gives the nodes of refined cells their numbers: what lies on a face or an edge is one node for all the cells there.
@@ -249,7 +252,11 @@ Tissue tissue_from_mesh(HexahedralMesh mesh, const MeshOptions& options) {
     return tissue_from_groups(mesh);
   }
   MeshFaces faces(mesh.cells, mesh.points);
-  check_welded(mesh, faces);
+  if (const std::size_t merged = merge_coincident_nodes(mesh, faces); merged > 0) {
+    mesh.remarks.push_back(fmt::format("{} coincident nodes were merged", merged));
+    check_cells(mesh);
+    faces = MeshFaces(mesh.cells, mesh.points);
+  }
   if (look_at_pieces(mesh, faces, options.keep_largest)) faces = MeshFaces(mesh.cells, mesh.points);
   centre();
   const std::vector<int> apical = mesh.apical_faces.empty() ? outer_faces(mesh, faces) : mesh.apical_faces;

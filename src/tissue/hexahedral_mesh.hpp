@@ -57,9 +57,9 @@ inline constexpr long long largest_mesh_elements = 20'000'000;
 /// Make a tissue of a mesh after its placement. With groups, makes their cells, in order of their numbers; arrays that
 /// vary within a cell are averaged. Otherwise each hexahedron becomes a cell whose nodes 4-7 are apical, subdivided
 /// trilinearly into `elements_per_cell` (along, across, basal to apical) elements; the first two must agree, since
-/// cells of a file have no common direction. The volume does not change. Nodes keep their order; those of refined
-/// elements follow. Without `apical_faces` the mesh must be one closed layer, one cell thick, whose outer side is
-/// apical. MeshError if the mesh is unusable.
+/// cells of a file have no common direction. The volume does not change. Coincident nodes of the surface are merged.
+/// Nodes keep their order; those of refined elements follow. Without `apical_faces` the mesh must be one closed layer,
+/// one cell thick, whose outer side is apical. MeshError if the mesh is unusable.
 Tissue tissue_from_mesh(HexahedralMesh mesh, const MeshOptions& options);
 
 /// Make the tissue of a mesh with groups whose hexahedra and points have been checked: grouped_mesh.cpp.

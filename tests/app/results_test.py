@@ -161,7 +161,16 @@ frame_every_s = 0.1
         stderr = self.run_scenario(text, "--quiet").stderr
         line, = [one for one in stderr.splitlines() if one.startswith("warning: time steps")]
         self.assertRegex(line, r'^warning: time steps lose \d+ % of the energy .*; set time.step_s to "adaptive"')
-        self.assertEqual(self.summary()["warnings"], {"energy_imbalance": line.removeprefix("warning: ")})
+        self.assertEqual(self.summary()["warnings"]["energy_imbalance"], line.removeprefix("warning: "))
+
+    def test_each_warning_of_a_run_is_in_its_summary(self):
+        text = ('[embryo]\nshape = "block"\nlength_um = 10\nwidth_um = 60\ncell_height_um = 12\ncells = [2, 12, 1]\n'
+                '[contraction.apical]\nregion = "all"\nstiffness_nN_per_um = 1.5\nacross_ratio = 1\n[time]\nend_min = 8\n')
+        for topic, *more in (("bending",), ("equilibrium", "--set", "stop.equilibrium_speed_um_per_min=1e9")):
+            stderr = self.run_scenario(text, "--quiet", "--overwrite", *more).stderr
+            lines = [line.removeprefix("warning: ") for line in stderr.splitlines() if line.startswith("warning: ")]
+            self.assertEqual(list(self.summary()["warnings"].values()), lines)
+            self.assertIn(topic, self.summary()["warnings"])
 
     def test_mesh_writes_regions_and_can_be_read_back_as_a_scenario(self):
         mesh = self.folder / "rest.vtu"

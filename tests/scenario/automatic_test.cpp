@@ -7,11 +7,13 @@
 namespace plica {
 namespace {
 
-Scenario scenario_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+using Overrides = std::vector<std::string>;
+
+Scenario scenario_of(const std::string& text, const Overrides& overrides = {}) {
   return load_scenario({"test", "test.toml", text}, overrides);
 }
 
-double barrier_Pa(const std::string& text, const std::vector<std::string>& overrides = {}) {
+double barrier_Pa(const std::string& text, const Overrides& overrides = {}) {
   return *scenario_of(text, overrides).elasticity.corner_barrier_Pa;
 }
 
@@ -40,6 +42,18 @@ TEST(AutomaticBarrier, IsNoneOnGridsThatDoNotDivide) {
   EXPECT_EQ(barrier_Pa("base = \"drosophila-living\"\n"), 10);
   // The paper's algorithm reproduces the paper.
   EXPECT_EQ(barrier_Pa("[embryo]\nshape = \"file\"\nfile = \"m.vtu\"\n[volume]\nmethod = \"projection\"\n"), 0);
+}
+
+TEST(AutomaticIntegrator, IsOfSecondOrderWhereItCanBe) {
+  for (const char* shape : {"pill", "sphere", "slice", "block", "egg", "sheet"})
+    EXPECT_EQ(scenario_of("[embryo]\nshape = \"" + std::string(shape) + "\"\n").time.integrator, "bdf2") << shape;
+  for (const std::string bar :
+       {"time.scheme=linearly-implicit", "volume.method=projection", "dynamics.density_kg_per_m3=1"}) {
+    Overrides overrides = {bar};
+    if (bar.starts_with("time")) overrides.emplace_back("volume.method=none");
+    EXPECT_EQ(scenario_of(row, overrides).time.integrator, "backward-euler") << bar;
+  }
+  EXPECT_EQ(scenario_of(row, {"time.integrator=backward-euler"}).time.integrator, "backward-euler");
 }
 
 TEST(AutomaticValues, AreRecordedAsNumbers) {

@@ -43,8 +43,9 @@ class ReportRunTest : public testing::Test {
   ~ReportRunTest() override { fs::remove_all(folder); }
 
   // Frame i is the block moved by i um along x; from frame `divided_at` on it is another one, of more cells. As in a
-  // run, the row of series.csv at the time of the division still counts those before it.
-  void write_frames(int count, int divided_at = 1000) const {
+  // run, the row of series.csv at the time of the division still counts those before it. From `given_at` on there is an
+  // array that is not plica's.
+  void write_frames(int count, int divided_at = 1000, int given_at = 1000) const {
     std::vector<std::pair<double, std::string>> entries;
     for (int i = 0; i < count; ++i) {
       const Tissue& tissue = i < divided_at ? block : finer;
@@ -58,6 +59,7 @@ class ReportRunTest : public testing::Test {
       arrays.cell_integers = {{"cell_id", ids}, {"generation", zeros}, {"region_some", zeros}};
       for (const char* name : {"volume_um3", "volume_error", "apical_area_ratio", "pressure_Pa", "activity"})
         arrays.cell_scalars.emplace_back(name, values);
+      if (i >= given_at) arrays.cell_scalars.emplace_back("given", values);
       const std::string file = "frames/frame_" + std::to_string(i) + ".vtu";
       write_mesh(folder / file, tissue, positions, arrays, 10.0 * i);
       entries.emplace_back(10.0 * i, file);
@@ -101,6 +103,18 @@ TEST_F(ReportRunTest, NewCellsAreANewTopology) {
   EXPECT_EQ(run.json["topologies"][0]["cells"], 6);
   EXPECT_EQ(run.json["topologies"][1]["cells"], 9);
   EXPECT_EQ(run.json["topologies"][1]["times_s"], nlohmann::ordered_json({30, 40}));
+}
+
+TEST_F(ReportRunTest, AnArrayMayComeLater) {
+  write_frames(5, 3, 2);
+  const ReportRun run = read_report_run(folder, most_frame_bytes);
+  ASSERT_EQ(run.colours.back().name, "given");
+  EXPECT_DOUBLE_EQ(run.fields.at("given").high, 1);
+  const auto values = unpacked(run, "0/field/given");
+  ASSERT_EQ(values.size(), 3 * block.cells.size());
+  EXPECT_EQ(values[2 * block.cells.size() - 1], 0u);
+  EXPECT_EQ(values.back(), 32768u);
+  EXPECT_EQ(unpacked(run, "1/field/given").back(), 65535u);
 }
 
 TEST_F(ReportRunTest, ThinsFramesByItsRuleAndSaysSo) {

@@ -94,7 +94,7 @@ const std::vector<FailingCase> failing = {
      block + "[contraction.pull]\nregion = \"all\"\nstiffness_nN_per_um = 1e300\n",
      {"contraction.pull.stiffness_nN_per_um"}},
     {"pressure",
-     grid + "end_s = 3\n" + "[pressure.p]\nregion = \"all\"\npressure_Pa = 20000\n",
+     grid + "end_s = 3\n" + "[pressure.p]\nregion = \"all\"\npressure_Pa = 30000\n",
      {"elasticity.corner_barrier_Pa", "pressure.p.program", "pressure.p.pressure_Pa"}},
     {"springs that crush a sheet",
      "[embryo]\nshape = \"sheet\"\nlength_um = 15.51\nwidth_um = 9.913\ncell_count = 12\ncell_height_um = 18.09\n"

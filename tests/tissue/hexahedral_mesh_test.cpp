@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iostream>
 #include <random>
+#include <set>
 
 #include "tissue/files/mesh_bytes.hpp"
 #include "tissue/shapes/embryo.hpp"
@@ -94,6 +95,27 @@ TEST(TissueFromMesh, KeepsTheOrderOfTheNodesAndDropsUnusedOnes) {
   EXPECT_EQ(tissue.elements, small_shell().elements);
 }
 
+// Some or all cells with nodes of their own, at the same places up to rounding.
+TEST(TissueFromMesh, MergesCoincidentNodes) {
+  const Tissue expected = small_shell();
+  for (const std::size_t step : {expected.cells.size(), std::size_t{3}, std::size_t{1}}) {
+    HexahedralMesh mesh = mesh_of(expected);
+    for (std::size_t cell = 0; cell < mesh.cells.size(); cell += step)
+      for (NodeId& node : mesh.cells[cell]) {
+        mesh.points.emplace_back(mesh.points[node.index()] * (1 + 1e-12));
+        node = NodeId(mesh.points.size() - 1);
+      }
+    std::set<NodeId> used;
+    for (const auto& cell : mesh.cells) used.insert(cell.begin(), cell.end());
+    const Tissue tissue = tissue_from_mesh(mesh, {});
+    EXPECT_EQ(tissue.node_count(), expected.node_count());
+    EXPECT_EQ(tissue.apical_facets.size(), expected.apical_facets.size());
+    EXPECT_NEAR(total_volume(tissue), total_volume(expected), 1e-10 * total_volume(expected));
+    EXPECT_EQ(tissue.remarks, std::vector<std::string>{std::to_string(used.size() - expected.node_count()) +
+                                                       " coincident nodes were merged"});
+  }
+}
+
 TEST(TissueFromMesh, RefusesWhatDoesNotFit) {
   const HexahedralMesh good = mesh_of(small_shell());
   ASSERT_EQ(mesh_error(good), "");
@@ -113,13 +135,8 @@ TEST(TissueFromMesh, RefusesWhatDoesNotFit) {
   expect_error("has 1 values for", [](auto& m) { m.arrays["short"] = {1}; });
   // A missing cell opens the shell: its surface is one.
   expect_error("a single surface", [](auto& m) { m.cells.erase(m.cells.begin() + 5); });
-  // One cell with nodes of its own, at the same places.
-  expect_error("lie at the same place", [](auto& m) {
-    for (NodeId& node : m.cells[5]) {
-      m.points.push_back(m.points[node.index()]);
-      node = NodeId(m.points.size() - 1);
-    }
-  });
+  // Corners of one cell at one place.
+  expect_error("is inverted", [](auto& m) { m.points[m.cells[5][0].index()] = m.points[m.cells[5][1].index()]; });
   std::cout << cases << " cases\n";
 }
 

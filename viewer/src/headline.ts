@@ -1,5 +1,5 @@
 // Headline of the page: title, status, and warnings.
-import { byId } from "./dom";
+import { byId, element } from "./dom";
 import { fewRuns, type PageData } from "./page_data";
 import type { Run } from "./run";
 import { number, time, words } from "./text";
@@ -8,6 +8,7 @@ export function showHeadline(runs: Run[], page: PageData): void {
   byId("title").textContent = [...new Set(runs.map((run) => run.title))].join(" | ");
   byId("headline").textContent = runs.length > fewRuns ? manyRuns(runs, page) : runs.map((run) => oneRun(run, runs.length > 1)).join("; ");
   showCrossings(runs);
+  showWarnings(runs);
   showThinning(runs);
 }
 
@@ -53,6 +54,19 @@ function showCrossings(runs: Run[]): void {
     ? `In ${since.length} of ${runs.length} runs (see their status), the first from ${first} min`
     : since.map(({ name, minutes }) => `${runs.length > 1 ? `${name}: from` : "From"} ${number(minutes)} min`).join("; ");
   notice.textContent = `${when} on, the tissue self-intersects; later results are unphysical. Colour by “self-intersecting” to see where.`;
+  notice.hidden = false;
+}
+
+// Other reasons to doubt the results.
+function showWarnings(runs: Run[]): void {
+  const warned = runs.map(({ name, data }) => ({ name, texts: Object.values((data.summary?.warnings ?? {}) as Record<string, string>) }))
+    .filter(({ texts }) => texts.length > 0);
+  if (warned.length === 0) return;
+  const notice = byId("warnings");
+  const lines = warned.length > fewRuns
+    ? [`${warned.length} of ${runs.length} runs have warnings (see warnings in their summary.json).`]
+    : warned.flatMap(({ name, texts }) => texts.map((text) => `${runs.length > 1 ? `${name}: ` : "Warning: "}${text}.`));
+  notice.append(...lines.map((line) => element("p", {}, line)));
   notice.hidden = false;
 }
 

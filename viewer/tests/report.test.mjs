@@ -279,7 +279,7 @@ test("the words of a sheet without contraction are not those of a furrow, and it
   const { page, done } = await open("dome/report.html");
   const text = await page.evaluate(() => document.body.innerText.split("Scenario\n")[0]);
   assert.doesNotMatch(text, /VML|VCE|furrow|\blips?\b|anterior|ventral|midline/i);
-  assert.match(await page.textContent("#headline"), /120 cells, end time at 5 min, largest displacement \d+\.\d+ µm, smallest/);
+  assert.match(await page.textContent("#headline"), /120 cells, equilibrium at 5 min, largest displacement \d+\.\d+ µm, smallest/);
   assert.deepEqual(await page.locator("[id^=view-]").allTextContents(), ["apical", "oblique", "from −z", "from −y", "cut at x", "cut at y"]);
   const titles = await page.locator("#plots figcaption").allTextContents();
   for (const title of ["Largest displacement, µm", "Mean cell height, µm", "Smallest apical area / reference area", "Energy, nN·µm"])
@@ -410,6 +410,9 @@ test("a tissue that passes through itself is announced, and none other", async (
   assert.match(await crossing.page.textContent("#crossing"), /^From [\d.]+ min on, the tissue self-intersects/);
   assert.ok(await crossing.page.isVisible("#crossing"));
   assert.match(await crossing.page.textContent("#headline"), /self-intersecting/);
+  const { warnings } = JSON.parse(readFileSync(join(folder, "curl/summary.json"), "utf8"));
+  assert.ok("bending" in warnings);
+  assert.deepEqual(await crossing.page.locator("#warnings p").allTextContents(), Object.values(warnings).map((text) => `Warning: ${text}.`));
   await crossing.done();
   assert.ok(!(await drosophila.page.isVisible("#crossing")));
 });

@@ -18,8 +18,8 @@ const numbers = (name, role, values) => new Column({ name, role }, Float64Array.
 const words = (name, role, list, places) =>
   new Column({ name, role, words: list }, Float64Array.from(places, (place) => place ?? NaN));
 
-function fourRuns() {
-  return new Study({ name: "four", runs: 4, design: "grid", scenario_argument: "my fold.toml", set: ["time.end_min=0.2"] }, [
+function fourRuns(depth_word = "furrow") {
+  return new Study({ name: "four", runs: 4, design: "grid", depth_word, scenario_argument: "my fold.toml", set: ["time.end_min=0.2"] }, [
     numbers("point", "point", [1, 2, 3, 4]),
     numbers("contraction.apical.stiffness_nN_per_um", "key", [1, 10, 100, 1000]),
     words("contraction.apical.region", "key", ['"furrow"', '"all"'], [0, 1, 0, 1]),
@@ -38,6 +38,7 @@ function fourRuns() {
 test("columns know their range, their steps and what is missing", () => {
   const depth = fourRuns().columns.find(({ name }) => name === "furrow_depth_um");
   assert.deepEqual([depth.low, depth.high, depth.missing, depth.steps, depth.title], [1.5, 2.5, 2, [1.5, 2.5], "furrow depth, µm"]);
+  assert.equal(fourRuns("fold").of("measure")[0].title, "fold depth, µm");
   assert.deepEqual([depth.text(0), depth.text(2), depth.exact(2)], ["1.5", "none", ""]);
   const region = fourRuns().of("key")[1];
   assert.deepEqual([region.text(0), region.exact(0)], ["furrow", '"furrow"']);

@@ -15,6 +15,7 @@ export interface StudyPage {
   design: string; // its kind; "" if the scenario of the study was not found
   set: string[]; // KEY=VALUE in all runs
   log_keys: string[];
+  depth_word: "furrow" | "fold"; // for furrow_depth_um
   runs: number;
   points: string; // directory of kept files, relative to the page
   study: string; // TOML
@@ -27,6 +28,7 @@ export class Study {
 
   constructor(readonly page: StudyPage, readonly columns: Column[]) {
     tellApart(columns.filter(({ role }) => role === "key"));
+    for (const column of this.of("measure")) column.label = column.label.replace(/^furrow depth\b/, `${page.depth_word} depth`);
   }
 
   get runs(): number {
@@ -100,7 +102,7 @@ export async function readStudy(): Promise<Study> {
   const packed = new PackedArrays(await inflate(document.getElementById("rows")!.textContent!), page.arrays);
   const columns = page.columns.map((entry, place) =>
     new Column(entry, unpacked(entry, String(place), packed), page.log_keys.includes(entry.name)));
-  return new Study(page, withVerdict(withoutUnfinished(columns)));
+  return new Study(page, page.depth_word === "furrow" ? withVerdict(withoutUnfinished(columns)) : withoutUnfinished(columns));
 }
 
 function unpacked(entry: ColumnEntry, place: string, packed: PackedArrays): Float64Array {
