@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "measure/bending_error.hpp"
 #include "scenario/finer_mesh.hpp"
 
@@ -11,10 +13,11 @@ std::string bending_warning(const Scenario& scenario, const Simulation& simulati
   if (status == RunStatus::failed || status == RunStatus::under_way) return "";
   const Model& model = simulation.model();
   const int elements = elements_through_height(model.tissue);
-  // With one element, the depth errs 1 to 4.6 times as much as bending, with two 1 to 1.3 times
-  // (docs/developers/convergence.md).
-  const double error = bending_error(model, simulation.state().positions).value_or(0), of_depth = 5 * error / elements;
-  constexpr double worth_telling = 0.15;
+  // The depth errs up to five times as much as bending where bending is small, and never by more than 20 %; less with
+  // several elements (docs/developers/convergence.md).
+  constexpr double most_of_depth = 0.2, worth_telling = 0.15;
+  const double error = bending_error(model, simulation.state().positions).value_or(0);
+  const double of_depth = std::max(error, std::min(5 * error / elements, most_of_depth));
   if (of_depth < worth_telling) return "";
   return fmt::format(
       "with {} through the height, bending is uncertain by about {:.0f} % at these strains, and the depth by up to "
