@@ -8,6 +8,8 @@ full strength from the start. Each run must
 - end with cell volumes and element shapes that hold, finite numbers, and a warning where the sheet passes through itself, or
 - fail with status 3; then one of the remedies that its message names must carry the run further, alone.
 
+A run that takes more than MOST_CPU_S of processor time crawls, which is a failure of the program, too.
+
 Usage: random_sheets.py PROGRAM [--count N] [--seed S] [--first I] [--keep DIR]
 """
 import argparse
@@ -169,7 +171,8 @@ def main():
             counts[kind] += 1
             if given.verbose:
                 print(f"{number:5} {time.monotonic() - begun:6.1f} s  {load:18} {kind}", flush=True)
-    print(f"{given.count} sheets in {time.monotonic() - started:.0f} s, the slowest {slowest[0]:.0f} s (number {slowest[1]}); "
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    print(f"{given.count} sheets in {time.monotonic() - started:.0f} s ({usage.ru_utime:.0f} s of processor time), the slowest {slowest[0]:.0f} s (number {slowest[1]}); "
           f"{failed} failed ({100 * failed / given.count:.1f} %)")
     for kind, count in counts.most_common():
         print(f"{count:6} {kind}")
