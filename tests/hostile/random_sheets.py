@@ -1,9 +1,9 @@
 """Run random sheets under random loads and check that none ends with a wrong tissue in silence, and that few fail.
 
-A sheet has 20 to 2000 cells 3 to 12 um wide and 3 to 40 um high, a Young's modulus of 10 to 3000 Pa, diagonals or kites, one or
-two layers, a free or a fixed boundary. One kind of load acts in a stripe or in all cells: springs, tension or cortex of one kind
-of faces, or pressure; 0.03 to 3 times Young's modulus times height (pressure: a tenth of the modulus), in half of the sheets at
-full strength from the start. Each run must
+A sheet has 20 to 2000 cells 3 to 12 um wide and 3 to 40 um high, a Young's modulus of 10 to 3000 Pa, diagonals or kites, one
+layer or (up to 700 cells) two, a free or a fixed boundary. One kind of load acts in a stripe or in all cells: springs, tension
+or cortex of one kind of faces, or pressure; 0.03 to 3 times Young's modulus times height (pressure: a tenth of the modulus), in
+half of the sheets at full strength from the start. Each run must
 
 - end with cell volumes and element shapes that hold, finite numbers, and a warning where the sheet passes through itself, or
 - fail with status 3; then one of the remedies that its message names must carry the run further, alone.
@@ -29,7 +29,7 @@ from pathlib import Path
 
 END_S = 180
 MOST_FAIL = 0.05
-MOST_CPU_S = 150
+MOST_CPU_S = 300
 
 
 class Broken(Exception):
@@ -72,7 +72,7 @@ cell_count = {cells}
 cell_height_um = {height:.4g}
 seed = {r.randrange(1000)}
 elements = "{r.choice(["diagonals", "kites"])}"
-layers = {r.choice([1, 1, 2])}
+layers = {min(r.choice([1, 1, 2]), 1 + (cells < 700))}
 rim = "{r.choice(["free", "held"])}"
 [region.stripe]
 y_um = [{-1.5 * width:.4g}, {1.5 * width:.4g}]
