@@ -55,6 +55,17 @@ WeakerForces weaker_forces(const Scenario& scenario) {
   return weaker;
 }
 
+/// Half the volume that daughters gain, where they have begun to grow.
+Remedy less_growth(const Scenario& scenario, double failed_at_s) {
+  constexpr double none = 0.5;
+  Remedy remedy{{}, "less growth, another result"};
+  for (const auto& [name, input] : scenario.divisions)
+    if (input.daughter_volume_ratio > none && failed_at_s > input.at_s.value_or(0))
+      remedy.settings.push_back({fmt::format("division.{}.daughter_volume_ratio", name),
+                                 fmt::format("{:.3g}", std::max(none, input.daughter_volume_ratio / 2))});
+  return remedy;
+}
+
 /// Remedies for elements that invert and forces that find no balance.
 Remedies against_inversion(const Scenario& scenario, double failed_at_s) {
   Remedies remedies;
@@ -62,6 +73,7 @@ Remedies against_inversion(const Scenario& scenario, double failed_at_s) {
   constexpr double beyond_help = 1000;
   if (weaker.largest_ratio < beyond_help) {
     add_barrier(scenario, remedies);
+    if (Remedy less = less_growth(scenario, failed_at_s); !less.settings.empty()) remedies.push_back(std::move(less));
     // Later failures have another cause than the onset.
     if (const auto onset = gradual_onset(scenario); onset && failed_at_s < onset_s) remedies.push_back(*onset);
   }

@@ -32,7 +32,7 @@ from random_scenario import Drawer  # noqa: E402
 from scenario_table import read_table  # noqa: E402
 
 LONGEST_WAIT_S = 600  # wall-clock limit, for a run that waits forever
-FAILED = re.compile(r"plica: solver failed: .*(cell \d+|whole surface).* at t = [\d.e+-]+ s, with steps down to [\d.e+-]+ s; ")
+FAILED = re.compile(r"plica: solver failed: .*(cell \d+|whole surface).* at t = [\d.e+-]+ s(, with steps down to [\d.e+-]+ s)?; ")
 REFUSED = re.compile(r"(?P<where>[^:\n]+):(?:\d+: )?\s?(?P<key>[^:]*): (?P<problem>.+)")
 
 
