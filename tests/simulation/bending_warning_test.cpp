@@ -22,7 +22,6 @@ program = { time_min = [0, 3], activity = [0, 1] }
 [elasticity]
 corner_barrier_Pa = 100
 [time]
-integrator = "bdf2"
 end_min = 8
 [embryo]
 length_um = 20

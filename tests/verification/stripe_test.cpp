@@ -24,7 +24,6 @@ region = "stripe"
 [elasticity]
 corner_barrier_Pa = 100
 [time]
-integrator = "bdf2"
 end_min = 30
 [stop]
 equilibrium_speed_um_per_min = 0.05

@@ -12,7 +12,7 @@ import {
 
 const hostileTitle = `</script><script>window.hacked=1</script>"'<img src=x onerror="window.hacked=1">\u{1F9EC}${"fold ".repeat(2000)}`;
 
-let drosophila; // an open page that tests share; each leaves it with its last frame in the default view
+let drosophila; // an open page that tests share; each leaves it at the last frame
 
 before(async () => {
   run("drosophila", "drosophila");
