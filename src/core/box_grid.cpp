@@ -1,9 +1,15 @@
-#include "mechanics/contact/box_grid.hpp"
+#include "core/box_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace plica {
+
+Box box_of(std::span<const Vec3> points) {
+  Box box{points[0], points[0]};
+  for (const Vec3& point : points.subspan(1)) box.take(point);
+  return box;
+}
 
 template <class Take>
 void BoxGrid::for_cubes(const Box& box, const Take& take) const {

@@ -20,6 +20,9 @@ struct Box {
   }
 };
 
+/// Return the smallest box that holds these points, at least one.
+Box box_of(std::span<const Vec3> points);
+
 class BoxGrid {
  public:
   explicit BoxGrid(double cube_size) : size_(cube_size) {}
