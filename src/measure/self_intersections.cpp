@@ -80,12 +80,15 @@ std::vector<std::pair<std::size_t, std::size_t>> crossing_facets(std::span<const
                                                                  std::span<const Vec3> positions) {
   std::vector<Fan> fans;
   std::vector<Box> boxes;
-  double largest = 1e-6;
+  double largest = 1e-6, sum = 0;
   for (const Facet& facet : facets) {
     const Box& box = boxes.emplace_back(box_of(fans.emplace_back(fan_of(facet, positions)).points));
-    largest = std::max(largest, (box.high - box.low).maxCoeff());
+    const double size = (box.high - box.low).maxCoeff();
+    largest = std::max(largest, size);
+    sum += size;
   }
-  BoxGrid grid(largest);
+  // Cubes as large as most facets; but a facet much larger than others must not take too many.
+  BoxGrid grid(std::max(largest / 30, 1.5 * sum / static_cast<double>(std::max<std::size_t>(facets.size(), 1))));
   for (std::size_t f = 0; f < boxes.size(); ++f) grid.add(f, boxes[f]);
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   std::vector<std::size_t> found;
