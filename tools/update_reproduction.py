@@ -112,7 +112,7 @@ def main():
                   "Of {} claims, {} are reproduced, {} under this reading, and {} are not".format(len(rows), *counts[-1][1:]), page)
     PAGE.write_text(page, encoding="utf-8")
 
-    plt.rcParams["svg.hashsalt"] = "plica"
+    plt.rcParams.update({"svg.hashsalt": "plica", "svg.fonttype": "none"})
     draw_speeds(results, "pill", "fig8a-speeds")
     draw_speeds(results, "sphere", "fig8b-speeds")
     draw_trade_off(results)
