@@ -8,7 +8,7 @@
 #include <set>
 
 #include "measure/cells.hpp"
-#include "tissue/inner_nodes.hpp"
+#include "tissue/polygon_cell.hpp"
 
 namespace plica {
 namespace {

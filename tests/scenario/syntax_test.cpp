@@ -1,4 +1,4 @@
-#include "scenario/nesting.hpp"
+#include "scenario/syntax.hpp"
 
 #include <gtest/gtest.h>
 
