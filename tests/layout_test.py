@@ -187,10 +187,13 @@ def check_reference():
 
 
 def check_command_line():
+    def words(text):  # CLI11 breaks lines elsewhere and writes " [2]" for "=2" since 2.4
+        return re.sub(r" \[(\w+)\](?=\s)", r"=\1", text).split()
+
     page, maker = root / "docs/reference/cli.md", root / "docs/make_cli.py"
     expected = subprocess.run([sys.executable, maker, program], capture_output=True, text=True, check=True).stdout
     count("commands", expected.count("\n## "))
-    if not page.is_file() or page.read_text(encoding="utf-8") != expected:
+    if not page.is_file() or words(page.read_text(encoding="utf-8")) != words(expected):
         breach(page, "is not what the program prints; run: docs/make_cli.py build/release/plica > docs/reference/cli.md")
 
 
