@@ -57,7 +57,7 @@ void check_quantities(const Experiments& experiments, const std::vector<std::vec
             {experiments.file, outcome.line,
              fmt::format("experiment.{}.outcome.{}.quantity", experiments.experiments[e].name, outcome.name),
              fmt::format("\"{}\" is not a number of summary.json{}", outcome.quantity, of),
-             did_you_mean(outcome.quantity, known[which])});
+             result_remedy(outcome.quantity, known[which])});
         break;
       }
     }

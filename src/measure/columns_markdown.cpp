@@ -4,7 +4,7 @@
 #include <array>
 
 #include "measure/cell_columns.hpp"
-#include "measure/columns.hpp"
+#include "measure/measure_set.hpp"
 #include "measure/monitor.hpp"
 
 namespace plica {
@@ -23,13 +23,19 @@ const char* owner(QuantityInfo::Of of) {
 
 std::string step_table() {
   std::string text =
-      "### Each step: series.csv and summary.json\n\n"
+      "### Sets\n\n"
+      "`measure.sets` chooses; by default, a set is measured where it describes the tissue and has what it needs.\n\n"
+      "| set | measures | needs |\n|---|---|---|\n";
+  for (const MeasureSet& set : measure_sets())
+    if (!set.name.empty()) text += fmt::format("| `{}` | {} | {} |\n", set.name, set.meaning, set.needs);
+  text +=
+      "\n### Each step: series.csv and summary.json\n\n"
       "`series.csv` has one row for the reference state and one per accepted step. `summary.json` has one number per "
       "variable: the\nlast, largest or smallest value, the sum, or a number of the whole run.\n\n"
-      "| variable | series | summary | meaning |\n|---|---|---|---|\n";
+      "| variable | set | series | summary | meaning |\n|---|---|---|---|---|\n";
   for (const Column& column : columns())
-    text += fmt::format("| `{}` | {} | {} | {} |\n", column.name, mark(column.in_series), in_summary(column),
-                        column.meaning);
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", column.name, column.set, mark(column.in_series),
+                        in_summary(column), column.meaning);
   return text;
 }
 
