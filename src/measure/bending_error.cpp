@@ -54,18 +54,14 @@ int elements_through_height(const Tissue& tissue) {
 }
 
 MeasureSet bending_set() {
-  return {
-      .name = "bending",
-      .meaning = "Error of bending.",
-      .needs = "corotational elasticity",
-      .fits = [](const Subject& s) { return is_corotational(s.model); },
-      .columns = {
-          {"bending_error", true, InSummary::last,
-           "Estimated relative error of bending from few elements through the height: 0.14 times the difference of a "
-           "cell's basal and apical area ratios, divided by its elements, weighted by that difference. Depth by one "
-           "element may err five times as much ([convergence](../developers/convergence.md#meshes-of-polygons)).",
-           [](const MeasuredStep& m) { return bending_error(m.model, m.state.positions); }},
-      }};
+  return set_of(
+      "bending", "Error of bending.", "corotational elasticity",
+      [](const Subject& s) { return kept_if(is_corotational(s.model)); },
+      {{"bending_error", true, InSummary::last,
+        "Estimated relative error of bending from few elements through the height: 0.14 times the difference of a "
+        "cell's basal and apical area ratios, divided by its elements, weighted by that difference. Depth by one "
+        "element may err five times as much ([convergence](../developers/convergence.md#meshes-of-polygons)).",
+        of(bending_error)}});
 }
 
 }  // namespace plica

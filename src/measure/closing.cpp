@@ -220,17 +220,7 @@ using M = MeasuredStep;
 std::optional<ContactState> contact_of_step(const M& m) { return contact_state(m.model, m.state); }
 std::optional<Enclosed> enclosed_of_step(const M& m) { return enclosed(m.model, m.state); }
 
-// Column of a part of a shared value that may be missing.
-template <class Of, class Value>
-Column::OfStep part(std::optional<Of> (*of_step)(const M&), Value Of::*value) {
-  return [=](const M& m) -> std::optional<double> {
-    const std::optional<Of>& of = m.once(of_step);
-    if (!of) return std::nullopt;
-    return (*of).*value;
-  };
-}
-
-bool has_contact(const Subject& s) { return contact_state(s.model, State()).has_value(); }
+std::any begin_contact(const Subject& s) { return kept_if(contact_state(s.model, State()).has_value()); }
 
 // Lumen volume; empty for an open sheet, also for a slice, whose symmetric boundaries pass the test of closure.
 std::optional<double> rest_lumen_volume(const Subject& s) {
@@ -238,145 +228,104 @@ std::optional<double> rest_lumen_volume(const Subject& s) {
   return encloses(tissue, tissue.basal_facets) ? lumen_volume(tissue, tissue.rest_positions) : std::nullopt;
 }
 
-struct AtRest {
-  double lumen_um3 = 0, flank_um3 = 0, flank_section_um2 = 0;
-};
-
 std::optional<double> lumen_ratio(const M& m) {
   const auto volume = lumen_volume(m.model.tissue, m.state.positions);
-  return volume ? std::optional(*volume / m.of_run<AtRest>().lumen_um3) : std::nullopt;
+  return volume ? std::optional(*volume / m.of_run<double>()) : std::nullopt;
+}
+
+std::optional<double> pressure_Pa(const M& m) {
+  const auto& enclosed = m.once(enclosed_of_step);
+  return enclosed ? std::optional(enclosed->pressure_kPa / units::pascal) : std::nullopt;
+}
+
+struct Flanks {
+  double volume_um3, section_um2;
+};
+
+Flanks flanks(const Tissue& tissue, std::span<const Vec3> positions) {
+  return {flank_volume(tissue, positions).value_or(0), flank_section_area(tissue, positions).value_or(0)};
 }
 
 }  // namespace
 
 MeasureSet contact_set() {
-  return {.name = "contact",
-          .meaning = "Self-contact.",
-          .needs = "[self_contact]",
-          .fits = has_contact,
-          .columns = {
-              count({"contact_pairs", series, largest, "Contact pairs under pressure, with `[self_contact]`.",
-                     part(contact_of_step, &ContactState::pairs)}),
-              {"min_contact_distance_um", series, least,
-               "Smallest gap between facing places of a surface; negative for penetration.",
-               part(contact_of_step, &ContactState::least_gap_um)},
-          }};
+  return set_of("contact", "Self-contact.", "[self_contact]", begin_contact,
+                {count({"contact_pairs", series, largest, "Contact pairs under pressure.",
+                        part_of(contact_of_step, &ContactState::pairs)}),
+                 {"min_contact_distance_um", series, least,
+                  "Smallest gap between facing places of a surface; negative for penetration.",
+                  [](const M& m) { return m.once(contact_of_step)->least_gap_um; }}});
 }
 
 MeasureSet closing_set() {
-  return {.name = "closing",
-          .meaning = "Closure of a ventral furrow.",
-          .needs = "[self_contact]",
-          .fits = has_contact,
-          .columns =
-              {
-                  {"closed_length_ratio", series, last,
-                   "Fraction of the embryo's length with furrow closure: apical surfaces left and right of the midline "
-                   "in contact.",
-                   part(contact_of_step, &ContactState::closed_length_ratio)},
-                  count({"lips_closed", series, last,
-                         "Furrow closure at x = 0: 1 if apical surfaces of both sides are in contact there, whichever "
-                         "cells meet.",
-                         part(contact_of_step, &ContactState::middle_is_closed)}),
-              },
-          .is_usual = of_embryo};
+  return set_of(
+      "closing", "Closure of a ventral furrow.", "[self_contact]", begin_contact,
+      {{"closed_length_ratio", series, last,
+        "Fraction of the embryo's length with furrow closure: apical surfaces left and right of the midline in "
+        "contact.",
+        part_of(contact_of_step, &ContactState::closed_length_ratio)},
+       count({"lips_closed", series, last,
+              "Furrow closure at x = 0: 1 if apical surfaces of both sides are in contact there, whichever cells "
+              "meet.",
+              part_of(contact_of_step, &ContactState::middle_is_closed)})},
+      of_embryo);
 }
 
 MeasureSet lumen_set() {
-  return {
-      .name = "lumen",
-      .meaning = "Volume inside a closed tissue.",
-      .needs = "a closed basal surface",
-      .fits = [](const Subject& s) { return rest_lumen_volume(s).has_value(); },
-      .columns =
-          {
-              costly({"lumen_volume_ratio", series, last,
-                      "Volume inside the basal surface / reference volume; none for an open surface.", lumen_ratio}),
-          },
-      .begin = [](const Subject& s) { return AtRest{.lumen_um3 = *rest_lumen_volume(s)}; }};
+  return set_of("lumen", "Volume inside a closed tissue.", "a closed basal surface",
+                [](const Subject& s) { return kept_if(rest_lumen_volume(s)); },
+                {costly({"lumen_volume_ratio", series, last, "Volume inside the basal surface / reference volume.",
+                         lumen_ratio})});
 }
 
 MeasureSet enclosed_set() {
-  return {
-      .name = "enclosed",
-      .meaning = "Yolk or lumen.",
-      .needs = "[enclosed.NAME]",
-      .fits = [](const Subject& s) { return enclosed(s.model, rest_state(s.model)).has_value(); },
-      .columns = {
-          {"enclosed_volume_ratio", series, last, "Enclosed volume (yolk or lumen, `[enclosed.NAME]`) / target volume.",
-           part(enclosed_of_step, &Enclosed::volume_ratio)},
-          {"yolk_pressure_Pa", series, last, "Pressure of the enclosed volume, relative to the perivitelline fluid.",
-           [](const M& m) -> std::optional<double> {
-             if (!m.once(enclosed_of_step)) return std::nullopt;
-             return m.once(enclosed_of_step)->pressure_kPa / units::pascal;
-           }},
-      }};
+  return set_of("enclosed", "Yolk or lumen.", "[enclosed.NAME]",
+                [](const Subject& s) { return kept_if(enclosed(s.model, rest_state(s.model)).has_value()); },
+                {{"enclosed_volume_ratio", series, last, "Enclosed volume (yolk or lumen) / target volume.",
+                  part_of(enclosed_of_step, &Enclosed::volume_ratio)},
+                 {"yolk_pressure_Pa", series, last,
+                  "Pressure of the enclosed volume, relative to the perivitelline fluid.", pressure_Pa}});
 }
 
 MeasureSet shell_set() {
-  return {
-      .name = "shell",
-      .meaning = "Contact with the vitelline membrane.",
-      .needs = "a vitelline membrane",
-      .fits = [](const Subject& s) { return !s.model.obstacles.empty(); },
-      .columns = {
-          {"max_shell_penetration_um", no_series, largest, "Largest distance of a node outside the vitelline membrane.",
-           [](const M& m) { return shell_penetration(m.model, m.state.positions); }},
-      }};
+  return set_of("shell", "Contact with the vitelline membrane.", "a vitelline membrane",
+                [](const Subject& s) { return kept_if(!s.model.obstacles.empty()); },
+                {{"max_shell_penetration_um", no_series, largest,
+                  "Largest distance of a node outside the vitelline membrane.", of(shell_penetration)}});
 }
 
 MeasureSet perivitelline_set() {
-  return {.name = "perivitelline",
-          .meaning = "Fluid under the vitelline membrane.",
-          .needs = "a closed tissue and a vitelline membrane",
-          .fits =
-              [](const Subject& s) {
-                return rest_lumen_volume(s) && fluid_under_shell_um3(s.model, s.model.tissue.rest_positions);
-              },
-          .columns = {
-              costly({"shell_fluid_um3", series, last,
-                      "Perivitelline volume, between apical surface and vitelline membrane; its pressure is 0. None "
-                      "for a slice.",
-                      [](const M& m) { return fluid_under_shell_um3(m.model, m.state.positions); }}),
-          }};
+  return set_of("perivitelline", "Fluid between a closed tissue and the membrane.",
+                "a vitelline membrane around a closed tissue",
+                [](const Subject& s) {
+                  // The shell's caps are not those of a slice.
+                  return kept_if(rest_lumen_volume(s) && fluid_under_shell_um3(s.model, s.model.tissue.rest_positions));
+                },
+                {costly({"shell_fluid_um3", series, last,
+                         "Perivitelline volume, between apical surface and vitelline membrane; its pressure is 0.",
+                         of(fluid_under_shell_um3)})});
 }
 
 MeasureSet flanks_set() {
-  return {.name = "flanks",
-          .meaning = "Lateral ectoderm.",
-          .needs = "an embryo's shape around the x axis",
-          .fits =
-              [](const Subject& s) {
-                const Tissue& tissue = s.model.tissue;
-                return flank_volume(tissue, tissue.rest_positions) > 0.0 &&
-                       flank_section_area(tissue, tissue.rest_positions) > 0.0;
-              },
-          .columns =
-              {
-                  costly({"flank_volume_ratio", series, last,
-                          "Volume of the lateral ectoderm / reference volume: cells at 60–120° from the ventral "
-                          "midline, middle "
-                          "half of "
-                          "the length, weighted by their part of the angle.",
-                          [](const M& m) {
-                            return *flank_volume(m.model.tissue, m.state.positions) / m.of_run<AtRest>().flank_um3;
-                          }}),
-                  costly({"flank_section_area_ratio", series, last,
-                          "Cross-sectional area of the lateral ectoderm at x = 0 (60–120° from the ventral midline, "
-                          "both sides) / "
-                          "reference area; comparable with micrographs and two-dimensional models.",
-                          [](const M& m) {
-                            return *flank_section_area(m.model.tissue, m.state.positions) /
-                                   m.of_run<AtRest>().flank_section_um2;
-                          }}),
-              },
-          .begin =
-              [](const Subject& s) {
-                const Tissue& tissue = s.model.tissue;
-                return AtRest{.flank_um3 = *flank_volume(tissue, tissue.rest_positions),
-                              .flank_section_um2 = *flank_section_area(tissue, tissue.rest_positions)};
-              },
-          .is_usual = of_embryo};
+  return set_of(
+      "flanks", "Lateral ectoderm of an embryo.", "cells at 60–120° from the ventral midline of a built embryo",
+      [](const Subject& s) {
+        const Flanks at_rest = flanks(s.model.tissue, s.model.tissue.rest_positions);
+        return at_rest.volume_um3 > 0 && at_rest.section_um2 > 0 ? std::any(at_rest) : std::any();
+      },
+      {costly({"flank_volume_ratio", series, last,
+               "Volume of the lateral ectoderm / reference volume: cells at 60–120° from the ventral midline, "
+               "middle half of the length, weighted by their part of the angle.",
+               [](const M& m) {
+                 return *flank_volume(m.model.tissue, m.state.positions) / m.of_run<Flanks>().volume_um3;
+               }}),
+       costly({"flank_section_area_ratio", series, last,
+               "Cross-sectional area of the lateral ectoderm at x = 0 (60–120° from the ventral midline, both "
+               "sides) / reference area; comparable with micrographs and two-dimensional models.",
+               [](const M& m) {
+                 return *flank_section_area(m.model.tissue, m.state.positions) / m.of_run<Flanks>().section_um2;
+               }})},
+      of_embryo);
 }
 
 }  // namespace plica

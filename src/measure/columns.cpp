@@ -69,9 +69,11 @@ std::span<const MeasureSet> measure_sets() {
   return sets;
 }
 
-void begin(const MeasureSet& set, const Subject& subject, KeptBySet& kept) {
-  kept.try_emplace(set.name, set.begin ? set.begin(subject) : std::any());
-  if (!set.with.empty()) begin(*std::ranges::find(measure_sets(), set.with, &MeasureSet::name), subject, kept);
+bool begin(const MeasureSet& set, const Subject& subject, KeptBySet& kept) {
+  std::any own = set.begin(subject);
+  if (!own.has_value()) return false;
+  kept[set.name] = std::move(own);
+  return set.with.empty() || begin(*std::ranges::find(measure_sets(), set.with, &MeasureSet::name), subject, kept);
 }
 
 std::string set_remedy(std::string_view name) {

@@ -264,10 +264,6 @@ const FurrowSites& sites_of(const M& m) { return m.of_run<FurrowSites>(); }
 
 LipShape lips_of_step(const M& m) { return lip_shape(m.model.tissue, sites_of(m), m.state.positions); }
 
-Column::OfStep of_lips(std::optional<double> LipShape::*value) {
-  return [=](const M& m) { return m.once(lips_of_step).*value; };
-}
-
 // Displacements, and for steps speeds, of the furrow's centre and ends.
 SpeedRow speeds_of_step(const M& m) {
   const FurrowSites& sites = sites_of(m);
@@ -280,10 +276,6 @@ SpeedRow speeds_of_step(const M& m) {
   row.vml_speed_um_per_s = mean_speed(tissue, sites.vml, m.state.velocities);
   row.vce_speed_um_per_s = mean_speed(tissue, sites.vce, m.state.velocities);
   return row;
-}
-
-Column::OfStep of_speeds(std::optional<double> SpeedRow::*value) {
-  return [=](const M& m) { return m.once(speeds_of_step).*value; };
 }
 
 SpeedHistory history_of(std::span<const Observation> rows) {
@@ -321,30 +313,29 @@ std::vector<Column> columns_of_furrow() {
   return {
       {"furrow_depth_below_lips_um", series, last,
        "Depth of the furrow bottom (apical surface at x = y = 0) below the mean of both lips, positive inward. "
-       "Negative "
-       "for the convex reference shape; below 1 µm the ventral side is flat, not furrowed.",
-       of_lips(&LipShape::depth_below_lips_um)},
+       "Negative for the convex reference shape; below 1 µm the ventral side is flat, not furrowed.",
+       part_of(lips_of_step, &LipShape::depth_below_lips_um)},
       {"lip_distance_um", series, last,
        "Distance between the lips, which are material points. For contact, see `lips_closed`.",
-       of_lips(&LipShape::lip_distance_um)},
+       part_of(lips_of_step, &LipShape::lip_distance_um)},
       {"highest_points_distance_um", no_series, last,
        "Distance between the outermost points left and right of the midline at x = 0 (the paper's definition); may "
        "jump.",
-       of_lips(&LipShape::highest_points_distance_um)},
+       part_of(lips_of_step, &LipShape::highest_points_distance_um)},
       {"vml_speed_um_per_s", series, nothing,
        "Speed of the barycentre (mean of eight corners) of the central midline cell (VML): at the end of the step "
        "with `bdf2`, mean over the step with `backward-euler`.",
-       of_speeds(&SpeedRow::vml_speed_um_per_s)},
+       part_of(speeds_of_step, &SpeedRow::vml_speed_um_per_s)},
       {"vce_speed_um_per_s", series, nothing, "Speed of the barycentre of the near-end midline cell (VCE).",
-       of_speeds(&SpeedRow::vce_speed_um_per_s)},
+       part_of(speeds_of_step, &SpeedRow::vce_speed_um_per_s)},
       {"speed_ratio", series, nothing, "Speed of VCE / speed of VML, $v_c/v_m$.",
        [](const M& m) { return m.once(speeds_of_step).speed_ratio(); }},
       {"vml_displacement_um", series, last,
        "Mean displacement of the eight corner nodes of VML from the reference state (mean of lengths, as in the "
        "paper).",
-       of_speeds(&SpeedRow::vml_displacement_um)},
+       part_of(speeds_of_step, &SpeedRow::vml_displacement_um)},
       {"vce_displacement_um", series, last, "Mean displacement of the corner nodes of VCE.",
-       of_speeds(&SpeedRow::vce_displacement_um)},
+       part_of(speeds_of_step, &SpeedRow::vce_displacement_um)},
       {"vml_apical_area_ratio", series, last,
        "Apical area of VML / reference area; bilinear facets, 2 × 2 Gauss points.",
        [](const M& m) { return mean_apical_area_ratio(m.model.tissue, sites_of(m).vml, m.state.positions); }},
@@ -386,7 +377,7 @@ bool is_open_sheet(const Tissue& tissue) {
   return facing.is_one_way();
 }
 
-bool has_midline(const Subject& s) { return !s.furrow.vml.empty(); }
+std::any begin_sites(const Subject& s) { return s.furrow.vml.empty() ? std::any() : s.furrow; }
 
 void follow(std::any& sites, const Tissue& tissue, const Division& division) {
   follow_division(std::any_cast<FurrowSites&>(sites), tissue, division);
@@ -395,36 +386,29 @@ void follow(std::any& sites, const Tissue& tissue, const Division& division) {
 }  // namespace
 
 MeasureSet fold_set() {
-  return {.name = "fold",
-          .meaning = "Depth of a furrow, or of a fold of an open sheet; `midline.csv`, `cross_section.csv`.",
-          .needs = "contracting cells on the plane y = 0",
-          .fits = has_midline,
-          .columns =
-              {
-                  {"furrow_depth_um", series, last,
-                   "Furrow depth: largest inward distance from the vitelline membrane over the apical midline (plane y "
-                   "= 0) of the "
-                   "furrow cells, without the middles of polygons, minus the reference value of the same material "
-                   "point. Inward: "
-                   "against the mean reference apical "
-                   "normal of these cells. Without an embryo shape (a block): inward displacement.",
-                   [](const M& m) { return furrow_depth_um(m.model.tissue, sites_of(m), m.state.positions); }},
-              },
-          .begin = [](const Subject& s) { return s.furrow; },
-          .follow_division = follow,
-          .is_usual = [](const Subject& s) { return s.is_embryo || is_open_sheet(s.model.tissue); }};
+  return {"fold",
+          "Depth of a furrow, or of a fold of an open sheet; `midline.csv`, `cross_section.csv`.",
+          "contracting cells on the plane y = 0",
+          begin_sites,
+          {{"furrow_depth_um", series, last,
+            "Furrow depth: largest inward distance from the vitelline membrane over the apical midline (plane y = 0) "
+            "of the furrow cells, without the middles of polygons, minus the reference value of the same material "
+            "point. Inward: against the mean reference apical normal of these cells. Without an embryo shape (a "
+            "block): inward displacement.",
+            [](const M& m) { return furrow_depth_um(m.model.tissue, sites_of(m), m.state.positions); }}},
+          [](const Subject& s) { return s.is_embryo || is_open_sheet(s.model.tissue); },
+          follow};
 }
 
 MeasureSet furrow_set() {
-  return {.name = "furrow",
-          .meaning = "Lips, centre and ends of a ventral furrow; includes `fold`.",
-          .needs = "contracting cells on the plane y = 0",
-          .fits = has_midline,
-          .columns = columns_of_furrow(),
-          .begin = [](const Subject& s) { return s.furrow; },
-          .follow_division = follow,
-          .is_usual = of_embryo,
-          .with = "fold"};
+  return {"furrow",
+          "Lips, centre and ends of a ventral furrow; includes `fold`.",
+          "contracting cells on the plane y = 0",
+          begin_sites,
+          columns_of_furrow(),
+          of_embryo,
+          follow,
+          "fold"};
 }
 
 }  // namespace plica

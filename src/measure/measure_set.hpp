@@ -2,6 +2,8 @@
 // keeps over a run (sites, reference values) and how that follows divisions. columns.cpp lists all sets.
 #pragma once
 
+#include <type_traits>
+
 #include "measure/columns.hpp"
 #include "measure/furrow.hpp"
 
@@ -18,16 +20,54 @@ struct Subject {
 inline bool of_embryo(const Subject& subject) { return subject.is_embryo; }
 
 struct MeasureSet {
-  std::string_view name;     // empty: measured in every run
-  std::string_view meaning;  // for docs/reference/measures.md
-  std::string_view needs;    // for messages: without it, no column has a value
-  std::function<bool(const Subject&)> fits;
+  std::string_view name;                          // empty: measured in every run
+  std::string_view meaning;                       // for docs/reference/measures.md
+  std::string_view needs;                         // of the tissue, for messages
+  std::function<std::any(const Subject&)> begin;  // what is kept over the run; empty without what it needs
   std::vector<Column> columns;
-  std::function<std::any(const Subject&)> begin = {};  // what is kept over the run
+  std::function<bool(const Subject&)> is_usual = {};  // whether measured by default; empty: yes
   std::function<void(std::any&, const Tissue&, const Division&)> follow_division = {};
-  std::function<bool(const Subject&)> is_usual = {};  // whether measured by default where it fits; empty: yes
-  std::string_view with = {};                         // set that is measured along with it
+  std::string_view with = {};  // set that is measured along with it
 };
+
+/// What a set keeps if it has a value, or that it fits although it keeps nothing.
+template <class Kept>
+std::any kept_if(const std::optional<Kept>& kept) {
+  return kept ? std::any(*kept) : std::any();
+}
+inline std::any kept_if(bool fits) { return fits ? std::any(true) : std::any(); }
+
+/// Column of a function of the tissue, or the model, and positions.
+template <class Result, class Of>
+Column::OfStep of(Result (*value)(const Of&, std::span<const Vec3>)) {
+  return [=](const MeasuredStep& m) -> std::optional<double> {
+    if constexpr (std::is_same_v<Of, Model>)
+      return value(m.model, m.state.positions);
+    else
+      return value(m.model.tissue, m.state.positions);
+  };
+}
+
+/// Column of a part of a value that columns share; none if the value is missing.
+template <class Value>
+Column::OfStep part_of(Value (*compute)(const MeasuredStep&), std::optional<double> Value::*part) {
+  return [=](const MeasuredStep& m) { return m.once(compute).*part; };
+}
+template <class Value, class Part>
+Column::OfStep part_of(std::optional<Value> (*compute)(const MeasuredStep&), Part Value::*part) {
+  return [=](const MeasuredStep& m) -> std::optional<double> {
+    const std::optional<Value>& value = m.once(compute);
+    if (!value) return std::nullopt;
+    return (*value).*part;
+  };
+}
+
+/// Set that keeps no places of cells, which divisions would change.
+inline MeasureSet set_of(std::string_view name, std::string_view meaning, std::string_view needs,
+                         std::function<std::any(const Subject&)> begin, std::vector<Column> columns,
+                         std::function<bool(const Subject&)> is_usual = {}) {
+  return {name, meaning, needs, std::move(begin), std::move(columns), std::move(is_usual)};
+}
 
 MeasureSet run_set();
 MeasureSet fold_set();
@@ -45,8 +85,8 @@ MeasureSet projection_set();
 /// All sets; the first is measured in every run.
 std::span<const MeasureSet> measure_sets();
 
-/// Start measuring a set and the one along with it.
-void begin(const MeasureSet& set, const Subject& subject, KeptBySet& kept);
+/// Start measuring a set and the one along with it. Returns false without what it needs.
+bool begin(const MeasureSet& set, const Subject& subject, KeptBySet& kept);
 
 /// Advice to measure the set of a column; empty if `name` is not a column of a set.
 std::string set_remedy(std::string_view name);

@@ -14,10 +14,6 @@ constexpr bool series = true, no_series = false;
 using enum InSummary;
 using M = MeasuredStep;
 
-struct VolumeAtRest {
-  double um3;
-};
-
 // Column of a number of the solver's report; 0 in the reference state.
 Column::OfStep reported(int StepReport::*number) {
   return [=](const M& m) { return m.step != nullptr ? m.step->report.*number : 0; };
@@ -46,7 +42,7 @@ std::vector<Column> columns_of_every_run() {
       {"max_node_speed_um_per_s", series, last, "Largest speed of a node; decides equilibrium.",
        [](const M& m) { return m.step != nullptr ? m.step->max_node_speed_um_per_s : 0; }},
       {"max_volume_error", series, largest, "Largest relative volume error of a cell, $\\lvert V/V_{target}-1\\rvert$.",
-       [](const M& m) { return max_volume_error(m.model, m.state.positions); }},
+       of(max_volume_error)},
       costly({"min_scaled_jacobian", no_series, least,
               "Smallest scaled Jacobian of an element corner: 1 for a cuboid, <= 0 if inverted.",
               [](const M& m) { return min_scaled_jacobian(m.model.tissue, m.state.positions); }}),
@@ -61,13 +57,12 @@ std::vector<Column> columns_of_every_run() {
              reported(&StepReport::linear_solves)}),
       costly(count({"self_intersections", series, largest,
                     "Pairs of apical or of basal facets that cross (self-intersection). Only `[self_contact]` prevents "
-                    "it; results "
-                    "after the first are unphysical.",
-                    [](const M& m) { return self_intersections(m.model.tissue, m.state.positions); }})),
+                    "it; results after the first are unphysical.",
+                    of(self_intersections)})),
       count({"refused_steps", series, sum, "Rejected steps: longer attempts before this step was accepted.",
              reported(&StepReport::refused)}),
       costly({"min_apical_area_ratio", series, least, "Smallest apical area / reference area of a cell.",
-              [](const M& m) { return min_apical_area_ratio(m.model.tissue, m.state.positions); }}),
+              of(min_apical_area_ratio)}),
       costly({"min_corner_jacobian_ratio", series, least,
               "Smallest corner Jacobian / reference value: 0 for a flat corner.",
               [](const M& m) { return least_corner_ratio(m.model.tissue, m.state.positions).ratio; }}),
@@ -89,13 +84,12 @@ std::vector<Column> columns_of_every_run() {
                     "Apical cell edges shorter than 10 % of their reference length; a tissue would exchange neighbours "
                     "(T1) there, "
                     "plica does not.",
-                    [](const M& m) { return static_cast<double>(short_edges(m.model.tissue, m.state.positions)); }})),
+                    of(short_edges)})),
       {"max_displacement_um", series, last, "Largest distance of a node from its reference position.",
-       [](const M& m) { return max_displacement(m.model.tissue, m.state.positions); }},
-      {"mean_height_um", series, last, "Mean height of all cells.",
-       [](const M& m) { return mean_height(m.model.tissue, m.state.positions); }},
+       of(max_displacement)},
+      {"mean_height_um", series, last, "Mean height of all cells.", of(mean_height)},
       costly({"tissue_volume_ratio", series, last, "Volume of all cells / reference volume.",
-              [](const M& m) { return tissue_volume(m.model, m.state.positions) / m.of_run<VolumeAtRest>().um3; }}),
+              [](const M& m) { return tissue_volume(m.model, m.state.positions) / m.of_run<double>(); }}),
       {"self_intersections_time_s",
        no_series,
        whole_run,
@@ -108,30 +102,22 @@ std::vector<Column> columns_of_every_run() {
 }  // namespace
 
 MeasureSet run_set() {
-  return {
-      .name = "",
-      .meaning = "Every run.",
-      .needs = "",
-      .fits = [](const Subject&) { return true; },
-      .columns = columns_of_every_run(),
-      .begin = [](const Subject& s) { return VolumeAtRest{tissue_volume(s.model, s.model.tissue.rest_positions)}; }};
+  return set_of(
+      "", "", "", [](const Subject& s) { return std::any(tissue_volume(s.model, s.model.tissue.rest_positions)); },
+      columns_of_every_run());
 }
 
 MeasureSet projection_set() {
-  return {.name = "projection",
-          .meaning = "Effort of the volume projection.",
-          .needs = "volume.method = \"projection\"",
-          .fits = [](const Subject& s) { return s.projects; },
-          .columns = {
-              count({"projection_sweeps", no_series, sum,
-                     "Sweeps of the volume projection (`volume.method = \"projection\"`; "
-                     "[paper algorithm](../theory/paper_algorithm.md)).",
-                     reported(&StepReport::projection_sweeps)}),
-              count({"cubic_solves", no_series, sum, "Cubic equations solved in these sweeps.",
-                     reported(&StepReport::cubics)}),
-              count({"cubic_three_real_roots", no_series, sum, "Cubic equations with three distinct real roots.",
-                     reported(&StepReport::cubics_with_three_roots)}),
-          }};
+  return set_of("projection", "Effort of the volume projection.", "volume.method = \"projection\"",
+                [](const Subject& s) { return kept_if(s.projects); },
+                {count({"projection_sweeps", no_series, sum,
+                        "Sweeps of the volume projection (`volume.method = \"projection\"`; "
+                        "[paper algorithm](../theory/paper_algorithm.md)).",
+                        reported(&StepReport::projection_sweeps)}),
+                 count({"cubic_solves", no_series, sum, "Cubic equations solved in these sweeps.",
+                        reported(&StepReport::cubics)}),
+                 count({"cubic_three_real_roots", no_series, sum, "Cubic equations with three distinct real roots.",
+                        reported(&StepReport::cubics_with_three_roots)})});
 }
 
 }  // namespace plica
