@@ -54,14 +54,12 @@ int elements_through_height(const Tissue& tissue) {
 }
 
 MeasureSet bending_set() {
-  return set_of(
-      "bending", "Error of bending.", "corotational elasticity",
-      [](const Subject& s) { return kept_if(is_corotational(s.model)); },
-      {{"bending_error", true, InSummary::last,
-        "Estimated relative error of bending from few elements through the height: 0.14 times the difference of a "
-        "cell's basal and apical area ratios, divided by its elements, weighted by that difference. Depth by one "
-        "element may err five times as much ([convergence](../developers/convergence.md#meshes-of-polygons)).",
-        of(bending_error)}});
+  return set_of("bending", "error of bending", "corotational elasticity",
+                [](const Subject& s) { return kept_if(is_corotational(s.model)); },
+                {{"bending_error", true, InSummary::last,
+                  "Estimated relative error of bending from few elements through the height; depth by one element may "
+                  "err five times as much ([convergence](../developers/convergence.md#meshes-of-polygons)).",
+                  of(bending_error)}});
 }
 
 }  // namespace plica

@@ -76,14 +76,12 @@ std::vector<Column> columns_of_every_run() {
        "changes.",
        energy(&EnergyFlow::dissipated)},
       {"energy_imbalance_ratio", series, last,
-       "(Active work − stored − dissipated) / active work: a defect of finite time steps, of either sign and of the "
-       "order "
-       "of `time.integrator`, not a bound on their error ([energy](../theory/energy.md)). None without active work.",
+       "(Active work − stored − dissipated) / active work: a defect of finite time steps, of either sign, not a bound "
+       "on their error ([energy](../theory/energy.md)). None without active work.",
        energy_imbalance},
       costly(count({"short_edges", series, largest,
                     "Apical cell edges shorter than 10 % of their reference length; a tissue would exchange neighbours "
-                    "(T1) there, "
-                    "plica does not.",
+                    "(T1) there, plica does not.",
                     of(short_edges)})),
       {"max_displacement_um", series, last, "Largest distance of a node from its reference position.",
        of(max_displacement)},
@@ -108,11 +106,10 @@ MeasureSet run_set() {
 }
 
 MeasureSet projection_set() {
-  return set_of("projection", "Effort of the volume projection.", "volume.method = \"projection\"",
+  return set_of("projection", "effort of the volume projection", "volume.method = \"projection\"",
                 [](const Subject& s) { return kept_if(s.projects); },
                 {count({"projection_sweeps", no_series, sum,
-                        "Sweeps of the volume projection (`volume.method = \"projection\"`; "
-                        "[paper algorithm](../theory/paper_algorithm.md)).",
+                        "Sweeps of the projection ([paper algorithm](../theory/paper_algorithm.md)).",
                         reported(&StepReport::projection_sweeps)}),
                  count({"cubic_solves", no_series, sum, "Cubic equations solved in these sweeps.",
                         reported(&StepReport::cubics)}),
