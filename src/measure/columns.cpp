@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "measure/closing.hpp"
 #include "measure/measure_set.hpp"
 #include "measure/observation.hpp"
 
@@ -93,23 +92,6 @@ Column costly(Column column) {
   return column;
 }
 
-Course course_of(std::span<const Observation> rows, std::string_view column) {
-  Course course;
-  for (const Observation& row : rows)
-    if (const std::optional<double> value = row[column]) {
-      course.times_s.push_back(row.time_s());
-      course.values.push_back(*value);
-    }
-  return course;
-}
-
-Column::OfRun reaching(std::string_view column, double level) {
-  return [=](std::span<const Observation> rows) {
-    const Course course = course_of(rows, column);
-    return time_of_reaching(course.times_s, course.values, level);
-  };
-}
-
 std::span<const Column> columns() {
   static const std::vector<Column> all = make_columns();
   return all;
@@ -125,13 +107,6 @@ ColumnList all_columns() {
   ColumnList all;
   for (const Column& column : columns()) all.push_back(&column);
   return all;
-}
-
-std::vector<std::string> series_names(const ColumnList& columns) {
-  std::vector<std::string> names;
-  for (const Column* column : columns)
-    if (column->in_series) names.emplace_back(column->name);
-  return names;
 }
 
 ColumnList summary_columns(ColumnList columns) {

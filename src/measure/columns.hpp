@@ -74,15 +74,6 @@ struct Column {
 Column count(Column column);
 Column costly(Column column);
 
-/// Column of the first time at which another column reaches a level.
-Column::OfRun reaching(std::string_view column, double level);
-
-/// Time series of a column, without missing values.
-struct Course {
-  std::vector<double> times_s, values;
-};
-Course course_of(std::span<const Observation> rows, std::string_view column);
-
 /// Columns of all sets, in the order of series.csv.
 std::span<const Column> columns();
 
@@ -92,9 +83,6 @@ std::size_t column_index(std::string_view name);
 /// Some of `columns()`, in their order.
 using ColumnList = std::vector<const Column*>;
 ColumnList all_columns();
-
-/// Names of those in series.csv, without monitors.
-std::vector<std::string> series_names(const ColumnList& columns);
 
 /// Those in summary.json, in its order.
 ColumnList summary_columns(ColumnList columns);

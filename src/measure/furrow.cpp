@@ -278,6 +278,28 @@ SpeedRow speeds_of_step(const M& m) {
   return row;
 }
 
+// Time series of a column, without missing values.
+struct Course {
+  std::vector<double> times_s, values;
+};
+
+Course course_of(std::span<const Observation> rows, std::string_view column) {
+  Course course;
+  for (const Observation& row : rows)
+    if (const std::optional<double> value = row[column]) {
+      course.times_s.push_back(row.time_s());
+      course.values.push_back(*value);
+    }
+  return course;
+}
+
+Column::OfRun reaching(std::string_view column, double level) {
+  return [=](std::span<const Observation> rows) {
+    const Course course = course_of(rows, column);
+    return time_of_reaching(course.times_s, course.values, level);
+  };
+}
+
 SpeedHistory history_of(std::span<const Observation> rows) {
   std::vector<SpeedRow> speeds;
   speeds.reserve(rows.size());

@@ -5,7 +5,9 @@
 namespace plica {
 
 std::vector<std::string> series_header(const Observer& observer) {
-  std::vector<std::string> names = series_names(observer.columns());
+  std::vector<std::string> names;
+  for (const Column* column : observer.columns())
+    if (column->in_series) names.emplace_back(column->name);
   for (const Monitor& monitor : observer.monitors()) names.push_back(monitor.column());
   return names;
 }
