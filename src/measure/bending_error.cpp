@@ -54,7 +54,7 @@ int elements_through_height(const Tissue& tissue) {
 }
 
 MeasureSet bending_set() {
-  return set_of("bending", "error of bending", "corotational elasticity",
+  return set_of("bending", "corotational elasticity",
                 [](const Subject& s) { return kept_if(is_corotational(s.model)); },
                 {{"bending_error", true, InSummary::last,
                   "Estimated relative error of bending from few elements through the height; depth by one element may "

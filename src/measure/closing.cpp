@@ -249,7 +249,7 @@ Flanks flanks(const Tissue& tissue, std::span<const Vec3> positions) {
 }  // namespace
 
 MeasureSet contact_set() {
-  return set_of("contact", "self-contact", "[self_contact]", begin_contact,
+  return set_of("contact", "[self_contact]", begin_contact,
                 {count({"contact_pairs", series, largest, "Contact pairs under pressure.",
                         part_of(contact_of_step, &ContactState::pairs)}),
                  {"min_contact_distance_um", series, least,
@@ -259,7 +259,7 @@ MeasureSet contact_set() {
 
 MeasureSet closing_set() {
   return set_of(
-      "closing", "closure of a ventral furrow", "[self_contact]", begin_contact,
+      "closing", "[self_contact]", begin_contact,
       {{"closed_length_ratio", series, last,
         "Fraction of the embryo's length with furrow closure: apical surfaces left and right of the midline in "
         "contact.",
@@ -272,14 +272,13 @@ MeasureSet closing_set() {
 }
 
 MeasureSet lumen_set() {
-  return set_of("lumen", "volume inside the tissue", "a closed basal surface",
-                [](const Subject& s) { return kept_if(rest_lumen_volume(s)); },
+  return set_of("lumen", "a closed basal surface", [](const Subject& s) { return kept_if(rest_lumen_volume(s)); },
                 {costly({"lumen_volume_ratio", series, last, "Volume inside the basal surface / reference volume.",
                          lumen_ratio})});
 }
 
 MeasureSet enclosed_set() {
-  return set_of("enclosed", "yolk or lumen", "[enclosed.NAME]",
+  return set_of("enclosed", "[enclosed.NAME]",
                 [](const Subject& s) { return kept_if(enclosed(s.model, rest_state(s.model)).has_value()); },
                 {{"enclosed_volume_ratio", series, last, "Enclosed volume (yolk or lumen) / target volume.",
                   part_of(enclosed_of_step, &Enclosed::volume_ratio)},
@@ -288,14 +287,13 @@ MeasureSet enclosed_set() {
 }
 
 MeasureSet shell_set() {
-  return set_of("shell", "contact with the vitelline membrane", "a vitelline membrane",
-                [](const Subject& s) { return kept_if(!s.model.obstacles.empty()); },
+  return set_of("shell", "a vitelline membrane", [](const Subject& s) { return kept_if(!s.model.obstacles.empty()); },
                 {{"max_shell_penetration_um", no_series, largest,
                   "Largest distance of a node outside the vitelline membrane.", of(shell_penetration)}});
 }
 
 MeasureSet perivitelline_set() {
-  return set_of("perivitelline", "fluid under the membrane", "a vitelline membrane around a closed tissue",
+  return set_of("perivitelline", "a vitelline membrane around a closed tissue",
                 [](const Subject& s) {
                   // The shell's caps are not those of a slice.
                   return kept_if(rest_lumen_volume(s) && fluid_under_shell_um3(s.model, s.model.tissue.rest_positions));
@@ -307,7 +305,7 @@ MeasureSet perivitelline_set() {
 
 MeasureSet flanks_set() {
   return set_of(
-      "flanks", "lateral ectoderm of an embryo", "a built embryo",
+      "flanks", "a built embryo",
       [](const Subject& s) {
         const Flanks at_rest = flanks(s.model.tissue, s.model.tissue.rest_positions);
         return at_rest.volume_um3 > 0 && at_rest.section_um2 > 0 ? std::any(at_rest) : std::any();

@@ -409,7 +409,6 @@ void follow(std::any& sites, const Tissue& tissue, const Division& division) {
 
 MeasureSet fold_set() {
   return {"fold",
-          "depth of a furrow, or of a fold of an open sheet; `midline.csv`, `cross_section.csv`",
           "contracting cells on the plane y = 0",
           begin_sites,
           {{"furrow_depth_um", series, last,
@@ -423,13 +422,7 @@ MeasureSet fold_set() {
 }
 
 MeasureSet furrow_set() {
-  return {"furrow",
-          "lips, centre and ends of a ventral furrow; includes `fold`",
-          "contracting cells on the plane y = 0",
-          begin_sites,
-          columns_of_furrow(),
-          of_embryo,
-          follow,
+  return {"furrow", "contracting cells on the plane y = 0", begin_sites, columns_of_furrow(), of_embryo, follow,
           "fold"};
 }
 

@@ -21,8 +21,7 @@ inline bool of_embryo(const Subject& subject) { return subject.is_embryo; }
 
 struct MeasureSet {
   std::string_view name;                          // empty: measured in every run
-  std::string_view meaning;                       // for docs/reference/measures.md
-  std::string_view needs;                         // of the tissue, for messages
+  std::string_view needs;                         // of the tissue; for messages and docs/reference/measures.md
   std::function<std::any(const Subject&)> begin;  // what is kept over the run; empty without what it needs
   std::vector<Column> columns;
   std::function<bool(const Subject&)> is_usual = {};  // whether measured by default; empty: yes
@@ -63,10 +62,9 @@ Column::OfStep part_of(std::optional<Value> (*compute)(const MeasuredStep&), Par
 }
 
 /// Set that keeps no places of cells, which divisions would change.
-inline MeasureSet set_of(std::string_view name, std::string_view meaning, std::string_view needs,
-                         std::function<std::any(const Subject&)> begin, std::vector<Column> columns,
-                         std::function<bool(const Subject&)> is_usual = {}) {
-  return {name, meaning, needs, std::move(begin), std::move(columns), std::move(is_usual)};
+inline MeasureSet set_of(std::string_view name, std::string_view needs, std::function<std::any(const Subject&)> begin,
+                         std::vector<Column> columns, std::function<bool(const Subject&)> is_usual = {}) {
+  return {name, needs, std::move(begin), std::move(columns), std::move(is_usual)};
 }
 
 MeasureSet run_set();

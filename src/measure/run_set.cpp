@@ -101,13 +101,12 @@ std::vector<Column> columns_of_every_run() {
 
 MeasureSet run_set() {
   return set_of(
-      "", "", "", [](const Subject& s) { return std::any(tissue_volume(s.model, s.model.tissue.rest_positions)); },
+      "", "", [](const Subject& s) { return std::any(tissue_volume(s.model, s.model.tissue.rest_positions)); },
       columns_of_every_run());
 }
 
 MeasureSet projection_set() {
-  return set_of("projection", "effort of the volume projection", "volume.method = \"projection\"",
-                [](const Subject& s) { return kept_if(s.projects); },
+  return set_of("projection", "volume.method = \"projection\"", [](const Subject& s) { return kept_if(s.projects); },
                 {count({"projection_sweeps", no_series, sum,
                         "Sweeps of the projection ([paper algorithm](../theory/paper_algorithm.md)).",
                         reported(&StepReport::projection_sweeps)}),

@@ -72,7 +72,7 @@ void begin_sets(const Scenario& scenario, const Model& model, KeptBySet& kept, s
     if ((is_given(set.name) || is_usual) && !begin(set, subject, kept) && is_given(set.name))
       errors.push_back(diagnostic_at(scenario, "measure.sets",
                                      fmt::format("\"{}\" has nothing to measure without {}", set.name, set.needs),
-                                     fmt::format("remove \"{}\", or add {}", set.name, set.needs)));
+                                     "remove it, or supply what it needs"));
   }
   for (const Column* column : all_columns())
     if (scenario.expect.contains(std::string(column->name)) && !column->set.empty() && !kept.contains(column->set))
