@@ -249,7 +249,7 @@ Flanks flanks(const Tissue& tissue, std::span<const Vec3> positions) {
 }  // namespace
 
 MeasureSet contact_set() {
-  return set_of("contact", "[self_contact]", begin_contact,
+  return set_of("contact", "self_contact.surface", begin_contact,
                 {count({"contact_pairs", series, largest, "Contact pairs under pressure.",
                         part_of(contact_of_step, &ContactState::pairs)}),
                  {"min_contact_distance_um", series, least,
@@ -259,7 +259,7 @@ MeasureSet contact_set() {
 
 MeasureSet closing_set() {
   return set_of(
-      "closing", "[self_contact]", begin_contact,
+      "closing", "self_contact.surface", begin_contact,
       {{"closed_length_ratio", series, last,
         "Fraction of the embryo's length with furrow closure: apical surfaces left and right of the midline in "
         "contact.",

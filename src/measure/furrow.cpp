@@ -345,16 +345,14 @@ std::vector<Column> columns_of_furrow() {
        "jump.",
        part_of(lips_of_step, &LipShape::highest_points_distance_um)},
       {"vml_speed_um_per_s", series, nothing,
-       "Speed of the barycentre (mean of eight corners) of the central midline cell (VML): at the end of the step "
-       "with `bdf2`, mean over the step with `backward-euler`.",
+       "Speed of the barycentre (mean of eight corners) of the central midline cell (VML).",
        part_of(speeds_of_step, &SpeedRow::vml_speed_um_per_s)},
       {"vce_speed_um_per_s", series, nothing, "Speed of the barycentre of the near-end midline cell (VCE).",
        part_of(speeds_of_step, &SpeedRow::vce_speed_um_per_s)},
       {"speed_ratio", series, nothing, "Speed of VCE / speed of VML, $v_c/v_m$.",
        [](const M& m) { return m.once(speeds_of_step).speed_ratio(); }},
       {"vml_displacement_um", series, last,
-       "Mean displacement of the eight corner nodes of VML from the reference state (mean of lengths, as in the "
-       "paper).",
+       "Mean displacement of the eight corner nodes of VML from the reference state (mean of lengths).",
        part_of(speeds_of_step, &SpeedRow::vml_displacement_um)},
       {"vce_displacement_um", series, last, "Mean displacement of the corner nodes of VCE.",
        part_of(speeds_of_step, &SpeedRow::vce_displacement_um)},
@@ -414,8 +412,8 @@ MeasureSet fold_set() {
           {{"furrow_depth_um", series, last,
             "Furrow depth: largest inward distance from the vitelline membrane over the apical midline (plane y = 0) "
             "of the furrow cells, without the middles of polygons, minus the reference value of the same material "
-            "point. Inward: against the mean reference apical normal of these cells. Without an embryo shape (a "
-            "block): inward displacement.",
+            "point. Inward: against the mean reference apical normal of these cells. Without an embryo shape: inward "
+            "displacement.",
             [](const M& m) { return furrow_depth_um(m.model.tissue, sites_of(m), m.state.positions); }}},
           [](const Subject& s) { return s.is_embryo || is_open_sheet(s.model.tissue); },
           follow};

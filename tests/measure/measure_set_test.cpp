@@ -37,7 +37,8 @@ TEST(MeasureSets, ATissueMeasuresWhatFitsIt) {
   EXPECT_EQ(
       sets_of(Simulation(scenario_of(support::small_furrow.substr(std::size("format = 1"))))),
       (Names{"", "fold", "furrow", "contact", "closing", "lumen", "shell", "perivitelline", "flanks", "bending"}));
-  EXPECT_EQ(sets_of(Simulation(scenario_of(sheet + "[self_contact]\n"))), (Names{"", "fold", "contact", "bending"}));
+  EXPECT_EQ(sets_of(Simulation(scenario_of(sheet + "[self_contact]\nsurface = \"apical\"\n"))),
+            (Names{"", "fold", "contact", "bending"}));
 }
 
 TEST(MeasureSets, NoColumnIsEmpty) {
@@ -66,7 +67,7 @@ TEST(MeasureSets, AreThoseThatAreNamed) {
   EXPECT_EQ(named(""), (Names{""}));
   EXPECT_EQ(named("\"bending\""), (Names{"", "bending"}));
   EXPECT_EQ(named("\"furrow\""), (Names{"", "fold", "furrow"}));
-  EXPECT_EQ(named("\"automatic\", \"closing\"", "[self_contact]\n"),
+  EXPECT_EQ(named("\"automatic\", \"closing\"", "[self_contact]\nsurface = \"apical\"\n"),
             (Names{"", "fold", "contact", "closing", "bending"}));
 }
 
