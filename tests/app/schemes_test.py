@@ -103,7 +103,7 @@ class Schemes(CommandLine):
             self.run_scenario(BLOCK.replace(*LINEAR) + PAPER, "--set", f"time.cg_tolerance={tolerance}", "--overwrite")
             ends.append(self.summary())
         self.assertLess(ends[0]["linear_iterations"], ends[1]["linear_iterations"])
-        areas = [end["vml_apical_area_ratio"] for end in ends]
+        areas = [end["min_apical_area_ratio"] for end in ends]
         self.assertTrue(math.isclose(*areas, rel_tol=1e-3), areas)
         self.assertNotEqual(*areas)
 
