@@ -13,7 +13,7 @@ from pathlib import Path
 
 # A folder of src/ includes itself and the folders before it.
 FOLDERS = ("core", "tissue", "mechanics", "solver", "measure", "scenario", "simulation", "record", "show", "study",
-           "experiments", "paper", "app")
+           "experiments", "app")
 # Inside solver/, too, a folder includes itself and those before it.
 ROOMS_OF_SOLVER = ("algebra", "multigrid", "linear", "step", "projection")
 MOST_LINES = 500

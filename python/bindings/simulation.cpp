@@ -19,7 +19,6 @@
 #include "record/checkpoint.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/print.hpp"
-#include "simulation/crossing_warning.hpp"
 #include "simulation/run_warnings.hpp"
 #include "thread_count.hpp"
 #include "tissue/faces.hpp"

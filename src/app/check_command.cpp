@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "app/commands.hpp"
-#include "app/delayed_notice.hpp"
 #include "app/interruption.hpp"
+#include "app/progress.hpp"
 #include "app/scenario_options.hpp"
 #include "app/threads.hpp"
 #include "core/errors.hpp"

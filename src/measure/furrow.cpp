@@ -13,7 +13,7 @@
 #include "measure/observation.hpp"
 #include "measure/speed_history.hpp"
 #include "tissue/facing.hpp"
-#include "tissue/inner_nodes.hpp"
+#include "tissue/polygon_cell.hpp"
 
 namespace plica {
 namespace {

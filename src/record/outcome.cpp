@@ -9,7 +9,7 @@
 #include "core/words.hpp"
 #include "record/results.hpp"
 #include "scenario/embryo_axes.hpp"
-#include "simulation/crossing_warning.hpp"
+#include "simulation/run_warnings.hpp"
 
 namespace plica {
 namespace {

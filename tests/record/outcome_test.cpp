@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scenario/load.hpp"
-#include "simulation/crossing_warning.hpp"
+#include "simulation/run_warnings.hpp"
 #include "support/tissues.hpp"
 #include "tissue/shapes/embryo.hpp"
 
