@@ -64,7 +64,7 @@ void check_quantities(const Experiments& experiments, const std::vector<KnownNam
            fmt::format("\"{}\" is not a {}{}", name,
                        source == summary ? "number of summary.json" : "column of series.csv",
                        which == e ? "" : " of " + experiments.experiments[which].name),
-           did_you_mean(name, names)});
+           result_remedy(name, names)});
       return false;
     }
     return true;

@@ -53,7 +53,7 @@ void write_short(const fs::path& folder, const Scenario& scenario, const RunSumm
   std::error_code error;
   fs::create_directories(folder, error);
   std::string series = fmt::format("{}\n", fmt::join(run.series_columns, ","));
-  for (const Observation& row : run.rows) series += series_row(row) + '\n';
+  for (const Observation& row : run.rows) series += series_row(row, run.columns) + '\n';
   write_file(folder / "scenario.toml", resolved_toml(scenario));
   write_file(folder / "series.csv", series);
   write_file(folder / "summary.json", run.summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
