@@ -420,7 +420,12 @@ MeasureSet fold_set() {
 }
 
 MeasureSet furrow_set() {
-  return {"furrow", "contracting cells on the plane y = 0", begin_sites, columns_of_furrow(), of_embryo, follow,
+  return {"furrow",
+          "contracting cells on the plane y = 0",
+          begin_sites,
+          columns_of_furrow(),
+          [](const Subject& s) { return s.is_embryo && !is_open_sheet(s.model.tissue); },
+          follow,
           "fold"};
 }
 

@@ -52,7 +52,7 @@ void add_furrow(const Json& summary, Parts& parts) {
 
 std::string outcome_text(const Scenario& scenario, const Tissue& tissue, const Json& summary) {
   Parts parts(summary);
-  if (have_furrow(axes_of(scenario.embryo)) && number_of(summary, "furrow_depth_um")) {
+  if (have_furrow(axes_of(scenario.embryo)) && number_of(summary, "vml_apical_area_ratio")) {
     add_furrow(summary, parts);
   } else {
     parts.value("fold depth", "furrow_depth_um", " um");

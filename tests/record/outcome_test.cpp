@@ -49,7 +49,9 @@ TEST(Outcome, OfAnEmbryoIsItsFurrow) {
   EXPECT_EQ(outcome_text(pill, closed(), with({{"lips_closed", 0}, {"lips_closed_time_s", 900}, {"divisions", 2}})),
             "furrow depth 28.90 um, apical area ratio 0.68 (midline centre), lips open again, closed at 15.00 min, " +
                 std::to_string(closed().cells.size()) + " cells after 2 divisions");
-  EXPECT_EQ(outcome_text(pill, closed(), with({{"furrow_depth_um", nullptr}, {"lumen_volume_ratio", 1.2}})),
+  EXPECT_EQ(outcome_text(
+                pill, closed(),
+                with({{"furrow_depth_um", nullptr}, {"vml_apical_area_ratio", nullptr}, {"lumen_volume_ratio", 1.2}})),
             "largest displacement 32.50 um, smallest apical area ratio 0.52, lumen volume ratio 1.20");
 }
 
