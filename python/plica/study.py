@@ -49,7 +49,7 @@ class Study(StudyTable):
     ...     "set": {"time.end_min": 1},
     ...     "vary": {"elasticity.young_modulus_Pa": {"values": [500, 1000]}},
     ...     "design": {"kind": "grid"},
-    ...     "keep": {"measures": ["furrow_depth_um"]},
+    ...     "keep": {"measures": ["max_displacement_um"]},
     ... })
     >>> study
     Study('study' of division-demo: 2 runs of elasticity.young_modulus_Pa)
