@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ranges>
 #include <set>
 
 #include "measure/cells.hpp"
@@ -237,7 +236,8 @@ std::optional<double> midline_waviness_um(const Tissue& tissue, const FurrowSite
     points.emplace_back(rest.x(), depth_of(tissue, rest, mean_apical(cell, positions), sites.outward));
   }
   if (points.empty()) return std::nullopt;
-  const auto [first, last] = std::ranges::minmax(points | std::views::keys);
+  const auto [least, most] = std::minmax_element(points.begin(), points.end());  // by x
+  const double first = least->first, last = most->first;
   const double middle = 0.5 * (first + last), reach = 0.25 * (last - first);
   std::erase_if(points, [&](const auto& point) { return std::abs(point.first - middle) > reach; });
   if (points.size() < fewest_cells) return std::nullopt;
