@@ -89,7 +89,7 @@ TEST(MeasureSets, OneThatDoesNotFitIsAnErrorWithARemedy) {
   EXPECT_EQ(refusal(expectation + "[measure]\nsets = [\"automatic\", \"furrow\"]\n"), "none");
 }
 
-// A set that nobody chose computes nothing; what is left has the same values.
+// A set that is not chosen computes nothing; what is left has the same values.
 TEST(MeasureSets, OthersChangeNothing) {
   Simulation all(scenario_of(sheet + "[measure]\nsets = [\"automatic\", \"furrow\"]\n")), few(scenario_of(sheet));
   all.step(), few.step();
