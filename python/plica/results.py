@@ -376,23 +376,24 @@ def _short(value: Union[int, float, str]) -> str:
     return f"{value:.6g}" if isinstance(value, float) and math.isfinite(value) else str(value)
 
 
-# VTK XML of unstructured grids as plica writes it: appended data in zlib-compressed blocks, base64, or raw in older frames.
+# VTK XML of unstructured grids as plica writes it: zlib-compressed blocks in base64 within each array. Older frames have
+# them appended, in base64 or raw.
 TYPES = {"Float64": "<f8", "Float32": "<f4", "Int64": "<i8", "Int32": "<i4", "UInt8": "u1", "Int8": "i1"}
 
 
 def _read_vtu(path: Path) -> dict[str, dict[str, NDArray[Any]]]:
     try:
-        content = path.read_bytes()
-        head, _, rest = content.partition(b"<AppendedData")
-        blocks = _blocks if b'encoding="raw"' in rest[: rest.index(b"_")] else _base64_blocks
-        appended = rest[rest.index(b"_") + 1 :]
-        root = xml.fromstring(head + b"</VTKFile>")
+        head, older, rest = path.read_bytes().partition(b"<AppendedData")
+        encoding, _, appended = rest.partition(b"_")
+        root = xml.fromstring(head + b"</VTKFile>" if older else head)
         found: dict[str, dict[str, NDArray[Any]]] = {}
         for group in ("Points", "Cells", "PointData", "CellData", "FieldData"):
             found[group] = {}
             where = "FieldData" if group == "FieldData" else f"Piece/{group}"
             for one in root.findall(f"./UnstructuredGrid/{where}/DataArray"):
-                values = np.frombuffer(b"".join(blocks(appended, int(one.attrib["offset"]))), TYPES[one.attrib["type"]])
+                data = appended[int(one.attrib["offset"]) :] if older else (one.text or "").strip().encode()
+                blocks = _blocks(data if b'"raw"' in encoding else _decoded(data))
+                values = np.frombuffer(b"".join(blocks), TYPES[one.attrib["type"]])
                 width = int(one.attrib.get("NumberOfComponents", "1"))
                 found[group][one.attrib.get("Name", group)] = values.reshape(-1, width) if width > 1 else values
         if len(found["Points"]) != 1 or "connectivity" not in found["Cells"]:
@@ -402,20 +403,18 @@ def _read_vtu(path: Path) -> dict[str, dict[str, NDArray[Any]]]:
         raise FileError(f"{path}: cannot be read as a frame: {error}") from error
 
 
-def _blocks(appended: bytes, offset: int) -> Iterator[bytes]:
-    count = int(np.frombuffer(appended, "<u8", 1, offset)[0])
-    sizes = np.frombuffer(appended, "<u8", count, offset + 24)
-    start = offset + 24 + 8 * count
-    for size in map(int, sizes):
-        yield zlib.decompress(appended[start : start + size])
+def _blocks(data: bytes) -> Iterator[bytes]:
+    count = int(np.frombuffer(data, "<u8", 1)[0])
+    start = 24 + 8 * count
+    for size in map(int, np.frombuffer(data, "<u8", count, 24)):
+        yield zlib.decompress(data[start : start + size])
         start += size
 
 
-def _base64_blocks(appended: bytes, offset: int) -> Iterator[bytes]:
+def _decoded(data: bytes) -> bytes:
     # Sizes and blocks are coded apart, so the code of the sizes ends at a multiple of four letters.
-    count = int(np.frombuffer(base64.b64decode(appended[offset : offset + 32]), "<u8", 1)[0])
+    count = int(np.frombuffer(base64.b64decode(data[:32]), "<u8", 1)[0])
     letters = 4 * -(-(24 + 8 * count) // 3)
-    header = base64.b64decode(appended[offset : offset + letters])
+    header = base64.b64decode(data[:letters])
     size = int(np.frombuffer(header, "<u8", count, 24).sum())
-    start = offset + letters
-    return _blocks(header + base64.b64decode(appended[start : start + 4 * -(-size // 3)]), 0)
+    return header + base64.b64decode(data[letters : letters + 4 * -(-size // 3)])

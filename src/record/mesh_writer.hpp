@@ -52,7 +52,7 @@ struct SurfaceMesh {
   std::optional<double> time_s;
 };
 
-/// Write the elements as VTK hexahedra at `positions` (nodes; um) to a `.vtu` file (XML, appended base64 data, zlib),
+/// Write the elements as VTK hexahedra at `positions` (nodes; um) to a `.vtu` file (XML, base64, zlib),
 /// atomically. `time_s` becomes field data `TimeValue`. Throws FileError, or std::logic_error for an array of wrong
 /// length or with values that are not finite.
 void write_mesh(const std::filesystem::path& file, const MeshElements& mesh, std::span<const Vec3> positions,
