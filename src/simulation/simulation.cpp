@@ -21,6 +21,9 @@
 namespace plica {
 namespace {
 
+// In a row, since a resumed run repeats them. Few factors last longer.
+constexpr int most_steps_with_factor = 20;
+
 double max_speed(const State& state) {
   double fastest = 0;
   for (const Vec3& velocity : state.velocities) fastest = std::max(fastest, velocity.norm());
@@ -114,7 +117,6 @@ Simulation::Simulation(const Simulation& other)
       failure_(other.failure_),
       failed_cell_(other.failed_cell_) {
   renew_stepper();
-  recall_factor();
 }
 
 Simulation::Simulation(Simulation&&) noexcept = default;
@@ -129,15 +131,12 @@ Simulation& Simulation::operator=(const Simulation& other) {
 void Simulation::renew_stepper() {
   stepper_ = make_stepper(*model_, controls_.scheme);
   stepper_->stop_when(stop_requested_);
+  steps_with_factor_ = 0;
 }
 
-// Recompute the reused factorization with daughters grown as they were then.
-void Simulation::recall_factor() {
-  if (now_.factor.empty()) return;
-  grow(*model_, now_.factor.end_time_s);
-  stepper_->recall(now_.factor);
-  now_.factor = {};
-  grow(*model_, now_.state.time_s);
+void Simulation::forget_factor() const {
+  stepper_->forget_factor();
+  steps_with_factor_ = 0;
 }
 
 void Simulation::stop_when(std::function<bool()> stop_requested) {
@@ -148,7 +147,7 @@ void Simulation::stop_when(std::function<bool()> stop_requested) {
 RunMemory Simulation::memory() const {
   RunMemory memory = now_;
   memory.wanted_step_s = step_length_.wanted_s();
-  memory.factor = stepper_->memory();
+  forget_factor();
   if (full_model_) memory.whole_internals = full_model_->state().internals;
   return memory;
 }
@@ -207,7 +206,6 @@ void Simulation::go_on_from(RunMemory memory, Observation measures) {
   step_length_ = StepLength(controls_, now_.wanted_step_s);
   grow(*model_, now_.state.time_s);
   renew_stepper();
-  recall_factor();
 }
 
 // Divide cells and update everything indexed by cells and nodes.
@@ -316,6 +314,9 @@ bool Simulation::step(double until_s) {
                           energy};
   measures_ = observer_->observe(step, now_.computing_s);
   now_.criterion_met = measures_.is_over;
+  if (++steps_with_factor_ >= most_steps_with_factor || !stepper_->keeps_factor() || !due.empty() ||
+      has_come(until_s, state.time_s) || has_ended(now_, controls_))
+    forget_factor();
   for (SimulationListener* listener : listeners_) listener->step_accepted(step, measures_);
   divide(due);
   return true;

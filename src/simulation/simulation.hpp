@@ -57,7 +57,7 @@ class Simulation {
   };
   explicit Simulation(Parts parts);
 
-  /// Listeners and stop_when are not copied. The copy recomputes a reused factorization.
+  /// Listeners and stop_when are not copied. `other` forgets a reused factorization, which the copy does not have.
   Simulation(const Simulation& other);
   Simulation& operator=(const Simulation& other);
   Simulation(Simulation&&) noexcept;
@@ -99,8 +99,11 @@ class Simulation {
   [[nodiscard]] const Observation& measures() const { return measures_; }
   [[nodiscard]] const Observer& observer() const { return *observer_; }
 
-  /// Checkpoint: everything the next step depends on besides the scenario.
+  /// Checkpoint: everything the next step depends on besides the scenario. A reused factorization is forgotten.
   [[nodiscard]] RunMemory memory() const;
+  /// Whether none is in use, so that memory() changes nothing: at the latest after every 20th step, at the time that a
+  /// step was asked for, before a division and at the end.
+  [[nodiscard]] bool is_resumable() const { return steps_with_factor_ == 0; }
 
   /// Continue from a checkpoint of the same scenario; call in the reference state only. `measures`: those of its last
   /// step. Throws UnfitMemory if it does not fit this model. Listeners are not notified of past divisions.
@@ -132,7 +135,7 @@ class Simulation {
   void restart_at_a_jump();
   EnergyFlow account_for_energy(const State& before);
   void renew_stepper();
-  void recall_factor();
+  void forget_factor() const;
 
   std::shared_ptr<const Scenario> scenario_;
   std::unique_ptr<Model> model_;         // the solved model; `now_` is its state
@@ -140,6 +143,7 @@ class Simulation {
   RunControls controls_;
   RunMemory now_;
   std::unique_ptr<Stepper> stepper_;
+  mutable int steps_with_factor_ = 0;  // taken since the stepper had none to reuse
   StepLength step_length_;
   std::unique_ptr<Observer> observer_;
   Observation measures_;

@@ -13,6 +13,8 @@ for setting in ("division.floor.at_min=0.2", "division.floor.growth_min=0.3", "d
                 "division.borders.growth_min=0.3", "time.end_min=1.5", "time.tolerance_um=0.02", "output.frame_every_s=5"):
     DIVIDING += ["--set", setting]
 
+LOST = range(22)  # rows that a kill may cost: 20 steps in a row with a factor, and one that is being recorded
+
 
 def results(out):
     """What must be the same: every file but checkpoints and the report, what it cost and provenance aside."""

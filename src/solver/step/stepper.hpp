@@ -57,9 +57,8 @@ class Stepper {
   /// Discard a reused factorization, so that the next step does not depend on earlier solves.
   virtual void forget_factor() {}
 
-  /// Data of the reused factorization, and its restoration in a new stepper (see NewtonDirections).
-  [[nodiscard]] virtual FactorMemory memory() const { return {}; }
-  virtual void recall(const FactorMemory& /*memory*/) {}
+  /// Whether the next step may reuse a factorization.
+  [[nodiscard]] virtual bool keeps_factor() const { return false; }
 };
 
 /// Cell at the node with the largest vector; vectors that are not finite come first.

@@ -215,26 +215,6 @@ struct Bordered {
   ContactBorder border;
 };
 
-// A memory is read from a file.
-TEST(ContactBorder, RecallsAnyNumberOfChanges) {
-  const Model model = furrowing_sphere();
-  const Case given(model);
-  Bordered now(given, model);
-  FactorMemory memory;
-  for (int k = 0; k < 40; ++k) {
-    memory.changed_contacts.push_back(k);
-    memory.has_left.push_back(false);
-    memory.normals.push_back(Vec3::UnitX());
-  }
-  now.border.recall(memory, now.factor);
-  Iterate changed = given.at;
-  changed.in_contact[41] ^= 1;
-  EXPECT_FALSE(now.border.follow(changed, now.factor)) << "too many to go on with";
-  FactorMemory again;
-  now.border.remember(again);
-  EXPECT_EQ(again.changed_contacts, memory.changed_contacts);
-}
-
 TEST(ContactBorder, TakesUpOnlySoManyChanges) {
   const Model model = furrowing_sphere();
   const Case given(model);
