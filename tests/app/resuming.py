@@ -39,6 +39,13 @@ class Resuming(CommandLine):
             if found[name] != whole[name]:
                 self.fail(f"{name} is not the same; kept in {shutil.copytree(out, self.folder.with_suffix('.kept'))}")
 
+    def assert_alike(self, whole):
+        """A run that was extended, or went on after its stop: nothing is reused across that, so the last digits may differ."""
+        found, expected = self.summary(), whole["summary.json"]
+        self.assertEqual(found["steps"], expected["steps"])
+        for key in ("time_s", "max_displacement_um", "mean_height_um", "active_work_nN_um", "stored_energy_nN_um"):
+            self.assertAlmostEqual(found[key] / expected[key], 1, delta=1e-9)
+
     def whole_run(self, arguments, *more):
         result = plica("run", *arguments, "--out", self.folder / "whole", *more, timeout=300)
         self.assertEqual(result.returncode, 0, result.stderr)
