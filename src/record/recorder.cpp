@@ -63,11 +63,12 @@ void Recorder::save_checkpoint() {
   const WallTimes so_far = wall();
   const auto checkpoint = std::make_shared<Checkpoint>(blank_);
   checkpoint->run = simulation_.memory();
-  checkpoint->record = {.rows = rows_,
-                        .series_bytes = bytes_of(series_),
-                        .lineage_bytes = bytes_of(lineage_),
-                        .wall_s = so_far.total_s,
-                        .solver_s = so_far.solver_s};
+  RecordMemory& record = checkpoint->record;
+  record.rows = rows_;
+  record.series_bytes = bytes_of(series_);
+  record.lineage_bytes = bytes_of(lineage_);
+  record.wall_s = so_far.total_s;
+  record.solver_s = so_far.solver_s;
   writing_.add([this, checkpoint] { write(*checkpoint); });
 }
 
