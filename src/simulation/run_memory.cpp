@@ -20,11 +20,11 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
     return "its pace is invalid";
   if (state.trend.step_s + state.trend.earlier_s > state.time_s * (1 + 1e-9))
     return "its steps are longer than its time";
-  if (state.positions.size() != nodes || state.velocities.size() != nodes ||
-      state.multipliers.size() != multipliers || state.contact_forces.size() != contacts ||
-      state.in_contact.size() != contacts || !none_or(state.trend.mean_velocities.size(), nodes) ||
-      !none_or(state.trend.accelerations.size(), nodes) || !none_or(state.trend.multiplier_rates.size(), multipliers) ||
-      state.internals.size() != model.laws.size() || !none_or(run.energies.size(), model.laws.size() + 1))
+  if (state.positions.size() != nodes || state.velocities.size() != nodes || state.multipliers.size() != multipliers ||
+      state.contact_forces.size() != contacts || state.in_contact.size() != contacts ||
+      !none_or(state.trend.mean_velocities.size(), nodes) || !none_or(state.trend.accelerations.size(), nodes) ||
+      !none_or(state.trend.multiplier_rates.size(), multipliers) || state.internals.size() != model.laws.size() ||
+      !none_or(run.energies.size(), model.laws.size() + 1))
     return "its state does not fit this embryo";
   return std::nullopt;
 }

@@ -62,7 +62,7 @@ class KeptPreconditioner {
   std::optional<ChequerboardFactor> chequerboards_;  // for modes that gamma W does not resist
   DenseBorder dense_;
   std::vector<char> in_contact_;  // contacts at the iterate of the inverse
-  std::vector<double> weights_;  // rows
+  std::vector<double> weights_;   // rows
 
   mutable std::vector<double> chequered_;  // scratch
   mutable Vectors moved_;
