@@ -157,7 +157,8 @@ class Polygons(CommandLine):
             self.assertEqual((self.out / name).read_bytes(), (other / name).read_bytes(), name)
         for extended, row in zip(table(part / "cells.csv"), rows, strict=True):
             for column in ("time_s", "volume_um3", "x_um", "apical_area_um2"):
-                self.assertAlmostEqual(float(extended[column]), float(row[column]), delta=1e-6)
+                value = float(row[column])
+                self.assertAlmostEqual(float(extended[column]), value, delta=1e-8 * max(1, abs(value)))
 
 
 class BuiltIn(CommandLine):
