@@ -1,5 +1,5 @@
 # Compiles scenarios/ into the program, so that `plica run drosophila` needs no other files: scenarios as text, tables of
-# scenarios/data/ as bytes (compilers limit the length of a string), and experiments of scenarios/living/.
+# scenarios/data/ as bytes (compilers limit the length of a string), and experiments of scenarios/living/ and scenarios/paper/.
 file(GLOB scenario_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scenarios/*.toml)
 set(builtin_scenarios_cpp ${CMAKE_BINARY_DIR}/generated/builtin_scenarios.cpp)
 set(entries "")
@@ -22,7 +22,8 @@ foreach(file ${table_files})
 endforeach()
 # Experiments with their scenarios and parameter samples.
 file(GLOB experiment_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/scenarios
-  ${PROJECT_SOURCE_DIR}/scenarios/living/*.toml ${PROJECT_SOURCE_DIR}/scenarios/living/*.csv)
+  ${PROJECT_SOURCE_DIR}/scenarios/living/*.toml ${PROJECT_SOURCE_DIR}/scenarios/living/*.csv
+  ${PROJECT_SOURCE_DIR}/scenarios/paper/*.toml ${PROJECT_SOURCE_DIR}/scenarios/paper/*.csv)
 set(files "")
 foreach(path ${experiment_files})
   file(READ ${PROJECT_SOURCE_DIR}/scenarios/${path} text)

@@ -7,7 +7,8 @@ import sys
 
 def help_of(*command):
     text = subprocess.run([sys.argv[1], *command, "--help"], capture_output=True, text=True, check=True).stdout.strip()
-    return re.sub(r"(--jobs INT:INT in \[.+?\])=\d+", r"\1=CORES", text)  # the default is the machine's
+    # The default of --jobs is the machine's; CLI11 writes "=2" before 2.4, " [2] " since.
+    return re.sub(r"(--jobs INT:INT in \[.+?\])(=| \[)\d+\b", r"\1\2CORES", text)
 
 
 whole = help_of()

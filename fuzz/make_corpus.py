@@ -102,7 +102,7 @@ def items(form, values):
 
 
 def mesh(points, cells, faces, arrays=(), groups=((), (), (), (), ())):
-    """Encode as tissue/files/mesh_bytes.cpp."""
+    """Encode as tissue/files/child_reading.cpp."""
     data = items("3d", points) + items("8i", cells)
     for numbers in (faces, *groups):
         data += items("i", [(number,) for number in numbers])

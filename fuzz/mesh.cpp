@@ -1,5 +1,5 @@
 #include "targets.hpp"
-#include "tissue/files/mesh_bytes.hpp"
+#include "tissue/files/child_reading.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {

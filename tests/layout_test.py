@@ -13,7 +13,7 @@ from pathlib import Path
 
 # A folder of src/ includes itself and the folders before it.
 FOLDERS = ("core", "tissue", "mechanics", "solver", "measure", "scenario", "simulation", "record", "show", "study",
-           "experiments", "paper", "app")
+           "experiments", "app")
 # Inside solver/, too, a folder includes itself and those before it.
 ROOMS_OF_SOLVER = ("algebra", "multigrid", "linear", "step", "projection")
 MOST_LINES = 500
@@ -187,10 +187,13 @@ def check_reference():
 
 
 def check_command_line():
+    def words(text):  # CLI11 breaks lines elsewhere and writes " [2]" for "=2" since 2.4
+        return re.sub(r" \[(\w+)\](?=\s)", r"=\1", text).split()
+
     page, maker = root / "docs/reference/cli.md", root / "docs/make_cli.py"
     expected = subprocess.run([sys.executable, maker, program], capture_output=True, text=True, check=True).stdout
     count("commands", expected.count("\n## "))
-    if not page.is_file() or page.read_text(encoding="utf-8") != expected:
+    if not page.is_file() or words(page.read_text(encoding="utf-8")) != words(expected):
         breach(page, "is not what the program prints; run: docs/make_cli.py build/release/plica > docs/reference/cli.md")
 
 

@@ -1,34 +1,41 @@
 #!/usr/bin/python3
-"""Put the results of `plica reproduce` into docs/science/reproduction.md.
+"""Put the results of `plica reproduce paper` into docs/science/reproduction.md.
 
-Usage: update_reproduction.py DIR, the --out directory of a full (not --quick) run. Text outside of the page's markers is
-written by hand and stays. Written are
-
-- the page's tables between <!-- claims --> or <!-- errors --> and <!-- end -->, and its count of verdicts,
-- docs/science/reproduction.csv (claims), reproduction-readings.csv and reproduction-errors.csv, in full,
-- the figures that the page shows, in docs/images/reproduction/.
+Usage: update_reproduction.py DIR, the --out directory of a full (not --quick) run. Needs Matplotlib, and `plica` (or the program that
+PLICA names). Written are docs/science/reproduction.csv, the page's count of verdicts, its tables between <!-- claims --> or
+<!-- errors --> (from reproduction-errors.csv, by docs/science/readings.py) and <!-- end -->, and docs/images/reproduction/.
 """
 import csv
+import os
 import re
-import shutil
+import subprocess
 import sys
 from pathlib import Path
 
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt  # noqa: E402
+
 SCIENCE = Path(__file__).resolve().parent.parent / "docs/science"
 PAGE, IMAGES = SCIENCE / "reproduction.md", SCIENCE.parent / "images/reproduction"
-TABLES = {"section": "reproduction.csv", "varied": "reproduction-readings.csv", "headline": "reproduction-errors.csv"}
-VERDICTS = ("reproduced", "reproduced under this reading", "not reproduced")
+VERDICTS = ("reproduced", "under this reading", "not reproduced")
 SUBJECTS = {"2.1": "meshes and sizes", "2.3": "contraction", "2.5": "volume", "2.6": "cell division", "2.7": "stop", "3.1": "furrow of the pill",
             "3.2": "furrow of the sphere", "3.3": "vitelline membrane", "4": "discussion", "5": "conclusion", "note": "notes"}
+# Outcomes beside their printed value, for the trade-off.
+LINES = {("pill", "peak-ratio"): ("pill's speed ratio / 3.65", 3.65), ("sphere", "peak-ratio"): ("sphere's speed ratio / 1.23", 1.23),
+         ("sphere", "depth"): ("sphere's depth / 27.44 µm", 27.44), ("pill", "vce-at-equal-speeds"): ("VCE at equal speeds / 15 µm", 15),
+         ("pill", "vml-at-equal-speeds"): ("VML at equal speeds / 8.5 µm", 8.5), ("pill", "area-loss"): ("VML area loss / 30 %", 30)}
+RATIOS = (0.35, 0.2, 0.3, 0.4, 0.6, 1)  # of the draws, which are 5 rows
 
 
-def tables_of(text):
-    """Rows of cells of each table in Markdown, its header first, by the first cell of the header."""
-    found = {}
-    for table in re.findall(r"(?:^\|.*\n)+", text, re.M):
-        rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
-        found[rows[0][0]] = [rows[0], *rows[2:]]
-    return found
+def read(path):
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def subject_of(source):
+    return re.match(r"note|\d(\.\d)?", source)[0]
 
 
 def table(header, rows):
@@ -43,40 +50,75 @@ def fill(page, name, text):
     return filled
 
 
-def counts_of(claims):
-    """Rows of a table: how many of the claims, (section, verdict), have each verdict, by section, and in all."""
+def counts_of(rows):
+    """Rows of a table: how many of the claims have each verdict, by section, and in all."""
     of_subject = {subject: [0] * len(VERDICTS) for subject in SUBJECTS}
-    for section, verdict in claims:
-        of_subject[re.match(r"note|\d(\.\d)?", section)[0]][VERDICTS.index(verdict)] += 1
-    rows = [(f"{number}, {subject}" if number != "note" else subject, counts)
-            for (number, subject), counts in zip(SUBJECTS.items(), of_subject.values())]
-    rows.append(("all", [sum(column) for column in zip(*of_subject.values())]))
-    return [[name, *map(str, counts)] for name, counts in rows]
+    for row in rows:
+        of_subject[subject_of(row["source"])][VERDICTS.index(row["verdict"])] += 1
+    counts = [(f"{number}, {subject}" if number != "note" else subject, counts)
+              for (number, subject), counts in zip(SUBJECTS.items(), of_subject.values())]
+    counts.append(("all", [sum(column) for column in zip(*of_subject.values())]))
+    return [[name, *map(str, counts)] for name, counts in counts]
+
+
+def save(figure, name):
+    figure.savefig(IMAGES / f"{name}.svg", bbox_inches="tight", metadata={"Date": None})
+    plt.close(figure)
+
+
+def draw_speeds(results, embryo, name):
+    series = read(results / "runs" / embryo / "draw-1/series.csv")[1:]
+    figure, axes = plt.subplots(figsize=(6.4, 4))
+    for column, text in (("vml_speed_um_per_s", "VML, the middle"), ("vce_speed_um_per_s", "VCE, second-last cell")):
+        axes.loglog([float(row["time_s"]) for row in series], [float(row[column]) for row in series], label=text)
+    for time_s, text in ((30, "largest difference, paper"), (900, "equal speeds and rest, paper")):
+        axes.axvline(time_s, color="0.6", linestyle=":")
+        axes.text(time_s, 1.2e-4, f" {text}", rotation=90, fontsize=8, ha="right")
+    axes.set(xlabel="time, s", ylabel="speed, µm/s", xlim=(0.05, 1200), ylim=(1e-4, None))
+    axes.legend(frameon=False)
+    save(figure, name)
+
+
+def draw_trade_off(results):
+    numbers = {(row["experiment"], row["outcome"], int(row["draw"])): float(row["number"]) for row in read(results / "experiments.csv") if row["number"]}
+    figure, axes = plt.subplots(figsize=(6.4, 4))
+    for (experiment, outcome), (text, printed) in LINES.items():
+        points = sorted((ratio, numbers[experiment, outcome, i + 1] / printed) for i, ratio in enumerate(RATIOS) if (experiment, outcome, i + 1) in numbers)
+        axes.plot(*zip(*points), marker="o", label=text)
+    axes.axhspan(0.85, 1.15, color="0.9", label="printed, within 15 %")
+    axes.axvline(0.35, color="0.6", linestyle=":")
+    axes.set(xlabel="springs across / springs along", ylabel="ours / printed")
+    axes.legend(frameon=False, fontsize=8)
+    save(figure, "trade-off")
 
 
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     results = Path(sys.argv[1])
-    tables = tables_of((results / "reproduction.md").read_text(encoding="utf-8"))
-    for first, name in TABLES.items():
-        with (SCIENCE / name).open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file, lineterminator="\n").writerows([cell.strip("*") for cell in row] for row in tables[first])
+    rows = sorted(read(results / "outcomes.csv"), key=lambda row: list(SUBJECTS).index(subject_of(row["source"])))
+    with (SCIENCE / "reproduction.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["section", "claim", "printed", "ours", "other_readings", "verdict", "because", "experiment", "outcome"])
+        writer.writerows([row[key] for key in ("source", "question", "observed", "number", "all_draws", "verdict", "because", "experiment", "outcome")]
+                         for row in rows)
 
-    claims = [(row[0], row[5].strip("*")) for row in tables["section"][1:]]
-    counts = counts_of(claims)
-    page = fill(PAGE.read_text(encoding="utf-8"), "claims", table(["section", "reproduced", "under this reading", "not reproduced"], counts))
-    page = fill(page, "errors", table(tables["headline"][0], tables["headline"][1:]))
+    counts = counts_of(rows)
+    page = fill(PAGE.read_text(encoding="utf-8"), "claims", table(["section", *VERDICTS], counts))
+    with (SCIENCE / "reproduction-errors.csv").open(newline="", encoding="utf-8") as file:
+        header, *errors = csv.reader(file)
+    page = fill(page, "errors", table(header, errors))
     page = re.sub(r"Of \d+ claims, \d+ are reproduced, \d+ under this reading, and \d+ are not",
-                  "Of {} claims, {} are reproduced, {} under this reading, and {} are not".format(len(claims), *counts[-1][1:]), page)
+                  "Of {} claims, {} are reproduced, {} under this reading, and {} are not".format(len(rows), *counts[-1][1:]), page)
     PAGE.write_text(page, encoding="utf-8")
 
-    shutil.rmtree(IMAGES, ignore_errors=True)
-    IMAGES.mkdir(parents=True)
-    names = re.findall(r"\]\(\.\./images/reproduction/([^)]+)\)", page)
-    for name in names:
-        shutil.copy(results / "figures" / name, IMAGES / name)
-    print(f"{PAGE}: {len(claims)} claims, {len(names)} figures")
+    plt.rcParams.update({"svg.hashsalt": "plica", "svg.fonttype": "none"})
+    draw_speeds(results, "pill", "fig8a-speeds")
+    draw_speeds(results, "sphere", "fig8b-speeds")
+    draw_trade_off(results)
+    moments = ["--view", "antero-ventral,ventral", "--time", "0s,1min,5min,15min", "--overwrite"]
+    subprocess.run([os.environ.get("PLICA", "plica"), "render", results / "runs/pill/draw-1",
+                    *moments, "--out", IMAGES / "fig7-pill.png"], check=True)
 
 
 if __name__ == "__main__":

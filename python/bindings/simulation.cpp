@@ -19,7 +19,6 @@
 #include "record/checkpoint.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/print.hpp"
-#include "simulation/crossing_warning.hpp"
 #include "simulation/run_warnings.hpp"
 #include "thread_count.hpp"
 #include "tissue/faces.hpp"
@@ -39,8 +38,8 @@ nb::dict measures(const Simulation& simulation) {
   const auto put = [&](const char* name, const std::optional<double>& value) {
     result[name] = value ? nb::cast(*value) : nb::none();
   };
-  for (std::size_t c = 0; c < columns().size(); ++c)
-    if (columns()[c].in_series) put(std::string(columns()[c].name).c_str(), row.values[c]);
+  for (const Column* column : simulation.observer().columns())
+    if (column->in_series) put(std::string(column->name).c_str(), row[*column]);
   const std::vector<Monitor>& monitors = simulation.observer().monitors();
   for (std::size_t m = 0; m < row.monitors.size(); ++m) put(monitors[m].column().c_str(), row.monitors[m]);
   return result;

@@ -36,9 +36,9 @@ def reproduce(
     Parameters
     ----------
     what : str or path
-        ``"living"`` (the living embryo), or a file of experiments (docs/how-to/predictions.md).
+        ``"paper"``, ``"living"`` (the living embryo), or a file of experiments (docs/how-to/predictions.md).
     out : str or path
-        Directory for the runs, the table ``experiments.csv`` and the page (``living.html``, or named after the file).
+        Directory for the runs, the tables ``outcomes.csv`` and ``experiments.csv``, and ``report.html``.
     jobs : int, optional
         Simultaneous runs, each on one thread; by default 2. Results do not depend on it.
     quick : bool, optional
@@ -84,8 +84,6 @@ def reproduce(
     'hit'
     """
     what, out = path_of(what, "what"), path_of(out, "out")
-    if what == "paper":
-        raise ValueError("what: the paper has no table of outcomes; run `plica reproduce --out DIR` on the command line")
     command = [_program(), "reproduce", what, "--out", out]
     command += ["--jobs", str(whole(jobs, "jobs"))] if jobs is not None else []
     command += [f"--{name}" for name, given in (("quick", quick), ("overwrite", overwrite)) if given]

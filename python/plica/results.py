@@ -7,7 +7,6 @@ import html
 import json
 import math
 import os
-import re
 import xml.etree.ElementTree as xml
 import zlib
 from collections.abc import Iterator, Sequence
@@ -30,16 +29,6 @@ __all__ = ["Run", "Frame", "Frames", "open_run"]
 
 def _pandas(what: str) -> Any:
     return needed("pandas", what)
-
-
-# Output variables that describe a furrow. Of other tissues, only the fold depth of a sheet is shown.
-_OF_FURROW = re.compile("vml_|vce_|furrow_|lip|peak_speed|speed_ratio|ends_lead|highest_points|closed_length|knee_|depth_20um|"
-                        "midline_|flank_")
-
-
-def _fits(name: str, depth: str) -> bool:
-    """Whether an output variable fits a tissue whose ``furrow_depth_um`` is of a "furrow", a "fold" or nothing ("")."""
-    return depth == "furrow" or not _OF_FURROW.match(name) or (depth == "fold" and name == "furrow_depth_um")
 
 
 def _grid(points: NDArray[Any], hexahedra: NDArray[Any], point_data: dict[str, Any], cell_data: dict[str, Any]) -> Any:
@@ -215,12 +204,12 @@ class Run:
     @property
     def midline(self) -> pandas.DataFrame:
         """Midline of the furrow, one row per cell and snapshot."""
-        return self._table("midline.csv")
+        return self._table("midline.csv", "the set \"fold\" was not measured")
 
     @property
     def cross_section(self) -> pandas.DataFrame:
         """Three cross-sections, one row per cell and snapshot."""
-        return self._table("cross_section.csv")
+        return self._table("cross_section.csv", "the set \"fold\" was not measured")
 
     @property
     def lineage(self) -> pandas.DataFrame:
@@ -278,13 +267,13 @@ class Run:
             If pandas or matplotlib is not installed.
         """
         plt = needed("matplotlib.pyplot", "plot")
-        depth = self._depth()
+        series = self.series
         if columns is None:
-            columns = ("furrow_depth_um" if depth else "max_displacement_um", "max_node_speed_um_per_s")
+            columns = ("furrow_depth_um" if "furrow_depth_um" in series else "max_displacement_um", "max_node_speed_um_per_s")
         names = texts_of(columns, "columns")
         if not names:
             raise ValueError("columns: is empty; give the name of a column")
-        series = self.series
+        is_fold = str(self.summary.get("outcome", "")).startswith("fold")
         missing = [name for name in names if name not in series]
         if missing:
             raise ValueError(f"series.csv has no column {missing[0]}; it has {', '.join(series.columns)}")
@@ -298,7 +287,7 @@ class Run:
             figure = axes[0].figure
         for name, one in zip(names, axes):
             one.plot(series["time_s"] / 60, series[name])
-            one.set_ylabel(label(name).replace("furrow depth", "fold depth") if depth == "fold" else label(name))
+            one.set_ylabel(label(name).replace("furrow depth", "fold depth") if is_fold else label(name))
         axes[-1].set_xlabel("time (min)")
         figure.tight_layout()
         return figure
@@ -346,17 +335,11 @@ class Run:
         outcome = self.summary.get("outcome", "")
         return f"Run({str(self.directory)!r}, {self.status}, {len(self.frames)} frames{outcome and ': '}{outcome})"
 
-    def _depth(self) -> str:
-        """Return what ``furrow_depth_um`` is of: "furrow", "fold" or nothing ("")."""
-        told = str(self.summary.get("outcome", "furrow"))  # runs of older versions are of furrows
-        return "furrow" if told.startswith("furrow") else "fold" if told.startswith("fold") else ""
-
     def _repr_html_(self) -> str:
-        summary, depth = self.summary, self._depth()
         rows = "".join(
             f"<tr><td style='text-align:left'>{html.escape(name)}</td><td>{html.escape(_short(value))}</td></tr>"
-            for name, value in summary.items()
-            if isinstance(value, (int, float, str)) and not isinstance(value, bool) and _fits(name, depth)
+            for name, value in self.summary.items()
+            if isinstance(value, (int, float, str)) and not isinstance(value, bool)
         )
         return f"{html.escape(repr(self))}<details><summary>summary</summary><table>{rows}</table></details>"
 

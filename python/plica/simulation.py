@@ -19,7 +19,7 @@ from .arguments import callable_of, number, path_of, per_cell, text_of, whole
 from .cell_data import CellData
 from .errors import FileError
 from .progress import Progress, moment
-from .results import Run, _fits, _grid, _pandas, open_run
+from .results import Run, _grid, _pandas, open_run
 from .scenario import Scenario
 from .tissue import Tissue
 
@@ -520,14 +520,8 @@ class Simulation:
     def __repr__(self) -> str:
         return f"Simulation({self._scenario.name!r}, at {moment(self.time_s)} after {self.steps} steps, {self.status})"
 
-    def _depth(self) -> str:
-        shape = str(self._scenario["embryo.shape"])
-        is_plain = shape in ("block", "sheet", "points", "surface")
-        vertical = self._scenario["embryo.axes"][2] if "embryo.axes" in self._scenario else "z" if is_plain else "ventral-dorsal"
-        return "furrow" if vertical == "ventral-dorsal" else "fold" if shape in ("block", "sheet") else ""
-
     def _repr_html_(self) -> str:
-        told = {name: value for name, value in self.measures.items() if value is not None and _fits(name, self._depth())}
+        told = {name: value for name, value in self.measures.items() if value is not None}
         rows = "".join(
             f"<tr><td style='text-align:left'>{html.escape(name)}</td><td>{value:.5g}</td></tr>" for name, value in told.items()
         )

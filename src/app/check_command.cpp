@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "app/commands.hpp"
-#include "app/delayed_notice.hpp"
 #include "app/interruption.hpp"
+#include "app/progress.hpp"
 #include "app/scenario_options.hpp"
 #include "app/threads.hpp"
 #include "core/errors.hpp"
@@ -80,8 +80,7 @@ void add_check_command(CLI::App& app, int&) {
     const Scenario scenario = options->load();
     std::optional<DelayedNotice> notice(std::in_place);
     const auto model = make_model(scenario);
-    (void)make_watch(scenario, model->tissue);
-    (void)make_furrow_sites(scenario, model->tissue);
+    (void)make_watch(scenario, *model);
     (void)make_solved_side(scenario, *model);
     notice.reset();
     fmt::print("{}", resolved_toml(scenario));

@@ -7,15 +7,15 @@
 #include <numeric>
 
 #include "app/commands.hpp"
-#include "app/delayed_notice.hpp"
 #include "app/output_file.hpp"
+#include "app/progress.hpp"
 #include "app/scenario_options.hpp"
 #include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/names.hpp"
 #include "record/mesh_writer.hpp"
-#include "scenario/cell_size.hpp"
+#include "scenario/check_tissue.hpp"
 #include "scenario/rest_arrays.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/suggest.hpp"

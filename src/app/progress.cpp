@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
+#include <cstdio>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/units.hpp"
 #include "core/words.hpp"
@@ -22,6 +25,15 @@ std::string extent(const Observation& row) {
 }
 
 double fastest_node(const Observation& row) { return row["max_node_speed_um_per_s"].value_or(0); }
+
+constexpr unsigned patience_s = 3;
+constexpr std::string_view what_is_done = "building the embryo ...", erased = "\r\033[K";
+
+volatile std::sig_atomic_t is_said = 0;
+
+void say(std::string_view text) {
+  if (::write(STDERR_FILENO, text.data(), text.size()) > 0) is_said = 1;
+}
 
 }  // namespace
 
@@ -59,6 +71,40 @@ void Progress::show(const Observation& row) {
 
 void Progress::finish() {
   if (!quiet_ && on_terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+RunsProgress::RunsProgress(std::size_t before, std::size_t runs, bool quiet)
+    : before_(before), runs_(runs), quiet_(quiet), on_terminal_(::isatty(STDERR_FILENO) != 0) {}
+
+void RunsProgress::show(std::size_t done, std::size_t lost) {
+  const auto time = Clock::now();
+  const auto pause = std::chrono::milliseconds(on_terminal_ ? 100 : 10'000);
+  if (quiet_ || done <= before_ || (time - last_ < pause && done < runs_)) return;
+  last_ = time;
+  const double elapsed_s = std::chrono::duration<double>(time - start_).count();
+  const double left_s = elapsed_s * static_cast<double>(runs_ - done) / static_cast<double>(done - before_);
+  constexpr std::size_t width = 24;
+  const std::size_t filled = width * done / runs_;
+  fmt::print(stderr, "{}[{}{}] {} of {} runs{}, {} left{}", on_terminal_ ? "\r" : "", std::string(filled, '#'),
+             std::string(width - filled, '.'), done, runs_, lost > 0 ? fmt::format(", {} without result", lost) : "",
+             duration(left_s), on_terminal_ ? "\033[K" : "\n");
+  std::fflush(stderr);
+}
+
+void RunsProgress::finish() const {
+  if (!quiet_ && on_terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+DelayedNotice::DelayedNotice() {
+  if (::isatty(STDERR_FILENO) == 0) return;
+  std::signal(SIGALRM, [](int) { say(what_is_done); });
+  ::alarm(patience_s);
+}
+
+DelayedNotice::~DelayedNotice() {
+  ::alarm(0);
+  if (is_said != 0) say(erased);
+  is_said = 0;
 }
 
 }  // namespace plica

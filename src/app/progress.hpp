@@ -1,7 +1,8 @@
-// Progress of a run: a live line on a terminal, or a line every 10 s in a file.
+// Progress of runs: a live line on a terminal, or a line every 10 s in a file.
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 
 #include "measure/observation.hpp"
 #include "simulation/controls.hpp"
@@ -25,6 +26,33 @@ class Progress {
   bool on_terminal_;
   Clock::time_point start_ = Clock::now(), last_ = start_;
   double fastest_um_per_s_ = 0;
+};
+
+/// Number of finished runs and remaining time.
+class RunsProgress {
+ public:
+  /// `before`: runs that were complete at the start or resumption.
+  RunsProgress(std::size_t before, std::size_t runs, bool quiet);
+
+  /// `lost`: runs that ended without a result.
+  void show(std::size_t done, std::size_t lost = 0);
+  void finish() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::size_t before_, runs_;
+  bool quiet_, on_terminal_;
+  Clock::time_point start_ = Clock::now(), last_ = start_;
+};
+
+/// Notice "building the embryo ..." on standard error, printed once after 3 s if that is a terminal. The destructor
+/// erases the line. Uses SIGALRM instead of a thread, since files are read in child processes.
+class DelayedNotice {
+ public:
+  DelayedNotice();
+  DelayedNotice(const DelayedNotice&) = delete;
+  DelayedNotice& operator=(const DelayedNotice&) = delete;
+  ~DelayedNotice();
 };
 
 }  // namespace plica

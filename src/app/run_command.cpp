@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "app/commands.hpp"
-#include "app/delayed_notice.hpp"
 #include "app/interruption.hpp"
 #include "app/progress.hpp"
 #include "app/scenario_options.hpp"
@@ -20,7 +19,7 @@
 #include "scenario/advice.hpp"
 #include "show/recorded_run.hpp"
 #include "show/report.hpp"
-#include "simulation/crossing_warning.hpp"
+#include "simulation/run_warnings.hpp"
 
 namespace plica {
 namespace {

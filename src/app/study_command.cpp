@@ -7,7 +7,7 @@
 
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
-#include "app/runs_progress.hpp"
+#include "app/progress.hpp"
 #include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/threads.hpp"

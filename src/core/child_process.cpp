@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,33 +21,6 @@
 
 namespace plica {
 namespace {
-
-[[noreturn]] void throw_unstarted(int error) {
-  throw FileError("cannot start a process: " + std::generic_category().message(error));
-}
-
-[[noreturn]] void run_child(const std::function<std::string()>& work, int pipe_end) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // end with the parent, however it ends
-  // The C library and sanitizers report crashes on stderr; the parent gives a better message.
-  const int nowhere = ::open("/dev/null", O_WRONLY);
-  ::dup2(nowhere, STDERR_FILENO);
-#ifndef PLICA_FUZZED  // fuzzers need their own handlers
-  for (const int fatal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(fatal, SIG_DFL);
-#endif
-  int status = 1;
-  try {
-    const std::string output = work();
-    std::string_view rest = output;
-    while (!rest.empty()) {
-      const ssize_t written = ::write(pipe_end, rest.data(), rest.size());
-      if (written < 0 && errno != EINTR) break;
-      if (written > 0) rest.remove_prefix(static_cast<std::size_t>(written));
-    }
-    if (rest.empty()) status = 0;
-  } catch (...) {  // reported by the exit status
-  }
-  ::_exit(status);  // without destructors and buffers, which are the parent's
-}
 
 // State (a letter) and processor time (ticks) of a process, from the kernel.
 struct Activity {
@@ -101,35 +75,113 @@ std::shared_mutex& work_beside() {
   return mutex;
 }
 
-std::optional<std::string> output_of_child(const std::string& what, const std::function<std::string()>& work,
-                                           double stall_s) {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw_unstarted(errno);
-  std::unique_lock nobody_works(work_beside());
-  const pid_t child = ::fork();
-  if (child < 0) {
+ChildProcess::ChildProcess(const std::function<int(int end)>& work) {
+  std::array<int, 2> ends{-1, -1};
+  const pid_t parent = ::getpid();
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0) process_ = ::fork();
+  if (process_ < 0) {
     const int error = errno;
     for (const int end : ends) ::close(end);
-    throw_unstarted(error);
+    throw FileError("cannot start a process: " + std::generic_category().message(error));
   }
-  if (child == 0) {
-    ::close(ends[0]);  // otherwise writing would wait forever once the parent is gone
-    run_child(work, ends[1]);
+  if (process_ > 0) {
+    ::close(ends[1]);
+    end_ = ends[0];
+    return;
   }
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);
+  ::close(ends[0]);  // otherwise writing would wait forever once the parent is gone
+  int status = 1;
+  try {
+    status = work(ends[1]);
+  } catch (...) {  // reported by the exit status
+  }
+  ::_exit(status);
+}
+
+ChildProcess::~ChildProcess() {
+  send(SIGTERM);
+  wait();
+}
+
+void ChildProcess::send(int signal) const {
+  if (process_ > 0) ::kill(process_, signal);
+}
+
+int ChildProcess::wait() {
+  if (process_ < 0) return status_;
+  ::close(end_);
+  const auto start = std::chrono::steady_clock::now();
+  while (true) {
+    const pid_t ended = ::waitpid(process_, &status_, WNOHANG);
+    if (ended == process_ || (ended < 0 && errno != EINTR)) break;
+    if (std::chrono::steady_clock::now() - start > std::chrono::seconds(30)) send(SIGKILL);
+    ::poll(nullptr, 0, 2);
+  }
+  process_ = -1;
+  return status_;
+}
+
+bool write_all(int end, const void* data, std::size_t size) {
+  const char* at = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t written = ::send(end, at, size, MSG_NOSIGNAL);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    at += written, size -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+int become(const std::vector<std::string>& words, int input, int output, int error) {
+  std::vector<const char*> arguments;
+  for (const std::string& word : words) arguments.push_back(word.c_str());
+  arguments.push_back(nullptr);
+  ::dup2(input, STDIN_FILENO);
+  ::dup2(output, STDOUT_FILENO);
+  ::dup2(error, STDERR_FILENO);
+  ::execvp(arguments.front(), const_cast<char* const*>(arguments.data()));
+  return errno == ENOENT ? 127 : 126;
+}
+
+CommandResult run_command(const std::vector<std::string>& words) {
+  ChildProcess child([&](int end) { return become(words, ::open("/dev/null", O_RDONLY), end, end); });
+  CommandResult result;
+  std::array<char, 4096> block{};
+  while (true) {
+    const ssize_t count = ::read(child.end(), block.data(), block.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    result.output.append(block.data(), static_cast<std::size_t>(count));
+  }
+  const int waited = child.wait();
+  if (WIFEXITED(waited) && WEXITSTATUS(waited) < 126) result.status = WEXITSTATUS(waited);
+  return result;
+}
+
+std::optional<std::string> output_of_child(const std::string& what, const std::function<std::string()>& work,
+                                           double stall_s) {
+  std::unique_lock nobody_works(work_beside());
+  ChildProcess child([&](int end) {
+    // The C library and sanitizers report crashes on stderr; the parent gives a better message.
+    ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
+#ifndef PLICA_FUZZED  // fuzzers need their own handlers
+    for (const int fatal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(fatal, SIG_DFL);
+#endif
+    const std::string output = work();
+    return write_all(end, output.data(), output.size()) ? 0 : 1;
+  });
   nobody_works.unlock();
-  ::close(ends[1]);
-  Answer answer = read_all(ends[0], child, stall_s);
-  ::close(ends[0]);
-  if (answer.stalled) ::kill(child, SIGKILL);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) return {};
-  if (answer.stalled)
+  Answer answer = read_all(child.end(), child.id(), stall_s);
+  if (answer.stalled) {
+    child.send(SIGKILL);
     throw FileError(
         fmt::format("{} made no progress for {:.0f} s; its process "
                     "was terminated; retry, and open an issue if it recurs",
                     what, stall_s));
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return {};
+  }
+  if (child.wait() != 0) return {};
   return std::move(answer.output);
 }
 

@@ -45,21 +45,34 @@ ScenarioError in_experiments(const ScenarioError& error, const Experiments& expe
   return ScenarioError(std::move(diagnostics));
 }
 
-void check_quantities(const Experiments& experiments, const std::vector<std::vector<std::string>>& known,
+// Names of the numbers that a run of an experiment has; empty if its scenario is invalid.
+struct KnownNames {
+  std::vector<std::string> summary, series;
+};
+
+void check_quantities(const Experiments& experiments, const std::vector<KnownNames>& known,
                       std::vector<Diagnostic>& diagnostics) {
+  const auto check = [&](std::size_t e, const Outcome& outcome, const Formula& formula, std::size_t which) {
+    using enum Formula::Source;
+    for (const auto& [name, source] : formula.uses()) {
+      std::vector<std::string> names = source == summary ? known[which].summary : known[which].series;
+      if (source == either) names.insert(names.end(), known[which].summary.begin(), known[which].summary.end());
+      if (names.empty() || std::ranges::count(names, name) > 0) continue;
+      diagnostics.push_back(
+          {experiments.file, outcome.line,
+           fmt::format("experiment.{}.outcome.{}.quantity", experiments.experiments[e].name, outcome.name),
+           fmt::format("\"{}\" is not a {}{}", name,
+                       source == summary ? "number of summary.json" : "column of series.csv",
+                       which == e ? "" : " of " + experiments.experiments[which].name),
+           result_remedy(name, names)});
+      return false;
+    }
+    return true;
+  };
   for (std::size_t e = 0; e < experiments.experiments.size(); ++e)
     for (const Outcome& outcome : experiments.experiments[e].outcomes) {
-      const bool is_compared = outcome.comparing != Comparing::nothing;
-      for (const std::size_t which : {e, is_compared ? outcome.other : e}) {
-        if (known[which].empty() || std::ranges::count(known[which], outcome.quantity) > 0) continue;
-        const std::string of = which == e ? "" : " of " + experiments.experiments[which].name;
-        diagnostics.push_back(
-            {experiments.file, outcome.line,
-             fmt::format("experiment.{}.outcome.{}.quantity", experiments.experiments[e].name, outcome.name),
-             fmt::format("\"{}\" is not a number of summary.json{}", outcome.quantity, of),
-             did_you_mean(outcome.quantity, known[which])});
-        break;
-      }
+      if (check(e, outcome, outcome.formula, e) && outcome.comparing != Comparing::nothing)
+        check(e, outcome, outcome.other_formula, outcome.other);
     }
 }
 
@@ -72,6 +85,14 @@ std::vector<std::string> Experiments::overrides(std::size_t experiment, std::siz
   const std::vector<std::string>& set = experiments[experiment].study.overrides;
   all.insert(all.end(), set.begin(), set.end());
   return all;
+}
+
+bool Experiments::use_series() const {
+  return std::ranges::any_of(experiments, [](const Experiment& experiment) {
+    return std::ranges::any_of(experiment.outcomes, [](const Outcome& outcome) {
+      return outcome.formula.uses_series() || outcome.other_formula.uses_series();
+    });
+  });
 }
 
 Scenario Experiments::scenario(std::size_t experiment, std::size_t draw) const {
@@ -93,11 +114,13 @@ void check_experiments(const Experiments& experiments) {
     for (const Diagnostic& one : error.diagnostics())
       if (told.insert(one.text()).second) diagnostics.push_back(one);
   };
-  std::vector<std::vector<std::string>> known(experiments.experiments.size());
+  std::vector<KnownNames> known(experiments.experiments.size());
   for (std::size_t e = 0; e < experiments.experiments.size(); ++e) try {
       for (std::size_t d = 0; d < experiments.experiments[e].draws; ++d) {
         const Scenario scenario = experiments.scenario(e, d);
-        if (d == 0) known[e] = result_names(run_at_rest(scenario).summary);
+        if (d > 0) continue;
+        const RunSummary rest = run_at_rest(scenario);
+        known[e] = {result_names(rest.summary), rest.series_columns};
       }
     } catch (const ScenarioError& error) {
       tell(error);

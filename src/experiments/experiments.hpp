@@ -1,4 +1,4 @@
-// Simulated experiments with predictions made before they run: input file, parsed and checked.
+// Simulated experiments with predictions made before they run, or that test claims: input file, parsed and checked.
 #pragma once
 
 #include <limits>
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/formula.hpp"
 #include "study/design.hpp"
 #include "study/study_input.hpp"
 
@@ -37,8 +38,9 @@ struct Outcome {
   std::string name;
   std::string question, observed, source, because;  // those of the experiment unless it has its own question
   Role role = Role::predicted;
-  std::optional<Judgement> prediction;  // predicted judgement
-  std::string quantity;                 // number of summary.json
+  std::optional<Judgement> prediction;   // predicted judgement
+  std::string quantity, other_quantity;  // as in the file; the second empty if the same
+  Formula formula, other_formula;        // here, and in the experiment it is compared with
   Comparing comparing = Comparing::nothing;
   std::size_t other = 0;  // index of the experiment it is compared with
   // Range of hits; infinite if unbounded, and from inf to -inf if no number is a hit.
@@ -62,18 +64,21 @@ struct Experiment {
 struct Experiments {
   std::string name, file, text;  // of the file; `name` is also that of the page
   std::string title;
-  std::string draws_file;  // empty: one draw without values
+  bool are_of_claims = false;  // verdicts are those of claims: reproduced, under this reading, not reproduced
+  std::string draws_file;      // empty: one draw without values
   StudyDesign draws;
   std::vector<Experiment> experiments;
 
   /// Overrides of a run in the form of --set: values of the draw, then those of the experiment.
   [[nodiscard]] std::vector<std::string> overrides(std::size_t experiment, std::size_t draw) const;
+  /// Whether an outcome needs the series of a run.
+  [[nodiscard]] bool use_series() const;
   /// Load the scenario of a run. Throws ScenarioError, located in the source files.
   [[nodiscard]] Scenario scenario(std::size_t experiment, std::size_t draw) const;
 };
 
-/// Read a file of experiments, or built-in ones by name (living). Throws FileError, UsageError for an unknown name, or
-/// ScenarioError with all problems of the file.
+/// Read a file of experiments, or built-in ones by name (paper, living). Throws FileError, UsageError for an unknown
+/// name, or ScenarioError with all problems of the file.
 Experiments read_experiments(const std::string& name_or_file);
 /// Parse the text of experiments. `file`: name in messages and base of relative paths.
 Experiments parse_experiments(const std::string& name, const std::string& file, const std::string& text);

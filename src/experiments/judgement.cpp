@@ -1,6 +1,7 @@
 #include "experiments/judgement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/distributions/beta.hpp>
 
 namespace plica {
@@ -31,6 +32,18 @@ Judgement Tally::verdict() const {
   if (draws > 0 && static_cast<double>(hits) >= needed) return Judgement::hit;
   if (draws > 0 && static_cast<double>(misses) >= needed) return Judgement::miss;
   return Judgement::undecided;
+}
+
+const char* word_of(ClaimVerdict verdict) {
+  constexpr std::array words = {"reproduced", "under this reading", "not reproduced", "not solved"};
+  return words[static_cast<std::size_t>(verdict)];
+}
+
+ClaimVerdict verdict_of_claim(std::optional<Judgement> first, bool in_every_reading, Role role) {
+  using enum ClaimVerdict;
+  if (first == Judgement::not_solved) return not_solved;
+  if (first != Judgement::hit) return not_reproduced;
+  return in_every_reading && role != Role::fitted ? reproduced : under_this_reading;
 }
 
 Tally tally_of(std::span<const Judgement> draws) {

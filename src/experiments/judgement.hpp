@@ -34,4 +34,10 @@ struct Tally {
 };
 Tally tally_of(std::span<const Judgement> draws);
 
+/// Verdict of a claim: reproduced if it is a hit in every reading of an open text (draw); under this reading if in the
+/// first but not in all, or fitted; else not reproduced.
+enum class ClaimVerdict { reproduced, under_this_reading, not_reproduced, not_solved };
+const char* word_of(ClaimVerdict verdict);
+ClaimVerdict verdict_of_claim(std::optional<Judgement> first, bool in_every_reading, Role role);
+
 }  // namespace plica

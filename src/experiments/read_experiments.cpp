@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 
 #include "core/files.hpp"
 #include "core/names.hpp"
@@ -24,6 +25,7 @@ constexpr std::array<std::pair<const char*, Judgement>, 4> judgements = {{{"hit"
                                                                           {"miss", Judgement::miss},
                                                                           {"undecided", Judgement::undecided},
                                                                           {"not solved", Judgement::not_solved}}};
+constexpr std::array<std::pair<const char*, bool>, 2> kinds = {{{"predictions", false}, {"claims", true}}};
 constexpr std::array predictions = {judgements[0], judgements[1], judgements[2]};
 
 // Descriptive keys of an experiment, and of an outcome that has its own.
@@ -47,10 +49,12 @@ class Reader : TomlReader {
   void read(const toml::table& document) {
     if (!document.contains("experiment"))
       throw ScenarioError({{result_.file, 0, "", "no experiments", "write [experiment.NAME] and its outcomes"}});
-    refuse_unknown(document, "", {"format", "title", "scenario", "draws", "experiment"});
+    refuse_unknown(document, "", {"format", "title", "kind", "scenario", "draws", "quantity", "experiment"});
     if (const toml::node* format = document.get("format"); format && format->value<int>() != 1)
       report(*format, "format", "is unknown to this version", "write format = 1");
     result_.title = get<std::string>(document, "title", "", "a text").value_or(result_.name);
+    result_.are_of_claims = word(document, "kind", "", kinds).value_or(false);
+    read_quantities(document);
     has_usual_scenario_ = document.contains("scenario");
     usual_scenario_ = scenario_beside(document, "");
     read_draws(document);
@@ -92,6 +96,25 @@ class Reader : TomlReader {
     }
   }
 
+  // Named formulas, each of which may use those before it.
+  void read_quantities(const toml::table& document) {
+    const toml::table* all = table(document, "quantity");
+    if (all == nullptr) return;
+    for (const auto& [name, node] : in_order(*all))
+      if (const auto text = get<std::string>(*all, name.c_str(), "quantity.", "a text"))
+        named_[name] = formula(*text, *node, "quantity." + name);
+  }
+
+  Formula formula(const std::string& text, const toml::node& node, const std::string& place) {
+    try {
+      return Formula(text, named_);
+    } catch (const std::invalid_argument& problem) {
+      report(node, place, problem.what(),
+             "write names of numbers, with operators between spaces, as \"lumen_volume_ratio - 1\"");
+      return {};
+    }
+  }
+
   // Names become file names.
   void require_name(const toml::node& node, const std::string& name, const std::string& place) {
     if (!is_plain_name(name)) report(node, place, "is not a valid name", "use letters, digits, \"_\" and \"-\"");
@@ -114,7 +137,9 @@ class Reader : TomlReader {
     if (const auto most = count(*given, "draws", before))
       experiment.draws = std::min(experiment.draws, static_cast<std::size_t>(*most));
     experiment.slow = get<bool>(*given, "slow", before, "true or false").value_or(false);
-    const Outcome usual = told_of(*given, before, {});
+    Outcome none;
+    if (result_.are_of_claims) none.role = Role::seen;
+    const Outcome usual = told_of(*given, before, none);
     const toml::table* outcomes = table(*given, "outcome", before);
     if (outcomes == nullptr || outcomes->empty())
       report(node, before + "outcome", "is missing",
@@ -163,7 +188,8 @@ class Reader : TomlReader {
       return report(node, place, "is not a table",
                     fmt::format("outcomes have names: write [{}outcome.NAME]", of_experiment));
     require_name(node, name, place);
-    refuse_unknown(*given, before, with_told_keys({"quantity", "over", "minus", "hit", "undecided", "hit_if_none"}));
+    refuse_unknown(*given, before,
+                   with_told_keys({"quantity", "over", "minus", "other_quantity", "hit", "undecided", "hit_if_none"}));
     Outcome outcome = told_of(*given, before, usual);
     outcome.name = name, outcome.line = static_cast<int>(node.source().begin.line);
     if (outcome.question.empty())
@@ -172,7 +198,7 @@ class Reader : TomlReader {
       report(node, before + "prediction", "is missing",
              "give the result you predict before the run: hit, miss or undecided; or another role");
     if (auto quantity = get<std::string>(*given, "quantity", before, "a text"))
-      outcome.quantity = *quantity;
+      outcome.quantity = *quantity, outcome.formula = formula(*quantity, *given->get("quantity"), before + "quantity");
     else if (!given->contains("quantity"))
       report(node, before + "quantity", "is missing", "give a number of summary.json, as \"furrow_depth_um\"");
     read_hit(node, *given, before, outcome);
@@ -204,7 +230,13 @@ class Reader : TomlReader {
       return report(*given.get("minus"), before + "minus", "conflicts with over", "remove one of the two");
     const char* key = given.contains("over") ? "over" : "minus";
     const auto name = get<std::string>(given, key, before, "a text");
+    const auto there = get<std::string>(given, "other_quantity", before, "a text");
+    if (there && !name)
+      report(*given.get("other_quantity"), before + "other_quantity", "applies only with over or minus", "remove it");
     if (!name) return;
+    outcome.other_quantity = there.value_or("");
+    outcome.other_formula =
+        there ? formula(*there, *given.get("other_quantity"), before + "other_quantity") : outcome.formula;
     outcome.comparing = key == std::string("over") ? Comparing::ratio : Comparing::difference;
     outcome.other = static_cast<std::size_t>(std::ranges::find(names_, *name) - names_.begin());
     if (outcome.other == names_.size())
@@ -237,6 +269,7 @@ class Reader : TomlReader {
   bool has_usual_scenario_ = false;
   std::optional<ScenarioSource> usual_scenario_;
   std::vector<std::string> names_;
+  std::map<std::string, Formula> named_;
 };
 
 }  // namespace

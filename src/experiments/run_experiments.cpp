@@ -53,7 +53,7 @@ void write_short(const fs::path& folder, const Scenario& scenario, const RunSumm
   std::error_code error;
   fs::create_directories(folder, error);
   std::string series = fmt::format("{}\n", fmt::join(run.series_columns, ","));
-  for (const Observation& row : run.rows) series += series_row(row) + '\n';
+  for (const Observation& row : run.rows) series += series_row(row, run.columns) + '\n';
   write_file(folder / "scenario.toml", resolved_toml(scenario));
   write_file(folder / "series.csv", series);
   write_file(folder / "summary.json", run.summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
@@ -150,7 +150,8 @@ void ExperimentResults::take(const Run& run, const std::string& status, const st
   result.status = summary.value("status", "");
   if (const auto failure = summary.find("failure"); failure != summary.end() && failure->is_string())
     result.reason = failure->get<std::string>();
-  result.summary = summary;
+  result.numbers.summary = summary;
+  if (experiments_.use_series()) result.numbers.series = read_series(made / "series.csv");
 }
 
 DrawOutcome ExperimentResults::outcome(std::size_t experiment, const Outcome& outcome, std::size_t draw) const {
@@ -162,8 +163,8 @@ DrawOutcome ExperimentResults::outcome(std::size_t experiment, const Outcome& ou
     if (!run.is_solved()) result.judgement = Judgement::not_solved;
   }
   if (result.judgement) return result;
-  result.own = number_of(of(experiment, draw).summary, outcome.quantity);
-  if (is_compared) result.other = number_of(of(outcome.other, draw).summary, outcome.quantity);
+  result.own = outcome.formula.value(of(experiment, draw).numbers);
+  if (is_compared) result.other = outcome.other_formula.value(of(outcome.other, draw).numbers);
   result.number = compared(outcome, result.own, result.other);
   result.judgement = judge(outcome, result.own, result.other);
   return result;
@@ -174,6 +175,15 @@ Tally ExperimentResults::tally(std::size_t experiment, const Outcome& outcome) c
   for (std::size_t d = 0; d < draws(experiment); ++d)
     if (const auto judgement = this->outcome(experiment, outcome, d).judgement) judgements.push_back(*judgement);
   return tally_of(judgements);
+}
+
+std::string ExperimentResults::verdict(std::size_t e, const Outcome& one) const {
+  const Tally tally = this->tally(e, one);
+  const Experiment& experiment = experiments_.experiments[e];
+  if (tally.draws == 0) return "";
+  if (!experiments_.are_of_claims) return word_of(tally.verdict());
+  const std::size_t readings = experiment.drawn ? experiments_.draws.runs.size() : 1;
+  return word_of(verdict_of_claim(outcome(e, one, 0).judgement, tally.hits == readings, one.role));
 }
 
 std::string ExperimentResults::csv() const {
@@ -196,8 +206,8 @@ void begin_experiments(const fs::path& directory, const Experiments& experiments
   if (!holds_them && holds_something_else(directory))
     throw UsageError(directory.string() + ": exists and contains no experiments; give another --out");
   if (holds_them && overwrite) {
-    for (const char* name : {"runs", "unfinished", "figures"}) fs::remove_all(directory / name, error);
-    fs::remove(directory / "experiments.csv", error);
+    for (const char* name : {"runs", "unfinished", "experiments.csv", "outcomes.csv", "report.html"})
+      fs::remove_all(directory / name, error);
   }
   fs::create_directories(directory, error);
   if (error) throw FileError(directory.string() + ": cannot be created: " + error.message());

@@ -2,7 +2,8 @@
 //
 //   experiments.toml   the file as given             runs/NAME/draw-1/   all files of `plica run`
 //   experiments.csv    one row per outcome and draw  runs/NAME/draw-2/   scenario.toml, series.csv, summary.json
-//   NAME.md, .html     the page, with figures/       unfinished/         state of long runs, saved every 30 s
+//   outcomes.csv       one row per outcome           unfinished/         state of long runs, saved every 30 s
+//   report.html        outcomes and first draws
 //
 // A finished run has a summary.json and is not repeated: after an interruption or a kill, the same command continues.
 // Results are bitwise identical, whichever process makes them.
@@ -23,7 +24,7 @@ namespace plica {
 
 /// Result of a run.
 struct DrawResult {
-  nlohmann::ordered_json summary;  // null if missing
+  RunNumbers numbers;              // series: only if a formula uses one
   std::string status = "not_run";  // of its summary; refused: invalid scenario; crashed: its process ended twice
   std::string reason;              // why it was refused, failed or crashed
 
@@ -73,6 +74,8 @@ class ExperimentResults {
   [[nodiscard]] DrawOutcome outcome(std::size_t experiment, const Outcome& outcome, std::size_t draw) const;
   /// Count the finished draws.
   [[nodiscard]] Tally tally(std::size_t experiment, const Outcome& outcome) const;
+  /// Verdict in words; empty without runs.
+  [[nodiscard]] std::string verdict(std::size_t experiment, const Outcome& outcome) const;
 
   /// Table with one row per outcome and draw; independent of the machine and its clock.
   [[nodiscard]] std::string csv() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "measure/measure_set.hpp"
 #include "mechanics/elasticity/corotational.hpp"
 
 namespace plica {
@@ -23,12 +24,16 @@ int elements_through_height(const Cell& cell) {
   return static_cast<int>(edge->nodes.size()) - 1;
 }
 
+bool is_corotational(const Model& model) {
+  return std::ranges::any_of(model.laws,
+                             [](const auto& law) { return dynamic_cast<const Corotational*>(law.get()) != nullptr; });
+}
+
 }  // namespace
 
 std::optional<double> bending_error(const Model& model, std::span<const Vec3> positions) {
   constexpr double error_per_area_ratio = 0.14, least_bending = 1e-9;
-  const auto is_corotational = [](const auto& law) { return dynamic_cast<const Corotational*>(law.get()) != nullptr; };
-  if (std::ranges::none_of(model.laws, is_corotational)) return std::nullopt;
+  if (!is_corotational(model)) return std::nullopt;
   const Tissue& tissue = model.tissue;
   const std::vector<double> apical = area_ratios(tissue, tissue.apical_facets, positions),
                             basal = area_ratios(tissue, tissue.basal_facets, positions);
@@ -46,6 +51,15 @@ int elements_through_height(const Tissue& tissue) {
   int most = 1;
   for (const Cell& cell : tissue.cells) most = std::max(most, elements_through_height(cell));
   return most;
+}
+
+MeasureSet bending_set() {
+  return set_of("bending", "corotational elasticity",
+                [](const Subject& s) { return kept_if(is_corotational(s.model)); },
+                {{"bending_error", true, InSummary::last,
+                  "Estimated relative error of bending from few elements through the height; depth by one element may "
+                  "err five times as much ([convergence](../developers/convergence.md#meshes-of-polygons)).",
+                  of(bending_error)}});
 }
 
 }  // namespace plica

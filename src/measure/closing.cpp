@@ -8,10 +8,13 @@
 #include <numbers>
 #include <vector>
 
+#include "core/units.hpp"
 #include "measure/cells.hpp"
+#include "measure/measure_set.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "mechanics/contact/self_contact.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
+#include "tissue/faces.hpp"
 
 namespace plica {
 namespace {
@@ -206,6 +209,120 @@ std::optional<double> time_of_reaching(std::span<const double> times_s, std::spa
     return times_s[i - 1] + part * (times_s[i] - times_s[i - 1]);
   }
   return std::nullopt;
+}
+
+namespace {
+
+constexpr bool series = true, no_series = false;
+using enum InSummary;
+using M = MeasuredStep;
+
+std::optional<ContactState> contact_of_step(const M& m) { return contact_state(m.model, m.state); }
+std::optional<Enclosed> enclosed_of_step(const M& m) { return enclosed(m.model, m.state); }
+
+std::any begin_contact(const Subject& s) { return kept_if(contact_state(s.model, State()).has_value()); }
+
+// Lumen volume; empty for an open sheet, also for a slice, whose symmetric boundaries pass the test of closure.
+std::optional<double> rest_lumen_volume(const Subject& s) {
+  const Tissue& tissue = s.model.tissue;
+  return encloses(tissue, tissue.basal_facets) ? lumen_volume(tissue, tissue.rest_positions) : std::nullopt;
+}
+
+std::optional<double> lumen_ratio(const M& m) {
+  const auto volume = lumen_volume(m.model.tissue, m.state.positions);
+  return volume ? std::optional(*volume / m.of_run<double>()) : std::nullopt;
+}
+
+std::optional<double> pressure_Pa(const M& m) {
+  const auto& enclosed = m.once(enclosed_of_step);
+  return enclosed ? std::optional(enclosed->pressure_kPa / units::pascal) : std::nullopt;
+}
+
+struct Flanks {
+  double volume_um3, section_um2;
+};
+
+Flanks flanks(const Tissue& tissue, std::span<const Vec3> positions) {
+  return {flank_volume(tissue, positions).value_or(0), flank_section_area(tissue, positions).value_or(0)};
+}
+
+}  // namespace
+
+MeasureSet contact_set() {
+  return set_of("contact", "self_contact.surface", begin_contact,
+                {count({"contact_pairs", series, largest, "Contact pairs under pressure.",
+                        part_of(contact_of_step, &ContactState::pairs)}),
+                 {"min_contact_distance_um", series, least,
+                  "Smallest gap between facing places of a surface; negative for penetration.",
+                  [](const M& m) { return m.once(contact_of_step)->least_gap_um; }}});
+}
+
+MeasureSet closing_set() {
+  return set_of(
+      "closing", "self_contact.surface", begin_contact,
+      {{"closed_length_ratio", series, last,
+        "Fraction of the embryo's length with furrow closure: apical surfaces left and right of the midline in "
+        "contact.",
+        part_of(contact_of_step, &ContactState::closed_length_ratio)},
+       count({"lips_closed", series, last,
+              "Furrow closure at x = 0: 1 if apical surfaces of both sides are in contact there, whichever cells "
+              "meet.",
+              part_of(contact_of_step, &ContactState::middle_is_closed)})},
+      of_embryo);
+}
+
+MeasureSet lumen_set() {
+  return set_of("lumen", "a closed basal surface", [](const Subject& s) { return kept_if(rest_lumen_volume(s)); },
+                {costly({"lumen_volume_ratio", series, last, "Volume inside the basal surface / reference volume.",
+                         lumen_ratio})});
+}
+
+MeasureSet enclosed_set() {
+  return set_of("enclosed", "[enclosed.NAME]",
+                [](const Subject& s) { return kept_if(enclosed(s.model, rest_state(s.model)).has_value()); },
+                {{"enclosed_volume_ratio", series, last, "Enclosed volume (yolk or lumen) / target volume.",
+                  part_of(enclosed_of_step, &Enclosed::volume_ratio)},
+                 {"yolk_pressure_Pa", series, last,
+                  "Pressure of the enclosed volume, relative to the perivitelline fluid.", pressure_Pa}});
+}
+
+MeasureSet shell_set() {
+  return set_of("shell", "a vitelline membrane", [](const Subject& s) { return kept_if(!s.model.obstacles.empty()); },
+                {{"max_shell_penetration_um", no_series, largest,
+                  "Largest distance of a node outside the vitelline membrane.", of(shell_penetration)}});
+}
+
+MeasureSet perivitelline_set() {
+  return set_of("perivitelline", "a vitelline membrane around a closed tissue",
+                [](const Subject& s) {
+                  // The shell's caps are not those of a slice.
+                  return kept_if(rest_lumen_volume(s) && fluid_under_shell_um3(s.model, s.model.tissue.rest_positions));
+                },
+                {costly({"shell_fluid_um3", series, last,
+                         "Perivitelline volume, between apical surface and vitelline membrane; its pressure is 0.",
+                         of(fluid_under_shell_um3)})});
+}
+
+MeasureSet flanks_set() {
+  return set_of(
+      "flanks", "a built embryo",
+      [](const Subject& s) {
+        const Flanks at_rest = flanks(s.model.tissue, s.model.tissue.rest_positions);
+        return at_rest.volume_um3 > 0 && at_rest.section_um2 > 0 ? std::any(at_rest) : std::any();
+      },
+      {costly({"flank_volume_ratio", series, last,
+               "Volume of the lateral ectoderm / reference volume: cells at 60–120° from the ventral midline, "
+               "middle half of the length, weighted by their part of the angle.",
+               [](const M& m) {
+                 return *flank_volume(m.model.tissue, m.state.positions) / m.of_run<Flanks>().volume_um3;
+               }}),
+       costly({"flank_section_area_ratio", series, last,
+               "Cross-sectional area of the lateral ectoderm at x = 0 (60–120° from the ventral midline, both "
+               "sides) / reference area; comparable with micrographs and two-dimensional models.",
+               [](const M& m) {
+                 return *flank_section_area(m.model.tissue, m.state.positions) / m.of_run<Flanks>().section_um2;
+               }})},
+      of_embryo);
 }
 
 }  // namespace plica

@@ -1,46 +1,56 @@
 // Output variables of steps and runs, one table row each: name, meaning, function, destination. The header and rows of
-// series.csv, checkpoints, summary.json, names of [expect] and the table of docs/reference/measures.md follow from it;
-// a new variable is a new row and its function.
+// series.csv, checkpoints, summary.json, names of [expect] and the table of docs/reference/measures.md follow from it.
+// Columns belong to measure sets (measure_set.hpp).
 #pragma once
 
+#include <any>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <typeindex>
 #include <utility>
 #include <vector>
 
 #include "core/names.hpp"
-#include "measure/closing.hpp"
-#include "measure/furrow.hpp"
-#include "measure/speed_history.hpp"
+#include "mechanics/model.hpp"
 
 namespace plica {
 
 struct AcceptedStep;
 struct Observation;
 
-/// Measures of the reference state, computed once.
-struct RestMeasures {
-  std::optional<double> lumen_volume_um3, flank_volume_um3, flank_section_um2;
-  double tissue_volume_um3 = 0;
-};
+/// What sets keep over a run, by the names of the sets that are measured.
+using KeptBySet = std::map<std::string_view, std::any>;
 
-/// Data shared by the variables of a step, computed once.
-struct MeasuredStep {
-  MeasuredStep(const Model& of_model, const FurrowSites& at_sites, const RestMeasures& at_rest, const State& at_its_end,
-               const AcceptedStep* accepted);
+/// Data shared by the columns of a step.
+class MeasuredStep {
+ public:
+  MeasuredStep(const Model& of_model, const State& at_its_end, const AcceptedStep* accepted)
+      : model(of_model), state(at_its_end), step(accepted) {}
 
   const Model& model;
-  const FurrowSites& sites;
-  const RestMeasures& rest;
-  const State& state;        // at the end of the step
-  const AcceptedStep* step;  // null for the reference state
-  FurrowShape furrow;
-  SpeedRow speeds;
-  std::optional<ContactState> contact_state;
-  std::optional<Enclosed> enclosed;
+  const State& state;              // at the end of the step
+  const AcceptedStep* step;        // null for the reference state
+  const std::any* kept = nullptr;  // of the column's set
+
+  /// What the column's set keeps over the run.
+  template <class Kept>
+  [[nodiscard]] const Kept& of_run() const {
+    return std::any_cast<const Kept&>(*kept);
+  }
+  /// Value that columns share, computed once per step; one function per type.
+  template <class Value>
+  [[nodiscard]] const Value& once(Value (*compute)(const MeasuredStep&)) const {
+    std::any& value = shared_[typeid(Value)];
+    if (!value.has_value()) value = compute(*this);
+    return std::any_cast<const Value&>(value);
+  }
+
+ private:
+  mutable std::map<std::type_index, std::any> shared_;
 };
 
 /// Value of a column in summary.json.
@@ -53,28 +63,33 @@ struct Column {
   std::string_view name;  // with its unit
   bool in_series;
   InSummary in_summary;
-  std::string_view meaning;    // for docs/reference/measures.md, in Markdown
-  OfStep of_step;              // value after a step; or
-  OfRun of_run = {};           // value of the whole run, for the summary
-  bool is_count = false;       // integer
-  bool of_projection = false;  // null in the summary unless the run projects volumes
-  bool is_costly = false;      // takes over 1 % of a step; not used by other columns
+  std::string_view meaning;   // for docs/reference/measures.md, in Markdown
+  OfStep of_step;             // value after a step; or
+  OfRun of_run = {};          // value of the whole run, for the summary
+  bool is_count = false;      // integer
+  bool is_costly = false;     // takes over 1 % of a step
+  std::string_view set = {};  // name of its measure set; filled by columns()
 };
 
-/// All columns, in the order of series.csv.
+Column count(Column column);
+Column costly(Column column);
+
+/// Columns of all sets, in the order of series.csv.
 std::span<const Column> columns();
 
 /// Index of a column. Throws std::logic_error for an unknown name.
 std::size_t column_index(std::string_view name);
 
-/// Names of the columns of series.csv, without monitors.
-std::vector<std::string> series_names();
+/// Some of `columns()`, in their order.
+using ColumnList = std::vector<const Column*>;
+ColumnList all_columns();
 
-/// Columns of summary.json, in its order.
-std::vector<const Column*> summary_columns();
+/// Those in summary.json, in its order.
+ColumnList summary_columns(ColumnList columns);
 
-/// Values of these columns from the rows of a whole run (reference state first).
-std::vector<std::pair<const Column*, std::optional<double>>> summary_values(std::span<const Observation> rows);
+/// Values of these columns in the summary from the rows of a whole run (reference state first).
+std::vector<std::pair<const Column*, std::optional<double>>> summary_values(const ColumnList& columns,
+                                                                            std::span<const Observation> rows);
 
 /// Tables of docs/reference/measures.md, in Markdown.
 std::string measures_markdown();

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "measure/cell_columns.hpp"
-#include "measure/columns.hpp"
+#include "measure/measure_set.hpp"
 #include "measure/monitor.hpp"
 
 namespace plica {
@@ -23,12 +23,19 @@ const char* owner(QuantityInfo::Of of) {
 
 std::string step_table() {
   std::string text =
-      "### Each step: series.csv and summary.json\n\n"
-      "`series.csv` has one row for the reference state and one per accepted step. `summary.json` has one number per "
-      "variable: the\nlast, largest or smallest value, the sum, or a number of the whole run.\n\n"
-      "| variable | series | summary | meaning |\n|---|---|---|---|\n";
+      "### Sets\n\n"
+      "`measure.sets` chooses what a run measures; by default what fits the tissue. `midline.csv` "
+      "and\n`cross_section.csv` come with `fold`. What sets need:\n\n";
+  for (const MeasureSet& set : measure_sets())
+    if (!set.name.empty()) text += fmt::format("- `{}`: {}\n", set.name, set.needs);
+  text +=
+      "\n### Each step: series.csv and summary.json\n\n"
+      "`series.csv` has one row for the reference state and one per accepted step; `summary.json` has one number per\n"
+      "variable: last, largest, smallest, sum, or of the whole run.\n\n"
+      "| variable | set | value | meaning |\n|---|---|---|---|\n";
   for (const Column& column : columns())
-    text += fmt::format("| `{}` | {} | {} | {} |\n", column.name, mark(column.in_series), in_summary(column),
+    text += fmt::format("| `{}` | {} | {}{}{} | {} |\n", column.name, column.set, column.in_series ? "series" : "",
+                        column.in_series && column.in_summary != InSummary::nothing ? ", " : "", in_summary(column),
                         column.meaning);
   return text;
 }

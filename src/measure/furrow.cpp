@@ -8,7 +8,12 @@
 #include <set>
 
 #include "measure/cells.hpp"
-#include "tissue/inner_nodes.hpp"
+#include "measure/closing.hpp"
+#include "measure/measure_set.hpp"
+#include "measure/observation.hpp"
+#include "measure/speed_history.hpp"
+#include "tissue/facing.hpp"
+#include "tissue/polygon_cell.hpp"
 
 namespace plica {
 namespace {
@@ -161,10 +166,15 @@ void follow_division(FurrowSites& sites, const Tissue& tissue, const Division& d
   }
 }
 
-FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions) {
-  FurrowShape shape;
+std::optional<double> furrow_depth_um(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions) {
+  std::optional<double> depth;
   for (const SurfacePoint& point : cut_without_dimples(tissue, positions, axis_y, facets_of(tissue, sites.contractile)))
-    shape.depth_um = std::max(shape.depth_um.value_or(-1e300), depth_of(tissue, point, sites.outward, positions));
+    depth = std::max(depth.value_or(-1e300), depth_of(tissue, point, sites.outward, positions));
+  return depth;
+}
+
+LipShape lip_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions) {
+  LipShape shape;
   if (!sites.has_lips) return shape;
 
   const Vec3 left = sites.lips[0].at(positions), right = sites.lips[1].at(positions);
@@ -242,6 +252,176 @@ std::optional<double> midline_waviness_um(const Tissue& tissue, const FurrowSite
   }
   const Eigen::VectorXd smooth = powers.householderQr().solve(depths);
   return (powers * smooth - depths).norm() / std::sqrt(static_cast<double>(count));
+}
+
+namespace {
+
+constexpr bool series = true, no_series = false;
+using enum InSummary;
+using M = MeasuredStep;
+
+const FurrowSites& sites_of(const M& m) { return m.of_run<FurrowSites>(); }
+
+LipShape lips_of_step(const M& m) { return lip_shape(m.model.tissue, sites_of(m), m.state.positions); }
+
+// Displacements, and for steps speeds, of the furrow's centre and ends.
+SpeedRow speeds_of_step(const M& m) {
+  const FurrowSites& sites = sites_of(m);
+  const Tissue& tissue = m.model.tissue;
+  SpeedRow row;
+  row.time_s = m.state.time_s;
+  row.vml_displacement_um = mean_node_displacement(tissue, sites.vml, m.state.positions);
+  row.vce_displacement_um = mean_node_displacement(tissue, sites.vce, m.state.positions);
+  if (m.step == nullptr) return row;
+  row.vml_speed_um_per_s = mean_speed(tissue, sites.vml, m.state.velocities);
+  row.vce_speed_um_per_s = mean_speed(tissue, sites.vce, m.state.velocities);
+  return row;
+}
+
+// Time series of a column, without missing values.
+struct Course {
+  std::vector<double> times_s, values;
+};
+
+Course course_of(std::span<const Observation> rows, std::string_view column) {
+  Course course;
+  for (const Observation& row : rows)
+    if (const std::optional<double> value = row[column]) {
+      course.times_s.push_back(row.time_s());
+      course.values.push_back(*value);
+    }
+  return course;
+}
+
+Column::OfRun reaching(std::string_view column, double level) {
+  return [=](std::span<const Observation> rows) {
+    const Course course = course_of(rows, column);
+    return time_of_reaching(course.times_s, course.values, level);
+  };
+}
+
+SpeedHistory history_of(std::span<const Observation> rows) {
+  std::vector<SpeedRow> speeds;
+  speeds.reserve(rows.size());
+  for (const Observation& row : rows)
+    speeds.push_back({row.time_s(), row["vml_speed_um_per_s"], row["vce_speed_um_per_s"], row["vml_displacement_um"],
+                      row["vce_displacement_um"]});
+  return speed_history(speeds);
+}
+
+Column of_run(std::string_view name, std::string_view meaning, Column::OfRun value) {
+  return {name, no_series, whole_run, meaning, {}, std::move(value)};
+}
+
+Column of_history(std::string_view name, std::string_view meaning, std::optional<double> SpeedHistory::*number) {
+  return of_run(name, meaning, [=](std::span<const Observation> rows) { return history_of(rows).*number; });
+}
+
+Column::OfRun of_knee(double Knee::*number) {
+  return [=](std::span<const Observation> rows) -> std::optional<double> {
+    const Course depth = course_of(rows, "furrow_depth_um");
+    const std::optional<Knee> found = knee(depth.times_s, depth.values);
+    return found ? std::optional((*found).*number) : std::nullopt;
+  };
+}
+
+double vml_height(const M& m) {
+  double sum = 0;
+  for (const CellId cell : sites_of(m).vml) sum += cell_height(m.model.tissue.cells[cell.index()], m.state.positions);
+  return sum / static_cast<double>(sites_of(m).vml.size());
+}
+
+std::vector<Column> columns_of_furrow() {
+  return {
+      {"furrow_depth_below_lips_um", series, last,
+       "Depth of the furrow bottom (apical surface at x = y = 0) below the mean of both lips, positive inward. "
+       "Negative for the convex reference shape; below 1 µm the ventral side is flat, not furrowed.",
+       part_of(lips_of_step, &LipShape::depth_below_lips_um)},
+      {"lip_distance_um", series, last,
+       "Distance between the lips, which are material points. For contact, see `lips_closed`.",
+       part_of(lips_of_step, &LipShape::lip_distance_um)},
+      {"highest_points_distance_um", no_series, last,
+       "Distance between the outermost points left and right of the midline at x = 0 (the paper's definition); may "
+       "jump.",
+       part_of(lips_of_step, &LipShape::highest_points_distance_um)},
+      {"vml_speed_um_per_s", series, nothing,
+       "Speed of the barycentre (mean of eight corners) of the central midline cell (VML).",
+       part_of(speeds_of_step, &SpeedRow::vml_speed_um_per_s)},
+      {"vce_speed_um_per_s", series, nothing, "Speed of the barycentre of the near-end midline cell (VCE).",
+       part_of(speeds_of_step, &SpeedRow::vce_speed_um_per_s)},
+      {"speed_ratio", series, nothing, "Speed of VCE / speed of VML, $v_c/v_m$.",
+       [](const M& m) { return m.once(speeds_of_step).speed_ratio(); }},
+      {"vml_displacement_um", series, last,
+       "Mean displacement of the eight corner nodes of VML from the reference state (mean of lengths).",
+       part_of(speeds_of_step, &SpeedRow::vml_displacement_um)},
+      {"vce_displacement_um", series, last, "Mean displacement of the corner nodes of VCE.",
+       part_of(speeds_of_step, &SpeedRow::vce_displacement_um)},
+      {"vml_apical_area_ratio", series, last,
+       "Apical area of VML / reference area; bilinear facets, 2 × 2 Gauss points.",
+       [](const M& m) { return mean_apical_area_ratio(m.model.tissue, sites_of(m).vml, m.state.positions); }},
+      {"vce_apical_area_ratio", series, last, "Apical area of VCE / reference area.",
+       [](const M& m) { return mean_apical_area_ratio(m.model.tissue, sites_of(m).vce, m.state.positions); }},
+      of_history(
+          "peak_speed_ratio",
+          "`speed_ratio` at the step with the largest difference $v_c-v_m$, among steps with $v_m$ above 1 % of its "
+          "peak. Not the largest `speed_ratio`.",
+          &SpeedHistory::peak_ratio),
+      of_history("peak_speed_ratio_time_s", "End of that step.", &SpeedHistory::peak_ratio_time_s),
+      of_history("ends_lead_until_s",
+                 "First time after that step with $v_c\\le v_m$, interpolated; null if the ends never lead.",
+                 &SpeedHistory::ends_lead_until_s),
+      of_history("vml_displacement_at_equal_speed_um", "`vml_displacement_um` at that time.",
+                 &SpeedHistory::vml_displacement_at_equal_speed_um),
+      of_history("vce_displacement_at_equal_speed_um", "`vce_displacement_um` at that time.",
+                 &SpeedHistory::vce_displacement_at_equal_speed_um),
+      {"vml_height_um", series, largest, "Height of VML: mean length of its apicobasal edges.", vml_height},
+      of_run("lips_closed_time_s", "First time with `lips_closed` = 1.", reaching("lips_closed", 1)),
+      of_run("depth_20um_time_s", "Time at which `furrow_depth_um` reaches 20 µm.", reaching("furrow_depth_um", 20)),
+      of_run(
+          "knee_depth_um",
+          "Depth at the onset of fast invagination: breakpoint of a two-segment fit to `furrow_depth_um` over time up "
+          "to 20 µm (least squares, weighted by time); none if 20 µm are not reached.",
+          of_knee(&Knee::depth_um)),
+      of_run("knee_time_s", "Time of the onset of fast invagination.", of_knee(&Knee::time_s)),
+      {"midline_waviness_um", series, last,
+       "Waviness (buckling) of the furrow bottom along its length: root-mean-square deviation of the depths of "
+       "contractile midline cells, middle half, from a quartic polynomial. None with fewer than ten cells.",
+       [](const M& m) { return midline_waviness_um(m.model.tissue, sites_of(m), m.state.positions); }},
+  };
+}
+
+// Whether a fold of the surface is a depression: in a ventral side, or in an open sheet.
+bool is_open_sheet(const Tissue& tissue) {
+  Facing facing;
+  for (const Facet& facet : tissue.apical_facets) facing.add(gather(tissue.rest_positions, facet));
+  return facing.is_one_way();
+}
+
+std::any begin_sites(const Subject& s) { return s.furrow.vml.empty() ? std::any() : s.furrow; }
+
+void follow(std::any& sites, const Tissue& tissue, const Division& division) {
+  follow_division(std::any_cast<FurrowSites&>(sites), tissue, division);
+}
+
+}  // namespace
+
+MeasureSet fold_set() {
+  return {"fold",
+          "contracting cells on the plane y = 0",
+          begin_sites,
+          {{"furrow_depth_um", series, last,
+            "Furrow depth: largest inward distance from the vitelline membrane over the apical midline (plane y = 0) "
+            "of the furrow cells, without the middles of polygons, minus the reference value of the same material "
+            "point. Inward: against the mean reference apical normal of these cells. Without an embryo shape: inward "
+            "displacement.",
+            [](const M& m) { return furrow_depth_um(m.model.tissue, sites_of(m), m.state.positions); }}},
+          [](const Subject& s) { return s.is_embryo || is_open_sheet(s.model.tissue); },
+          follow};
+}
+
+MeasureSet furrow_set() {
+  return {"furrow", "contracting cells on the plane y = 0", begin_sites, columns_of_furrow(), of_embryo, follow,
+          "fold"};
 }
 
 }  // namespace plica

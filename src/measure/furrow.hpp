@@ -34,17 +34,20 @@ FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile
 /// Update the sites after a division: both daughters replace a cell; lips are material points and remain.
 void follow_division(FurrowSites& sites, const Tissue& tissue, const Division& division);
 
-/// Furrow geometry at one time; missing values are empty.
-struct FurrowShape {
-  std::optional<double> depth_um;                    // from the shell to the midline, minus the reference value
-  std::optional<double> depth_below_lips_um;         // from the mean of the lips to the furrow bottom at x = 0
+/// Largest inward distance of the apical midline of the furrow cells from the shell, minus the reference value, um;
+/// empty without a midline.
+std::optional<double> furrow_depth_um(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions);
+
+/// Cross-section of the furrow at x = 0; missing values are empty.
+struct LipShape {
+  std::optional<double> depth_below_lips_um;         // from the mean of the lips to the furrow bottom
   std::optional<double> lip_distance_um;             // between the material lips
   std::optional<double> highest_points_distance_um;  // between the outermost points left and right of the midline
 };
 
-FurrowShape furrow_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions);
+LipShape lip_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions);
 
-/// Depth of the apical midline of each cell, mean over its points on y = 0, defined as in furrow_shape; cells, empty
+/// Depth of the apical midline of each cell, mean over its points on y = 0, defined as in furrow_depth_um; cells, empty
 /// without points.
 std::vector<std::optional<double>> cell_depths_um(const Tissue& tissue, const FurrowSites& sites,
                                                   std::span<const CellId> cells, std::span<const Vec3> positions);

@@ -19,7 +19,7 @@ namespace {
 using Info = QuantityInfo;
 constexpr auto may = Info::Axis::may_have, must = Info::Axis::must_have, no_axis = Info::Axis::none;
 
-constexpr std::array<Info, 16> table = {{
+constexpr std::array<Info, 18> table = {{
     {Quantity::position, "position", "um", Info::Of::node, "Coordinate along `axis`.", must},
     {Quantity::displacement, "displacement", "um", Info::Of::node,
      "Displacement from the reference state: norm, or component.", may},
@@ -47,6 +47,11 @@ constexpr std::array<Info, 16> table = {{
     {Quantity::apical_elongation, "apical_elongation", "", Info::Of::cell,
      "Length of the apical surface along x / width across, of the rectangle with its second moments. None at a pole."},
     {Quantity::pressure, "pressure", "Pa", Info::Of::cell, "Cell pressure; positive in compression."},
+    {Quantity::apical_load, "apical_load", "Pa", Info::Of::cell,
+     "Inward component of the driving force (as `force`) per apical area around a node, mean over the cell's apical "
+     "corners."},
+    {Quantity::inward_displacement, "inward_displacement", "um", Info::Of::cell,
+     "Displacement of the mean apical corner against the outward reference normal."},
     {Quantity::kinetic_energy, "kinetic_energy", "nN_um", Info::Of::region,
      "$\\tfrac12\\sum m v^2$ with lumped masses; requires a density."},
     {Quantity::time, "time", "s", Info::Of::region, "Simulated time; for stop criteria."},
@@ -175,8 +180,38 @@ std::vector<double> elongations(const Monitor& monitor, const Moment& moment) {
   return values;
 }
 
+// Apical load of all cells, Pa.
+std::vector<double> apical_loads(const Moment& moment) {
+  const Tissue& tissue = moment.model.tissue;
+  const Vectors forces = driving_forces(moment.model, moment.state);
+  Vectors areas(tissue.node_count(), Vec3::Zero());
+  for (const Facet& facet : tissue.apical_facets) {
+    const Vec3 area = facet_area_vector(gather(moment.state.positions, facet));
+    for (const NodeId node : facet.nodes) areas[node.index()] += area / 4;
+  }
+  Vectors loads(tissue.node_count(), Vec3::Zero());
+  for (std::size_t n = 0; n < loads.size(); ++n)
+    if (areas[n] != Vec3::Zero()) loads[n].x() = -forces[n].dot(areas[n]) / areas[n].squaredNorm() / units::pascal;
+  std::vector<double> of_cells;
+  of_cells.reserve(tissue.cells.size());
+  for (const Cell& cell : tissue.cells) of_cells.push_back(mean_apical(cell, loads).x());
+  return of_cells;
+}
+
+std::vector<double> inward_displacements(const Monitor& monitor, const Moment& moment) {
+  const Tissue& tissue = moment.model.tissue;
+  const std::vector<CellId> cells = monitored_cells(monitor, tissue);
+  std::vector<double> values;
+  for (const Vec3& normal : rest_apical_normals(tissue, cells)) {
+    const Cell& cell = tissue.cells[cells[values.size()].index()];
+    values.push_back(normal.dot(mean_apical(cell, tissue.rest_positions) - mean_apical(cell, moment.state.positions)));
+  }
+  return values;
+}
+
 std::vector<double> cell_values(const Monitor& monitor, const Moment& moment) {
   if (monitor.quantity == Quantity::apical_elongation) return elongations(monitor, moment);
+  if (monitor.quantity == Quantity::inward_displacement) return inward_displacements(monitor, moment);
   const Tissue& tissue = moment.model.tissue;
   std::vector<double> of_all;
   if (monitor.quantity == Quantity::volume) of_all = moment.model.volumes().volumes(moment.state.positions);
@@ -188,6 +223,7 @@ std::vector<double> cell_values(const Monitor& monitor, const Moment& moment) {
     const std::vector<double> at_rest = rest_apical_areas(tissue);
     for (std::size_t c = 0; c < of_all.size(); ++c) of_all[c] /= at_rest[c];
   }
+  if (monitor.quantity == Quantity::apical_load) of_all = apical_loads(moment);
   if (monitor.quantity == Quantity::pressure && moment.model.volumes().is_held())
     for (const double pressure : moment.state.pressures(moment.model)) of_all.push_back(pressure / units::pascal);
   std::vector<double> values;
@@ -246,9 +282,10 @@ std::vector<NodeId> monitored_nodes(const Monitor& monitor, const Tissue& tissue
 }
 
 std::vector<CellId> monitored_cells(const Monitor& monitor, const Tissue& tissue) {
+  using enum Quantity;
   CellSet chosen = tissue.regions.at(monitor.region);
-  if (monitor.quantity == Quantity::area || monitor.quantity == Quantity::area_ratio ||
-      monitor.quantity == Quantity::apical_elongation) {
+  if (std::ranges::count(std::array{area, area_ratio, apical_elongation, apical_load, inward_displacement},
+                         monitor.quantity) > 0) {
     CellSet has_side(chosen.size(), false);
     for (const Facet& facet : monitor.face == Monitor::Face::basal ? tissue.basal_facets : tissue.apical_facets)
       has_side[facet.cell.index()] = chosen[facet.cell.index()];

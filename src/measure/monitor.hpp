@@ -29,6 +29,8 @@ enum class Quantity {
   area_ratio,
   apical_elongation,
   pressure,
+  apical_load,
+  inward_displacement,
   kinetic_energy,
   time,
   wall

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "measure/columns.hpp"
-#include "measure/furrow.hpp"
 #include "measure/stop_rule.hpp"
 #include "solver/step/stepper.hpp"
+#include "tissue/division.hpp"
 
 namespace plica {
 
@@ -35,11 +35,15 @@ struct Observation {
 
   /// Value by column name, as in row["furrow_depth_um"]. Throws std::logic_error for an unknown name.
   [[nodiscard]] std::optional<double> operator[](std::string_view column) const { return values[column_index(column)]; }
+  [[nodiscard]] std::optional<double> operator[](const Column& column) const {
+    return values[static_cast<std::size_t>(&column - columns().data())];
+  }
   [[nodiscard]] double time_s() const { return (*this)["time_s"].value_or(0); }
 };
 
-/// Monitors and stop criteria of a scenario.
+/// Sets, monitors and stop criteria of a scenario.
 struct Watch {
+  KeptBySet sets;
   std::vector<Monitor> monitors;
   StopRule stop;
 };
@@ -47,30 +51,37 @@ struct Watch {
 /// Measures the steps of one model.
 class Observer {
  public:
-  Observer(const Model& model, FurrowSites sites, Watch watch = {});
+  explicit Observer(const Model& model, Watch watch = {});
   /// Copy that measures a copy of the other's model.
-  Observer(const Model& model, const Observer& other);
+  Observer(const Model& model, const Observer& other) : model_(model), watch_(other.watch_), columns_(other.columns_) {}
   /// Measure a step. `wall_s`: computing time of all steps so far, for the monitor of that name.
   [[nodiscard]] Observation observe(const AcceptedStep& step, double wall_s = 0) const;
   /// Measure the reference state, before the first step.
   [[nodiscard]] Observation observe_rest(const State& state) const;
-  [[nodiscard]] const FurrowSites& sites() const { return sites_; }
   [[nodiscard]] const std::vector<Monitor>& monitors() const { return watch_.monitors; }
+  /// Columns that are measured.
+  [[nodiscard]] const ColumnList& columns() const { return columns_; }
+  /// What a set keeps over the run; null if it is not measured.
+  template <class Kept>
+  [[nodiscard]] const Kept* kept(std::string_view set) const {
+    const auto found = watch_.sets.find(set);
+    return found == watch_.sets.end() ? nullptr : std::any_cast<Kept>(&found->second);
+  }
 
-  /// Skip these columns from now on; they have no value then.
-  void leave_out(const std::function<bool(const Column&)>& which);
+  /// Skip these columns from now on.
+  void leave_out(const std::function<bool(const Column&)>& which) {
+    std::erase_if(columns_, [&](const Column* column) { return which(*column); });
+  }
 
   /// Update after divisions of the model.
-  void follow_division(const Division& division) { plica::follow_division(sites_, model_.tissue, division); }
+  void follow_division(const Division& division);
 
  private:
   [[nodiscard]] Observation row_of(const State& state, const AcceptedStep* step, double wall_s) const;
 
   const Model& model_;
-  FurrowSites sites_;
   Watch watch_;
-  RestMeasures rest_;
-  std::vector<char> is_left_out_ = std::vector<char>(columns().size(), 0);  // by column
+  ColumnList columns_;
 };
 
 }  // namespace plica

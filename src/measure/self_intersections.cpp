@@ -3,28 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
+
+#include "core/box_grid.hpp"
 
 namespace plica {
 namespace {
-
-struct Box {
-  Vec3 low, high;
-
-  [[nodiscard]] bool overlaps(const Box& other) const {
-    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
-  }
-};
-
-Box box_of(std::span<const Vec3> points) {
-  Box box{points[0], points[0]};
-  for (const Vec3& point : points.subspan(1)) {
-    box.low = box.low.cwiseMin(point);
-    box.high = box.high.cwiseMax(point);
-  }
-  return box;
-}
 
 using Triangle = std::array<Vec3, 3>;
 
@@ -86,46 +70,6 @@ bool cross(const Fan& a, const Fan& b) {
   return false;
 }
 
-// Bounding boxes of facets, sorted by their start along the longest axis of the surface.
-struct SortedBoxes {
-  SortedBoxes(std::span<const Facet> facets, std::span<const Vec3> positions) : facet(facets.size()) {
-    std::vector<Box> boxes;
-    boxes.reserve(facets.size());
-    Eigen::AlignedBox3d whole;
-    for (const Facet& of : facets) {
-      std::array<Vec3, 4> corners;  // their mean lies within
-      for (int i = 0; i < 4; ++i) corners[i] = positions[of.nodes[i].index()];
-      boxes.push_back(box_of(corners));
-      whole.extend(boxes.back().low).extend(boxes.back().high);
-    }
-    int longest = 0;
-    if (!facets.empty()) whole.sizes().maxCoeff(&longest);
-    std::iota(facet.begin(), facet.end(), std::size_t{0});
-    std::ranges::sort(facet, {}, [&](std::size_t f) { return boxes[f].low[longest]; });
-    for (int axis = 0; axis < 3; ++axis)
-      for (const std::size_t f : facet) {
-        low[axis].push_back(boxes[f].low[(longest + axis) % 3]);
-        high[axis].push_back(boxes[f].high[(longest + axis) % 3]);
-      }
-  }
-
-  /// Later boxes that overlap one, in a part of `found`, which has room for all. Most candidates do not overlap, so
-  /// each index is written and kept by incrementing the count: faster than branching.
-  [[nodiscard]] std::span<const std::size_t> overlapping(std::size_t i, std::span<std::size_t> found) const {
-    const auto end = std::upper_bound(low[0].begin() + static_cast<std::ptrdiff_t>(i), low[0].end(), high[0][i]);
-    std::size_t count = 0;
-    for (std::size_t k = i + 1; k < static_cast<std::size_t>(end - low[0].begin()); ++k) {
-      found[count] = k;
-      count += static_cast<std::size_t>((low[1][k] <= high[1][i]) & (low[1][i] <= high[1][k]) &
-                                        (low[2][k] <= high[2][i]) & (low[2][i] <= high[2][k]));
-    }
-    return found.first(count);
-  }
-
-  std::vector<std::size_t> facet;
-  std::array<std::vector<double>, 3> low, high;
-};
-
 bool have_common_node(const Facet& a, const Facet& b) {
   return std::ranges::any_of(a.nodes, [&](NodeId node) { return std::ranges::find(b.nodes, node) != b.nodes.end(); });
 }
@@ -134,16 +78,26 @@ bool have_common_node(const Facet& a, const Facet& b) {
 
 std::vector<std::pair<std::size_t, std::size_t>> crossing_facets(std::span<const Facet> facets,
                                                                  std::span<const Vec3> positions) {
+  std::vector<Fan> fans;
+  std::vector<Box> boxes;
+  double largest = 1e-6, sum = 0;
+  for (const Facet& facet : facets) {
+    const Box& box = boxes.emplace_back(box_of(fans.emplace_back(fan_of(facet, positions)).points));
+    const double size = (box.high - box.low).maxCoeff();
+    largest = std::max(largest, size);
+    sum += size;
+  }
+  // Cubes as large as most facets; but a facet much larger than others must not take too many.
+  BoxGrid grid(std::max(largest / 30, 1.5 * sum / static_cast<double>(std::max<std::size_t>(facets.size(), 1))));
+  for (std::size_t f = 0; f < boxes.size(); ++f) grid.add(f, boxes[f]);
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  const SortedBoxes boxes(facets, positions);
-  std::vector<std::size_t> found(facets.size());
-  for (std::size_t i = 0; i < facets.size(); ++i)
-    for (const std::size_t k : boxes.overlapping(i, found)) {
-      const auto [a, b] = std::minmax(boxes.facet[i], boxes.facet[k]);
-      if (!have_common_node(facets[a], facets[b]) && cross(fan_of(facets[a], positions), fan_of(facets[b], positions)))
+  std::vector<std::size_t> found;
+  for (std::size_t a = 0; a < facets.size(); ++a) {
+    grid.find_near(boxes[a], found);
+    for (const std::size_t b : found)
+      if (b > a && boxes[a].overlaps(boxes[b]) && !have_common_node(facets[a], facets[b]) && cross(fans[a], fans[b]))
         pairs.emplace_back(a, b);
-    }
-  std::ranges::sort(pairs);
+  }
   return pairs;
 }
 

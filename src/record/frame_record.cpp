@@ -55,14 +55,14 @@ MeshArrays FrameRecord::arrays() const {
   return arrays;
 }
 
-FrameTaker::FrameTaker(const Model& model, const FurrowSites& sites, bool with_cell_rows)
+FrameTaker::FrameTaker(const Model& model, const FurrowSites* sites, bool with_cell_rows)
     : model_(model), sites_(sites), with_cell_rows_(with_cell_rows) {
   follow_division();
 }
 
 void FrameTaker::follow_division() {
   cells_ = std::make_shared<const FrameCells>(model_.tissue);
-  section_cells_ = section_cells(model_.tissue, sites_.outward);
+  if (sites_ != nullptr) section_cells_ = section_cells(model_.tissue, sites_->outward);
 }
 
 FrameRecord FrameTaker::take(const State& state, const std::map<std::string, CellArray>& outside) const {
@@ -71,8 +71,10 @@ FrameRecord FrameTaker::take(const State& state, const std::map<std::string, Cel
   const MeasuredCells measured(model_, state);
   add_cells(measured, frame);
   frame.scalars.insert(frame.scalars.end(), outside.begin(), outside.end());
-  add_midline(measured, frame);
-  add_sections(measured, frame);
+  if (sites_ != nullptr) {
+    add_midline(measured, frame);
+    add_sections(measured, frame);
+  }
   return frame;
 }
 
@@ -90,7 +92,7 @@ void FrameTaker::add_cells(const MeasuredCells& measured, FrameRecord& frame) co
 
 void FrameTaker::add_midline(const MeasuredCells& measured, FrameRecord& frame) const {
   Columns of_csv;
-  for (const MidlineColumn& column : midline_columns()) of_csv.push_back(column.values(measured, sites_));
+  for (const MidlineColumn& column : midline_columns()) of_csv.push_back(column.values(measured, *sites_));
   frame.midline_rows = rows_of(of_csv);
 }
 

@@ -44,13 +44,14 @@ struct FrameRecord {
 /// Creates snapshots of one model.
 class FrameTaker {
  public:
-  /// `with_cell_rows`: snapshots include the rows of cells.csv.
-  FrameTaker(const Model& model, const FurrowSites& sites, bool with_cell_rows);
+  /// `sites`: null without a fold. `with_cell_rows`: snapshots include the rows of cells.csv.
+  FrameTaker(const Model& model, const FurrowSites* sites, bool with_cell_rows);
 
   /// `outside`: arrays of cells besides those of the model (Simulation::outside_arrays).
   [[nodiscard]] FrameRecord take(const State& state, const std::map<std::string, CellArray>& outside) const;
 
   [[nodiscard]] bool with_cell_rows() const { return with_cell_rows_; }
+  [[nodiscard]] bool with_fold() const { return sites_ != nullptr; }
 
   /// Update after a division of the model and the sites.
   void follow_division();
@@ -61,7 +62,7 @@ class FrameTaker {
   void add_sections(const MeasuredCells& measured, FrameRecord& frame) const;
 
   const Model& model_;
-  const FurrowSites& sites_;
+  const FurrowSites* sites_;
   bool with_cell_rows_;
   std::shared_ptr<const FrameCells> cells_;
   std::vector<SectionCell> section_cells_;

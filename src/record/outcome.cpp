@@ -9,8 +9,7 @@
 #include "core/words.hpp"
 #include "record/results.hpp"
 #include "scenario/embryo_axes.hpp"
-#include "simulation/crossing_warning.hpp"
-#include "tissue/facing.hpp"
+#include "simulation/run_warnings.hpp"
 
 namespace plica {
 namespace {
@@ -18,16 +17,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double least_change = 0.005;  // smallest reported change of a ratio
-
-bool is_open_sheet(const Tissue& tissue) {
-  Facing facing;
-  for (const Facet& facet : tissue.apical_facets) {
-    std::array<Vec3, 4> corners;
-    for (int i = 0; i < 4; ++i) corners[i] = tissue.rest_positions[facet.nodes[i].index()];
-    facing.add(corners);
-  }
-  return facing.is_one_way();
-}
 
 // Parts of the line; values that the run lacks are left out.
 class Parts {
@@ -66,7 +55,7 @@ std::string outcome_text(const Scenario& scenario, const Tissue& tissue, const J
   if (have_furrow(axes_of(scenario.embryo)) && number_of(summary, "furrow_depth_um")) {
     add_furrow(summary, parts);
   } else {
-    if (is_open_sheet(tissue)) parts.value("fold depth", "furrow_depth_um", " um");
+    parts.value("fold depth", "furrow_depth_um", " um");
     parts.value("largest displacement", "max_displacement_um", " um");
     parts.value("smallest apical area ratio", "min_apical_area_ratio");
     parts.change("lumen volume ratio", "lumen_volume_ratio");

@@ -38,7 +38,7 @@ Recorder::Recorder(fs::path directory, const Scenario& scenario, const Simulatio
       scenario_(scenario),
       simulation_(simulation),
       start_(start),
-      frame_taker_(simulation.model(), simulation.observer().sites(),
+      frame_taker_(simulation.model(), simulation.observer().kept<FurrowSites>("fold"),
                    scenario.output.cells_csv.value_or(simulation.model().tissue.cells.size() <= most_cells_by_default)),
       blank_{version(), resolved_toml(scenario), fingerprint(simulation.model().tissue), {}, {}},
       checkpoints_(directory_),
@@ -50,9 +50,11 @@ WallTimes Recorder::wall() const {
 }
 
 void Recorder::open_tables(const RecordMemory& memory) {
-  series_ = table(directory_ / "series.csv", series_header(simulation_.observer().monitors()), memory.series_bytes);
-  midline_ = table(directory_ / "midline.csv", names_of(midline_columns()), memory.midline_bytes);
-  section_ = table(directory_ / "cross_section.csv", names_of(section_columns()), memory.section_bytes);
+  series_ = table(directory_ / "series.csv", series_header(simulation_.observer()), memory.series_bytes);
+  if (frame_taker_.with_fold()) {
+    midline_ = table(directory_ / "midline.csv", names_of(midline_columns()), memory.midline_bytes);
+    section_ = table(directory_ / "cross_section.csv", names_of(section_columns()), memory.section_bytes);
+  }
   if (frame_taker_.with_cell_rows()) cells_ = table(directory_ / "cells.csv", cells_csv_names(), memory.cells_bytes);
   if (!scenario_.divisions.empty())
     lineage_ = table(directory_ / "lineage.csv", names_of(lineage_columns()), memory.lineage_bytes);
@@ -144,7 +146,9 @@ nlohmann::ordered_json Recorder::finish() {
   return summary;
 }
 
-void Recorder::append_series(const Observation& row) { series_->append(series_row(row)); }
+void Recorder::append_series(const Observation& row) {
+  series_->append(series_row(row, simulation_.observer().columns()));
+}
 
 void Recorder::save_frame() {
   last_frame_s_ = simulation_.time_s();

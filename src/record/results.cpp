@@ -43,7 +43,7 @@ std::optional<double> Series::at(std::size_t column, double time_s) const {
   return *low + part * (*high - *low);
 }
 
-Series read_table(const std::filesystem::path& file, bool times_increase) {
+Series read_series(const std::filesystem::path& file) {
   std::istringstream text(read_file(file));
   const auto refuse = [&](int line, const std::string& problem) {
     throw FileError(fmt::format("{}:{}: {}", file.string(), line, problem));
@@ -64,15 +64,12 @@ Series read_table(const std::filesystem::path& file, bool times_increase) {
       row.push_back(number_in(field));
       if (!row.back() && !field.empty()) refuse(number, fmt::format("\"{}\" is not a number", field));
     }
-    const bool too_early =
-        !series.rows.empty() && row.front() && times_increase && *row.front() <= *series.rows.back().front();
+    const bool too_early = !series.rows.empty() && row.front() && *row.front() <= *series.rows.back().front();
     if (!row.front() || too_early) refuse(number, "time missing or not after the previous one");
     series.rows.push_back(std::move(row));
   }
   return series;
 }
-
-Series read_series(const std::filesystem::path& file) { return read_table(file, true); }
 
 nlohmann::ordered_json read_summary(const std::filesystem::path& directory) {
   const std::filesystem::path file = directory / "summary.json";

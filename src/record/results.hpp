@@ -24,9 +24,6 @@ struct Series {
 /// Read a time series. Throws FileError for an unreadable file or a table whose first column is not time_s.
 Series read_series(const std::filesystem::path& file);
 
-/// Read a table with several rows per time, as cells.csv or midline.csv. `times_increase` requires one row per time.
-Series read_table(const std::filesystem::path& file, bool times_increase = false);
-
 /// Read summary.json; null if missing. Throws FileError for damaged content.
 nlohmann::ordered_json read_summary(const std::filesystem::path& directory);
 

@@ -4,16 +4,18 @@
 
 namespace plica {
 
-std::vector<std::string> series_header(const std::vector<Monitor>& monitors) {
-  std::vector<std::string> names = series_names();
-  for (const Monitor& monitor : monitors) names.push_back(monitor.column());
+std::vector<std::string> series_header(const Observer& observer) {
+  std::vector<std::string> names;
+  for (const Column* column : observer.columns())
+    if (column->in_series) names.emplace_back(column->name);
+  for (const Monitor& monitor : observer.monitors()) names.push_back(monitor.column());
   return names;
 }
 
-std::string series_row(const Observation& row) {
+std::string series_row(const Observation& row, const ColumnList& columns) {
   std::vector<std::optional<double>> values;
-  for (std::size_t c = 0; c < columns().size(); ++c)
-    if (columns()[c].in_series) values.push_back(row.values[c]);
+  for (const Column* column : columns)
+    if (column->in_series) values.push_back(row[*column]);
   values.insert(values.end(), row.monitors.begin(), row.monitors.end());
   return csv_row(values);
 }

@@ -9,8 +9,8 @@
 namespace plica {
 
 /// Column names: output variables of each step, then monitors.
-std::vector<std::string> series_header(const std::vector<Monitor>& monitors);
+std::vector<std::string> series_header(const Observer& observer);
 
-std::string series_row(const Observation& row);
+std::string series_row(const Observation& row, const ColumnList& columns);
 
 }  // namespace plica

@@ -108,15 +108,11 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   summary["wall_s"] = wall.total_s;
   summary["wall_solver_s"] = wall.solver_s;
   summary["peak_memory_MB"] = peak_memory_MB();
-  const auto values = summary_values(rows);
-  for (const auto& [column, value] : values)
-    if (!column->of_projection) summary[column->name] = in_json(*column, value);
+  for (const auto& [column, value] : summary_values(simulation.observer().columns(), rows))
+    summary[column->name] = in_json(*column, value);
   for (std::size_t m = 0; m < monitors.size(); ++m)
     summary[monitors[m].column()] =
         number(monitors[m].at_s ? value_at(rows, m, *monitors[m].at_s) : last_value(rows, m));
-  const bool projects = method_of(scenario.volume) == VolumeMethod::projection;
-  for (const auto& [column, value] : values)
-    if (column->of_projection) summary[column->name] = projects ? in_json(*column, value) : Json(nullptr);
   summary["outcome"] = outcome_text(scenario, tissue, summary);
   summary["energy_by_law_nN_um"] = energy_by_law(simulation);
   summary["tension_by_law_mN_per_m"] = Json::object();  // nN/um is the same

@@ -1,4 +1,4 @@
-// Cells and nodes affected by a scenario table, on a tissue with resolved regions.
+// Cells, nodes and elements affected by a scenario table, on a tissue with resolved regions.
 #pragma once
 
 #include <vector>
@@ -27,5 +27,19 @@ inline double longest_step_of_pulses_s(const PulseInput& pulse) { return *pulse.
 
 /// Fixed nodes of a [hold.NAME] table; one entry per node.
 std::vector<bool> held_nodes(const HoldInput& input, const Tissue& tissue);
+
+/// Elastic properties of one element.
+struct ElasticMaterial {
+  double factor = 1;  // on the Young's modulus of [elasticity]
+  double poisson_ratio = 0;
+  double relaxation_s = 0;  // 0: none
+};
+
+/// Elements affected by a table: those of `cells` with their centre in `height_percent`. One entry per element.
+std::vector<bool> elements_of(const RegionElasticityInput& input, const CellSet& cells, const Tissue& tissue);
+
+/// Overwrites `materials` of the affected elements; `pattern` is that of the table on this tissue.
+void put_material(const RegionElasticityInput& input, const ElasticityInput& common, const CellPattern& pattern,
+                  const Tissue& tissue, std::vector<ElasticMaterial>& materials);
 
 }  // namespace plica

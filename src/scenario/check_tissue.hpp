@@ -1,6 +1,7 @@
 // Checks that need the tissue: missing faces, open surfaces, overlapping tables, inverted elements, empty holds.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/errors.hpp"
@@ -14,5 +15,9 @@ void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vecto
 
 /// Runs all other checks on a tissue with resolved regions. Throws ScenarioError with all errors found.
 void check_tissue(const Scenario& scenario, const Tissue& tissue);
+
+/// Return a warning, with the `embryo.scale` that brings cells to um, if the median cell of a file (square root of the
+/// apical area) is not 1 to 100 um wide; else nothing.
+std::string unit_warning(const EmbryoInput& embryo, const Tissue& tissue);
 
 }  // namespace plica

@@ -10,7 +10,6 @@
 #include "core/names.hpp"
 #include "scenario/builtin.hpp"
 #include "scenario/default_shell.hpp"
-#include "scenario/nesting.hpp"
 #include "scenario/read_layer.hpp"
 #include "scenario/suggest.hpp"
 #include "scenario/syntax.hpp"

@@ -37,4 +37,8 @@ std::optional<Remedy> gradual_onset(const Scenario& scenario);
 /// Lists remedies for a message; empty without any.
 std::string remedies_text(const std::vector<Remedy>& remedies);
 
+/// Return what gives cells twice as many elements through the height as they have, to be named in a message: a key of
+/// this scenario with its value, or words where it has none.
+std::string finer_mesh(const Scenario& scenario, int elements);
+
 }  // namespace plica

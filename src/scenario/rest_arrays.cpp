@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "scenario/acting.hpp"
-#include "scenario/materials.hpp"
 
 namespace plica {
 namespace {

@@ -280,6 +280,10 @@ struct MonitorInput {
   std::optional<double> at_s;  // TOML: at_s or at_min; empty: the last value
 };
 
+struct MeasureInput {
+  std::vector<std::string> sets = {"automatic"};  // measure sets; automatic: those that fit the tissue
+};
+
 struct FurrowInput {
   std::string region;           // contractile cells; empty: the largest contracting region
   std::optional<int> vce_cell;  // VCE: midline cell counted from the ends; empty: 2
@@ -347,6 +351,7 @@ struct Scenario {
   StopInput stop;
   std::map<std::string, CriterionInput> criteria;  // TOML: [stop.NAME]
   std::map<std::string, MonitorInput> monitors;
+  MeasureInput measure;
   FurrowInput furrow;
   OutputInput output;
   std::map<std::string, HoldInput> holds;

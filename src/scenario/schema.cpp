@@ -8,7 +8,7 @@
 
 #include "core/clock.hpp"
 #include "core/names.hpp"
-#include "measure/columns.hpp"
+#include "measure/measure_set.hpp"
 #include "measure/monitor.hpp"
 #include "scenario/rows_in.hpp"
 
@@ -18,6 +18,13 @@ namespace {
 std::vector<std::string_view> quantity_names() {
   std::vector<std::string_view> names;
   for (const QuantityInfo& info : quantities()) names.push_back(info.name);
+  return names;
+}
+
+std::vector<std::string_view> set_names() {
+  std::vector<std::string_view> names = {"automatic"};
+  for (const MeasureSet& set : measure_sets())
+    if (!set.name.empty()) names.push_back(set.name);
   return names;
 }
 
@@ -53,6 +60,7 @@ std::vector<Row> make_rows() {
   const auto stop = rows_in("stop", &S::stop);
   const auto criterion = rows_in("stop.*", &S::criteria);
   const auto monitor = rows_in("monitor.*", &S::monitors);
+  const auto measure = rows_in("measure", &S::measure);
   const auto furrow = rows_in("furrow", &S::furrow);
   const auto output = rows_in("output", &S::output);
   const auto expect = rows_in("expect.*", &S::expect);
@@ -274,6 +282,10 @@ std::vector<Row> make_rows() {
               "Time of the value in `summary.json` and study tables (s), interpolated; default the last."),
       monitor("at_min", &M::at_s, not_negative, "`at_s` in minutes.", {.instead_of = "at_s", .scale = 60}),
 
+      measure("sets", &MeasureInput::sets, one_of(set_names()),
+              "Sets of [output variables](measures.md#sets) to measure; `automatic`: those that fit the tissue.",
+              {.may_be_empty = true}),
+
       furrow("region", &FurrowInput::region, anything,
              "Contractile cells that form the furrow; default the largest contracting region."),
       furrow("vce_cell", &FurrowInput::vce_cell, between(1, max_count),
@@ -408,6 +420,7 @@ std::span<const TableInfo> schema_tables() {
        "Probe: one value per step in `series.csv`, column `NAME.quantity_unit`; the last is in `summary.json`. See "
        "[output variables](measures.md).",
        "Output", names_in(&S::monitors)},
+      {"measure", "What is measured.", "Output", {}},
       {"furrow", "Where the furrow is measured.", "Output", {}},
       {"output", "Files of a run.", "Output", {}},
       {"expect.*",
@@ -457,7 +470,7 @@ std::span<const std::string_view> expectation_names() {
   // Output variables, and other machine-independent numbers of summary.json.
   static const std::vector<std::string_view> names = [] {
     std::vector<std::string_view> all;
-    for (const Column* column : summary_columns()) all.push_back(column->name);
+    for (const Column* column : summary_columns(all_columns())) all.push_back(column->name);
     all.insert(all.end(), {"equilibrium_time_s", "time_s", "cells", "nodes"});
     return all;
   }();

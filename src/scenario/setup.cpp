@@ -27,7 +27,6 @@
 #include "scenario/acting.hpp"
 #include "scenario/builtin.hpp"
 #include "scenario/check_tissue.hpp"
-#include "scenario/materials.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/symmetry.hpp"
 #include "scenario/words.hpp"

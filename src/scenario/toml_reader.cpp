@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "scenario/nesting.hpp"
 #include "scenario/print.hpp"
 #include "scenario/suggest.hpp"
 #include "scenario/syntax.hpp"

@@ -5,7 +5,10 @@
 #include <iterator>
 
 #include "core/errors.hpp"
+#include "measure/measure_set.hpp"
+#include "scenario/embryo_axes.hpp"
 #include "scenario/regions.hpp"
+#include "scenario/setup.hpp"
 #include "scenario/words.hpp"
 
 namespace plica {
@@ -60,11 +63,30 @@ StopRule make_stop_rule(const Scenario& scenario) {
   return rule;
 }
 
+void begin_sets(const Scenario& scenario, const Model& model, KeptBySet& kept, std::vector<Diagnostic>& errors) {
+  const Subject subject{model, make_furrow_sites(scenario, model.tissue), have_furrow(axes_of(scenario.embryo)),
+                        method_of(scenario.volume) == VolumeMethod::projection};
+  const auto is_given = [&](std::string_view name) { return std::ranges::count(scenario.measure.sets, name) > 0; };
+  for (const MeasureSet& set : measure_sets()) {
+    const bool is_usual = is_given("automatic") && (!set.is_usual || set.is_usual(subject));
+    if ((is_given(set.name) || is_usual) && !begin(set, subject, kept) && is_given(set.name))
+      errors.push_back(diagnostic_at(scenario, "measure.sets",
+                                     fmt::format("\"{}\" has nothing to measure without {}", set.name, set.needs),
+                                     "remove it, or supply what it needs"));
+  }
+  for (const Column* column : all_columns())
+    if (scenario.expect.contains(std::string(column->name)) && !column->set.empty() && !kept.contains(column->set))
+      errors.push_back(
+          diagnostic_at(scenario, fmt::format("expect.{}", column->name), "is not measured", set_remedy(column->name)));
+}
+
 }  // namespace
 
-Watch make_watch(const Scenario& scenario, const Tissue& tissue) {
+Watch make_watch(const Scenario& scenario, const Model& model) {
   Watch watch;
   std::vector<Diagnostic> errors;
+  begin_sets(scenario, model, watch.sets, errors);
+  const Tissue& tissue = model.tissue;
   for (const auto& [name, input] : scenario.monitors) {
     const std::string path = "monitor." + name;
     try {

@@ -1,4 +1,4 @@
-// Monitors and stop criteria of a run, from [monitor.NAME] and [stop.NAME].
+// What a run measures and when it stops, from [measure], [monitor.NAME] and [stop.NAME].
 #pragma once
 
 #include "measure/observation.hpp"
@@ -6,8 +6,8 @@
 
 namespace plica {
 
-/// Makes monitors in the order of their names, opens their references, and makes the stop criteria. Throws
-/// ScenarioError for errors that depend on the tissue or on files.
-Watch make_watch(const Scenario& scenario, const Tissue& tissue);
+/// Begins the measure sets, makes monitors in the order of their names, opens their references, and makes the stop
+/// criteria. `model`: of the whole tissue. Throws ScenarioError for errors that depend on the tissue or on files.
+Watch make_watch(const Scenario& scenario, const Model& model);
 
 }  // namespace plica

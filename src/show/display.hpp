@@ -1,7 +1,10 @@
 // X display that VTK draws on.
 #pragma once
 
+#include <memory>
 #include <string>
+
+#include "core/child_process.hpp"
 
 namespace plica {
 
@@ -11,19 +14,16 @@ class Display {
  public:
   /// Throws FileError with a remedy if there is none.
   Display();
-  ~Display();
-  Display(const Display&) = delete;
-  Display& operator=(const Display&) = delete;
 
   [[nodiscard]] const std::string& name() const { return name_; }  // ":99"
-  [[nodiscard]] bool is_ours() const { return server_ > 0; }
+  [[nodiscard]] bool is_ours() const { return server_ != nullptr; }
 
   /// Start an own X server instead of a display that responds but cannot draw. Throws FileError as above.
   void start_own();
 
  private:
   std::string name_;
-  int server_ = 0;  // process id of Xvfb; 0: none
+  std::unique_ptr<ChildProcess> server_;  // Xvfb
 };
 
 }  // namespace plica

@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <memory>
 
+#include "core/child_process.hpp"
 #include "core/errors.hpp"
 #include "show/display.hpp"
 
@@ -38,21 +39,16 @@ bool answers(const std::string& name) {
                               why));
 }
 
-// Become the server, in the child process; it writes the number of its display to `pipe_end`.
-[[noreturn]] void become_server(int pipe_end, int messages, pid_t parent) {
-  ::setpgid(0, 0);  // Ctrl-C must not reach the server
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (::getppid() != parent) ::_exit(1);
+// Become the server, in the child process; it writes the number of its display to the socket.
+int become_server(int end, int messages) {
+  ::setpgid(0, 0);                     // Ctrl-C must not reach the server
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // lets it remove its socket and lock
   for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_DFL);
   const int nothing = ::open("/dev/null", O_RDWR);
-  ::dup2(nothing, STDIN_FILENO);
-  ::dup2(nothing, STDOUT_FILENO);
-  ::dup2(messages, STDERR_FILENO);
-  const std::string number = std::to_string(::dup(pipe_end));  // without O_CLOEXEC
+  const std::string number = std::to_string(::dup(end));  // without O_CLOEXEC
   // -noreset: otherwise the server restarts when a window closes, and the next window may come too early.
-  ::execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "64x64x24", "-noreset", "-nolisten", "tcp",
-           static_cast<char*>(nullptr));
-  ::_exit(errno == ENOENT ? 127 : 126);
+  return become({"Xvfb", "-displayfd", number, "-screen", "0", "64x64x24", "-noreset", "-nolisten", "tcp"}, nothing,
+                nothing, messages);
 }
 
 // Read the line that the server writes once it is ready; empty if it ends or takes too long.
@@ -71,19 +67,6 @@ std::string read_number(int pipe_end) {
     line += letter;
   }
   return "";
-}
-
-int status_of(pid_t process) {
-  int status = 0;
-  while (::waitpid(process, &status, 0) < 0)
-    if (errno != EINTR) return 0;
-  return status;
-}
-
-// SIGTERM lets the server remove its socket and lock.
-int end_server(pid_t server) {
-  ::kill(server, SIGTERM);
-  return status_of(server);
 }
 
 // Last messages of Xvfb, in one line.
@@ -109,26 +92,22 @@ Display::Display() {
 
 void Display::start_own() {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> messages(std::tmpfile(), std::fclose);
-  std::array<int, 2> ends{};
-  if (messages == nullptr || ::pipe2(ends.data(), O_CLOEXEC) != 0) throw_no_screen("Xvfb cannot be started");
-  const pid_t parent = ::getpid(), child = ::fork();
-  if (child == 0) become_server(ends[1], ::fileno(messages.get()), parent);
-  ::close(ends[1]);
-  const std::string number = child < 0 ? "" : read_number(ends[0]);
-  ::close(ends[0]);
-  if (child < 0) throw_no_screen("a process cannot be started");
+  if (messages == nullptr) throw_no_screen("Xvfb cannot be started");
+  try {
+    server_ = std::make_unique<ChildProcess>([&](int end) { return become_server(end, ::fileno(messages.get())); });
+  } catch (const FileError&) {
+    throw_no_screen("a process cannot be started");
+  }
+  const std::string number = read_number(server_->end());
   if (number.empty()) {
-    const int status = end_server(child);
+    server_->send(SIGTERM);
+    const int status = server_->wait();
+    server_.reset();
     if (WIFEXITED(status) && WEXITSTATUS(status) == 127) throw_no_screen("Xvfb is not installed");
     const std::string said = last_line(messages.get());
     throw_no_screen("Xvfb did not start" + (said.empty() ? said : " (" + said + ")"));
   }
-  server_ = child;
   name_ = ":" + number;
-}
-
-Display::~Display() {
-  if (server_ > 0) end_server(server_);
 }
 
 }  // namespace plica

@@ -136,16 +136,19 @@ void make_names_unique(const std::vector<std::filesystem::path>& directories, st
 
 bool can_report() { return !report_template().empty(); }
 
-std::string report_page_of(const std::vector<std::filesystem::path>& directories) {
+std::string report_page_of(const std::vector<std::filesystem::path>& directories, const ordered_json& outcomes) {
   std::vector<ReportRun> runs;
   runs.reserve(directories.size());
   for (const auto& directory : directories)
     runs.push_back(read_report_run(directory, most_frame_bytes / static_cast<double>(directories.size())));
-  make_names_unique(directories, runs);
-  return report_page(runs);
+  if (outcomes.is_null())
+    make_names_unique(directories, runs);
+  else
+    for (std::size_t r = 0; r < runs.size(); ++r) runs[r].json["name"] = outcomes.at("runs").at(r);
+  return report_page(runs, outcomes);
 }
 
-std::string report_page(const std::vector<ReportRun>& runs) {
+std::string report_page(const std::vector<ReportRun>& runs, const ordered_json& outcomes) {
   ordered_json page = {{"format", 1},
                        {"made_by", fmt::format("plica {} ({})", version(), commit())},
                        {"fields", fields_json(runs)},
@@ -153,13 +156,15 @@ std::string report_page(const std::vector<ReportRun>& runs) {
                        {"views", views_json(runs)},
                        {"view_cut_um", view_cut_um},
                        {"varied", varied_json(runs)},
+                       {"outcomes", outcomes},
                        {"runs", ordered_json::array()}};
   std::vector<PageBytes> frames;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     page["runs"].push_back(runs[r].json);
     frames.push_back({fmt::format("frames-{}", r), runs[r].frames.bytes()});
   }
-  return filled_page(report_template(), title_of(runs), page, frames);
+  const std::string title = outcomes.is_null() ? title_of(runs) : outcomes.at("title").get<std::string>();
+  return filled_page(report_template(), title, page, frames);
 }
 
 }  // namespace plica

@@ -78,8 +78,7 @@ Simulation::Parts parts_of(const Scenario& scenario) {
   Simulation::Parts parts;
   parts.model = make_model(scenario);
   parts.controls = make_controls(scenario);
-  parts.sites = make_furrow_sites(scenario, parts.model->tissue);
-  parts.watch = make_watch(scenario, parts.model->tissue);
+  parts.watch = make_watch(scenario, *parts.model);
   parts.scenario = std::make_shared<const Scenario>(scenario);
   if (auto side = make_solved_side(scenario, *parts.model))
     parts.full_model.emplace(std::exchange(parts.model, std::move(side->model)), std::move(side->mirror));
@@ -94,7 +93,7 @@ Simulation::Simulation(Parts parts)
       full_model_(std::move(parts.full_model)),
       controls_(std::move(parts.controls)),
       step_length_(controls_),
-      observer_(std::make_unique<Observer>(model(), std::move(parts.sites), std::move(parts.watch))) {
+      observer_(std::make_unique<Observer>(model(), std::move(parts.watch))) {
   for (const auto& law : model_->laws) {
     std::ranges::copy(law->program_points_s(), std::back_inserter(controls_.program_points_s));
     std::ranges::copy(law->program_jumps_s(), std::back_inserter(controls_.program_jumps_s));

@@ -46,12 +46,11 @@ class Simulation {
   /// of the scenario.
   explicit Simulation(const Scenario& scenario);
 
-  /// Components. `sites`, `watch`: probes and furrow cells. `full_model`: set if `model` is one side of it.
+  /// Components. `full_model`: set if `model` is one side of it.
   struct Parts {
     std::unique_ptr<Model> model;
     RunControls controls;
-    FurrowSites sites = {};
-    Watch watch = {};
+    Watch watch = {};  // what is measured
     std::optional<FullModel> full_model = {};
     std::shared_ptr<const Scenario> scenario = {};  // names remedies of a failure; null: none
   };

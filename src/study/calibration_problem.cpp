@@ -63,7 +63,7 @@ void refuse_unknown_targets(const CalibrationProblem& problem, const std::vector
     if (is_a_cost(target.name))
       throw UsageError(fmt::format("--target {}: a cost, which differs between runs; give a result", target.name));
     throw UsageError(
-        fmt::format("--target {}: not a number of summary.json; {}", target.name, did_you_mean(target.name, known)));
+        fmt::format("--target {}: not a number of summary.json; {}", target.name, result_remedy(target.name, known)));
   }
 }
 

@@ -3,8 +3,10 @@
 #include <chrono>
 #include <optional>
 
+#include "measure/measure_set.hpp"
 #include "record/series_rows.hpp"
 #include "record/summary.hpp"
+#include "scenario/suggest.hpp"
 #include "study/unfinished_run.hpp"
 
 namespace plica {
@@ -13,7 +15,7 @@ namespace {
 RunSummary ended(const Scenario& scenario, const Simulation& simulation, std::vector<Observation> rows,
                  const WallTimes& wall) {
   return {make_summary(scenario, simulation, rows, wall), std::move(rows), simulation.state(),
-          series_header(simulation.observer().monitors())};
+          series_header(simulation.observer()), simulation.observer().columns()};
 }
 
 }  // namespace
@@ -45,6 +47,11 @@ RunSummary run_at_rest(const Scenario& scenario) {
 }
 
 bool is_a_cost(const std::string& name) { return name == "peak_memory_MB" || name.find("wall_s") != std::string::npos; }
+
+std::string result_remedy(const std::string& name, const std::vector<std::string>& known) {
+  const std::string of_set = set_remedy(name);
+  return of_set.empty() ? did_you_mean(name, known) : of_set;
+}
 
 std::vector<std::string> result_names(const nlohmann::ordered_json& summary) {
   std::vector<std::string> names;

@@ -17,6 +17,7 @@ struct RunSummary {
   std::vector<Observation> rows;   // as series.csv, the reference state first
   State state;                     // at the end of the run
   std::vector<std::string> series_columns;
+  ColumnList columns;  // without monitors
 };
 
 /// Hooks of a run; all optional.
@@ -37,6 +38,9 @@ RunSummary run_at_rest(const Scenario& scenario);
 
 /// Whether a number is a computing cost, which differs between runs.
 bool is_a_cost(const std::string& name);
+
+/// Remedy for a name that is not among these results: the measure set to add, or the nearest name.
+std::string result_remedy(const std::string& name, const std::vector<std::string>& known);
 
 /// Names of the results in a summary: numbers and possible numbers, without costs.
 std::vector<std::string> result_names(const nlohmann::ordered_json& summary);

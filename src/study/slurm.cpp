@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "core/command.hpp"
+#include "core/child_process.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/numbers.hpp"

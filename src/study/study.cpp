@@ -11,7 +11,6 @@
 #include "core/directory_lock.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "scenario/suggest.hpp"
 #include "show/recorded_run.hpp"
 #include "study/csv_fields.hpp"
 #include "study/quiet_run.hpp"
@@ -91,7 +90,7 @@ void Study::check() {
   for (const std::string& name : input_.measures)
     if (std::ranges::count(known, name) == 0)
       diagnostics.push_back({input_.file, 0, "keep.measures",
-                             fmt::format("\"{}\" is not a number of summary.json", name), did_you_mean(name, known)});
+                             fmt::format("\"{}\" is not a number of summary.json", name), result_remedy(name, known)});
   if (!diagnostics.empty()) throw ScenarioError(std::move(diagnostics));
   measures_ = input_.measures.empty() ? known : input_.measures;
   std::erase(measures_, "steps");  // has a column of its own
@@ -113,7 +112,8 @@ std::optional<RunRow> Study::run(std::size_t run, const fs::path& directory, con
   const auto start = std::chrono::steady_clock::now();
   const auto is_stopped = [&] { return stop && stop(); };
   const auto not_kept = [&](const Column& column) {
-    return column.is_costly && input_.each == KeptOfRun::row && std::ranges::count(measures_, column.name) == 0;
+    const auto needs = [&](const std::string& name) { return name.starts_with(column.name); };  // or a time of it
+    return column.is_costly && input_.each == KeptOfRun::row && std::ranges::none_of(measures_, needs);
   };
   RunRow row;
   try {

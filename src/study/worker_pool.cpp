@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sched.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
@@ -11,7 +10,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -21,9 +19,9 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <system_error>
 #include <vector>
 
+#include "core/child_process.hpp"
 #include "core/errors.hpp"
 
 namespace plica {
@@ -32,17 +30,6 @@ namespace {
 volatile std::sig_atomic_t told_to_stop = 0;
 
 void note_stop(int) { told_to_stop = 1; }
-
-bool write_all(int end, const void* data, std::size_t size) {
-  const char* at = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t written = ::send(end, at, size, MSG_NOSIGNAL);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    at += written, size -= static_cast<std::size_t>(written);
-  }
-  return true;
-}
 
 bool read_all(int end, void* data, std::size_t size) {
   char* at = static_cast<char*>(data);
@@ -75,8 +62,7 @@ void ask_for_long_turns() {
   ::syscall(SYS_sched_setattr, 0, &attributes, 0);
 }
 
-[[noreturn]] void run_worker(int end, const std::function<std::string(std::size_t)>& do_work) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+int run_worker(int end, const std::function<std::string(std::size_t)>& do_work) {
   ask_for_long_turns();
   std::signal(SIGINT, SIG_IGN);  // of the terminal: the parent decides when to stop
   struct sigaction action = {};
@@ -92,40 +78,23 @@ void ask_for_long_turns() {
       break;
     }
   }
-  ::_exit(0);  // without destructors and buffers, which are the parent's
+  return 0;
 }
 
 class Worker {
  public:
-  Worker(const std::function<std::string(std::size_t)>& do_work, const std::vector<int>& ends_of_others) {
-    std::array<int, 2> ends{};
-    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) throw_unstarted();
-    process_ = ::fork();
-    if (process_ < 0) {
-      for (const int end : ends) ::close(end);
-      throw_unstarted();
-    }
-    if (process_ == 0) {
-      ::close(ends[0]);
-      for (const int end : ends_of_others) ::close(end);  // else these would not see their parent's end closed
-      run_worker(ends[1], do_work);
-    }
-    ::close(ends[1]);
-    end_ = ends[0];
-  }
-  Worker(const Worker&) = delete;
-  Worker& operator=(const Worker&) = delete;
-  ~Worker() {
-    if (process_ > 0) stop();
-    (void)ended();
-  }
+  Worker(const std::function<std::string(std::size_t)>& do_work, const std::vector<int>& ends_of_others)
+      : process_([&](int end) {
+          for (const int other : ends_of_others) ::close(other);  // else these would not see their parent's end closed
+          return run_worker(end, do_work);
+        }) {}
 
   void give(std::size_t piece) {
     piece_ = piece;
     const std::uint64_t number = piece;
-    write_all(end_, &number, sizeof number);  // a process that has ended is noticed when its answer is read
+    write_all(process_.end(), &number, sizeof number);  // a process that has ended is noticed when its answer is read
   }
-  [[nodiscard]] int end() const { return end_; }
+  [[nodiscard]] int end() const { return process_.end(); }
   [[nodiscard]] std::optional<std::size_t> piece() const { return piece_; }
 
   struct Answer {
@@ -136,39 +105,25 @@ class Worker {
     Answer answer;
     std::uint64_t size = 0;
     char kind = 0;
-    if (!read_all(end_, &kind, 1) || !read_all(end_, &size, sizeof size)) return {};
+    if (!read_all(end(), &kind, 1) || !read_all(end(), &size, sizeof size)) return {};
     answer.text.resize(size);
-    if (!read_all(end_, answer.text.data(), size)) return {};
+    if (!read_all(end(), answer.text.data(), size)) return {};
     answer.kind = kind;
     piece_.reset();
     return answer;
   }
 
-  void stop() const { ::kill(process_, SIGTERM); }
+  void stop() const { process_.send(SIGTERM); }
 
-  // Wait for the process; kill it after half a minute. Returns how it ended.
+  // Wait for the process. Returns how it ended.
   std::string ended() {
-    if (process_ < 0) return "";
-    ::close(end_);
-    int status = 0;
-    const auto start = std::chrono::steady_clock::now();
-    for (bool is_killed = false; ::waitpid(process_, &status, is_killed ? 0 : WNOHANG) != process_;) {
-      if (std::chrono::steady_clock::now() - start > std::chrono::seconds(30))
-        ::kill(process_, SIGKILL), is_killed = true;
-      ::poll(nullptr, 0, 2);
-    }
-    process_ = -1;
+    const int status = process_.wait();
     if (WIFSIGNALED(status)) return fmt::format("signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
     return fmt::format("status {}", WEXITSTATUS(status));
   }
 
  private:
-  [[noreturn]] static void throw_unstarted() {
-    throw FileError("cannot start a process: " + std::generic_category().message(errno));
-  }
-
-  pid_t process_ = -1;
-  int end_ = -1;
+  ChildProcess process_;
   std::optional<std::size_t> piece_;
 };
 

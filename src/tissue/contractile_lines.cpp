@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 
-#include "tissue/inner_nodes.hpp"
 #include "tissue/polygon_cell.hpp"
 
 namespace plica {

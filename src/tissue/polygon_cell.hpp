@@ -69,4 +69,9 @@ std::vector<std::vector<WallStop>> walls_between_corners(const Cell& cell);
 /// Set corners, edges and lines of a cell from the stops of its lateral faces.
 void set_corners_and_lines_of_walls(const Vectors& rest_positions, Cell& cell);
 
+/// Return a flag per node: whether it is a free node inside the apical or basal face of a polygonal cell, on none of
+/// its edges. Nothing but the cell itself moves such a node, so it may stand out of the surface of the tissue as a
+/// dimple. (Grid cells have none: their inner lines run on from cell to cell.)
+std::vector<bool> inner_nodes_of_polygons(const Tissue& tissue);
+
 }  // namespace plica

@@ -1,5 +1,6 @@
-"""plica reproduce with a file of experiments: verdicts, the page, and the same table whatever is killed."""
+"""plica reproduce with a file of experiments: verdicts, the report, and the same table whatever is killed."""
 import csv
+import json
 import os
 import random
 import re
@@ -85,9 +86,13 @@ class Experiments(CommandLine):
         """When each run ended."""
         return {path: path.stat().st_mtime_ns for path in self.out.glob("runs/*/*/summary.json")}
 
-    def test_the_table_and_the_page(self):
+    def outcomes(self):
+        with open(self.out / "outcomes.csv", newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def test_the_tables_and_the_report(self):
         result = self.reproduce("--jobs", 2)
-        self.assertRegex(result.stdout, r"^mine: 4 outcomes: 3 hit, 1 miss\n  .*mine\.html\n$")
+        self.assertRegex(result.stdout, r"mine: 4 outcomes: 3 hit, 1 miss\n  .*report\.html\n$")
         self.assertRegex(result.stderr, r"10 of 10 runs, 0.0 s left")
         rows = self.rows()
         self.assertEqual([(row["experiment"], row["outcome"], row["draw"]) for row in rows],
@@ -110,25 +115,18 @@ class Experiments(CommandLine):
         self.assertEqual((short / "series.csv").read_bytes(), (alone / "series.csv").read_bytes())
         self.assertEqual((short / "scenario.toml").read_bytes(), (alone / "scenario.toml").read_bytes())
 
-        page, html = (self.out / "mine.md").read_text(), (self.out / "mine.html").read_text()
-        table = [[cell.strip() for cell in line.strip("|").split("|")]
-                 for line in page.split("## All outcomes")[1].split("\n## ")[0].splitlines() if line.startswith("|")][2:]
-        self.assertEqual([(row[0], row[1], row[5], row[-1]) for row in table],
-                         [("**predicted**", "half, depth", "miss", "*miss*"), ("**predicted**", "long, depth", "hit", "*hit*"),
-                          ("seen", "half, lips", "–", "*hit*"), ("fitted", "reference, depth", "–", "*hit*")])
-        self.assertEqual(table[0][7], "0 of 4 (1–45 %)")
-        self.assertEqual(table[1][7], "2 of 2 (37–98 %)")
-        self.assertIn("It does. (A book, 2020)", table[3])
-        self.assertIn("Of 2 outcomes predicted, 1 hit, 1 miss and 0 undecided; 2 of 2 as predicted.", page)
-        for text in (page, re.sub(r' src="data:image/png;base64,[^"]*"', "", html)):
-            self.assertIsNone(re.search(r"(?i)\bnan\b|\binf\b", text))
-        self.assertIn('<td class="no"><em>miss</em></td>', html)
-        figures = re.findall(r"!\[.*?\]\(figures/(.*?)\)", page)
-        self.assertEqual(html.count("<figure>"), len(figures))
-        for name in ("half-depth.svg", "half-course.svg", "reference-depth.svg", "long-course.svg"):
-            self.assertIn(name, figures)
-        for name in figures:
-            self.assertTrue((self.out / "figures" / name).exists(), name)
+        table = self.outcomes()
+        self.assertEqual([(row["role"], row["experiment"], row["outcome"], row["prediction"], row["verdict"]) for row in table],
+                         [("predicted", "half", "depth", "miss", "miss"), ("predicted", "long", "depth", "hit", "hit"),
+                          ("seen", "half", "lips", "", "hit"), ("fitted", "reference", "depth", "", "hit")])
+        self.assertEqual([(row["hits"], row["draws"], row["probability_of_hit"]) for row in table[:2]],
+                         [("0", "4", "1 to 45 %"), ("2", "2", "37 to 98 %")])
+        self.assertEqual((table[3]["observed"], table[3]["source"]), ("It does.", "A book, 2020"))
+        self.assertEqual(table[1]["criterion"], "furrow_depth_um minus that of reference, 0 or more")
+        self.assertRegex(result.stdout, r"(?m)^miss +half, depth +0\.\d+  furrow_depth_um divided by that of reference, 0\.9 to 1\.1$")
+        data = json.loads(re.search(r'id="data">(.*?)</script>', (self.out / "report.html").read_text(), re.S)[1])
+        self.assertEqual([run["name"] for run in data["runs"]], ["reference", "half", "long"])
+        self.assertEqual([dict(zip(data["outcomes"]["columns"], row)) for row in data["outcomes"]["rows"]], table)
 
         # Nothing is left to do; a criterion may change without a run.
         before = self.summaries()
@@ -150,7 +148,7 @@ class Experiments(CommandLine):
 
     def test_any_number_of_jobs_and_any_kill_leave_the_same_table(self):
         self.reproduce("--jobs", 1, "--quiet")
-        truth, page = (self.out / "experiments.csv").read_bytes(), (self.out / "mine.md").read_bytes()
+        truth, table = (self.out / "experiments.csv").read_bytes(), (self.out / "outcomes.csv").read_bytes()
         shutil.rmtree(self.out)
         chance = random.Random(7)
         for _ in range(KILLS):
@@ -166,7 +164,7 @@ class Experiments(CommandLine):
             time.sleep(0.2)  # its workers end with it, and let go of their directories
         self.reproduce("--jobs", 2, "--quiet")
         self.assertEqual((self.out / "experiments.csv").read_bytes(), truth)
-        self.assertEqual((self.out / "mine.md").read_bytes(), page)
+        self.assertEqual((self.out / "outcomes.csv").read_bytes(), table)
         self.assertFalse((self.out / "unfinished").exists())
         self.assert_whole_frames()
 
@@ -179,7 +177,6 @@ class Experiments(CommandLine):
         (self.out / "experiments.toml.17-0.part").write_text("ti")  # killed as it began
         self.reproduce("--quick", "--quiet")
         self.assertEqual([(row["experiment"], row["draw"]) for row in self.rows()], [("reference", "1"), ("half", "1"), ("half", "1")])
-        self.assertIn("Quick run", (self.out / "mine.md").read_text())
         before = self.summaries()
         self.reproduce("--quiet")  # and goes on to the others
         self.assertEqual(len(self.rows()), 14)
@@ -211,9 +208,8 @@ hit = [0.4, 0.6]
         self.assertRegex(self.assert_messages(result)[0], "not solved: block, draw 2: failed: .*cell")
         self.assertEqual([(row["status"], row["own"], row["judgement"]) for row in self.rows()],
                          [("end_time", "0.5", "hit"), ("failed", "", "not solved")])
-        page = (self.out / "mine.md").read_text()
-        self.assertIn("1 of 2 (14–86 %); 1 not solved", page)
-        self.assertIn("*undecided* |", page.split("## block")[0])
+        row, = self.outcomes()
+        self.assertEqual((row["hits"], row["draws"], row["not_solved"], row["verdict"]), ("1", "2", "1", "undecided"))
 
     def test_what_cannot_be_done_says_so_and_leaves_nothing(self):
         for what, words in (("livign", "not a file or built-in experiments"), (self.folder, "Is a directory")):
@@ -231,6 +227,26 @@ hit = [0.4, 0.6]
             message = self.assert_messages(self.reproduce(*more, status=2))[0]
             self.assertIn("contains no experiments; give another --out", message)
         self.assertEqual([path.name for path in self.out.iterdir()], ["mine.txt"])
+
+    def test_claims_are_reproduced_in_every_reading_or_in_the_first(self):
+        claim = """
+[experiment.{0}.outcome.depth]
+question = "How deep?"
+source = "3.1"
+quantity = "first(furrow_depth_um > furrow_depth_um@6 / 2)"
+hit = [{1}]
+"""
+        self.file.write_text(EXPERIMENTS.split("[experiment.half]")[0].replace('title', 'kind = "claims"\ntitle').replace(
+            "quantity = \"furrow_depth_um\"", "quantity = \"furrow_depth_um@6 / half\"\nbecause = \"It is soft.\"").replace(
+            "[experiment.reference]", "[quantity]\nhalf = \"furrow_depth_um@3\"\n\n[experiment.reference]")
+            + "[experiment.all]\nset = { \"time.end_min\" = 0.2 }" + claim.format("all", "0, 12")
+            + "[experiment.first]\ndraws = 1\nset = { \"time.end_min\" = 0.2 }" + claim.format("first", "0, 12")
+            + "[experiment.none]\ndrawn = false\nset = { \"time.end_min\" = 0.2 }" + claim.format("none", "0, 12")
+            + "[experiment.late]\nset = { \"time.end_min\" = 0.2 }" + claim.format("late", "12, 20"))
+        self.reproduce("--quiet")
+        self.assertEqual({row["experiment"]: row["verdict"] for row in self.outcomes()},
+                         {"reference": "under this reading", "all": "reproduced", "first": "under this reading", "none": "reproduced",
+                          "late": "not reproduced"})
 
     def test_the_living_embryo_has_one_frozen_set(self):
         """Its values stand in two scenarios, too, which people read and change."""

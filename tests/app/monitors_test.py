@@ -2,7 +2,7 @@
 import math
 
 import support
-from support import BLOCK, SERIES, CommandLine, plica, table
+from support import BLOCK, CommandLine, plica, table
 
 SOFT = BLOCK.replace("end_s = 0.5\nstep_s = 0.1", "end_s = 5\nstep_s = 0.5").replace("frame_every_s = 0.2", "frame_every_s = 1")
 MONITORS = """\
@@ -39,7 +39,7 @@ class Monitors(CommandLine):
     def test_each_monitor_is_a_column_and_its_last_value_is_in_the_summary(self):
         self.run_scenario(BLOCK + MONITORS)
         rows = table(self.out / "series.csv")
-        self.assertEqual(list(rows[0]), SERIES + COLUMNS)
+        self.assertEqual(list(rows[0])[-len(COLUMNS) :], COLUMNS)
         self.assertEqual([float(rows[0][name]) for name in COLUMNS[:3]], [96000, 0, 400])
         self.assertEqual(float(rows[0]["motion.displacement_um"]), 0)
         self.assertGreater(float(rows[-1]["motion.displacement_um"]), 0)

@@ -142,12 +142,12 @@ frame_every_s = 0.1
                         self.assertEqual(content, expected[name])
 
     def test_a_missed_expectation_is_status_1_and_says_by_how_much(self):
-        text = BLOCK + "[expect]\nvml_apical_area_ratio = { value = 0.5, within_percent = 1 }\n"
+        text = BLOCK + "[expect]\nmin_apical_area_ratio = { value = 0.5, within_percent = 1 }\n"
         text += "cells = { value = 6, within = 0 }\n"
         result = self.run_scenario(text, status=1)
-        line = [line for line in (result.stdout + result.stderr).splitlines() if "vml_apical_area_ratio" in line]
+        line = [line for line in (result.stdout + result.stderr).splitlines() if "min_apical_area_ratio" in line]
         self.assertEqual(len(line), 1, result.stdout + result.stderr)
-        value = self.summary()["vml_apical_area_ratio"]
+        value = self.summary()["min_apical_area_ratio"]
         self.assertIn("0.5", line[0])
         self.assertIn(f"{value:.3f}"[:-1], line[0])
         self.assert_whole(self.out)

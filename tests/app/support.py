@@ -66,13 +66,12 @@ across_ratio = 0.35
 end_s = 0.3
 """
 
-SERIES = (
+SERIES = (  # of an embryo without contact
     "time_s furrow_depth_um furrow_depth_below_lips_um lip_distance_um vml_speed_um_per_s vce_speed_um_per_s "
     "speed_ratio vml_displacement_um vce_displacement_um vml_apical_area_ratio vce_apical_area_ratio "
     "max_node_speed_um_per_s max_volume_error lumen_volume_ratio cells step_s newton_iterations linear_iterations "
     "self_intersections refused_steps vml_height_um min_apical_area_ratio min_corner_jacobian_ratio "
-    "enclosed_volume_ratio yolk_pressure_Pa shell_fluid_um3 flank_volume_ratio contact_pairs min_contact_distance_um "
-    "closed_length_ratio lips_closed active_work_nN_um stored_energy_nN_um dissipated_energy_nN_um "
+    "shell_fluid_um3 flank_volume_ratio active_work_nN_um stored_energy_nN_um dissipated_energy_nN_um "
     "energy_imbalance_ratio flank_section_area_ratio short_edges midline_waviness_um bending_error max_displacement_um "
     "mean_height_um tissue_volume_ratio"
 ).split()
@@ -91,7 +90,7 @@ SUMMARY = (
     "vce_displacement_um peak_speed_ratio peak_speed_ratio_time_s ends_lead_until_s "
     "vml_displacement_at_equal_speed_um vce_displacement_at_equal_speed_um max_volume_error "
     "max_shell_penetration_um min_scaled_jacobian self_intersections "
-    "min_apical_area_ratio min_corner_jacobian_ratio closed_length_ratio lips_closed_time_s knee_depth_um energy_imbalance_ratio "
+    "min_apical_area_ratio min_corner_jacobian_ratio lips_closed_time_s knee_depth_um energy_imbalance_ratio "
     "bending_error energy_by_law_nN_um tension_by_law_mN_per_m provenance"
 ).split()
 POINT_DATA = {"displacement_um", "velocity_um_per_s", "force_nN"}

@@ -87,5 +87,15 @@ TEST(Tally, IsThatOfFourFifthsOfTheDraws) {
   EXPECT_EQ(verdict(0, 0, 0), Judgement::undecided);
 }
 
+TEST(VerdictOfClaim, FollowsFromTheFirstReadingAndTheOthers) {
+  using enum ClaimVerdict;
+  EXPECT_EQ(verdict_of_claim(Judgement::hit, true, Role::seen), reproduced);
+  EXPECT_EQ(verdict_of_claim(Judgement::hit, false, Role::seen), under_this_reading);
+  EXPECT_EQ(verdict_of_claim(Judgement::hit, true, Role::fitted), under_this_reading);
+  EXPECT_EQ(verdict_of_claim(Judgement::miss, true, Role::seen), not_reproduced);
+  EXPECT_EQ(verdict_of_claim(Judgement::undecided, false, Role::seen), not_reproduced);
+  EXPECT_EQ(verdict_of_claim(Judgement::not_solved, false, Role::seen), not_solved);
+}
+
 }  // namespace
 }  // namespace plica

@@ -190,6 +190,16 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
        {"mine.toml:4: experiment.reference.outcome.end.quantity: \"end.positon_um\" is not a number of summary.json; "
         "use "
         "\"end.position_um\" (nearest match)"}},
+      {"quantity = \"end.position_um\"\nhit",
+       "quantity = \"end.position_um@9 / end.position_um@\"\nhit",
+       {"mine.toml:7: experiment.reference.outcome.end.quantity: is incomplete; write names of numbers"}},
+      {"quantity = \"end.position_um\"\nhit",
+       "quantity = \"end.positon_um@9\"\nhit",
+       {"mine.toml:4: ", "\"end.positon_um\" is not a column of series.csv; use \"end.position_um\" (nearest match)"}},
+      {"hit = [20, 30]",
+       "hit = [20, 30]\nother_quantity = \"time_s\"",
+       {"mine.toml:9: ", "other_quantity: applies only with over or minus; remove it"}},
+      {"title = \"Blocks\"", "kind = \"claim\"", {"mine.toml:1: kind: \"claim\" is unknown; use \"claims\""}},
       {"across_ratio\" = 0.5",
        "acros_ratio\" = 0.5",
        {"mine.toml:13: experiment.stiff.set.contraction.all.acros_ratio: unknown key; use \"across_ratio\" (nearest "
@@ -252,13 +262,31 @@ TEST_F(ReadExperiments, RefuseDrawsWithFileLineAndColumn) {
 }
 
 TEST_F(ReadExperiments, BuiltInOnesAreWhole) {
-  const Experiments living = read_experiments("living");
-  EXPECT_EQ(living.name, "living");
-  ASSERT_GE(living.experiments.size(), 2U);
-  EXPECT_EQ(living.experiments[0].name, "reference");
-  for (std::size_t e = 0; e < living.experiments.size(); ++e)
-    for (std::size_t d = 0; d < living.experiments[e].draws; ++d) (void)living.scenario(e, d);
+  for (const auto& [name, first] : {std::pair{"living", "reference"}, {"paper", "pill-fixed"}}) {
+    const Experiments all = read_experiments(name);
+    EXPECT_EQ(all.name, name);
+    ASSERT_GE(all.experiments.size(), 2U);
+    EXPECT_EQ(all.experiments[0].name, first);
+    for (std::size_t e = 0; e < all.experiments.size(); ++e)
+      for (std::size_t d = 0; d < all.experiments[e].draws; ++d) (void)all.scenario(e, d);
+  }
   EXPECT_THROW((void)read_experiments("livign"), UsageError);
+}
+
+TEST_F(ReadExperiments, OfClaimsNeedNoPrediction) {
+  std::string text = "kind = \"claims\"\n" + good;
+  text.replace(text.find("prediction = \"hit\"\n"), 19, "");
+  text.replace(text.find("[experiment.reference"), 0,
+               "[quantity]\nreach = \"end.position_um@rest\"\nrest = \"time_s\"\n");
+  text.replace(text.find("minus ="), 0, "other_quantity = \"reach\"\n");
+  EXPECT_NE(complaint(text).find("\"rest\" is not a number of summary.json"), std::string::npos) << complaint(text);
+  text.replace(text.find("@rest"), 5, "@5");
+  const Experiments experiments = parsed(text);
+  EXPECT_TRUE(experiments.are_of_claims);
+  EXPECT_EQ(experiments.experiments[1].outcomes[0].role, Role::seen);
+  EXPECT_FALSE(experiments.experiments[1].outcomes[0].formula.uses_series());
+  EXPECT_TRUE(experiments.experiments[1].outcomes[0].other_formula.uses_series());
+  check_experiments(experiments);
 }
 
 // What the draws set may have no meaning in a scenario of its own.

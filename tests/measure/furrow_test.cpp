@@ -110,13 +110,13 @@ TEST(Furrow, LipsAreTheEdgeOfTheRegionInTheMiddle) {
   const Vec3 left = pill.sites.lips[0].at(rest), right = pill.sites.lips[1].at(rest);
   EXPECT_LE((left - Vec3(0, -edge_y, edge_z)).norm(), 1e-12);
   EXPECT_LE((right - Vec3(0, edge_y, edge_z)).norm(), 1e-12);
-  EXPECT_NEAR(furrow_shape(pill.tissue, pill.sites, rest).lip_distance_um.value(), 2 * edge_y, 1e-12);
+  EXPECT_NEAR(lip_shape(pill.tissue, pill.sites, rest).lip_distance_um.value(), 2 * edge_y, 1e-12);
 }
 
 TEST(Furrow, AtRestThereIsNone) {
   const Pill pill;
-  const FurrowShape shape = furrow_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
-  EXPECT_NEAR(shape.depth_um.value(), 0, 1e-12);
+  const LipShape shape = lip_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
+  EXPECT_NEAR(furrow_depth_um(pill.tissue, pill.sites, pill.tissue.rest_positions).value(), 0, 1e-12);
   EXPECT_LT(shape.depth_below_lips_um.value(), 0) << "the belly is convex";
   for (const auto& depth : cell_depths_um(pill.tissue, pill.sites, pill.sites.midline, pill.tissue.rest_positions))
     EXPECT_NEAR(depth.value(), 0, 1e-12);
@@ -124,12 +124,12 @@ TEST(Furrow, AtRestThereIsNone) {
 
 TEST(Furrow, DepthIsTheShiftOfTheMiddle) {
   const Pill pill;
-  const FurrowShape rest = furrow_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
+  const LipShape rest = lip_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
   int cases = 0;
   for (const double shift : {0.5, 7.0, 31.0}) {
     const Vectors positions = pill.shifted(pill.sites.vml, Vec3(0, 0, shift));
-    const FurrowShape shape = furrow_shape(pill.tissue, pill.sites, positions);
-    EXPECT_NEAR(shape.depth_um.value(), shift, 1e-10);
+    const LipShape shape = lip_shape(pill.tissue, pill.sites, positions);
+    EXPECT_NEAR(furrow_depth_um(pill.tissue, pill.sites, positions).value(), shift, 1e-10);
     EXPECT_NEAR(shape.depth_below_lips_um.value(), rest.depth_below_lips_um.value() + shift, 1e-10);
     EXPECT_NEAR(shape.lip_distance_um.value(), rest.lip_distance_um.value(), 1e-12);
     for (const auto& depth : cell_depths_um(pill.tissue, pill.sites, pill.sites.vml, positions))
@@ -155,28 +155,27 @@ TEST(Furrow, DepthIsWithoutDimples) {
   }
   for (Vec3& x : lowered) x.z() -= 3;
   EXPECT_EQ(middles, 25);
-  const FurrowShape rest = furrow_shape(tissue, sites, tissue.rest_positions);
-  const FurrowShape shape = furrow_shape(tissue, sites, dimpled);
-  EXPECT_NEAR(shape.depth_um.value(), 0, 1e-12);
+  const LipShape rest = lip_shape(tissue, sites, tissue.rest_positions);
+  const LipShape shape = lip_shape(tissue, sites, dimpled);
+  EXPECT_NEAR(furrow_depth_um(tissue, sites, dimpled).value(), 0, 1e-12);
   EXPECT_NEAR(shape.depth_below_lips_um.value(), rest.depth_below_lips_um.value(), 1e-12);
   for (const auto& depth : cell_depths_um(tissue, sites, sites.midline, dimpled)) EXPECT_NEAR(depth.value(), 0, 1e-12);
-  EXPECT_NEAR(furrow_shape(tissue, sites, lowered).depth_um.value(), 3, 1e-12);
+  EXPECT_NEAR(furrow_depth_um(tissue, sites, lowered).value(), 3, 1e-12);
 }
 
 TEST(Furrow, LipsMoveWithTheTissue) {
   const Pill pill;
-  const FurrowShape rest = furrow_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
+  const LipShape rest = lip_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
   // All contractile cells rise: as deep inside the shell, no deeper below the lips.
-  const FurrowShape raised =
-      furrow_shape(pill.tissue, pill.sites, pill.shifted(pill.contractile_cells(), Vec3(0, 0, 9)));
-  EXPECT_NEAR(raised.depth_um.value(), 9, 1e-10);
+  const Vectors risen = pill.shifted(pill.contractile_cells(), Vec3(0, 0, 9));
+  const LipShape raised = lip_shape(pill.tissue, pill.sites, risen);
+  EXPECT_NEAR(furrow_depth_um(pill.tissue, pill.sites, risen).value(), 9, 1e-10);
   EXPECT_NEAR(raised.depth_below_lips_um.value(), rest.depth_below_lips_um.value(), 1e-10);
   EXPECT_NEAR(raised.lip_distance_um.value(), rest.lip_distance_um.value(), 1e-12);
   // Every width narrows by a tenth, and the lips' distance does.
   Vectors narrow = pill.tissue.rest_positions;
   for (Vec3& x : narrow) x.y() *= 0.9;
-  EXPECT_NEAR(furrow_shape(pill.tissue, pill.sites, narrow).lip_distance_um.value(), 0.9 * *rest.lip_distance_um,
-              1e-12);
+  EXPECT_NEAR(lip_shape(pill.tissue, pill.sites, narrow).lip_distance_um.value(), 0.9 * *rest.lip_distance_um, 1e-12);
 }
 
 TEST(Furrow, WithoutContractileCellsNothingHasAValue) {
@@ -185,9 +184,9 @@ TEST(Furrow, WithoutContractileCellsNothingHasAValue) {
   EXPECT_TRUE(sites.vml.empty());
   EXPECT_TRUE(sites.vce.empty());
   EXPECT_FALSE(sites.has_lips);
-  const FurrowShape shape = furrow_shape(tissue, sites, tissue.rest_positions);
-  EXPECT_FALSE(shape.depth_um || shape.depth_below_lips_um || shape.lip_distance_um ||
-               shape.highest_points_distance_um);
+  const LipShape shape = lip_shape(tissue, sites, tissue.rest_positions);
+  EXPECT_FALSE(furrow_depth_um(tissue, sites, tissue.rest_positions));
+  EXPECT_FALSE(shape.depth_below_lips_um || shape.lip_distance_um || shape.highest_points_distance_um);
 }
 
 // Whatever side of an embryo, or of a sheet, the apices of the region face: inward is against them.
@@ -202,10 +201,10 @@ TEST(Furrow, DepthIsAgainstTheRegionsApices) {
   const FurrowSites sites = choose_furrow_sites(pill.tissue, dorsal, 1);
   EXPECT_EQ(sites.outward, Vec3::UnitZ());
   const Vectors positions = pill.shifted(sites.vml, Vec3(0, 0, -7));
-  const FurrowShape shape = furrow_shape(pill.tissue, sites, positions);
-  EXPECT_NEAR(shape.depth_um.value(), 7, 1e-10);
+  const LipShape shape = lip_shape(pill.tissue, sites, positions);
+  EXPECT_NEAR(furrow_depth_um(pill.tissue, sites, positions).value(), 7, 1e-10);
   EXPECT_NEAR(shape.depth_below_lips_um.value(),
-              7 + furrow_shape(pill.tissue, sites, pill.tissue.rest_positions).depth_below_lips_um.value(), 1e-10);
+              7 + lip_shape(pill.tissue, sites, pill.tissue.rest_positions).depth_below_lips_um.value(), 1e-10);
 
   const Tissue block = build_block({90, 90, 10, {9, 9, 1}, {1, 1, 1}});
   CellSet middle(block.cells.size());
@@ -217,9 +216,8 @@ TEST(Furrow, DepthIsAgainstTheRegionsApices) {
   Vectors bent = block.rest_positions;
   for (Vec3& x : bent)
     if (Eigen::Vector2d(x.x(), x.y()).norm() < 10) x.z() -= 16.86;
-  const FurrowShape furrow = furrow_shape(block, sheet, bent);
-  EXPECT_NEAR(furrow.depth_um.value(), 16.86, 1e-10);
-  EXPECT_GT(furrow.depth_below_lips_um.value(), 5);
+  EXPECT_NEAR(furrow_depth_um(block, sheet, bent).value(), 16.86, 1e-10);
+  EXPECT_GT(lip_shape(block, sheet, bent).depth_below_lips_um.value(), 5);
 }
 
 // A furrow that is deepest in the middle is straight; one that goes up and down by 3 um is wavy by 3 / sqrt(2).

@@ -47,6 +47,23 @@ TEST(Monitor, EveryQuantityHasItsPlaceNameAndColumn) {
   EXPECT_EQ(monitor_of(Quantity::wall).column(), "m.wall_s");
 }
 
+// 5 Pa on the apical side: the nodes at both ends carry the area of a quarter of one cell, the others that of two.
+TEST(Monitor, ReadsLoadAndDisplacementInwards) {
+  Model model = row_of_three();
+  const Vectors& rest = model.tissue.rest_positions;
+  Vectors loads(rest.size(), Vec3::Zero());
+  State state = rest_state(model);
+  for (std::size_t n = 0; n < rest.size(); ++n) {
+    if (rest[n].z() < 0) continue;
+    loads[n].z() = -0.005 * (std::abs(rest[n].x()) > 20 ? 100 : 200);
+    state.positions[n] += Vec3(7, 0, rest[n].x() < -20 ? -4 : -2);
+  }
+  model.laws.push_back(std::make_unique<NodalForces>(loads));
+  EXPECT_NEAR(number(monitor_of(Quantity::apical_load), model, rest_state(model)), 5, 1e-12);
+  EXPECT_NEAR(number(monitor_of(Quantity::inward_displacement), model, state), 3, 1e-12);
+  EXPECT_EQ(monitor_of(Quantity::apical_load).column(), "m.apical_load_Pa");
+}
+
 TEST(Monitor, CombinesValues) {
   const std::vector<double> values = {3, -4, 1};
   EXPECT_EQ(combined(Over::mean, values), 0);

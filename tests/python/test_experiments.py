@@ -43,14 +43,12 @@ def test_the_table(file: Path, tmp_path: Path) -> None:
     assert list(table.experiment) == ["reference", "reference", "short", "short"]
     assert list(table.number) == [4, 4, -1, -1]
     assert set(table.judgement) == {"hit"}
-    assert (tmp_path / "out/mine.html").exists()
+    assert (tmp_path / "out/report.html").exists()
 
 
 def test_errors(file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ValueError, match="not a file or built-in experiments"):
         plica.reproduce("livign", tmp_path / "out")
-    with pytest.raises(ValueError, match="on the command line"):
-        plica.reproduce("paper", tmp_path / "out")
     file.write_text(EXPERIMENTS.replace("hit = [4, 4]", "hit = 4"))
     with pytest.raises(ValueError, match=r"mine.toml:8: experiment.reference.outcome.cells.hit: is not a pair"):
         plica.reproduce(file, tmp_path / "out")

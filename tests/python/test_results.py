@@ -43,10 +43,14 @@ def test_words_fit_the_tissue(tmp_path):
     assert "frames: fold depth " in repr(flat) and "largest displacement" in repr(flat)
     for looks in (flat._repr_html_(), sim._repr_html_()):
         assert "furrow_depth_um" in looks and "max_displacement_um" in looks
-        assert "vml" not in looks and "lip" not in looks and "below_lips" not in looks
+    assert not {name for name in [*flat.series, *flat.summary] if name.startswith(("vml", "lip", "contact", "lumen"))}
+    assert set(sim.measures) == set(flat.series)
     assert [axes.get_ylabel() for axes in flat.plot().axes] == ["fold depth (µm)", "max node speed (µm/s)"]
     closed = plica.Simulation({"embryo": {"shape": "sphere", "axes": ["x", "y", "z"]}, "time": {"end_s": 1, "step_s": 1}})
-    assert [axes.get_ylabel() for axes in closed.run(out=tmp_path / "closed").plot().axes] == ["max displacement (µm)", "max node speed (µm/s)"]
+    closed = closed.run(out=tmp_path / "closed")
+    assert [axes.get_ylabel() for axes in closed.plot().axes] == ["max displacement (µm)", "max node speed (µm/s)"]
+    with pytest.raises(plica.FileError, match='set "fold" was not measured'):
+        closed.midline
 
 
 def test_looks(run):

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scenario/load.hpp"
-#include "simulation/crossing_warning.hpp"
+#include "simulation/run_warnings.hpp"
 #include "support/tissues.hpp"
 #include "tissue/shapes/embryo.hpp"
 
@@ -58,7 +58,8 @@ TEST(Outcome, OfOtherTissuesHasNoFurrow) {
   const std::string rest = "largest displacement 32.50 um, smallest apical area ratio 0.52";
   EXPECT_EQ(outcome_text(flat, sheet(), contracted), "fold depth 28.90 um, " + rest);
   EXPECT_EQ(outcome_text(flat, sheet(), with({{"furrow_depth_um", nullptr}, {"lumen_volume_ratio", 1}})), rest);
-  EXPECT_EQ(outcome_text(flat, closed(), with({{"tissue_volume_ratio", 1.98}, {"divisions", 1}})),
+  EXPECT_EQ(outcome_text(flat, closed(),
+                         with({{"furrow_depth_um", nullptr}, {"tissue_volume_ratio", 1.98}, {"divisions", 1}})),
             rest + ", " + std::to_string(closed().cells.size()) + " cells after 1 division, tissue volume ratio 1.98");
   const Scenario named = scenario_of("[embryo]\nshape = \"sheet\"\naxes = [\"x\", \"y\", \"ventral-dorsal\"]\n");
   EXPECT_TRUE(outcome_text(named, sheet(), contracted).starts_with("furrow depth 28.90 um"));

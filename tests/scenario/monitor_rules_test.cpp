@@ -143,7 +143,7 @@ TEST(MonitorRules, SetReachesCriteriaAndExpectations) {
 TEST(Watch, MakesMonitorsAndCriteriaOfAScenario) {
   Tissue tissue = build_shell({.length_um = 460, .cells = {18, 9, 8}});
   tissue.regions["belly"] = tissue.regions.at("all");
-  const Watch watch = make_watch(load(rich), tissue);
+  const Watch watch = make_watch(load(rich), Model(tissue));
   ASSERT_EQ(watch.monitors.size(), 2U);
   EXPECT_EQ(watch.monitors[0].column(), "clock.time_s");
   EXPECT_EQ(watch.monitors[1].column(), "floor.position_um");

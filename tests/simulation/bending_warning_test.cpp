@@ -1,5 +1,3 @@
-#include "simulation/bending_warning.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <regex>
 
 #include "scenario/load.hpp"
+#include "simulation/run_warnings.hpp"
 
 namespace plica {
 namespace {

@@ -1,8 +1,7 @@
-#include "simulation/energy_warning.hpp"
-
 #include <gtest/gtest.h>
 
 #include "scenario/load.hpp"
+#include "simulation/run_warnings.hpp"
 
 namespace plica {
 namespace {

@@ -63,10 +63,11 @@ class PaceRule : public testing::Test {
   }
   bool ends() const { return standstill(pace, controls, model, at).has_value(); }
 
-  Simulation simulation{load_scenario({"block", "block.toml", "[embryo]\nshape = \"block\"\ncells = [2, 2, 1]\n"})};
+  Simulation simulation{
+      load_scenario({"block", "block.toml", "[embryo]\nshape = \"block\"\ncells = [2, 2, 1]\n[time]\nend_s = 180\n"})};
   const Model& model = simulation.model();
   State at = simulation.state();
-  RunControls controls{.end_s = 180};
+  RunControls controls = simulation.controls();
   Pace pace{.since_s = 2, .steps = 60, .iterations = 300};
 };
 

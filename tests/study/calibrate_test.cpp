@@ -86,6 +86,7 @@ TEST(CalibrationProblem, IsCheckedBeforeTheFirstRun) {
   EXPECT_NE(said({stiffness}, {"end.positon_um=28"}).find("use \"end.position_um\" (nearest match)"),
             std::string::npos);
   EXPECT_NE(said({stiffness}, {"wall_s=1"}).find("differs between runs"), std::string::npos);
+  EXPECT_NE(said({stiffness}, {"lip_distance_um=28"}).find("add \"furrow\" to measure.sets"), std::string::npos);
   EXPECT_NE(said({stiffness}, {"status=1"}).find("not a number of summary.json"), std::string::npos);
   EXPECT_NE(said({stiffness, stiffness}, {"end.position_um=28"}).find("twice"), std::string::npos);
   EXPECT_NE(said({stiffness}, {"end.position_um=28", "end.position_um=27"}).find("twice"), std::string::npos);

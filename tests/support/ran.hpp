@@ -18,7 +18,7 @@ inline Simulation ran(Model model, RunControls controls, const StepWatcher& watc
     const StepWatcher& watch;
     const Model& model;
   };
-  Simulation simulation({std::make_unique<Model>(std::move(model)), std::move(controls), {}, std::move(criteria)});
+  Simulation simulation({std::make_unique<Model>(std::move(model)), std::move(controls), std::move(criteria)});
   Listener listener(watch, simulation.model());
   if (watch) simulation.listen(listener);
   simulation.run();

@@ -4,7 +4,7 @@
 #include "support/mesh_error.hpp"
 #include "support/prisms.hpp"
 #include "support/same_tissue.hpp"
-#include "tissue/files/mesh_bytes.hpp"
+#include "tissue/files/child_reading.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/shapes/embryo.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"

@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "tissue/files/mesh_bytes.hpp"
+#include "tissue/files/child_reading.hpp"
 #include "tissue/shapes/embryo.hpp"
 
 namespace plica {

@@ -5,7 +5,7 @@ import type { Run } from "./run";
 import { number, time, words } from "./text";
 
 export function showHeadline(runs: Run[], page: PageData): void {
-  byId("title").textContent = [...new Set(runs.map((run) => run.title))].join(" | ");
+  byId("title").textContent = page.outcomes?.title ?? [...new Set(runs.map((run) => run.title))].join(" | ");
   byId("headline").textContent = runs.length > fewRuns ? manyRuns(runs, page) : runs.map((run) => oneRun(run, runs.length > 1)).join("; ");
   showCrossings(runs);
   showWarnings(runs);

@@ -6,6 +6,7 @@ import { EmbryoViews } from "./embryo_view";
 import { showFailures } from "./failure";
 import { showHeadline } from "./headline";
 import { colouredRegions, fewRuns, type PageData, readPageData } from "./page_data";
+import { showOutcomes } from "./outcomes";
 import { Plots } from "./plots";
 import { Run } from "./run";
 import { RunLooks } from "./run_looks";
@@ -80,6 +81,7 @@ async function start(): Promise<void> {
   const looks = new RunLooks(runs, page, state);
   document.body.classList.toggle("many", runs.length > fewRuns);
   showHeadline(runs, page);
+  showOutcomes(runs, page, state);
   const table = runs.length > 1 ? new RunsTable(runs, page, state, looks) : null;
   const views = makeViews(runs, page, state, looks);
   let plots: Plots | null = null;

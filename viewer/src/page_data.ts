@@ -1,4 +1,5 @@
 // Data of the page, written by src/show/report.cpp and report_run.hpp.
+import type { Outcomes } from "./outcomes";
 import type { ArrayEntry } from "./packed";
 
 export type Vec3 = [number, number, number];
@@ -63,6 +64,7 @@ export interface PageData {
   views: View[];
   view_cut_um: number;
   varied: Varied[];
+  outcomes: Outcomes | null;
   runs: RunData[];
 }
 

@@ -32,15 +32,6 @@ function onePiece(heads: string[], rows: Row[]): HTMLElement {
   return element("table", {}, element("thead", {}, head), element("tbody", {}, ...body));
 }
 
-// Columns that describe a furrow, or a fold: the depth alone.
-const ofFurrow = /^(vml_|vce_|furrow_|lip|peak_speed|ends_lead|highest_points|closed_length|knee_|depth_20um|midline_|flank_)/;
-
-function fits(runs: Run[], key: string): boolean {
-  if (key === "max_shell_penetration_um") return runs.some((run) => run.data.shell !== null);
-  if (key === "furrow_depth_um") return runs.some((run) => run.depthWord !== "");
-  return !ofFurrow.test(key) || runs.some((run) => run.depthWord === "furrow");
-}
-
 function titleOf(runs: Run[], key: string): string {
   const [name, unit] = words(key);
   const isFold = key === "furrow_depth_um" && runs.every((run) => run.depthWord !== "furrow");
@@ -52,7 +43,7 @@ function summaryTable(runs: Run[]): HTMLElement {
   if (runs.every((run) => run.data.summary === null))
     return element("p", { class: "note" }, "No summary: the run has not ended.");
   const keys = [...new Set(runs.flatMap((run) => Object.keys(run.data.summary ?? {})))].filter(
-    (key) => !shownElsewhere.includes(key) && fits(runs, key) && !runs.some((run) => isTable(run.data.summary?.[key])),
+    (key) => !shownElsewhere.includes(key) && !runs.some((run) => isTable(run.data.summary?.[key])),
   );
   const isEmpty = (key: string) => runs.every((run) => (run.data.summary?.[key] ?? null) === null);
   const rows: Row[] = keys.filter((key) => !isEmpty(key)).map((key) => {

@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "mechanics/contact/box_grid.hpp"
+#include "core/box_grid.hpp"
 #include "mechanics/contact/closest_point.hpp"
 
 namespace plica {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "mechanics/contact/box_grid.hpp"
+#include "core/box_grid.hpp"
 #include "mechanics/contact/closest_point.hpp"
 #include "mechanics/coulomb.hpp"
 
@@ -184,12 +184,8 @@ struct SelfContact::Surface {
       outward[from.index()] += out;
       outward[to.index()] += out;
     }
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      const auto& [a, b, c] = triangles[t].corners;
-      Box box{a.cwiseMin(b), a.cwiseMax(b)};
-      box.take(c);
-      grid.add(t, box.widened(law.rule_.search));
-    }
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      grid.add(t, box_of(triangles[t].corners).widened(law.rule_.search));
   }
 
   [[nodiscard]] double cube_size(const SelfContact& law) const {

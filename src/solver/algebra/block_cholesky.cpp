@@ -318,9 +318,9 @@ bool BlockCholesky::factorise(std::span<const float> values) {
 
 // On any thread, the children of a supernode are added in their order, so sums are bitwise identical.
 void BlockCholesky::factorise_subtree(int root, std::span<const float> values, Fronts& fronts) {
-  constexpr double worth_sharing = 1e6;
+  constexpr double worth_a_task = 1e6;
   const Supernode& node = supernodes_[root];
-  if (node.work < worth_sharing) {
+  if (node.work < worth_a_task) {
     for (int s = node.subtree; s < root; ++s) factorise_front(s, values, fronts);
   } else {
     for (const int child : node.children) {

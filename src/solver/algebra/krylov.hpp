@@ -1,4 +1,4 @@
-// Common types of Krylov methods, which know a linear system by its products.
+// Krylov methods: solvers of linear systems that are known by their products.
 #pragma once
 
 #include <functional>
@@ -27,5 +27,25 @@ struct KrylovRule {
 
 /// Callback before each iteration; false ends the solve as interrupted.
 using KrylovGoOn = std::function<bool(const KrylovReport& so_far)>;
+
+/// Solve A x = b from x = 0. `precondition` applies an approximate, symmetric positive definite A^-1. Sums have a
+/// fixed order: bitwise identical for any number of threads.
+KrylovReport conjugate_gradients(const KrylovOperator& multiply, const KrylovOperator& precondition,
+                                 const KrylovVector& b, const KrylovRule& rule, const KrylovGoOn& go_on,
+                                 KrylovVector& x);
+
+/// Generalised conjugate residuals (Eisenstat, Elman and Schultz 1983): solver of A x = b from x = 0, for any matrix;
+/// minimises the residual over the kept directions, as in GMRES. `precondition` applies an approximate A^-1, which may
+/// change between iterations. Sums have a fixed order: bitwise identical for any number of threads.
+class ConjugateResiduals {
+ public:
+  KrylovReport solve(const KrylovOperator& multiply, const KrylovOperator& precondition, const KrylovVector& b,
+                     const KrylovRule& rule, const KrylovGoOn& go_on, KrylovVector& x);
+
+ private:
+  // Directions p and products A p (orthonormal); kept to avoid allocations.
+  std::vector<KrylovVector> directions_, products_;
+  KrylovVector residual_;
+};
 
 }  // namespace plica

@@ -2,7 +2,7 @@
 // only its preconditioner (kept_preconditioner.hpp) is assembled, and reused over steps.
 #pragma once
 
-#include "solver/algebra/conjugate_residuals.hpp"
+#include "solver/algebra/krylov.hpp"
 #include "solver/linear/directions.hpp"
 #include "solver/linear/kept_preconditioner.hpp"
 

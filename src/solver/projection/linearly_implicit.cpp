@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/algebra/conjugate_gradients.hpp"
+#include "solver/algebra/krylov.hpp"
 
 namespace plica {
 namespace {

@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
+
+#include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
 
@@ -14,5 +17,10 @@ namespace plica {
 /// crashed, naming the library `reader`.
 std::string read_in_child(const std::filesystem::path& file, const std::function<std::string()>& read,
                           const char* reader = "VTK");
+
+std::string mesh_to_bytes(const HexahedralMesh& mesh);
+
+/// Read a mesh back. MeshError if the bytes end early.
+HexahedralMesh mesh_from_bytes(std::string_view bytes);
 
 }  // namespace plica

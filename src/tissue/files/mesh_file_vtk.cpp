@@ -13,8 +13,8 @@
 #include "core/bytes.hpp"
 #include "core/errors.hpp"
 #include "core/one_thread_vtk.hpp"
+#include "tissue/files/child_reading.hpp"
 #include "tissue/files/grid_reading.hpp"
-#include "tissue/files/mesh_bytes.hpp"
 #include "tissue/files/mesh_file.hpp"
 
 namespace plica {

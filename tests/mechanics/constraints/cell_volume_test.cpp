@@ -53,6 +53,17 @@ TEST(CellVolumes, StretchedCellIsTooLargeByTheStretch) {
   for (const double error : volumes.relative_errors(positions)) EXPECT_NEAR(error, 0.1, 1e-13);
 }
 
+// Volume is homogeneous of degree 3: <x, grad V> = 3 V, not V as the paper has it.
+TEST(CellVolumes, GradientTimesPositionsIsThreeVolumes) {
+  const Tissue tissue = distorted_block(two_cells, 2, 1);
+  Vectors gradient(tissue.node_count(), Vec3::Zero());
+  CellVolumes(tissue).add_forces(tissue.rest_positions, std::vector<double>{1, 1}, gradient);
+  double product = 0;
+  for (std::size_t n = 0; n < gradient.size(); ++n) product += gradient[n].dot(tissue.rest_positions[n]);
+  const std::vector<double> volumes = CellVolumes(tissue).volumes(tissue.rest_positions);
+  EXPECT_NEAR(product, 3 * (volumes[0] + volumes[1]), 1e-9 * product);
+}
+
 // A positive pressure pushes outward: on a face of area A with force p A.
 TEST(CellVolumes, PositivePressurePushesFacesOutward) {
   const Tissue tissue = build_block({.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 1}});

@@ -1,9 +1,8 @@
-#include "solver/algebra/conjugate_residuals.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "solver/algebra/krylov.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {

@@ -1,0 +1,92 @@
+// Measure sets ([measure] sets): columns that a scenario chooses together. A set is one function: its columns, what it
+// keeps over a run (sites, reference values) and how that follows divisions. columns.cpp lists all sets.
+#pragma once
+
+#include <type_traits>
+
+#include "measure/columns.hpp"
+#include "measure/furrow.hpp"
+
+namespace plica {
+
+/// Tissue to be measured, with what the scenario describes of it.
+struct Subject {
+  const Model& model;
+  FurrowSites furrow = {};  // without cells if nothing contracts
+  bool is_embryo = false;   // has a ventral side (embryo.axes)
+  bool projects = false;    // volumes are projected
+};
+
+inline bool of_embryo(const Subject& subject) { return subject.is_embryo; }
+
+struct MeasureSet {
+  std::string_view name;                          // empty: measured in every run
+  std::string_view needs;                         // of the tissue; for messages and docs/reference/measures.md
+  std::function<std::any(const Subject&)> begin;  // what is kept over the run; empty without what it needs
+  std::vector<Column> columns;
+  std::function<bool(const Subject&)> is_usual = {};  // whether measured by default; empty: yes
+  std::function<void(std::any&, const Tissue&, const Division&)> follow_division = {};
+  std::string_view with = {};  // set that is measured along with it
+};
+
+/// What a set keeps if it has a value, or that it fits although it keeps nothing.
+template <class Kept>
+std::any kept_if(const std::optional<Kept>& kept) {
+  return kept ? std::any(*kept) : std::any();
+}
+inline std::any kept_if(bool fits) { return fits ? std::any(true) : std::any(); }
+
+/// Column of a function of the tissue, or the model, and positions.
+template <class Result, class Of>
+Column::OfStep of(Result (*value)(const Of&, std::span<const Vec3>)) {
+  return [=](const MeasuredStep& m) -> std::optional<double> {
+    if constexpr (std::is_same_v<Of, Model>)
+      return value(m.model, m.state.positions);
+    else
+      return value(m.model.tissue, m.state.positions);
+  };
+}
+
+/// Column of a part of a value that columns share; none if the value is missing.
+template <class Value>
+Column::OfStep part_of(Value (*compute)(const MeasuredStep&), std::optional<double> Value::*part) {
+  return [=](const MeasuredStep& m) { return m.once(compute).*part; };
+}
+template <class Value, class Part>
+Column::OfStep part_of(std::optional<Value> (*compute)(const MeasuredStep&), Part Value::*part) {
+  return [=](const MeasuredStep& m) -> std::optional<double> {
+    const std::optional<Value>& value = m.once(compute);
+    if (!value) return std::nullopt;
+    return (*value).*part;
+  };
+}
+
+/// Set that keeps no places of cells, which divisions would change.
+inline MeasureSet set_of(std::string_view name, std::string_view needs, std::function<std::any(const Subject&)> begin,
+                         std::vector<Column> columns, std::function<bool(const Subject&)> is_usual = {}) {
+  return {name, needs, std::move(begin), std::move(columns), std::move(is_usual)};
+}
+
+MeasureSet run_set();
+MeasureSet fold_set();
+MeasureSet furrow_set();
+MeasureSet contact_set();
+MeasureSet closing_set();
+MeasureSet lumen_set();
+MeasureSet enclosed_set();
+MeasureSet shell_set();
+MeasureSet perivitelline_set();
+MeasureSet flanks_set();
+MeasureSet bending_set();
+MeasureSet projection_set();
+
+/// All sets; the first is measured in every run.
+std::span<const MeasureSet> measure_sets();
+
+/// Start measuring a set and the one along with it. Returns false without what it needs.
+bool begin(const MeasureSet& set, const Subject& subject, KeptBySet& kept);
+
+/// Advice to measure the set of a column; empty if `name` is not a column of a set.
+std::string set_remedy(std::string_view name);
+
+}  // namespace plica
