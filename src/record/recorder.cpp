@@ -38,7 +38,7 @@ Recorder::Recorder(fs::path directory, const Scenario& scenario, const Simulatio
       scenario_(scenario),
       simulation_(simulation),
       start_(start),
-      frame_taker_(simulation.model(), simulation.observer().kept<FurrowSites>("fold"),
+      frame_taker_(simulation.model().tissue, simulation.observer().kept<FurrowSites>("fold"),
                    scenario.output.cells_csv.value_or(simulation.model().tissue.cells.size() <= most_cells_by_default)),
       blank_{version(), resolved_toml(scenario), fingerprint(simulation.model().tissue), {}, {}},
       checkpoints_(directory_),
@@ -89,7 +89,7 @@ void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
   for (const Observation& row : memory.rows)
     if (row.monitors.size() != simulation_.observer().monitors().size())
       throw FileError(directory_.string() + ": the checkpoint is damaged: its rows do not match the monitors");
-  frame_taker_.follow_division();
+  frame_taker_.follow_division(simulation_.model().tissue);
   earlier_s_ = memory.wall_s;
   beside_s_ = simulation_.computing_s() - memory.solver_s;
   remove_half_written(directory_);
@@ -131,7 +131,7 @@ void Recorder::write(Checkpoint& checkpoint) {
 }
 
 void Recorder::cells_divided(const Division& division) {
-  frame_taker_.follow_division();
+  frame_taker_.follow_division(simulation_.model().tissue);
   if (lineage_) append_lineage(division);
   save_frame();
 }
@@ -152,8 +152,8 @@ void Recorder::append_series(const Observation& row) {
 
 void Recorder::save_frame() {
   last_frame_s_ = simulation_.time_s();
-  writing_.add([this, frame = std::make_shared<const FrameRecord>(
-                          frame_taker_.take(simulation_.state(), simulation_.outside_arrays()))] { write(*frame); });
+  writing_.add([this, frame = std::make_shared<const FrameRecord>(frame_taker_.take(
+                          simulation_.model(), simulation_.state(), simulation_.outside_arrays()))] { write(*frame); });
 }
 
 void Recorder::write(const FrameRecord& frame) {

@@ -50,7 +50,7 @@ int KrylovDirections::wasted(const KrylovReport& report) const {
 
 NewtonDirections::Status KrylovDirections::find(const Step& step, const Iterate& at, const Residual& residual,
                                                 const ForcingTermInput& forcing, Direction& direction, Cost& cost) {
-  system_.take(at);
+  system_.take(step, at);
   constexpr KrylovReport at_beginning{.residual = 1};
   KrylovReport before_new = at_beginning;  // where the solve was when the preconditioner was made
   bool is_new = false;

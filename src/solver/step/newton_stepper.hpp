@@ -26,7 +26,8 @@ class NewtonStepper final : public Stepper {
   ~NewtonStepper() override;
 
   /// Solve a step, starting from a prediction by velocities unless `from_rest`.
-  StepReport advance(const State& state, double duration_s, bool from_rest, State& next) override;
+  StepReport advance(const State& state, double duration_s, bool from_rest, State& next,
+                     const Model* grown = nullptr) override;
   void stop_when(std::function<bool()> stop_requested) override { stop_requested_ = std::move(stop_requested); }
   void forget_factor() override;
   [[nodiscard]] bool keeps_factor() const override { return directions_->keeps_factor(); }

@@ -48,8 +48,10 @@ class Stepper {
   virtual ~Stepper() = default;
 
   /// Advance `state` by `duration_s` to `next` (unchanged on failure). Unless `from_rest`, the iteration may start from
-  /// a prediction by the velocities.
-  virtual StepReport advance(const State& state, double duration_s, bool from_rest, State& next) = 0;
+  /// a prediction by the velocities. `grown`: the model at the end of the step; null: its
+  /// model, which does not grow.
+  virtual StepReport advance(const State& state, double duration_s, bool from_rest, State& next,
+                             const Model* grown = nullptr) = 0;
 
   /// `stop_requested` is polled during a step; once true, the step ends as interrupted.
   virtual void stop_when(std::function<bool()> stop_requested) = 0;

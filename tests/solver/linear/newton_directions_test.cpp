@@ -60,7 +60,7 @@ TEST(NewtonDirections, AreTheSameWhicheverWayTheyAreFound) {
   models.push_back(dimpling_sheet());
   models.push_back(dimpling_sheet({2, 1, 2}));
   models.push_back(dimpling_sheet());
-  models.back().volumes().hold(false);
+  models.back().volumes.hold(false);
   models.push_back(dimpling_sheet());
   for (std::size_t n = 0; n < 8; ++n) models.back().held[n] = {true, n % 2 == 0, false};
   models.push_back(furrowing_sphere());
