@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "mechanics/elasticity/corner_barrier.hpp"
+#include "mechanics/elasticity/neo_hookean.hpp"
+#include "mechanics/elasticity/shape_memory.hpp"
 #include "solver/linear/step_matrix.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/divided.hpp"
@@ -184,6 +187,39 @@ TEST(Grow, BulkModulusIsAgainstTheVolumesThatCellsAreHeldAt) {
     differ += std::abs(by_rest_shapes - expected) > 1e-3 * expected;
   }
   EXPECT_GE(differ, 2);
+}
+
+// All laws of elements or of their faces: grown, they are those of the new rest shapes, bitwise, also at the end of a
+// batch that is not full.
+TEST(Grow, MakesLawsOfTheNewRestShapes) {
+  const BlockShape row{.length_um = 220, .width_um = 20, .cell_height_um = 40, .cells = {11, 1, 1}};
+  const auto laws_of = [](const Tissue& tissue) {
+    std::vector<std::unique_ptr<Law>> laws;
+    laws.push_back(std::make_unique<Corotational>(tissue, ElasticModuli::from_young(1, 0.45), 2));
+    laws.push_back(
+        std::make_unique<NeoHookean>(tissue, std::vector<NeoHookeanMaterial>(tissue.elements.size(), {0.4, 2})));
+    laws.push_back(std::make_unique<ShapeMemory>(tissue, AttractorSprings{.shear_modulus = 0.3, .preload = 0.1}, 2));
+    laws.push_back(std::make_unique<CornerBarrier>(tissue, 1, 0.9));
+    laws.push_back(std::make_unique<Dilatation>(tissue, 3));
+    laws.push_back(std::make_unique<SurfaceDrag>(tissue, 1e-3));
+    laws.push_back(std::make_unique<Inertia>(tissue, 1e-12));
+    return laws;
+  };
+  Tissue tissue = distorted_block(row, 2, 5);
+  const auto before = laws_of(tissue);
+  const std::vector<ElementId> reshaped = {ElementId(2), ElementId(10)};
+  for (const ElementId e : reshaped)
+    for (Vec3& X : tissue.element_rest_shape[e.index()]) X *= 1.1;
+  const auto anew = laws_of(tissue);
+  Motion motion = random_motion(tissue, 2, 3);
+  for (std::size_t l = 0; l < anew.size(); ++l) {
+    SCOPED_TRACE(anew[l]->name());
+    motion.internal = anew[l]->first_internal(tissue);
+    const std::unique_ptr<Law> law = before[l]->grown(tissue, reshaped);
+    EXPECT_EQ(forces_of(*law, motion.step()), forces_of(*anew[l], motion.step()));
+    EXPECT_EQ(law->energy(motion.step()), anew[l]->energy(motion.step()));
+    EXPECT_NE(forces_of(*before[l], motion.step()), forces_of(*anew[l], motion.step()));
+  }
 }
 
 TEST(DivideCells, IsDoneWithWhoHasGrownUp) {

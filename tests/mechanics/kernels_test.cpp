@@ -189,22 +189,6 @@ TEST(Kernels, VolumesAreThoseOfEachElement) {
     }
 }
 
-// Daughters grow: a law that has grown is the law made anew, to the bit, also at the end of a batch that is not
-// full.
-TEST(Kernels, GrownLawsAreThoseOfTheNewRestShapesWhereverTheElementLies) {
-  Tissue tissue = row(11);
-  const Corotational elasticity(tissue, moduli, 2);
-  const Dilatation dilatation(tissue, moduli.bulk_modulus());
-  const std::vector<ElementId> changed = {ElementId(2), ElementId(10)};
-  for (const ElementId e : changed)
-    for (Vec3& X : tissue.element_rest_shape[e.index()]) X *= 1.1;
-  const Motion motion = random_motion(tissue, 2, 4);
-  const Step step = motion.step();
-  EXPECT_EQ(forces_of(*elasticity.grown(tissue, changed), step), forces_of(Corotational(tissue, moduli, 2), step));
-  EXPECT_EQ(forces_of(*dilatation.grown(tissue, changed), step),
-            forces_of(Dilatation(tissue, moduli.bulk_modulus()), step));
-}
-
 // All results that are sums over elements, as bits.
 std::vector<double> results_with(int threads, const Tissue& tissue, const Motion& motion, Kernels kernels) {
   const ThreadCount scope(threads);
