@@ -195,7 +195,7 @@ class Fuzzer:
 
     def study_source(self):
         return {"scenario": "division-demo", "set": {"time.end_min": 0.05}, "vary": {"elasticity.young_modulus_Pa": {"values": [500, 1000]}},
-                "design": {"kind": self.pick("grid", "one-at-a-time")}, "keep": {"measures": ["furrow_depth_um"]}}
+                "design": {"kind": self.pick("grid", "one-at-a-time")}, "keep": {"measures": ["max_displacement_um"]}}
 
     def calls_of_studies(self):
         study = self.study
@@ -204,13 +204,13 @@ class Fuzzer:
             lambda: study.run(jobs=self.or_odd(lambda: 1), out=self.or_odd(lambda: None), executor=self.pick(None, None, self.odd()),
                               overwrite=self.odd(), resume=self.odd()),
             lambda: (study.table, study.points, study.measures, len(study), repr(study)),
-            lambda: study.curves(self.or_odd(lambda: "furrow_depth_um")),
+            lambda: study.curves(self.or_odd(lambda: "max_displacement_um")),
             lambda: study.phase_diagram(self.odd(), self.odd(), measure=self.odd(), at=self.odd(), thumbnails=self.odd(), view=self.odd()),
             lambda: study.sobol_indices(self.odd(), confidence=self.odd(), resamples=self.odd(), seed=self.odd()),
             lambda: study.emulator(self.odd(), folds=self.odd(), seed=self.odd()),
             lambda: plica.verdict(self.or_odd(lambda: {"status": self.odd(), "self_intersections": self.odd(), "lips_closed_time_s": None,
                                                        "furrow_depth_below_lips_um": self.odd(), "furrow_depth_um": self.odd()})),
-            lambda: plica.posterior(self.or_odd(lambda: study), keys=self.odd(), targets=self.or_odd(lambda: {"furrow_depth_um": self.odd()}),
+            lambda: plica.posterior(self.or_odd(lambda: study), keys=self.odd(), targets=self.or_odd(lambda: {"max_displacement_um": self.odd()}),
                                     on=self.odd(), runs=self.odd(), samples=self.odd(), seed=self.odd(), jobs=self.odd()),
             lambda: plica.reproduce(self.odd(), self.odd(), jobs=self.odd()),
         ]

@@ -29,11 +29,12 @@ TEST(MonitorRules, EveryErrorIsOneLineWithARemedy) {
       {"[monitor.a]",
        "test.toml:1: monitor.a.quantity: is missing; set quantity to one of: position | displacement | speed | "
        "velocity | deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | "
-       "apical_elongation | pressure | kinetic_energy | time | wall"},
+       "apical_elongation | pressure | apical_load | inward_displacement | kinetic_energy | time | wall"},
       {"[monitor.a]\nquantity = \"displacment\"",
        "test.toml:2: monitor.a.quantity: \"displacment\" is unknown; set quantity to one of: position | displacement | "
        "speed | velocity | deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | "
-       "apical_elongation | pressure | kinetic_energy | time | wall (nearest match: \"displacement\")"},
+       "apical_elongation | pressure | apical_load | inward_displacement | kinetic_energy | time | wall (nearest "
+       "match: \"displacement\")"},
       {"[monitor.a]\nquantity = \"speed\"\nregion = \"al\"",
        "test.toml:3: monitor.a.region: region \"al\" does not exist; use \"all\" (nearest match)"},
       {"[monitor.a]\nquantity = \"position\"",

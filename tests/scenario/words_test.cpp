@@ -78,12 +78,12 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("monitor.*", "over", words::overs);
   expect_words("monitor.*", "reference_at", words::reference_times);
 
-  // The rest of the keys that take words: names of quantities have a table of their own, these three are no
-  // enums, and of enclosed surfaces there is one.
+  // The rest of the keys that take words: names of quantities and of measure sets have tables of their own, these three
+  // are no enums, and of enclosed surfaces there is one.
   int with_words = 0;
   for (const Row& row : schema()) with_words += row.allowed.words.empty() ? 0 : 1;
-  EXPECT_EQ(tables + 5, with_words)
-      << "embryo.shape, elasticity.model, volume.method, monitor.*.quantity, enclosed.*.surface";
+  EXPECT_EQ(tables + 6, with_words)
+      << "embryo.shape, elasticity.model, volume.method, monitor.*.quantity, enclosed.*.surface, measure.sets";
 }
 
 TEST(Words, MeanWhatTheySay) {

@@ -236,7 +236,7 @@ PolygonSurface rectangle_polygons(const Vectors& points, const Rectangle& rectan
     for (std::size_t k = 0; k < n; ++k) {
       Name name = {Beyond{static_cast<int>(i)}, cuts[i].beyond[(k + n - 1) % n], cuts[i].beyond[k]};
       std::ranges::sort(name);
-      const Whole periods = std::ranges::find_if(name, &Beyond::is_cell)->periods;
+      const Whole periods = std::ranges::max_element(name, {}, &Beyond::is_cell)->periods;  // of the first cell
       for (Beyond& one : name)
         for (int axis = 0; axis < 2; ++axis) one.periods[axis] -= one.is_cell() ? periods[axis] : 0;
       Images& images = all[name];
