@@ -38,7 +38,7 @@ class Blocks final : public TangentSink {
 void add_volumes(const Model& model, double bulk_modulus, Blocks& blocks) {
   const auto& elements = model.tissue.elements;
   Vectors gradients(8 * elements.size());
-  model.volumes().gradients(model.tissue.rest_positions, gradients);
+  model.volumes.gradients(model.tissue.rest_positions, gradients);
   for (std::size_t e = 0; e < elements.size(); ++e) {
     double volume = 0;  // a third of sum x . dV/dx: V is cubic
     for (int a = 0; a < 8; ++a)

@@ -338,7 +338,8 @@ class Simulation:
     def copy(self) -> Simulation:
         """Return an independent copy of the present state, to branch the run.
 
-        Both continue bitwise identically until one is changed.
+        Both continue bitwise identically until one is changed; their last digits may differ from those of a simulation that
+        was not copied.
 
         Examples
         --------

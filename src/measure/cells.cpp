@@ -138,7 +138,7 @@ double shell_penetration(const Model& model, std::span<const Vec3> positions) {
 }
 
 double tissue_volume(const Model& model, std::span<const Vec3> positions) {
-  const std::vector<double> volumes = model.volumes().volumes(positions);
+  const std::vector<double> volumes = model.volumes.volumes(positions);
   return std::accumulate(volumes.begin(), volumes.end(), 0.0);
 }
 
@@ -157,7 +157,7 @@ double max_displacement(const Tissue& tissue, std::span<const Vec3> positions) {
 
 double max_volume_error(const Model& model, std::span<const Vec3> positions) {
   double largest = 0;
-  for (const double error : model.volumes().relative_errors(positions)) largest = std::max(largest, std::abs(error));
+  for (const double error : model.volumes.relative_errors(positions)) largest = std::max(largest, std::abs(error));
   return largest;
 }
 

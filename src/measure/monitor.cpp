@@ -66,16 +66,12 @@ Vectors forces_of_cells(const Model& model, const State& state, const CellSet& c
   const Division kept = keep_only(part, cells);
   const Vectors no_velocity(state.positions.size(), Vec3::Zero());
   const Step now = motionless(state, no_velocity);
-  const std::vector<double> volumes =
-      inherited(kept, std::vector<double>(model.volumes().targets().begin(), model.volumes().targets().end()));
   Vectors forces(state.positions.size(), Vec3::Zero());
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
     const std::vector<double> internal = model.laws[l]->internal_after_division(state.internals[l], part, kept);
     Step own = now;
     own.internal = internal;
-    const auto law = model.laws[l]->after_division(part, kept, state.positions);
-    law->take_cell_volumes(part, volumes);
-    law->add_forces(own, forces);
+    model.laws[l]->after_division(part, kept, state.positions)->add_forces(own, forces);
   }
   const std::span<const double> pressures = state.pressures(model);
   CellVolumes(part).add_forces(state.positions,
@@ -214,7 +210,7 @@ std::vector<double> cell_values(const Monitor& monitor, const Moment& moment) {
   if (monitor.quantity == Quantity::inward_displacement) return inward_displacements(monitor, moment);
   const Tissue& tissue = moment.model.tissue;
   std::vector<double> of_all;
-  if (monitor.quantity == Quantity::volume) of_all = moment.model.volumes().volumes(moment.state.positions);
+  if (monitor.quantity == Quantity::volume) of_all = moment.model.volumes.volumes(moment.state.positions);
   if (monitor.quantity == Quantity::area)
     of_all = monitor.face == Monitor::Face::basal ? basal_areas(tissue, moment.state.positions)
                                                   : apical_areas(tissue, moment.state.positions);
@@ -224,7 +220,7 @@ std::vector<double> cell_values(const Monitor& monitor, const Moment& moment) {
     for (std::size_t c = 0; c < of_all.size(); ++c) of_all[c] /= at_rest[c];
   }
   if (monitor.quantity == Quantity::apical_load) of_all = apical_loads(moment);
-  if (monitor.quantity == Quantity::pressure && moment.model.volumes().is_held())
+  if (monitor.quantity == Quantity::pressure && moment.model.volumes.is_held())
     for (const double pressure : moment.state.pressures(moment.model)) of_all.push_back(pressure / units::pascal);
   std::vector<double> values;
   if (of_all.empty()) return values;

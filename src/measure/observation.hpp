@@ -48,16 +48,14 @@ struct Watch {
   StopRule stop;
 };
 
-/// Measures the steps of one model.
+/// Measures the steps of a run. `model`: the model at the time measured.
 class Observer {
  public:
   explicit Observer(const Model& model, Watch watch = {});
-  /// Copy that measures a copy of the other's model.
-  Observer(const Model& model, const Observer& other) : model_(model), watch_(other.watch_), columns_(other.columns_) {}
   /// Measure a step. `wall_s`: computing time of all steps so far, for the monitor of that name.
-  [[nodiscard]] Observation observe(const AcceptedStep& step, double wall_s = 0) const;
+  [[nodiscard]] Observation observe(const Model& model, const AcceptedStep& step, double wall_s = 0) const;
   /// Measure the reference state, before the first step.
-  [[nodiscard]] Observation observe_rest(const State& state) const;
+  [[nodiscard]] Observation observe_rest(const Model& model, const State& state) const;
   [[nodiscard]] const std::vector<Monitor>& monitors() const { return watch_.monitors; }
   /// Columns that are measured.
   [[nodiscard]] const ColumnList& columns() const { return columns_; }
@@ -73,13 +71,12 @@ class Observer {
     std::erase_if(columns_, [&](const Column* column) { return which(*column); });
   }
 
-  /// Update after divisions of the model.
-  void follow_division(const Division& division);
+  /// Update after divisions.
+  void follow_division(const Tissue& tissue, const Division& division);
 
  private:
-  [[nodiscard]] Observation row_of(const State& state, const AcceptedStep* step, double wall_s) const;
+  [[nodiscard]] Observation row_of(const Moment& moment, const AcceptedStep* step) const;
 
-  const Model& model_;
   Watch watch_;
   ColumnList columns_;
 };

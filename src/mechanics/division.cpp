@@ -19,7 +19,7 @@ struct Destiny {
 Destiny destiny(const Model& model, CellId cell) {
   for (const Growth& growth : model.growths)
     if (growth.cell == cell) return {growth.rest_to, growth.target_to};
-  return {model.tissue.cells[cell.index()].rest_shape, model.volumes().targets()[cell.index()]};
+  return {model.tissue.cells[cell.index()].rest_shape, model.volumes.targets()[cell.index()]};
 }
 
 double prism_volume(const PrismCorners& corners) {
@@ -86,12 +86,15 @@ void divide_laws(Model& model, State& state, const Division& division) {
 void divide_constraints(Model& model, State& state, const Division& division) {
   std::vector<double> multipliers;
   std::span<const double> before = state.multipliers;
-  for (auto& constraint : model.constraints) {
-    const auto own = constraint->multipliers_after_division(before.first(constraint->count()), division);
+  for (std::size_t place = 0; place < model.constraint_count(); ++place) {
+    const Constraint& constraint = model.constraint(place);
+    const auto own = constraint.multipliers_after_division(before.first(constraint.count()), division);
     multipliers.insert(multipliers.end(), own.begin(), own.end());
-    before = before.subspan(constraint->count());
-    constraint = constraint->after_division(model.tissue, division, state.positions);
+    before = before.subspan(constraint.count());
   }
+  model.volumes = model.volumes.divided(model.tissue, division);
+  for (auto& constraint : model.constraints)
+    constraint = constraint->after_division(model.tissue, division, state.positions);
   state.multipliers = std::move(multipliers);
 }
 
@@ -153,7 +156,7 @@ void restore_momentum(const Model& model, const Division& division, const Vec3& 
 Division divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned) {
   if (const auto why = why_indivisible(model.tissue)) throw std::logic_error("cells cannot divide: " + *why);
   // Finished growth is dropped; the last shape and target stay.
-  grow(model, state.time_s);
+  if (std::optional<Model> now = grown(model, state.time_s)) model = std::move(*now);
   std::erase_if(model.growths, [&](const Growth& growth) { return growth.end_s <= state.time_s; });
 
   const Vec3 momentum_before = momentum(model, state.velocities);
@@ -170,46 +173,45 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
   state.velocities = with_new_nodes(model.tissue, division, state.velocities);
   state.trend = {};
 
-  divide_constraints(model, state, division);
   for (std::size_t i = 0; i < planned.size(); ++i)
     for (const Growth& growth :
          growths_of(planned[i], division.daughters[i], destinies[i], model.tissue, state.positions, state.time_s)) {
-      model.volumes().set_target(growth.cell, growth.target_from);
+      model.tissue.cells[growth.cell.index()].target_volume = growth.target_from;
       model.growths.push_back(growth);
     }
 
+  divide_constraints(model, state, division);
   divide_laws(model, state, division);
-  for (const auto& law : model.laws) law->take_cell_volumes(model.tissue, model.volumes().targets());
   divide_holds(model, division);
   divide_obstacles(model, state, division);
   if (!model.masses().empty()) restore_momentum(model, division, momentum_before, state.velocities);
   return division;
 }
 
-void grow(Model& model, double time_s) {
+std::optional<Model> grown(const Model& model, double time_s) {
   // Exactly `to` at the end, and if both are equal: stiffness is recomputed only for shapes that change.
   const auto between = [](double from, double to, double part) { return part < 1 ? from + part * (to - from) : to; };
-  std::vector<ElementId> changed;
-  bool targets_changed = false;
+  std::vector<ElementId> reshaped;
+  std::optional<Tissue> tissue;
   for (const Growth& growth : model.growths) {
-    const double part = growth.part(time_s);
+    const double part = growth.part(time_s), target = between(growth.target_from, growth.target_to, part);
     std::vector<Vec3> rest(growth.rest_from.size());
     for (std::size_t i = 0; i < rest.size(); ++i)
       for (int axis = 0; axis < 3; ++axis)
         rest[i][axis] = between(growth.rest_from[i][axis], growth.rest_to[i][axis], part);
-    Cell& cell = model.tissue.cells[growth.cell.index()];
-    const double target = between(growth.target_from, growth.target_to, part);
-    targets_changed = targets_changed || target != model.volumes().targets()[growth.cell.index()];
-    model.volumes().set_target(growth.cell, target);
-    if (rest == cell.rest_shape) continue;
+    const Cell& before = model.tissue.cells[growth.cell.index()];
+    const bool is_reshaped = rest != before.rest_shape;
+    if (!is_reshaped && before.target_volume == target) continue;
+    if (!tissue) tissue = model.tissue;
+    Cell& cell = tissue->cells[growth.cell.index()];
+    cell.target_volume = target;
+    if (!is_reshaped) continue;
     cell.rest_shape = std::move(rest);
-    set_element_rest_shapes(model.tissue, growth.cell);
-    for (int e = 0; e < cell.element_count; ++e) changed.emplace_back(cell.first_element.index() + e);
+    set_element_rest_shapes(*tissue, growth.cell);
+    for (int e = 0; e < cell.element_count; ++e) reshaped.emplace_back(cell.first_element.index() + e);
   }
-  for (const auto& law : model.laws) {
-    if (!changed.empty()) law->take_rest_shapes(model.tissue, changed);
-    if (targets_changed || !changed.empty()) law->take_cell_volumes(model.tissue, model.volumes().targets());
-  }
+  if (!tissue) return std::nullopt;
+  return Model(model, std::move(*tissue), reshaped);
 }
 
 }  // namespace plica

@@ -2,6 +2,7 @@
 // Theory: docs/theory/division.md.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "mechanics/model.hpp"
@@ -18,11 +19,11 @@ struct PlannedDivision {
 
 /// Divide the cells at the time of the state. Positions, momentum and tension of contractions do not change; pressures
 /// and velocities are inherited. The target volume of a daughter starts at the volume of its half, its rest shape at
-/// half of that of the mother; both then grow (`grow`). std::logic_error if the tissue is indivisible.
+/// half of that of the mother; both then grow (`grown`). std::logic_error if the tissue is indivisible.
 Division divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned);
 
-/// Set rest shape and target volume of growing daughters for `time_s`. Depends on the time only, so steps can be
-/// repeated.
-void grow(Model& model, double time_s);
+/// Return the model with the rest shapes and target volumes that growing daughters have at `time_s`; empty if these are
+/// its own.
+std::optional<Model> grown(const Model& model, double time_s);
 
 }  // namespace plica

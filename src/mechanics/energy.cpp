@@ -9,8 +9,7 @@ std::span<const double> internal_of(const State& state, std::size_t law) {
 
 // The work of the cells' pressures, by the mean of before and after.
 double work_of_pressures(const Model& model, const State& before, const State& after) {
-  const std::vector<double> from = model.volumes().volumes(before.positions),
-                            to = model.volumes().volumes(after.positions);
+  const std::vector<double> from = model.volumes.volumes(before.positions), to = model.volumes.volumes(after.positions);
   double work = 0;
   for (std::size_t c = 0; c < from.size(); ++c)
     work += 0.5 * (before.multipliers[c] + after.multipliers[c]) * (to[c] - from[c]);
@@ -48,8 +47,7 @@ std::vector<EnergyFlow> energy_flows(const Model& model, const State& before, co
     flows.push_back(model.laws[l]->energy_flow(made));
   }
   flows.emplace_back();
-  if (model.volumes().is_held() && !model.growths.empty())
-    flows.back().active = work_of_pressures(model, before, after);
+  if (model.volumes.is_held() && !model.growths.empty()) flows.back().active = work_of_pressures(model, before, after);
   return flows;
 }
 

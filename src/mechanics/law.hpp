@@ -18,6 +18,7 @@
 namespace plica {
 
 struct Tissue;
+struct Model;
 struct Division;
 
 /// State of a step: the unknown positions at its end, and everything constant during it. A quantity q of positions
@@ -37,6 +38,7 @@ struct Step {
   double ahead = 0;                              // >= 0
   std::span<const std::vector<double>> internals = {};  // laws: their states at the step's beginning
   std::span<const double> internal = {};                // that of the present law (for_laws)
+  const Model* grown = nullptr;                         // model at its end; null: that of the stepper (for_laws)
 
   /// Return q_before of a quantity of node positions.
   template <class Quantity>
@@ -162,11 +164,12 @@ class Law {
     return {internal.begin(), internal.end()};
   }
 
-  /// Take the new rest shapes of these elements after growth. Between steps only.
-  virtual void take_rest_shapes(const Tissue& /*tissue*/, std::span<const ElementId> /*elements*/) {}
-
-  /// Take the held cell volumes, um^3, after a division and during growth. Between steps only.
-  virtual void take_cell_volumes(const Tissue& /*tissue*/, std::span<const double> /*volumes*/) {}
+  /// Return the law for the tissue after growth, in which these elements have other rest shapes, and cells other target
+  /// volumes.
+  [[nodiscard]] virtual std::unique_ptr<Law> grown(const Tissue& /*tissue*/,
+                                                   std::span<const ElementId> /*elements*/) const {
+    return clone();
+  }
 
   /// Return times at which its programs begin or bend, s; steps end on them.
   [[nodiscard]] virtual std::vector<double> program_points_s() const { return {}; }

@@ -16,19 +16,24 @@ double Growth::part(double time_s) const {
   return time_s <= start_s ? 0 : (time_s - start_s) / (end_s - start_s);
 }
 
-Model::Model(Tissue t) : tissue(std::move(t)), held(tissue.node_count(), {false, false, false}) {
-  constraints.push_back(std::make_unique<CellVolumes>(tissue));
-}
+Model::Model(Tissue t) : tissue(std::move(t)), volumes(tissue), held(tissue.node_count(), {false, false, false}) {}
 
-Model::Model(const Model& other)
-    : tissue(other.tissue), held(other.held), growths(other.growths), stiffness_scale(other.stiffness_scale) {
-  for (const auto& law : other.laws) laws.push_back(law->clone());
+Model::Model(const Model& other, Tissue t, std::span<const ElementId> reshaped)
+    : tissue(std::move(t)),
+      volumes(other.volumes.grown(tissue)),
+      held(other.held),
+      growths(other.growths),
+      stiffness_scale(other.stiffness_scale) {
+  for (const auto& law : other.laws) {
+    laws.push_back(law->grown(tissue, reshaped));
+    laws.back()->set_label(law->label());
+  }
   for (const auto& constraint : other.constraints) constraints.push_back(constraint->clone());
   for (const auto& obstacle : other.obstacles) obstacles.push_back(obstacle->clone());
 }
 
 std::size_t Model::multiplier_count() const {
-  std::size_t count = 0;
+  std::size_t count = volumes.count();
   for (const auto& constraint : constraints) count += constraint->count();
   return count;
 }
@@ -41,7 +46,7 @@ std::span<const double> Model::masses() const {
 
 double Model::force_scale() const {
   double volume = 0;
-  for (const double target : volumes().targets()) volume += target;
+  for (const double target : volumes.targets()) volume += target;
   return stiffness_scale * std::pow(volume / static_cast<double>(tissue.elements.size()), 2.0 / 3);
 }
 

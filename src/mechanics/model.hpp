@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,11 +27,13 @@ struct Growth {
   [[nodiscard]] double part(double time_s) const;
 };
 
-/// Topology and parameters. Constant during a step; between steps cells may divide and grow (mechanics/division.hpp).
+/// Topology and parameters. Constant between divisions: while cells grow, each step has a model of its own
+/// (mechanics/division.hpp).
 struct Model {
   Tissue tissue;
+  CellVolumes volumes;  // a constraint whose multipliers come before those of the others
   std::vector<std::unique_ptr<Law>> laws;
-  std::vector<std::unique_ptr<Constraint>> constraints;  // the first is CellVolumes
+  std::vector<std::unique_ptr<Constraint>> constraints;
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<std::array<bool, 3>> held;  // nodes; fixed directions x, y, z
   std::vector<Growth> growths;            // in progress, or finished since the last division
@@ -38,12 +41,17 @@ struct Model {
 
   /// Make a model with held cell volumes and no laws.
   explicit Model(Tissue t);
-  Model(const Model& other);
+  Model(const Model& other) : Model(other, other.tissue, {}) {}
+  /// Make a copy whose cells have the rest shapes and target volumes of `t`, with other rest shapes of these elements.
+  Model(const Model& other, Tissue t, std::span<const ElementId> reshaped);
   Model(Model&&) = default;
   Model& operator=(Model&&) = default;
 
-  [[nodiscard]] CellVolumes& volumes() { return static_cast<CellVolumes&>(*constraints.front()); }
-  [[nodiscard]] const CellVolumes& volumes() const { return static_cast<const CellVolumes&>(*constraints.front()); }
+  /// Return a constraint by its place: the cell volumes, then the others.
+  [[nodiscard]] const Constraint& constraint(std::size_t place) const {
+    return place == 0 ? static_cast<const Constraint&>(volumes) : *constraints[place - 1];
+  }
+  [[nodiscard]] std::size_t constraint_count() const { return 1 + constraints.size(); }
 
   /// Return the number of multipliers of all constraints.
   [[nodiscard]] std::size_t multiplier_count() const;
@@ -66,13 +74,16 @@ struct Model {
 /// the existing labels.
 std::size_t place_of_law(const Model& model, const std::string& label, bool acting = false);
 
-/// Call body(law, step as seen by that law) for every law.
+/// Return the model at the end of a step.
+inline const Model& at_end(const Model& model, const Step& step) { return step.grown ? *step.grown : model; }
+
+/// Call body(law at the end of the step, step as seen by that law) for every law.
 template <class Body>
 void for_laws(const Model& model, const Step& step, const Body& body) {
   Step own = step;
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
     own.internal = l < step.internals.size() ? std::span<const double>(step.internals[l]) : std::span<const double>{};
-    body(*model.laws[l], own);
+    body(*at_end(model, step).laws[l], own);
   }
 }
 
@@ -83,8 +94,8 @@ std::vector<std::vector<double>> next_internals(const Model& model, const Step& 
 template <class Body>
 void for_held_constraints(const Model& model, const Body& body) {
   std::size_t first = 0;
-  for (std::size_t place = 0; place < model.constraints.size(); ++place) {
-    const Constraint& constraint = *model.constraints[place];
+  for (std::size_t place = 0; place < model.constraint_count(); ++place) {
+    const Constraint& constraint = model.constraint(place);
     if (constraint.is_held()) body(constraint, first, place);
     first += constraint.count();
   }

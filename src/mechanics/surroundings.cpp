@@ -44,8 +44,8 @@ std::unique_ptr<Law> SurfaceDrag::after_division(const Tissue& tissue, const Div
   return std::make_unique<SurfaceDrag>(tissue, drag_);
 }
 
-void SurfaceDrag::take_rest_shapes(const Tissue& tissue, std::span<const ElementId>) {
-  coefficients_ = drag_coefficients(tissue, drag_);
+std::unique_ptr<Law> SurfaceDrag::grown(const Tissue& tissue, std::span<const ElementId>) const {
+  return std::make_unique<SurfaceDrag>(tissue, drag_);
 }
 
 double SurfaceDrag::energy(const Step& step) const {
@@ -81,8 +81,8 @@ std::unique_ptr<Law> Inertia::after_division(const Tissue& tissue, const Divisio
   return std::make_unique<Inertia>(tissue, density_);
 }
 
-void Inertia::take_rest_shapes(const Tissue& tissue, std::span<const ElementId>) {
-  masses_ = lumped_masses(tissue, density_);
+std::unique_ptr<Law> Inertia::grown(const Tissue& tissue, std::span<const ElementId>) const {
+  return std::make_unique<Inertia>(tissue, density_);
 }
 
 double Inertia::energy(const Step& step) const {

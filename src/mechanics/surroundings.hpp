@@ -24,7 +24,7 @@ class SurfaceDrag final : public Law {
   [[nodiscard]] double rounding(const Step& step, double position_rounding) const override;
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
-  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
+  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
 
  private:
   double drag_;
@@ -47,7 +47,7 @@ class Inertia final : public Law {
   [[nodiscard]] std::span<const double> masses() const override { return masses_; }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
-  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
+  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
 
  private:
   double density_;

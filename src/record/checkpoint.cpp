@@ -129,14 +129,6 @@ class Loading {
   const ArchiveReader& archive_;
 };
 
-template <class Take, class Iterate>
-void visit_iterate(Take& take, const std::string& at, Iterate& iterate) {
-  take(at + "positions", iterate.positions);
-  take(at + "multipliers", iterate.multipliers);
-  take(at + "contact_forces", iterate.contact_forces);
-  take(at + "in_contact", iterate.in_contact);
-}
-
 template <class Take, class AnyCheckpoint>
 void visit(Take& take, AnyCheckpoint& checkpoint) {
   take("program", checkpoint.program);
@@ -144,7 +136,10 @@ void visit(Take& take, AnyCheckpoint& checkpoint) {
   take("at_rest", checkpoint.at_rest);
   auto& run = checkpoint.run;
   auto& state = run.state;
-  visit_iterate(take, "state/", state);
+  take("state/positions", state.positions);
+  take("state/multipliers", state.multipliers);
+  take("state/contact_forces", state.contact_forces);
+  take("state/in_contact", state.in_contact);
   take("state/time_s", state.time_s);
   take("state/velocities", state.velocities);
   take("state/divided_until_s", state.divided_until_s);
@@ -160,23 +155,12 @@ void visit(Take& take, AnyCheckpoint& checkpoint) {
   take("run/at_equilibrium", run.at_equilibrium);
   take("run/criterion_met", run.criterion_met);
   take("run/wanted_step_s", run.wanted_step_s);
+  take("run/pace/since_s", run.pace.since_s);
+  take("run/pace/steps", run.pace.steps);
+  take("run/pace/iterations", run.pace.iterations);
   take("run/computing_s", run.computing_s);
   take("run/energies", run.energies);
   take("run/whole_internals", run.whole_internals);
-  auto& factor = run.factor;
-  visit_iterate(take, "factor/", factor.at);
-  take("factor/previous_positions", factor.previous_positions);
-  take("factor/previous_velocities", factor.previous_velocities);
-  take("factor/earlier_positions", factor.earlier_positions);
-  take("factor/rate_s", factor.rate_s);
-  take("factor/ahead", factor.ahead);
-  take("factor/end_time_s", factor.end_time_s);
-  take("factor/internals", factor.internals);
-  take("factor/changed_contacts", factor.changed_contacts);
-  take("factor/has_left", factor.has_left);
-  take("factor/normals", factor.normals);
-  take("factor/iterations_when_new", factor.iterations_when_new);
-  take("factor/wasted_iterations", factor.wasted_iterations);
   auto& record = checkpoint.record;
   take("record/series_bytes", record.series_bytes);
   take("record/lineage_bytes", record.lineage_bytes);
@@ -290,7 +274,7 @@ std::vector<std::shared_ptr<const PastDivision>> load_divisions(const ArchiveRea
   return past;
 }
 
-// Absent from checkpoints of earlier versions and of runs without such arrays.
+// Absent from checkpoints of runs without such arrays.
 void save_arrays(ArchiveWriter& archive, const std::map<std::string, CellArray>& arrays) {
   if (arrays.empty()) return;
   Saving save(archive);
@@ -312,24 +296,6 @@ std::map<std::string, CellArray> load_arrays(const ArchiveReader& archive) {
   if (lines.size() != values.size()) Loading::refuse("run/outside_names");
   for (std::size_t a = 0; a < lines.size(); ++a) arrays[lines[a]] = std::move(values[a]);
   return arrays;
-}
-
-// Absent from checkpoints of earlier versions.
-void save_pace(ArchiveWriter& archive, const Pace& pace) {
-  Saving save(archive);
-  save("run/pace/since_s", pace.since_s);
-  save("run/pace/steps", pace.steps);
-  save("run/pace/iterations", pace.iterations);
-}
-
-Pace load_pace(const ArchiveReader& archive) {
-  Pace pace;
-  if (!archive.has("run/pace/since_s")) return pace;
-  Loading load(archive);
-  load("run/pace/since_s", pace.since_s);
-  load("run/pace/steps", pace.steps);
-  load("run/pace/iterations", pace.iterations);
-  return pace;
 }
 
 /// Limit of processor time: some seconds, plus one per 10 MB, a hundred times the usual duration.
@@ -380,7 +346,6 @@ std::string CheckpointBytes::operator()(const Checkpoint& checkpoint) {
   save_divisions(*archive, checkpoint.run.past_divisions);
   save_rows(*archive, checkpoint.record.rows);
   save_arrays(*archive, checkpoint.run.outside_arrays);
-  save_pace(*archive, checkpoint.run.pace);
   std::string bytes = archive->image();
   if (bytes.size() <= most_kept_bytes) archive_ = std::move(archive);
   return bytes += trailer(bytes);
@@ -405,7 +370,6 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
     visit(load, checkpoint);
     checkpoint.run.past_divisions = load_divisions(archive);
     checkpoint.run.outside_arrays = load_arrays(archive);
-    checkpoint.run.pace = load_pace(archive);
     return checkpoint;
   };
   read_on_trial([&] { (void)read(); }, image.size());

@@ -16,7 +16,7 @@
 namespace plica {
 
 /// Version of the content; checkpoints of another version are refused.
-inline constexpr int checkpoint_format = 7;
+inline constexpr int checkpoint_format = 8;
 
 /// Files written before the checkpoint; a resumption truncates them to these sizes.
 struct RecordMemory {

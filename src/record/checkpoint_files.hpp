@@ -1,5 +1,4 @@
-// Files checkpoint.h5 and checkpoint.previous.h5: the last two checkpoints of a run, written atomically after each
-// step.
+// Files checkpoint.h5 and checkpoint.previous.h5: the last two checkpoints of a run, written atomically.
 #pragma once
 
 #include <filesystem>

@@ -55,20 +55,21 @@ MeshArrays FrameRecord::arrays() const {
   return arrays;
 }
 
-FrameTaker::FrameTaker(const Model& model, const FurrowSites* sites, bool with_cell_rows)
-    : model_(model), sites_(sites), with_cell_rows_(with_cell_rows) {
-  follow_division();
+FrameTaker::FrameTaker(const Tissue& tissue, const FurrowSites* sites, bool with_cell_rows)
+    : sites_(sites), with_cell_rows_(with_cell_rows) {
+  follow_division(tissue);
 }
 
-void FrameTaker::follow_division() {
-  cells_ = std::make_shared<const FrameCells>(model_.tissue);
-  if (sites_ != nullptr) section_cells_ = section_cells(model_.tissue, sites_->outward);
+void FrameTaker::follow_division(const Tissue& tissue) {
+  cells_ = std::make_shared<const FrameCells>(tissue);
+  if (sites_ != nullptr) section_cells_ = section_cells(tissue, sites_->outward);
 }
 
-FrameRecord FrameTaker::take(const State& state, const std::map<std::string, CellArray>& outside) const {
+FrameRecord FrameTaker::take(const Model& model, const State& state,
+                             const std::map<std::string, CellArray>& outside) const {
   FrameRecord frame{state.time_s, cells_, state.positions, {}, {}, {}, {}, {}, {}};
-  for (const NodeColumn& column : node_columns()) frame.vectors.emplace_back(column.name, column.values(model_, state));
-  const MeasuredCells measured(model_, state);
+  for (const NodeColumn& column : node_columns()) frame.vectors.emplace_back(column.name, column.values(model, state));
+  const MeasuredCells measured(model, state);
   add_cells(measured, frame);
   frame.scalars.insert(frame.scalars.end(), outside.begin(), outside.end());
   if (sites_ != nullptr) {

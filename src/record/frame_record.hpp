@@ -41,27 +41,27 @@ struct FrameRecord {
   [[nodiscard]] MeshArrays arrays() const;
 };
 
-/// Creates snapshots of one model.
+/// Creates snapshots of a run.
 class FrameTaker {
  public:
   /// `sites`: null without a fold. `with_cell_rows`: snapshots include the rows of cells.csv.
-  FrameTaker(const Model& model, const FurrowSites* sites, bool with_cell_rows);
+  FrameTaker(const Tissue& tissue, const FurrowSites* sites, bool with_cell_rows);
 
   /// `outside`: arrays of cells besides those of the model (Simulation::outside_arrays).
-  [[nodiscard]] FrameRecord take(const State& state, const std::map<std::string, CellArray>& outside) const;
+  [[nodiscard]] FrameRecord take(const Model& model, const State& state,
+                                 const std::map<std::string, CellArray>& outside) const;
 
   [[nodiscard]] bool with_cell_rows() const { return with_cell_rows_; }
   [[nodiscard]] bool with_fold() const { return sites_ != nullptr; }
 
-  /// Update after a division of the model and the sites.
-  void follow_division();
+  /// Update after a division of the tissue and the sites.
+  void follow_division(const Tissue& tissue);
 
  private:
   void add_cells(const MeasuredCells& measured, FrameRecord& frame) const;
   void add_midline(const MeasuredCells& measured, FrameRecord& frame) const;
   void add_sections(const MeasuredCells& measured, FrameRecord& frame) const;
 
-  const Model& model_;
   const FurrowSites* sites_;
   bool with_cell_rows_;
   std::shared_ptr<const FrameCells> cells_;

@@ -33,22 +33,14 @@ std::uint64_t bytes_of(const std::optional<RowFile>& table) { return table ? tab
 
 }  // namespace
 
-struct Recorder::StepRecord {
-  std::shared_ptr<const FrameRecord> frame;  // may be null
-  Observation row;
-  RunMemory run;
-  std::uint64_t series_bytes, lineage_bytes;
-  WallTimes wall;
-};
-
 Recorder::Recorder(fs::path directory, const Scenario& scenario, const Simulation& simulation, Clock::time_point start)
     : directory_(std::move(directory)),
       scenario_(scenario),
       simulation_(simulation),
       start_(start),
-      frame_taker_(simulation.model(), simulation.observer().kept<FurrowSites>("fold"),
+      frame_taker_(simulation.model().tissue, simulation.observer().kept<FurrowSites>("fold"),
                    scenario.output.cells_csv.value_or(simulation.model().tissue.cells.size() <= most_cells_by_default)),
-      checkpoint_{version(), resolved_toml(scenario), fingerprint(simulation.model().tissue), {}, {}},
+      blank_{version(), resolved_toml(scenario), fingerprint(simulation.model().tissue), {}, {}},
       checkpoints_(directory_),
       writing_(most_waiting) {}
 
@@ -68,19 +60,28 @@ void Recorder::open_tables(const RecordMemory& memory) {
     lineage_ = table(directory_ / "lineage.csv", names_of(lineage_columns()), memory.lineage_bytes);
 }
 
-std::shared_ptr<Recorder::StepRecord> Recorder::step_record() const {
-  return std::make_shared<StepRecord>(
-      StepRecord{nullptr, rows_.back(), simulation_.memory(), bytes_of(series_), bytes_of(lineage_), wall()});
+void Recorder::save_checkpoint() {
+  if (!can_archive()) return;
+  const WallTimes so_far = wall();
+  const auto checkpoint = std::make_shared<Checkpoint>(blank_);
+  checkpoint->run = simulation_.memory();
+  RecordMemory& record = checkpoint->record;
+  record.rows = rows_;
+  record.series_bytes = bytes_of(series_);
+  record.lineage_bytes = bytes_of(lineage_);
+  record.wall_s = so_far.total_s;
+  record.solver_s = so_far.solver_s;
+  writing_.add([this, checkpoint] { write(*checkpoint); });
 }
 
 void Recorder::begin(const std::string& input_toml) {
   open_tables({});
   write_file(directory_ / "scenario.input.toml", input_toml);
-  write_file(directory_ / "scenario.toml", checkpoint_.scenario);
+  write_file(directory_ / "scenario.toml", blank_.scenario);
   rows_.push_back(simulation_.measures());
   append_series(rows_.back());
   save_frame();
-  if (can_archive()) writing_.add([this, record = step_record()] { write(*record); });
+  save_checkpoint();
   writing_.finish();  // report write errors before the first step
 }
 
@@ -88,14 +89,14 @@ void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
   for (const Observation& row : memory.rows)
     if (row.monitors.size() != simulation_.observer().monitors().size())
       throw FileError(directory_.string() + ": the checkpoint is damaged: its rows do not match the monitors");
-  frame_taker_.follow_division();
+  frame_taker_.follow_division(simulation_.model().tissue);
   earlier_s_ = memory.wall_s;
   beside_s_ = simulation_.computing_s() - memory.solver_s;
   remove_half_written(directory_);
   open_tables(memory);
   write_file(directory_ / "scenario.input.toml", input_toml);
-  write_file(directory_ / "scenario.toml", checkpoint_.scenario);
-  rows_ = memory.rows;
+  write_file(directory_ / "scenario.toml", blank_.scenario);
+  rows_ = std::move(memory.rows);
   for (const double time_s : memory.frame_times_s) frames_.emplace_back(time_s, frame_file(frames_.size()));
   if (!frames_.empty()) last_frame_s_ = frames_.back().first;
   write_collection(directory_ / "frames.pvd", frames_);
@@ -104,7 +105,6 @@ void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
     const ReferenceRun run(directory_);
     for (std::size_t i = 0; i < frames_.size(); ++i) tell(run.frame(i), frames_[i].first);
   }
-  checkpoint_.record = std::move(memory);
 }
 
 void Recorder::step_accepted(const AcceptedStep& step, const Observation& measures) {
@@ -112,42 +112,26 @@ void Recorder::step_accepted(const AcceptedStep& step, const Observation& measur
   writing_.finish();
   rows_.push_back(measures);
   append_series(measures);
-  if (can_archive()) {
-    const auto record = step_record();
-    if (step.frame_is_due) {
-      last_frame_s_ = step.state.time_s;
-      record->frame = std::make_shared<const FrameRecord>(frame_taker_.take(step.state, simulation_.outside_arrays()));
-    }
-    writing_.add([this, record] { write(*record); });
-  } else if (step.frame_is_due) {
-    save_frame();
-  }
+  if (step.frame_is_due) save_frame();
+  if (simulation_.is_resumable()) save_checkpoint();
   written_s_ = writing_.processor_s();
 }
 
-void Recorder::write(const StepRecord& step) {
-  if (step.frame) write(*step.frame);
-  RecordMemory& record = checkpoint_.record;
-  record.rows.push_back(step.row);
-  record.series_bytes = step.series_bytes;
-  record.lineage_bytes = step.lineage_bytes;
+void Recorder::write(Checkpoint& checkpoint) {
+  RecordMemory& record = checkpoint.record;
   record.midline_bytes = bytes_of(midline_);
   record.section_bytes = bytes_of(section_);
   record.cells_bytes = bytes_of(cells_);
-  record.frame_times_s.clear();
   for (const auto& [time_s, file] : frames_) record.frame_times_s.push_back(time_s);
-  record.wall_s = step.wall.total_s;
-  record.solver_s = step.wall.solver_s;
-  checkpoint_.run = step.run;
   const Sync sync = checkpoints_.sync_is_due() ? Sync::now : Sync::later;
   if (sync == Sync::now)
     for (std::optional<RowFile>* file : {&series_, &lineage_, &midline_, &section_, &cells_})
       if (*file) (*file)->sync();
-  checkpoints_.write(checkpoint_, sync);
+  checkpoints_.write(checkpoint, sync);
 }
 
 void Recorder::cells_divided(const Division& division) {
-  frame_taker_.follow_division();
+  frame_taker_.follow_division(simulation_.model().tissue);
   if (lineage_) append_lineage(division);
   save_frame();
 }
@@ -168,8 +152,8 @@ void Recorder::append_series(const Observation& row) {
 
 void Recorder::save_frame() {
   last_frame_s_ = simulation_.time_s();
-  writing_.add([this, frame = std::make_shared<const FrameRecord>(
-                          frame_taker_.take(simulation_.state(), simulation_.outside_arrays()))] { write(*frame); });
+  writing_.add([this, frame = std::make_shared<const FrameRecord>(frame_taker_.take(
+                          simulation_.model(), simulation_.state(), simulation_.outside_arrays()))] { write(*frame); });
 }
 
 void Recorder::write(const FrameRecord& frame) {

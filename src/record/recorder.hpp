@@ -1,8 +1,8 @@
 // Recorder of a run: writes all files of its directory while it proceeds, each atomically.
 //
 // series.csv and lineage.csv grow immediately. A snapshot (its file, cells.csv, midline.csv, cross_section.csv, output
-// of listeners) is copied from the state, then compressed and written in the background, followed by the checkpoint of
-// the step. The output of one step is written before the next step is recorded.
+// of listeners) is copied from the state, then compressed and written in the background, followed by the checkpoint if
+// the step is resumable. The output of one step is written before the next step is recorded.
 #pragma once
 
 #include <chrono>
@@ -42,7 +42,7 @@ class Recorder final : public SimulationListener {
   /// FileError for a missing or short file.
   void go_on(const std::string& input_toml, RecordMemory memory);
 
-  /// Record a row of series.csv, a snapshot if due, and the checkpoint. Rethrows write errors of earlier steps.
+  /// Record a row of series.csv, and a snapshot and a checkpoint if due. Rethrows write errors of earlier steps.
   void step_accepted(const AcceptedStep& step, const Observation& measures) override;
 
   /// Record a snapshot with the daughters and their rows of lineage.csv.
@@ -55,15 +55,14 @@ class Recorder final : public SimulationListener {
   [[nodiscard]] bool has_failed() const { return writing_.has_failed(); }
 
  private:
-  struct StepRecord;  // output of a step to be written
-  [[nodiscard]] std::shared_ptr<StepRecord> step_record() const;
+  void save_checkpoint();
   [[nodiscard]] WallTimes wall() const;
   void open_tables(const RecordMemory& memory);
   void append_series(const Observation& row);
   void append_lineage(const Division& division);
   void save_frame();
   void write(const FrameRecord& frame);
-  void write(const StepRecord& step);
+  void write(Checkpoint& checkpoint);  // completed by what is written before it
   void tell(const Frame& frame, double time_s);
 
   std::filesystem::path directory_;
@@ -74,6 +73,7 @@ class Recorder final : public SimulationListener {
   double beside_s_ = 0;   // processor time that writing took from the steps on a single processor
   double written_s_ = 0;  // its value when the last step was recorded
   FrameTaker frame_taker_;
+  Checkpoint blank_;  // without a step
   std::optional<RowFile> series_, lineage_;
   std::vector<Observation> rows_;
   double last_frame_s_ = 0;
@@ -81,7 +81,6 @@ class Recorder final : public SimulationListener {
   // Used by `write`, in the background.
   std::optional<RowFile> midline_, section_, cells_;
   std::vector<std::pair<double, std::string>> frames_;  // time, file
-  Checkpoint checkpoint_;                               // the last one, without the memory of the run
   CheckpointFiles checkpoints_;
   std::vector<RecordListener*> listeners_;
   Background writing_;  // last member: destroyed first, since it uses the others

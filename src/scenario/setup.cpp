@@ -245,7 +245,7 @@ void add_elasticity(const Scenario& scenario, const Origin& origin, Model& model
   else
     model.laws.push_back(std::make_unique<Corotational>(model.tissue, std::move(moduli), viscosity));
   if (std::ranges::max(bulk_moduli) > 0)
-    model.laws.push_back(std::make_unique<Dilatation>(model.tissue, std::move(bulk_moduli), model.volumes().is_held()));
+    model.laws.push_back(std::make_unique<Dilatation>(model.tissue, std::move(bulk_moduli), model.volumes.is_held()));
 }
 
 void add_contractions(const Scenario& scenario, const Origin& origin, Model& model) {
@@ -394,7 +394,7 @@ void check_forces_at_rest(const Scenario& scenario, const Model& model) {
 /// Adds all force laws, constraints and obstacles of a scenario.
 void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model) {
   const Tissue& tissue = model.tissue;
-  model.volumes().hold(method_of(scenario.volume) == VolumeMethod::coupled);
+  model.volumes.hold(method_of(scenario.volume) == VolumeMethod::coupled);
   add_elasticity(scenario, origin, model);
   if (const double barrier_Pa = scenario.elasticity.corner_barrier_Pa.value_or(0); barrier_Pa > 0)
     model.laws.push_back(std::make_unique<CornerBarrier>(tissue, barrier_Pa * units::pascal));

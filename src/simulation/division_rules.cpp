@@ -141,7 +141,7 @@ std::vector<double> measured(DivisionTrigger trigger, const Model& model, const 
     case DivisionTrigger::apical_area:
       return apical_areas(model.tissue, state.positions);
     case DivisionTrigger::volume:
-      return model.volumes().volumes(state.positions);
+      return model.volumes.volumes(state.positions);
     case DivisionTrigger::elongation: {
       std::vector<double> values;
       for (const Cell& cell : model.tissue.cells) values.push_back(elongation(cell, state.positions));

@@ -13,10 +13,6 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
   const std::size_t nodes = model.tissue.node_count(), multipliers = model.multiplier_count(),
                     contacts = Contacts(model).size();
   const auto none_or = [](std::size_t size, std::size_t full) { return size == 0 || size == full; };
-  const auto fits = [&](const auto& at) {
-    return at.positions.size() == nodes && at.multipliers.size() == multipliers &&
-           at.contact_forces.size() == contacts && at.in_contact.size() == contacts;
-  };
   const State& state = run.state;
   if (state.time_s < 0 || run.steps < 0 || run.wanted_step_s < 0 || state.trend.step_s < 0 || state.trend.earlier_s < 0)
     return "its time or step is negative";
@@ -24,20 +20,12 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
     return "its pace is invalid";
   if (state.trend.step_s + state.trend.earlier_s > state.time_s * (1 + 1e-9))
     return "its steps are longer than its time";
-  if (!fits(state) || state.velocities.size() != nodes || !none_or(state.trend.mean_velocities.size(), nodes) ||
-      !none_or(state.trend.accelerations.size(), nodes) || !none_or(state.trend.multiplier_rates.size(), multipliers) ||
-      state.internals.size() != model.laws.size() || !none_or(run.energies.size(), model.laws.size() + 1))
+  if (state.positions.size() != nodes || state.velocities.size() != nodes || state.multipliers.size() != multipliers ||
+      state.contact_forces.size() != contacts || state.in_contact.size() != contacts ||
+      !none_or(state.trend.mean_velocities.size(), nodes) || !none_or(state.trend.accelerations.size(), nodes) ||
+      !none_or(state.trend.multiplier_rates.size(), multipliers) || state.internals.size() != model.laws.size() ||
+      !none_or(run.energies.size(), model.laws.size() + 1))
     return "its state does not fit this embryo";
-  const FactorMemory& factor = run.factor;
-  if (factor.empty()) return std::nullopt;
-  if (!fits(factor.at) || factor.internals.size() != model.laws.size() || factor.previous_positions.size() != nodes ||
-      factor.previous_velocities.size() != nodes || factor.earlier_positions.size() != (factor.ahead > 0 ? nodes : 0) ||
-      !(factor.rate_s > 0) || factor.ahead < 0 || factor.has_left.size() != factor.changed_contacts.size() ||
-      factor.normals.size() != factor.changed_contacts.size())
-    return "its factorization does not fit this embryo";
-  for (const int contact : factor.changed_contacts)
-    if (contact < 0 || static_cast<std::size_t>(contact) >= contacts)
-      return "its factorization does not fit this embryo";
   return std::nullopt;
 }
 

@@ -34,7 +34,6 @@ struct RunMemory {
   Pace pace;                                 // until it is known, then from there on
   double computing_s = 0;                    // wall time of its steps
   std::vector<EnergyFlow> energies;  // sums over all steps, in the order of energy_flows; empty before the first
-  FactorMemory factor;
   std::vector<std::shared_ptr<const PastDivision>> past_divisions;
   std::vector<std::vector<double>> whole_internals;  // with mirror planes: internal variables of the full model
   std::map<std::string, CellArray> outside_arrays;   // cells (all, with mirror planes): set from outside for output

@@ -21,6 +21,9 @@
 namespace plica {
 namespace {
 
+// In a row, since a resumed run repeats them. Few factors last longer.
+constexpr int most_steps_with_factor = 20;
+
 double max_speed(const State& state) {
   double fastest = 0;
   for (const Vec3& velocity : state.velocities) fastest = std::max(fastest, velocity.norm());
@@ -41,8 +44,8 @@ int id_of(const Model& model, CellId cell) { return model.tissue.cells[cell.inde
 
 // Whether all nodes of a cell are fixed, so that its volume cannot change.
 std::optional<CellId> held_cell_that_grows(const Model& model, const State& state) {
-  if (!model.volumes().is_held()) return std::nullopt;
-  const std::vector<double> errors = model.volumes().relative_errors(state.positions);
+  if (!model.volumes.is_held()) return std::nullopt;
+  const std::vector<double> errors = model.volumes.relative_errors(state.positions);
   const auto is_held = [&](NodeId node) { return std::ranges::count(model.held[node.index()], true) == 3; };
   for (std::size_t c = 0; c < errors.size(); ++c)
     if (std::abs(errors[c]) > 1e-9 && std::ranges::all_of(model.tissue.cells[c].corners, is_held)) return CellId(c);
@@ -90,30 +93,30 @@ Simulation::Simulation(Parts parts)
       full_model_(std::move(parts.full_model)),
       controls_(std::move(parts.controls)),
       step_length_(controls_),
-      observer_(std::make_unique<Observer>(model(), std::move(parts.watch))) {
+      observer_(model(), std::move(parts.watch)) {
   for (const auto& law : model_->laws) {
     std::ranges::copy(law->program_points_s(), std::back_inserter(controls_.program_points_s));
     std::ranges::copy(law->program_jumps_s(), std::back_inserter(controls_.program_jumps_s));
   }
   now_.state = rest_state(*model_);
-  measures_ = observer_->observe_rest(state());
+  measures_ = observer_.observe_rest(model(), state());
   renew_stepper();
 }
 
 Simulation::Simulation(const Simulation& other)
     : scenario_(other.scenario_),
       model_(std::make_unique<Model>(*other.model_)),
+      grown_(other.grown_),
       full_model_(other.full_model_),
       controls_(other.controls_),
       now_(other.memory()),
       step_length_(other.step_length_),
-      observer_(std::make_unique<Observer>(model(), *other.observer_)),
+      observer_(other.observer_),
       measures_(other.measures_),
       has_begun_(other.has_begun_),
       failure_(other.failure_),
       failed_cell_(other.failed_cell_) {
   renew_stepper();
-  recall_factor();
 }
 
 Simulation::Simulation(Simulation&&) noexcept = default;
@@ -128,15 +131,12 @@ Simulation& Simulation::operator=(const Simulation& other) {
 void Simulation::renew_stepper() {
   stepper_ = make_stepper(*model_, controls_.scheme);
   stepper_->stop_when(stop_requested_);
+  steps_with_factor_ = 0;
 }
 
-// Recompute the reused factorization with daughters grown as they were then.
-void Simulation::recall_factor() {
-  if (now_.factor.empty()) return;
-  grow(*model_, now_.factor.end_time_s);
-  stepper_->recall(now_.factor);
-  now_.factor = {};
-  grow(*model_, now_.state.time_s);
+void Simulation::forget_factor() const {
+  stepper_->forget_factor();
+  steps_with_factor_ = 0;
 }
 
 void Simulation::stop_when(std::function<bool()> stop_requested) {
@@ -147,7 +147,7 @@ void Simulation::stop_when(std::function<bool()> stop_requested) {
 RunMemory Simulation::memory() const {
   RunMemory memory = now_;
   memory.wanted_step_s = step_length_.wanted_s();
-  memory.factor = stepper_->memory();
+  forget_factor();
   if (full_model_) memory.whole_internals = full_model_->state().internals;
   return memory;
 }
@@ -204,16 +204,16 @@ void Simulation::go_on_from(RunMemory memory, Observation measures) {
   if (full_model_) full_model_->go_to(*model_, now_.state, std::move(now_.whole_internals));
   measures_ = std::move(measures);
   step_length_ = StepLength(controls_, now_.wanted_step_s);
-  grow(*model_, now_.state.time_s);
+  grown_ = grown(*model_, now_.state.time_s);
   renew_stepper();
-  recall_factor();
 }
 
 // Divide cells and update everything indexed by cells and nodes.
 Division Simulation::make_division(State& state, const std::vector<PlannedDivision>& planned) {
   Division division = divide_cells(*model_, state, planned);
+  grown_.reset();
   for (const PlannedDivision& one : planned) controls_.program_points_s.push_back(state.time_s + one.growth_s);
-  observer_->follow_division(division);
+  observer_.follow_division(model_->tissue, division);
   return division;
 }
 
@@ -243,11 +243,10 @@ void Simulation::restart_at_a_jump() {
 // Add the energy flows of the step and return them. Daughters are taken as grown at mid-step, since they do work
 // meanwhile.
 EnergyFlow Simulation::account_for_energy(const State& before) {
-  grow(*model_, 0.5 * (before.time_s + now_.state.time_s));
-  std::vector<EnergyFlow> flows = energy_flows(*model_, before, now_.state);
+  const std::optional<Model> midway = grown(solved(), 0.5 * (before.time_s + now_.state.time_s));
+  std::vector<EnergyFlow> flows = energy_flows(midway ? *midway : solved(), before, now_.state);
   const double copies = full_model_ ? full_model_->copies() : 1;
   for (auto& [active, stored, dissipated] : flows) active *= copies, stored *= copies, dissipated *= copies;
-  grow(*model_, now_.state.time_s);
   now_.energies.resize(flows.size());
   EnergyFlow sum;
   for (std::size_t l = 0; l < flows.size(); ++l) sum += now_.energies[l] += flows[l];
@@ -282,7 +281,7 @@ RunStatus Simulation::run_until(double time_s) {
 
 bool Simulation::step(double until_s) {
   if (has_come(until_s, now_.state.time_s)) return false;
-  if (!has_begun_) divide(due_divisions(*model_, now_.state, controls_.divisions));
+  if (!has_begun_) divide(due_divisions(solved(), now_.state, controls_.divisions));
   has_begun_ = true;
   if (status() != RunStatus::under_way) return false;
 
@@ -296,7 +295,7 @@ bool Simulation::step(double until_s) {
 
   const State& state = now_.state;
   const double speed = max_speed(state);
-  const std::vector<PlannedDivision> due = due_divisions(*model_, state, controls_.divisions);
+  const std::vector<PlannedDivision> due = due_divisions(solved(), state, controls_.divisions);
   now_.at_equilibrium = speed < controls_.equilibrium_speed_um_per_s && due.empty() &&
                         has_come(last_of(controls_.program_points_s), state.time_s) &&
                         has_come(last_of(controls_.program_jumps_s), before.time_s);
@@ -313,8 +312,11 @@ bool Simulation::step(double until_s) {
                           frame_is_due,
                           now_.at_equilibrium,
                           energy};
-  measures_ = observer_->observe(step, now_.computing_s);
+  measures_ = observer_.observe(model(), step, now_.computing_s);
   now_.criterion_met = measures_.is_over;
+  if (++steps_with_factor_ >= most_steps_with_factor || !stepper_->keeps_factor() || !due.empty() ||
+      has_come(until_s, state.time_s) || has_ended(now_, controls_))
+    forget_factor();
   for (SimulationListener* listener : listeners_) listener->step_accepted(step, measures_);
   divide(due);
   return true;
@@ -323,7 +325,7 @@ bool Simulation::step(double until_s) {
 // Judge the pace of the last steps; if it will do, count again.
 bool Simulation::has_stalled() {
   if (!now_.pace.is_known()) return false;
-  const auto stalled = standstill(now_.pace, controls_, *model_, now_.state);
+  const auto stalled = standstill(now_.pace, controls_, solved(), now_.state);
   if (!stalled) {
     now_.pace = {.since_s = now_.state.time_s};
     return false;
@@ -341,9 +343,10 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
   while (true) {
     const double end_s = step_length_.propose_end_s(controls_, now_.state.time_s, until_s);
     const double duration_s = end_s - now_.state.time_s;
-    grow(*model_, end_s);
-    StepReport report = stepper_->advance(now_.state, duration_s, now_.steps == 0, next);
-    if (report.status == StepReport::Status::interrupted) break;
+    std::optional<Model> later = grown(solved(), end_s);
+    const Model& model = later ? *later : solved();
+    StepReport report = stepper_->advance(now_.state, duration_s, now_.steps == 0, next, &model);
+    if (report.status == StepReport::Status::interrupted) return std::nullopt;
     const bool solved = report.converged();
     if (solved) {
       next.time_s = end_s;  // exact, not a rounded sum
@@ -353,6 +356,7 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
     }
     if (solved && step_length_.accept(controls_, now_.state, next)) {
       std::swap(now_.state, next);
+      if (later) grown_ = std::move(later);
       ++now_.steps;
       ++now_.pace.steps;
       now_.pace.iterations += report.newton_iterations;
@@ -365,11 +369,9 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
     stepper_->forget_factor();
     if (step_length_.halve(controls_, duration_s)) continue;
     if (report.cell) failed_cell_ = id_of(*model_, *report.cell);
-    failure_ = failure_text(report, *model_, now_.state, duration_s, scenario_.get());
-    break;
+    failure_ = failure_text(report, model, now_.state, duration_s, scenario_.get());
+    return std::nullopt;
   }
-  grow(*model_, now_.state.time_s);
-  return std::nullopt;
 }
 
 }  // namespace plica

@@ -56,7 +56,7 @@ class Simulation {
   };
   explicit Simulation(Parts parts);
 
-  /// Listeners and stop_when are not copied. The copy recomputes a reused factorization.
+  /// Listeners and stop_when are not copied. `other` forgets a reused factorization, which the copy does not have.
   Simulation(const Simulation& other);
   Simulation& operator=(const Simulation& other);
   Simulation(Simulation&&) noexcept;
@@ -77,8 +77,9 @@ class Simulation {
   /// Id of the cell at which the solver failed, if it is one cell.
   [[nodiscard]] const std::optional<int>& failed_cell() const { return failed_cell_; }
 
-  /// Model and state of the whole embryo, also if one side is solved.
-  [[nodiscard]] const Model& model() const { return full_model_ ? full_model_->model() : *model_; }
+  /// Model and state of the whole embryo, also if one side is solved. The model is that of this time: a step in which
+  /// cells grow makes another.
+  [[nodiscard]] const Model& model() const { return full_model_ ? full_model_->model() : solved(); }
   [[nodiscard]] const State& state() const { return full_model_ ? full_model_->state() : now_.state; }
   [[nodiscard]] double time_s() const { return now_.state.time_s; }
   [[nodiscard]] int steps() const { return now_.steps; }
@@ -93,13 +94,16 @@ class Simulation {
   [[nodiscard]] const std::vector<EnergyFlow>& energies() const { return now_.energies; }
 
   /// Skip these columns from the next step on.
-  void leave_out(const std::function<bool(const Column&)>& which) { observer_->leave_out(which); }
+  void leave_out(const std::function<bool(const Column&)>& which) { observer_.leave_out(which); }
   /// Measures of the last accepted step, or of the reference state.
   [[nodiscard]] const Observation& measures() const { return measures_; }
-  [[nodiscard]] const Observer& observer() const { return *observer_; }
+  [[nodiscard]] const Observer& observer() const { return observer_; }
 
-  /// Checkpoint: everything the next step depends on besides the scenario.
+  /// Checkpoint: everything the next step depends on besides the scenario. A reused factorization is forgotten.
   [[nodiscard]] RunMemory memory() const;
+  /// Whether none is in use, so that memory() changes nothing: at the latest after every 20th step, at the time that a
+  /// step was asked for, before a division and at the end.
+  [[nodiscard]] bool is_resumable() const { return steps_with_factor_ == 0; }
 
   /// Continue from a checkpoint of the same scenario; call in the reference state only. `measures`: those of its last
   /// step. Throws UnfitMemory if it does not fit this model. Listeners are not notified of past divisions.
@@ -124,6 +128,7 @@ class Simulation {
   void stop_when(std::function<bool()> stop_requested);
 
  private:
+  [[nodiscard]] const Model& solved() const { return grown_ ? *grown_ : *model_; }
   bool has_stalled();
   std::optional<StepReport> take_step(double until_s, State& before);
   void divide(const std::vector<PlannedDivision>& due);
@@ -131,16 +136,18 @@ class Simulation {
   void restart_at_a_jump();
   EnergyFlow account_for_energy(const State& before);
   void renew_stepper();
-  void recall_factor();
+  void forget_factor() const;
 
   std::shared_ptr<const Scenario> scenario_;
-  std::unique_ptr<Model> model_;         // the solved model; `now_` is its state
+  std::unique_ptr<Model> model_;         // the solved model, as it is after the last division
+  std::optional<Model> grown_;           // the same at the time of `now_`, its state, if cells have grown
   std::optional<FullModel> full_model_;  // of which `model_` is one side, if any
   RunControls controls_;
   RunMemory now_;
   std::unique_ptr<Stepper> stepper_;
+  mutable int steps_with_factor_ = 0;  // taken since the stepper had none to reuse
   StepLength step_length_;
-  std::unique_ptr<Observer> observer_;
+  Observer observer_;
   Observation measures_;
   bool has_begun_ = false;  // since construction or resumption: divisions due then are done
   std::string failure_;

@@ -49,7 +49,7 @@ bool UnfinishedRun::can_lock() {
 }
 
 void UnfinishedRun::step_accepted(const std::vector<Observation>& rows, double wall_s) {
-  if (!can_archive() || wall_s < next_s_) return;
+  if (!can_archive() || wall_s < next_s_ || !simulation_.is_resumable()) return;
   next_s_ = wall_s + every_s_;
   std::error_code error;
   fs::create_directories(directory_, error);

@@ -16,7 +16,7 @@ namespace plica {
 class UnfinishedRun {
  public:
   /// `simulation`: in its reference state. `directory`: used by this run only, exists only while it contains something.
-  /// The state is written every `every_s` of wall time.
+  /// The state is written at the first resumable step after every `every_s` of wall time.
   UnfinishedRun(std::filesystem::path directory, double every_s, const Scenario& scenario, Simulation& simulation);
 
   /// Resume from the saved state, if one fits, and return the measures of the steps so far; else those of the reference

@@ -97,7 +97,8 @@ struct Cell {
   // Empty in cells with inner lines: several elements of a grid, kites, layers.
   std::vector<std::vector<WallStop>> walls;
   std::vector<OutlineQuad> quadrilaterals;
-  std::vector<Vec3> rest_shape;  // um; corners
+  std::vector<Vec3> rest_shape;         // um; corners
+  std::optional<double> target_volume;  // um^3; that of the rest shape, except after a division
   Lineage lineage;
 
   // Corners of both polygons are counter-clockwise seen from outside the tissue, above the apical surface. Four corners

@@ -13,7 +13,7 @@ import unittest
 from pathlib import Path
 
 import support
-from resuming import DIVIDING, Resuming, rows_in
+from resuming import DIVIDING, LOST, Resuming, rows_in
 from support import BLOCK, SPHERE, plica, start
 
 SHORT = [("time.end_s", "1.2"), ("division.all.region", '"all"'), ("division.all.at_s", "0.5"), ("division.all.growth_s", "0.3")]
@@ -78,7 +78,7 @@ class FailingDisk(Resuming):
                 resumed = self.resumed(self.scenario)
                 found = re.search(r"resuming after step (\d+)", resumed.stdout)
                 if found:
-                    self.assertIn(rows - int(found.group(1)), (0, 1), "more is lost than the step under way")
+                    self.assertIn(rows - int(found.group(1)), LOST, "more is lost than the steps since the last checkpoint")
                     cut_back = max(cut_back, rows - int(found.group(1)))
                 else:
                     self.assertEqual(rows, 0, "began anew though steps had been made")

@@ -13,6 +13,8 @@ for setting in ("division.floor.at_min=0.2", "division.floor.growth_min=0.3", "d
                 "division.borders.growth_min=0.3", "time.end_min=1.5", "time.tolerance_um=0.02", "output.frame_every_s=5"):
     DIVIDING += ["--set", setting]
 
+LOST = range(22)  # rows that a kill may cost: 20 steps in a row with a factor, and one that is being recorded
+
 
 def results(out):
     """What must be the same: every file but checkpoints and the report, what it cost and provenance aside."""
@@ -36,6 +38,13 @@ class Resuming(CommandLine):
         for name in whole:
             if found[name] != whole[name]:
                 self.fail(f"{name} is not the same; kept in {shutil.copytree(out, self.folder.with_suffix('.kept'))}")
+
+    def assert_alike(self, whole):
+        """A run that was extended, or went on after its stop: nothing is reused across that, so the last digits may differ."""
+        found, expected = self.summary(), whole["summary.json"]
+        self.assertEqual(found["steps"], expected["steps"])
+        for key in ("time_s", "max_displacement_um", "mean_height_um", "active_work_nN_um", "stored_energy_nN_um"):
+            self.assertAlmostEqual(found[key] / expected[key], 1, delta=1e-9)
 
     def whole_run(self, arguments, *more):
         result = plica("run", *arguments, "--out", self.folder / "whole", *more, timeout=300)

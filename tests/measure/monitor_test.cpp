@@ -166,7 +166,7 @@ TEST(Monitor, PressureIsInPascalAndOnlyWhereVolumesAreHeld) {
   State state = rest_state(model);
   state.multipliers = {0.25, 7, 7};  // kPa
   EXPECT_NEAR(number(monitor_of(Quantity::pressure), model, state), 250, 1e-9);
-  model.volumes().hold(false);
+  model.volumes.hold(false);
   EXPECT_FALSE(read_monitor(monitor_of(Quantity::pressure), {model, state}).number);
 }
 
@@ -265,7 +265,7 @@ TEST(ForcesOfCells, OfPartsAddUpToThoseOfTheWhole) {
   const Vectors no_velocity(of_all.size(), Vec3::Zero());
   const Step still{state.positions, state.positions, no_velocity, 1, 0};
   for (const auto& law : model.laws) law->add_forces(still, expected);
-  model.volumes().add_forces(state.positions, state.multipliers, expected);
+  model.volumes.add_forces(state.positions, state.multipliers, expected);
   model.tissue.carry_hanging(expected);
   for (std::size_t n = 0; n < of_all.size(); ++n) EXPECT_LE((of_all[n] - expected[n]).norm(), 1e-12 * largest(of_all));
 }

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "mechanics/elasticity/corner_barrier.hpp"
+#include "mechanics/elasticity/neo_hookean.hpp"
+#include "mechanics/elasticity/shape_memory.hpp"
 #include "solver/linear/step_matrix.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/divided.hpp"
@@ -104,21 +107,25 @@ TEST(DivideCells, HandsPressuresHoldsAndContactsOn) {
     EXPECT_EQ(state.in_contact[k] != 0, model.obstacles.front()->nodes()[k].index() < division.free_nodes_before);
 }
 
+void grow(Model& model, double time_s) {
+  if (std::optional<Model> later = grown(model, time_s)) model = std::move(*later);
+}
+
 TEST(Grow, TakesDaughtersFromHalvesToTheirMothersShapeAndVolume) {
   Model model(distorted_block(three_cells, 2, 7));
   add_elasticity(model);
   State state = rest_state(model);
   state.time_s = 10;
   const HexPoints mother = hexahedron(model.tissue.cells[1].rest_shape);
-  const double mothers_volume = model.volumes().targets()[1];
+  const double mothers_volume = model.volumes.targets()[1];
   divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 0}, 100, 1}});
-  const auto sum = [&] { return model.volumes().targets()[1] + model.volumes().targets()[3]; };
+  const auto sum = [&] { return model.volumes.targets()[1] + model.volumes.targets()[3]; };
   EXPECT_NEAR(sum(), mothers_volume, 1e-12 * mothers_volume);
   grow(model, 60);
   EXPECT_NEAR(sum(), 1.5 * mothers_volume, 1e-12 * mothers_volume);
   grow(model, 110);
   for (const int daughter : {1, 3}) {
-    EXPECT_EQ(model.volumes().targets()[daughter], mothers_volume);
+    EXPECT_EQ(model.volumes.targets()[daughter], mothers_volume);
     for (int i = 0; i < 8; ++i) EXPECT_LE((model.tissue.cells[daughter].rest_shape[i] - mother[i]).norm(), 1e-13);
   }
   // Back again: a step may be taken anew.
@@ -135,7 +142,7 @@ TEST(Grow, OfADaughterThatDividesGoesTowardsTheSameSize) {
   state.time_s = 50;
   divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 0}, 100, 1}});
   grow(model, 150);
-  for (const int c : {1, 3, 4}) EXPECT_NEAR(model.volumes().targets()[c], 16000, 1e-9);
+  for (const int c : {1, 3, 4}) EXPECT_NEAR(model.volumes.targets()[c], 16000, 1e-9);
 }
 
 // Daughters that stay halves have nowhere to go: not a bit of their shapes changes, so no stiffness is made anew.
@@ -157,7 +164,7 @@ TEST(Grow, OfDaughtersThatStayHalvesChangesNothing) {
 // modulus would press, and a daughter's pressure would show it.
 TEST(Grow, BulkModulusIsAgainstTheVolumesThatCellsAreHeldAt) {
   Model model(distorted_block(three_cells, 2, 7));
-  model.volumes().hold(true);
+  model.volumes.hold(true);
   model.laws.push_back(std::make_unique<Dilatation>(model.tissue, 3.0, true));
   State state = rest_state(model);
   for (Vec3& x : state.positions) x = Vec3(1.3 * x.x(), 0.9 * x.y() + 0.002 * x.x() * x.z(), x.z());
@@ -170,8 +177,7 @@ TEST(Grow, BulkModulusIsAgainstTheVolumesThatCellsAreHeldAt) {
     for (std::size_t e = 0; e < model.tissue.elements.size(); ++e) {
       const std::size_t c = model.tissue.element_cell[e].index();
       const double rest = hex_volume(model.tissue.element_rest_shape[e]),
-                   held =
-                       rest * model.volumes().targets()[c] / hex_volume(hexahedron(model.tissue.cells[c].rest_shape)),
+                   held = rest * model.volumes.targets()[c] / hex_volume(hexahedron(model.tissue.cells[c].rest_shape)),
                    now = hex_volume(gather(state.positions, model.tissue.elements[e]));
       expected += 3.0 / 2 * held * std::pow(now / held - 1, 2);
       by_rest_shapes += 3.0 / 2 * rest * std::pow(now / rest - 1, 2);
@@ -181,6 +187,39 @@ TEST(Grow, BulkModulusIsAgainstTheVolumesThatCellsAreHeldAt) {
     differ += std::abs(by_rest_shapes - expected) > 1e-3 * expected;
   }
   EXPECT_GE(differ, 2);
+}
+
+// All laws of elements or of their faces: grown, they are those of the new rest shapes, bitwise, also at the end of a
+// batch that is not full.
+TEST(Grow, MakesLawsOfTheNewRestShapes) {
+  const BlockShape row{.length_um = 220, .width_um = 20, .cell_height_um = 40, .cells = {11, 1, 1}};
+  const auto laws_of = [](const Tissue& tissue) {
+    std::vector<std::unique_ptr<Law>> laws;
+    laws.push_back(std::make_unique<Corotational>(tissue, ElasticModuli::from_young(1, 0.45), 2));
+    laws.push_back(
+        std::make_unique<NeoHookean>(tissue, std::vector<NeoHookeanMaterial>(tissue.elements.size(), {0.4, 2})));
+    laws.push_back(std::make_unique<ShapeMemory>(tissue, AttractorSprings{.shear_modulus = 0.3, .preload = 0.1}, 2));
+    laws.push_back(std::make_unique<CornerBarrier>(tissue, 1, 0.9));
+    laws.push_back(std::make_unique<Dilatation>(tissue, 3));
+    laws.push_back(std::make_unique<SurfaceDrag>(tissue, 1e-3));
+    laws.push_back(std::make_unique<Inertia>(tissue, 1e-12));
+    return laws;
+  };
+  Tissue tissue = distorted_block(row, 2, 5);
+  const auto before = laws_of(tissue);
+  const std::vector<ElementId> reshaped = {ElementId(2), ElementId(10)};
+  for (const ElementId e : reshaped)
+    for (Vec3& X : tissue.element_rest_shape[e.index()]) X *= 1.1;
+  const auto anew = laws_of(tissue);
+  Motion motion = random_motion(tissue, 2, 3);
+  for (std::size_t l = 0; l < anew.size(); ++l) {
+    SCOPED_TRACE(anew[l]->name());
+    motion.internal = anew[l]->first_internal(tissue);
+    const std::unique_ptr<Law> law = before[l]->grown(tissue, reshaped);
+    EXPECT_EQ(forces_of(*law, motion.step()), forces_of(*anew[l], motion.step()));
+    EXPECT_EQ(law->energy(motion.step()), anew[l]->energy(motion.step()));
+    EXPECT_NE(forces_of(*before[l], motion.step()), forces_of(*anew[l], motion.step()));
+  }
 }
 
 TEST(DivideCells, IsDoneWithWhoHasGrownUp) {
@@ -194,7 +233,7 @@ TEST(DivideCells, IsDoneWithWhoHasGrownUp) {
   for (const Growth& growth : model.growths) growing.push_back(growth.cell.number());
   EXPECT_EQ(growing, (std::vector<int>{6, 13, 9, 14}));  // and not 1 and 12
   grow(model, 400);
-  for (const int c : {1, 12, 6, 13, 9, 14}) EXPECT_NEAR(model.volumes().targets()[c], 16000, 1e-9) << c;
+  for (const int c : {1, 12, 6, 13, 9, 14}) EXPECT_NEAR(model.volumes.targets()[c], 16000, 1e-9) << c;
 }
 
 // New nodes between held ones are held, those between a held and a free one are not; held ones make up for no momentum
@@ -284,7 +323,7 @@ TEST(DividedSheet, AssemblesTheTangentOfItsFreeNodes) {
   const auto volumes = [&](double part) {
     Vectors positions = state.positions;
     for (std::size_t n = 0; n < positions.size(); ++n) positions[n] += part * direction[n];
-    return model.volumes().volumes(positions);
+    return model.volumes.volumes(positions);
   };
   ConstraintJacobian jacobian(model);
   jacobian.update(model, state.positions);

@@ -99,11 +99,8 @@ std::string made_right(std::string bytes) {
 }
 
 TEST_F(CheckpointTest, ComesBackAsItWas) {
-  Checkpoint before = block_run().last();
+  const Checkpoint before = block_run().last();
   ASSERT_FALSE(before.run.past_divisions.empty());
-  ASSERT_FALSE(before.run.factor.empty());
-  before.run.factor.ahead = 0.25;  // that factor is of a first step
-  before.run.factor.earlier_positions = before.run.state.positions;
   const std::string bytes = checkpoint_bytes(before);
   const Checkpoint after = read_checkpoint_bytes(bytes);
   EXPECT_EQ(after.scenario, before.scenario);
@@ -112,9 +109,6 @@ TEST_F(CheckpointTest, ComesBackAsItWas) {
   ASSERT_FALSE(before.run.state.trend.mean_velocities.empty()) << "second order";
   EXPECT_EQ(after.run.state.trend.mean_velocities, before.run.state.trend.mean_velocities);
   EXPECT_EQ(after.run.state.trend.earlier_s, before.run.state.trend.earlier_s);
-  EXPECT_EQ(after.run.factor.ahead, before.run.factor.ahead);
-  EXPECT_EQ(after.run.factor.rate_s, before.run.factor.rate_s);
-  EXPECT_EQ(after.run.factor.earlier_positions, before.run.factor.earlier_positions);
   EXPECT_EQ(after.record.rows.size(), before.record.rows.size());
   EXPECT_EQ(after.record.rows.back().values, before.record.rows.back().values);
   EXPECT_EQ(after.record.rows.back().monitors, before.record.rows.back().monitors);
@@ -134,7 +128,7 @@ TEST_F(CheckpointTest, EveryMemberComesBack) {
     EXPECT_NE(numbers, unmarked.at(field)) << field << " has no value of its own here";
     EXPECT_EQ(numbers, read.at(field)) << field;
   }
-  EXPECT_GT(written.size(), 45U);
+  EXPECT_GT(written.size(), 35U);
 }
 
 // Rows, contacts and divisions come and go between them: what is in one is not in the next unless it should be.
@@ -273,12 +267,11 @@ TEST_F(CheckpointTest, WhatIsNoNumberIsRefused) {
   refused([](Checkpoint& c) { c.run.state.time_s = nan; });
   refused([](Checkpoint& c) { c.run.equilibrium_time_s = nan; });
   refused([](Checkpoint& c) { c.run.wanted_step_s = -std::numeric_limits<double>::infinity(); });
-  refused([](Checkpoint& c) { c.run.factor.rate_s = nan; });
   refused([](Checkpoint& c) { c.record.frame_times_s[1] = nan; });
   refused([](Checkpoint& c) { c.record.rows[1].values[column_index("max_volume_error")] = nan; });
   refused([](Checkpoint& c) { c.record.rows[1].monitors[0] = nan; });
   refused([](Checkpoint& c) { c.record.rows.clear(); });
-  EXPECT_EQ(cases, 11);
+  EXPECT_EQ(cases, 10);
 }
 
 TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
@@ -308,12 +301,7 @@ TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
   unfit([](RunMemory& m) { m.wanted_step_s = -1; });
   unfit([](RunMemory& m) { m.pace.since_s = m.state.time_s + 1; });
   unfit([](RunMemory& m) { m.pace.steps = -1; });
-  unfit([](RunMemory& m) { m.factor.at.multipliers.pop_back(); });
-  unfit([](RunMemory& m) { m.factor.previous_positions.clear(); });
-  unfit([](RunMemory& m) { m.factor.rate_s = 0; });
-  unfit([](RunMemory& m) { m.factor.ahead = 0.5; });
-  unfit([](RunMemory& m) { m.factor.changed_contacts.push_back(0); });
-  EXPECT_EQ(cases, 20);
+  EXPECT_EQ(cases, 15);
   for (const int part : {0, 1, 2, 3, 4, 5, 6}) {
     PastDivision bad = *run.last().run.past_divisions.front();
     PlannedDivision& one = bad.planned.front();

@@ -48,7 +48,7 @@ struct Kept {
 
   StepWatcher watcher() {
     return [&](const AcceptedStep& step, const Model& model) {
-      for (const double error : model.volumes().relative_errors(step.state.positions))
+      for (const double error : model.volumes.relative_errors(step.state.positions))
         volume_error = std::max(volume_error, std::abs(error));
       const double inside = volume_inside_boundary(model.tissue, step.state.positions);
       gap = std::max(gap, std::abs(volume_of_cells(model.tissue, step.state.positions) / inside - 1));

@@ -118,7 +118,7 @@ TEST(FullModel, EachLawOfASideIsThatOfAHalfOrAQuarter) {
       whole->laws[l]->add_tangent_product(whole_step, whole_direction, whole_product);
       expect_same_forces(mirror, side->tissue, product, whole_product, "products");
     }
-    for (std::size_t k = 1; k < side->constraints.size(); ++k) {
+    for (std::size_t k = 0; k < side->constraints.size(); ++k) {
       double volume = 0, whole_volume = 0;
       side->constraints[k]->values(x2, {&volume, 1});
       whole->constraints[k]->values(w2, {&whole_volume, 1});

@@ -229,9 +229,10 @@ TEST(Simulation, ACopyIsAForkInTime) {
   const Scenario scenario = load_scenario(find_scenario("drosophila"), {"time.end_s=6"});
   Simulation whole(scenario), first(scenario);
   whole.run();
-  for (int step = 0; step < 10; ++step) ASSERT_TRUE(first.step());
+  for (int step = 0; step < 5 || !first.is_resumable(); ++step) ASSERT_TRUE(first.step());
+  const int steps = first.steps();
   Simulation fork = first, moved = std::move(first);
-  EXPECT_EQ(fork.steps(), 10);
+  EXPECT_EQ(fork.steps(), steps);
   EXPECT_EQ(fork.measures()["furrow_depth_um"], moved.measures()["furrow_depth_um"]);
   // In turns: neither disturbs the other.
   while (fork.status() == RunStatus::under_way || moved.status() == RunStatus::under_way) {

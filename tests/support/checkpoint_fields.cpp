@@ -50,25 +50,10 @@ struct Fields {
     take("trend.accelerations", accelerations), take("trend.multiplier_rates", multiplier_rates);
   }
 
-  void take_factor(const FactorMemory& factor) {
-    const auto& [at, previous_positions, previous_velocities, earlier_positions, rate_s, end_time_s, ahead, internals,
-                 changed_contacts, has_left, normals, iterations_when_new, wasted_iterations] = factor;
-    const auto& [positions, multipliers, contact_forces, in_contact] = at;
-    take("factor.positions", positions), take("factor.multipliers", multipliers);
-    take("factor.contact_forces", contact_forces), take("factor.in_contact", in_contact);
-    take("factor.previous_positions", previous_positions), take("factor.previous_velocities", previous_velocities);
-    take("factor.earlier_positions", earlier_positions), take("factor.rate_s", rate_s);
-    take("factor.end_time_s", end_time_s), take("factor.ahead", ahead), take("factor.internals", internals);
-    take("factor.changed_contacts", changed_contacts), take("factor.has_left", has_left);
-    take("factor.normals", normals), take("factor.iterations_when_new", iterations_when_new);
-    take("factor.wasted_iterations", wasted_iterations);
-  }
-
   void take_run(const RunMemory& run) {
     const auto& [state, steps, divisions, equilibrium_time_s, at_equilibrium, criterion_met, wanted_step_s, pace,
-                 computing_s, energies, factor, past_divisions, whole_internals, outside_arrays] = run;
+                 computing_s, energies, past_divisions, whole_internals, outside_arrays] = run;
     take_state(state);
-    take_factor(factor);
     take("steps", steps), take("divisions", divisions), take("equilibrium_time_s", equilibrium_time_s);
     take("at_equilibrium", at_equilibrium), take("criterion_met", criterion_met);
     take("wanted_step_s", wanted_step_s), take("computing_s", computing_s);
@@ -130,17 +115,6 @@ Checkpoint marked(Checkpoint checkpoint) {
   run.state.trend.earlier_s = 0.125;
   run.state.trend.mean_velocities = run.state.trend.accelerations = {Vec3(1, 2, 3), Vec3(-4, 5, 6)};
   run.state.trend.multiplier_rates = {7, 8};
-  FactorMemory& factor = run.factor;
-  factor.at = {{Vec3(1, 0, 2)}, {3}, {4, 5}, {0, 1}};
-  factor.previous_positions = {Vec3(1, 2, 4)};
-  factor.previous_velocities = {Vec3(2, 2, 4)};
-  factor.earlier_positions = {Vec3(3, 2, 4)};
-  factor.rate_s = 0.375, factor.end_time_s = 9, factor.ahead = 0.625;
-  factor.internals = {{}, {4, 5}};
-  factor.changed_contacts = {2, 0};
-  factor.has_left = {1, 0};
-  factor.normals = {Vec3::UnitX(), Vec3::UnitZ()};
-  factor.iterations_when_new = 11, factor.wasted_iterations = 13;
   RecordMemory& record = checkpoint.record;
   record.rows.back().criteria_met = {"folded", "at rest"};
   record.series_bytes = 101, record.lineage_bytes = 102, record.midline_bytes = 103, record.cells_bytes = 104;

@@ -34,7 +34,7 @@ struct Roofs {
 /// Soft ones in a fluid, the lower one held at its bottom; contact is the last law.
 inline Model model_of(const Roofs& roofs, const SelfContactRule& rule) {
   Model model(roofs.bodies.tissue());
-  model.volumes().hold(false);
+  model.volumes.hold(false);
   const ElasticModuli soft = ElasticModuli::from_young(0.3, 0.3);
   model.laws.push_back(std::make_unique<Corotational>(model.tissue, soft, 0));
   model.laws.push_back(std::make_unique<Dilatation>(model.tissue, soft.bulk_modulus()));

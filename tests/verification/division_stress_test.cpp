@@ -36,7 +36,7 @@ TEST(DivisionStress, FiveRandomRoundsToTenThousandCells) {
       const StepReport report = solver.advance(state, duration_s, false, next);
       ASSERT_TRUE(report.converged()) << report.reason() << " in round " << round;
       state = next;
-      for (const double error : model.volumes().relative_errors(state.positions))
+      for (const double error : model.volumes.relative_errors(state.positions))
         worst_volume = std::max(worst_volume, std::abs(error));
     }
     for (const auto& element : model.tissue.elements)

@@ -28,7 +28,7 @@ Model one_spring_in_fluid() {
   Model model(build_block({.length_um = length, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 1}}));
   for (auto& directions : model.held) directions = {true, true, true};
   model.held[1][0] = false;
-  model.volumes().hold(false);
+  model.volumes.hold(false);
   model.laws.push_back(std::make_unique<Corotational>(model.tissue, ElasticModuli::from_young(1e-12, 0.3), 0));
   model.laws.push_back(std::make_unique<SurfaceDrag>(model.tissue, 0.1));
   model.laws.push_back(

@@ -47,7 +47,7 @@ Pressure pressure(const Block& below, const Block& above, bool rigid_below) {
   const std::size_t upper = add_block(bodies, above, true);
   Model model(bodies.tissue());
   const Tissue& tissue = model.tissue;
-  model.volumes().hold(false);
+  model.volumes.hold(false);
   const ElasticModuli moduli = ElasticModuli::from_young(modulus, 0);
   model.laws.push_back(std::make_unique<Corotational>(tissue, moduli, 0));
   model.laws.push_back(std::make_unique<Dilatation>(tissue, moduli.bulk_modulus()));

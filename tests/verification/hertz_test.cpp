@@ -64,7 +64,7 @@ std::vector<Pressed> press(const Mesh& below, const Mesh& above, const std::vect
       });
   Model model(bodies.tissue());
   const Tissue& tissue = model.tissue;
-  model.volumes().hold(false);
+  model.volumes.hold(false);
   const ElasticModuli moduli = ElasticModuli::from_young(modulus, poisson);
   model.laws.push_back(std::make_unique<Corotational>(tissue, moduli, 0));
   model.laws.push_back(std::make_unique<Dilatation>(tissue, moduli.bulk_modulus()));

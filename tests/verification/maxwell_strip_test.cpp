@@ -64,7 +64,7 @@ Pulls pulls_of_strip(double stretch, int steps) {
     end.internal = state.internals[0];
     Vectors forces(next.positions.size(), Vec3::Zero());
     model.laws[0]->add_forces(end, forces);
-    model.volumes().add_forces(next.positions, next.multipliers, forces);
+    model.volumes.add_forces(next.positions, next.multipliers, forces);
     double pull = 0;
     for (std::size_t n = 0; n < forces.size(); ++n)
       if (model.tissue.rest_positions[n].x() == length / 2) pull -= forces[n].x();

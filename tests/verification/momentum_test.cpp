@@ -111,8 +111,8 @@ TEST(Momentum, InternalForcesHaveNoResultantAndNoTorque) {
       if (law->name() != "inertia") law->add_forces(motion.step(), forces);
     Random random(seed);
     std::vector<double> pressures;
-    for (std::size_t c = 0; c < model.volumes().count(); ++c) pressures.push_back(random.number(1));
-    model.volumes().add_forces(motion.positions, pressures, forces);
+    for (std::size_t c = 0; c < model.volumes.count(); ++c) pressures.push_back(random.number(1));
+    model.volumes.add_forces(motion.positions, pressures, forces);
     worst_resultant = std::max(worst_resultant, resultant(forces).norm() / largest(forces));
     worst_torque = std::max(worst_torque, torque(forces, motion.positions).norm() / (largest(forces) * 100));
     ++cases;

@@ -57,6 +57,17 @@ CellVolumes::CellVolumes(const Tissue& tissue, Kernels kernels)
       targets_(tissue.cells.size(), 0.0),
       volumes_(tissue, kernels) {
   for (std::size_t e = 0; e < elements_.size(); ++e) targets_[element_cell_[e].index()] += volumes_.rest_volume(e);
+  take_targets(tissue);
+}
+
+void CellVolumes::take_targets(const Tissue& tissue) {
+  for (std::size_t c = 0; c < targets_.size(); ++c) targets_[c] = tissue.cells[c].target_volume.value_or(targets_[c]);
+}
+
+CellVolumes CellVolumes::grown(const Tissue& tissue) const {
+  CellVolumes after = *this;
+  after.take_targets(tissue);
+  return after;
 }
 
 VolumeStep CellVolumes::kernel_step(std::span<const Vec3> positions, std::span<const double> pressures) const {
@@ -106,11 +117,11 @@ double CellVolumes::rounding(const Tissue& tissue, double position_rounding) con
   return thinnest * position_rounding;
 }
 
-std::unique_ptr<Constraint> CellVolumes::after_division(const Tissue& tissue, const Division& division,
-                                                        std::span<const Vec3> /*positions*/) const {
-  auto after = std::make_unique<CellVolumes>(tissue);
-  after->targets_ = inherited(division, targets_);
-  after->is_held_ = is_held_;
+CellVolumes CellVolumes::divided(const Tissue& tissue, const Division& division) const {
+  CellVolumes after(tissue);
+  after.targets_ = inherited(division, targets_);  // unchanged by other elements of cells beside a cut
+  after.take_targets(tissue);
+  after.is_held_ = is_held_;
   return after;
 }
 
@@ -157,6 +168,7 @@ Dilatation::Dilatation(const Tissue& tissue, std::vector<double> bulk_moduli, bo
       kernels_(kernels),
       volumes_(tissue, kernels, VolumeElements::Values::of_elements) {
   if (!cells_are_exact || tissue.elements.size() > tissue.cells.size()) elements_ = tissue.elements;
+  take_target_volumes(tissue);
 }
 
 Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact,
@@ -226,20 +238,23 @@ std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Divi
                                       kernels_);
 }
 
-void Dilatation::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
-  volumes_.take_rest_shapes(tissue, elements);
+std::unique_ptr<Law> Dilatation::grown(const Tissue& tissue, std::span<const ElementId> elements) const {
+  auto law = std::make_unique<Dilatation>(*this);
+  law->volumes_.take_rest_shapes(tissue, elements);
+  law->take_target_volumes(tissue);
+  return law;
 }
 
 // The held volume of a growing daughter differs from its rest shape. Relative to the latter, each of its elements would
 // exert pressure, and the multiplier (the reported cell pressure) would only cancel that.
-void Dilatation::take_cell_volumes(const Tissue& tissue, std::span<const double> volumes) {
+void Dilatation::take_target_volumes(const Tissue& tissue) {
   if (!cells_are_exact_ || elements_.empty()) return;
-  for (std::size_t c = 0; c < volumes.size(); ++c) {
-    const Cell& cell = tissue.cells[c];
+  for (const Cell& cell : tissue.cells) {
+    if (!cell.target_volume) continue;
     double at_rest = 0;
     for (int e = 0; e < cell.element_count; ++e)
       at_rest += hex_volume(tissue.element_rest_shape[cell.first_element.index() + e]);
-    const double part = volumes[c] / at_rest;
+    const double part = *cell.target_volume / at_rest;
     for (int e = 0; e < cell.element_count; ++e) {
       const std::size_t element = cell.first_element.index() + e;
       const double rest = hex_volume(tissue.element_rest_shape[element]);

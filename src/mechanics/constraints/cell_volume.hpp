@@ -44,7 +44,7 @@ class VolumeElements {
 /// Volume constraints V_c(x) = target, one per cell. Multipliers are cell pressures, kPa, positive in compression.
 class CellVolumes final : public Constraint {
  public:
-  /// Set targets to reference volumes.
+  /// Set targets to the target volumes of cells.
   explicit CellVolumes(const Tissue& tissue, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "cell volumes"; }
@@ -54,7 +54,6 @@ class CellVolumes final : public Constraint {
   [[nodiscard]] bool is_held() const override { return is_held_; }
   /// Whether steps enforce the constraints; otherwise the projection, a bulk modulus, or nothing does.
   void hold(bool held) { is_held_ = held; }
-  void set_target(CellId cell, double volume) { targets_[cell.index()] = volume; }
 
   /// Return V_c at the given positions, um^3; cells.
   [[nodiscard]] std::vector<double> volumes(std::span<const Vec3> positions) const;
@@ -78,9 +77,14 @@ class CellVolumes final : public Constraint {
   [[nodiscard]] double gradient_scale(std::size_t cell) const override;
   [[nodiscard]] double rounding(const Tissue& tissue, double position_rounding) const override;
   [[nodiscard]] std::optional<CellId> cell_of(std::size_t cell) const override { return CellId(cell); }
-  /// Return constraints after a division; daughters inherit targets and pressures.
+  /// Return the constraints of the tissue after growth.
+  [[nodiscard]] CellVolumes grown(const Tissue& tissue) const;
+  /// Return the constraints after a division; daughters inherit pressures.
+  [[nodiscard]] CellVolumes divided(const Tissue& tissue, const Division& division) const;
   [[nodiscard]] std::unique_ptr<Constraint> after_division(const Tissue& tissue, const Division& division,
-                                                           std::span<const Vec3> positions) const override;
+                                                           std::span<const Vec3> /*positions*/) const override {
+    return std::make_unique<CellVolumes>(divided(tissue, division));
+  }
   [[nodiscard]] std::vector<double> multipliers_after_division(std::span<const double> pressures,
                                                                const Division& division) const override;
 
@@ -88,6 +92,8 @@ class CellVolumes final : public Constraint {
   [[nodiscard]] VolumeStep kernel_step(std::span<const Vec3> positions, std::span<const double> pressures) const;
 
  private:
+  void take_targets(const Tissue& tissue);
+
   std::vector<std::array<NodeId, 8>> elements_;
   std::vector<CellId> element_cell_;
   std::vector<double> targets_;  // cells; um^3
@@ -119,10 +125,10 @@ class Dilatation final : public Law {
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
-  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
-  void take_cell_volumes(const Tissue& tissue, std::span<const double> volumes) override;
+  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
 
  private:
+  void take_target_volumes(const Tissue& tissue);
   [[nodiscard]] VolumeStep kernel_step(const Step& step) const;
 
   std::vector<std::array<NodeId, 8>> elements_;  // empty while inactive

@@ -74,8 +74,10 @@ void Corotational::fit(const Tissue& tissue, std::size_t place) {
   put_stiffness(hourglass_stiffness(rest, viscous_moduli(shear_viscosity_), modes), lane, viscous.stiffness);
 }
 
-void Corotational::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
-  for (const ElementId e : elements) fit(tissue, e.index());
+std::unique_ptr<Law> Corotational::grown(const Tissue& tissue, std::span<const ElementId> elements) const {
+  auto law = std::make_unique<Corotational>(*this);
+  for (const ElementId e : elements) law->fit(tissue, e.index());
+  return law;
 }
 
 const CorotationalKernels& Corotational::kernels() const {

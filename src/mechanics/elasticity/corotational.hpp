@@ -41,7 +41,7 @@ class Corotational final : public Law {
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
-  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
+  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
 
   /// Return the input of the kernels.
   [[nodiscard]] CorotationalStep kernel_step(const Step& step) const;

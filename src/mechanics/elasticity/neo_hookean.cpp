@@ -97,8 +97,10 @@ void NeoHookean::fit(const Tissue& tissue, std::size_t place) {
   if (flows()) flow_batches_[place / batch_size].rates[lane] = relaxation_s > 0 ? 1 / relaxation_s : 0;
 }
 
-void NeoHookean::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
-  for (const ElementId e : elements) fit(tissue, e.index());
+std::unique_ptr<Law> NeoHookean::grown(const Tissue& tissue, std::span<const ElementId> elements) const {
+  auto law = std::make_unique<NeoHookean>(*this);
+  for (const ElementId e : elements) law->fit(tissue, e.index());
+  return law;
 }
 
 const NeoHookeanKernels& NeoHookean::kernels() const {

@@ -52,7 +52,7 @@ class NeoHookean final : public Law {
                                                     std::span<const Vec3> positions) const override;
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                             const Division& division) const override;
-  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
+  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
 
   /// Return C_p of a Gauss point in an internal state.
   [[nodiscard]] Mat3 flowed(std::span<const double> internal, ElementId element, int gauss_point) const;

@@ -60,6 +60,7 @@ ShapeMemory::ShapeMemory(const Tissue& tissue, const AttractorSprings& springs, 
 }
 
 void ShapeMemory::fit(const Tissue& tissue, std::size_t e) {
+  take_rest_shape(tissue, e);
   const HexPoints& rest = tissue.element_rest_shape[e];
   Element& element = elements_[e];
   // The frame of best fit; any common factor of the b_i gives the same rotation, this one the scale of a gradient.
@@ -74,6 +75,12 @@ void ShapeMemory::fit(const Tissue& tissue, std::size_t e) {
 
 std::unique_ptr<Law> ShapeMemory::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
   return std::make_unique<ShapeMemory>(tissue, springs_, shear_viscosity_);
+}
+
+std::unique_ptr<Law> ShapeMemory::grown(const Tissue& tissue, std::span<const ElementId> elements) const {
+  auto law = std::make_unique<ShapeMemory>(*this);
+  for (const ElementId e : elements) law->fit(tissue, e.index());
+  return law;
 }
 
 // E = sum k |u_i|^2 / 2 + P (s_i - e). The attractor's centre is the nodes' mean, so a node that moves takes an eighth

@@ -55,10 +55,7 @@ void require_upright_rest_shapes(const Tissue& tissue) {
 TurningElements::TurningElements(const Tissue& tissue, bool viscous)
     : elements_(tissue.elements.size()), chunks_(tissue, tissue.elements), viscous_(viscous) {
   require_upright_rest_shapes(tissue);
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    elements_[e].nodes = tissue.elements[e];
-    take_rest_shape(tissue, e);
-  }
+  for (std::size_t e = 0; e < elements_.size(); ++e) elements_[e].nodes = tissue.elements[e];
 }
 
 void TurningElements::take_rest_shape(const Tissue& tissue, std::size_t e) {
@@ -66,13 +63,6 @@ void TurningElements::take_rest_shape(const Tissue& tissue, std::size_t e) {
   Vec3 centre = Vec3::Zero();
   for (const Vec3& point : rest) centre += point / 8;
   for (int i = 0; i < 8; ++i) elements_[e].rest[i] = rest[i] - centre;
-}
-
-void TurningElements::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
-  for (const ElementId e : elements) {
-    take_rest_shape(tissue, e.index());
-    fit(tissue, e.index());
-  }
 }
 
 struct TurningElements::Frame {

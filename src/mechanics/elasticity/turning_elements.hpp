@@ -30,7 +30,6 @@ class TurningElements : public Law {
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const final;
   void add_tangent(const Step& step, TangentSink& tangent) const final;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const final;
-  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) final;
 
  protected:
   struct Element {
@@ -40,7 +39,7 @@ class TurningElements : public Law {
     Mat24 viscosity;            // used only if the law is viscous
   };
 
-  /// Make elements with the nodes and centred rest shapes of `tissue`; derived laws fill frames and viscosities.
+  /// Make elements with the nodes of `tissue`; derived laws set rest shapes, frames and viscosities.
   TurningElements(const Tissue& tissue, bool viscous);
 
   /// Return the energy of local displacements u, nN um, and its gradient q, nN; independent of translations of u, so q
@@ -50,14 +49,13 @@ class TurningElements : public Law {
   /// Return its Hessian at u, nN/um: stored, or computed in `space`.
   virtual const Mat24& local_stiffness(std::size_t element, const Vec24& u, Mat24& space) const = 0;
 
-  /// Compute the data of an element from its rest shape: frame, viscosity and those of the law.
-  virtual void fit(const Tissue& tissue, std::size_t element) = 0;
+  /// Set the centred rest shape of an element.
+  void take_rest_shape(const Tissue& tissue, std::size_t element);
 
   std::vector<Element> elements_;
 
  private:
   void add_warped_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const;
-  void take_rest_shape(const Tissue& tissue, std::size_t element);
   struct Frame;  // rotation, local displacement and local force of an element at given positions
   [[nodiscard]] Frame frame(std::size_t e, const Step& step) const;
 

@@ -4,20 +4,18 @@
 
 namespace plica {
 
-ShellDrag::ShellDrag(const Tissue& tissue, const OuterShape& shell, double drag) : shell_(tissue, shell), drag_(drag) {
-  take_areas(tissue);
-}
-
-void ShellDrag::take_areas(const Tissue& tissue) {
-  coefficients_.assign(tissue.node_count(), 0.0);
+ShellDrag::ShellDrag(const Tissue& tissue, const OuterShape& shell, double drag)
+    : shell_(tissue, shell), drag_(drag), coefficients_(tissue.node_count(), 0.0) {
   for (const Facet& facet : tissue.apical_facets)
     for (const NodeId node : facet.nodes)
       coefficients_[node.index()] += drag_ * facet_area(rest_corners(tissue, facet)) / 4;
 }
 
-void ShellDrag::take_rest_shapes(const Tissue& tissue, std::span<const ElementId>) { take_areas(tissue); }
-
 std::unique_ptr<Law> ShellDrag::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
+  return std::make_unique<ShellDrag>(tissue, shell_.shell(), drag_);
+}
+
+std::unique_ptr<Law> ShellDrag::grown(const Tissue& tissue, std::span<const ElementId>) const {
   return std::make_unique<ShellDrag>(tissue, shell_.shell(), drag_);
 }
 

@@ -26,12 +26,11 @@ class ShellDrag final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
-  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) override;
+  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
 
  private:
   template <class Take>
   void for_touching(const Step& step, const Take& take) const;
-  void take_areas(const Tissue& tissue);
 
   Vitelline shell_;
   double drag_;

@@ -95,7 +95,7 @@ void ConstraintJacobian::update(const Model& model, std::span<const Vec3> positi
   parallel_for(gradients_.size(), [&](std::size_t slot) { gradients_[slot].value.setZero(); });
   for (Vectors& row : dense_) std::ranges::fill(row, Vec3::Zero());
   for (const Source& source : sources_) {
-    const Constraint& constraint = *model.constraints[source.constraint];
+    const Constraint& constraint = model.constraint(source.constraint);
     // Cells grow, and their functions with them.
     for (std::size_t f = 0; f < constraint.count(); ++f)
       gradient_scale_[source.first_row + f] = constraint.gradient_scale(f);

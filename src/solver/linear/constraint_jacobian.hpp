@@ -67,7 +67,7 @@ class ConstraintJacobian {
   template <class Body>
   void for_parts(const Model& model, std::span<const Vec3> positions, bool shared, const Body& body) const {
     for (const Source& source : sources_) {
-      const Constraint& constraint = *model.constraints[source.constraint];
+      const Constraint& constraint = model.constraint(source.constraint);
       if (constraint.is_dense()) continue;
       UninitialisedVector<Vec3> gradients(source.slots.size());
       constraint.gradients(positions, gradients);

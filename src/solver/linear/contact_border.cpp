@@ -74,20 +74,6 @@ void ContactBorder::add_column(const Change& change, const BlockCholesky& factor
   }
 }
 
-void ContactBorder::remember(FactorMemory& memory) const {
-  for (const Column& column : columns_) {
-    memory.changed_contacts.push_back(static_cast<int>(column.contact));
-    memory.has_left.push_back(column.leaves);
-    memory.normals.push_back(column.normal);
-  }
-}
-
-void ContactBorder::recall(const FactorMemory& memory, const BlockCholesky& factor) {
-  for (std::size_t k = 0; k < memory.changed_contacts.size(); ++k)
-    add_column({static_cast<std::size_t>(memory.changed_contacts[k]), memory.has_left[k] != 0, memory.normals[k]},
-               factor);
-}
-
 // Whether its node touches nothing else, now or in the factor.
 bool ContactBorder::is_alone(std::size_t contact, const Iterate& at) const {
   return std::ranges::all_of(contacts_->beside(contact), [&](std::size_t other) {

@@ -26,10 +26,6 @@ class ContactBorder {
   /// factor then.
   [[nodiscard]] bool follow(const Iterate& at, const BlockCholesky& factor);
 
-  /// Save the added changes in the memory of a factor, or restores those of one after `begin`.
-  void remember(FactorMemory& memory) const;
-  void recall(const FactorMemory& memory, const BlockCholesky& factor);
-
   /// Apply factor and border in place; free nodes.
   void solve(const BlockCholesky& factor, std::span<Vec3> x) const;
 

@@ -22,7 +22,6 @@ bool DirectDirections::refresh(const Step& step, const Iterate& at) {
   factor_rate_s_ = step.rate_s;
   matrix_->assemble(model_, contacts_, step, at);
   matrix_->write_values(factor_frames_, values_);
-  made_from_ = factor_memory(step, at);
   if (!linear_solver_->factorise(values_)) {
     forget_factor();
     return false;
@@ -42,13 +41,6 @@ void DirectDirections::border_dense_rows() {
       for (int i = factor_frames_[n].fixed; i < 3; ++i) rows[row][3 * n + i] = local[i];
     }
   dense_.begin(std::move(rows), [&](std::span<double> x) { linear_solver_->solve(x); });
-}
-
-void DirectDirections::recall(const FactorMemory& memory) {
-  if (memory.empty()) return;
-  const Step step = step_of(memory);
-  prepare(step);
-  (void)refresh(step, memory.at);
 }
 
 NewtonDirections::Status DirectDirections::find(const Step& step, const Iterate& at, const Residual& residual,

@@ -14,8 +14,7 @@ class DirectDirections final : public NewtonDirections {
   [[nodiscard]] Status find(const Step& step, const Iterate& at, const Residual& residual,
                             const ForcingTermInput& forcing, Direction& direction, Cost& cost) override;
   void forget_factor() override { factor_frames_.clear(); }
-  [[nodiscard]] FactorMemory memory() const override { return factor_frames_.empty() ? FactorMemory{} : made_from_; }
-  void recall(const FactorMemory& memory) override;
+  [[nodiscard]] bool keeps_factor() const override { return !factor_frames_.empty(); }
 
  private:
   void prepare(const Step& step);
@@ -33,7 +32,6 @@ class DirectDirections final : public NewtonDirections {
   std::vector<NodeFrame> factor_frames_;
   std::vector<char> factor_contacts_;
   double factor_rate_s_ = 0;
-  FactorMemory made_from_;
 };
 
 }  // namespace plica

@@ -32,8 +32,7 @@ class GuardedDirections final : public NewtonDirections {
   }
 
   // The second's factor serves one step only.
-  [[nodiscard]] FactorMemory memory() const override { return first_->memory(); }
-  void recall(const FactorMemory& memory) override { first_->recall(memory); }
+  [[nodiscard]] bool keeps_factor() const override { return first_->keeps_factor(); }
 
  private:
   const Model& model_;

@@ -32,10 +32,8 @@ class NewtonDirections {
   /// Discard a reused factorization, so that the next step does not depend on earlier solves.
   virtual void forget_factor() = 0;
 
-  /// Data from which the reused factorization was made; `recall` recomputes it and requires the rest shapes of that
-  /// time (see grow()).
-  [[nodiscard]] virtual FactorMemory memory() const = 0;
-  virtual void recall(const FactorMemory& memory) = 0;
+  /// Whether the next step may reuse a factorization.
+  [[nodiscard]] virtual bool keeps_factor() const = 0;
 };
 
 /// Linear method: factorization of the whole system; Krylov method preconditioned by a factorization of the positive

@@ -48,7 +48,6 @@ void KeptPreconditioner::weigh() {
 }
 
 bool KeptPreconditioner::make(const Step& step, const Iterate& at) {
-  made_from_ = {};
   const std::vector<NodeFrame>& frames = system_.frames();
   // The semidefinite part of the tangent serves where all of it is not definite.
   for (const bool semidefinite : {false, true}) {
@@ -63,22 +62,10 @@ bool KeptPreconditioner::make(const Step& step, const Iterate& at) {
     if (factor_ != nullptr)
       contacts_.begin(model_, system_.contacts(), matrix_, frames, at.in_contact, most_contact_changes);
     border_dense_rows();
-    made_from_ = factor_memory(step, at);
+    in_contact_ = at.in_contact;
     return true;
   }
   return false;
-}
-
-FactorMemory KeptPreconditioner::memory() const {
-  FactorMemory memory = made_from_;
-  if (!memory.empty() && factor_ != nullptr) contacts_.remember(memory);
-  return memory;
-}
-
-bool KeptPreconditioner::recall(const FactorMemory& memory) {
-  if (!make(step_of(memory), memory.at)) return false;
-  if (factor_ != nullptr) contacts_.recall(memory, *factor_);
-  return true;
 }
 
 UninitialisedVector<float> KeptPreconditioner::rigid_motions(const Iterate& at) const {
@@ -103,7 +90,7 @@ bool KeptPreconditioner::follow_contacts(const Iterate& at) {
   // A solve for each that has changed is too much. The multigrid has the node's own stiffness along directions that
   // were fixed, which is a preconditioner as long as they are few.
   std::size_t changed = 0;
-  for (std::size_t k = 0; k < at.in_contact.size(); ++k) changed += at.in_contact[k] != made_from_.at.in_contact[k];
+  for (std::size_t k = 0; k < at.in_contact.size(); ++k) changed += at.in_contact[k] != in_contact_[k];
   return changed <= system_.frames().size() / 100;
 }
 

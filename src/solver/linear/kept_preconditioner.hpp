@@ -46,10 +46,6 @@ class KeptPreconditioner {
   /// Return gamma W of the rows, a force over a length squared, divided by gradient_scale. For dense rows only a unit.
   [[nodiscard]] std::span<const double> weights() const { return weights_; }
 
-  /// Return its input, including later contacts, or recomputes it from that.
-  [[nodiscard]] FactorMemory memory() const;
-  [[nodiscard]] bool recall(const FactorMemory& memory);
-
  private:
   void weigh();
   [[nodiscard]] UninitialisedVector<float> rigid_motions(const Iterate& at) const;
@@ -65,8 +61,8 @@ class KeptPreconditioner {
   ContactBorder contacts_;
   std::optional<ChequerboardFactor> chequerboards_;  // for modes that gamma W does not resist
   DenseBorder dense_;
-  FactorMemory made_from_;
-  std::vector<double> weights_;  // rows
+  std::vector<char> in_contact_;  // contacts at the iterate of the inverse
+  std::vector<double> weights_;   // rows
 
   mutable std::vector<double> chequered_;  // scratch
   mutable Vectors moved_;

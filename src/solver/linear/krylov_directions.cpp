@@ -43,23 +43,6 @@ void KrylovDirections::fit_pattern(const Step& step) {
   if (!kept_ || !kept_->serves(step)) kept_ = std::make_unique<KeptPreconditioner>(model_, system_, inverse_, step);
 }
 
-FactorMemory KrylovDirections::memory() const {
-  if (!is_made_) return {};
-  FactorMemory memory = kept_->memory();
-  memory.iterations_when_new = iterations_when_new_;
-  memory.wasted_iterations = wasted_iterations_;
-  return memory;
-}
-
-void KrylovDirections::recall(const FactorMemory& memory) {
-  if (memory.empty()) return;
-  fit_pattern(step_of(memory));
-  system_.take(memory.at);
-  is_made_ = kept_->recall(memory);
-  iterations_when_new_ = memory.iterations_when_new;
-  wasted_iterations_ = memory.wasted_iterations;
-}
-
 int KrylovDirections::wasted(const KrylovReport& report) const {
   const long needed = std::lround(iterations_when_new_ * share_of_solve(report.residual));
   return std::max(0, report.iterations - static_cast<int>(needed));
@@ -67,7 +50,7 @@ int KrylovDirections::wasted(const KrylovReport& report) const {
 
 NewtonDirections::Status KrylovDirections::find(const Step& step, const Iterate& at, const Residual& residual,
                                                 const ForcingTermInput& forcing, Direction& direction, Cost& cost) {
-  system_.take(at);
+  system_.take(step, at);
   constexpr KrylovReport at_beginning{.residual = 1};
   KrylovReport before_new = at_beginning;  // where the solve was when the preconditioner was made
   bool is_new = false;
@@ -78,7 +61,7 @@ NewtonDirections::Status KrylovDirections::find(const Step& step, const Iterate&
     is_new = true;
     before_new = so_far;
   };
-  if (!is_made_ || wasted_iterations_ > price_of_new_ || !kept_->follow_contacts(at))
+  if (!keeps_factor() || !kept_->follow_contacts(at))
     renew(at_beginning);
   else
     kept_->border_dense_rows();

@@ -16,8 +16,7 @@ class KrylovDirections final : public NewtonDirections {
   [[nodiscard]] Status find(const Step& step, const Iterate& at, const Residual& residual,
                             const ForcingTermInput& forcing, Direction& direction, Cost& cost) override;
   void forget_factor() override { is_made_ = false; }
-  [[nodiscard]] FactorMemory memory() const override;
-  void recall(const FactorMemory& memory) override;
+  [[nodiscard]] bool keeps_factor() const override { return is_made_ && wasted_iterations_ <= price_of_new_; }
 
  private:
   /// Take new patterns: the preconditioner stays in use while it is good.

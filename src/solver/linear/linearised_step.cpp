@@ -21,7 +21,7 @@ void LinearisedStep::project(std::span<Vec3> vectors) const {
   });
 }
 
-void LinearisedStep::take(const Iterate& at) {
+void LinearisedStep::take(const Step& step, const Iterate& at) {
   frames_ = node_frames(model_, contacts_, at);
   fixed_nodes_.clear();
   for (std::size_t n = 0; n < frames_.size(); ++n)
@@ -31,7 +31,7 @@ void LinearisedStep::take(const Iterate& at) {
     if (at.in_contact[k])
       contact_tangents_.emplace_back(contacts_.node(k).index(),
                                      -at.contact_forces[k] * contacts_.gap(k, at.positions).hessian);
-  jacobian_.update(model_, at.positions);
+  jacobian_.update(at_end(model_, step), at.positions);
 }
 
 void LinearisedStep::set_units(std::span<const double> weights) {

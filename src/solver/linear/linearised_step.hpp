@@ -36,7 +36,7 @@ class LinearisedStep {
   }
 
   /// Move to an iterate.
-  void take(const Iterate& at);
+  void take(const Step& step, const Iterate& at);
 
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
   [[nodiscard]] const std::vector<NodeFrame>& frames() const { return frames_; }

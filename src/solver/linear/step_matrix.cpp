@@ -122,7 +122,7 @@ void StepMatrix::assemble(const Model& model, const Contacts& contacts, const St
     constraint.add_tangent(at.positions, std::span(at.multipliers).subspan(first, constraint.count()), *this);
     refuse_outside(constraint.name());
   });
-  jacobian_.update(model, at.positions);
+  jacobian_.update(at_end(model, step), at.positions);
   for (std::size_t k = 0; k < at.in_contact.size(); ++k)
     if (at.in_contact[k])
       add_block(contacts.node(k), contacts.node(k), -at.contact_forces[k] * contacts.gap(k, at.positions).hessian);

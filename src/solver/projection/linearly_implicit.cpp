@@ -33,11 +33,13 @@ void LinearlyImplicit::keep_held(std::span<Vec3> vectors) const {
       if (model_.held[n][axis]) vectors[n][axis] = 0;
 }
 
-StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool /*from_rest*/, State& next) {
+StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool /*from_rest*/, State& next,
+                                     const Model* grown) {
   const std::size_t nodes = state.positions.size();
   Step step{state.positions, state.positions, state.velocities, duration_s, state.time_s + duration_s};
   step.semidefinite_tangent = true;
   step.internals = state.internals;
+  step.grown = grown;
   StepReport report;
   KrylovVector forces(3 * nodes, 0.0);
   for_laws(model_, step, [&](const Law& law, const Step& own) { law.add_forces(own, as_vectors(forces)); });

@@ -14,7 +14,8 @@ class LinearlyImplicit final : public Stepper {
  public:
   LinearlyImplicit(const Model& model, double tolerance, int most_iterations);
 
-  StepReport advance(const State& state, double duration_s, bool from_rest, State& next) override;
+  StepReport advance(const State& state, double duration_s, bool from_rest, State& next,
+                     const Model* grown = nullptr) override;
   void stop_when(std::function<bool()> stop_requested) override { stop_requested_ = std::move(stop_requested); }
 
  private:

@@ -11,11 +11,11 @@ class ProjectedStepper final : public Stepper {
   /// Make the stepper; without a rule only obstacles are enforced.
   ProjectedStepper(const Model& model, std::unique_ptr<Stepper> force_step, const std::optional<ProjectionRule>& rule);
 
-  StepReport advance(const State& state, double duration_s, bool from_rest, State& next) override;
+  StepReport advance(const State& state, double duration_s, bool from_rest, State& next,
+                     const Model* grown = nullptr) override;
   void stop_when(std::function<bool()> stop_requested) override;
   void forget_factor() override { force_step_->forget_factor(); }
-  [[nodiscard]] FactorMemory memory() const override { return force_step_->memory(); }
-  void recall(const FactorMemory& memory) override { force_step_->recall(memory); }
+  [[nodiscard]] bool keeps_factor() const override { return force_step_->keeps_factor(); }
 
  private:
   const Model& model_;

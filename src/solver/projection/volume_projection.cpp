@@ -24,7 +24,7 @@ VolumeProjection::VolumeProjection(const Model& model, const std::optional<Proje
     : model_(model), contacts_(model), rule_(rule.value_or(ProjectionRule{})) {
   if (!rule) return;
   const Tissue& tissue = model.tissue;
-  const std::span<const double> targets = model.volumes().targets();
+  const std::span<const double> targets = model.volumes.targets();
   std::vector<ClosedSurface::Quad> facets;
   if (rule_.surfaces == ProjectionRule::Surfaces::cells) {
     for (std::size_t c = 0; c < tissue.cells.size(); ++c) {

@@ -25,8 +25,8 @@ Balance::Balance(const Model& model, const StepTolerances& tolerances)
       force_scale_(model.force_scale()),
       position_rounding_(model.position_rounding()),
       elastic_rounding_(model.elastic_rounding()) {
-  for (const auto& constraint : model.constraints)
-    constraint_rounding_.push_back(constraint->rounding(model.tissue, position_rounding_));
+  for (std::size_t place = 0; place < model.constraint_count(); ++place)
+    constraint_rounding_.push_back(model.constraint(place).rounding(model.tissue, position_rounding_));
 }
 
 bool Balance::is_solved(const Residual& residual) const {
@@ -91,7 +91,8 @@ Residual Balance::residual(const Step& step, Iterate& at) const {
     rounding += law.rounding(own, position_rounding_);
   });
   r.deficits.assign(at.multipliers.size(), 0.0);
-  for_held_constraints(model_, [&](const Constraint& constraint, std::size_t first, std::size_t place) {
+  const Model& model = at_end(model_, step);
+  for_held_constraints(model, [&](const Constraint& constraint, std::size_t first, std::size_t place) {
     constraint.add_forces(at.positions, std::span(at.multipliers).subspan(first, constraint.count()), of_one);
     take();
     const std::span<double> deficits = std::span(r.deficits).subspan(first, constraint.count());

@@ -67,7 +67,8 @@ Iterate NewtonStepper::forecast(const State& state, double duration_s) const {
   return at;
 }
 
-StepReport NewtonStepper::advance(const State& state, double duration_s, bool from_rest, State& next) {
+StepReport NewtonStepper::advance(const State& state, double duration_s, bool from_rest, State& next,
+                                  const Model* grown) {
   const auto unmoved = [&] {
     return Iterate{state.positions, state.multipliers, state.contact_forces, state.in_contact};
   };
@@ -86,7 +87,8 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
             .end_time_s = state.time_s + duration_s,
             .earlier_positions = earlier,
             .ahead = rates.ahead,
-            .internals = state.internals};
+            .internals = state.internals,
+            .grown = grown};
   StepReport report;
   std::vector<unsigned char> contact_changes(at.in_contact.size());
   const auto first_residual = [&](Iterate& start, std::vector<unsigned char>& changes) {

@@ -26,11 +26,11 @@ class NewtonStepper final : public Stepper {
   ~NewtonStepper() override;
 
   /// Solve a step, starting from a prediction by velocities unless `from_rest`.
-  StepReport advance(const State& state, double duration_s, bool from_rest, State& next) override;
+  StepReport advance(const State& state, double duration_s, bool from_rest, State& next,
+                     const Model* grown = nullptr) override;
   void stop_when(std::function<bool()> stop_requested) override { stop_requested_ = std::move(stop_requested); }
   void forget_factor() override;
-  [[nodiscard]] FactorMemory memory() const override { return directions_->memory(); }
-  void recall(const FactorMemory& memory) override { directions_->recall(memory); }
+  [[nodiscard]] bool keeps_factor() const override { return directions_->keeps_factor(); }
 
  private:
   [[nodiscard]] Iterate forecast(const State& state, double duration_s) const;

@@ -48,8 +48,10 @@ class Stepper {
   virtual ~Stepper() = default;
 
   /// Advance `state` by `duration_s` to `next` (unchanged on failure). Unless `from_rest`, the iteration may start from
-  /// a prediction by the velocities.
-  virtual StepReport advance(const State& state, double duration_s, bool from_rest, State& next) = 0;
+  /// a prediction by the velocities. `grown`: the model at the end of the step; null: its
+  /// model, which does not grow.
+  virtual StepReport advance(const State& state, double duration_s, bool from_rest, State& next,
+                             const Model* grown = nullptr) = 0;
 
   /// `stop_requested` is polled during a step; once true, the step ends as interrupted.
   virtual void stop_when(std::function<bool()> stop_requested) = 0;
@@ -57,9 +59,8 @@ class Stepper {
   /// Discard a reused factorization, so that the next step does not depend on earlier solves.
   virtual void forget_factor() {}
 
-  /// Data of the reused factorization, and its restoration in a new stepper (see NewtonDirections).
-  [[nodiscard]] virtual FactorMemory memory() const { return {}; }
-  virtual void recall(const FactorMemory& /*memory*/) {}
+  /// Whether the next step may reuse a factorization.
+  [[nodiscard]] virtual bool keeps_factor() const { return false; }
 };
 
 /// Cell at the node with the largest vector; vectors that are not finite come first.

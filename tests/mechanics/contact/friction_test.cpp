@@ -129,7 +129,7 @@ TEST(Friction, ABlockSticksBelowTheCoefficientAndSlidesAboveIt) {
   for (const double ratio : {0.2, 0.45, 0.55, 1.0}) {
     Model model(table.bodies.tissue());
     const Tissue& tissue = model.tissue;
-    model.volumes().hold(false);
+    model.volumes.hold(false);
     const ElasticModuli stiff = ElasticModuli::from_young(100, 0);  // what is soft goes on creeping for long
     model.laws.push_back(std::make_unique<Corotational>(tissue, stiff, 0));
     model.laws.push_back(std::make_unique<Dilatation>(tissue, stiff.bulk_modulus()));

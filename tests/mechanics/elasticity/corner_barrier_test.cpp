@@ -45,7 +45,7 @@ TEST(CornerBarrier, HoldsACornerUpright) {
   for (const bool with_barrier : {false, true}) {
     Model model(build_block({.length_um = 20, .width_um = 20, .cell_height_um = 20, .cells = {1, 1, 1}}));
     add_elasticity(model, 0);
-    model.volumes().hold(false);
+    model.volumes.hold(false);
     const Vectors& rest = model.tissue.rest_positions;
     const NodeId pushed = model.tissue.elements[0][6], opposite = model.tissue.elements[0][0];
     for (const NodeId node : model.tissue.elements[0])

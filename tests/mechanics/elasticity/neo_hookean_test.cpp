@@ -246,20 +246,6 @@ TEST(NeoHookean, FlowKeepsVolume) {
   EXPECT_GT(changed, 0.1);
 }
 
-// Daughters grow: a law that has been told is the law made anew, to the bit.
-TEST(NeoHookean, NewRestShapesAreTaken) {
-  Tissue tissue = distorted_block({.length_um = 220, .width_um = 20, .cells = {11, 1, 1}}, 2, 5);
-  NeoHookean law = law_of(tissue, 0.4, 2);
-  const std::vector<ElementId> changed = {ElementId(2), ElementId(10)};
-  for (const ElementId e : changed)
-    for (Vec3& X : tissue.element_rest_shape[e.index()]) X *= 1.1;
-  law.take_rest_shapes(tissue, changed);
-  const NeoHookean anew = law_of(tissue, 0.4, 2);
-  const Motion motion = flowing_motion(anew, tissue, 2, 3);
-  EXPECT_EQ(forces_of(law, motion.step()), forces_of(anew, motion.step()));
-  EXPECT_EQ(law.energy(motion.step()), anew.energy(motion.step()));
-}
-
 // Daughters have their mother's modulus, relaxation and flow; cells whose elements stay feel the same forces.
 TEST(NeoHookean, DaughtersHaveTheirMothersFlow) {
   Model model(build_block({.length_um = 100, .width_um = 20, .cell_height_um = 40, .cells = {5, 1, 1}}));

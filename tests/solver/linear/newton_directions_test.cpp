@@ -60,7 +60,7 @@ TEST(NewtonDirections, AreTheSameWhicheverWayTheyAreFound) {
   models.push_back(dimpling_sheet());
   models.push_back(dimpling_sheet({2, 1, 2}));
   models.push_back(dimpling_sheet());
-  models.back().volumes().hold(false);
+  models.back().volumes.hold(false);
   models.push_back(dimpling_sheet());
   for (std::size_t n = 0; n < 8; ++n) models.back().held[n] = {true, n % 2 == 0, false};
   models.push_back(furrowing_sphere());
@@ -214,26 +214,6 @@ struct Bordered {
   BlockCholesky factor;
   ContactBorder border;
 };
-
-// A memory is read from a file.
-TEST(ContactBorder, RecallsAnyNumberOfChanges) {
-  const Model model = furrowing_sphere();
-  const Case given(model);
-  Bordered now(given, model);
-  FactorMemory memory;
-  for (int k = 0; k < 40; ++k) {
-    memory.changed_contacts.push_back(k);
-    memory.has_left.push_back(false);
-    memory.normals.push_back(Vec3::UnitX());
-  }
-  now.border.recall(memory, now.factor);
-  Iterate changed = given.at;
-  changed.in_contact[41] ^= 1;
-  EXPECT_FALSE(now.border.follow(changed, now.factor)) << "too many to go on with";
-  FactorMemory again;
-  now.border.remember(again);
-  EXPECT_EQ(again.changed_contacts, memory.changed_contacts);
-}
 
 TEST(ContactBorder, TakesUpOnlySoManyChanges) {
   const Model model = furrowing_sphere();

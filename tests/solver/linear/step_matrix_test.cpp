@@ -27,17 +27,17 @@ TEST(StepMatrix, ProductIsTheSumOfTheLawsMatrixFreeProducts) {
     const Motion motion = random_motion(model.tissue, 2, 1);
     Random random(2);
     std::vector<double> pressures;
-    for (std::size_t c = 0; c < model.volumes().count(); ++c) pressures.push_back(random.number());
+    for (std::size_t c = 0; c < model.volumes.count(); ++c) pressures.push_back(random.number());
 
     StepMatrix matrix(model);
     matrix.set_zero();
     for (const auto& law : model.laws) law->add_tangent(motion.step(), matrix);
-    model.volumes().add_tangent(motion.positions, pressures, matrix);
+    model.volumes.add_tangent(motion.positions, pressures, matrix);
 
     const Vectors direction = random.vectors(model.tissue.node_count());
     Vectors expected(direction.size(), Vec3::Zero());
     for (const auto& law : model.laws) law->add_tangent_product(motion.step(), direction, expected);
-    model.volumes().add_tangent_product(motion.positions, pressures, direction, expected);
+    model.volumes.add_tangent_product(motion.positions, pressures, direction, expected);
     const Vectors assembled = product_of(matrix, direction);
     for (std::size_t n = 0; n < expected.size(); ++n)
       EXPECT_LE((assembled[n] - expected[n]).norm(), 1e-12 * largest(expected));
@@ -59,7 +59,7 @@ TEST(StepMatrix, VolumeRatesAreTheDerivativesOfTheVolumes) {
     above[n] += d * direction[n];
     below[n] -= d * direction[n];
   }
-  const auto v_above = model.volumes().volumes(above), v_below = model.volumes().volumes(below);
+  const auto v_above = model.volumes.volumes(above), v_below = model.volumes.volumes(below);
   ASSERT_EQ(rates.size(), 9u);
   for (std::size_t c = 0; c < rates.size(); ++c) EXPECT_NEAR(rates[c], (v_above[c] - v_below[c]) / (2 * d), 1e-5);
 }
@@ -71,10 +71,10 @@ TEST(StepMatrix, PressureForcesAreThoseOfTheVolumes) {
   matrix.take_gradients(model, motion.positions);
   Random random(6);
   std::vector<double> pressures;
-  for (std::size_t c = 0; c < model.volumes().count(); ++c) pressures.push_back(random.number());
+  for (std::size_t c = 0; c < model.volumes.count(); ++c) pressures.push_back(random.number());
   Vectors through_matrix(model.tissue.node_count(), Vec3::Zero()), direct = through_matrix;
   matrix.jacobian().add_forces(pressures, 1, through_matrix);
-  model.volumes().add_forces(motion.positions, pressures, direct);
+  model.volumes.add_forces(motion.positions, pressures, direct);
   for (std::size_t n = 0; n < direct.size(); ++n)
     EXPECT_LE((through_matrix[n] - direct[n]).norm(), 1e-13 * largest(direct));
 }
@@ -157,7 +157,7 @@ TEST(StepMatrix, WrittenValuesAreTheFramedSystem) {
 // A node that is held needs no stiffness for that: nothing pulls at these, and the system is still not singular.
 TEST(StepMatrix, AFixedUnknownWithoutStiffnessHasAPivot) {
   Model model(build_block({.cells = {1, 1, 1}}));
-  model.volumes().hold(false);
+  model.volumes.hold(false);
   StepMatrix matrix(model);
   matrix.set_zero();
   std::vector<NodeFrame> frames(model.tissue.node_count());

@@ -35,7 +35,7 @@ double distance(const State& a, const State& b) {
 /// A sheet without volumes or shell, some of it held; and where it is after a while of contraction.
 Model held_sheet() {
   Model model = dimpling_sheet();
-  model.volumes().hold(false);
+  model.volumes.hold(false);
   for (std::size_t n = 0; n < model.held.size(); n += 5) model.held[n] = {true, n % 2 == 0, false};
   return model;
 }

@@ -46,7 +46,7 @@ Model sheet(bool volumes_are_held) {
     if (std::abs(x.x()) > 29 && std::abs(x.y()) > 29 && x.z() < model.tissue.rest_positions[0].z() + 1)
       model.held[n] = {true, true, true};
   }
-  model.volumes().hold(volumes_are_held);
+  model.volumes.hold(volumes_are_held);
   return model;
 }
 
@@ -81,7 +81,7 @@ TEST(ProjectedStepper, RestsWhereTheoryHasIt) {
       const State rest = come_to_rest(*stepper, rest_state(model), h, 4000);
       // W J^T p, and with it both balances.
       Vectors pushed(rest.positions.size(), Vec3::Zero()), balance = still_forces(model, rest);
-      model.volumes().add_forces(rest.positions, rest.multipliers, pushed);
+      model.volumes.add_forces(rest.positions, rest.multipliers, pushed);
       const double size = largest(balance);
       Vectors plain = balance;
       for (std::size_t n = 0; n < plain.size(); ++n) plain[n] += pushed[n];
@@ -153,7 +153,7 @@ TEST(ProjectedStepper, ByMobilityComesToTheCoupledSolve) {
 
 TEST(ProjectedStepper, EveryStepKeepsVolumesAndShell) {
   Model model = furrowing_sphere();
-  model.volumes().hold(false);
+  model.volumes.hold(false);
   int cases = 0;
   for (const Forces forces : {Forces::newton, Forces::linearly_implicit}) {
     const auto stepper = make_stepper(model, scheme(forces));
@@ -163,7 +163,7 @@ TEST(ProjectedStepper, EveryStepKeepsVolumesAndShell) {
       ASSERT_TRUE(report.converged()) << report.reason();
       EXPECT_GT(report.cubics, 0);
       EXPECT_LE(report.constraint_error, 1e-9);
-      for (const double error : model.volumes().relative_errors(next.positions)) EXPECT_LE(std::abs(error), 1e-9);
+      for (const double error : model.volumes.relative_errors(next.positions)) EXPECT_LE(std::abs(error), 1e-9);
       for (const NodeId node : model.obstacles.front()->nodes())
         EXPECT_GE(model.obstacles.front()->gap(next.positions[node.index()]).value, -1e-6);
       for (std::size_t n = 0; n < next.positions.size(); ++n)
@@ -177,7 +177,7 @@ TEST(ProjectedStepper, EveryStepKeepsVolumesAndShell) {
 
 TEST(ProjectedStepper, OneAndTwoThreadsGiveTheSameBits) {
   Model model = furrowing_sphere();
-  model.volumes().hold(false);
+  model.volumes.hold(false);
   int cases = 0;
   for (const Forces forces : {Forces::newton, Forces::linearly_implicit}) {
     std::vector<State> ends;

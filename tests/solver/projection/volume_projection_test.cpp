@@ -37,7 +37,7 @@ StepReport project(const Model& model, const ProjectionRule& rule, State& state)
 
 double worst_error(const Model& model, const Vectors& positions) {
   double worst = 0;
-  for (const double error : model.volumes().relative_errors(positions)) worst = std::max(worst, std::abs(error));
+  for (const double error : model.volumes.relative_errors(positions)) worst = std::max(worst, std::abs(error));
   return worst;
 }
 
@@ -156,8 +156,8 @@ TEST(VolumeProjection, WholeSurfaces) {
   StepReport report = project(model, {.surfaces = ProjectionRule::Surfaces::tissue}, state);
   ASSERT_TRUE(report.converged()) << report.reason();
   double volume = 0, target = 0;
-  const std::vector<double> volumes = model.volumes().volumes(state.positions);
-  for (std::size_t c = 0; c < volumes.size(); ++c) volume += volumes[c], target += model.volumes().targets()[c];
+  const std::vector<double> volumes = model.volumes.volumes(state.positions);
+  for (std::size_t c = 0; c < volumes.size(); ++c) volume += volumes[c], target += model.volumes.targets()[c];
   EXPECT_NEAR(volume / target, 1, 1e-9);
   EXPECT_GT(worst_error(model, state.positions), 1e-3);
 

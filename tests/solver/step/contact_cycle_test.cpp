@@ -76,7 +76,7 @@ class Floor final : public Obstacle {
 // Changing every contact at once, this goes (none) -> ... -> the same again, in a step of any length that matters.
 TEST(ContactCycle, Ends) {
   Model model(build_block({.length_um = 20, .width_um = 20, .cell_height_um = 20, .cells = {1, 1, 1}}));
-  model.volumes().hold(false);
+  model.volumes.hold(false);
   std::vector<NodeId> low;
   double floor = 1e9;
   for (const Vec3& x : model.tissue.rest_positions) floor = std::min(floor, x.z());

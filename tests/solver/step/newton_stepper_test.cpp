@@ -32,7 +32,7 @@ State steps(NewtonStepper& solver, State state, double duration_s, int count, St
 
 double worst_volume_error(const Model& model, const State& state) {
   double worst = 0;
-  for (const double error : model.volumes().relative_errors(state.positions)) worst = std::max(worst, std::abs(error));
+  for (const double error : model.volumes.relative_errors(state.positions)) worst = std::max(worst, std::abs(error));
   return worst;
 }
 
@@ -60,7 +60,7 @@ TEST(NewtonStepper, AStepBalancesForcesAndKeepsVolumes) {
 
 TEST(NewtonStepper, WithoutTheConstraintVolumesAreFree) {
   Model model = dimpling_sheet();
-  model.volumes().hold(false);
+  model.volumes.hold(false);
   NewtonStepper solver(model);
   const State before = rest_state(model);
   State after;
@@ -329,7 +329,7 @@ TEST(NewtonStepper, WholeCellsMayBeHeldWithTheirVolumes) {
 /// One cell, 20 um each way, that nothing but drag resists: 14 nN s/um on each node.
 Model dragged_cell() {
   Model model(build_block({.length_um = 20, .width_um = 20, .cell_height_um = 20, .cells = {1, 1, 1}}));
-  model.volumes().hold(false);
+  model.volumes.hold(false);
   add_drag(model);
   return model;
 }
