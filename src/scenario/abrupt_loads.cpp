@@ -13,17 +13,6 @@
 namespace plica {
 namespace {
 
-// A tension that falls with the length or the area on which it acts ends softly by itself.
-bool is_constant(const ContractionInput& input) {
-  return input.edges != "lateral" && input.stiffness_nN_per_um == 0 &&
-         (input.tension_mN_per_m > 0 || input.preload_nN > 0);
-}
-
-bool is_constant(const CortexInput& input) {
-  return input.faces != "lateral" && input.tension_mN_per_m > 0 && input.saturation_ratio == 0 &&
-         input.stiffness_mN_per_m == 0 && input.crowding_mN_per_m == 0 && input.follow.measure.empty();
-}
-
 // The axis along which a region ends inside the tissue, by most of the walls at its border; empty if it does not.
 std::optional<std::string> axis_of_border(const Tissue& tissue, const CellSet& region) {
   const auto neighbours = wall_neighbours(tissue);
@@ -40,10 +29,9 @@ std::optional<std::string> axis_of_border(const Tissue& tissue, const CellSet& r
 }
 
 // Distance from the middle of the region to its border along an axis: that of the farthest centre and half a cell.
-template <class Input>
-double half_width_um(const Input& input, const Tissue& tissue, const std::string& axis) {
+double half_width_um(const ActingInput& input, const Tissue& tissue, const std::string& axis) {
   constexpr double far_um = 1e6;
-  Input linear = input;
+  ActingInput linear = input;
   linear.profile.shape = "linear";
   linear.profile.axis = axis;
   linear.profile.half_width_um = far_um;
@@ -68,19 +56,16 @@ double half_width_um(const Input& input, const Tissue& tissue, const std::string
 
 std::vector<std::string> abrupt_loads(const Scenario& scenario, const Tissue& tissue) {
   std::vector<std::string> warnings;
-  const auto look = [&](const std::string& table, const auto& inputs) {
-    for (const auto& [name, input] : inputs) {
-      if (!is_constant(input) || !input.profile.shape.empty()) continue;
-      const auto axis = axis_of_border(tissue, tissue.regions.at(input.region));
-      if (!axis) continue;
-      warnings.push_back(fmt::format(
-          "{0}.{1}: a constant tension ends at full strength at the border of region {2}, so depth has no limit under "
-          "refinement; set {0}.{1}.profile = {{ shape = \"linear\", axis = \"{3}\", half_width_um = {4:.3g} }}",
-          table, name, input.region, *axis, half_width_um(input, tissue, *axis)));
-    }
-  };
-  look("contraction", scenario.contractions);
-  look("cortex", scenario.cortices);
+  for (const Acting& acting : acting_tables(scenario)) {
+    const ActingInput& input = acting.input;
+    if (!acting.is_constant || !input.profile.shape.empty()) continue;
+    const auto axis = axis_of_border(tissue, tissue.regions.at(input.region));
+    if (!axis) continue;
+    warnings.push_back(fmt::format(
+        "{0}: a constant tension ends at full strength at the border of region {1}, so depth has no limit under "
+        "refinement; set {0}.profile = {{ shape = \"linear\", axis = \"{2}\", half_width_um = {3:.3g} }}",
+        acting.table, input.region, *axis, half_width_um(input, tissue, *axis)));
+  }
   return warnings;
 }
 
