@@ -69,7 +69,8 @@ void advise_on_neo_hookean(const Scenario& scenario, const Tissue& tissue, const
 std::set<std::string> used_regions(const Scenario& scenario) {
   std::set<std::string> used;
   for (const ScenarioTable& table : scenario_tables())
-    if (table.regions) table.regions(scenario, [&](const std::string&, const std::string& region) { used.insert(region); });
+    if (table.regions)
+      table.regions(scenario, [&](const std::string&, const std::string& region) { used.insert(region); });
   return used;
 }
 

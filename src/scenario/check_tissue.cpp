@@ -23,10 +23,10 @@ void check_faces(const Scenario& scenario, const Acting& acting, const Tissue& t
   const CellSet& region = tissue.regions.at(acting.input.region);
   const auto& facets = side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets;
   if (std::ranges::none_of(facets, [&](const Facet& facet) { return region[facet.cell.index()]; }))
-    errors.push_back(diagnostic_at(scenario, acting.table + ".region",
-                                   fmt::format("no cell of this region has {} {} face",
-                                               side == CellSide::apical ? "an" : "a", acting.input.faces),
-                                   fmt::format("set region to cells with this face, or change {}", acting.faces_key)));
+    errors.push_back(diagnostic_at(
+        scenario, acting.table + ".region",
+        fmt::format("no cell of this region has {} {} face", side == CellSide::apical ? "an" : "a", acting.input.faces),
+        fmt::format("set region to cells with this face, or change {}", acting.faces_key)));
 }
 
 // Checks profiles by array: the tissue has the array, with a finite value in every cell of the region.

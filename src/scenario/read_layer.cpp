@@ -246,7 +246,8 @@ class Reader {
     }
   }
 
-  void read_named_table(const ScenarioTable& info, const std::string& name, const toml::key& key, const toml::node& node) {
+  void read_named_table(const ScenarioTable& info, const std::string& name, const toml::key& key,
+                        const toml::node& node) {
     const std::string path = joined(std::string(info.stem()), name);
     if (!is_known_name(info, name, key, path)) return;
     if (info.stem() == "expect" && node.is_value()) {
@@ -261,7 +262,8 @@ class Reader {
     read_keys(std::string(info.path), name, "", *table);
   }
 
-  bool is_known_name(const ScenarioTable& info, const std::string& name, const toml::key& key, const std::string& path) {
+  bool is_known_name(const ScenarioTable& info, const std::string& name, const toml::key& key,
+                     const std::string& path) {
     if (info.stem() == "expect") {
       if (name.find('.') != std::string::npos) return true;  // a monitor's, which may not have been read yet
       const auto names = expectation_names();

@@ -159,7 +159,7 @@ struct ActingInput {
 
 /// Different elastic properties of a region, or of a layer of its elements.
 struct RegionElasticityInput : ActingInput {  // profile: factor on the modulus
-  std::optional<Range> height_percent;  // of element centres, basal to apical; empty: all
+  std::optional<Range> height_percent;        // of element centres, basal to apical; empty: all
   std::optional<double> young_modulus_Pa;
   std::optional<double> poisson_ratio;
   std::optional<double> relaxation_s;

@@ -21,7 +21,6 @@ struct Input;
 struct Model;
 struct Origin;
 struct Tissue;
-class SymmetryCheck;
 
 /// Field that a row fills; monostate for `base`, which only the loader reads.
 using Slot = std::variant<std::monostate, int*, double*, bool*, std::string*, std::optional<int>*,
@@ -65,6 +64,7 @@ struct Row {
   [[nodiscard]] bool used_by(std::string_view shape) const;
 };
 
+using TakeNodes = std::function<void(const std::string& table, const std::vector<bool>& nodes)>;
 using TakeRegion = std::function<void(const std::string& address, const std::string& region)>;
 
 /// One table, or all named tables of one kind. Functions that a table does not need are empty.
@@ -82,8 +82,9 @@ struct ScenarioTable {
   std::function<void(const Scenario&, const Tissue&, std::vector<Diagnostic>&)> check = {};
   /// Adds laws, constraints and fixed nodes to a model.
   std::function<void(const Scenario&, const Origin&, Model&)> build = {};
-  /// Checks what mirror planes require; those of acting tables are the same for all.
-  std::function<void(const Scenario&, SymmetryCheck&)> check_mirror = {};
+  /// Names the nodes that it fixes; mirror planes require them, and regions of tables that act, to be symmetric.
+  std::function<void(const Scenario&, const Tissue&, const TakeNodes&)> held_nodes = {};
+  bool mirrored_regions = false;  // mirror planes require its regions to be symmetric, though it does not act
   /// Lists the tables whose cells act.
   std::function<void(const Scenario&, std::vector<Acting>&)> acting = {};
 
@@ -98,11 +99,11 @@ struct InnerTables {
   std::string_view meaning;
 };
 
-std::span<const ScenarioTable> scenario_tables();         // in the order of a resolved scenario
-std::span<const Row> rows_of(std::string_view table);     // rows of one table, in order
-std::span<const InnerTables> inner_tables();              // in the order of the reference page
-const Row* row_of_key(std::string_view dotted);           // "contraction.apical.region"; null if unknown
-std::span<const std::string_view> expectation_names();    // names allowed in [expect]
+std::span<const ScenarioTable> scenario_tables();       // in the order of a resolved scenario
+std::span<const Row> rows_of(std::string_view table);   // rows of one table, in order
+std::span<const InnerTables> inner_tables();            // in the order of the reference page
+const Row* row_of_key(std::string_view dotted);         // "contraction.apical.region"; null if unknown
+std::span<const std::string_view> expectation_names();  // names allowed in [expect]
 
 /// Resets the row's field of `scenario` to its default.
 void reset_to_default(const Row& row, Scenario& scenario, const std::string& name);

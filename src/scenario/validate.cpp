@@ -32,10 +32,10 @@ void check_required_keys(const ScenarioTable& info, const Scenario& scenario, In
       std::vector<std::string> others = names;
       std::erase(others, name);
       const std::optional<std::string> meant = nearest_name(name, others);
-      input.report(address, "is missing",
-                   row.remedy() + (meant ? fmt::format(", or rename the table to {}.{} (nearest match)", info.stem(),
-                                                       *meant)
-                                         : ""));
+      input.report(
+          address, "is missing",
+          row.remedy() +
+              (meant ? fmt::format(", or rename the table to {}.{} (nearest match)", info.stem(), *meant) : ""));
     }
   }
 }

@@ -3,7 +3,6 @@
 
 #include "core/clock.hpp"
 #include "scenario/suggest.hpp"
-#include "scenario/symmetry.hpp"
 #include "scenario/tables/table.hpp"
 
 namespace plica {
@@ -28,37 +27,30 @@ void check_ablations(Scenario& scenario, Input& input) {
   for (const auto& [name, it] : scenario.ablations) check_ablation("ablation." + name, it, known, input);
 }
 
-void check_mirror(const Scenario& scenario, SymmetryCheck& check) {
-  for (const auto& [name, it] : scenario.ablations) check.check_region("ablation." + name, it.region);
-}
-
 }  // namespace
 
 ScenarioTable ablation_table() {
   using A = AblationInput;
-  ScenarioTable info{"ablation.*",
-                     "Laser ablation or optogenetic inhibition: loss of cortical and contractile strength.",
-                     "Activity"};
+  ScenarioTable info{
+      "ablation.*", "Laser ablation or optogenetic inhibition: loss of cortical and contractile strength.", "Activity"};
   const auto row = rows_in(info, &Scenario::ablations);
   info.rows = {
       row("region", &A::region, anything, "Cells that lose strength.", {.required = true}),
       row("faces", &A::faces, one_of(words::edges),
-               "Affected faces: cortices lose tension and stiffness, contractions of their edges all forces. A lateral "
-               "face keeps the half of a neighbour outside the region."),
+          "Affected faces: cortices lose tension and stiffness, contractions of their edges all forces. A lateral "
+          "face keeps the half of a neighbour outside the region."),
       row("only", &A::only, anything,
-               "Affected tables, such as [\"cortex.apical\"]; [] for all. A laser cuts the whole cortex, light "
-               "inactivates its myosin.",
-               {.may_be_empty = true}),
+          "Affected tables, such as [\"cortex.apical\"]; [] for all. A laser cuts the whole cortex, light "
+          "inactivates its myosin.",
+          {.may_be_empty = true}),
       row("at_s", &A::at_s, not_negative, "Start (s); 0: from the beginning."),
       row("at_min", &A::at_s, not_negative, "`at_s` in minutes.", {.instead_of = "at_s", .scale = 60}),
-      row("until_s", &A::until_s, positive_or_none,
-               "End (s); none: permanent."),
-      row("until_min", &A::until_s, positive_or_none,
-               "`until_s` in minutes.", {.instead_of = "until_s", .scale = 60}),
+      row("until_s", &A::until_s, positive_or_none, "End (s); none: permanent."),
+      row("until_min", &A::until_s, positive_or_none, "`until_s` in minutes.", {.instead_of = "until_s", .scale = 60}),
       row("remaining", &A::remaining, between(0, 1), "Residual activity."),
   };
   info.rules = check_ablations;
-  info.check_mirror = check_mirror;
+  info.mirrored_regions = true;
   return info;
 }
 

@@ -275,8 +275,7 @@ void add_strengths(std::vector<Row>& rows, const RowsIn<ActingInput>& table) {
 void add_pattern(std::vector<Row>& rows, const RowsIn<ActingInput>& table) {
   using A = ActingInput;
   add_strengths(rows, table);
-  rows.push_back(table("delay.speed_um_per_s", &A::delay, &DelayInput::speed_um_per_s,
-                       positive_or_none,
+  rows.push_back(table("delay.speed_um_per_s", &A::delay, &DelayInput::speed_um_per_s, positive_or_none,
                        "Wave speed (µm/s). Before the wave arrives, a cell is slack."));
   rows.push_back(table("delay.axis", &A::delay, &DelayInput::axis, one_of(words::delay_axes),
                        "Direction of the wave, as in `profile.axis`; default along."));
@@ -293,8 +292,7 @@ void add_pattern(std::vector<Row>& rows, const RowsIn<ActingInput>& table) {
                        "Own phase per cell, drawn by seed and position, or one for all; default random."));
   rows.push_back(table("pulse.spread", &A::pulse, &PulseInput::spread, between(0, 1),
                        "Relative standard deviation of the log-normal periods of cells."));
-  rows.push_back(
-      table("pulse.seed", &A::pulse, &PulseInput::seed, not_negative, "Random seed of phases and periods."));
+  rows.push_back(table("pulse.seed", &A::pulse, &PulseInput::seed, not_negative, "Random seed of phases and periods."));
 }
 
 void check_program(const std::string& table, const ProgramInput& program, Input& input, const std::string& name) {

@@ -4,38 +4,18 @@
 namespace plica {
 
 // Each in the file of its name, or of the table it belongs to.
-ScenarioTable top_table();
-ScenarioTable embryo_table();
-ScenarioTable region_table();
-ScenarioTable elasticity_table();
-ScenarioTable region_elasticity_table();
-ScenarioTable volume_table();
-ScenarioTable vitelline_table();
-ScenarioTable dynamics_table();
-ScenarioTable contraction_table();
-ScenarioTable cortex_table();
-ScenarioTable enclosed_table();
-ScenarioTable self_contact_table();
-ScenarioTable hold_table();
-ScenarioTable pressure_table();
-ScenarioTable ablation_table();
-ScenarioTable division_table();
-ScenarioTable time_table();
-ScenarioTable stop_table();
-ScenarioTable criterion_table();
-ScenarioTable monitor_table();
-ScenarioTable measure_table();
-ScenarioTable furrow_table();
-ScenarioTable output_table();
-ScenarioTable expect_table();
+ScenarioTable top_table(), embryo_table(), region_table(), elasticity_table(), region_elasticity_table(),
+    volume_table(), vitelline_table(), dynamics_table(), contraction_table(), cortex_table(), enclosed_table(),
+    self_contact_table(), hold_table(), pressure_table(), ablation_table(), division_table(), time_table(),
+    stop_table(), criterion_table(), monitor_table(), measure_table(), furrow_table(), output_table(), expect_table();
 
 std::span<const ScenarioTable> scenario_tables() {
   static const std::vector<ScenarioTable> tables = {
-      top_table(),        embryo_table(),     region_table(),    elasticity_table(), region_elasticity_table(),
-      volume_table(),     vitelline_table(),  dynamics_table(),  contraction_table(), cortex_table(),
-      enclosed_table(),   self_contact_table(), hold_table(),    pressure_table(),   ablation_table(),
-      division_table(),   time_table(),       stop_table(),      criterion_table(),  monitor_table(),
-      measure_table(),    furrow_table(),     output_table(),    expect_table()};
+      top_table(),      embryo_table(),       region_table(),   elasticity_table(),  region_elasticity_table(),
+      volume_table(),   vitelline_table(),    dynamics_table(), contraction_table(), cortex_table(),
+      enclosed_table(), self_contact_table(), hold_table(),     pressure_table(),    ablation_table(),
+      division_table(), time_table(),         stop_table(),     criterion_table(),   monitor_table(),
+      measure_table(),  furrow_table(),       output_table(),   expect_table()};
   return tables;
 }
 

@@ -114,8 +114,7 @@ void describe(const X& input, const Scenario& scenario, Acting& acting) {
   // A tension that falls with the area on which it acts ends softly by itself.
   acting.is_constant = input.faces != "lateral" && input.tension_mN_per_m > 0 && input.saturation_ratio == 0 &&
                        input.stiffness_mN_per_m == 0 && input.crowding_mN_per_m == 0 && input.follow.measure.empty();
-  acting.has_sudden_onset =
-      input.tension_mN_per_m > 0 && input.trigger.measure.empty() && input.follow.measure.empty();
+  acting.has_sudden_onset = input.tension_mN_per_m > 0 && input.trigger.measure.empty() && input.follow.measure.empty();
   acting.forces = {{"tension_mN_per_m", input.tension_mN_per_m,
                     scenario.elasticity.young_modulus_Pa * units::pascal * scenario.embryo.cell_height_um}};
 }
@@ -123,44 +122,43 @@ void describe(const X& input, const Scenario& scenario, Acting& acting) {
 }  // namespace
 
 ScenarioTable cortex_table() {
-  ScenarioTable info{"cortex.*",
-                     "Actomyosin cortex: thin active, elastic layer on cell faces, with isotropic tension.",
+  ScenarioTable info{"cortex.*", "Actomyosin cortex: thin active, elastic layer on cell faces, with isotropic tension.",
                      "Activity"};
   const auto row = rows_in(info, &Scenario::cortices);
   info.rows = {
       row("region", &X::region, anything, "Cells with this cortex.", {.required = true}),
       row("faces", &X::faces, one_of(words::edges),
-             "Faces with this cortex. A lateral face is shared by two cells and takes half of its values from each."),
+          "Faces with this cortex. A lateral face is shared by two cells and takes half of its values from each."),
       row("tension_mN_per_m", &X::tension_mN_per_m, not_negative, "Active tension of a large face (mN/m = nN/µm)."),
       row("saturation_ratio", &X::saturation_ratio, not_negative,
-             "Tension saturates at small area: factor A/(A + `saturation_ratio` A₀) at area A and reference area A₀. "
-             "0: constant tension."),
+          "Tension saturates at small area: factor A/(A + `saturation_ratio` A₀) at area A and reference area A₀. "
+          "0: constant tension."),
       row("stiffness_mN_per_m", &X::stiffness_mN_per_m, not_negative,
-             "Area elasticity: tension at doubled area (mN/m)."),
+          "Area elasticity: tension at doubled area (mN/m)."),
       row("compression_ratio", &X::compression_ratio, between(0, 1),
-             "Stiffness in compression / in extension; 0: slack below the stress-free area."),
+          "Stiffness in compression / in extension; 0: slack below the stress-free area."),
       row("crowding_mN_per_m", &X::crowding_mN_per_m, not_negative,
-             "Area-loss resistance: compressive tension, times (A₀/A)² (mN/m)."),
-      row("relaxation_s", &X::relaxation_s, positive_or_none,
-             "Maxwell relaxation time of the stress-free area (s)."),
-      row("relaxation_min", &X::relaxation_s, positive_or_none,
-             "`relaxation_s` in minutes.", {.instead_of = "relaxation_s", .scale = 60}),
+          "Area-loss resistance: compressive tension, times (A₀/A)² (mN/m)."),
+      row("relaxation_s", &X::relaxation_s, positive_or_none, "Maxwell relaxation time of the stress-free area (s)."),
+      row("relaxation_min", &X::relaxation_s, positive_or_none, "`relaxation_s` in minutes.",
+          {.instead_of = "relaxation_s", .scale = 60}),
   };
   add_program(info.rows, row, &X::program);
   add_program(info.rows, row, &X::stiffness_program,
               {"stiffness_program.time_s", "stiffness_program.time_min", "stiffness_program.activity"});
-  info.rows.insert(info.rows.end(), {
-      row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::own_measures),
-             "Measure that starts the time courses."),
-      row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
-      row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
-      row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::own_measures),
-             "Measure that scales the active tension."),
-      row("follow.from", &X::follow, &FollowInput::from, not_negative,
-             "Value at which, and before which, the factor is 0."),
-      row("follow.to", &X::follow, &FollowInput::to, not_negative,
-             "Value at which, and beyond which, the factor is 1."),
-  });
+  info.rows.insert(info.rows.end(),
+                   {
+                       row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::own_measures),
+                           "Measure that starts the time courses."),
+                       row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
+                       row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
+                       row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::own_measures),
+                           "Measure that scales the active tension."),
+                       row("follow.from", &X::follow, &FollowInput::from, not_negative,
+                           "Value at which, and before which, the factor is 0."),
+                       row("follow.to", &X::follow, &FollowInput::to, not_negative,
+                           "Value at which, and beyond which, the factor is 1."),
+                   });
   add_pattern(info.rows, acting(row));
   info.rules = check_cortices;
   info.build = build;

@@ -54,19 +54,18 @@ ScenarioTable division_table() {
       row("at_s", &V::at_s, positive, "Time of division (s)."),
       row("at_min", &V::at_s, positive, "`at_s` in minutes.", {.instead_of = "at_s", .scale = 60}),
       row("when", &V::when, one_of(words::division_triggers),
-               "Instead of a time: a cell divides when its apical area, volume or elongation (longer / shorter side) "
-               "exceeds `threshold`, unless it is still growing."),
+          "Instead of a time: a cell divides when its apical area, volume or elongation (longer / shorter side) "
+          "exceeds `threshold`, unless it is still growing."),
       row("threshold", &V::threshold, positive, "Threshold of `when`."),
       row("plane", &V::plane, one_of(words::division_planes),
-               "Apico-basal division plane through midpoints of opposite cell sides: across the axis, along the "
-               "midline, or across the longer side."),
+          "Apico-basal division plane through midpoints of opposite cell sides: across the axis, along the "
+          "midline, or across the longer side."),
       row("growth_s", &V::growth_s, not_negative, "Time in which daughters grow to final size (s)."),
-      row("growth_min", &V::growth_s, not_negative, "`growth_s` in minutes.",
-               {.instead_of = "growth_s", .scale = 60}),
+      row("growth_min", &V::growth_s, not_negative, "`growth_s` in minutes.", {.instead_of = "growth_s", .scale = 60}),
       row("daughter_volume_ratio", &V::daughter_volume_ratio, between(0.25, 2),
-               "Final daughter volume / mother volume."),
+          "Final daughter volume / mother volume."),
       row("max_generation", &V::max_generation, between(1, 30),
-               "Last generation; default 1 with `when`, unlimited with a time."),
+          "Last generation; default 1 with `when`, unlimited with a time."),
   };
   info.rules = check_divisions;
   info.check = check_cells;

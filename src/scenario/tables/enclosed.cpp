@@ -1,6 +1,5 @@
 // [enclosed.NAME]: the volume inside the sheet, fixed or compressible.
 #include "mechanics/constraints/enclosed_volume.hpp"
-
 #include "scenario/tables/table.hpp"
 
 namespace plica {
@@ -62,12 +61,12 @@ ScenarioTable enclosed_table() {
   const auto row = rows_in(info, &Scenario::enclosed);
   info.rows = {
       row("surface", &N::surface, one_of({"basal"}),
-               "Closed surface around the volume: the basal surface of the cells."),
+          "Closed surface around the volume: the basal surface of the cells."),
       row("volume", &N::volume, one_of(words::enclosed_states),
-               "`held`: conserved, with a Lagrange multiplier as pressure. `compliant`: by `bulk_modulus_Pa`. `free`: "
-               "unconstrained."),
+          "`held`: conserved, with a Lagrange multiplier as pressure. `compliant`: by `bulk_modulus_Pa`. `free`: "
+          "unconstrained."),
       row("bulk_modulus_Pa", &N::bulk_modulus_Pa, positive,
-               "Pressure per relative volume loss (Pa); 50 000 conserves the yolk of a furrow to about 0.1 %."),
+          "Pressure per relative volume loss (Pa); 50 000 conserves the yolk of a furrow to about 0.1 %."),
   };
   info.rules = check_enclosed;
   info.check = check_encloses_yolk;

@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "scenario/setup.hpp"
-#include "scenario/symmetry.hpp"
 #include "scenario/tables/table.hpp"
 
 namespace plica {
@@ -27,11 +26,16 @@ std::vector<bool> held_nodes(const HoldInput& input, const Tissue& tissue) {
   return held;
 }
 
+void take_nodes(const Scenario& scenario, const Tissue& tissue, const TakeNodes& take) {
+  for (const auto& [name, input] : scenario.holds) take("hold." + name, held_nodes(input, tissue));
+}
+
 void check_holds(const Scenario& scenario, const Tissue& tissue, Errors& errors) {
-  for (const auto& [name, input] : scenario.holds)
-    if (std::ranges::none_of(held_nodes(input, tissue), [](bool is_held) { return is_held; }))
-      errors.push_back(diagnostic_at(scenario, "hold." + name, "no node of the region lies in these ranges",
+  take_nodes(scenario, tissue, [&](const std::string& table, const std::vector<bool>& nodes) {
+    if (std::ranges::find(nodes, true) == nodes.end())
+      errors.push_back(diagnostic_at(scenario, table, "no node of the region lies in these ranges",
                                      "widen x_um, y_um or z_um; `plica mesh` writes the positions of nodes"));
+  });
 }
 
 void build(const Scenario& scenario, const Origin&, Model& model) {
@@ -41,10 +45,6 @@ void build(const Scenario& scenario, const Origin&, Model& model) {
       for (const std::string& direction : input.directions)
         if (nodes[n]) hold_node(NodeId(n), meaning_of(words::axes, direction), model);
   }
-}
-
-void check_mirror(const Scenario& scenario, SymmetryCheck& check) {
-  for (const auto& [name, it] : scenario.holds) check.check_nodes("hold." + name, held_nodes(it, check.whole()));
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ ScenarioTable hold_table() {
   };
   info.check = check_holds;
   info.build = build;
-  info.check_mirror = check_mirror;
+  info.held_nodes = take_nodes;
   return info;
 }
 

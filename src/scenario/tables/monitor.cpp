@@ -107,17 +107,18 @@ void check_expectations(Scenario& scenario, Input& input) {
 }  // namespace
 
 ScenarioTable stop_table() {
-  ScenarioTable info{"stop", "Early end of a run.", "Run"};
-  const auto row = rows_in(info, &Scenario::stop);
-  info.rows = {
-      row("equilibrium_speed_um_per_min", &StopInput::equilibrium_speed_um_per_min, positive,
-           "Equilibrium: all nodes are slower (µm/min)."),
-      row("at_equilibrium", &StopInput::at_equilibrium, anything,
-           "Stop at equilibrium; false records the time and continues."),
-      row("combine", &StopInput::combine, one_of(words::combinations),
-           "Stop at any, or at all, of `[stop.NAME]` and equilibrium."),
-  };
-  return info;
+  const auto row = rows_in("stop", &Scenario::stop);
+  return {"stop",
+          "Early end of a run.",
+          "Run",
+          {
+              row("equilibrium_speed_um_per_min", &StopInput::equilibrium_speed_um_per_min, positive,
+                  "Equilibrium: all nodes are slower (µm/min)."),
+              row("at_equilibrium", &StopInput::at_equilibrium, anything,
+                  "Stop at equilibrium; false records the time and continues."),
+              row("combine", &StopInput::combine, one_of(words::combinations),
+                  "Stop at any, or at all, of `[stop.NAME]` and equilibrium."),
+          }};
 }
 
 ScenarioTable criterion_table() {
@@ -129,7 +130,7 @@ ScenarioTable criterion_table() {
       row("above", &K::above, anything, "Met above this value (unit of the monitor's column)."),
       row("below", &K::below, anything, "Met below this value."),
       row("over", &K::over, one_of(words::criterion_overs),
-                "Met if any, or all, of the monitor's nodes or cells pass the bound; default: its single value."),
+          "Met if any, or all, of the monitor's nodes or cells pass the bound; default: its single value."),
   };
   info.rules = [](Scenario& scenario, Input& input) {
     for (const auto& [name, criterion] : scenario.criteria) check_criterion(name, criterion, scenario, input);
@@ -148,20 +149,20 @@ ScenarioTable monitor_table() {
       row("quantity", &M::quantity, one_of(quantity_names()), "Recorded quantity.", {.required = true}),
       row("region", &M::region, anything, "Cells measured."),
       row("face", &M::face, one_of(words::monitor_faces),
-              "Nodes of this side only; default all. For areas: the face, default apical."),
+          "Nodes of this side only; default all. For areas: the face, default apical."),
       row("axis", &M::axis, one_of(words::axes), "Component; default the norm."),
       row("from", &M::from, anything,
-              "For forces: only those exerted by cells of this region, including volume constraints; default the "
-              "driving force of the nodes."),
+          "For forces: only those exerted by cells of this region, including volume constraints; default the "
+          "driving force of the nodes."),
       row("over", &M::over, one_of(words::overs), "Statistic over nodes or cells; default mean."),
       row("reference", &M::reference, anything,
-              "Reference, path relative to the scenario file: run directory (deviation, relative_energy_norm) or mesh "
-              "(surface_distance).",
-              {.is_path = true}),
+          "Reference, path relative to the scenario file: run directory (deviation, relative_energy_norm) or mesh "
+          "(surface_distance).",
+          {.is_path = true}),
       row("reference_at", &M::reference_at, one_of(words::reference_times),
-              "Frame of the reference run; default the same time."),
+          "Frame of the reference run; default the same time."),
       row("at_s", &M::at_s, not_negative,
-              "Time of the value in `summary.json` and study tables (s), interpolated; default the last."),
+          "Time of the value in `summary.json` and study tables (s), interpolated; default the last."),
       row("at_min", &M::at_s, not_negative, "`at_s` in minutes.", {.instead_of = "at_s", .scale = 60}),
   };
   info.regions = [](const Scenario& scenario, const TakeRegion& take) {
@@ -189,7 +190,7 @@ ScenarioTable expect_table() {
       row("value", &X::value, anything, "Expected value.", {.required = true}),
       row("within", &X::within, not_negative, "Tolerance, in the unit of the value."),
       row("within_percent", &X::within_percent, not_negative, "Tolerance in percent of the value.",
-             {.instead_of = "within"}),
+          {.instead_of = "within"}),
   };
   info.rules = check_expectations;
   return info;

@@ -33,8 +33,8 @@ ScenarioTable pressure_table() {
   info.rows = {
       row("region", &P::region, anything, "Cells whose faces carry the pressure.", {.required = true}),
       row("face", &P::faces, one_of(words::pressure_faces), "Loaded face."),
-      row("pressure_Pa", &P::pressure_Pa, anything,
-               "Pressure into the cell (Pa); dead load on the reference face.", {.required = true}),
+      row("pressure_Pa", &P::pressure_Pa, anything, "Pressure into the cell (Pa); dead load on the reference face.",
+          {.required = true}),
   };
   add_program(info.rows, row, &P::program);
   add_strengths(info.rows, acting(row));

@@ -142,32 +142,30 @@ class RegionCheck {
 
 ScenarioTable region_table() {
   ScenarioTable info{
-      "region.*",
-      "Named cell set: cells that meet all given selectors, in the reference state. `all` is predefined.",
+      "region.*", "Named cell set: cells that meet all given selectors, in the reference state. `all` is predefined.",
       "Geometry"};
   const auto row = rows_in(info, &Scenario::regions);
   info.rows = {
       row("face", &R::face, one_of(words::sides), "Side of a built embryo."),
       row("cells_along", &R::cells_along, between(1, max_count),
-             "Centred strip of the face: cells along x (y on end faces)."),
+          "Centred strip of the face: cells along x (y on end faces)."),
       row("cells_across", &R::cells_across, between(1, max_count),
-             "Centred strip of the face: cells along y (z on side and end faces)."),
+          "Centred strip of the face: cells along y (z on side and end faces)."),
       row("ids", &R::ids, not_negative, "Cell numbers, from 0."),
       row("array", &R::array, anything, "Cell array: cells where it is not 0, or lies within `above` and `below`."),
       row("above", &R::above, anything, "Lower bound of the array."),
       row("below", &R::below, anything, "Upper bound of the array."),
       row("angle_deg", &R::angle_deg, anything,
-             "Angle of the cell centre about the axis, -180 to 180; 0: ventral, 90: right."),
+          "Angle of the cell centre about the axis, -180 to 180; 0: ventral, 90: right."),
       row("length_percent", &R::length_percent, between(0, 100),
-             "Position of the cell centre along the axis (% of length), from the anterior end."),
+          "Position of the cell centre along the axis (% of length), from the anterior end."),
       row("x_um", &R::x_um, anything, "x of the cell centre (µm); 0 is the centre of a built embryo."),
       row("y_um", &R::y_um, anything, "y of the cell centre (µm)."),
       row("z_um", &R::z_um, anything, "z of the cell centre (µm)."),
       row("rows", &R::rows, between(1, max_count),
-             "Number of cell rows about the ventral midline, both sides together. Rows are counted through lateral "
-             "faces."),
-      row("neighbours_of", &R::neighbours_of, anything,
-             "Cells outside this region that share a lateral face with it."),
+          "Number of cell rows about the ventral midline, both sides together. Rows are counted through lateral "
+          "faces."),
+      row("neighbours_of", &R::neighbours_of, anything, "Cells outside this region that share a lateral face with it."),
       row("rings", &R::rings, between(1, 1000), "Width of `neighbours_of` in cells; default 1."),
       row("union", &R::unite, anything, "Cells of any of these regions."),
       row("intersect", &R::intersect, anything, "Cells of each of these regions."),

@@ -60,17 +60,17 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
 ScenarioTable self_contact_table() {
   using F = SelfContactInput;
   ScenarioTable info{"self_contact", "Contact of the sheet with itself.", "Surroundings"};
-  const auto row = rows_in(info, &Scenario::self_contact);
+  const auto row = rows_in("self_contact", &Scenario::self_contact);
   info.rows = {
       row("surface", &F::surface, one_of(words::contact_surfaces), "Surfaces that resist self-intersection."),
       row("distance_um", &F::distance_um, positive, "Distance at which repulsion starts (µm)."),
       row("stiffness_kPa_per_um", &F::stiffness_kPa_per_um, positive,
-              "Contact pressure per µm below that distance (kPa/µm). At the pressure between furrow lips, tens of Pa, "
-              "the overlap is about 0.1 µm."),
+          "Contact pressure per µm below that distance (kPa/µm). At the pressure between furrow lips, tens of Pa, "
+          "the overlap is about 0.1 µm."),
       row("search_um", &F::search_um, positive,
-              "Search distance at the start of a step (µm); must exceed the motion in a step."),
+          "Search distance at the start of a step (µm); must exceed the motion in a step."),
       row("friction", &F::friction, not_negative,
-              "Coefficient of friction: tangential / normal force at which sliding starts. 0: frictionless."),
+          "Coefficient of friction: tangential / normal force at which sliding starts. 0: frictionless."),
   };
   info.rules = check_contact;
   info.check = check_contact_at_rest;

@@ -58,8 +58,8 @@ struct RowsIn {
 };
 
 template <class Table>
-RowsIn<Table> rows_in(const ScenarioTable& info, Table Scenario::*table) {
-  return {info.path, [=](Scenario& scenario, const std::string&) -> Table& { return scenario.*table; }};
+RowsIn<Table> rows_in(std::string_view path, Table Scenario::*table) {
+  return {path, [=](Scenario& scenario, const std::string&) -> Table& { return scenario.*table; }};
 }
 
 /// Also sets the names of the tables, and the region that each refers to if it has one.
