@@ -107,18 +107,17 @@ void check_expectations(Scenario& scenario, Input& input) {
 }  // namespace
 
 ScenarioTable stop_table() {
+  ScenarioTable info{"stop", "Early end of a run.", "Run"};
   const auto row = rows_in("stop", &Scenario::stop);
-  return {"stop",
-          "Early end of a run.",
-          "Run",
-          {
-              row("equilibrium_speed_um_per_min", &StopInput::equilibrium_speed_um_per_min, positive,
-                  "Equilibrium: all nodes are slower (µm/min)."),
-              row("at_equilibrium", &StopInput::at_equilibrium, anything,
-                  "Stop at equilibrium; false records the time and continues."),
-              row("combine", &StopInput::combine, one_of(words::combinations),
-                  "Stop at any, or at all, of `[stop.NAME]` and equilibrium."),
-          }};
+  info.rows = {
+      row("equilibrium_speed_um_per_min", &StopInput::equilibrium_speed_um_per_min, positive,
+          "Equilibrium: all nodes are slower (µm/min)."),
+      row("at_equilibrium", &StopInput::at_equilibrium, anything,
+          "Stop at equilibrium; false records the time and continues."),
+      row("combine", &StopInput::combine, one_of(words::combinations),
+          "Stop at any, or at all, of `[stop.NAME]` and equilibrium."),
+  };
+  return info;
 }
 
 ScenarioTable criterion_table() {

@@ -37,20 +37,17 @@ void check_integrator(const Scenario& scenario, Input& input) {
 
 ScenarioTable top_table() {
   using S = Scenario;
+  ScenarioTable info{"", "Keys at the top of the file.", "General"};
   const RowsIn<S> row{"", [](S& scenario, const std::string&) -> S& { return scenario; }};
-  return {"",
-          "Keys at the top of the file.",
-          "General",
-          {
-              row("format", &S::format, between(1, 1), "Version of the file format."),
-              row("title", &S::title, anything, "One line for reports."),
-              {"", "base", [](S&, const std::string&) -> Slot { return std::monostate(); }, anything,
-               "Scenario to inherit from, key by key: built-in name, or path relative to this file. A new "
-               "`embryo.shape` drops "
-               "inherited `[embryo]` keys it does not use; a new region selector drops an inherited `face` or `array` "
-               "that the "
-               "shape lacks."},
-          }};
+  info.rows = {
+      row("format", &S::format, between(1, 1), "Version of the file format."),
+      row("title", &S::title, anything, "One line for reports."),
+      {"", "base", [](S&, const std::string&) -> Slot { return std::monostate(); }, anything,
+       "Scenario to inherit from, key by key: built-in name, or path relative to this file. A new `embryo.shape` drops "
+       "inherited `[embryo]` keys it does not use; a new region selector drops an inherited `face` or `array` that the "
+       "shape lacks."},
+  };
+  return info;
 }
 
 ScenarioTable time_table() {
@@ -91,15 +88,14 @@ ScenarioTable time_table() {
 }
 
 ScenarioTable measure_table() {
+  ScenarioTable info{"measure", "What is measured.", "Output"};
   const auto row = rows_in("measure", &Scenario::measure);
-  return {"measure",
-          "What is measured.",
-          "Output",
-          {
-              row("sets", &MeasureInput::sets, one_of(set_names()),
-                  "Sets of [output variables](measures.md#sets) to measure; `automatic`: those that fit the tissue.",
-                  {.may_be_empty = true}),
-          }};
+  info.rows = {
+      row("sets", &MeasureInput::sets, one_of(set_names()),
+          "Sets of [output variables](measures.md#sets) to measure; `automatic`: those that fit the tissue.",
+          {.may_be_empty = true}),
+  };
+  return info;
 }
 
 ScenarioTable furrow_table() {
@@ -119,17 +115,16 @@ ScenarioTable furrow_table() {
 
 ScenarioTable output_table() {
   using O = OutputInput;
+  ScenarioTable info{"output", "Files of a run.", "Output"};
   const auto row = rows_in("output", &Scenario::output);
-  return {"output",
-          "Files of a run.",
-          "Output",
-          {
-              row("frame_every_s", &O::frame_every_s, not_negative,
-                  "Time between frames (snapshots; s); 0: first and last only."),
-              row("frame_every_min", &O::frame_every_s, not_negative, "`frame_every_s` in minutes.",
-                  {.instead_of = "frame_every_s", .scale = 60}),
-              row("cells_csv", &O::cells_csv, anything, "Write cells.csv; default up to 2000 cells."),
-          }};
+  info.rows = {
+      row("frame_every_s", &O::frame_every_s, not_negative,
+          "Time between frames (snapshots; s); 0: first and last only."),
+      row("frame_every_min", &O::frame_every_s, not_negative, "`frame_every_s` in minutes.",
+          {.instead_of = "frame_every_s", .scale = 60}),
+      row("cells_csv", &O::cells_csv, anything, "Write cells.csv; default up to 2000 cells."),
+  };
+  return info;
 }
 
 }  // namespace plica
