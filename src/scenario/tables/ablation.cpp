@@ -37,11 +37,11 @@ ScenarioTable ablation_table() {
   info.rows = {
       row("region", &A::region, anything, "Cells that lose strength.", {.required = true}),
       row("faces", &A::faces, one_of(words::edges),
-          "Affected faces: cortices lose tension and stiffness, contractions of their edges all forces. A lateral "
-          "face keeps the half of a neighbour outside the region."),
+          "Affected faces: cortices lose tension and stiffness, contractions of their edges all forces. A lateral face "
+          "keeps the half of a neighbour outside the region."),
       row("only", &A::only, anything,
-          "Affected tables, such as [\"cortex.apical\"]; [] for all. A laser cuts the whole cortex, light "
-          "inactivates its myosin.",
+          "Affected tables, such as [\"cortex.apical\"]; [] for all. A laser cuts the whole cortex, light inactivates "
+          "its myosin.",
           {.may_be_empty = true}),
       row("at_s", &A::at_s, not_negative, "Start (s); 0: from the beginning."),
       row("at_min", &A::at_s, not_negative, "`at_s` in minutes.", {.instead_of = "at_s", .scale = 60}),

@@ -223,10 +223,9 @@ void add_strengths(std::vector<Row>& rows, const RowsIn<ActingInput>& table) {
           "`constant`; `linear`: `edge` from `half_width_um` on; `gaussian`: exp(−d²/2σ²); `plateau`: `middle` on "
           "`full_cells`, then a cosine taper over `fade_cells` on either side; `table`: given points; `array`: by a "
           "cell array.");
-  profile(
-      "profile.axis", &ProfileInput::axis, one_of(words::profile_axes),
-      "Axis of d: across (arc about the embryo axis; y in an open tissue), along (x), or the angle from ventral (°); "
-      "default across.");
+  profile("profile.axis", &ProfileInput::axis, one_of(words::profile_axes),
+          "Axis of d: across (arc about the embryo axis; y in an open tissue), along (x), or the angle from ventral "
+          "(°); default across.");
   profile("profile.about", &ProfileInput::about, anything,
           "Region that sets the centre and the cell size; default the table's own region.");
   profile("profile.centre_deg", &ProfileInput::centre_deg, between(-180, 180),

@@ -8,10 +8,6 @@ namespace {
 
 using C = ContractionInput;
 
-void check_contractions(Scenario& scenario, Input& input) {
-  for (auto& [name, it] : scenario.contractions) check_acting("contraction." + name, it, scenario.time, input);
-}
-
 // Diagonals are those of four-sided faces.
 void check_diagonals(const Scenario& scenario, const Tissue& tissue, Errors& errors) {
   for (const auto& [name, it] : scenario.contractions) {
@@ -79,13 +75,12 @@ ScenarioTable contraction_table() {
       row("rest_length_ratio", &C::rest_length_ratio, not_negative, "Slack length / initial length."),
       row("preload_nN", &C::preload_nN, anything, "Pre-tension of a spring, independent of length (nN)."),
       row("tension_mN_per_m", &C::tension_mN_per_m, not_negative,
-          "Tension per length across the face (mN/m = nN/µm), independent of cell size. Stiffness and "
-          "pre-tension act on every edge, so smaller cells contract more strongly."),
+          "Tension per length across the face (mN/m = nN/µm), independent of cell size. Stiffness and pre-tension act "
+          "on every edge, so smaller cells contract more strongly."),
       row("damping_nN_s_per_um", &C::damping_nN_s_per_um, not_negative, "Spring damping (nN s/µm)."),
   };
   add_program(info.rows, row, &C::program);
   add_pattern(info.rows, acting(row));
-  info.rules = check_contractions;
   info.check = check_diagonals;
   info.build = build;
   list_acting(info, &Scenario::contractions, describe);

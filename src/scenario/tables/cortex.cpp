@@ -131,8 +131,8 @@ ScenarioTable cortex_table() {
           "Faces with this cortex. A lateral face is shared by two cells and takes half of its values from each."),
       row("tension_mN_per_m", &X::tension_mN_per_m, not_negative, "Active tension of a large face (mN/m = nN/µm)."),
       row("saturation_ratio", &X::saturation_ratio, not_negative,
-          "Tension saturates at small area: factor A/(A + `saturation_ratio` A₀) at area A and reference area A₀. "
-          "0: constant tension."),
+          "Tension saturates at small area: factor A/(A + `saturation_ratio` A₀) at area A and reference area A₀. 0: "
+          "constant tension."),
       row("stiffness_mN_per_m", &X::stiffness_mN_per_m, not_negative,
           "Area elasticity: tension at doubled area (mN/m)."),
       row("compression_ratio", &X::compression_ratio, between(0, 1),
@@ -160,9 +160,9 @@ ScenarioTable cortex_table() {
                            "Value at which, and beyond which, the factor is 1."),
                    });
   add_pattern(info.rows, acting(row));
-  info.rules = check_cortices;
   info.build = build;
   list_acting(info, &Scenario::cortices, describe);
+  info.rules = check_cortices;
   return info;
 }
 

@@ -58,8 +58,8 @@ ScenarioTable division_table() {
           "exceeds `threshold`, unless it is still growing."),
       row("threshold", &V::threshold, positive, "Threshold of `when`."),
       row("plane", &V::plane, one_of(words::division_planes),
-          "Apico-basal division plane through midpoints of opposite cell sides: across the axis, along the "
-          "midline, or across the longer side."),
+          "Apico-basal division plane through midpoints of opposite cell sides: across the axis, along the midline, or "
+          "across the longer side."),
       row("growth_s", &V::growth_s, not_negative, "Time in which daughters grow to final size (s)."),
       row("growth_min", &V::growth_s, not_negative, "`growth_s` in minutes.", {.instead_of = "growth_s", .scale = 60}),
       row("daughter_volume_ratio", &V::daughter_volume_ratio, between(0.25, 2),

@@ -210,9 +210,9 @@ ScenarioTable elasticity_table() {
   const auto row = rows_in("elasticity", &Scenario::elasticity);
   info.rows = {
       row("model", &E::model, one_of(words::elastic_models),
-          "`corotational`: linear isotropic in a frame that rotates with the cell. `neo-hookean`: for soft "
-          "cells at large strains, with optional relaxation. `shape-memory`: springs from nodes to their places "
-          "in a reference shape that follows the cell."),
+          "`corotational`: linear isotropic in a frame that rotates with the cell. `neo-hookean`: for soft cells at "
+          "large strains, with optional relaxation. `shape-memory`: springs from nodes to their places in a reference "
+          "shape that follows the cell."),
       row("young_modulus_Pa", &E::young_modulus_Pa, positive, "Young's modulus (Pa)."),
       row("poisson_ratio", &E::poisson_ratio, {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
           "Poisson's ratio; with coupled volumes it affects only the shear modulus and the dilatation within a cell."),
@@ -222,16 +222,16 @@ ScenarioTable elasticity_table() {
           {.instead_of = "relaxation_s", .scale = 60}),
       row("attractor_stiffness_nN_per_um", &E::attractor_stiffness_nN_per_um,
           {.low = 0, .low_included = false, .word_for_none = "derived"},
-          "Stiffness of the `shape-memory` springs (nN/µm), or derived: mean shear modulus as by Young's "
-          "modulus and Poisson's ratio."),
+          "Stiffness of the `shape-memory` springs (nN/µm), or derived: mean shear modulus as by Young's modulus and "
+          "Poisson's ratio."),
       row("attractor_preload_nN", &E::attractor_preload_nN, not_negative,
           "Pre-tension of these springs, independent of length (nN)."),
       row("attractor_preload_length_um", &E::attractor_preload_length_um, positive,
           "Spring length at which 0.7 of the pre-tension acts (µm); its direction is undefined at 0."),
       row("corner_barrier_Pa", &E::corner_barrier_Pa, {.low = 0, .word_for_none = "automatic"},
           "Inversion barrier (Pa): energy that diverges as a corner Jacobian vanishes, active below 0.15 of its "
-          "reference value; 0: off. `automatic`: a tenth of Young's modulus if cells are polygons, come from a "
-          "file or divide, else 0."),
+          "reference value; 0: off. `automatic`: a tenth of Young's modulus if cells are polygons, come from a file or "
+          "divide, else 0."),
   };
   info.rules = check_elasticity;
   info.build = build;
@@ -247,8 +247,8 @@ ScenarioTable region_elasticity_table() {
   info.rows = {
       row("region", &R::region, anything, "Cells with these values.", {.required = true}),
       row("height_percent", &R::height_percent, between(0, 100),
-          "Layer: only elements with their centre in this part of the cell height (0: basal, 100: apical). "
-          "Requires several elements through the height."),
+          "Layer: only elements with their centre in this part of the cell height (0: basal, 100: apical). Requires "
+          "several elements through the height."),
       row("young_modulus_Pa", &R::young_modulus_Pa, positive, "Young's modulus (Pa), times `profile` and `variation`."),
       row("poisson_ratio", &R::poisson_ratio, {.low = -1, .high = 0.5, .low_included = false, .high_included = false},
           "Poisson's ratio."),
@@ -258,9 +258,9 @@ ScenarioTable region_elasticity_table() {
           {.instead_of = "relaxation_s", .scale = 60}),
   };
   add_strengths(info.rows, acting(row));
-  info.rules = check_region_elasticities;
   info.check = check_regions;
   list_acting(info, &Scenario::region_elasticities, describe);
+  info.rules = check_region_elasticities;
   return info;
 }
 

@@ -153,8 +153,8 @@ ScenarioTable embryo_table() {
       row("width_um", &E::width_um, positive, "Width along y (µm).", {.shapes = {"block", "sheet"}}),
       row("cell_height_um", &E::cell_height_um, positive, "Cell height, basal to apical (µm).", {.shapes = built}),
       row("cells", &E::cells, between(1, max_count),
-          "Cells along x (axis), y (ventral side) and z (ventral to dorsal). A slice has them on four sides: `[1, "
-          "20, 20]` is 80 cells.",
+          "Cells along x (axis), y (ventral side) and z (ventral to dorsal). A slice has them on four sides: `[1, 20, "
+          "20]` is 80 cells.",
           {.shapes = of_grid}),
       row("elements_per_cell", &E::elements_per_cell, between(1, 16),
           "Elements per cell along x, across, and basal to apical.",
@@ -162,8 +162,8 @@ ScenarioTable embryo_table() {
       row("cell_count", &E::cell_count, between(12, max_count), "Number of cells.", {.shapes = {"egg", "sheet"}}),
       row("seed", &E::seed, between(0, 1e9), "Random seed of the cell arrangement.", {.shapes = {"egg", "sheet"}}),
       row("curvature_per_um", &E::curvature_per_um, anything,
-          "Curvature along x and y (1/µm); positive: apical side outside. `[0.005, 0]` is a cylinder, `[0.005, "
-          "0.005]` a dome, `[0.005, -0.005]` a saddle.",
+          "Curvature along x and y (1/µm); positive: apical side outside. `[0.005, 0]` is a cylinder, `[0.005, 0.005]` "
+          "a dome, `[0.005, -0.005]` a saddle.",
           {.shapes = {"sheet"}}),
       row("rim", &E::rim, one_of(words::rims), "Sheet boundary: outer lateral faces free or fixed.",
           {.shapes = {"sheet", "surface"}}),
@@ -171,8 +171,8 @@ ScenarioTable embryo_table() {
           "Periodic directions, with fixed length and no curvature: cells at opposite ends are neighbours.",
           {.may_be_empty = true, .shapes = {"sheet"}}),
       row("belly_sag_um", &E::belly_sag_um, positive,
-          "Ventral bulge beyond the chord from 20 to 80 % of the length (µm). Requires `back_sag_um`; without both, "
-          "an ellipsoid.",
+          "Ventral bulge beyond the chord from 20 to 80 % of the length (µm). Requires `back_sag_um`; without both, an "
+          "ellipsoid.",
           {.shapes = {"egg"}}),
       row("back_sag_um", &E::back_sag_um, positive, "Dorsal bulge (µm), likewise.", {.shapes = {"egg"}}),
       row("elements", &E::elements, one_of(words::polygon_splits),
@@ -199,14 +199,14 @@ ScenarioTable embryo_table() {
           {.shapes = {"surface"}}),
       row("mend", &E::mend, anything,
           "Mesh repair: merges duplicate vertices, reorients faces, drops vertices along lateral faces, lengthens "
-          "edges below `least_edge_ratio`, sharpens angles over 165°. `plica check` reports the counts. `false`: "
-          "short edges stay, other defects are refused.",
+          "edges below `least_edge_ratio`, sharpens angles over 165°. `plica check` reports the counts. `false`: short "
+          "edges stay, other defects are refused.",
           {.shapes = {"surface"}}),
       row("cell_height_array", &E::cell_height_array, anything,
           "Array of the file with cell heights (µm); replaces `cell_height_um`.", {.shapes = {"surface"}}),
       row("mirror", &E::mirror, one_of(words::mirror_planes),
-          "Symmetry planes through the centre: `\"x\"` across the axis, `\"y\"` along the midline. One side is "
-          "solved, the whole is shown and measured. `[]`: none.",
+          "Symmetry planes through the centre: `\"x\"` across the axis, `\"y\"` along the midline. One side is solved, "
+          "the whole is shown and measured. `[]`: none.",
           {.may_be_empty = true}),
       row("file", &E::file, anything,
           "Path relative to the scenario file. Shape `file`: hexahedral mesh. `points`: CSV table with columns `x_um`, "
@@ -219,9 +219,8 @@ ScenarioTable embryo_table() {
           "Cell array with the index of the apical face (0 to 5, VTK order); default: the outer surface is apical.",
           {.shapes = {"file"}}),
       row("axes", &E::axes, anything,
-          "Names of x, y and z in reports and pictures: `low-high`, or one word. Default: `[\"x\", \"y\", \"z\"]` "
-          "for a "
-          "block, sheet, points or surface, else `[\"anterior-posterior\", \"left-right\", \"ventral-dorsal\"]`. "
+          "Names of x, y and z in reports and pictures: `low-high`, or one word. Default: `[\"x\", \"y\", \"z\"]` for "
+          "a block, sheet, points or surface, else `[\"anterior-posterior\", \"left-right\", \"ventral-dorsal\"]`. "
           "`ventral-dorsal` as z: reports describe a furrow."),
   };
   info.rules = [](Scenario& scenario, Input& input) {

@@ -151,8 +151,8 @@ ScenarioTable monitor_table() {
           "Nodes of this side only; default all. For areas: the face, default apical."),
       row("axis", &M::axis, one_of(words::axes), "Component; default the norm."),
       row("from", &M::from, anything,
-          "For forces: only those exerted by cells of this region, including volume constraints; default the "
-          "driving force of the nodes."),
+          "For forces: only those exerted by cells of this region, including volume constraints; default the driving "
+          "force of the nodes."),
       row("over", &M::over, one_of(words::overs), "Statistic over nodes or cells; default mean."),
       row("reference", &M::reference, anything,
           "Reference, path relative to the scenario file: run directory (deviation, relative_energy_norm) or mesh "
@@ -178,12 +178,11 @@ ScenarioTable monitor_table() {
 
 ScenarioTable expect_table() {
   using X = ExpectInput;
-  ScenarioTable info{
-      "expect.*",
-      "Checks at the end of the run; a miss gives exit status 1: `NAME = { value = 28.89, within_percent = 5 }`, or "
-      "for a monitor `floor.position_um = { ... }`. Expectations of a built-in are not inherited through `base`, nor "
-      "checked with `--set`.",
-      "Output"};
+  ScenarioTable info{"expect.*",
+                     "Checks at the end of the run; a miss gives exit status 1: `NAME = { value = 28.89, "
+                     "within_percent = 5 }`, or for a monitor `floor.position_um = { ... }`. Expectations of a "
+                     "built-in are not inherited through `base`, nor checked with `--set`.",
+                     "Output"};
   const auto row = rows_in(info, &Scenario::expect);
   info.rows = {
       row("value", &X::value, anything, "Expected value.", {.required = true}),

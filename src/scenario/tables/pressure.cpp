@@ -7,10 +7,6 @@ namespace {
 
 using P = PressureInput;
 
-void check_pressures(Scenario& scenario, Input& input) {
-  for (auto& [name, it] : scenario.pressures) check_acting("pressure." + name, it, scenario.time, input);
-}
-
 void build(const Scenario& scenario, const Origin& origin, Model& model) {
   for (const auto& [name, input] : scenario.pressures) {
     model.laws.push_back(std::make_unique<FacePressure>(model.tissue, meaning_of(words::pressure_faces, input.faces),
@@ -38,7 +34,6 @@ ScenarioTable pressure_table() {
   };
   add_program(info.rows, row, &P::program);
   add_strengths(info.rows, acting(row));
-  info.rules = check_pressures;
   info.build = build;
   list_acting(info, &Scenario::pressures, describe);
   return info;

@@ -65,8 +65,8 @@ ScenarioTable self_contact_table() {
       row("surface", &F::surface, one_of(words::contact_surfaces), "Surfaces that resist self-intersection."),
       row("distance_um", &F::distance_um, positive, "Distance at which repulsion starts (µm)."),
       row("stiffness_kPa_per_um", &F::stiffness_kPa_per_um, positive,
-          "Contact pressure per µm below that distance (kPa/µm). At the pressure between furrow lips, tens of Pa, "
-          "the overlap is about 0.1 µm."),
+          "Contact pressure per µm below that distance (kPa/µm). At the pressure between furrow lips, tens of Pa, the "
+          "overlap is about 0.1 µm."),
       row("search_um", &F::search_um, positive,
           "Search distance at the start of a step (µm); must exceed the motion in a step."),
       row("friction", &F::friction, not_negative,

@@ -109,8 +109,8 @@ ScenarioTable volume_table() {
   const auto row = rows_in("volume", &Scenario::volume);
   info.rows = {
       row("method", &VolumeInput::method, one_of(words::volume_methods),
-          "`coupled`: equality constraints in each step. `projection`: the paper's projection after each step, so "
-          "that the equilibrium depends on the step. `none`: not conserved."),
+          "`coupled`: equality constraints in each step. `projection`: the paper's projection after each step, so that "
+          "the equilibrium depends on the step. `none`: not conserved."),
       row("projection_surface", &VolumeInput::projection_surface, one_of(words::projection_surfaces),
           "Surfaces whose volume is projected: of each cell, of the tissue, or the apical one with the lumen inside."),
       row("projection_weights", &VolumeInput::projection_weights, one_of(words::projection_weights),
@@ -127,8 +127,8 @@ ScenarioTable vitelline_table() {
   const auto row = rows_in("vitelline", &Scenario::vitelline);
   info.rows = {
       row("enabled", &VitellineInput::enabled, anything,
-          "Rigid membrane around a closed embryo (unilateral constraint); default false for a block, sheet, "
-          "surface, or open mesh of shape `file`."),
+          "Rigid membrane around a closed embryo (unilateral constraint); default false for a block, sheet, surface, "
+          "or open mesh of shape `file`."),
       row("gap_um", &VitellineInput::gap_um, not_negative, "Perivitelline gap above the apical nodes at t = 0 (µm)."),
       row("drag_Pa_s_per_um", &VitellineInput::drag_Pa_s_per_um, not_negative,
           "Viscous drag on apical nodes that slide along the membrane (Pa s/µm); 0 from 0.1 µm away."),

@@ -113,17 +113,6 @@ RowsIn<ActingInput> acting(const RowsIn<Table>& rows) {
   return {rows.path, rows.table};
 }
 
-/// Lists the tables of one kind that act. `describe` fills what depends on the kind.
-template <class Table>
-void list_acting(ScenarioTable& info, Named<Table> tables, void (*describe)(const Table&, const Scenario&, Acting&)) {
-  info.acting = [=, stem = info.stem()](const Scenario& scenario, std::vector<Acting>& all) {
-    for (const auto& [name, table] : scenario.*tables) {
-      all.push_back({fmt::format("{}.{}", stem, name), table});
-      describe(table, scenario, all.back());
-    }
-  };
-}
-
 /// Resets `field` to its default. Reports an error if it was set together with, or after, a choice that does not use
 /// it.
 template <class T>
@@ -152,5 +141,20 @@ void check_program(const std::string& table, const ProgramInput& program, Input&
 /// Checks program, profile, delay and pulse of `table`: keys that others require or do not use. Sets default axis, wave
 /// origin and phase.
 void check_acting(const std::string& table, ActingInput& acting, const TimeInput& time, Input& input);
+
+/// Lists the tables of one kind that act, and checks what all that act have. `describe` fills what depends on the kind.
+template <class Table>
+void list_acting(ScenarioTable& info, Named<Table> tables, void (*describe)(const Table&, const Scenario&, Acting&)) {
+  info.acting = [=, stem = info.stem()](const Scenario& scenario, std::vector<Acting>& all) {
+    for (const auto& [name, table] : scenario.*tables) {
+      all.push_back({fmt::format("{}.{}", stem, name), table});
+      describe(table, scenario, all.back());
+    }
+  };
+  info.rules = [=, stem = info.stem()](Scenario& scenario, Input& input) {
+    for (auto& [name, table] : scenario.*tables)
+      check_acting(fmt::format("{}.{}", stem, name), table, scenario.time, input);
+  };
+}
 
 }  // namespace plica
