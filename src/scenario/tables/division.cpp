@@ -2,6 +2,7 @@
 #include "tissue/division.hpp"
 
 #include "scenario/tables/table.hpp"
+#include "tissue/faces.hpp"
 
 namespace plica {
 namespace {

@@ -1,6 +1,5 @@
 // [volume], [vitelline] and [dynamics]: conserved volumes, membrane, drag and inertia. setup.cpp adds them to a model.
 #include "scenario/tables/table.hpp"
-#include "tissue/division.hpp"
 #include "tissue/faces.hpp"
 
 namespace plica {
