@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scenario/schema.hpp"
 #include "scenario/words.hpp"
 
 namespace plica {
@@ -26,8 +27,20 @@ StrengthProfile profile_of(const ProfileInput& input, const Tissue& tissue) {
   return profile;
 }
 
-template <class Acting>
-PatternRule strength_rule(const Acting& input, const Tissue& tissue) {
+}  // namespace
+
+std::vector<Acting> acting_tables(const Scenario& scenario) {
+  std::vector<Acting> all;
+  for (const ScenarioTable& table : scenario_tables())
+    if (table.acting) table.acting(scenario, all);
+  return all;
+}
+
+bool has_array_of(const ProfileInput& profile, const Tissue& tissue) {
+  return profile.shape != "array" || tissue.cell_arrays.contains(profile.array);
+}
+
+CellPattern make_pattern(const ActingInput& input, const Tissue& tissue) {
   PatternRule pattern;
   pattern.profile = profile_of(input.profile, tissue);
   pattern.middle = input.profile.middle.value_or(1);
@@ -37,17 +50,6 @@ PatternRule strength_rule(const Acting& input, const Tissue& tissue) {
   pattern.spread = input.variation.spread;
   pattern.seed = static_cast<std::uint64_t>(input.variation.seed);
   pattern.by_place = meaning_of(words::variation_bys, input.variation.by, false);
-  return pattern;
-}
-
-template <class Acting>
-CellPattern strengths_of(const Acting& input, const Tissue& tissue) {
-  return cell_pattern(tissue, tissue.regions.at(input.region), strength_rule(input, tissue));
-}
-
-template <class Acting>
-CellPattern pattern_of(const Acting& input, const Tissue& tissue) {
-  PatternRule pattern = strength_rule(input, tissue);
   pattern.delay.speed = input.delay.speed_um_per_s.value_or(0);
   pattern.delay.axis = meaning_of(words::delay_axes, input.delay.axis, pattern.delay.axis);
   pattern.delay.from = meaning_of(words::delay_starts, input.delay.from, pattern.delay.from);
@@ -57,27 +59,13 @@ CellPattern pattern_of(const Acting& input, const Tissue& tissue) {
   return cell_pattern(tissue, tissue.regions.at(input.region), pattern);
 }
 
-Vec3 mean(std::span<const NodeId> nodes, const Vectors& positions) {
-  Vec3 sum = Vec3::Zero();
-  for (const NodeId node : nodes) sum += positions[node.index()];
-  return sum / static_cast<double>(nodes.size());
-}
-
-// Height of the element's centre in its cell, reference state: 0 at the basal, 100 at the apical surface.
-double height_percent(const Tissue& tissue, std::size_t element) {
-  const Cell& cell = tissue.cells[tissue.element_cell[element].index()];
-  const Vec3 base = mean(cell.basal_corners(), tissue.rest_positions);
-  const Vec3 up = mean(cell.apical_corners(), tissue.rest_positions) - base;
-  return 100 * (mean(tissue.elements[element], tissue.rest_positions) - base).dot(up) / up.squaredNorm();
-}
-
-}  // namespace
-
-CellPattern make_pattern(const ContractionInput& input, const Tissue& tissue) { return pattern_of(input, tissue); }
-CellPattern make_pattern(const CortexInput& input, const Tissue& tissue) { return pattern_of(input, tissue); }
-CellPattern make_pattern(const PressureInput& input, const Tissue& tissue) { return strengths_of(input, tissue); }
-CellPattern make_pattern(const RegionElasticityInput& input, const Tissue& tissue) {
-  return strengths_of(input, tissue);
+CellPattern make_pattern(const ActingInput& input, const Origin& origin, std::vector<Ablation> ablations) {
+  CellPattern of_whole = make_pattern(input, origin.whole);
+  of_whole.ablations = std::move(ablations);
+  if (!origin.mirror.is_used()) return of_whole;
+  Division side;
+  side.origin = origin.mirror.origins;
+  return of_whole.after_division(side);
 }
 
 bool takes_from(const AblationInput& ablation, const std::string& table, const std::string& faces) {
@@ -87,56 +75,14 @@ bool takes_from(const AblationInput& ablation, const std::string& table, const s
   return names(ablation.faces, faces) && (ablation.only.empty() || names(ablation.only, table));
 }
 
-std::vector<Ablation> make_ablations(const Scenario& scenario, const std::string& table, const std::string& faces,
-                                     const Tissue& tissue) {
+CellPattern make_ablated_pattern(const Scenario& scenario, const std::string& table, const ActingInput& input,
+                                 const Origin& origin) {
   std::vector<Ablation> ablations;
-  for (const auto& [name, input] : scenario.ablations)
-    if (takes_from(input, table, faces))
-      ablations.emplace_back(tissue.regions.at(input.region), input.remaining, *input.at_s, input.until_s);
-  return ablations;
-}
-
-std::vector<bool> held_nodes(const HoldInput& input, const Tissue& tissue) {
-  const auto inside = [](const std::optional<Range>& range, double value) {
-    // The tolerance includes nodes on a plane given as [a, a] despite rounding.
-    return !range || (value >= (*range)[0] - 1e-9 && value <= (*range)[1] + 1e-9);
-  };
-  const CellSet& cells = tissue.regions.at(input.region);
-  std::vector<bool> held(tissue.node_count(), false);
-  for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
-    if (!cells[tissue.element_cell[e].index()]) continue;
-    for (const NodeId node : tissue.elements[e]) {
-      const Vec3& x = tissue.rest_positions[node.index()];
-      if (inside(input.x_um, x.x()) && inside(input.y_um, x.y()) && inside(input.z_um, x.z()))
-        held[node.index()] = true;
-    }
-  }
-  return held;
-}
-
-std::vector<bool> elements_of(const RegionElasticityInput& input, const CellSet& cells, const Tissue& tissue) {
-  std::vector<bool> result;
-  for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
-    bool is_in = cells[tissue.element_cell[e].index()];
-    if (is_in && input.height_percent) {
-      const double height = height_percent(tissue, e);
-      is_in = height >= (*input.height_percent)[0] && height <= (*input.height_percent)[1];
-    }
-    result.push_back(is_in);
-  }
-  return result;
-}
-
-void put_material(const RegionElasticityInput& input, const ElasticityInput& common, const CellPattern& pattern,
-                  const Tissue& tissue, std::vector<ElasticMaterial>& materials) {
-  const std::vector<bool> chosen = elements_of(input, pattern.cells, tissue);
-  const double modulus = input.young_modulus_Pa.value_or(common.young_modulus_Pa);
-  for (std::size_t e = 0; e < materials.size(); ++e) {
-    if (!chosen[e]) continue;
-    materials[e].factor = modulus * pattern.strengths[tissue.element_cell[e].index()] / common.young_modulus_Pa;
-    if (input.poisson_ratio) materials[e].poisson_ratio = *input.poisson_ratio;
-    if (input.relaxation_s) materials[e].relaxation_s = *input.relaxation_s;
-  }
+  for (const auto& [name, ablation] : scenario.ablations)
+    if (takes_from(ablation, table, input.faces))
+      ablations.emplace_back(origin.whole.regions.at(ablation.region), ablation.remaining, *ablation.at_s,
+                             ablation.until_s);
+  return make_pattern(input, origin, std::move(ablations));
 }
 
 }  // namespace plica

@@ -1,32 +1,65 @@
-// Cells, nodes and elements affected by a scenario table, on a tissue with resolved regions.
+// Tables whose cells act (elasticity.NAME, contraction.NAME, cortex.NAME, pressure.NAME): a view of each, and its
+// pattern on a tissue with resolved regions.
 #pragma once
 
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "mechanics/active/cell_pattern.hpp"
 #include "scenario/scenario.hpp"
+#include "tissue/mirror.hpp"
 
 namespace plica {
 
-/// Per-cell activation of a table: region, amplitude factors, delays and pulses (pressures and elasticity: factors
-/// only).
-CellPattern make_pattern(const ContractionInput& input, const Tissue& tissue);
-CellPattern make_pattern(const CortexInput& input, const Tissue& tissue);
-CellPattern make_pattern(const PressureInput& input, const Tissue& tissue);
-CellPattern make_pattern(const RegionElasticityInput& input, const Tissue& tissue);
+/// One table that acts.
+struct Acting {
+  /// Force that remedies reduce.
+  struct Force {
+    std::string_view key;
+    double value = 0;
+    double most = 0;  // that strains cells by about 1
+  };
+
+  std::string table;  // "cortex.apical"
+  const ActingInput& input;
+  std::string_view faces_key = {};  // faces, edges or face; empty: acts on whole cells
+  bool can_be_ablated = false;
+  bool contracts = false;        // apical surfaces, where a furrow is measured by default
+  bool is_constant = false;      // a tension that does not depend on the deformation
+  bool has_sudden_onset = true;  // without a program
+  std::vector<Force> forces = {};
+};
+
+/// Lists all of a scenario, in the order of a resolved scenario.
+std::vector<Acting> acting_tables(const Scenario& scenario);
+
+/// Whole tissue, in which cells are counted from the midline, and the part of it that is solved.
+struct Origin {
+  const Tissue& whole;
+  const Mirror& mirror;
+};
+
+/// Whether the tissue has the array of a profile by array.
+bool has_array_of(const ProfileInput& profile, const Tissue& tissue);
+
+/// Per-cell activation of a table: region, amplitude factors, delays and pulses.
+CellPattern make_pattern(const ActingInput& input, const Tissue& tissue);
+
+/// Makes the pattern on the solved cells.
+CellPattern make_pattern(const ActingInput& input, const Origin& origin, std::vector<Ablation> ablations = {});
 
 /// Whether an ablation affects `table` (cortex.NAME or contraction.NAME), which acts on `faces` or their edges.
 bool takes_from(const AblationInput& ablation, const std::string& table, const std::string& faces);
 
-/// Ablations of the scenario that affect this table.
-std::vector<Ablation> make_ablations(const Scenario& scenario, const std::string& table, const std::string& faces,
-                                     const Tissue& tissue);
+/// Makes the pattern on the solved cells, with the ablations that affect this table.
+CellPattern make_ablated_pattern(const Scenario& scenario, const std::string& table, const ActingInput& input,
+                                 const Origin& origin);
+
+inline Program make_program(const ProgramInput& input) { return {input.time_s, input.activity}; }
 
 /// Longest time step that resolves the pulses (s).
 inline double longest_step_of_pulses_s(const PulseInput& pulse) { return *pulse.period_s / (12 * (1 + pulse.spread)); }
-
-/// Fixed nodes of a [hold.NAME] table; one entry per node.
-std::vector<bool> held_nodes(const HoldInput& input, const Tissue& tissue);
 
 /// Elastic properties of one element.
 struct ElasticMaterial {
@@ -35,11 +68,8 @@ struct ElasticMaterial {
   double relaxation_s = 0;  // 0: none
 };
 
-/// Elements affected by a table: those of `cells` with their centre in `height_percent`. One entry per element.
-std::vector<bool> elements_of(const RegionElasticityInput& input, const CellSet& cells, const Tissue& tissue);
-
-/// Overwrites `materials` of the affected elements; `pattern` is that of the table on this tissue.
-void put_material(const RegionElasticityInput& input, const ElasticityInput& common, const CellPattern& pattern,
-                  const Tissue& tissue, std::vector<ElasticMaterial>& materials);
+/// Elastic properties by element of `tissue`, the solved part: of [elasticity], or of [elasticity.NAME]. Omits profiles
+/// by an array that the tissue lacks.
+std::vector<ElasticMaterial> elastic_materials(const Scenario& scenario, const Origin& origin, const Tissue& tissue);
 
 }  // namespace plica

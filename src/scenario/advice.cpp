@@ -4,18 +4,21 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 
 #include "measure/bending_error.hpp"
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
-#include "scenario/abrupt_loads.hpp"
 #include "scenario/acting.hpp"
 #include "scenario/check_tissue.hpp"
 #include "scenario/embryo_axes.hpp"
 #include "scenario/remedies.hpp"
+#include "scenario/schema.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/validate.hpp"
 #include "scenario/words.hpp"
@@ -66,73 +69,97 @@ void advise_on_neo_hookean(const Scenario& scenario, const Tissue& tissue, const
 }
 
 std::set<std::string> used_regions(const Scenario& scenario) {
-  std::set<std::string> used = {scenario.furrow.region};
-  const auto take_all = [&](const auto& tables) {
-    for (const auto& [name, table] : tables) used.insert(table.region);
-  };
-  take_all(scenario.region_elasticities);
-  take_all(scenario.contractions);
-  take_all(scenario.cortices);
-  take_all(scenario.holds);
-  take_all(scenario.pressures);
-  take_all(scenario.divisions);
-  take_all(scenario.ablations);
-  take_all(scenario.monitors);
-  const auto take_middles = [&](const auto& tables) {
-    for (const auto& [name, table] : tables) used.insert(table.profile.about);
-  };
-  take_middles(scenario.region_elasticities);
-  take_middles(scenario.contractions);
-  take_middles(scenario.cortices);
-  take_middles(scenario.pressures);
-  for (const auto& [name, monitor] : scenario.monitors) used.insert(monitor.from);
-  for (const auto& [name, region] : scenario.regions) {
-    used.insert(region.neighbours_of);
-    for (const auto* others : {&region.unite, &region.intersect, &region.except})
-      used.insert(others->begin(), others->end());
-  }
+  std::set<std::string> used;
+  for (const ScenarioTable& table : scenario_tables())
+    if (table.regions)
+      table.regions(scenario, [&](const std::string&, const std::string& region) { used.insert(region); });
   return used;
 }
 
 // Warns of a profile that is 0 in every cell. The usual cause is an array with an unexpected range.
 void advise_on_profiles(const Scenario& scenario, const Tissue& tissue, const MessageSink& warn) {
-  const auto look = [&](const std::string& tables, const auto& inputs) {
-    for (const auto& [name, input] : inputs) {
-      const CellPattern pattern = make_pattern(input, tissue);
-      if (input.profile.shape.empty() || std::ranges::max(pattern.strengths) > 0) continue;
-      std::string range;
-      if (input.profile.shape == "array") {
-        std::vector<double> values;
-        for (std::size_t c = 0; c < tissue.cells.size(); ++c)
-          if (pattern.cells[c]) values.push_back(tissue.cell_arrays.at(input.profile.array)[c]);
-        const auto [least, most] = std::ranges::minmax(values);
-        range = fmt::format(" ({} ranges from {:.4g} to {:.4g} there)", input.profile.array, least, most);
-      }
-      warn(fmt::format("{}.{}: profile is 0 in every cell of region {}{}; change profile", tables, name, input.region,
-                       range));
+  for (const Acting& acting : acting_tables(scenario)) {
+    const ProfileInput& profile = acting.input.profile;
+    const CellPattern pattern = make_pattern(acting.input, tissue);
+    if (profile.shape.empty() || std::ranges::max(pattern.strengths) > 0) continue;
+    std::string range;
+    if (profile.shape == "array") {
+      std::vector<double> values;
+      for (std::size_t c = 0; c < tissue.cells.size(); ++c)
+        if (pattern.cells[c]) values.push_back(tissue.cell_arrays.at(profile.array)[c]);
+      const auto [least, most] = std::ranges::minmax(values);
+      range = fmt::format(" ({} ranges from {:.4g} to {:.4g} there)", profile.array, least, most);
     }
-  };
-  look("contraction", scenario.contractions);
-  look("cortex", scenario.cortices);
-  look("pressure", scenario.pressures);
+    warn(fmt::format("{}: profile is 0 in every cell of region {}{}; change profile", acting.table, acting.input.region,
+                     range));
+  }
+}
+
+// The axis along which a region ends inside the tissue, by most of the walls at its border; empty if it does not.
+std::optional<std::string> axis_of_border(const Tissue& tissue, const CellSet& region) {
+  const auto neighbours = wall_neighbours(tissue);
+  std::array<int, 2> walls = {0, 0};
+  for (std::size_t c = 0; c < region.size(); ++c)
+    for (const CellId other : neighbours[c]) {
+      if (!region[c] || region[other.index()]) continue;
+      const Vec3 way = cell_centre(tissue.cells[other.index()], tissue.rest_positions) -
+                       cell_centre(tissue.cells[c], tissue.rest_positions);
+      ++walls[std::abs(way.x()) > std::hypot(way.y(), way.z()) ? 0 : 1];
+    }
+  if (walls[0] + walls[1] == 0) return std::nullopt;
+  return walls[0] > walls[1] ? "along" : "across";
+}
+
+// Distance from the middle of the region to its border along an axis: that of the farthest centre and half a cell.
+double half_width_um(const ActingInput& input, const Tissue& tissue, const std::string& axis) {
+  constexpr double far_um = 1e6;
+  ActingInput linear = input;
+  linear.profile.shape = "linear";
+  linear.profile.axis = axis;
+  linear.profile.half_width_um = far_um;
+  linear.variation.spread = 0;
+  const CellPattern pattern = make_pattern(linear, tissue);
+  double farthest = 0, volume = 0, height = 0;
+  for (std::size_t c = 0; c < pattern.cells.size(); ++c) {
+    if (!pattern.cells[c]) continue;
+    farthest = std::max(farthest, (1 - pattern.strengths[c]) * far_um);
+    const Cell& cell = tissue.cells[c];
+    volume += cell_volume(tissue, cell, tissue.rest_positions);
+    for (std::size_t i = 0; i < cell.sides(); ++i)
+      height += (tissue.rest_positions[cell.apical_corners()[i].index()] -
+                 tissue.rest_positions[cell.basal_corners()[i].index()])
+                    .norm() /
+                static_cast<double>(cell.sides());
+  }
+  return farthest + 0.5 * std::sqrt(volume / height);
+}
+
+// Warns of each table whose tension is constant, whatever the deformation, and ends at full strength inside the tissue:
+// without a profile, at a border of its region. Strains grow there without limit as elements get smaller
+// (docs/decisions/0005-spread-springs.md). The remedy is a profile that ends at 0.
+void advise_on_abrupt_loads(const Scenario& scenario, const Tissue& tissue, const MessageSink& warn) {
+  for (const Acting& acting : acting_tables(scenario)) {
+    const ActingInput& input = acting.input;
+    if (!acting.is_constant || !input.profile.shape.empty()) continue;
+    const auto axis = axis_of_border(tissue, tissue.regions.at(input.region));
+    if (!axis) continue;
+    warn(fmt::format(
+        "{0}: a constant tension ends at full strength at the border of region {1}, so depth has no limit under "
+        "refinement; set {0}.profile = {{ shape = \"linear\", axis = \"{2}\", half_width_um = {3:.3g} }}",
+        acting.table, input.region, *axis, half_width_um(input, tissue, *axis)));
+  }
 }
 
 // Says along what the profiles run: the arc or y, by the tissue.
 void note_profile_axes(const Scenario& scenario, const Tissue& tissue, const MessageSink& note) {
   const char* across =
       goes_round(tissue) ? "the arc about x, since the tissue goes round it" : "y, since the tissue is open";
-  const auto look = [&](const std::string& tables, const auto& inputs) {
-    for (const auto& [name, input] : inputs)
-      if (const std::string& axis = input.profile.axis; !input.profile.shape.empty() && !axis.empty())
-        note(fmt::format("{}.{}: profile runs along {}", tables, name,
-                         axis == "along"    ? "x"
-                         : axis == "across" ? across
-                                            : "the angle about x from ventral"));
-  };
-  look("elasticity", scenario.region_elasticities);
-  look("contraction", scenario.contractions);
-  look("cortex", scenario.cortices);
-  look("pressure", scenario.pressures);
+  for (const Acting& acting : acting_tables(scenario))
+    if (const std::string& axis = acting.input.profile.axis; !acting.input.profile.shape.empty() && !axis.empty())
+      note(fmt::format("{}: profile runs along {}", acting.table,
+                       axis == "along"    ? "x"
+                       : axis == "across" ? across
+                                          : "the angle about x from ventral"));
 }
 
 void advise_on_ablations(const Scenario& scenario, const Tissue& tissue, const MessageSink& warn) {
@@ -142,14 +169,11 @@ void advise_on_ablations(const Scenario& scenario, const Tissue& tissue, const M
                        name, scenario.time.end_s));
     const CellSet& cells = tissue.regions.at(ablation.region);
     bool takes = false;
-    const auto look = [&](const std::string& table, const std::string& faces, const std::string& region) {
-      if (!takes_from(ablation, table, faces)) return;
-      const CellSet& acting = tissue.regions.at(region);
-      for (std::size_t c = 0; c < cells.size(); ++c) takes = takes || (cells[c] && acting[c]);
-    };
-    for (const auto& [other, cortex] : scenario.cortices) look("cortex." + other, cortex.faces, cortex.region);
-    for (const auto& [other, springs] : scenario.contractions)
-      look("contraction." + other, springs.edges, springs.region);
+    for (const Acting& acting : acting_tables(scenario)) {
+      if (!acting.can_be_ablated || !takes_from(ablation, acting.table, acting.input.faces)) continue;
+      const CellSet& others = tissue.regions.at(acting.input.region);
+      for (std::size_t c = 0; c < cells.size(); ++c) takes = takes || (cells[c] && others[c]);
+    }
     if (!takes)
       warn(
           fmt::format("ablation.{}: has no effect, since no selected cortex or contraction acts on these faces in "
@@ -221,7 +245,7 @@ std::vector<std::string> advice(const Scenario& scenario, const Model& model) {
   if (scenario.time.step_s && *scenario.time.step_s > scenario.time.end_s)
     warn("time.step_s: the time step is longer than the run; reduce step_s or increase end_s");
   advise_on_profiles(scenario, model.tissue, warn);
-  for (std::string& load : abrupt_loads(scenario, model.tissue)) warn(std::move(load));
+  advise_on_abrupt_loads(scenario, model.tissue, warn);
   note_profile_axes(scenario, model.tissue, note);
   advise_on_shape_memory(scenario, model, note, warn);
   if ((pulls || is_tense) && model_of(scenario.elasticity) == ElasticModel::corotational &&

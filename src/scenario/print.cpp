@@ -59,15 +59,15 @@ std::string value_text(const Row& row, Scenario& scenario, const std::string& na
   return std::visit(text, row.field(scenario, name));
 }
 
-std::string table_text(const TableInfo& info, const std::string& name, Scenario& scenario) {
+std::string table_text(const ScenarioTable& info, const std::string& name, Scenario& scenario) {
   std::string text;
   if (!info.path.empty()) text = fmt::format("\n[{}{}{}]\n", info.stem(), name.empty() ? "" : ".", name);
-  for (const Row* row : rows_of(info.path)) {
+  for (const Row& row : info.rows) {
     // Alternatives in another unit fill the same field; only the two tolerances have a field each.
-    const bool repeats = !row->options.instead_of.empty() && row->options.scale != 1;
-    if (repeats || !row->used_by(scenario.embryo.shape)) continue;
-    const std::string value = value_text(*row, scenario, name);
-    if (!value.empty()) text += fmt::format("{} = {}\n", row->key, value);
+    const bool repeats = !row.options.instead_of.empty() && row.options.scale != 1;
+    if (repeats || !row.used_by(scenario.embryo.shape)) continue;
+    const std::string value = value_text(row, scenario, name);
+    if (!value.empty()) text += fmt::format("{} = {}\n", row.key, value);
   }
   return text;
 }
@@ -101,11 +101,11 @@ std::string allowed_text(const Row& row) {
 
 // The reference page.
 
-std::string name_of(const TableInfo& info) {
+std::string name_of(const ScenarioTable& info) {
   return info.named() ? fmt::format("{}.NAME", info.stem()) : std::string(info.path);
 }
 
-std::string heading_of(const TableInfo& info) {
+std::string heading_of(const ScenarioTable& info) {
   return info.path.empty() ? "Top level" : fmt::format("`[{}]`", name_of(info));
 }
 
@@ -128,18 +128,21 @@ const InnerTables* inner_of(const Row& row) {
   return nullptr;
 }
 
-std::vector<const Row*> own_rows(const TableInfo& info) {
-  std::vector<const Row*> rows = rows_of(info.path);
-  std::erase_if(rows, [](const Row* row) { return inner_of(*row) != nullptr; });
+std::vector<const Row*> own_rows(const ScenarioTable& info) {
+  std::vector<const Row*> rows;
+  for (const Row& row : info.rows)
+    if (inner_of(row) == nullptr) rows.push_back(&row);
   return rows;
 }
+
+bool is_inside(const Row& row, std::string_view key) { return row.key.starts_with(std::string(key) + '.'); }
 
 /// Returns the rows of one key of inner tables, from the first table that has it.
 std::vector<const Row*> rows_of_key(std::string_view key) {
   std::vector<const Row*> rows;
-  for (const Row& row : schema())
-    if (row.key.starts_with(std::string(key) + '.') && (rows.empty() || rows.front()->table == row.table))
-      rows.push_back(&row);
+  for (const ScenarioTable& info : scenario_tables())
+    for (const Row& row : info.rows)
+      if (is_inside(row, key) && (rows.empty() || rows.front()->table == row.table)) rows.push_back(&row);
   return rows;
 }
 
@@ -155,13 +158,12 @@ std::vector<const Row*> rows_of_inner(const InnerTables& inner) {
 }
 
 /// Lists the inner tables of a table, with links to their sections.
-std::string inner_links(const TableInfo& info) {
+std::string inner_links(const ScenarioTable& info) {
   std::vector<std::string> links;
   for (const InnerTables& inner : inner_tables()) {
     std::vector<std::string> keys;
     for (const std::string_view key : inner.keys)
-      if (std::ranges::any_of(rows_of(info.path),
-                              [&](const Row* row) { return row->key.starts_with(std::string(key) + '.'); }))
+      if (std::ranges::any_of(info.rows, [&](const Row& row) { return is_inside(row, key); }))
         keys.push_back(fmt::format("`{}`", key));
     if (!keys.empty())
       links.push_back(fmt::format("{} ({})", fmt::join(keys, ", "), link_to(inner.title, inner.title)));
@@ -188,7 +190,7 @@ std::string contents() {
     const auto found = std::ranges::find(groups, title, [](const auto& group) { return group.first; });
     return found != groups.end() ? found->second : groups.emplace_back(title, std::vector<std::string>()).second;
   };
-  for (const TableInfo& info : schema_tables())
+  for (const ScenarioTable& info : scenario_tables())
     links_of(info.group).push_back(link_to(info.path.empty() ? "top level" : name_of(info), heading_of(info)));
   for (const InnerTables& inner : inner_tables())
     links_of("Inner tables of several tables").push_back(link_to(inner.title, inner.title));
@@ -207,7 +209,7 @@ std::string float_in_toml(double value) {
 std::string resolved_toml(const Scenario& scenario) {
   Scenario copy = scenario;  // the table hands out pointers to fields that may be written
   std::string text = fmt::format("# {}, every default filled in.\n", scenario.name);
-  for (const TableInfo& info : schema_tables()) {
+  for (const ScenarioTable& info : scenario_tables()) {
     const std::vector<std::string> names = info.named() ? info.names(scenario) : std::vector<std::string>{""};
     for (const std::string& name : names) text += table_text(info, name, copy);
   }
@@ -222,8 +224,8 @@ std::string reference_markdown() {
       "Conventions: NAME is a name of your choice (letters, digits, `_`, `-`). Keys end in their unit; pairs such as "
       "`at_s` and `at_min` set one value in two units. The x axis points from anterior to posterior, y to the right, z "
       "from ventral to dorsal. Reference means undeformed (t = 0).\n\n" +
-      contents() + "\n`plica reference` generates this page from the table in `src/scenario/schema.cpp`.\n";
-  for (const TableInfo& info : schema_tables()) {
+      contents() + "\n`plica reference` generates this page from the tables in `src/scenario/tables/`.\n";
+  for (const ScenarioTable& info : scenario_tables()) {
     text += section_of(heading_of(info), info.meaning);
     if (const std::string inner = inner_links(info); !inner.empty())
       text += fmt::format("Inner tables: {}.\n\n", inner);

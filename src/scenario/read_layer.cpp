@@ -149,29 +149,27 @@ struct Suggestion {
 
 Suggestion suggest_key(const std::string& table, const std::string& path, const std::string& key) {
   std::vector<std::string> known, same_stem;
-  for (const Row* row : rows_of(table)) {
+  for (const Row& row : rows_of(table)) {
     // For inner tables the name is enough unless the key is inside one.
-    const std::size_t dot = key.find('.') == std::string::npos ? row->key.find('.') : std::string_view::npos;
-    const std::string name(row->key.substr(0, dot));
+    const std::size_t dot = key.find('.') == std::string::npos ? row.key.find('.') : std::string_view::npos;
+    const std::string name(row.key.substr(0, dot));
     if (known.empty() || known.back() != name) known.push_back(name);
-    if (without_unit(row->key) == without_unit(key)) same_stem.push_back(fmt::format("\"{}\"", row->key));
+    if (without_unit(row.key) == without_unit(key)) same_stem.push_back(fmt::format("\"{}\"", row.key));
   }
   if (!same_stem.empty()) {
     return {fmt::format("use {} and convert the value to that unit", fmt::join(same_stem, " or ")), path};
   }
   if (table.empty()) {
-    for (const TableInfo& info : schema_tables()) {
+    for (const ScenarioTable& info : scenario_tables()) {
       if (!info.path.empty() && known.back() != info.stem()) known.emplace_back(info.stem());
     }
   }
   if (const auto nearest = nearest_name(key, known)) {
     return {did_you_mean(key, known), table.empty() ? *nearest : path};
   }
-  for (const Row& row : schema()) {
-    if (row.key != key) continue;
-    const std::size_t star = row.table.find('*');
-    return {fmt::format("move it to [{}{}]", row.table.substr(0, star), star == std::string::npos ? "" : "NAME"), ""};
-  }
+  for (const ScenarioTable& info : scenario_tables())
+    if (std::ranges::any_of(info.rows, [&](const Row& row) { return row.key == key; }))
+      return {fmt::format("move it to [{}{}]", info.stem(), info.named() ? ".NAME" : ""), ""};
   return {did_you_mean(key, known), path};
 }
 
@@ -181,7 +179,7 @@ class Reader {
 
   void read_top(const toml::table& document) {
     for (const auto& [key, node] : document) {
-      const TableInfo* info = table_with_stem(key.str());
+      const ScenarioTable* info = table_with_stem(key.str());
       if (info == nullptr) {
         read_key("", "", "", key, node);
       } else if (const toml::table* table = as_table(node, key, std::string(key.str()), "a table")) {
@@ -193,21 +191,20 @@ class Reader {
 
  private:
   /// Returns the table with this stem; if there are two, the plain one, or with `named` the one of named tables.
-  static const TableInfo* table_with_stem(std::string_view stem, bool named = false) {
-    for (const TableInfo& info : schema_tables()) {
+  static const ScenarioTable* table_with_stem(std::string_view stem, bool named = false) {
+    for (const ScenarioTable& info : scenario_tables()) {
       if (!info.path.empty() && info.stem() == stem && (!named || info.named())) return &info;
     }
     return nullptr;
   }
 
   /// Reads the keys of a table and its named tables, if any: [stop] and [stop.NAME].
-  void read_plain(const TableInfo& info, const toml::table& table) {
+  void read_plain(const ScenarioTable& info, const toml::table& table) {
     const std::string path(info.path);
-    const TableInfo* inner = table_with_stem(info.stem(), true);
+    const ScenarioTable* inner = table_with_stem(info.stem(), true);
     for (const auto& [key, node] : table) {
-      const auto rows = rows_of(info.path);
       const std::string_view word = key.str();
-      const bool is_key = std::ranges::any_of(rows, [&](const Row* row) { return row->key == word; });
+      const bool is_key = std::ranges::any_of(info.rows, [&](const Row& row) { return row.key == word; });
       if (inner != nullptr && node.is_table() && !is_key) {
         read_named_table(*inner, std::string(word), key, node);
       } else {
@@ -234,7 +231,7 @@ class Reader {
     return nullptr;
   }
 
-  void read_named(const TableInfo& info, const toml::table& tables) {
+  void read_named(const ScenarioTable& info, const toml::table& tables) {
     for (const auto& [key, node] : tables) {
       const std::string name(key.str());
       const toml::table* inner = node.as_table();
@@ -249,7 +246,8 @@ class Reader {
     }
   }
 
-  void read_named_table(const TableInfo& info, const std::string& name, const toml::key& key, const toml::node& node) {
+  void read_named_table(const ScenarioTable& info, const std::string& name, const toml::key& key,
+                        const toml::node& node) {
     const std::string path = joined(std::string(info.stem()), name);
     if (!is_known_name(info, name, key, path)) return;
     if (info.stem() == "expect" && node.is_value()) {
@@ -260,11 +258,12 @@ class Reader {
     const toml::table* table = as_table(node, key, path, "a table");
     if (table == nullptr) return;
     note(path, path, key, nullptr);
-    rows_of(info.path).front()->field(scenario_, name);  // so that a table without keys exists
+    info.rows.front().field(scenario_, name);  // so that a table without keys exists
     read_keys(std::string(info.path), name, "", *table);
   }
 
-  bool is_known_name(const TableInfo& info, const std::string& name, const toml::key& key, const std::string& path) {
+  bool is_known_name(const ScenarioTable& info, const std::string& name, const toml::key& key,
+                     const std::string& path) {
     if (info.stem() == "expect") {
       if (name.find('.') != std::string::npos) return true;  // a monitor's, which may not have been read yet
       const auto names = expectation_names();
@@ -294,9 +293,9 @@ class Reader {
     const std::string row_key = prefix + std::string(key.str());
     const std::string path = name.empty() ? table : joined(table.substr(0, table.find('.')), name);
     const std::string written = joined(path, row_key);
-    for (const Row* row : rows_of(table)) {
-      if (row->key == row_key) return read_value(*row, name, path, written, key, node);
-      if (row->key.starts_with(row_key + ".")) {
+    for (const Row& row : rows_of(table)) {
+      if (row.key == row_key) return read_value(row, name, path, written, key, node);
+      if (row.key.starts_with(row_key + ".")) {
         const toml::table* inner =
             as_table(node, key, written, row_key == "program" ? "a table of times and activities" : "a table");
         if (inner == nullptr) return;

@@ -1,4 +1,4 @@
-// Reading of one TOML document into a Scenario, key by key, according to the table in schema.cpp.
+// Reading of one TOML document into a Scenario, key by key, according to its tables (tables/).
 #pragma once
 
 #include <toml++/toml.h>

@@ -72,6 +72,14 @@ Diagnostic diagnostic_at(const Scenario& scenario, const std::string& key, std::
   return {place.file, place.line, key, std::move(problem), std::move(remedy)};
 }
 
+Diagnostic no_array(const Scenario& scenario, const std::string& key, const std::string& array, const Tissue& tissue) {
+  const std::vector<std::string> names = keys_of(tissue.cell_arrays);
+  return diagnostic_at(scenario, key, fmt::format("the embryo has no array \"{}\"", array),
+                       names.empty()
+                           ? "set embryo.cell_arrays to a table with this column, or use a file with this array"
+                           : fmt::format("set array to one of: {}", fmt::join(names, ", ")));
+}
+
 void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnostic>& errors) {
   const std::size_t cells = tissue.cells.size();
   const auto [low, high] = extent_along(tissue);
@@ -93,12 +101,7 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
     if (!region.array.empty()) {
       const auto array = tissue.cell_arrays.find(region.array);
       if (array == tissue.cell_arrays.end()) {
-        const std::vector<std::string> names = keys_of(tissue.cell_arrays);
-        errors.push_back(diagnostic_at(scenario, "region." + name + ".array",
-                                       fmt::format("the embryo has no array \"{}\"", region.array),
-                                       names.empty() ? "set embryo.cell_arrays to a table with this column, or use a "
-                                                       "file with this array"
-                                                     : fmt::format("set array to one of: {}", fmt::join(names, ", "))));
+        errors.push_back(no_array(scenario, "region." + name + ".array", region.array, tissue));
       } else {
         const auto is_wanted = [&](double value) {
           if (std::isnan(value)) return false;

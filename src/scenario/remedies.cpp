@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/units.hpp"
+#include "scenario/acting.hpp"
 #include "scenario/words.hpp"
 
 namespace plica {
@@ -37,21 +38,10 @@ struct WeakerForces {
 };
 
 WeakerForces weaker_forces(const Scenario& scenario) {
-  const double stress = scenario.elasticity.young_modulus_Pa * units::pascal, height = scenario.embryo.cell_height_um;
   WeakerForces weaker;
-  for (const auto& [name, input] : scenario.contractions) {
-    // Lateral edges are long and pull on the small area of a cell.
-    const double shape = input.edges == "lateral" ? 0.01 : 1;
-    weaker.reduce(fmt::format("contraction.{}.stiffness_nN_per_um", name), input.stiffness_nN_per_um,
-                  shape * stress * height);
-    weaker.reduce(fmt::format("contraction.{}.preload_nN", name), input.preload_nN, 0.01 * stress * height * height);
-    weaker.reduce(fmt::format("contraction.{}.tension_mN_per_m", name), input.tension_mN_per_m, stress * height);
-  }
-  for (const auto& [name, input] : scenario.cortices)
-    weaker.reduce(fmt::format("cortex.{}.tension_mN_per_m", name), input.tension_mN_per_m, stress * height);
-  for (const auto& [name, input] : scenario.pressures)
-    weaker.reduce(fmt::format("pressure.{}.pressure_Pa", name), input.pressure_Pa,
-                  scenario.elasticity.young_modulus_Pa);
+  for (const Acting& acting : acting_tables(scenario))
+    for (const auto& [key, value, most] : acting.forces)
+      weaker.reduce(fmt::format("{}.{}", acting.table, key), value, most);
   return weaker;
 }
 
@@ -96,17 +86,10 @@ Remedies more_room(const Scenario& scenario) {
 std::optional<Remedy> gradual_onset(const Scenario& scenario) {
   const double minutes = std::min(onset_s, scenario.time.end_s / 2) / units::minute;
   Remedy remedy{{}, "gradual onset"};
-  const auto look = [&](const std::string& tables, const auto& inputs, const auto& acts) {
-    for (const auto& [name, input] : inputs)
-      if (input.program.activity.empty() && acts(input))
-        remedy.settings.push_back({fmt::format("{}.{}.program", tables, name),
-                                   fmt::format("{{ time_min = [0, {:g}], activity = [0, 1] }}", minutes)});
-  };
-  look("contraction", scenario.contractions, [](const ContractionInput&) { return true; });
-  look("cortex", scenario.cortices, [](const CortexInput& input) {
-    return input.tension_mN_per_m > 0 && input.trigger.measure.empty() && input.follow.measure.empty();
-  });
-  look("pressure", scenario.pressures, [](const PressureInput&) { return true; });
+  for (const Acting& acting : acting_tables(scenario))
+    if (acting.has_sudden_onset && acting.input.program.activity.empty())
+      remedy.settings.push_back(
+          {acting.table + ".program", fmt::format("{{ time_min = [0, {:g}], activity = [0, 1] }}", minutes)});
   return remedy.settings.empty() ? std::nullopt : std::optional(std::move(remedy));
 }
 

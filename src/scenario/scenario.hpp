@@ -1,5 +1,5 @@
 // Scenario as plain data, in the units of its keys. `load_scenario` (load.hpp) fills it from TOML. Types, ranges,
-// defaults and meanings of keys are in the table of schema.cpp.
+// defaults and meanings of keys are in tables/.
 #pragma once
 
 #include <array>
@@ -146,20 +146,26 @@ struct PulseInput {
   int seed = 1;
 };
 
-/// Different elastic properties of a region, or of a layer of its elements.
-struct RegionElasticityInput {
+/// Where, how strongly and when the cells of a table act; base of the tables that act.
+struct ActingInput {
   std::string region;
-  std::optional<Range> height_percent;  // of element centres, basal to apical; empty: all
+  std::string faces = "apical";  // apical | basal | lateral; TOML: edges, faces or face; elasticity: not used
+  ProgramInput program;
+  ProfileInput profile;
+  DelayInput delay;
+  VariationInput variation;
+  PulseInput pulse;
+};
+
+/// Different elastic properties of a region, or of a layer of its elements.
+struct RegionElasticityInput : ActingInput {  // profile: factor on the modulus
+  std::optional<Range> height_percent;        // of element centres, basal to apical; empty: all
   std::optional<double> young_modulus_Pa;
   std::optional<double> poisson_ratio;
   std::optional<double> relaxation_s;
-  ProfileInput profile;  // factor on the modulus
-  VariationInput variation;
 };
 
-struct ContractionInput {
-  std::string region;
-  std::string edges = "apical";  // apical | basal | lateral
+struct ContractionInput : ActingInput {
   double stiffness_nN_per_um = 0;
   double along_ratio = 1;
   double across_ratio = 1;
@@ -168,11 +174,6 @@ struct ContractionInput {
   double preload_nN = 0;
   double tension_mN_per_m = 0;
   double damping_nN_s_per_um = 0;
-  ProgramInput program;
-  ProfileInput profile;
-  DelayInput delay;
-  VariationInput variation;
-  PulseInput pulse;
 };
 
 /// Shape-dependent activation: a threshold on the cell's own shape starts its programs.
@@ -187,22 +188,16 @@ struct FollowInput {
   std::optional<double> from, to;
 };
 
-struct CortexInput {
-  std::string region;
-  std::string faces = "apical";  // apical | basal | lateral
+struct CortexInput : ActingInput {
   double tension_mN_per_m = 0;
   double saturation_ratio = 0;
   double stiffness_mN_per_m = 0;
   double compression_ratio = 1;
   double crowding_mN_per_m = 0;
   std::optional<double> relaxation_s;  // TOML: relaxation_s or relaxation_min; empty: "none"
-  ProgramInput program, stiffness_program;
+  ProgramInput stiffness_program;
   TriggerInput trigger;
   FollowInput follow;
-  ProfileInput profile;
-  DelayInput delay;
-  VariationInput variation;
-  PulseInput pulse;
 };
 
 enum class EnclosedState { held, compliant, free };
@@ -300,13 +295,8 @@ struct HoldInput {
   std::optional<Range> x_um, y_um, z_um;  // only nodes with reference positions in these ranges
 };
 
-struct PressureInput {
-  std::string region;
-  std::string face = "apical";  // apical | basal
-  double pressure_Pa = 0;       // into the cell; dead load on the reference face
-  ProgramInput program;
-  ProfileInput profile;
-  VariationInput variation;
+struct PressureInput : ActingInput {
+  double pressure_Pa = 0;  // into the cell; dead load on the reference face
 };
 
 /// Laser ablation or optogenetic inhibition: loss of cortical and contractile strength.

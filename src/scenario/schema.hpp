@@ -1,6 +1,6 @@
-// Table of all scenario keys: key, type, default, allowed values, meaning, and the field that it fills. Loading,
-// `--set`, suggestions, the resolved scenario and the reference page use this table, so a new key is one new row. Rules
-// between several keys are in validate.cpp.
+// Tables of a scenario and their keys: type, default, allowed values, meaning, and the field that a key fills. Loading,
+// `--set`, suggestions, the resolved scenario and the reference page use these rows, so a new key is one new row. Each
+// table is in a file of tables/ with its rules and what it adds to a model; tables/all.cpp lists them.
 #pragma once
 
 #include <functional>
@@ -14,6 +14,13 @@
 #include "scenario/scenario.hpp"
 
 namespace plica {
+
+struct Acting;
+struct Diagnostic;
+struct Input;
+struct Model;
+struct Origin;
+struct Tissue;
 
 /// Field that a row fills; monostate for `base`, which only the loader reads.
 using Slot = std::variant<std::monostate, int*, double*, bool*, std::string*, std::optional<int>*,
@@ -57,11 +64,29 @@ struct Row {
   [[nodiscard]] bool used_by(std::string_view shape) const;
 };
 
-struct TableInfo {
+using TakeNodes = std::function<void(const std::string& table, const std::vector<bool>& nodes)>;
+using TakeRegion = std::function<void(const std::string& address, const std::string& region)>;
+
+/// One table, or all named tables of one kind. Functions that a table does not need are empty.
+struct ScenarioTable {
   std::string_view path;
   std::string_view meaning;
-  std::string_view group;                                          // heading in the contents of the reference page
-  std::function<std::vector<std::string>(const Scenario&)> names;  // named tables only; empty otherwise
+  std::string_view group;  // heading in the contents of the reference page
+  std::vector<Row> rows = {};
+  std::function<std::vector<std::string>(const Scenario&)> names = {};  // named tables only
+  /// Names the regions that it refers to, which may be empty.
+  std::function<void(const Scenario&, const TakeRegion&)> regions = {};
+  /// Checks rules between keys and sets defaults that depend on other keys.
+  std::function<void(Scenario&, Input&)> rules = {};
+  /// Checks what depends on the tissue, whose regions are resolved.
+  std::function<void(const Scenario&, const Tissue&, std::vector<Diagnostic>&)> check = {};
+  /// Adds laws, constraints and fixed nodes to a model.
+  std::function<void(const Scenario&, const Origin&, Model&)> build = {};
+  /// Names the nodes that it fixes; mirror planes require them, and regions of tables that act, to be symmetric.
+  std::function<void(const Scenario&, const Tissue&, const TakeNodes&)> held_nodes = {};
+  bool mirrored_regions = false;  // mirror planes require its regions to be symmetric, though it does not act
+  /// Lists the tables whose cells act.
+  std::function<void(const Scenario&, std::vector<Acting>&)> acting = {};
 
   [[nodiscard]] bool named() const { return path.ends_with(".*"); }
   [[nodiscard]] std::string_view stem() const { return named() ? path.substr(0, path.size() - 2) : path; }
@@ -74,12 +99,11 @@ struct InnerTables {
   std::string_view meaning;
 };
 
-std::span<const Row> schema();
-std::span<const InnerTables> inner_tables();              // in the order of the reference page
-std::span<const TableInfo> schema_tables();               // in the order of a resolved scenario
-std::vector<const Row*> rows_of(std::string_view table);  // rows of one table, in order
-const Row* row_of_key(std::string_view dotted);           // "contraction.apical.region"; null if unknown
-std::span<const std::string_view> expectation_names();    // names allowed in [expect]
+std::span<const ScenarioTable> scenario_tables();       // in the order of a resolved scenario
+std::span<const Row> rows_of(std::string_view table);   // rows of one table, in order
+std::span<const InnerTables> inner_tables();            // in the order of the reference page
+const Row* row_of_key(std::string_view dotted);         // "contraction.apical.region"; null if unknown
+std::span<const std::string_view> expectation_names();  // names allowed in [expect]
 
 /// Resets the row's field of `scenario` to its default.
 void reset_to_default(const Row& row, Scenario& scenario, const std::string& name);

@@ -12,15 +12,7 @@
 #include "core/names.hpp"
 #include "core/units.hpp"
 #include "measure/cells.hpp"
-#include "mechanics/active/contraction.hpp"
-#include "mechanics/active/cortex.hpp"
-#include "mechanics/constraints/enclosed_volume.hpp"
 #include "mechanics/constraints/ties.hpp"
-#include "mechanics/contact/self_contact.hpp"
-#include "mechanics/elasticity/corner_barrier.hpp"
-#include "mechanics/elasticity/corotational.hpp"
-#include "mechanics/elasticity/neo_hookean.hpp"
-#include "mechanics/elasticity/shape_memory.hpp"
 #include "mechanics/obstacles/shell_drag.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "mechanics/surroundings.hpp"
@@ -28,6 +20,7 @@
 #include "scenario/builtin.hpp"
 #include "scenario/check_tissue.hpp"
 #include "scenario/regions.hpp"
+#include "scenario/schema.hpp"
 #include "scenario/symmetry.hpp"
 #include "scenario/words.hpp"
 #include "tissue/faces.hpp"
@@ -41,8 +34,6 @@
 
 namespace plica {
 namespace {
-
-Program make_program(const ProgramInput& input) { return {input.time_s, input.activity}; }
 
 Placement placement_of(const EmbryoInput& e) {
   return {Vec3(e.scale[0], e.scale[1], e.scale[2]), Vec3(e.rotate_deg[0], e.rotate_deg[1], e.rotate_deg[2]), e.centre};
@@ -188,158 +179,6 @@ void add_arrays(const Scenario& scenario, Tissue& tissue) {
   add(scenario.embryo.arrays, "an array given has");
 }
 
-/// Whole tissue, in which cells are counted from the midline, and the part of it that is solved.
-struct Origin {
-  const Tissue& whole;
-  const Mirror& mirror;
-};
-
-/// Makes the activation pattern on the model's cells.
-template <class Acting>
-CellPattern pattern_of(const Acting& input, const Origin& origin, std::vector<Ablation> ablations = {}) {
-  CellPattern of_whole = make_pattern(input, origin.whole);
-  of_whole.ablations = std::move(ablations);
-  if (!origin.mirror.is_used()) return of_whole;
-  Division side;
-  side.origin = origin.mirror.origins;
-  return of_whole.after_division(side);
-}
-
-void add_elasticity(const Scenario& scenario, const Origin& origin, Model& model) {
-  const ElasticityInput& input = scenario.elasticity;
-  const double young_modulus = input.young_modulus_Pa * units::pascal;
-  const double viscosity = scenario.dynamics.shear_viscosity_Pa_s * units::pascal_second;
-  model.stiffness_scale = young_modulus;
-  if (model_of(input) == ElasticModel::shape_memory) {
-    const ElasticModuli moduli = ElasticModuli::from_young(young_modulus, input.poisson_ratio);
-    const AttractorSprings springs{input.attractor_stiffness_nN_per_um.value_or(0), moduli.shear_modulus,
-                                   input.attractor_preload_nN, input.attractor_preload_length_um};
-    auto law = std::make_unique<ShapeMemory>(model.tissue, springs, viscosity);
-    // Young's modulus equivalent to a given stiffness.
-    const double shear = attractor_moduli(model.tissue.element_rest_shape[0], law->stiffness()[0]).mean_shear();
-    model.stiffness_scale = 2 * (1 + input.poisson_ratio) * shear;
-    model.laws.push_back(std::move(law));
-    return;
-  }
-  std::vector<ElasticMaterial> materials(model.tissue.elements.size(),
-                                         {1, input.poisson_ratio, input.relaxation_s.value_or(0)});
-  for (const auto& [name, of_region] : scenario.region_elasticities)
-    put_material(of_region, input, pattern_of(of_region, origin), model.tissue, materials);
-  const bool is_soft = model_of(input) == ElasticModel::neo_hookean;
-  std::vector<ElasticModuli> moduli;
-  std::vector<NeoHookeanMaterial> soft;
-  std::vector<double> bulk_moduli;
-  double largest_factor = 0;
-  for (const auto& [factor, poisson_ratio, relaxation_s] : materials) {
-    const ElasticModuli unit = ElasticModuli::from_young(young_modulus, poisson_ratio);
-    largest_factor = std::max(largest_factor, factor);
-    bulk_moduli.push_back(factor * (is_soft ? unit.lame_lambda : unit.bulk_modulus()));
-    if (is_soft)
-      soft.push_back({factor * unit.shear_modulus, relaxation_s});
-    else
-      moduli.push_back(factor * unit);
-  }
-  model.stiffness_scale *= largest_factor;
-  if (is_soft)
-    model.laws.push_back(std::make_unique<NeoHookean>(model.tissue, std::move(soft)));
-  else
-    model.laws.push_back(std::make_unique<Corotational>(model.tissue, std::move(moduli), viscosity));
-  if (std::ranges::max(bulk_moduli) > 0)
-    model.laws.push_back(std::make_unique<Dilatation>(model.tissue, std::move(bulk_moduli), model.volumes.is_held()));
-}
-
-void add_contractions(const Scenario& scenario, const Origin& origin, Model& model) {
-  for (const auto& [name, input] : scenario.contractions) {
-    ContractionRule rule;
-    rule.side = meaning_of(words::edges, input.edges);
-    rule.stiffness = input.stiffness_nN_per_um;
-    rule.along_ratio = input.along_ratio;
-    rule.across_ratio = input.across_ratio;
-    rule.diagonals = input.diagonals;
-    rule.rest_length_ratio = input.rest_length_ratio;
-    rule.preload = input.preload_nN;
-    rule.damping = input.damping_nN_s_per_um;
-    rule.tension = input.tension_mN_per_m;  // nN/um = mN/m
-    const std::string table = "contraction." + name;
-    CellPattern pattern = pattern_of(input, origin, make_ablations(scenario, table, input.edges, origin.whole));
-    std::vector<Spring> springs = contraction_springs(model.tissue, pattern, rule);
-    model.laws.push_back(
-        std::make_unique<Contraction>(std::move(springs), make_program(input.program), std::move(pattern)));
-    model.laws.back()->set_label(table);
-  }
-}
-
-OwnStateRule make_own_state(const CortexInput& input) {
-  OwnStateRule rule;
-  const auto& [measure, below, above] = input.trigger;
-  if (!measure.empty()) {
-    rule.kind = below ? OwnStateRule::Kind::starts_below : OwnStateRule::Kind::starts_above;
-    rule.measure = meaning_of(words::own_measures, measure);
-    rule.threshold = below ? *below : *above;
-  } else if (!input.follow.measure.empty()) {
-    rule.kind = OwnStateRule::Kind::follows;
-    rule.measure = meaning_of(words::own_measures, input.follow.measure);
-    rule.from = *input.follow.from;
-    rule.to = *input.follow.to;
-  }
-  return rule;
-}
-
-void add_cortices(const Scenario& scenario, const Origin& origin, Model& model) {
-  for (const auto& [name, input] : scenario.cortices) {
-    if (input.tension_mN_per_m == 0 && input.stiffness_mN_per_m == 0 && input.crowding_mN_per_m == 0) continue;
-    CortexRule rule;  // nN/um = mN/m
-    rule.side = meaning_of(words::edges, input.faces);
-    rule.tension = input.tension_mN_per_m;
-    rule.saturation = input.saturation_ratio;
-    rule.stiffness = input.stiffness_mN_per_m;
-    rule.compression_ratio = input.compression_ratio;
-    rule.crowding = input.crowding_mN_per_m;
-    rule.relaxation_s = input.relaxation_s.value_or(0);
-    rule.program = make_program(input.program);
-    rule.stiffness_program = make_program(input.stiffness_program);
-    rule.own = make_own_state(input);
-    const std::string table = "cortex." + name;
-    CellPattern pattern = pattern_of(input, origin, make_ablations(scenario, table, input.faces, origin.whole));
-    model.laws.push_back(std::make_unique<Cortex>(model.tissue, std::move(pattern), std::move(rule)));
-    model.laws.back()->set_label(table);
-  }
-}
-
-void add_enclosed(const Scenario& scenario, Model& model) {
-  for (const auto& [name, input] : scenario.enclosed) {
-    const EnclosedState state = meaning_of(words::enclosed_states, input.volume);
-    if (state == EnclosedState::held) model.constraints.push_back(std::make_unique<EnclosedVolume>(model.tissue));
-    if (state == EnclosedState::compliant) {
-      model.laws.push_back(std::make_unique<ElasticVolume>(model.tissue, *input.bulk_modulus_Pa * units::pascal));
-      model.laws.back()->set_label("enclosed." + name);
-    }
-  }
-}
-
-void add_contact(const Scenario& scenario, const Origin& origin, Model& model) {
-  const SelfContactInput& input = scenario.self_contact;
-  const ContactSurface surface = meaning_of(words::contact_surfaces, input.surface);
-  for (const auto& [side, alone] :
-       {std::pair(CellSide::apical, ContactSurface::apical), {CellSide::basal, ContactSurface::basal}})
-    if (surface == alone || surface == ContactSurface::both) {
-      model.laws.push_back(std::make_unique<SelfContact>(
-          origin.whole,
-          SelfContactRule{side, input.distance_um, input.stiffness_kPa_per_um, input.search_um, input.friction},
-          origin.mirror));
-      model.laws.back()->set_label(side == CellSide::apical ? "self_contact.apical" : "self_contact.basal");
-    }
-}
-
-void add_pressures(const Scenario& scenario, const Origin& origin, Model& model) {
-  for (const auto& [name, input] : scenario.pressures) {
-    model.laws.push_back(std::make_unique<FacePressure>(model.tissue, meaning_of(words::pressure_faces, input.face),
-                                                        pattern_of(input, origin), input.pressure_Pa * units::pascal,
-                                                        make_program(input.program)));
-    model.laws.back()->set_label("pressure." + name);
-  }
-}
-
 /// Imposes plane strain: no motion along the axis, and all cross-sections move alike.
 void make_endless(const Scenario& scenario, Model& model) {
   for (std::array<bool, 3>& held : model.held) held[0] = true;
@@ -347,26 +186,12 @@ void make_endless(const Scenario& scenario, Model& model) {
   model.laws.push_back(std::make_unique<Ties>(ties_along_x(model.tissue), stiffness));
 }
 
-/// Fixes a node and its periodic original along `axis`.
-void hold(NodeId node, int axis, Model& model) {
-  for (const NodeId one : {node, model.tissue.original(node)}) model.held[one.index()][axis] = true;
-}
-
-void add_holds(const Scenario& scenario, Model& model) {
-  for (const auto& [name, input] : scenario.holds) {
-    const std::vector<bool> nodes = held_nodes(input, model.tissue);
-    for (std::size_t n = 0; n < nodes.size(); ++n)
-      for (const std::string& direction : input.directions)
-        if (nodes[n]) hold(NodeId(n), meaning_of(words::axes, direction), model);
-  }
-}
-
 /// Fixes nodes of lateral faces at the sheet boundary.
 void hold_rim(Model& model) {
   for (const Face& face : faces_of(model.tissue, CellSide::lateral))
     if (!face.beyond && face.share == 1)
       for (const NodeId node : face.nodes)
-        for (int axis = 0; axis < 3; ++axis) hold(node, axis, model);
+        for (int axis = 0; axis < 3; ++axis) hold_node(node, axis, model);
 }
 
 /// Keeps nodes of a mirror plane on it.
@@ -395,14 +220,8 @@ void check_forces_at_rest(const Scenario& scenario, const Model& model) {
 void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model) {
   const Tissue& tissue = model.tissue;
   model.volumes.hold(method_of(scenario.volume) == VolumeMethod::coupled);
-  add_elasticity(scenario, origin, model);
-  if (const double barrier_Pa = scenario.elasticity.corner_barrier_Pa.value_or(0); barrier_Pa > 0)
-    model.laws.push_back(std::make_unique<CornerBarrier>(tissue, barrier_Pa * units::pascal));
-  add_contractions(scenario, origin, model);
-  add_cortices(scenario, origin, model);
-  add_enclosed(scenario, model);
-  add_contact(scenario, origin, model);
-  add_pressures(scenario, origin, model);
+  for (const ScenarioTable& table : scenario_tables())
+    if (table.build) table.build(scenario, origin, model);
   if (scenario.dynamics.surface_drag_Pa_s_per_um > 0)
     model.laws.push_back(std::make_unique<SurfaceDrag>(
         tissue, scenario.dynamics.surface_drag_Pa_s_per_um * units::pascal_second_per_um));
@@ -411,7 +230,6 @@ void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model)
         std::make_unique<Inertia>(tissue, scenario.dynamics.density_kg_per_m3 * units::kilogram_per_cubic_metre));
 
   if (shape_of(scenario.embryo) == EmbryoShape::slice) make_endless(scenario, model);
-  add_holds(scenario, model);
   if (meaning_of(words::rims, scenario.embryo.rim)) hold_rim(model);
   if (scenario.vitelline.enabled) {
     const OuterShape shell = tissue.outer_shape->moved_out(scenario.vitelline.gap_um);
@@ -424,6 +242,10 @@ void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model)
 }
 
 }  // namespace
+
+void hold_node(NodeId node, int axis, Model& model) {
+  for (const NodeId one : {node, model.tissue.original(node)}) model.held[one.index()][axis] = true;
+}
 
 Tissue make_tissue(const Scenario& scenario) {
   Tissue tissue = build_tissue(scenario);
@@ -453,9 +275,8 @@ std::optional<SolvedSide> make_solved_side(const Scenario& scenario, const Model
 
 std::vector<std::string> contracting_regions(const Scenario& scenario, const Tissue& tissue) {
   std::set<std::string> names;
-  for (const auto& [name, contraction] : scenario.contractions) names.insert(contraction.region);
-  for (const auto& [name, cortex] : scenario.cortices)
-    if (cortex.faces == "apical" && cortex.tension_mN_per_m > 0) names.insert(cortex.region);
+  for (const Acting& acting : acting_tables(scenario))
+    if (acting.contracts) names.insert(acting.input.region);
   std::vector<std::string> regions(names.begin(), names.end());
   std::ranges::stable_sort(regions, std::greater(), [&](const std::string& region) {
     return std::ranges::count(tissue.regions.at(region), true);

@@ -19,6 +19,9 @@ Tissue make_tissue(const Scenario& scenario);
 /// Builds the whole tissue and its force laws. Throws ScenarioError for errors that depend on the tissue.
 std::unique_ptr<Model> make_model(const Scenario& scenario);
 
+/// Fixes a node and its periodic original along `axis`.
+void hold_node(NodeId node, int axis, Model& model);
+
 /// Solved part of a symmetric embryo, and its mapping to the whole.
 struct SolvedSide {
   std::unique_ptr<Model> model;

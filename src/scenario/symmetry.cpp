@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "scenario/acting.hpp"
 #include "scenario/regions.hpp"
+#include "scenario/schema.hpp"
 #include "scenario/words.hpp"
 
 namespace plica {
@@ -27,9 +29,9 @@ class SymmetryCheck {
   SymmetryCheck(const Scenario& scenario, const Tissue& whole, const Mirror& mirror)
       : scenario_(scenario), whole_(whole), mirror_(mirror) {}
 
-  void check_acting(const std::string& table, const auto& input) {
-    if (!check_region(table, input.region)) return;
-    const CellPattern pattern = make_pattern(input, whole_);
+  void check_acting(const Acting& acting) {
+    if (!check_region(acting.table, acting.input.region)) return;
+    const CellPattern pattern = make_pattern(acting.input, whole_);
     for (const auto& [of_cells, what] :
          {std::pair(&pattern.strengths,
                     "is not symmetric: the factor is {:.4g} in cell {} and {:.4g} in its mirror image, cell {}"),
@@ -46,7 +48,7 @@ class SymmetryCheck {
         return std::abs(numbers[a] - numbers[b]) > 1e-9 * largest;
       };
       if (const auto cell = first_cell(differ))
-        return refuse(table,
+        return refuse(acting.table,
                       fmt::format(fmt::runtime(what), numbers[cell->index()], cell->number(),
                                   numbers[mirror_.own(*cell).index()], mirror_.own(*cell).number()),
                       "make variation, delay, pulse and profile symmetric, or remove embryo.mirror");
@@ -66,8 +68,7 @@ class SymmetryCheck {
     return false;
   }
 
-  void check_hold(const std::string& table, const HoldInput& input) {
-    const std::vector<bool> held = held_nodes(input, whole_);
+  void check_nodes(const std::string& table, const std::vector<bool>& held) {
     std::vector<NodeId> own(held.size());  // node of the whole, by node of the side
     for (std::size_t n = held.size(); n-- > 0;)
       if (const auto [node, signs] = mirror_.nodes[n]; signs == Vec3::Ones()) own[node.index()] = NodeId(n);
@@ -110,12 +111,14 @@ class SymmetryCheck {
 MirroredSide mirrored_side(const Scenario& scenario, const Tissue& whole) {
   MirroredSide side = side_of(scenario, whole);
   SymmetryCheck check(scenario, whole, side.mirror);
-  for (const auto& [name, input] : scenario.contractions) check.check_acting("contraction." + name, input);
-  for (const auto& [name, input] : scenario.cortices) check.check_acting("cortex." + name, input);
-  for (const auto& [name, input] : scenario.pressures) check.check_acting("pressure." + name, input);
-  for (const auto& [name, input] : scenario.region_elasticities) check.check_acting("elasticity." + name, input);
-  for (const auto& [name, input] : scenario.ablations) check.check_region("ablation." + name, input.region);
-  for (const auto& [name, input] : scenario.holds) check.check_hold("hold." + name, input);
+  for (const Acting& acting : acting_tables(scenario)) check.check_acting(acting);
+  for (const ScenarioTable& table : scenario_tables()) {
+    if (table.mirrored_regions)
+      table.regions(scenario, [&](const std::string& address, const std::string& region) {
+        check.check_region(address.substr(0, address.rfind('.')), region);
+      });
+    if (table.held_nodes) table.held_nodes(scenario, whole, std::bind_front(&SymmetryCheck::check_nodes, &check));
+  }
   check.finish();
   return side;
 }

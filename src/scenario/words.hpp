@@ -1,4 +1,4 @@
-// Words allowed as values, with their meanings, one table per key. schema.cpp takes the allowed words from here, and
+// Words allowed as values, with their meanings, one table per key. Rows of keys take the allowed words from here, and
 // code that builds from a scenario the meanings.
 #pragma once
 

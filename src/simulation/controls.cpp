@@ -42,14 +42,11 @@ StepScheme make_scheme(const Scenario& scenario) {
 }
 
 /// Add the points of pulses: steps must resolve them, and there is no equilibrium while cells pulse.
-template <class Acting>
-void take_pulses(const std::map<std::string, Acting>& tables, RunControls& controls) {
-  for (const auto& [name, input] : tables) {
-    if (!input.pulse.period_s) continue;
-    controls.max_step_s = std::min(controls.max_step_s, longest_step_of_pulses_s(input.pulse));
-    controls.first_step_s = std::min(controls.first_step_s, controls.max_step_s);
-    controls.program_points_s.push_back(controls.end_s);
-  }
+void take_pulses(const PulseInput& pulse, RunControls& controls) {
+  if (!pulse.period_s) return;
+  controls.max_step_s = std::min(controls.max_step_s, longest_step_of_pulses_s(pulse));
+  controls.first_step_s = std::min(controls.first_step_s, controls.max_step_s);
+  controls.program_points_s.push_back(controls.end_s);
 }
 
 }  // namespace
@@ -67,8 +64,7 @@ RunControls make_controls(const Scenario& scenario) {
   const bool all_at_once = meaning_of(words::combinations, scenario.stop.combine) && !scenario.criteria.empty();
   controls.stop_at_equilibrium = scenario.stop.at_equilibrium && !all_at_once;
   controls.frame_every_s = scenario.output.frame_every_s;
-  take_pulses(scenario.contractions, controls);
-  take_pulses(scenario.cortices, controls);
+  for (const Acting& acting : acting_tables(scenario)) take_pulses(acting.input.pulse, controls);
   for (const auto& [name, input] : scenario.divisions) {
     controls.divisions.push_back(make_division_rule(input));
     if (input.at_s) controls.program_points_s.push_back(*input.at_s);

@@ -64,7 +64,7 @@ std::optional<Scenario> scenario_alone(const StudyInput& study) {
 // Name the existing tables in an error about a table that only the study mentions, probably by mistake.
 void tell_of_new_table(Diagnostic& diagnostic, const std::string& key, const Scenario& scenario) {
   const std::string table = table_of(key);
-  for (const TableInfo& info : schema_tables()) {
+  for (const ScenarioTable& info : scenario_tables()) {
     if (!info.named() || !table.starts_with(std::string(info.stem()) + '.')) continue;
     const std::string name = table.substr(info.stem().size() + 1);
     const std::vector<std::string> names = info.names(scenario);

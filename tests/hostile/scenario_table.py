@@ -1,6 +1,6 @@
 """Reader of the key table printed by `plica reference`: every table and key with type, default and allowed values.
 
-Keys added to src/scenario/schema.cpp appear here automatically.
+Keys added to src/scenario/tables/ appear here automatically.
 """
 import re
 import subprocess

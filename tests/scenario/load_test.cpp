@@ -398,7 +398,7 @@ TEST(LoadScenario, OverridesGoLast) {
                                         "time.max_step_s=7", "time.max_step_s=8", "title=\"two words\""});
   EXPECT_EQ(scenario.time.end_s, 120);
   EXPECT_FALSE(scenario.time.step_s.has_value());
-  EXPECT_EQ(scenario.contractions.at("a").edges, "basal");
+  EXPECT_EQ(scenario.contractions.at("a").faces, "basal");
   EXPECT_EQ(scenario.contractions.at("a").program.time_s.size(), 2u);
   EXPECT_EQ(scenario.time.max_step_s, 8);
   EXPECT_EQ(scenario.title, "two words");

@@ -16,18 +16,18 @@ namespace {
 /// Compares two scenarios field by field; returns the number of fields.
 int expect_same(Scenario a, Scenario b) {
   int count = 0;
-  for (const TableInfo& info : schema_tables()) {
+  for (const ScenarioTable& info : scenario_tables()) {
     const std::vector<std::string> names = info.named() ? info.names(a) : std::vector<std::string>{""};
     if (info.named()) {
       EXPECT_EQ(names, info.names(b));
     }
     for (const std::string& name : names) {
-      for (const Row* row : rows_of(info.path)) {
-        const Slot left = row->field(a, name), right = row->field(b, name);
+      for (const Row& row : info.rows) {
+        const Slot left = row.field(a, name), right = row.field(b, name);
         std::visit(
             [&](auto field) {
               if constexpr (!std::is_same_v<decltype(field), std::monostate>) {
-                EXPECT_EQ(*field, *std::get<decltype(field)>(right)) << row->table << " " << name << " " << row->key;
+                EXPECT_EQ(*field, *std::get<decltype(field)>(right)) << row.table << " " << name << " " << row.key;
               }
             },
             left);
@@ -111,22 +111,22 @@ const InnerTables* inner_of(std::string_view key) {
   return nullptr;
 }
 
-std::string heading_of(const TableInfo& info) {
+std::string heading_of(const ScenarioTable& info) {
   return info.path.empty() ? "Top level" : "`[" + std::string(info.stem()) + (info.named() ? ".NAME]`" : "]`");
 }
 
 TEST(Reference, HasEveryRowOfTheTable) {
   const std::string page = reference_markdown();
   int count = 0, inner_count = 0;
-  for (const TableInfo& info : schema_tables()) {
+  for (const ScenarioTable& info : scenario_tables()) {
     const std::string section = section_of(page, heading_of(info));
-    for (const Row* row : rows_of(info.path)) {
-      const InnerTables* inner = inner_of(row->key);
+    for (const Row& row : info.rows) {
+      const InnerTables* inner = inner_of(row.key);
       const std::string& there = inner == nullptr ? section : section_of(page, std::string(inner->title));
-      std::string key(row->key);
+      std::string key(row.key);
       if (key.starts_with("stiffness_program.")) key.erase(0, std::string_view("stiffness_").size());
-      EXPECT_NE(there.find("\n| `" + key + "` | " + row->type() + " | "), std::string::npos) << info.path << " " << key;
-      EXPECT_NE(there.find(row->meaning), std::string::npos) << info.path << " " << key;
+      EXPECT_NE(there.find("\n| `" + key + "` | " + row.type() + " | "), std::string::npos) << info.path << " " << key;
+      EXPECT_NE(there.find(row.meaning), std::string::npos) << info.path << " " << key;
       if (inner != nullptr) {
         EXPECT_NE(section.find("([" + std::string(inner->title) + "](#"), std::string::npos) << info.path << " " << key;
         ++inner_count;
@@ -134,20 +134,21 @@ TEST(Reference, HasEveryRowOfTheTable) {
       ++count;
     }
   }
-  EXPECT_EQ(count, static_cast<int>(schema().size()));  // no row is of a table that does not exist
+  EXPECT_GT(count, 250);
   EXPECT_GT(inner_count, 100);
   std::cout << count << " rows, " << inner_count << " of inner tables\n";
 }
 
 TEST(Reference, TablesThatShareInnerTablesHaveTheSameKeysInThem) {
   std::map<std::string, std::map<std::string, std::string>> meanings;  // by key of the inner table, and table
-  for (const Row& row : schema()) {
-    if (inner_of(row.key) == nullptr) continue;
-    const std::size_t dot = row.key.find('.');
-    std::string key(row.key.substr(0, dot)), table(row.table);
-    if (key == "stiffness_program") key = "program", table += " stiffness";
-    meanings[key][table] += std::string(row.key.substr(dot)) + row.type() + row.expected() + std::string(row.meaning);
-  }
+  for (const ScenarioTable& info : scenario_tables())
+    for (const Row& row : info.rows) {
+      if (inner_of(row.key) == nullptr) continue;
+      const std::size_t dot = row.key.find('.');
+      std::string key(row.key.substr(0, dot)), table(row.table);
+      if (key == "stiffness_program") key = "program", table += " stiffness";
+      meanings[key][table] += std::string(row.key.substr(dot)) + row.type() + row.expected() + std::string(row.meaning);
+    }
   for (const auto& [key, tables] : meanings)
     for (const auto& [table, text] : tables) EXPECT_EQ(text, tables.begin()->second) << table << " " << key;
 }

@@ -1,12 +1,10 @@
-// Checks of profiles, activation waves and pulses: required and unused keys.
-#include <fmt/format.h>
+// Keys and rules that all tables that act have: program, profile, variation, delay, pulse.
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "scenario/acting.hpp"
-#include "scenario/validate.hpp"
-#include "scenario/words.hpp"
+#include "core/clock.hpp"
+#include "scenario/tables/table.hpp"
 
 namespace plica {
 namespace {
@@ -179,12 +177,6 @@ class ProfileCheck {
   Input& input_;
 };
 
-}  // namespace
-
-void check_profile(const std::string& table, ProfileInput& profile, Input& input) {
-  if (input.sound(table)) ProfileCheck(table + ".profile", profile, input).check();
-}
-
 void check_delay(const std::string& table, DelayInput& delay, Input& input) {
   const std::string path = table + ".delay", chooser = path + ".speed_um_per_s";
   if (!input.sound(table) || !input.sound(path) || !input.sound(chooser)) return;
@@ -217,6 +209,120 @@ void check_pulse(const std::string& table, PulseInput& pulse, const TimeInput& t
     input.report(period,
                  fmt::format("time steps of {} s do not resolve a period of {} s", *time.step_s, *pulse.period_s),
                  fmt::format("set time.step_s to at most {:.3g} or \"adaptive\"", longest_s));
+}
+
+}  // namespace
+
+void add_strengths(std::vector<Row>& rows, const RowsIn<ActingInput>& table) {
+  using A = ActingInput;
+  const auto profile = [&](std::string_view key, auto field, const Allowed& allowed, std::string_view meaning,
+                           const RowOptions& options = {}) {
+    rows.push_back(table(key, &A::profile, field, allowed, meaning, options));
+  };
+  profile("profile.shape", &ProfileInput::shape, one_of(words::profile_shapes),
+          "`constant`; `linear`: `edge` from `half_width_um` on; `gaussian`: exp(−d²/2σ²); `plateau`: `middle` on "
+          "`full_cells`, then a cosine taper over `fade_cells` on either side; `table`: given points; `array`: by a "
+          "cell array.");
+  profile("profile.axis", &ProfileInput::axis, one_of(words::profile_axes),
+          "Axis of d: across (arc about the embryo axis; y in an open tissue), along (x), or the angle from ventral "
+          "(°); default across.");
+  profile("profile.about", &ProfileInput::about, anything,
+          "Region that sets the centre and the cell size; default the table's own region.");
+  profile("profile.centre_deg", &ProfileInput::centre_deg, between(-180, 180),
+          "Angle of the centre; 0: ventral (default), 90: right.");
+  profile("profile.middle", &ProfileInput::middle, not_negative, "Factor at the centre; default 1.");
+  profile("profile.edge", &ProfileInput::edge, not_negative, "Factor far away; default 0.");
+  profile("profile.half_width_um", &ProfileInput::half_width_um, positive,
+          "`linear`: distance at which the factor reaches `edge` (µm).");
+  profile("profile.half_width_deg", &ProfileInput::half_width_deg, positive, "Likewise in degrees.");
+  profile("profile.sigma_um", &ProfileInput::sigma_um, positive, "`gaussian`: standard deviation σ (µm).");
+  profile("profile.sigma_cells", &ProfileInput::sigma_cells, positive,
+          "σ in cells: mean cell width of the region along the axis of d.", {.instead_of = "profile.sigma_um"});
+  profile("profile.sigma_deg", &ProfileInput::sigma_deg, positive, "σ in degrees.");
+  profile("profile.full_cells", &ProfileInput::full_cells, positive,
+          "`plateau`: full width with factor `middle` (cells).");
+  profile("profile.fade_cells", &ProfileInput::fade_cells, not_negative,
+          "`plateau`: width of the taper on either side (cells); 0: none.");
+  profile("profile.full_deg", &ProfileInput::full_deg, positive, "`plateau`: full width (degrees).");
+  profile("profile.fade_deg", &ProfileInput::fade_deg, not_negative,
+          "`plateau`: width of the taper (degrees); 0: none.");
+  profile("profile.at_um", &ProfileInput::at_um, anything,
+          "`table`: positions from the centre (µm), increasing; the factor is constant beyond the ends. Without "
+          "negative values: distances on both sides. Otherwise positive is right or posterior.");
+  profile("profile.at_cells", &ProfileInput::at_cells, anything, "The positions in cells, as for `sigma_cells`.",
+          {.instead_of = "profile.at_um"});
+  profile("profile.at_deg", &ProfileInput::at_deg, between(-180, 180), "The positions in degrees.");
+  profile("profile.factor", &ProfileInput::factor, not_negative, "`table`: factor at each position.");
+  profile("profile.array", &ProfileInput::array, anything,
+          "`array`: cell array that sets the factor, linear between `from` and `to`.");
+  profile("profile.from", &ProfileInput::from, anything,
+          "Array value at which, and before which, the factor is `edge`.");
+  profile("profile.to", &ProfileInput::to, anything,
+          "Array value at which, and beyond which, it is `middle`; below `from` for a decreasing factor.");
+  profile("profile.full_length_um", &ProfileInput::full_length_um, positive,
+          "Taper along x: full factor on this length about the centre (µm).");
+  profile("profile.fade_um", &ProfileInput::fade_um, positive,
+          "Taper along x: cosine decrease to `edge` on this length (µm).");
+  rows.push_back(table("variation.spread", &A::variation, &VariationInput::spread, between(0, 100),
+                       "Relative standard deviation of the factor."));
+  rows.push_back(table("variation.seed", &A::variation, &VariationInput::seed, not_negative, "Random seed."));
+  rows.push_back(table("variation.by", &A::variation, &VariationInput::by, one_of(words::variation_bys),
+                       "Random numbers depend on the cell number, or on its reference position (to 0.01 µm), which is "
+                       "independent of mesh numbering; default number."));
+}
+
+void add_pattern(std::vector<Row>& rows, const RowsIn<ActingInput>& table) {
+  using A = ActingInput;
+  add_strengths(rows, table);
+  rows.push_back(table("delay.speed_um_per_s", &A::delay, &DelayInput::speed_um_per_s, positive_or_none,
+                       "Wave speed (µm/s). Before the wave arrives, a cell is slack."));
+  rows.push_back(table("delay.axis", &A::delay, &DelayInput::axis, one_of(words::delay_axes),
+                       "Direction of the wave, as in `profile.axis`; default along."));
+  rows.push_back(table("delay.from", &A::delay, &DelayInput::from, one_of(words::delay_starts),
+                       "Origin of the wave in the region at time 0; low: anterior or left end. Default middle."));
+  rows.push_back(
+      table("pulse.period_s", &A::pulse, &PulseInput::period_s, {.low = 1, .word_for_none = "none"},
+            "Period (s). Adaptive steps are at most a twelfth of it, and the run does not stop at equilibrium."));
+  rows.push_back(table("pulse.period_min", &A::pulse, &PulseInput::period_s, {.low = 0.02, .word_for_none = "none"},
+                       "`period_s` in minutes.", {.instead_of = "pulse.period_s", .scale = 60}));
+  rows.push_back(table("pulse.amplitude", &A::pulse, &PulseInput::amplitude, between(0, 1),
+                       "Relative amplitude; 1: from 0 to twice the mean."));
+  rows.push_back(table("pulse.phase", &A::pulse, &PulseInput::phase, one_of(words::pulse_phases),
+                       "Own phase per cell, drawn by seed and position, or one for all; default random."));
+  rows.push_back(table("pulse.spread", &A::pulse, &PulseInput::spread, between(0, 1),
+                       "Relative standard deviation of the log-normal periods of cells."));
+  rows.push_back(table("pulse.seed", &A::pulse, &PulseInput::seed, not_negative, "Random seed of phases and periods."));
+}
+
+void check_program(const std::string& table, const ProgramInput& program, Input& input, const std::string& name) {
+  const std::string time = fmt::format("{}.{}.time_s", table, name);
+  const std::string activity = fmt::format("{}.{}.activity", table, name);
+  if (!input.sound(table) || !input.sound(time) || !input.sound(activity)) return;
+  if (program.time_s.empty() && program.activity.empty()) return;
+  if (program.time_s.empty()) return input.report(time, "is missing", "set time_s or time_min along with activity");
+  if (program.activity.empty()) return input.report(activity, "is missing", "set activity to as many values as times");
+  if (program.time_s.size() != program.activity.size()) {
+    input.report(activity, fmt::format("has length {} for {} times", program.activity.size(), program.time_s.size()),
+                 "set activity to as many values as times");
+  }
+  const auto& times = program.time_s;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] < times[i - 1])
+      return input.report(time, "the times do not increase",
+                          "list times in increasing order; repeat a time once to mark a jump");
+    if (i > 1 && times[i] == times[i - 2])
+      return input.report(time, fmt::format("{} occurs three times", times[i]), "repeat a time once to mark a jump");
+    if (times[i] != times[i - 1] && has_come(times[i], times[i - 1]))
+      return input.report(time, fmt::format("{} and {} are closer than {} s", times[i - 1], times[i], instant_s),
+                          "repeat a time once to mark a jump");
+  }
+}
+
+void check_acting(const std::string& table, ActingInput& acting, const TimeInput& time, Input& input) {
+  check_program(table, acting.program, input);
+  if (input.sound(table)) ProfileCheck(table + ".profile", acting.profile, input).check();
+  check_delay(table, acting.delay, input);
+  check_pulse(table, acting.pulse, time, input);
 }
 
 }  // namespace plica

@@ -1,0 +1,90 @@
+// [contraction.NAME]: springs on edges of cells.
+#include "mechanics/active/contraction.hpp"
+
+#include "scenario/tables/table.hpp"
+
+namespace plica {
+namespace {
+
+using C = ContractionInput;
+
+// Diagonals are those of four-sided faces.
+void check_diagonals(const Scenario& scenario, const Tissue& tissue, Errors& errors) {
+  for (const auto& [name, it] : scenario.contractions) {
+    if (!it.diagonals) continue;
+    const CellSet& region = tissue.regions.at(it.region);
+    for (std::size_t c = 0; c < region.size(); ++c)
+      if (region[c] && tissue.cells[c].sides() != 4) {
+        errors.push_back(
+            diagnostic_at(scenario, "contraction." + name + ".diagonals",
+                          fmt::format("{} has {} corners, but diagonals are defined for four-sided cells only",
+                                      cell_at(tissue, CellId(c)), tissue.cells[c].sides()),
+                          "set diagonals to false"));
+        break;
+      }
+  }
+}
+
+void build(const Scenario& scenario, const Origin& origin, Model& model) {
+  for (const auto& [name, input] : scenario.contractions) {
+    ContractionRule rule;
+    rule.side = meaning_of(words::edges, input.faces);
+    rule.stiffness = input.stiffness_nN_per_um;
+    rule.along_ratio = input.along_ratio;
+    rule.across_ratio = input.across_ratio;
+    rule.diagonals = input.diagonals;
+    rule.rest_length_ratio = input.rest_length_ratio;
+    rule.preload = input.preload_nN;
+    rule.damping = input.damping_nN_s_per_um;
+    rule.tension = input.tension_mN_per_m;  // nN/um = mN/m
+    const std::string table = "contraction." + name;
+    CellPattern pattern = make_ablated_pattern(scenario, table, input, origin);
+    std::vector<Spring> springs = contraction_springs(model.tissue, pattern, rule);
+    model.laws.push_back(
+        std::make_unique<Contraction>(std::move(springs), make_program(input.program), std::move(pattern)));
+    model.laws.back()->set_label(table);
+  }
+}
+
+void describe(const C& input, const Scenario& scenario, Acting& acting) {
+  const double stress = scenario.elasticity.young_modulus_Pa * units::pascal, height = scenario.embryo.cell_height_um;
+  // Lateral edges are long and pull on the small area of a cell.
+  const double shape = input.faces == "lateral" ? 0.01 : 1;
+  acting.faces_key = "edges";
+  acting.can_be_ablated = acting.contracts = true;
+  // A tension that falls with the length on which it acts ends softly by itself.
+  acting.is_constant = input.faces != "lateral" && input.stiffness_nN_per_um == 0 &&
+                       (input.tension_mN_per_m > 0 || input.preload_nN > 0);
+  acting.forces = {{"stiffness_nN_per_um", input.stiffness_nN_per_um, shape * stress * height},
+                   {"preload_nN", input.preload_nN, 0.01 * stress * height * height},
+                   {"tension_mN_per_m", input.tension_mN_per_m, stress * height}};
+}
+
+}  // namespace
+
+ScenarioTable contraction_table() {
+  ScenarioTable info{"contraction.*", "Contractile springs on cell edges.", "Activity"};
+  const auto row = rows_in(info, &Scenario::contractions);
+  info.rows = {
+      row("region", &C::region, anything, "Cells that contract.", {.required = true}),
+      row("edges", &C::faces, one_of(words::edges), "Edges that carry springs."),
+      row("stiffness_nN_per_um", &C::stiffness_nN_per_um, not_negative, "Spring stiffness (nN/µm)."),
+      row("along_ratio", &C::along_ratio, not_negative, "Factor on edges along the axis."),
+      row("across_ratio", &C::across_ratio, not_negative, "Factor on edges across the axis."),
+      row("diagonals", &C::diagonals, anything, "Add springs on face diagonals."),
+      row("rest_length_ratio", &C::rest_length_ratio, not_negative, "Slack length / initial length."),
+      row("preload_nN", &C::preload_nN, anything, "Pre-tension of a spring, independent of length (nN)."),
+      row("tension_mN_per_m", &C::tension_mN_per_m, not_negative,
+          "Tension per length across the face (mN/m = nN/µm), independent of cell size. Stiffness and pre-tension act "
+          "on every edge, so smaller cells contract more strongly."),
+      row("damping_nN_s_per_um", &C::damping_nN_s_per_um, not_negative, "Spring damping (nN s/µm)."),
+  };
+  add_program(info.rows, row, &C::program);
+  add_pattern(info.rows, acting(row));
+  info.check = check_diagonals;
+  info.build = build;
+  list_acting(info, &Scenario::contractions, describe);
+  return info;
+}
+
+}  // namespace plica

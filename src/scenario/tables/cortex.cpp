@@ -1,0 +1,169 @@
+// [cortex.NAME]: a thin active, elastic layer on faces of cells.
+#include "mechanics/active/cortex.hpp"
+
+#include <fmt/ranges.h>
+
+#include "scenario/tables/table.hpp"
+
+namespace plica {
+namespace {
+
+using X = CortexInput;
+
+void check_effect(const std::string& table, const CortexInput& cortex, Input& input) {
+  for (const char* key : {"", ".tension_mN_per_m", ".stiffness_mN_per_m", ".crowding_mN_per_m"})
+    if (!input.sound(table + key)) return;
+  // A value set to 0 is switched off on purpose, so the keys that depend on it are no error.
+  const auto is_missing = [&](double value, const std::string& name) {
+    return value == 0 && input.place(table + "." + name) == nullptr;
+  };
+  if (is_missing(cortex.tension_mN_per_m, "tension_mN_per_m") &&
+      is_missing(cortex.stiffness_mN_per_m, "stiffness_mN_per_m") &&
+      is_missing(cortex.crowding_mN_per_m, "crowding_mN_per_m"))
+    input.report(table, "has no effect", "set tension_mN_per_m, stiffness_mN_per_m or crowding_mN_per_m");
+  // Keys that modify a missing quantity.
+  const auto needs = [&](const std::string& key, bool is_given, double what, const std::string& name) {
+    if (is_given && is_missing(what, name))
+      input.report(table + key, "is not used without " + name, "remove it, or set " + name);
+  };
+  needs(".saturation_ratio", cortex.saturation_ratio > 0, cortex.tension_mN_per_m, "tension_mN_per_m");
+  needs(".program", !cortex.program.activity.empty(), cortex.tension_mN_per_m, "tension_mN_per_m");
+  needs(".compression_ratio", cortex.compression_ratio < 1, cortex.stiffness_mN_per_m, "stiffness_mN_per_m");
+  needs(".relaxation_s", cortex.relaxation_s.has_value(), cortex.stiffness_mN_per_m, "stiffness_mN_per_m");
+  needs(".stiffness_program", !cortex.stiffness_program.activity.empty(), cortex.stiffness_mN_per_m,
+        "stiffness_mN_per_m");
+}
+
+void check_own_state(const std::string& table, const CortexInput& cortex, Input& input) {
+  const auto& [measure, below, above] = cortex.trigger;
+  const FollowInput& follow = cortex.follow;
+  for (const std::string& part : {table, table + ".trigger", table + ".follow"})
+    if (!input.sound(part)) return;
+  const auto report = [&](const std::string& key, const std::string& problem, const std::string& remedy) {
+    if (input.sound(table + key)) input.report(table + key, problem, remedy);
+  };
+  const std::string measures =
+      fmt::format("set measure to one of: {}", fmt::join(words_of(words::own_measures), " | "));
+  if (measure.empty() && (below || above)) report(".trigger.measure", "is missing", measures);
+  if (!measure.empty() && below.has_value() == above.has_value())
+    report(below ? ".trigger.above" : ".trigger.below", below ? "conflicts with below" : "is missing",
+           "set either below or above");
+  if (!measure.empty() && cortex.delay.speed_um_per_s)
+    report(".trigger", "conflicts with `delay`, which activates cells at prescribed times", "remove one of them");
+  if (follow.measure.empty() && (follow.from || follow.to)) report(".follow.measure", "is missing", measures);
+  if (follow.measure.empty()) return;
+  if (!follow.from) report(".follow.from", "is missing", "set `from` to the value at which the factor is 0");
+  if (!follow.to) report(".follow.to", "is missing", "set `to` to the value at which the factor is 1");
+  if (follow.from && follow.from == follow.to) report(".follow.to", "equals `from`", "set `to` to a different value");
+  if (!measure.empty()) report(".follow", "conflicts with `trigger`", "remove one of them");
+  if (cortex.tension_mN_per_m == 0 && input.place(table + ".tension_mN_per_m") == nullptr)
+    report(".follow", "is not used without tension_mN_per_m", "remove it, or set tension_mN_per_m");
+}
+
+void check_cortices(Scenario& scenario, Input& input) {
+  for (auto& [name, it] : scenario.cortices) {
+    const std::string table = "cortex." + name;
+    check_acting(table, it, scenario.time, input);
+    check_program(table, it.stiffness_program, input, "stiffness_program");
+    check_effect(table, it, input);
+    check_own_state(table, it, input);
+  }
+}
+
+OwnStateRule make_own_state(const CortexInput& input) {
+  OwnStateRule rule;
+  const auto& [measure, below, above] = input.trigger;
+  if (!measure.empty()) {
+    rule.kind = below ? OwnStateRule::Kind::starts_below : OwnStateRule::Kind::starts_above;
+    rule.measure = meaning_of(words::own_measures, measure);
+    rule.threshold = below ? *below : *above;
+  } else if (!input.follow.measure.empty()) {
+    rule.kind = OwnStateRule::Kind::follows;
+    rule.measure = meaning_of(words::own_measures, input.follow.measure);
+    rule.from = *input.follow.from;
+    rule.to = *input.follow.to;
+  }
+  return rule;
+}
+
+void build(const Scenario& scenario, const Origin& origin, Model& model) {
+  for (const auto& [name, input] : scenario.cortices) {
+    if (input.tension_mN_per_m == 0 && input.stiffness_mN_per_m == 0 && input.crowding_mN_per_m == 0) continue;
+    CortexRule rule;  // nN/um = mN/m
+    rule.side = meaning_of(words::edges, input.faces);
+    rule.tension = input.tension_mN_per_m;
+    rule.saturation = input.saturation_ratio;
+    rule.stiffness = input.stiffness_mN_per_m;
+    rule.compression_ratio = input.compression_ratio;
+    rule.crowding = input.crowding_mN_per_m;
+    rule.relaxation_s = input.relaxation_s.value_or(0);
+    rule.program = make_program(input.program);
+    rule.stiffness_program = make_program(input.stiffness_program);
+    rule.own = make_own_state(input);
+    const std::string table = "cortex." + name;
+    CellPattern pattern = make_ablated_pattern(scenario, table, input, origin);
+    model.laws.push_back(std::make_unique<Cortex>(model.tissue, std::move(pattern), std::move(rule)));
+    model.laws.back()->set_label(table);
+  }
+}
+
+void describe(const X& input, const Scenario& scenario, Acting& acting) {
+  acting.faces_key = "faces";
+  acting.can_be_ablated = true;
+  acting.contracts = input.faces == "apical" && input.tension_mN_per_m > 0;
+  // A tension that falls with the area on which it acts ends softly by itself.
+  acting.is_constant = input.faces != "lateral" && input.tension_mN_per_m > 0 && input.saturation_ratio == 0 &&
+                       input.stiffness_mN_per_m == 0 && input.crowding_mN_per_m == 0 && input.follow.measure.empty();
+  acting.has_sudden_onset = input.tension_mN_per_m > 0 && input.trigger.measure.empty() && input.follow.measure.empty();
+  acting.forces = {{"tension_mN_per_m", input.tension_mN_per_m,
+                    scenario.elasticity.young_modulus_Pa * units::pascal * scenario.embryo.cell_height_um}};
+}
+
+}  // namespace
+
+ScenarioTable cortex_table() {
+  ScenarioTable info{"cortex.*", "Actomyosin cortex: thin active, elastic layer on cell faces, with isotropic tension.",
+                     "Activity"};
+  const auto row = rows_in(info, &Scenario::cortices);
+  info.rows = {
+      row("region", &X::region, anything, "Cells with this cortex.", {.required = true}),
+      row("faces", &X::faces, one_of(words::edges),
+          "Faces with this cortex. A lateral face is shared by two cells and takes half of its values from each."),
+      row("tension_mN_per_m", &X::tension_mN_per_m, not_negative, "Active tension of a large face (mN/m = nN/µm)."),
+      row("saturation_ratio", &X::saturation_ratio, not_negative,
+          "Tension saturates at small area: factor A/(A + `saturation_ratio` A₀) at area A and reference area A₀. 0: "
+          "constant tension."),
+      row("stiffness_mN_per_m", &X::stiffness_mN_per_m, not_negative,
+          "Area elasticity: tension at doubled area (mN/m)."),
+      row("compression_ratio", &X::compression_ratio, between(0, 1),
+          "Stiffness in compression / in extension; 0: slack below the stress-free area."),
+      row("crowding_mN_per_m", &X::crowding_mN_per_m, not_negative,
+          "Area-loss resistance: compressive tension, times (A₀/A)² (mN/m)."),
+      row("relaxation_s", &X::relaxation_s, positive_or_none, "Maxwell relaxation time of the stress-free area (s)."),
+      row("relaxation_min", &X::relaxation_s, positive_or_none, "`relaxation_s` in minutes.",
+          {.instead_of = "relaxation_s", .scale = 60}),
+  };
+  add_program(info.rows, row, &X::program);
+  add_program(info.rows, row, &X::stiffness_program,
+              {"stiffness_program.time_s", "stiffness_program.time_min", "stiffness_program.activity"});
+  info.rows.insert(info.rows.end(),
+                   {
+                       row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::own_measures),
+                           "Measure that starts the time courses."),
+                       row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
+                       row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
+                       row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::own_measures),
+                           "Measure that scales the active tension."),
+                       row("follow.from", &X::follow, &FollowInput::from, not_negative,
+                           "Value at which, and before which, the factor is 0."),
+                       row("follow.to", &X::follow, &FollowInput::to, not_negative,
+                           "Value at which, and beyond which, the factor is 1."),
+                   });
+  add_pattern(info.rows, acting(row));
+  info.build = build;
+  list_acting(info, &Scenario::cortices, describe);
+  info.rules = check_cortices;
+  return info;
+}
+
+}  // namespace plica

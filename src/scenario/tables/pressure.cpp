@@ -1,0 +1,42 @@
+// [pressure.NAME]: dead loads on faces of cells.
+#include "mechanics/surroundings.hpp"
+#include "scenario/tables/table.hpp"
+
+namespace plica {
+namespace {
+
+using P = PressureInput;
+
+void build(const Scenario& scenario, const Origin& origin, Model& model) {
+  for (const auto& [name, input] : scenario.pressures) {
+    model.laws.push_back(std::make_unique<FacePressure>(model.tissue, meaning_of(words::pressure_faces, input.faces),
+                                                        make_pattern(input, origin), input.pressure_Pa * units::pascal,
+                                                        make_program(input.program)));
+    model.laws.back()->set_label("pressure." + name);
+  }
+}
+
+void describe(const P& input, const Scenario& scenario, Acting& acting) {
+  acting.faces_key = "face";
+  acting.forces = {{"pressure_Pa", input.pressure_Pa, scenario.elasticity.young_modulus_Pa}};
+}
+
+}  // namespace
+
+ScenarioTable pressure_table() {
+  ScenarioTable info{"pressure.*", "Pressure on cell faces.", "Surroundings"};
+  const auto row = rows_in(info, &Scenario::pressures);
+  info.rows = {
+      row("region", &P::region, anything, "Cells whose faces carry the pressure.", {.required = true}),
+      row("face", &P::faces, one_of(words::pressure_faces), "Loaded face."),
+      row("pressure_Pa", &P::pressure_Pa, anything, "Pressure into the cell (Pa); dead load on the reference face.",
+          {.required = true}),
+  };
+  add_program(info.rows, row, &P::program);
+  add_strengths(info.rows, acting(row));
+  info.build = build;
+  list_acting(info, &Scenario::pressures, describe);
+  return info;
+}
+
+}  // namespace plica
