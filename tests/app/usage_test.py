@@ -88,12 +88,6 @@ class Usage(CommandLine):
         self.assertIn("warning: division.late", first.stderr)
         self.assertNotIn("warning", again.stderr)
 
-    def test_an_unknown_scenario_is_answered_with_the_nearest(self):
-        result = plica("run", "drosophla", "--out", self.out)
-        self.assertEqual(result.returncode, 2)
-        self.assertIn('"drosophila"', self.assert_messages(result)[0])
-        self.assertFalse(self.out.exists())
-
     def test_a_scenario_that_cannot_be_read(self):
         for path in (self.folder / "missing.toml", self.folder):
             with self.subTest(path):
@@ -101,22 +95,6 @@ class Usage(CommandLine):
                 self.assertIn(result.returncode, (2, 4))
                 self.assertIn(str(path), self.assert_messages(result)[0])
                 self.assertFalse(self.out.exists())
-
-    def test_check_prints_a_scenario_that_loads_again(self):
-        for text in (BLOCK, SPHERE):
-            first = plica("check", self.write(text))
-            self.assertEqual(first.returncode, 0, first.stderr)
-            for key in ("young_modulus_Pa", "poisson_ratio", "surface_drag_Pa_s_per_um", "equilibrium_speed_um_per_min"):
-                self.assertIn(key, first.stdout)
-            second = plica("check", self.write(first.stdout, "scenario.toml"))
-            self.assertEqual((second.returncode, second.stdout), (0, first.stdout))
-
-    def test_set_reaches_named_tables_and_the_last_one_counts(self):
-        result = plica("check", self.write(BLOCK), "--set", "contraction.all.stiffness_nN_per_um=2.5", "--set", "time.end_s=7",
-                       "--set", "time.end_s=9", "--set", "region.first.ids=[0, 1]", "--set", "title=Another title")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        for line in ("stiffness_nN_per_um = 2.5", "end_s = 9", "ids = [0, 1]", 'title = "Another title"'):
-            self.assertIn(line, result.stdout.splitlines())
 
     def test_building_that_takes_long_is_not_silent(self):
         path = self.write('format = 1\n[embryo]\nshape = "egg"\ncell_count = 90000\n[vitelline]\nenabled = false\n')

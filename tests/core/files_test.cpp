@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "core/errors.hpp"
+#include "support/own_folder.hpp"
 
 namespace plica {
 namespace {
@@ -17,18 +18,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A folder of the test's own, removed at its end.
-class FilesTest : public testing::Test {
+class FilesTest : public support::OwnFolder {
  protected:
-  FilesTest() : folder(fs::path(testing::TempDir()) / ("plica_files_" + std::to_string(::getpid()))) {
-    fs::create_directories(folder);
-  }
-  ~FilesTest() override { fs::remove_all(folder); }
-
   [[nodiscard]] std::size_t file_count() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
   }
-
-  fs::path folder;
 };
 
 /// No file may grow beyond `bytes` as long as this lives: what a full disk looks like.

@@ -9,40 +9,29 @@
 #include "core/files.hpp"
 #include "experiments/experiments.hpp"
 #include "support/block_scenario.hpp"
+#include "support/own_folder.hpp"
+#include "support/scenarios.hpp"
 
 namespace plica {
 namespace {
 
-namespace fs = std::filesystem;
-
 // A file of experiments, with a scenario and a table of draws beside it.
-class ReadExperiments : public ::testing::Test {
+class ReadExperiments : public support::OwnFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("plica_experiments_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-    write_file(folder_ / "block.toml", support::pulled_block().text);
-    write_file(folder_ / "draws.csv", "contraction.all.stiffness_nN_per_um,time.end_s\n1,5\n2,5\n3,4\n");
+  ReadExperiments() {
+    write("block.toml", support::pulled_block().text);
+    write("draws.csv", "contraction.all.stiffness_nN_per_um,time.end_s\n1,5\n2,5\n3,4\n");
   }
-  void TearDown() override { fs::remove_all(folder_); }
-
   [[nodiscard]] Experiments parsed(const std::string& text) const {
-    return parse_experiments("mine", (folder_ / "mine.toml").string(), text);
+    return parse_experiments("mine", (folder / "mine.toml").string(), text);
   }
   // All that is wrong, without the folder.
   [[nodiscard]] std::string complaint(const std::string& text) const {
-    try {
-      check_experiments(parsed(text));
-      return "";
-    } catch (const ScenarioError& error) {
-      std::string what = error.what();
-      for (std::size_t at = what.find(folder_.string()); at != std::string::npos; at = what.find(folder_.string()))
-        what.erase(at, folder_.string().size() + 1);
-      return what;
-    }
+    std::string what = support::errors_in([&] { check_experiments(parsed(text)); });
+    for (std::size_t at = what.find(folder.string()); at != std::string::npos; at = what.find(folder.string()))
+      what.erase(at, folder.string().size() + 1);
+    return what;
   }
-
-  fs::path folder_;
 };
 
 const std::string good = R"(title = "Blocks"
@@ -256,7 +245,7 @@ TEST_F(ReadExperiments, RefuseDrawsWithFileLineAndColumn) {
        "match)"},
   };
   for (const auto& [draws, expected] : cases) {
-    write_file(folder_ / "draws.csv", draws);
+    write_file(folder / "draws.csv", draws);
     EXPECT_NE(complaint(good).find(expected), std::string::npos) << expected << "\n" << complaint(good);
   }
 }

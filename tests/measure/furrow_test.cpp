@@ -71,13 +71,10 @@ TEST(Furrow, MonitoredCellsAreAtTheMiddleAndSecondLastOnTheMidline) {
 }
 
 TEST(Furrow, EndCellsAreCountedFromTheEndsAndStopAtTheMiddle) {
-  int cases = 0;
   for (const auto& [from_end, column] : {std::pair{1, 2}, {2, 3}, {7, 8}, {8, 8}, {100, 8}}) {
     const Pill pill(from_end);
     EXPECT_EQ(pill.places(pill.sites.vce), (Places{{column, 4}, {17 - column, 4}})) << from_end << " from the end";
-    ++cases;
   }
-  RecordProperty("cases", cases);
 }
 
 TEST(Furrow, MidlineRunsFromAnteriorToPosterior) {
@@ -125,7 +122,6 @@ TEST(Furrow, AtRestThereIsNone) {
 TEST(Furrow, DepthIsTheShiftOfTheMiddle) {
   const Pill pill;
   const LipShape rest = lip_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
-  int cases = 0;
   for (const double shift : {0.5, 7.0, 31.0}) {
     const Vectors positions = pill.shifted(pill.sites.vml, Vec3(0, 0, shift));
     const LipShape shape = lip_shape(pill.tissue, pill.sites, positions);
@@ -136,9 +132,7 @@ TEST(Furrow, DepthIsTheShiftOfTheMiddle) {
       EXPECT_NEAR(depth.value(), shift, 1e-10);
     for (const auto& depth : cell_depths_um(pill.tissue, pill.sites, pill.sites.vce, positions))
       EXPECT_NEAR(depth.value(), 0, 1e-12);
-    ++cases;
   }
-  RecordProperty("cases", cases);
 }
 
 // A dimple of single faces is no furrow: the middles of polygons move and depth does not, but their corners count.

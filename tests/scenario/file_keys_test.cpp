@@ -1,28 +1,28 @@
-// Shapes that read a file: units, placement, pieces, regions by arrays, and cells that do not exist.
+// Keys of files: meshes, points, bases.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "core/files.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
+#include "support/own_folder.hpp"
+#include "support/scenarios.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {
 
-class FileKeys : public testing::Test {
- protected:
-  FileKeys() : folder(std::filesystem::path(testing::TempDir()) / ("plica_file_keys_" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(folder);
-  }
-  ~FileKeys() override { std::filesystem::remove_all(folder); }
+using namespace support;
 
+class FileKeys : public OwnFolder {
+ protected:
   /// Three squares of this size in a row, one apart from them if asked for, with a number each.
   void write_squares(double size_um, const std::string& values = "1 nan 3", bool apart = false) {
     std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(apart ? 12 : 8) +
@@ -42,7 +42,7 @@ class FileKeys : public testing::Test {
       text += "4 " + std::to_string(f) + ' ' + std::to_string(f + 1) + ' ' + std::to_string(f + 5) + ' ' +
               std::to_string(f + 4) + ' ' + value + '\n';
     if (apart) text += "4 8 9 10 11 9\n";
-    write_file(folder / "a.ply", text);
+    write("a.ply", text);
   }
 
   [[nodiscard]] std::string squares(const std::string& keys = "") const {
@@ -52,23 +52,12 @@ class FileKeys : public testing::Test {
 
   static Tissue tissue(const std::string& text) { return make_tissue(load_scenario({"test", "test.toml", text})); }
 
-  static std::string errors_of(const std::string& text) {
-    try {
-      make_model(load_scenario({"test", "test.toml", text}));
-      return "";
-    } catch (const ScenarioError& error) {
-      return error.what();
-    }
-  }
-
   static std::string advice_on(const std::string& text) {
     const Scenario scenario = load_scenario({"test", "test.toml", text});
     std::string lines;
     for (const std::string& line : advice(scenario, *make_model(scenario))) lines += line + '\n';
     return lines;
   }
-
-  std::filesystem::path folder;
 };
 
 TEST_F(FileKeys, AWrongUnitIsWarnedOfAndTheScaleNamedHelps) {
@@ -111,8 +100,9 @@ TEST_F(FileKeys, EveryShapeIsScaledThenTurnedThenCentred) {
     const Vec3& before = block.rest_positions[n];
     EXPECT_LT((moved.rest_positions[n] - Vec3(-before.y(), 2 * before.x(), before.z())).norm(), 1e-9);
   }
-  EXPECT_NE(errors_of(squares("rotate_deg = [90]\n")).find("embryo.rotate_deg: has length 1; set rotate_deg to three"),
-            std::string::npos);
+  EXPECT_NE(
+      model_errors(squares("rotate_deg = [90]\n")).find("embryo.rotate_deg: has length 1; set rotate_deg to three"),
+      std::string::npos);
 }
 
 TEST_F(FileKeys, PointsAreTurnedAndCentredToo) {
@@ -122,7 +112,7 @@ TEST_F(FileKeys, PointsAreTurnedAndCentredToo) {
     table += std::to_string(500 + 60 * r * std::sin(turn)) + ',' + std::to_string(60 * r * std::cos(turn)) + ',' +
              std::to_string(120 * z) + '\n';
   }
-  write_file(folder / "points.csv", table);
+  write("points.csv", table);
   const Tissue turned =
       tissue("format = 1\n[embryo]\nshape = \"points\"\nfile = \"" + (folder / "points.csv").string() +
              "\"\ncell_height_um = 15\nrotate_deg = [0, 90, 0]\ncentre = true\n");
@@ -133,7 +123,7 @@ TEST_F(FileKeys, PointsAreTurnedAndCentredToo) {
 
 TEST_F(FileKeys, PiecesAreNamedAndTheLargestIsKept) {
   write_squares(10, "1 2 3", true);
-  const std::string said = errors_of(squares());
+  const std::string said = model_errors(squares());
   EXPECT_NE(said.find("the surface is not one piece but 2 pieces of 3 and 1 cells; face 3 at (75, 5, 0) um is joined"),
             std::string::npos)
       << said;
@@ -156,10 +146,10 @@ TEST_F(FileKeys, CellsWithoutAValueBelongToNoRegionAndNoProfile) {
   const std::string acts =
       "[contraction.c]\nregion = \"all\"\nstiffness_nN_per_um = 1\nprofile = { shape = \"array\", array = \"gene\", "
       "from = 0, to = 1 }\n";
-  EXPECT_NE(errors_of(squares(acts)).find("profile.array: array \"gene\" has no value in cell 1 at (15, 5, -5) um"),
+  EXPECT_NE(model_errors(squares(acts)).find("profile.array: array \"gene\" has no value in cell 1 at (15, 5, -5) um"),
             std::string::npos)
-      << errors_of(squares(acts));
-  EXPECT_NE(errors_of(squares("cell_height_array = \"gene\"\n"))
+      << model_errors(squares(acts));
+  EXPECT_NE(model_errors(squares("cell_height_array = \"gene\"\n"))
                 .find("embryo.cell_height_array: array \"gene\" has no value in face 1"),
             std::string::npos);
 }
@@ -170,17 +160,17 @@ TEST_F(FileKeys, CellsAndRegionsThatDoNotExistAreErrors) {
       "format = 1\n[embryo]\nshape = \"sheet\"\nlength_um = 60\nwidth_um = 40\ncell_count = 12\ncell_height_um = 10\n";
   for (const std::string& text : {squares(), sheet}) {
     const std::string last = text == sheet ? "11" : "2";
-    const std::string said = errors_of(text + "[region.r]\nids = [0, 99]\n");
+    const std::string said = model_errors(text + "[region.r]\nids = [0, 99]\n");
     EXPECT_NE(said.find("region.r.ids: cell 99 does not exist; set ids to numbers from 0 to " + last),
               std::string::npos)
         << said;
-    EXPECT_EQ(errors_of(text + "[region.r]\nids = [0, " + last + "]\n"), "");
+    EXPECT_EQ(model_errors(text + "[region.r]\nids = [0, " + last + "]\n"), "");
   }
   const std::string acts = "[contraction.c]\nregion = \"gene\"\nstiffness_nN_per_um = 1\n";
-  const std::string said = errors_of(squares(acts));
+  const std::string said = model_errors(squares(acts));
   EXPECT_NE(said.find("region \"gene\" does not exist"), std::string::npos) << said;
   EXPECT_NE(said.find("add [region.gene] with array = \"gene\""), std::string::npos) << said;
-  EXPECT_EQ(errors_of(squares(acts + "[region.gene]\narray = \"gene\"\n")), "");
+  EXPECT_EQ(model_errors(squares(acts + "[region.gene]\narray = \"gene\"\n")), "");
 }
 
 // Three cells of two triangles each about one point.
@@ -198,8 +188,64 @@ TEST_F(FileKeys, TrianglesOfOneLabelAreACell) {
                       "embryo.label_array = \"label\""),
             std::string::npos)
       << said;
-  EXPECT_NE(errors_of(squares("label_array = \"cell\"\n")).find("no array \"cell\" of its faces; there are: label"),
+  EXPECT_NE(model_errors(squares("label_array = \"cell\"\n")).find("no array \"cell\" of its faces; there are: label"),
             std::string::npos);
+}
+
+class LoadFiles : public OwnFolder {
+ protected:
+  LoadFiles() { std::filesystem::create_directories(folder / "inner"); }
+  static std::string errors_in(const std::string& path) {
+    return support::errors_in([&] { return load_scenario(find_scenario(path)); });
+  }
+};
+
+TEST_F(LoadFiles, InheritsKeyByKey) {
+  write("base.toml",
+        "[time]\nend_min = 5\nstep_s = 1\n[region.a]\nface = \"left\"\n[expect]\ncells = { value = 1, within = 2 }\n");
+  write("inner/middle.toml", "base = \"../base.toml\"\n[region.b]\nface = \"right\"\n[time]\nend_s = 7\n");
+  const std::string top =
+      write("top.toml",
+            "base = \"inner/middle.toml\"\n[region.a]\ncells_along = 2\n[expect]\ncells = { within_percent = 3 }\n");
+  const Scenario scenario = load_scenario(find_scenario(top));
+  EXPECT_EQ(scenario.name, "top");
+  EXPECT_EQ(scenario.time.end_s, 7);
+  EXPECT_EQ(scenario.time.step_s, 1);
+  EXPECT_EQ(scenario.regions.at("a").face, "left");
+  EXPECT_EQ(scenario.regions.at("a").cells_along, 2);
+  EXPECT_EQ(scenario.regions.at("b").face, "right");
+  EXPECT_EQ(scenario.expect.at("cells").value, 1);
+  EXPECT_FALSE(scenario.expect.at("cells").within.has_value());
+  EXPECT_EQ(scenario.expect.at("cells").within_percent, 3);
+}
+
+TEST_F(LoadFiles, InheritsFromABuiltinAndDropsWhatAnotherShapeDoesNotUse) {
+  const Scenario scenario = load_scenario(
+      {"test", "test.toml",
+       "base = \"drosophila\"\n[embryo]\nshape = \"sphere\"\ncells = [18, 9, 9]\n[region.furrow]\ncells_across = 3\n"});
+  EXPECT_EQ(scenario.embryo.length_um, 280);
+  EXPECT_EQ(scenario.regions.at("furrow").cells_across, 3);
+  EXPECT_EQ(scenario.contractions.at("apical").region, "furrow");
+}
+
+TEST_F(LoadFiles, ReportsErrorsWhereTheyAreWritten) {
+  const std::string base = write("base.toml", "format = 1\n[time]\nend_s = -5\n");
+  const std::string top = write("top.toml", "base = \"base.toml\"\n[time]\nstep_s = -1\n");
+  EXPECT_EQ(errors_in(top), base + ":3: time.end_s: -5 is out of range; set end_s to a number > 0\n" + top +
+                                ":3: time.step_s: -1 is out of range; set step_s to a number >= 1e-06 or \"adaptive\"");
+}
+
+TEST_F(LoadFiles, RefusesCircularBases) {
+  const std::string first = write("first.toml", "base = \"second.toml\"\n");
+  const std::string second = write("second.toml", "format = 1\nbase = \"first.toml\"\n");
+  EXPECT_EQ(errors_in(first),
+            second + ":2: base: \"first.toml\" inherits from itself through its bases; remove one base of the cycle");
+}
+
+TEST_F(LoadFiles, FindsMeshesBesideTheFileThatNamesThem) {
+  write("inner/base.toml", "[embryo]\nshape = \"file\"\nfile = \"mesh.vtu\"\n");
+  const std::string top = write("top.toml", "base = \"inner/base.toml\"\n");
+  EXPECT_EQ(load_scenario(find_scenario(top)).embryo.file, (folder / "inner" / "mesh.vtu").string());
 }
 
 }  // namespace

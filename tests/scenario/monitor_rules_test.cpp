@@ -1,39 +1,29 @@
+// Rules of monitors, criteria and times.
 #include <gtest/gtest.h>
 
 #include <iostream>
 
+#include "core/errors.hpp"
 #include "scenario/load.hpp"
 #include "scenario/print.hpp"
 #include "scenario/validate.hpp"
 #include "scenario/watch.hpp"
+#include "support/scenarios.hpp"
 #include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {
 
-Scenario load(const std::string& text) { return load_scenario({"test", "test.toml", text}); }
-
-std::string errors_of(const std::string& text) {
-  try {
-    (void)load(text);
-    return "";
-  } catch (const ScenarioError& error) {
-    return error.what();
-  }
-}
+using namespace support;
 
 const std::string floor_monitor = "[monitor.floor]\nquantity = \"position\"\naxis = \"z\"\n";  // three lines
 
 TEST(MonitorRules, EveryErrorIsOneLineWithARemedy) {
-  const std::vector<std::pair<std::string, std::string>> cases = {
+  const WrongScenarios cases = {
       {"[monitor.a]",
        "test.toml:1: monitor.a.quantity: is missing; set quantity to one of: position | displacement | speed | "
        "velocity | deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | "
        "apical_elongation | pressure | kinetic_energy | time | wall"},
-      {"[monitor.a]\nquantity = \"displacment\"",
-       "test.toml:2: monitor.a.quantity: \"displacment\" is unknown; set quantity to one of: position | displacement | "
-       "speed | velocity | deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | "
-       "apical_elongation | pressure | kinetic_energy | time | wall (nearest match: \"displacement\")"},
       {"[monitor.a]\nquantity = \"speed\"\nregion = \"al\"",
        "test.toml:3: monitor.a.region: region \"al\" does not exist; use \"all\" (nearest match)"},
       {"[monitor.a]\nquantity = \"position\"",
@@ -64,30 +54,19 @@ TEST(MonitorRules, EveryErrorIsOneLineWithARemedy) {
       {"[stop.a]\nabove = 1", "test.toml:1: stop.a.monitor: is missing; set monitor to a text"},
       {floor_monitor + "[stop.a]\nmonitor = \"floor\"", "test.toml:4: stop.a: has no bound; set above or below"},
       {"[stop.a]",
-       "test.toml:1: stop.a.monitor: is missing; set monitor to a text\n"
-       "test.toml:1: stop.a: has no bound; set above or below"},
+       "test.toml:1: stop.a.monitor: is missing; set monitor to a text\ntest.toml:1: stop.a: has no bound; set above "
+       "or below"},
       {floor_monitor + "[stop.a]\nmonitor = \"flor\"\nabove = 1",
        "test.toml:5: stop.a.monitor: monitor \"flor\" does not exist; use \"floor\" (nearest match)"},
       {"[stop.a]\nmonitor = \"floor\"\nabove = 1",
        "test.toml:2: stop.a.monitor: monitor \"floor\" does not exist; define [monitor.floor]"},
       {floor_monitor + "[stop.a]\nmonitor = \"floor\"\nabove = 3\nbelow = 3",
        "test.toml:6: stop.a.above: no value lies above 3 and below 3; reduce above, or define two criteria"},
-      {floor_monitor + "[stop.a]\nmonitor = \"floor\"\nabove = nan",
-       "test.toml:6: stop.a.above: nan is not a finite number; set above to a number"},
-      {floor_monitor + "[stop.a]\nmonitor = \"floor\"\nabov = 3",
-       "test.toml:6: stop.a.abov: unknown key; use \"above\" (nearest match)"},
       {floor_monitor + "[stop.equilibrium]\nmonitor = \"floor\"\nabove = 3",
        "test.toml:4: stop.equilibrium: \"equilibrium\" is a predefined criterion; rename the table, or set "
        "stop.equilibrium_speed_um_per_min"},
       {"[monitor.t]\nquantity = \"time\"\n[stop.a]\nmonitor = \"t\"\nabove = 3\nover = \"any\"",
        "test.toml:6: stop.a.over: monitor \"t\" has a single value; remove over"},
-      {"[stop]\ncombine = \"none\"",
-       "test.toml:2: stop.combine: \"none\" is unknown; set combine to one of: any | all"},
-      {"[stop]\ncombine = {}",
-       "test.toml:2: stop.combine: a table has the wrong type; set combine to one of: any | all"},
-      {"[stop]\nat_equilibium = false",
-       "test.toml:2: stop.at_equilibium: unknown key; use \"at_equilibrium\" (nearest match)"},
-      {"[stop.\"a b\"]", "test.toml:1: stop.a b: is not a valid name; use letters, digits, \"_\" and \"-\" only"},
       // Expectations of monitors.
       {floor_monitor + "[expect]\nfloor.position_m = { value = 1, within = 1 }",
        "test.toml:5: expect.floor.position_m: no monitor has this name; use \"floor.position_um\" (nearest match)"},
@@ -96,12 +75,7 @@ TEST(MonitorRules, EveryErrorIsOneLineWithARemedy) {
       {floor_monitor + "[expect]\nfloor.position_um = { value = 1 }",
        "test.toml:5: expect.floor.position_um: has no tolerance; set within or within_percent"},
   };
-  int count = 0;
-  for (const auto& [text, message] : cases) {
-    EXPECT_EQ(errors_of(text), message) << text;
-    ++count;
-  }
-  std::cout << count << " wrong scenarios\n";
+  expect_errors(cases, load_errors);
 }
 
 const std::string rich = floor_monitor + R"(region = "belly"
@@ -125,11 +99,11 @@ floor.position_um = { value = -120, within = 1 }
 )";
 
 TEST(MonitorRules, ResolvedScenarioLoadsBack) {
-  const Scenario scenario = load(rich);
+  const Scenario scenario = scenario_of(rich);
   EXPECT_EQ(scenario.expect.count("floor.position_um"), 1U);
   EXPECT_EQ(scenario.criteria.size(), 2U);
   const std::string text = resolved_toml(scenario);
-  EXPECT_EQ(resolved_toml(load(text)), text);
+  EXPECT_EQ(resolved_toml(scenario_of(text)), text);
 }
 
 TEST(MonitorRules, SetReachesCriteriaAndExpectations) {
@@ -143,7 +117,7 @@ TEST(MonitorRules, SetReachesCriteriaAndExpectations) {
 TEST(Watch, MakesMonitorsAndCriteriaOfAScenario) {
   Tissue tissue = build_shell({.length_um = 460, .cells = {18, 9, 8}});
   tissue.regions["belly"] = tissue.regions.at("all");
-  const Watch watch = make_watch(load(rich), Model(tissue));
+  const Watch watch = make_watch(scenario_of(rich), Model(tissue));
   ASSERT_EQ(watch.monitors.size(), 2U);
   EXPECT_EQ(watch.monitors[0].column(), "clock.time_s");
   EXPECT_EQ(watch.monitors[1].column(), "floor.position_um");
@@ -157,6 +131,30 @@ TEST(Watch, MakesMonitorsAndCriteriaOfAScenario) {
   EXPECT_EQ(watch.stop.criteria[0].over, Criterion::Over::any);
   EXPECT_EQ(watch.stop.criteria[1].monitor, 0U);  // late on clock
   EXPECT_EQ(watch.stop.criteria[1].above, 60);
+}
+
+std::string error_of(const std::string& override_text) {
+  return errors_in([&] {
+    return load_scenario(find_scenario("drosophila"),
+                         std::vector<std::string>{override_text, "contraction.apical.program.activity=[1, 1, 0]"});
+  });
+}
+
+TEST(TimeRules, AProgramMayJumpButNotTwiceAtOnce) {
+  EXPECT_EQ(error_of("contraction.apical.program.time_s=[0, 10, 10]"), "");
+  EXPECT_NE(error_of("contraction.apical.program.time_s=[10, 10, 10]").find("10 occurs three times"),
+            std::string::npos);
+  EXPECT_NE(error_of("contraction.apical.program.time_s=[0, 10, 10.0000001]").find("closer than 1e-06 s"),
+            std::string::npos);
+  EXPECT_NE(error_of("contraction.apical.program.time_s=[0, 10, 9]").find("do not increase"), std::string::npos);
+}
+
+TEST(TimeRules, ARunLastsLongerThanAnInstant) {
+  const auto ends_at = [](const char* end) {
+    return load_scenario(find_scenario("drosophila"), std::vector<std::string>{std::string("time.end_s=") + end});
+  };
+  EXPECT_THROW(ends_at("1e-7"), ScenarioError);
+  EXPECT_NO_THROW(ends_at("1e-5"));
 }
 
 }  // namespace

@@ -1,20 +1,26 @@
-// Where the furrow of a scenario is measured.
+// What follows from a scenario: furrow region, automatic values, axes, what has no mirror image.
 #include "scenario/setup.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "core/errors.hpp"
+#include "scenario/embryo_axes.hpp"
 #include "scenario/load.hpp"
+#include "scenario/print.hpp"
+#include "support/scenarios.hpp"
 
 namespace plica {
 namespace {
 
+using namespace support;
+
 // Strip of seven cells with contractions in three regions, of one, three and two cells.
 Scenario three_contractions(const std::string& more = "") {
   std::string text =
-      "[embryo]\nshape = \"block\"\nlength_um = 140\nwidth_um = 20\ncell_height_um = 30\ncells = [7, 1, 1]\n"
-      "[region.one]\nids = [0]\n[region.three]\nids = [2, 3, 4]\n[region.two]\nids = [5, 6]\n";
+      "[embryo]\nshape = \"block\"\nlength_um = 140\nwidth_um = 20\ncell_height_um = 30\ncells = [7, 1, "
+      "1]\n[region.one]\nids = [0]\n[region.three]\nids = [2, 3, 4]\n[region.two]\nids = [5, 6]\n";
   for (const std::string region : {"one", "three", "two"})
     text += "[contraction." + region + "]\nregion = \"" + region + "\"\nstiffness_nN_per_um = 1\n";
   return load_scenario({"strip", "strip.toml", text + more});
@@ -40,6 +46,170 @@ TEST(FurrowRegion, IsNoneWithoutContraction) {
   const FurrowSites sites = make_furrow_sites(scenario, tissue);
   EXPECT_EQ(std::ranges::count(sites.contractile, true), 0);
   EXPECT_TRUE(sites.vml.empty());
+}
+
+using Overrides = std::vector<std::string>;
+
+double barrier_Pa(const std::string& text, const Overrides& overrides = {}) {
+  return *scenario_of(text, overrides).elasticity.corner_barrier_Pa;
+}
+
+const std::string row = "[embryo]\nshape = \"block\"\ncells = [3, 1, 1]\n";
+const std::string cut = "[division.cut]\nregion = \"all\"\nat_s = 5\n";
+
+TEST(AutomaticBarrier, IsATenthOfYoungsModulusWhereCellsArePolygonsOrDivide) {
+  for (const char* shape :
+       {"egg", "sheet", "points\"\nfile = \"p.csv", "surface\"\nfile = \"s.obj", "file\"\nfile = \"m.vtu"}) {
+    const std::string text = "[embryo]\nshape = \"" + std::string(shape) + "\"\n";
+    EXPECT_EQ(barrier_Pa(text), 100) << shape;
+    EXPECT_EQ(barrier_Pa(text + "[elasticity]\nyoung_modulus_Pa = 30\n"), 3) << shape;
+    EXPECT_EQ(barrier_Pa(text + "[elasticity]\ncorner_barrier_Pa = 0\n"), 0) << shape;
+    EXPECT_EQ(barrier_Pa(text + "[elasticity]\ncorner_barrier_Pa = 7\n"), 7) << shape;
+    EXPECT_EQ(barrier_Pa(text + "[elasticity]\ncorner_barrier_Pa = 7\n", {"elasticity.corner_barrier_Pa=automatic"}),
+              100)
+        << shape;
+  }
+  EXPECT_EQ(barrier_Pa(row + cut), 100);
+}
+
+TEST(AutomaticBarrier, IsNoneOnGridsThatDoNotDivide) {
+  for (const char* shape : {"pill", "sphere", "slice", "block"})
+    EXPECT_EQ(barrier_Pa("[embryo]\nshape = \"" + std::string(shape) + "\"\n"), 0) << shape;
+  EXPECT_EQ(barrier_Pa("base = \"drosophila\"\n"), 0);
+  EXPECT_EQ(barrier_Pa("base = \"drosophila-living\"\n"), 10);
+  // The paper's algorithm reproduces the paper.
+  EXPECT_EQ(barrier_Pa("[embryo]\nshape = \"file\"\nfile = \"m.vtu\"\n[volume]\nmethod = \"projection\"\n"), 0);
+}
+
+TEST(AutomaticIntegrator, IsOfSecondOrderWhereItCanBe) {
+  for (const char* shape : {"pill", "sphere", "slice", "block", "egg", "sheet"})
+    EXPECT_EQ(scenario_of("[embryo]\nshape = \"" + std::string(shape) + "\"\n").time.integrator, "bdf2") << shape;
+  for (const std::string bar :
+       {"time.scheme=linearly-implicit", "volume.method=projection", "dynamics.density_kg_per_m3=1"}) {
+    Overrides overrides = {bar};
+    if (bar.starts_with("time")) overrides.emplace_back("volume.method=none");
+    EXPECT_EQ(scenario_of(row, overrides).time.integrator, "backward-euler") << bar;
+  }
+  EXPECT_EQ(scenario_of(row, {"time.integrator=backward-euler"}).time.integrator, "backward-euler");
+}
+
+TEST(AutomaticValues, AreRecordedAsNumbers) {
+  const std::string text = resolved_toml(scenario_of("[embryo]\nshape = \"sheet\"\n"));
+  EXPECT_NE(text.find("\ncorner_barrier_Pa = 100\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("integrator = \"automatic\""), std::string::npos) << text;
+}
+
+EmbryoAxes axes_in(const std::string& keys) {
+  return axes_of(load_scenario({"test", "test.toml", "[embryo]\n" + keys}).embryo);
+}
+
+TEST(EmbryoAxes, AreAnatomicalForEmbryosAndPlainForOtherTissues) {
+  EXPECT_EQ(axes_in(""), anatomical_axes());
+  EXPECT_EQ(axes_in("shape = \"egg\""), anatomical_axes());
+  EXPECT_EQ(axes_in("shape = \"sheet\""), plain_axes());
+  EXPECT_EQ(axes_in("shape = \"block\""), plain_axes());
+  EXPECT_EQ(plain_axes()[0], (std::array<std::string, 2>{"\u2212x", "+x"}));
+  EXPECT_TRUE(have_furrow(anatomical_axes()));
+  EXPECT_FALSE(have_furrow(plain_axes()));
+}
+
+TEST(EmbryoAxes, AreThoseOfTheScenario) {
+  const EmbryoAxes axes = axes_in("shape = \"sheet\"\naxes = [\"proximal-distal\", \"anterior-posterior\", \"depth\"]");
+  EXPECT_EQ(axes, (EmbryoAxes{{{"proximal", "distal"}, {"anterior", "posterior"}, {"\u2212depth", "+depth"}}}));
+  EXPECT_TRUE(have_furrow(axes_in("shape = \"sheet\"\naxes = [\"x\", \"y\", \"ventral-dorsal\"]")));
+}
+
+TEST(EmbryoAxes, LettersAreTheShortestThatDiffer) {
+  EXPECT_EQ(letters_of(anatomical_axes()), (EmbryoAxes{{{"A", "P"}, {"L", "R"}, {"V", "D"}}}));
+  EXPECT_EQ(letters_of(plain_axes()), plain_axes());
+  EXPECT_EQ(letters_of({{{"proximal", "distal"}, {"anterior", "posterior"}, {"basal", "api"}}}),
+            (EmbryoAxes{{{"Pr", "D"}, {"An", "Po"}, {"B", "Ap"}}}));
+  EXPECT_EQ(letters_of({{{"in", "inner"}, {"\u00fcber", "unter"}, {"a", "b"}}}),
+            (EmbryoAxes{{{"In", "Inn"}, {"\u00fc", "U"}, {"A", "B"}}}));
+}
+
+TEST(EmbryoAxes, OtherListsAreRefused) {
+  const std::string remedy = "; write, for example, [\"proximal-distal\", \"anterior-posterior\", \"z\"]";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {R"(["x", "y"])", "has 2 names, not three"},
+      {R"(["x"])", "has 1 name, not three"},
+      {R"(["x", "y", "-z"])", R"("-z" is neither "low-high" nor one word)"},
+      {R"(["a-b", "c-", "z"])", R"("c-" is neither "low-high" nor one word)"},
+      {R"(["a-b", "c-d-e", "z"])", R"("c-d-e" is neither "low-high" nor one word)"},
+      {R"(["a-b", "b-c", "z"])", R"("b" names two ends)"},
+      {R"(["a-a", "y", "z"])", R"("a" names two ends)"}};
+  for (const auto& [list, problem] : cases)
+    EXPECT_EQ(errors_in([&] { return axes_in("axes = " + list); }), "test.toml:2: embryo.axes: " + problem + remedy);
+}
+
+const std::string pill = R"([embryo]
+length_um = 300
+diameter_um = 160
+cell_height_um = 30
+cells = [12, 8, 6]
+mirror = ["x", "y"]
+[region.belly]
+face = "ventral"
+[region.right]
+y_um = [0, 200]
+)";
+
+TEST(Symmetry, WhatHasNoImageIsRefused) {
+  const std::string right =
+      "region \"right\" is not symmetric: it contains cell 95 but not its mirror image, cell 0; use a symmetric "
+      "region, or remove embryo.mirror";
+  const WrongScenarios cases = {
+      {"[embryo]\nmirror = [\"z\"]", "test.toml:2: embryo.mirror: \"z\" is unknown; set mirror to a list of: x | y"},
+      {"[embryo]\nmirror = [\"y\", \"y\"]", "test.toml:2: embryo.mirror: \"y\" occurs twice; list each direction once"},
+      {"[embryo]\ncells = [12, 7, 6]\nmirror = [\"y\"]",
+       "test.toml:3: embryo.mirror: the plane y = 0 cuts cells in two, for example cell 36; give an even number of "
+       "cells along y"},
+      {"[embryo]\nshape = \"slice\"\nlength_um = 7\ncells = [1, 8, 6]\nmirror = [\"x\"]",
+       "test.toml:5: embryo.mirror: the plane x = 0 cuts cells in two, for example cell 0; give an even number of "
+       "cells along x"},
+      {pill + "[division.a]\nregion = \"all\"\nat_s = 5",
+       "test.toml:6: embryo.mirror: mirrored cells cannot divide; remove mirror, or [division]"},
+      {pill + "[volume]\nmethod = \"projection\"",
+       "test.toml:6: embryo.mirror: the paper's algorithm does not support mirror planes; remove mirror, or set "
+       "time.scheme to \"newton\" and volume.method to \"coupled\" or \"none\""},
+      {pill + "[contraction.a]\nregion = \"right\"\nstiffness_nN_per_um = 1",
+       "test.toml:12: contraction.a.region: " + right},
+      {pill + "[cortex.a]\nregion = \"right\"\ntension_mN_per_m = 1", "test.toml:12: cortex.a.region: " + right},
+      {pill + "[ablation.a]\nregion = \"right\"\nat_s = 1", "test.toml:12: ablation.a.region: " + right},
+      {pill + "[pressure.a]\nregion = \"right\"\npressure_Pa = 1", "test.toml:12: pressure.a.region: " + right},
+      {pill + "[cortex.a]\nregion = \"belly\"\ntension_mN_per_m = 1\nvariation = { spread = 0.3 }",
+       "test.toml:11: cortex.a: is not symmetric: the factor is 0.8292 in cell 0 and 0.5967 in its mirror image, cell "
+       "95; make variation, delay, pulse and profile symmetric, or remove embryo.mirror"},
+      {pill + "[contraction.a]\nregion = \"belly\"\nstiffness_nN_per_um = 1\ndelay = { speed_um_per_s = 1, from = "
+              "\"low\" }",
+       "test.toml:11: contraction.a: is not symmetric: the delay is 11.48 s in cell 0 and 193 s in its mirror image, "
+       "cell 95; make variation, delay, pulse and profile symmetric, or remove embryo.mirror"},
+      {pill + "[contraction.a]\nregion = \"belly\"\nstiffness_nN_per_um = 1\npulse = { period_s = 60 }",
+       "test.toml:11: contraction.a: is not symmetric: the pulse phase is 0.8882 in cell 0 and 0.4079 in its mirror "
+       "image, cell 95; make variation, delay, pulse and profile symmetric, or remove embryo.mirror"},
+      {pill + "[elasticity.a]\nregion = \"belly\"\nprofile = { shape = \"table\", at_um = [-90, 90], factor = [1, 2] }",
+       "test.toml:11: elasticity.a: is not symmetric: the factor is 1.235 in cell 0 and 1.765 in its mirror image, "
+       "cell 95; make variation, delay, pulse and profile symmetric, or remove embryo.mirror"},
+      {pill + "[hold.a]\nregion = \"all\"\nz_um = [0, 200]\ny_um = [10, 20]",
+       "test.toml:11: hold.a: is not symmetric: only one of the node at -118.731, -11.1918, 0 um and its mirror image "
+       "is fixed; use a symmetric region and ranges, or remove embryo.mirror"},
+  };
+  expect_errors(cases, side_errors);
+}
+
+// Regions used for measurement only need not be symmetric.
+TEST(Symmetry, RegionsThatAreOnlyMeasuredMayLieOnOneSide) {
+  EXPECT_EQ(
+      side_errors(
+          pill +
+          "[cortex.a]\nregion = \"belly\"\ntension_mN_per_m = 1\n[monitor.a]\nquantity = \"area\"\nregion = \"right\""),
+      "");
+}
+
+TEST(Symmetry, WithoutPlanesNothingIsHalved) {
+  const Scenario scenario = load_scenario({"test", "test.toml", "[embryo]\ncells = [7, 5, 3]"});
+  EXPECT_FALSE(make_solved_side(scenario, *make_model(scenario)));
+  EXPECT_TRUE(load_scenario({"test", "test.toml", pill}, {"embryo.mirror=[]"}).embryo.mirror.empty());
 }
 
 }  // namespace

@@ -52,7 +52,6 @@ Vectors volume_gradient(const Triangles& body) {
 TEST(Volume, OctahedronIsScaledBackByOneStepAlongItsGradient) {
   // Unit octahedron: V = 4/3, so alpha = 3 V / (n R^2) = 4 / 6.
   EXPECT_NEAR(3 * volume(octahedron(1)) / 6, 2.0 / 3, 1e-15);
-  int cases = 0;
   for (const double radius : {0.7, 1.0, 1.3, 20.0}) {
     Triangles body = octahedron(radius);
     const double v = volume(body), target = volume(octahedron(1));
@@ -66,14 +65,11 @@ TEST(Volume, OctahedronIsScaledBackByOneStepAlongItsGradient) {
     }
     EXPECT_NEAR(volume(body), target, 1e-13 * std::max(v, target));
     for (const Vec3& x : body.points) EXPECT_NEAR(x.norm(), 1, 1e-13);
-    ++cases;
   }
-  RecordProperty("cases", cases);
 }
 
 // A cube of half-diagonal R: by symmetry dV/dx = alpha x, and sum x . dV/dx = 3 V gives alpha = 3 V / (8 R^2).
 TEST(Volume, CubeIsScaledBackByOneStepAlongItsGradient) {
-  int cases = 0;
   for (const double radius : {0.7, 1.0, 1.3, 20.0}) {
     HexPoints cube = hex_reference_nodes;
     for (Vec3& x : cube) x *= radius / std::sqrt(3.0);
@@ -86,9 +82,7 @@ TEST(Volume, CubeIsScaledBackByOneStepAlongItsGradient) {
       cube[i] += lambda * gradient[i];
     }
     EXPECT_NEAR(hex_volume(cube), target, 1e-13 * std::max(v, target));
-    ++cases;
   }
-  RecordProperty("cases", cases);
 }
 
 // ---- Volumes of neighbours.
