@@ -1,5 +1,4 @@
 """Scenarios and mesh files that cannot be run: refused with a line that says where and what instead."""
-import re
 
 import support
 from support import BLOCK, SPHERE, CommandLine, plica

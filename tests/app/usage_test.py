@@ -5,7 +5,7 @@ import select
 import shutil
 
 import support
-from support import BLOCK, SPHERE, CommandLine, plica
+from support import BLOCK, CommandLine, plica
 
 
 class Usage(CommandLine):

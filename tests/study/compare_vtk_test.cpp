@@ -51,12 +51,13 @@ TEST_F(CompareTest, EnergyNormIsThatOfTheMeshAtRestAndOfTheScenariosPoissonRatio
   EXPECT_NEAR(found.nodes.value().relative_energy_norm.value(), expected, 1e-9 * expected);
   EXPECT_GT(std::abs(relative_energy_norm(rest, 0.45, u_a, u_b).value() / expected - 1), 1e-3);
 
-  double sum = 0, largest = 0;
+  double sum = 0, squares = 0, largest = 0;
   for (std::size_t n = 0; n < u_a.size(); ++n) {
-    sum += (u_a[n] - u_b[n]).norm();
+    sum += (u_a[n] - u_b[n]).norm(), squares += (u_a[n] - u_b[n]).squaredNorm();
     largest = std::max(largest, (u_a[n] - u_b[n]).norm());
   }
   EXPECT_NEAR(found.nodes->distances.mean, sum / static_cast<double>(u_a.size()), 1e-9);
+  EXPECT_NEAR(found.nodes->distances.rms, std::sqrt(squares / static_cast<double>(u_a.size())), 1e-9);
   EXPECT_NEAR(found.nodes->distances.max, largest, 1e-9);
   const std::size_t farthest = found.nodes->farthest.index();
   EXPECT_NEAR((u_a[farthest] - u_b[farthest]).norm(), largest, 1e-9);
