@@ -124,7 +124,7 @@ TEST(CortexKeys, AHeldYolkLeavesWhatItsBaseSaysOfACompliantOne) {
 // Invaginating ventral side, with all laws of a closing furrow.
 Scenario small_furrow() {
   const std::string yolk = "[enclosed.yolk]\nvolume = \"compliant\"\nbulk_modulus_Pa = 50000\n";
-  return load_scenario({"furrow", "furrow.toml", small_furrow + yolk});
+  return load_scenario({"furrow", "furrow.toml", support::small_furrow + yolk});
 }
 
 // The region of the active apical cortex is where the furrow is measured.

@@ -130,7 +130,7 @@ TEST(EmbryoAxes, LettersAreTheShortestThatDiffer) {
 
 TEST(EmbryoAxes, OtherListsAreRefused) {
   const std::string remedy = "; write, for example, [\"proximal-distal\", \"anterior-posterior\", \"z\"]";
-  const std::vector<std::pair<std::string, std::string>> cases = {
+  const WrongScenarios cases = {
       {R"(["x", "y"])", "has 2 names, not three"},
       {R"(["x"])", "has 1 name, not three"},
       {R"(["x", "y", "-z"])", R"("-z" is neither "low-high" nor one word)"},
@@ -138,8 +138,9 @@ TEST(EmbryoAxes, OtherListsAreRefused) {
       {R"(["a-b", "c-d-e", "z"])", R"("c-d-e" is neither "low-high" nor one word)"},
       {R"(["a-b", "b-c", "z"])", R"("b" names two ends)"},
       {R"(["a-a", "y", "z"])", R"("a" names two ends)"}};
-  for (const auto& [list, problem] : cases)
-    EXPECT_EQ(errors_in([&] { return axes_in("axes = " + list); }), "test.toml:2: embryo.axes: " + problem + remedy);
+  for (const auto& one : cases)
+    EXPECT_EQ(errors_in([&] { return axes_in("axes = " + one.first); }),
+              "test.toml:2: embryo.axes: " + one.second + remedy);
 }
 
 const std::string pill = R"([embryo]
