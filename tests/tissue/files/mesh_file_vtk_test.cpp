@@ -138,7 +138,6 @@ TEST_F(MeshFileTest, RefinedCellsShareTheirNodesAndKeepTheirVolume) {
 }
 
 TEST_F(MeshFileTest, ACellIsTurnedForEachOfItsFaces) {
-  int cases = 0;
   for (int face = 0; face < 6; ++face) {
     write_file(file, legacy(cube_points, {cube}, 12, apical_lines(std::to_string(face))));
     const Tissue read = read_mesh_file(file, "apical", {2, 2, 1});
@@ -150,10 +149,8 @@ TEST_F(MeshFileTest, ACellIsTurnedForEachOfItsFaces) {
     EXPECT_EQ(read.apical_facets.size(), 4U);
     EXPECT_EQ(read.basal_facets.size(), 4U);
     EXPECT_TRUE(read.cell_arrays.empty());
-    ++cases;
   }
   EXPECT_EQ(read_mesh_file(file, "apical", {1, 1, 1}).cells[0].corners[7], NodeId(7));
-  std::cout << cases << " faces\n";
 }
 
 TEST_F(MeshFileTest, StackedCellsHaveFacetsOnTheSurfaceOnly) {

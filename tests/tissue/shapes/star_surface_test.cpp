@@ -61,7 +61,6 @@ TEST(StarSurface, ClosestPlacesAgreeWithASearch) {
   const Vectors net = even_directions(4000);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  int cases = 0;
   for (const StarSurface& surface : {ellipsoid(250, 90, 90), egg_surface({500, 180, 180, 17, 7})})
     for (int i = 0; i < 60; ++i) {
       // From the middle of the egg to twice its size.
@@ -71,9 +70,7 @@ TEST(StarSurface, ClosestPlacesAgreeWithASearch) {
       EXPECT_NEAR(std::abs(closest.signed_distance_um), distance, 1e-6) << point.transpose();
       EXPECT_LT((closest.point + closest.signed_distance_um * closest.normal - point).norm(), 1e-6);
       EXPECT_EQ(closest.signed_distance_um < 0, point.norm() < surface.along_ray(point).norm());
-      ++cases;
     }
-  EXPECT_EQ(cases, 120);
 }
 
 // Near the axis of a bent egg the ray's side is often not the nearest: belly, back and flanks each have a nearest
