@@ -22,7 +22,6 @@ namespace plica {
 namespace {
 
 using namespace support;
-using support::Random;
 
 TEST(WholeTissue, IsMeasuredByDisplacementHeightAndVolume) {
   const Model model(support::distorted_block({60, 40, 12, {3, 2, 1}, {1, 1, 2}}, 0, 1));

@@ -145,6 +145,16 @@ TEST(GivenActivity, IsCheckedAndWakesWhatIsAtRest) {
   EXPECT_GT(farthest(rest, simulation), 0.1);
 }
 
+// Of several laws that act on a cell the first by name counts.
+TEST(Activities, AreThoseOfTheFirstLawOfACell) {
+  const Simulation simulation(
+      block_with(springs + "program = { time_s = [0], activity = [0.5] }\n[contraction.basal]\nregion = \"all\"\n"
+                           "edges = \"basal\"\nstiffness_nN_per_um = 1\n"));
+  const std::vector<double> found = activities(simulation.model(), simulation.state());
+  const CellSet& middle = simulation.model().tissue.regions.at("middle");
+  for (std::size_t c = 0; c < found.size(); ++c) EXPECT_EQ(found[c], middle[c] ? 0.5 : 1) << c;
+}
+
 Scenario row_of_cells(const std::string& more = "") {
   return load_scenario({"row", "row",
                         "[embryo]\nshape = \"block\"\nlength_um = 60\nwidth_um = 20\ncells = [3, 1, 1]\n"
