@@ -11,7 +11,7 @@
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
 #include "support/law_checks.hpp"
-#include "support/laws.hpp"
+#include "support/loads.hpp"
 #include "support/models.hpp"
 #include "support/ran.hpp"
 

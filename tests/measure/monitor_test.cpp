@@ -8,7 +8,7 @@
 
 #include "measure/stop_rule.hpp"
 #include "support/divided.hpp"
-#include "support/laws.hpp"
+#include "support/loads.hpp"
 #include "support/models.hpp"
 
 namespace plica {

@@ -5,7 +5,7 @@
 #include "record/checkpoint.hpp"
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
-#include "support/laws.hpp"
+#include "support/loads.hpp"
 #include "support/roofs.hpp"
 
 namespace plica {

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "scenario/load.hpp"
-#include "support/laws.hpp"
+#include "support/loads.hpp"
 #include "support/models.hpp"
 #include "support/ran.hpp"
 

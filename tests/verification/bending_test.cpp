@@ -8,8 +8,8 @@
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "solver/step/newton_stepper.hpp"
-#include "support/laws.hpp"
 #include "support/linear_statics.hpp"
+#include "support/loads.hpp"
 
 namespace plica {
 namespace {

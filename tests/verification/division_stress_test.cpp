@@ -9,7 +9,7 @@
 #include "mechanics/constraints/cell_volume.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/divided.hpp"
-#include "support/laws.hpp"
+#include "support/loads.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {

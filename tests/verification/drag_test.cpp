@@ -20,7 +20,7 @@
 #include "simulation/simulation.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"
-#include "support/laws.hpp"
+#include "support/loads.hpp"
 #include "support/models.hpp"
 #include "support/tissues.hpp"
 

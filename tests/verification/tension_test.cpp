@@ -21,7 +21,7 @@
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/surroundings.hpp"
 #include "solver/step/newton_stepper.hpp"
-#include "support/laws.hpp"
+#include "support/loads.hpp"
 #include "support/models.hpp"
 #include "support/tissues.hpp"
 

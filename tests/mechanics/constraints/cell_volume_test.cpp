@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/constraint_law.hpp"
 #include "support/law_checks.hpp"
-#include "support/laws.hpp"
 
 namespace plica {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "measure/cells.hpp"
+#include "support/constraint_law.hpp"
 #include "support/divided.hpp"
 #include "support/law_checks.hpp"
-#include "support/laws.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 
 namespace plica {

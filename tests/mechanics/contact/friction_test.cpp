@@ -9,7 +9,7 @@
 #include "solver/step/newton_stepper.hpp"
 #include "support/bodies.hpp"
 #include "support/law_checks.hpp"
-#include "support/laws.hpp"
+#include "support/loads.hpp"
 #include "support/models.hpp"
 
 namespace plica {

@@ -7,7 +7,7 @@
 #include "mechanics/elasticity/corotational.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"
-#include "support/laws.hpp"
+#include "support/loads.hpp"
 #include "support/models.hpp"
 #include "tissue/mesh_quality.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "core/threads.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
-#include "support/laws.hpp"
+#include "support/loads.hpp"
 #include "support/models.hpp"
 
 namespace plica {
