@@ -175,7 +175,7 @@ TEST_F(PolygonFileVtk, SaysWhatIsWrong) {
       "a.vtk: cell 0 is a vtkTetra (VTK type 10); a surface consists of polygons");
   EXPECT_THROW(read("a.vtp", "<VTKFile"), FileError);
   EXPECT_THROW(read("a.vtk", "nothing of VTK's"), FileError);
-  EXPECT_THROW(read_polygon_file(folder_ / "nowhere.vtp"), FileError);
+  EXPECT_THROW(read_polygon_file(folder / "nowhere.vtp"), FileError);
 }
 
 }  // namespace
