@@ -27,7 +27,7 @@ struct Failure {
   double time_s = 0;
 };
 
-/// Returns the remedies that apply to this scenario, the most effective first. tests/simulation/remedies_test.cpp tries
+/// Returns the remedies that apply to this scenario, the most effective first. tests/simulation/warnings_test.cpp tries
 /// each of them on a run that fails.
 std::vector<Remedy> remedies_of(const Scenario& scenario, const Failure& failure);
 

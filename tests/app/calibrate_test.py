@@ -67,22 +67,11 @@ class Calibrate(CommandLine):
         self.assertIn("# Best result found", self.file.read_text())
         self.assertNotIn("expect", self.file.read_text())
 
-    def test_a_run_that_gives_up_is_a_trial_without_a_value(self):
-        result = self.calibrate("--vary", "contraction.all.preload_nN=-1e6:0", "--target", "end.position_um=28.1~0.1")
-        self.assertRegex(result.stdout, r"-1000000 +none +none .*no value: ")
-
     def test_bad_usage_is_refused_before_the_first_run(self):
         vary, target = f"{STIFFNESS}=1:2", "end.position_um=28"
         cases = (
             (f"{STIFFNESS}=2:1", target, f"low is above high; write {STIFFNESS}=1:2"),
-            (f"{STIFFNESS}=2", target, "not KEY=LOW:HIGH"),
-            ("contraction.all.stifness_nN_per_um=1:2", target, 'use "stiffness_nN_per_um"'),
-            (f"{STIFFNESS}=-1:2", target, "out of range"),
-            ("region.first.cells_along=1:2", target, "is an integer"),
             (vary, "end.positon_um=28", 'use "end.position_um"'),
-            (vary, "end.position_um", "give NAME=VALUE"),
-            (vary, "end.position_um=0", "give end.position_um=0~WITHIN"),
-            (vary, "wall_s=1", "differs between runs"),
         )
         for key, wanted, words in cases:
             with self.subTest(key=key, wanted=wanted):

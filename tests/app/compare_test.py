@@ -6,8 +6,6 @@ import support
 from support import BLOCK, SPHERE, CommandLine, plica, read_vtu, table
 
 MONITOR = '[monitor.motion]\nquantity = "displacement"\n[monitor.cpu]\nquantity = "wall"\n'
-SHIFT = (3.0, -4.0, 12.0)
-BLOCK_MESH = 'shape = "block"\nlength_um = 60\nwidth_um = 40\ncell_height_um = 40\ncells = [3, 2, 1]\n'
 
 
 class Compare(CommandLine):
@@ -44,44 +42,6 @@ class Compare(CommandLine):
         for name in ("wall_s", "cpu.wall_s"):
             self.assertNotIn(name, found["summary"])
         self.assertNotIn("cpu.wall_s", found["series"])
-
-    def shifted_mesh(self, mesh, name):
-        """A legacy file of the mesh's hexahedra, moved by SHIFT."""
-        arrays = read_vtu(mesh)
-        points = arrays["Points" if "Points" in arrays else "positions"][1]
-        moved = [points[i] + SHIFT[i % 3] for i in range(len(points))]
-        cells = arrays["connectivity"][1]
-        count = len(cells) // 8
-        text = f"# vtk DataFile Version 3.0\nmoved\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {len(moved) // 3} double\n"
-        text += " ".join(map(repr, moved)) + f"\nCELLS {count} {9 * count}\n"
-        text += "".join(f"8 {' '.join(map(str, cells[8 * i : 8 * i + 8]))}\n" for i in range(count))
-        text += f"CELL_TYPES {count}\n" + "12\n" * count
-        text += f"CELL_DATA {count}\nSCALARS apical int 1\nLOOKUP_TABLE default\n" + "5\n" * count
-        (self.folder / name).write_text(text)
-        return name
-
-    def test_a_shifted_run_is_that_far_away(self):
-        mesh = self.folder / "rest.vtu"
-        self.assertEqual(plica("mesh", self.write(BLOCK), "--out", mesh).returncode, 0)
-        file = 'shape = "file"\nfile = "{}"\napical_array = "apical"\n[vitelline]\nenabled = false\n'
-        text = BLOCK.replace(BLOCK_MESH, file.format(self.shifted_mesh(mesh, "moved.vtk")))
-        a, b = self.run_as("a", text), self.run_as("b", BLOCK)
-        found = self.json_of(a, b, "--time_s", "0")
-        self.assertTrue(found["same_mesh"])
-        for key in ("mean_um", "rms_um", "max_um"):
-            self.assertAlmostEqual(found["nodes"][key], 13, delta=1e-9)
-        # Surface to surface the shift along them counts at their edges only.
-        surfaces = found["apical_surface"]
-        self.assertGreaterEqual(surfaces["a_to_b"]["mean_um"], 12)
-        self.assertLess(surfaces["a_to_b"]["mean_um"], 12.1)
-        self.assertAlmostEqual(surfaces["a_to_b"]["max_um"], 13, delta=1e-9)
-        self.assertAlmostEqual(surfaces["hausdorff_um"], 13, delta=1e-9)
-        self.assertIsNone(found["relative_energy_norm"], "at rest there is no energy")
-        # At the end both have moved alike: displacements agree where places do not.
-        end = self.json_of(a, b)
-        self.assertEqual((end["a"]["time_s"], end["b"]["time_s"]), (0.5, 0.5))
-        self.assertAlmostEqual(end["nodes"]["max_um"], 13, delta=1e-6)
-        self.assertLess(end["relative_energy_norm"], 1e-6)
 
     def test_runs_that_differ(self):
         a, b = self.run_as("a", BLOCK + MONITOR, "--set", "contraction.all.stiffness_nN_per_um=0.5"), self.run_as("b", BLOCK + MONITOR)

@@ -177,43 +177,6 @@ class Criteria(CommandLine):
         rows, summary = self.stops(f'[stop.weak]\nmonitor = "first"\nbelow = {float(whole[3]["first.area_um2"]) + 1e-6}\n')
         self.assertEqual((rows, summary["stopped_by"]), (whole[:4], "weak"))
 
-    def test_any_and_all_of_several(self):
-        criteria = '[stop.early]\nmonitor = "clock"\nabove = 0.9\n[stop.late]\nmonitor = "clock"\nabove = 2.9\n'
-        for combine, time_s, names in (("any", 1, "early"), ("all", 3, "early, late")):
-            with self.subTest(combine):
-                _, summary = self.stops(criteria, "--set", f"stop.combine={combine}")
-                self.assertEqual((summary["status"], summary["stopped_by"], summary["time_s"]), ("end_time", names, time_s))
-
-    def test_any_and_all_of_the_nodes(self):
-        whole = self.rows_of_the_whole_run()
-        top = '[monitor.{0}]\nquantity = "displacement"\nover = "{0}"\n'
-        both = top.format("min") + top.format("max")
-        self.run_scenario(SOFT + both, "--overwrite")
-        rows = table(self.out / "series.csv")
-        self.assertEqual(len(rows), len(whole))
-        bound = 0.02
-        for over, name in (("any", "max"), ("all", "min")):
-            with self.subTest(over):
-                first = next((row for row in rows[1:] if float(row[f"{name}.displacement_um"]) > bound), rows[-1])
-                _, summary = self.stops(f'[stop.a]\nmonitor = "motion"\nabove = {bound}\nover = "{over}"\n')
-                self.assertEqual(summary["time_s"], float(first["time_s"]))
-
-    def test_with_equilibrium(self):
-        rest = SOFT.replace("at_equilibrium = false", "equilibrium_speed_um_per_min = 1").replace("end_s = 5", "end_s = 500")
-        rest = rest.replace("step_s = 0.5", 'step_s = "adaptive"')
-        _, alone = self.stops("", text=rest)
-        self.assertEqual((alone["status"], alone["stopped_by"]), ("equilibrium", "equilibrium"))
-        never = '[stop.never]\nmonitor = "clock"\nabove = 1e9\n'
-        late = f'[stop.late]\nmonitor = "clock"\nabove = {alone["time_s"] + 60}\n'
-        early = '[stop.early]\nmonitor = "clock"\nabove = 1\n'
-        for criteria, combine, status, names in ((never, "any", "equilibrium", "equilibrium"), (never, "all", "end_time", None),
-                                                 (late, "all", "equilibrium", "late, equilibrium"),
-                                                 (early, "any", "end_time", "early"), (early, "all", "equilibrium", "early, equilibrium")):
-            with self.subTest(f"{names} {combine}"):
-                _, summary = self.stops(criteria, "--set", f"stop.combine={combine}", text=rest)
-                self.assertEqual((summary["status"], summary["stopped_by"]), (status, names))
-                self.assertAlmostEqual(summary["equilibrium_time_s"] or alone["time_s"], alone["time_s"])
-
     def test_the_terminal_names_the_criterion(self):
         result = self.run_scenario(SOFT + MONITORS + '[stop.early]\nmonitor = "clock"\nabove = 0.9\n')
         self.assertIn("stopped by early", result.stdout)

@@ -192,15 +192,6 @@ class Render(CommandLine):
         self.assertIn("use sna (nearest match)", self.refused(2, "--colour", "snaa"))
         self.assertIn('"name":"sna"', (self.out / "report.html").read_text(encoding="utf-8"))
 
-    def test_another_range_gives_other_colours(self):
-        blue = []
-        for limits in ("0:0.5", "0:500"):
-            self.render("--view", "cross-section", "--size", "300x300", "--no-edges", "--range", limits, "--overwrite")
-            panel = [pixel for row in pixels_of(self.picture) for pixel in row[:230]]
-            blue.append(sum(b > r + 30 for r, _, b in panel))
-        self.assertGreater(blue[0], 300)
-        self.assertEqual(blue[1], 0)
-
     def test_what_it_does_not_know_is_refused(self):
         for arguments, parts in (
             (["--view", "ventrl"], ["use ventral (nearest match)", "cross-section"]),

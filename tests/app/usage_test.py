@@ -1,4 +1,5 @@
-"""Commands and options: help, usage, what `check` prints, --set, --quiet."""
+"""Commands and options: help, usage, --quiet; scenarios, meshes and surfaces that cannot be run: refused with a line that says where
+and what instead."""
 import os
 import pty
 import select
@@ -88,12 +89,6 @@ class Usage(CommandLine):
         self.assertIn("warning: division.late", first.stderr)
         self.assertNotIn("warning", again.stderr)
 
-    def test_an_unknown_scenario_is_answered_with_the_nearest(self):
-        result = plica("run", "drosophla", "--out", self.out)
-        self.assertEqual(result.returncode, 2)
-        self.assertIn('"drosophila"', self.assert_messages(result)[0])
-        self.assertFalse(self.out.exists())
-
     def test_a_scenario_that_cannot_be_read(self):
         for path in (self.folder / "missing.toml", self.folder):
             with self.subTest(path):
@@ -101,22 +96,6 @@ class Usage(CommandLine):
                 self.assertIn(result.returncode, (2, 4))
                 self.assertIn(str(path), self.assert_messages(result)[0])
                 self.assertFalse(self.out.exists())
-
-    def test_check_prints_a_scenario_that_loads_again(self):
-        for text in (BLOCK, SPHERE):
-            first = plica("check", self.write(text))
-            self.assertEqual(first.returncode, 0, first.stderr)
-            for key in ("young_modulus_Pa", "poisson_ratio", "surface_drag_Pa_s_per_um", "equilibrium_speed_um_per_min"):
-                self.assertIn(key, first.stdout)
-            second = plica("check", self.write(first.stdout, "scenario.toml"))
-            self.assertEqual((second.returncode, second.stdout), (0, first.stdout))
-
-    def test_set_reaches_named_tables_and_the_last_one_counts(self):
-        result = plica("check", self.write(BLOCK), "--set", "contraction.all.stiffness_nN_per_um=2.5", "--set", "time.end_s=7",
-                       "--set", "time.end_s=9", "--set", "region.first.ids=[0, 1]", "--set", "title=Another title")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        for line in ("stiffness_nN_per_um = 2.5", "end_s = 9", "ids = [0, 1]", 'title = "Another title"'):
-            self.assertIn(line, result.stdout.splitlines())
 
     def test_building_that_takes_long_is_not_silent(self):
         path = self.write('format = 1\n[embryo]\nshape = "egg"\ncell_count = 90000\n[vitelline]\nenabled = false\n')
@@ -138,6 +117,195 @@ class Usage(CommandLine):
         result = self.run_scenario(BLOCK, out=self.folder / "loud")
         self.assertIn("end_time", result.stdout)
         self.assertNotRegex(result.stdout + result.stderr, r"[\r\x1b]")
+
+
+class BadScenario(CommandLine):
+    """What cannot be run is refused with status 2, a line that says where and what instead, and no output folder."""
+
+    def test_one_thing_wrong(self):
+        # what is replaced, by what, line of the message, key, words of the message
+        embryo = "[embryo]\n"  # replaced by a table in front of it
+        cases = [
+            ("width_um = 40", "widht_um = 40", 6, "embryo.widht_um", ['"width_um"']),
+            ("[time]", "[tiem]", 12, "tiem", ["time"]),
+            ("end_s = 0.5", "end_s = 1\nend_min = 1", None, None, ["end_s", "end_min"]),
+            ("width_um = 40", "width_um = nan", 6, "embryo.width_um", ["nan"]),
+            ("width_um = 40", "width_um = -inf", 6, "embryo.width_um", ["inf"]),
+            ("[3, 2, 1]", "6", 8, "embryo.cells", ["type"]),
+            ('"block"', '"sphere"', None, None, ["shape"]),
+            ('region = "all"\n', "", 9, "contraction.all.region", ["missing"]),
+            ("format = 1", "format = 2", 1, "format", ["2"]),
+            ("format = 1", "formatt = 1", 1, "formatt", ['"format"']),
+            (embryo, "[region.a]\nx_um = [1000, 2000]\n" + embryo, 3, "region.a", ["no cell"]),
+            (embryo, "[region.a]\nids = [-1]\n" + embryo, 4, "region.a.ids", ["-1"]),
+            (embryo, '[region.a]\nids = [0]\nexcept = ["all"]\n' + embryo, 3, "region.a", ["no cell"]),
+        ]
+        for old, new, line, key, parts in cases:
+            with self.subTest(f"{old} -> {new}"):
+                self.assertIn(old, BLOCK)
+                count = None if key is None else 1
+                text = BLOCK.replace(old, new, 1)
+                if count:
+                    self.assert_refused(text, *parts, line=line, key=key)
+                else:
+                    result = self.run_scenario(text, status=2)
+                    for part in parts:
+                        self.assertIn(part, result.stderr)
+                    self.assertFalse(self.out.exists())
+
+    def test_a_mesh_that_would_be_inverted(self):
+        for height in ("100", "300", "1e300", "1e-300"):
+            with self.subTest(height):
+                self.assert_refused(SPHERE.replace("cell_height_um = 30", f"cell_height_um = {height}"), "embryo.")
+        self.assert_refused(SPHERE.replace("diameter_um = 200", "diameter_um = 1e300"), "embryo.")
+        egg = 'format = 1\n[embryo]\nshape = "egg"\nlength_um = 300\ndiameter_um = 60\ncell_count = 60\ncell_height_um = 29\n'
+        self.assert_refused(egg, "the mesh is invalid: cell ", ") um is inverted or flat", "reduce cell_height_um",
+                            line=7, key="embryo.cell_height_um")
+
+    def test_hundreds_of_millions_of_cells_are_refused_before_any_is_made(self):
+        for cells in ("[1000, 1000, 1000]", "[100000, 100000, 1]", "[100000, 100000, 100000]", "[20000, 20000, 1]"):
+            with self.subTest(cells):
+                # 4 GB of address space: building such a mesh would fail differently.
+                self.assert_refused(BLOCK.replace("[3, 2, 1]", cells), "embryo.cells", line=8, key="embryo.cells")
+        elements = BLOCK.replace("cells = [3, 2, 1]", "cells = [100, 100, 100]\nelements_per_cell = [8, 8, 8]")
+        self.assert_refused(elements, "512000000")
+
+    def test_syntax_errors_name_their_line(self):
+        for text, line in (("format = 1\n[time\n", 2), ("format = 1\nx = \n", 2), ("a = 1\na = 2\n", 2), (b"\xff\xfe\n", 1),
+                           ("a = " + "[" * 10000, 1)):
+            with self.subTest(text[:40]):
+                self.assert_refused(text, line=line)
+
+    def test_nesting_without_end_is_refused(self):
+        deep = ".".join(["a"] * 200000)
+        for text in (f"[{deep}]\n", f"{deep} = 1\n", f"x = {{{deep} = 1}}\n", f"x = [1, {{ y = {{{deep} = 1}} }}]\n"):
+            with self.subTest(text[:10]):
+                self.assert_refused(BLOCK + text, "too many parts", line=1 + BLOCK.count("\n"))
+        self.assert_refused(BLOCK, "--set", arguments=["--set", deep[:60000] + "=1"])
+        self.assert_refused(BLOCK.replace("A small block", "." * 1000) + "wrong = 1\n", "output.wrong")
+
+    def test_a_file_without_end_is_refused(self):
+        for name in ("/dev/zero", "long.toml"):
+            with self.subTest(name):
+                self.write("#" * (5 << 20), "long.toml")
+                self.assert_refused(f'base = "{name}"\n', "base", "MiB")
+                result = plica("check", self.folder / name)
+                self.assertEqual(result.returncode, 4)
+                self.assertIn("cannot be read", self.assert_messages(result)[0])
+
+    def test_a_chain_of_bases_has_an_end(self):
+        for i in range(40):
+            self.write(f'base = "{i + 1}.toml"\n', f"{i}.toml")
+        self.write("", "40.toml")
+        self.assert_refused('base = "1.toml"\n', "base", "too many")
+
+    def test_a_message_is_one_line_whatever_the_scenario_holds(self):
+        for text, part in (('base = "a\\nb\\u001B[2J"\n', "a\\nb\\u001B[2J"), (BLOCK + '"\\u009B\\r" = 1\n', "\\u009B\\u000D")):
+            with self.subTest(text):
+                self.assert_refused(text, part)
+
+    def test_bad_set(self):
+        for assignment, part in (
+            ("time", "time"), ("time.", "time."), ("=3", ""), ("", ""), ("time.end_s=", "time.end_s"),
+            ("time.end_s=nan", "nan"), ("time.end_s=-1", "-1"), ("time.end_s=soon", "soon"), ("time.edn_s=1", "end_s"),
+            ("embryo.cells=[1,2", "embryo.cells"), ("time=3", "time"), ("contraction.new.edges=apical", "region"),
+            ("embryo.shape=blok", "block"), ("time.end_s=1=2", "time.end_s"),
+        ):
+            with self.subTest(assignment):
+                self.assert_refused(BLOCK, "--set", part, arguments=["--set", assignment])
+
+    def test_check_and_mesh_refuse_the_same(self):
+        path = self.write(BLOCK.replace("width_um", "widht_um"))
+        for command in (["check", path], ["mesh", path, "--out", self.folder / "rest.vtu"]):
+            result = plica(*command)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(f"{path}:6: embryo.widht_um: ", self.assert_messages(result)[0])
+            self.assertEqual(result.stdout, "")
+        self.assertFalse((self.folder / "rest.vtu").exists())
+
+    def test_check_refuses_what_only_the_tissue_shows(self):
+        result = plica("check", "furrow-slice", "--set", "furrow.vce_cell=4")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("furrow.vce_cell: the midline of region", self.assert_messages(result)[0])
+
+
+class BadMesh(CommandLine):
+    """Mesh files that are none: status 2 or 4, a line that names the file, and no output folder."""
+
+    def test_mesh_files_that_are_none(self):
+        rest = self.folder / "rest.vtu"
+        self.assertEqual(plica("mesh", self.write(BLOCK), "--out", rest).returncode, 0)
+        whole = rest.read_bytes()
+        meshes = {
+            "text.vtu": b"hello\n", "empty.vtu": b"", "half.vtu": whole[: len(whole) // 2], "data.vtu": whole[:-60],
+            "zero.vtu": whole[:-200] + bytes(150) + whole[-50:], "noise.vtu": bytes(range(256)) * 20,
+            "legacy.vtk": b"# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 float\n0 0 0 1\n",
+            "xml.vtu": b'<?xml version="1.0"?>\n<VTKFile type="PolyData" version="1.0"></VTKFile>\n',
+        }
+        legacy = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+        four = "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n"
+        meshes["tetrahedra.vtk"] = (legacy + four + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n").encode()
+        eight = "POINTS 8 double\n0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\n"
+        meshes["beyond.vtk"] = (legacy + eight + "CELLS 1 9\n8 0 1 2 3 4 5 6 99\nCELL_TYPES 1\n12\n").encode()
+        meshes["nan.vtk"] = (legacy + eight.replace("0 0 1 1 0 1", "0 0 nan 1 0 1") +
+                             "CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n").encode()
+        meshes["none.vtk"] = (legacy + "POINTS 0 double\nCELLS 0 0\nCELL_TYPES 0\n").encode()
+        scenario = 'format = 1\n[embryo]\nshape = "file"\nfile = "MESH"\n[vitelline]\nenabled = false\n'
+        for name, content in meshes.items():
+            with self.subTest(name):
+                (self.folder / name).write_bytes(content)
+                result = plica("run", self.write(scenario.replace("MESH", name)), "--out", self.out)
+                self.assertIn(result.returncode, (2, 4), result.stdout + result.stderr)
+                self.assertIn(name, self.assert_messages(result)[0])
+                self.assertFalse(self.out.exists())
+        with self.subTest("missing"):
+            result = plica("run", self.write(scenario.replace("MESH", "missing.vtu")), "--out", self.out)
+            self.assertEqual(result.returncode, 4, result.stderr)
+            self.assertIn("missing.vtu", self.assert_messages(result)[0])
+
+    def test_a_mesh_that_passes_through_itself_has_no_contact(self):
+        # Two cubes, one tilted, whose upper faces cross.
+        first = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        second = [(x + 0.3, 0.8 * y - 0.6 * z + 0.5, 0.6 * y + 0.8 * z) for x, y, z in first]
+        points = " ".join(f"{10 * value:g}" for point in first + second for value in point)
+        self.write(f"# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 16 double\n{points}\n"
+                   "CELLS 2 18\n8 0 1 2 3 4 5 6 7\n8 8 9 10 11 12 13 14 15\nCELL_TYPES 2\n12 12\n"
+                   "CELL_DATA 2\nSCALARS apical int 1\nLOOKUP_TABLE default\n5 5\n", "cubes.vtk")
+        scenario = ('format = 1\n[embryo]\nshape = "file"\nfile = "cubes.vtk"\napical_array = "apical"\n'
+                    "[vitelline]\nenabled = false\n")
+        self.assertEqual(plica("check", self.write(scenario)).returncode, 0)
+        self.assert_refused(scenario + '[self_contact]\nsurface = "both"\n', "the reference mesh self-intersects",
+                            "cell 0", line=9, key="self_contact.surface")
+
+
+class BadSurface(CommandLine):
+    """Surfaces of polygons that cannot become cells: status 2, and a line with the scenario's line, its key, the file and the place in it."""
+
+    SCENARIO = 'format = 1\n[embryo]\nshape = "surface"\nfile = "NAME"\ncell_height_um = 0.3\nleast_edge_ratio = 0\n'
+
+    def test_one_thing_wrong(self):
+        corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
+        cases = [
+            ("a.obj", "", "the surface has no faces"),
+            ("a.obj", corners + "f 1 2 3 4\nf 1 2 5\nf 2 1 6\n", "belongs to 3 faces, 0, 1 and 2"),
+            ("a.off", "OFF\n3 1 0\n0 0 0\n", "the file ends after 1 of 3 vertices"),
+        ]
+        for name, text, part in cases:
+            with self.subTest(part):
+                (self.folder / name).write_text(text)
+                self.assert_refused(self.SCENARIO.replace("NAME", name), "embryo.file: ", name, part, line=4)
+        self.assert_refused(self.SCENARIO.replace("NAME", "missing.obj"), "missing.obj", line=4)
+
+    def test_keys(self):
+        (self.folder / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        scenario = self.SCENARIO.replace("NAME", "a.obj")
+        self.assert_refused(scenario + 'cell_height_array = "height"\n', "remove cell_height_array", line=7, key="embryo.cell_height_array")
+        self.assert_refused(scenario + "[vitelline]\nenabled = true\n", "the surface has a boundary", line=8, key="vitelline.enabled")
+        sheet = 'format = 1\n[embryo]\nshape = "sheet"\nlength_um = 50\nwidth_um = 50\ncell_count = 20\ncell_height_um = 9\n'
+        self.assert_refused(sheet + "curvature_per_um = [0.1]\n", "set curvature_per_um to two", line=8, key="embryo.curvature_per_um")
+        self.assert_refused(sheet + "curvature_per_um = [0.3, 0]\n", "would overlap itself", line=2)
+        self.assert_refused(sheet + "mend = false\n", "is not used", line=8, key="embryo.mend")
+        self.assert_refused(sheet + "[vitelline]\nenabled = true\n", "a sheet is open", line=9, key="vitelline.enabled")
 
 
 if __name__ == "__main__":

@@ -1,17 +1,23 @@
+// A furrow that closes: sections, speeds, onset of fast invagination, fluid and contact.
 #include "measure/closing.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <vector>
 
 #include "measure/cells.hpp"
+#include "measure/cross_section.hpp"
+#include "measure/speed_history.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "mechanics/contact/self_contact.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
 #include "support/models.hpp"
+#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {
@@ -171,6 +177,152 @@ TEST(ContactState, TellsHowFarTheLipsHaveClosed) {
   EXPECT_FALSE(end.middle_is_closed);
   EXPECT_NEAR(whole.closed_length_ratio, 1, 1e-9);
   EXPECT_TRUE(whole.middle_is_closed);
+}
+
+std::vector<SectionCell> at_place(const std::vector<SectionCell>& cells, int percent) {
+  std::vector<SectionCell> found;
+  for (const SectionCell& one : cells)
+    if (one.place_percent == percent) found.push_back(one);
+  return found;
+}
+
+Vec3 rest_centre(const Tissue& tissue, CellId cell) {
+  return cell_centre(tissue.cells[cell.index()], tissue.rest_positions);
+}
+
+// Even and odd numbers of cells along and across: one ring a place, each cell once, numbers in the order of angles.
+TEST(CrossSection, IsARingOfCellsAtEachPlace) {
+  for (const auto& counts : {std::array{20, 8, 8}, {21, 9, 8}, {20, 9, 7}}) {
+    const Tissue tissue = build_shell({.length_um = 500, .diameter_um = 180, .cell_height_um = 35, .cells = counts});
+    const std::vector<SectionCell> all = section_cells(tissue, -Vec3::UnitZ());
+    EXPECT_EQ(all.front().place_percent, 50);
+    const bool odd = counts[1] % 2 == 1;
+    const int around = 2 * counts[1] + 2 * counts[2];
+    for (const int percent : {25, 50, 75}) {
+      const std::vector<SectionCell> ring = at_place(all, percent);
+      ASSERT_EQ(ring.size(), static_cast<std::size_t>(around)) << percent;
+      std::set<int> numbers;
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Vec3 centre = rest_centre(tissue, ring[i].cell);
+        EXPECT_NEAR(centre.x(), 5 * percent - 250, 500.0 / counts[0]);
+        EXPECT_TRUE(numbers.insert(ring[i].from_midline).second);
+        if (std::abs(centre.y()) > 1e-6) {
+          EXPECT_EQ(ring[i].from_midline > 0, centre.y() > 0);
+        }
+        if (i > 0) {
+          EXPECT_GT(ring[i].from_midline, ring[i - 1].from_midline) << "from left to right";
+        }
+      }
+      EXPECT_EQ(numbers.contains(0), odd);
+      EXPECT_EQ(*numbers.rbegin(), around / 2);
+      EXPECT_EQ(*numbers.begin(), odd ? 1 - around / 2 : -around / 2);
+      // The first ones lie on the belly, mirror images of each other; the last ones on the back.
+      for (const SectionCell& one : ring) {
+        const Vec3 centre = rest_centre(tissue, one.cell);
+        if (std::abs(one.from_midline) == 1) {
+          EXPECT_LT(centre.z(), -60);
+        }
+        if (std::abs(one.from_midline) == around / 2 - 1) {
+          EXPECT_GT(centre.z(), 60);
+        }
+      }
+    }
+  }
+}
+
+// A slice has one ring of one cell, wherever it is cut; a sheet's cells are counted along it.
+TEST(CrossSection, OfAShortTissueIsOne) {
+  const Tissue slice = build_slice({.length_um = 7, .diameter_um = 180, .cell_height_um = 35, .cells = {1, 20, 20}});
+  EXPECT_EQ(section_cells(slice, -Vec3::UnitZ()).size(), 80u);
+  const Tissue sheet = build_block({.length_um = 20, .width_um = 60, .cells = {1, 3, 1}});
+  const std::vector<SectionCell> cells = section_cells(sheet, Vec3::UnitZ());
+  ASSERT_EQ(cells.size(), 3u);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(cells[i].from_midline, i - 1);
+    EXPECT_NEAR(rest_centre(sheet, cells[i].cell).y(), 20 * (i - 1), 1e-9);
+  }
+}
+
+// A rectangle of 24 by 6 um, turned in its plane by 30 degrees; one element or several.
+TEST(ApicalShape, OfARectangleIsItsSides) {
+  for (const int elements : {1, 3}) {
+    const Tissue tissue = build_block({.length_um = 24,
+                                       .width_um = 6,
+                                       .cell_height_um = 10,
+                                       .cells = {1, 1, 1},
+                                       .elements_per_cell = {elements, elements, 1}});
+    const std::vector<CellId> cells = {CellId(0)};
+    Vectors positions = tissue.rest_positions;
+    const double turn = 30 * M_PI / 180;
+    for (Vec3& x : positions) x = Eigen::AngleAxisd(turn, Vec3::UnitZ()) * x;
+    const FaceShape shape = apical_shapes(tissue, cells, positions).front();
+    EXPECT_NEAR(shape.long_axis_um, 24, 1e-9);
+    EXPECT_NEAR(shape.short_axis_um, 6, 1e-9);
+    EXPECT_NEAR(shape.direction_deg, 30, 1e-9);
+    EXPECT_NEAR(shape.width_across_um, std::hypot(24 * std::sin(turn), 6 * std::cos(turn)), 1e-9);
+    EXPECT_NEAR(shape.length_along_um, std::hypot(24 * std::cos(turn), 6 * std::sin(turn)), 1e-9);
+    // Tilted as a whole about the axis: no other shape. Standing on its end: it has no direction.
+    for (Vec3& x : positions) x = Eigen::AngleAxisd(0.7, Vec3::UnitX()) * x;
+    EXPECT_NEAR(apical_shapes(tissue, cells, positions).front().direction_deg, 30, 1e-9);
+    for (std::size_t n = 0; n < positions.size(); ++n)
+      positions[n] = Eigen::AngleAxisd(M_PI / 2, Vec3::UnitY()) * tissue.rest_positions[n];
+    EXPECT_TRUE(std::isnan(apical_shapes(tissue, cells, positions).front().direction_deg));
+  }
+}
+
+/// A step: the speeds of VML and VCE, and their displacements.
+SpeedRow row(double time_s, double vml_speed, double vce_speed, double vml_displacement, double vce_displacement) {
+  return {time_s, vml_speed, vce_speed, vml_displacement, vce_displacement};
+}
+
+/// The ends lead by most at 2 s, three to one; both are as fast at 4 s, halfway between two rows.
+std::vector<SpeedRow> ends_first() {
+  return {SpeedRow{},  // at rest, without speeds
+          row(1, 1, 2, 1, 2), row(2, 2, 6, 3, 8), row(3, 5, 7, 10, 30), row(5, 8, 6, 20, 34), row(6, 4, 5, 24, 39)};
+}
+
+TEST(SpeedHistory, EndsLeadMostAtThePeakAndUntilSpeedsAreEqual) {
+  const SpeedHistory history = speed_history(ends_first());
+  EXPECT_DOUBLE_EQ(history.peak_ratio.value(), 3);
+  EXPECT_EQ(history.peak_ratio_time_s.value(), 2);
+  EXPECT_DOUBLE_EQ(history.ends_lead_until_s.value(), 4);
+  EXPECT_DOUBLE_EQ(history.vml_displacement_at_equal_speed_um.value(), 15);
+  EXPECT_DOUBLE_EQ(history.vce_displacement_at_equal_speed_um.value(), 32);
+}
+
+TEST(SpeedHistory, StepsInWhichTheMiddleHardlyMovesAreNoPeak) {
+  std::vector<SpeedRow> rows = ends_first();
+  const double limit = 0.01 * 8;  // 1 % of the middle's fastest
+  rows.insert(rows.begin() + 1, row(0.5, limit, 50, 0.1, 9));
+  EXPECT_EQ(speed_history(rows).peak_ratio_time_s.value(), 2);
+  rows[1] = row(0.5, 1.01 * limit, 50, 0.1, 9);
+  EXPECT_EQ(speed_history(rows).peak_ratio_time_s.value(), 0.5);
+}
+
+TEST(SpeedHistory, SpeedsThatAreEqualInARowMeetThere) {
+  const std::vector<SpeedRow> rows = {row(1, 1, 3, 1, 3), row(2, 4, 4, 5, 7), row(3, 5, 4, 10, 11)};
+  const SpeedHistory history = speed_history(rows);
+  EXPECT_EQ(history.ends_lead_until_s.value(), 2);
+  EXPECT_EQ(history.vml_displacement_at_equal_speed_um.value(), 5);
+  EXPECT_EQ(history.vce_displacement_at_equal_speed_um.value(), 7);
+}
+
+TEST(SpeedHistory, AMiddleThatMovesByRoundingOnlyHasNoRatio) {
+  EXPECT_FALSE(row(1, 4.5e-23, 0.96, 0, 0).speed_ratio());
+  EXPECT_FALSE(row(1, 0, 0, 0, 0).speed_ratio());
+  EXPECT_DOUBLE_EQ(*row(1, 0.1, 0.3, 0, 0).speed_ratio(), 0.3 / 0.1);
+}
+
+TEST(SpeedHistory, WhatNeverHappensHasNoValue) {
+  for (const auto& rows : {std::vector<SpeedRow>{}, {SpeedRow{}}, {row(1, 0, 0, 0, 0)}}) {
+    const SpeedHistory none = speed_history(rows);
+    EXPECT_FALSE(none.peak_ratio || none.peak_ratio_time_s || none.ends_lead_until_s);
+  }
+  const std::vector<SpeedRow> to_the_end = {row(1, 1, 3, 1, 3), row(2, 4, 5, 5, 8)};
+  const SpeedHistory leading = speed_history(to_the_end);
+  EXPECT_EQ(leading.peak_ratio_time_s.value(), 1);
+  EXPECT_FALSE(leading.ends_lead_until_s || leading.vml_displacement_at_equal_speed_um ||
+               leading.vce_displacement_at_equal_speed_um);
 }
 
 }  // namespace

@@ -9,16 +9,9 @@ namespace {
 
 using namespace support;
 
-const BlockShape two_cells{.length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}};
-
 TEST(SurfaceDrag, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block(two_cells, 2, 1);
   check_derivatives(SurfaceDrag(tissue, 0.14), tissue, 4);
-}
-
-TEST(SurfaceDrag, StandingStillCostsNothing) {
-  const Tissue tissue = build_block(two_cells);
-  EXPECT_EQ(largest(forces_of(SurfaceDrag(tissue, 0.14), at_rest(tissue).step())), 0);
 }
 
 // 40 x 20 um above and below, moving at 2 um/s: force d A v. Corners in the middle carry two quarters.

@@ -6,28 +6,15 @@
 #include <iostream>
 
 #include "scenario/builtin.hpp"
+#include "support/scenarios.hpp"
 
 namespace plica {
 namespace {
 
-using Overrides = std::vector<std::string>;
-
-Scenario load(const std::string& text, const Overrides& overrides = {}) {
-  return load_scenario({"test", "test.toml", text}, overrides);
-}
-
-/// Returns all messages, one per line; empty for a valid scenario.
-std::string errors_of(const std::string& text, const Overrides& overrides = {}) {
-  try {
-    load(text, overrides);
-    return "";
-  } catch (const ScenarioError& error) {
-    return error.what();
-  }
-}
+using namespace support;
 
 TEST(LoadScenario, FillsDefaults) {
-  const Scenario scenario = load("");
+  const Scenario scenario = scenario_of("");
   EXPECT_EQ(scenario.name, "test");
   EXPECT_EQ(scenario.embryo.shape, "pill");
   EXPECT_EQ(scenario.embryo.cells, (std::array<int, 3>{18, 9, 8}));
@@ -38,7 +25,7 @@ TEST(LoadScenario, FillsDefaults) {
 }
 
 TEST(LoadScenario, ReadsEveryKindOfValue) {
-  const Scenario scenario = load(R"(
+  const Scenario scenario = scenario_of(R"(
 title = "a \"b\""
 [region.belly]
 x_um = [-10, 20.5]
@@ -92,22 +79,14 @@ TEST(LoadScenario, LoadsEveryBuiltin) {
   EXPECT_GT(count, 0);
 }
 
-struct WrongScenario {
-  std::string text;
-  std::string message;
-};
-
 TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
   const std::string program = "[contraction.a]\nregion = \"all\"\n";
   const std::string block = "[embryo]\nshape = \"block\"\n";
-  const std::vector<WrongScenario> cases = {
+  const WrongScenarios cases = {
       // Names.
       {"[embryo]\ndiametr_um = 3", "test.toml:2: embryo.diametr_um: unknown key; use \"diameter_um\" (nearest match)"},
       {"[embryo]\n\nlength_mm = 3",
        "test.toml:3: embryo.length_mm: unknown key; use \"length_um\" and convert the value to that unit"},
-      {"[elasticity]\nyoung_modulus_kPa = 1",
-       "test.toml:2: elasticity.young_modulus_kPa: unknown key; use \"young_modulus_Pa\" and convert the value to that "
-       "unit"},
       {"[time]\nend_h = 1",
        "test.toml:2: time.end_h: unknown key; use \"end_s\" or \"end_min\" and convert the value to that unit"},
       {"poisson_ratio = 0.3", "test.toml:1: poisson_ratio: unknown key; move it to [elasticity]"},
@@ -117,8 +96,6 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {program + "program = { time_h = [0], activity = [1] }",
        "test.toml:3: contraction.a.program.time_h: unknown key; use \"program.time_s\" or \"program.time_min\" and "
        "convert the value to that unit"},
-      {program + "progam = { time_s = [0], activity = [1] }",
-       "test.toml:3: contraction.a.progam: unknown key; use \"program\" (nearest match)"},
       {"[region.\"a b\"]\nface = \"ventral\"",
        "test.toml:1: region.a b: is not a valid name; use letters, digits, \"_\" and \"-\" only"},
       {"[region.all]\nface = \"ventral\"",
@@ -129,8 +106,6 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {"[embryo]\nlength_um = 0", "test.toml:2: embryo.length_um: 0 is out of range; set length_um to a number > 0"},
       {"[embryo]\nlength_um = nan",
        "test.toml:2: embryo.length_um: nan is not a finite number; set length_um to a number > 0"},
-      {"[dynamics]\ndensity_kg_per_m3 = inf",
-       "test.toml:2: dynamics.density_kg_per_m3: inf is not a finite number; set density_kg_per_m3 to a number >= 0"},
       {"[embryo]\nelements_per_cell = [1, 17, 1]",
        "test.toml:2: embryo.elements_per_cell: 17 is out of range; set elements_per_cell to 3 integers, 1 to 16"},
       {"[embryo]\ncells = [1, 2]",
@@ -142,14 +117,9 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {"[embryo]\nshape = \"pil\"",
        "test.toml:2: embryo.shape: \"pil\" is unknown; set shape to one of: pill | sphere | slice | block | egg | "
        "points | sheet | surface | file (nearest match: \"pill\")"},
-      {"[elasticity]\nattractor_stiffness_nN_per_um = 0",
-       "test.toml:2: elasticity.attractor_stiffness_nN_per_um: 0 is out of range; set attractor_stiffness_nN_per_um to "
-       "a number > 0 or \"derived\""},
       {"[elasticity]\nattractor_preload_nN = 1",
        "test.toml:2: elasticity.attractor_preload_nN: is not used with model \"corotational\"; remove it, or set "
        "elasticity.model to \"shape-memory\""},
-      {"[elasticity]\nmodel = \"shape-memory\"\nattractor_preload_nN = -1",
-       "test.toml:3: elasticity.attractor_preload_nN: -1 is out of range; set attractor_preload_nN to a number >= 0"},
       {"[time]\nstep_s = \"fast\"",
        "test.toml:2: time.step_s: \"fast\" has the wrong type; set step_s to a number >= 1e-06 or \"adaptive\""},
       {"[stop]\nat_equilibrium = 1",
@@ -159,7 +129,6 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {"[region.a]\nids = []", "test.toml:2: region.a.ids: the list is empty; set ids to a list of integers >= 0"},
       {"embryo = 3", "test.toml:1: embryo: 3 is not a table; write a table"},
       {"[hold.a]\nregion = \"\"", "test.toml:2: hold.a.region: the text is empty; set region to a text"},
-      {"[embryo]\nshape = \"file\"\nfile = \"\"", "test.toml:3: embryo.file: the text is empty; set file to a text"},
       {"embryo.length_um = -1\nregion.a.face = \"top\"",
        "test.toml:1: embryo.length_um: -1 is out of range; set length_um to a number > 0\ntest.toml:2: region.a.face: "
        "\"top\" is unknown; set face to one of: ventral | dorsal | left | right | anterior | posterior"},
@@ -195,9 +164,6 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       // Times and programs.
       {"[time]\nend_min = 1\nend_s = 60",
        "test.toml:3: time.end_s: conflicts with time.end_min, which is also set; remove one of them"},
-      {"[output]\nframe_every_min = 1\nframe_every_s = 60",
-       "test.toml:3: output.frame_every_s: conflicts with output.frame_every_min, which is also set; remove one of "
-       "them"},
       {"[time]\nfirst_step_s = 61",
        "test.toml:2: time.first_step_s: 61 is above max_step_s, 30; set first_step_s to at most max_step_s"},
       {"[time]\nintegrator = \"bdf2\"\n[dynamics]\ndensity_kg_per_m3 = 1",
@@ -235,22 +201,10 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {program + "profile = { shape = \"constant\", edge = 0.5 }",
        "test.toml:3: contraction.a.profile.edge: is not used with a constant profile; remove it, or set another shape "
        "or a taper"},
-      {program + "profile = { shape = \"gausian\", sigma_um = 30 }",
-       "test.toml:3: contraction.a.profile.shape: \"gausian\" is unknown; set shape to one of: constant | linear | "
-       "gaussian | plateau | table | array (nearest match: \"gaussian\")"},
-      {program + "profile = { shape = \"gaussian\", sigma_um = 0 }",
-       "test.toml:3: contraction.a.profile.sigma_um: 0 is out of range; set sigma_um to a number > 0"},
-      {program + "profile = \"gaussian\"",
-       "test.toml:3: contraction.a.profile: \"gaussian\" is not a table; write a table"},
       {program + "delay = { from = \"ends\" }",
        "test.toml:3: contraction.a.delay.speed_um_per_s: is missing; set speed_um_per_s to a number > 0 or \"none\""},
       {program + "delay = { from = \"ends\", speed_um_per_s = \"none\" }",
        "test.toml:3: contraction.a.delay.from: is not used with speed \"none\"; remove it, or set speed_um_per_s"},
-      {program + "delay = { speed_um_per_s = -1 }",
-       "test.toml:3: contraction.a.delay.speed_um_per_s: -1 is out of range; set speed_um_per_s to a number > 0 or "
-       "\"none\""},
-      {program + "variation = { spread = -0.1 }",
-       "test.toml:3: contraction.a.variation.spread: -0.1 is out of range; set spread to a number, 0 to 100"},
       {program + "variation = { sead = 2 }",
        "test.toml:3: contraction.a.variation.sead: unknown key; use \"variation.seed\" (nearest match)"},
       // Regions.
@@ -303,56 +257,49 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "test.toml:1: base: \"drosophla\" is neither a built-in scenario nor a file; use \"drosophila\" (nearest "
        "match); set base to a built-in name or a path relative to this file"},
   };
-  int count = 0;
-  for (const WrongScenario& wrong : cases) {
-    EXPECT_EQ(errors_of(wrong.text), wrong.message) << wrong.text;
-    ++count;
-  }
-  std::cout << count << " wrong scenarios\n";
+  expect_errors(cases, load_errors);
 }
 
 TEST(LoadScenario, ReportsSyntaxErrorsWithTheirLine) {
-  const std::string errors = errors_of("format = 1\n[embryo\nlength_um = 3\n");
+  const std::string errors = load_errors("format = 1\n[embryo\nlength_um = 3\n");
   EXPECT_TRUE(errors.starts_with("test.toml:2: ")) << errors;
 }
 
 TEST(LoadScenario, ReportsAllErrorsAtOnceInOrderOfLines) {
   const std::string errors =
-      errors_of("[time]\nend_s = -1\n[contraction.a]\nregion = \"nowhere\"\n[embryo]\nlength_um = true\nhue = 1\n",
-                {"time.max_step_s=0"});
-  EXPECT_EQ(errors,
-            "test.toml:2: time.end_s: -1 is out of range; set end_s to a number > 0\n"
-            "test.toml:4: contraction.a.region: region \"nowhere\" does not exist; use one of: all\n"
-            "test.toml:6: embryo.length_um: true has the wrong type; set length_um to a number > 0\n"
-            "test.toml:7: embryo.hue: unknown key; use one of: shape, length_um, diameter_um, width_um, "
-            "cell_height_um, cells, elements_per_cell, cell_count, seed, curvature_per_um, rim, periodic, "
-            "belly_sag_um, back_sag_um, elements, least_edge_ratio, layers, points_depth_um, scale, rotate_deg, "
-            "centre, keep, label_array, mend, "
-            "cell_height_array, mirror, file, cell_arrays, apical_array, axes\n"
-            "--set: time.max_step_s: 0 is out of range; set max_step_s to a number > 0");
+      load_errors("[time]\nend_s = -1\n[contraction.a]\nregion = \"nowhere\"\n[embryo]\nlength_um = true\nhue = 1\n",
+                  {"time.max_step_s=0"});
+  EXPECT_EQ(
+      errors,
+      "test.toml:2: time.end_s: -1 is out of range; set end_s to a number > 0\ntest.toml:4: contraction.a.region: "
+      "region \"nowhere\" does not exist; use one of: all\ntest.toml:6: embryo.length_um: true has the wrong type; set "
+      "length_um to a number > 0\ntest.toml:7: embryo.hue: unknown key; use one of: shape, length_um, diameter_um, "
+      "width_um, cell_height_um, cells, elements_per_cell, cell_count, seed, curvature_per_um, rim, periodic, "
+      "belly_sag_um, back_sag_um, elements, least_edge_ratio, layers, points_depth_um, scale, rotate_deg, centre, "
+      "keep, label_array, mend, cell_height_array, mirror, file, cell_arrays, apical_array, axes\n--set: "
+      "time.max_step_s: 0 is out of range; set max_step_s to a number > 0");
 }
 
 TEST(LoadScenario, OneMistakeIsOneError) {
   // Unknown key meant as region, unknown table meant to define it, region that was not read.
-  EXPECT_EQ(errors_of("[contraction.a]\nregoin = \"all\""),
+  EXPECT_EQ(load_errors("[contraction.a]\nregoin = \"all\""),
             "test.toml:2: contraction.a.regoin: unknown key; use \"region\" (nearest match)");
-  EXPECT_EQ(errors_of("[regions.a]\nface = \"left\"\n[hold.a]\nregion = \"a\""),
+  EXPECT_EQ(load_errors("[regions.a]\nface = \"left\"\n[hold.a]\nregion = \"a\""),
             "test.toml:1: regions: unknown table; use \"region\" (nearest match)");
-  EXPECT_EQ(errors_of("[region]\na = 1\n[hold.a]\nregion = \"a\""),
+  EXPECT_EQ(load_errors("[region]\na = 1\n[hold.a]\nregion = \"a\""),
             "test.toml:2: region.a: 1 is not a table; write a table");
 }
 
 TEST(LoadScenario, AcceptsStripsThatCanBeCentred) {
   for (const std::string strip :
        {"face = \"ventral\"\ncells_along = 14\ncells_across = 5", "face = \"right\"\ncells_along = 2\ncells_across = 8",
-        "face = \"anterior\"\ncells_along = 9\ncells_across = 2"}) {
-    EXPECT_EQ(errors_of("[region.a]\n" + strip), "") << strip;
-  }
+        "face = \"anterior\"\ncells_along = 9\ncells_across = 2"})
+    EXPECT_EQ(load_errors("[region.a]\n" + strip), "") << strip;
 }
 
 TEST(LoadScenario, SettlesDefaultsThatDependOnTheShape) {
-  EXPECT_FALSE(load("[embryo]\nshape = \"block\"").vitelline.enabled);
-  EXPECT_EQ(load("[embryo]\nshape = \"sphere\"\ndiameter_um = 300").embryo.length_um, 300);
+  EXPECT_FALSE(scenario_of("[embryo]\nshape = \"block\"").vitelline.enabled);
+  EXPECT_EQ(scenario_of("[embryo]\nshape = \"sphere\"\ndiameter_um = 300").embryo.length_um, 300);
   const auto here = std::filesystem::current_path();
   EXPECT_EQ(load_scenario({"a", "in/a.toml", "[embryo]\nshape = \"file\"\nfile = \"../b.vtu\""}).embryo.file,
             (here / "b.vtu").string());
@@ -361,30 +308,31 @@ TEST(LoadScenario, SettlesDefaultsThatDependOnTheShape) {
 // Inherited attractor keys are dropped with their model, like an inherited length with a pill.
 TEST(LoadScenario, SettlesTheAttractorByTheElasticModel) {
   const std::string springs = "[elasticity]\nmodel = \"shape-memory\"\nattractor_stiffness_nN_per_um = 7\n";
-  EXPECT_EQ(load(springs).elasticity.attractor_stiffness_nN_per_um, 7);
-  EXPECT_EQ(
-      load(springs, {"elasticity.attractor_stiffness_nN_per_um=derived"}).elasticity.attractor_stiffness_nN_per_um,
-      std::nullopt);
-  EXPECT_EQ(load(springs, {"elasticity.model=corotational"}).elasticity.attractor_stiffness_nN_per_um, std::nullopt);
+  EXPECT_EQ(scenario_of(springs).elasticity.attractor_stiffness_nN_per_um, 7);
+  EXPECT_EQ(scenario_of(springs, {"elasticity.attractor_stiffness_nN_per_um=derived"})
+                .elasticity.attractor_stiffness_nN_per_um,
+            std::nullopt);
+  EXPECT_EQ(scenario_of(springs, {"elasticity.model=corotational"}).elasticity.attractor_stiffness_nN_per_um,
+            std::nullopt);
 }
 
 TEST(LoadScenario, SettlesTheDefaultsOfPatterns) {
   const std::string start = "[contraction.a]\nregion = \"all\"\n";
-  const ContractionInput none = load(start).contractions.at("a");
+  const ContractionInput none = scenario_of(start).contractions.at("a");
   EXPECT_EQ(none.profile.shape, "");
   EXPECT_EQ(none.delay.speed_um_per_s, std::nullopt);
   EXPECT_EQ(none.variation.spread, 0);
   const std::string given =
       start + "profile = { shape = \"linear\", half_width_um = 50 }\ndelay = { speed_um_per_s = 2 }";
-  const ContractionInput some = load(given).contractions.at("a");
+  const ContractionInput some = scenario_of(given).contractions.at("a");
   EXPECT_EQ(some.profile.axis, "across");
   EXPECT_EQ(some.profile.edge, std::nullopt);
   EXPECT_EQ(some.delay.axis, "along");
   EXPECT_EQ(some.delay.from, "middle");
   // Keys of the shape and the wave are dropped with them.
   const ContractionInput other =
-      load(given, {"contraction.a.profile.shape=gaussian", "contraction.a.profile.sigma_um=30",
-                   "contraction.a.delay.speed_um_per_s=none"})
+      scenario_of(given, {"contraction.a.profile.shape=gaussian", "contraction.a.profile.sigma_um=30",
+                          "contraction.a.delay.speed_um_per_s=none"})
           .contractions.at("a");
   EXPECT_EQ(other.profile.half_width_um, std::nullopt);
   EXPECT_EQ(other.profile.sigma_um, 30);
@@ -393,9 +341,10 @@ TEST(LoadScenario, SettlesTheDefaultsOfPatterns) {
 
 TEST(LoadScenario, OverridesGoLast) {
   const std::string text = "[contraction.a]\nregion = \"all\"\n[time]\nend_s = 5\nstep_s = 1\n";
-  const Scenario scenario = load(text, {"time.end_min=2", "time.step_s = adaptive", "contraction.a.edges=basal",
-                                        "contraction.a.program.time_s=[0, 1]", "contraction.a.program.activity=[0, 1]",
-                                        "time.max_step_s=7", "time.max_step_s=8", "title=\"two words\""});
+  const Scenario scenario =
+      scenario_of(text, {"time.end_min=2", "time.step_s = adaptive", "contraction.a.edges=basal",
+                         "contraction.a.program.time_s=[0, 1]", "contraction.a.program.activity=[0, 1]",
+                         "time.max_step_s=7", "time.max_step_s=8", "title=\"two words\""});
   EXPECT_EQ(scenario.time.end_s, 120);
   EXPECT_FALSE(scenario.time.step_s.has_value());
   EXPECT_EQ(scenario.contractions.at("a").faces, "basal");
@@ -409,9 +358,9 @@ TEST(LoadScenario, OverridesOfTextsNeedNoQuotes) {
   const std::string surface = "[embryo]\nshape = \"surface\"\n";
   for (const std::string name :
        {"off_1e+05.obj", "two words.obj", "a=b (1).obj", "1e5", "2024-01-01", "x#1.obj", "true"})
-    EXPECT_TRUE(load(surface, {"embryo.file=" + name}).embryo.file.ends_with("/" + name)) << name;
-  EXPECT_EQ(load("", {"title=50 % less"}).title, "50 % less");
-  EXPECT_EQ(errors_of("", {"embryo.shape=a ball"}).find("--set: embryo.shape: \"a ball\" is unknown"), 0U);
+    EXPECT_TRUE(scenario_of(surface, {"embryo.file=" + name}).embryo.file.ends_with("/" + name)) << name;
+  EXPECT_EQ(scenario_of("", {"title=50 % less"}).title, "50 % less");
+  EXPECT_EQ(load_errors("", {"embryo.shape=a ball"}).find("--set: embryo.shape: \"a ball\" is unknown"), 0U);
 }
 
 TEST(LoadScenario, ReportsWrongOverrides) {
@@ -430,7 +379,7 @@ TEST(LoadScenario, ReportsWrongOverrides) {
       {"time.ends=3", "--set: time.ends: unknown key; use \"end_s\" (nearest match)"},
       {"base=drosophila", "--set: base: base cannot be set on the command line; write base in the scenario's file"},
   };
-  for (const auto& [text, message] : cases) EXPECT_EQ(errors_of("", {text}), message) << text;
+  for (const auto& [text, message] : cases) EXPECT_EQ(load_errors("", {text}), message) << text;
 }
 
 TEST(FindScenario, SaysWhichNameIsNear) {

@@ -1,35 +1,30 @@
-// Regions and profiles by arrays, rows, rings, angles and tables; pulses; messages.
+// Keys of patterns, of cell arrays and of [ablation.NAME].
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
+#include "core/errors.hpp"
 #include "core/files.hpp"
+#include "mechanics/active/contraction.hpp"
+#include "mechanics/active/cortex.hpp"
 #include "scenario/acting.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/load.hpp"
 #include "scenario/print.hpp"
 #include "scenario/setup.hpp"
 #include "simulation/controls.hpp"
+#include "support/own_folder.hpp"
+#include "support/scenarios.hpp"
 #include "tissue/rows.hpp"
 
 namespace plica {
 namespace {
 
-const std::string egg =
-    "format = 1\n[embryo]\nshape = \"egg\"\nlength_um = 250\ndiameter_um = 120\ncell_count = 300\ncell_height_um = "
-    "20\n";
-
-std::string errors_of(const std::string& text) {
-  try {
-    make_model(load_scenario({"test", "test.toml", text}));
-    return "";
-  } catch (const ScenarioError& error) {
-    return error.what();
-  }
-}
+using namespace support;
 
 TEST(PatternKeys, RegionsByRowsAndNeighbours) {
   const Tissue tissue = make_tissue(load_scenario(
@@ -90,13 +85,7 @@ TEST(PatternKeys, ProfilesByAnArray) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / ("plica_arrays_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
-  std::string table = "x_um,y_um,z_um,twi\n";
-  for (int i = 0; i < 200; ++i) {
-    const double z = 1 - (2 * i + 1) / 200.0, r = std::sqrt(1 - z * z), turn = 2.4 * i;
-    table += std::to_string(120 * z) + ',' + std::to_string(60 * r * std::sin(turn)) + ',' +
-             std::to_string(60 * r * std::cos(turn)) + ',' + std::to_string(i) + '\n';
-  }
-  write_file(folder / "points.csv", table);
+  write_file(folder / "points.csv", numbered_points("twi"));
   const std::string points = "format = 1\n[embryo]\nshape = \"points\"\nfile = \"points.csv\"\ncell_height_um = 15\n";
   const std::string act = "[contraction.a]\nregion = \"all\"\nstiffness_nN_per_um = 1\nprofile = ";
   const auto load = [&](const std::string& profile) {
@@ -115,17 +104,12 @@ TEST(PatternKeys, ProfilesByAnArray) {
       "profile";
   EXPECT_EQ(std::ranges::count(lines_of("{ shape = \"array\", array = \"twi\", from = 300, to = 400 }"), nothing), 1);
   EXPECT_EQ(std::ranges::count(lines_of("{ shape = \"array\", array = \"twi\", from = 100, to = 400 }"), nothing), 0);
-  try {
-    make_model(load("{ shape = \"array\", array = \"sna\", from = 0, to = 1 }"));
-    FAIL();
-  } catch (const ScenarioError& error) {
-    EXPECT_NE(
-        std::string(error.what())
-            .find(
+  const std::string errors =
+      errors_in([&] { return make_model(load("{ shape = \"array\", array = \"sna\", from = 0, to = 1 }")); });
+  EXPECT_NE(errors.find(
                 "test.toml:9: contraction.a.profile.array: the embryo has no array \"sna\"; set array to one of: twi"),
-        std::string::npos)
-        << error.what();
-  }
+            std::string::npos)
+      << errors;
   std::filesystem::remove_all(folder);
 }
 
@@ -133,7 +117,7 @@ TEST(PatternKeys, ProfilesByAnArray) {
 TEST(PatternKeys, WhatIsWrongIsSaidWithItsKey) {
   int checked = 0;
   const auto expect = [&](const std::string& text, const std::string& said) {
-    EXPECT_NE(errors_of(egg + text).find(said), std::string::npos) << errors_of(egg + text);
+    EXPECT_NE(model_errors(egg + text).find(said), std::string::npos) << model_errors(egg + text);
     ++checked;
   };
   const auto act = [](const std::string& more) {
@@ -146,11 +130,6 @@ TEST(PatternKeys, WhatIsWrongIsSaidWithItsKey) {
   expect("[region.r]\nneighbours_of = \"all\"\n", "region.r: contains no cell of the embryo");
   expect("[region.r]\nrows = 3\nrings = 2\n",
          "test.toml:10: region.r.rings: is not used without neighbours_of; set neighbours_of to the region");
-  expect("[region.r]\nrows = 0\n",
-         "test.toml:9: region.r.rows: 0 is out of range; set rows to an integer, 1 to 100000");
-  expect("[region.r]\nrows = 2.5\n", "region.r.rows: 2.5 is not an integer");
-  expect("[region.r]\nneighbours_of = [\"a\"]\n",
-         "region.r.neighbours_of: a list has the wrong type; set neighbours_of to a text");
   expect(act("profile = { shape = \"array\", from = 0, to = 1 }"),
          "test.toml:11: contraction.a.profile.array: is missing; set array to a cell array");
   expect(act("profile = { shape = \"array\", array = \"twi\", from = 0, to = 1 }"),
@@ -188,25 +167,151 @@ TEST(PatternKeys, WhatIsWrongIsSaidWithItsKey) {
          "contraction.a.profile.at_um: the positions do not increase; list positions in increasing order");
   expect(act("profile = { shape = \"table\", at_um = [0, 20, 30], factor = [1, 0] }"),
          "contraction.a.profile.factor: has length 2 for 3 positions; set factor to as many values as positions");
-  expect(act("profile = { shape = \"table\", at_um = [0, 20], factor = [1, -1] }"),
-         "contraction.a.profile.factor: -1 is out of range; set factor to a list of numbers >= 0");
   expect(act("profile = { shape = \"table\", at_um = [0, 20], at_cells = [0, 2], factor = [1, 0] }"),
          "profile.at_um: conflicts with contraction.a.profile.at_cells, which is also set; remove one of them");
   expect(act("profile = { shape = \"table\", at_um = [0, 20], factor = [1, 0], middle = 2 }"),
          "contraction.a.profile.middle: is not used with shape \"table\"; remove it");
   expect(act("pulse = { amplitude = 0.5 }"), "test.toml:11: contraction.a.pulse.period_s: is missing; set period_s");
-  expect(act("pulse = { period_s = 0 }"),
-         "contraction.a.pulse.period_s: 0 is out of range; set period_s to a number >= 1 or \"none\"");
-  expect(act("pulse = { period_s = 60, amplitude = 1.5 }"), "contraction.a.pulse.amplitude: 1.5 is out of range");
-  expect(act("pulse = { period_s = 60, phase = \"odd\" }"),
-         "contraction.a.pulse.phase: \"odd\" is unknown; set phase to one of: random | together");
   expect(
       act("pulse = { period_s = 60 }\n[time]\nstep_s = 10"),
       "contraction.a.pulse.period_s: time steps of 10 s do not resolve a period of 60 s; set time.step_s to at most 5");
-  expect(act("variation = { spread = 0.2, by = \"name\" }"),
-         "contraction.a.variation.by: \"name\" is unknown; set by to one of: number | place");
   RecordProperty("bad inputs", checked);
-  EXPECT_EQ(checked, 34);
+  EXPECT_EQ(checked, 26);
+}
+
+const std::string block =
+    "[embryo]\nshape = \"block\"\nlength_um = 40\nwidth_um = 40\ncells = [2, 2, 1]\n"
+    "cell_arrays = \"plica_arrays.csv\"\n[vitelline]\nenabled = false\n";
+
+class CellArrays : public OwnFolder {
+ protected:
+  [[nodiscard]] Scenario load(const std::string& table, const std::string& more = "") const {
+    write("plica_arrays.csv", table);
+    return load_scenario({"block", (folder / "block.toml").string(), block + more});
+  }
+  [[nodiscard]] static std::string errors_of(const Scenario& scenario) {
+    return errors_in([&] { return make_model(scenario); });
+  }
+};
+
+TEST_F(CellArrays, OfATableSelectAndGradeCells) {
+  const Scenario scenario =
+      load("myosin\n0\n1\n0.5\n0\n",
+           "[region.active]\narray = \"myosin\"\n[contraction.apical]\nregion = \"active\"\n"
+           "stiffness_nN_per_um = 1\nprofile = { shape = \"array\", array = \"myosin\", from = 0, to = 1 }\n");
+  const auto model = make_model(scenario);
+  EXPECT_EQ(model->tissue.cell_arrays.at("myosin"), (CellArray{0, 1, 0.5, 0}));
+  EXPECT_EQ(model->tissue.regions.at("active"), (CellSet{false, true, true, false}));
+  const auto resolved = make_tissue(load_scenario({"again", "again", resolved_toml(scenario)}));
+  EXPECT_EQ(resolved.cell_arrays, model->tissue.cell_arrays);  // its path does not depend on the folder
+}
+
+TEST_F(CellArrays, OfAProgramReplaceThoseOfATable) {
+  Scenario scenario = load("myosin,sna\n0,1\n1,1\n0.5,1\n0,1\n");
+  scenario.embryo.arrays = {{"myosin", {1, 2, 3, 4}}};
+  const Tissue tissue = make_tissue(scenario);
+  EXPECT_EQ(tissue.cell_arrays.at("myosin"), (CellArray{1, 2, 3, 4}));
+  EXPECT_EQ(tissue.cell_arrays.at("sna"), (CellArray{1, 1, 1, 1}));
+}
+
+TEST_F(CellArrays, OfAnotherNumberOfCellsAreRefused) {
+  EXPECT_NE(errors_of(load("myosin\n0\n1\n")).find("embryo.cell_arrays: "), std::string::npos);
+  EXPECT_NE(errors_of(load("myosin\n0\n1\n")).find("has 2 values for 4 cells; give one per cell"), std::string::npos);
+  Scenario scenario = load("myosin\n0\n1\n2\n3\n");
+  scenario.embryo.arrays = {{"calcium", {1}}};
+  EXPECT_NE(errors_of(scenario).find("an array given has 1 values for 4 cells"), std::string::npos);
+  EXPECT_NE(errors_of(load("myosin\nmuch\n")).find("\"much\" of column myosin is not a number"), std::string::npos);
+}
+
+const std::string sheet = R"([embryo]
+shape = "block"
+length_um = 60
+width_um = 20
+cell_height_um = 20
+cells = [3, 1, 1]
+[vitelline]
+enabled = false
+[region.first]
+x_um = [-30, -10]
+[cortex.top]
+region = "all"
+tension_mN_per_m = 2
+[cortex.walls]
+region = "all"
+faces = "lateral"
+tension_mN_per_m = 2
+)";
+
+const Cortex& cortex_of(const Model& model, const std::string& name) {
+  return dynamic_cast<const Cortex&>(
+      **std::ranges::find_if(model.laws, [&](const auto& law) { return law->label() == "cortex." + name; }));
+}
+
+TEST(AblationKeys, FacesTimesAndRegionsAreThoseGiven) {
+  const std::unique_ptr<Model> model = make_model(scenario_of(
+      sheet + "[ablation.cut]\nregion = \"first\"\nfaces = [\"lateral\"]\nat_min = 1\nuntil_min = 3\nremaining = 0.5"));
+  const Cortex &top = cortex_of(*model, "top"), &walls = cortex_of(*model, "walls");
+  EXPECT_TRUE(top.pattern().ablations.empty());
+  for (const auto& [time_s, first] : {std::pair(60.0, 1.0), {61.0, 0.5}, {180.0, 0.5}, {181.0, 1.0}}) {
+    EXPECT_EQ(*top.activity_of(CellId(0), time_s, {}), 1);
+    EXPECT_EQ(*walls.activity_of(CellId(0), time_s, {}), first) << time_s;
+    EXPECT_EQ(*walls.activity_of(CellId(1), time_s, {}), 1);
+  }
+  // A lateral face between an ablated and an intact cell keeps the intact half, and here half of the ablated half.
+  Step step;
+  step.positions = step.previous_positions = model->tissue.rest_positions;
+  step.end_time_s = 100;
+  const std::vector<double> tensions = walls.tensions(step);
+  for (std::size_t f = 0; f < tensions.size(); ++f) {
+    const Face& face = walls.faces()[f];
+    const auto of_cell = [](CellId cell) { return cell.number() == 0 ? 1.0 : 2.0; };
+    EXPECT_DOUBLE_EQ(tensions[f],
+                     face.beyond ? 0.5 * (of_cell(face.cell) + of_cell(*face.beyond)) : of_cell(face.cell));
+  }
+  EXPECT_EQ(walls.program_jumps_s().back(), 180);
+
+  const std::unique_ptr<Model> other =
+      make_model(scenario_of(sheet + "[ablation.cut]\nregion = \"first\"\nonly = [\"cortex.top\"]\nat_s = 0"));
+  EXPECT_TRUE(cortex_of(*other, "walls").pattern().ablations.empty());
+  EXPECT_EQ(*cortex_of(*other, "top").activity_of(CellId(0), 1, {}), 0);
+
+  const std::unique_ptr<Model> all =
+      make_model(scenario_of(sheet + "[ablation.cut]\nregion = \"first\"\nonly = []\nat_s = 0"));
+  EXPECT_EQ(*cortex_of(*all, "walls").activity_of(CellId(0), 1, {}), 0);
+}
+
+TEST(AblationKeys, WhatIsWrongIsSaid) {
+  const auto cut = [](const std::string& keys) { return sheet + "[ablation.cut]\n" + keys; };
+  const WrongScenarios cases = {
+      {cut("at_s = 5"), "test.toml:18: ablation.cut.region: is missing; set region to a text"},
+      {cut("region = \"second\"\nat_s = 5"),
+       "test.toml:19: ablation.cut.region: region \"second\" does not exist; use one of"},
+      {cut("region = \"first\""), "test.toml:18: ablation.cut: no start time; set at_min or at_s (0 = from the start)"},
+      {cut("region = \"first\"\nat_s = 5\nat_min = 1"),
+       "conflicts with ablation.cut.at_min, which is also set; remove one of them"},
+      {cut("region = \"first\"\nat_min = 5\nuntil_min = 5"),
+       "test.toml:21: ablation.cut.until_min: is not after the start of the ablation; set a later time, or \"none\""},
+      {cut("region = \"first\"\nat_s = 5\nonly = [\"cortex.tip\"]"),
+       "test.toml:21: ablation.cut.only: [cortex.tip] does not exist; use \"cortex.top\" (nearest match)"},
+  };
+  for (const auto& [text, message] : cases)
+    EXPECT_NE(load_errors(text).find(message), std::string::npos) << load_errors(text);
+}
+
+TEST(AblationKeys, WhatTakesNothingIsTold) {
+  const auto advice_on = [](const std::string& keys) {
+    const Scenario scenario = scenario_of(sheet + "[time]\nend_s = 60\n[ablation.cut]\nregion = \"first\"\n" + keys);
+    std::string lines;
+    for (const std::string& line : advice(scenario, *make_model(scenario)))
+      if (line.find("ablation") != std::string::npos) lines += line;
+    return lines;
+  };
+  EXPECT_EQ(advice_on("at_s = 5"), "");
+  EXPECT_EQ(advice_on("at_s = 5\nonly = [\"cortex.walls\"]"), "");
+  EXPECT_NE(advice_on("at_s = 5\nonly = [\"cortex.walls\"]\nfaces = [\"apical\"]"), "");
+  EXPECT_EQ(advice_on("at_s = 5\nfaces = [\"basal\"]"),
+            "warning: ablation.cut: has no effect, since no selected cortex or contraction acts on these faces in "
+            "region first; change faces, only or region");
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// What a scenario says, printed; differences of two; words of its keys; names that are near.
 #include "scenario/print.hpp"
 
 #include <gtest/gtest.h>
@@ -5,10 +6,16 @@
 #include <algorithm>
 #include <iostream>
 #include <map>
+#include <set>
+#include <string>
 
 #include "scenario/builtin.hpp"
+#include "scenario/differences.hpp"
 #include "scenario/load.hpp"
 #include "scenario/schema.hpp"
+#include "scenario/suggest.hpp"
+#include "scenario/syntax.hpp"
+#include "scenario/words.hpp"
 
 namespace plica {
 namespace {
@@ -172,7 +179,6 @@ TEST(Reference, LinksToEverySection) {
 
 TEST(Reference, SaysTypeDefaultAndRange) {
   const std::string page = reference_markdown();
-  int count = 0;
   for (const std::string line : {
            "| `poisson_ratio` | number | `0.45` | > -1 and < 0.5 |",
            "| `shape` | word | `\"pill\"` | pill \\| sphere \\| slice \\| block \\| egg \\| points \\| sheet \\| "
@@ -183,9 +189,172 @@ TEST(Reference, SaysTypeDefaultAndRange) {
            "| `region` | text | required | any |",
        }) {
     EXPECT_NE(page.find(line), std::string::npos) << line;
-    ++count;
   }
-  std::cout << count << " lines\n";
+}
+
+TEST(ScenarioDifferences, AreKeysInDottedFormWithBothValues) {
+  const auto keys = scenario_differences(
+      "a = 1\n[embryo]\nshape = \"pill\"\ncells = [18, 9, 8]\n[time]\nend_s = 60.0\n[stop]\nat_equilibrium = true\n",
+      "a = 1\n[embryo]\nshape = \"pill\"\ncells = [18, 9, 9]\n[time]\nend_s = 90.0\n[furrow]\nregion = \"belly\"\n");
+  ASSERT_EQ(keys.size(), 4u);
+  EXPECT_EQ(keys[0].key, "embryo.cells");
+  EXPECT_EQ(keys[0].a, "[ 18, 9, 8 ]");
+  EXPECT_EQ(keys[0].b, "[ 18, 9, 9 ]");
+  EXPECT_EQ(keys[1].key, "furrow.region");
+  EXPECT_EQ(keys[1].a, "");
+  EXPECT_EQ(keys[2].key, "stop.at_equilibrium");
+  EXPECT_EQ(keys[2].a, "true");
+  EXPECT_EQ(keys[2].b, "");
+  EXPECT_EQ(keys[3].key, "time.end_s");
+}
+
+TEST(ScenarioDifferences, AreNoneOfTheSameAndAllOfWhatIsNoToml) {
+  EXPECT_TRUE(scenario_differences("a = 1", "a = 1").empty());
+  ASSERT_EQ(scenario_differences("a = 1", "no toml").size(), 1u);
+  EXPECT_EQ(scenario_differences("a = 1", "no toml")[0].a, "1");
+}
+
+int tables = 0;  // that were looked at
+
+// Returns the words that a table allows for a key.
+std::vector<std::string_view> allowed(std::string_view table, std::string_view key) {
+  for (const Row& row : rows_of(table))
+    if (row.key == key) return row.allowed.words;
+  ADD_FAILURE() << "no key " << table << "." << key;
+  return {};
+}
+
+// Every allowed word has a meaning of its own.
+template <class Words>
+void expect_words(std::string_view table, std::string_view key, const Words& words) {
+  ++tables;
+  SCOPED_TRACE(testing::Message() << table << "." << key);
+  using Meaning = std::decay_t<decltype(words.front().meaning)>;
+  std::set<Meaning> meanings;
+  const std::vector<std::string_view> given = allowed(table, key);
+  EXPECT_FALSE(given.empty());
+  for (const std::string_view word : given) {
+    EXPECT_NO_THROW(meanings.insert(meaning_of(words, word))) << word;
+    EXPECT_EQ(meaning_of(words, word, words.front().meaning), meaning_of(words, word));
+  }
+  EXPECT_EQ(meanings.size(), given.size());
+  EXPECT_EQ(words.size(), given.size());
+  EXPECT_EQ(meaning_of(words, "", words.back().meaning), words.back().meaning) << "not given";
+  EXPECT_THROW((void)meaning_of(words, "no such word"), std::logic_error);
+}
+
+TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
+  expect_words("embryo", "keep", words::keeps);
+  expect_words("embryo", "mirror", words::mirror_planes);
+  expect_words("embryo", "elements", words::polygon_splits);
+  expect_words("embryo", "rim", words::rims);
+  expect_words("embryo", "periodic", words::periods);
+  expect_words("region.*", "face", words::sides);
+  expect_words("volume", "projection_surface", words::projection_surfaces);
+  expect_words("volume", "projection_weights", words::projection_weights);
+  expect_words("contraction.*", "edges", words::edges);
+  expect_words("cortex.*", "faces", words::edges);
+  for (const char* table : {"contraction.*", "cortex.*", "pressure.*", "elasticity.*"}) {
+    expect_words(table, "profile.shape", words::profile_shapes);
+    expect_words(table, "profile.axis", words::profile_axes);
+    expect_words(table, "variation.by", words::variation_bys);
+  }
+  for (const char* table : {"contraction.*", "cortex.*"}) {
+    expect_words(table, "pulse.phase", words::pulse_phases);
+    expect_words(table, "delay.axis", words::delay_axes);
+    expect_words(table, "delay.from", words::delay_starts);
+  }
+  expect_words("cortex.*", "trigger.measure", words::own_measures);
+  expect_words("cortex.*", "follow.measure", words::own_measures);
+  expect_words("enclosed.*", "volume", words::enclosed_states);
+  expect_words("self_contact", "surface", words::contact_surfaces);
+  expect_words("hold.*", "directions", words::axes);
+  expect_words("pressure.*", "face", words::pressure_faces);
+  expect_words("ablation.*", "faces", words::edges);
+  expect_words("division.*", "when", words::division_triggers);
+  expect_words("division.*", "plane", words::division_planes);
+  expect_words("time", "scheme", words::schemes);
+  expect_words("time", "integrator", words::integrators);
+  expect_words("time", "linear_solver", words::linear_solvers);
+  expect_words("stop", "combine", words::combinations);
+  expect_words("stop.*", "over", words::criterion_overs);
+  expect_words("monitor.*", "face", words::monitor_faces);
+  expect_words("monitor.*", "axis", words::axes);
+  expect_words("monitor.*", "over", words::overs);
+  expect_words("monitor.*", "reference_at", words::reference_times);
+
+  // The rest of the keys that take words: names of quantities and of measure sets have tables of their own, these three
+  // are no enums, and of enclosed surfaces there is one.
+  int with_words = 0;
+  for (const ScenarioTable& info : scenario_tables())
+    for (const Row& row : info.rows) with_words += row.allowed.words.empty() ? 0 : 1;
+  EXPECT_EQ(tables + 6, with_words)
+      << "embryo.shape, elasticity.model, volume.method, monitor.*.quantity, enclosed.*.surface, measure.sets";
+}
+
+TEST(Words, MeanWhatTheySay) {
+  EXPECT_EQ(meaning_of(words::edges, "basal"), CellSide::basal);
+  EXPECT_EQ(meaning_of(words::integrators, "bdf2"), TimeOrder::second);
+  EXPECT_EQ(meaning_of(words::delay_starts, "ends"), StartDelay::From::ends);
+  EXPECT_EQ(meaning_of(words::division_planes, "longest-axis"), DivisionPlane::longest_axis);
+  EXPECT_EQ(meaning_of(words::overs, "rms"), Over::rms);
+}
+
+// The order of two near names does not matter.
+TEST(Suggest, TheNearestOfSeveralThatAreNear) {
+  EXPECT_EQ(nearest_name("stifness", {"stiffness", "stillness"}), "stiffness");
+  EXPECT_EQ(nearest_name("stifness", {"stillness", "stiffness"}), "stiffness");
+  // A swap of two letters is one edit; a deletion and an insertion are two.
+  EXPECT_EQ(nearest_name("gpa", {"gab", "gap"}), "gap");
+  EXPECT_EQ(nearest_name("yolk_gpa", {"yolk_gal", "yolk_gap"}), "yolk_gap");
+  EXPECT_EQ(nearest_name("lengt_um", {"length_um", "height_um"}), "length_um");
+  EXPECT_EQ(nearest_name("lengt_um", {"height_um", "length_um"}), "length_um");
+}
+
+TEST(Suggest, CaseDoesNotCount) {
+  EXPECT_EQ(nearest_name("YOUNG_MODULUS_PA", {"poisson_ratio", "young_modulus_Pa"}), "young_modulus_Pa");
+  EXPECT_EQ(nearest_name("Xenopus", {"drosophila", "xenopus"}), "xenopus");
+}
+
+TEST(Suggest, WhatIsFarFromAllIsNone) {
+  EXPECT_FALSE(nearest_name("colour", {"length_um", "cells"}));
+  EXPECT_FALSE(nearest_name("at", {"x", "is"})) << "no letter is the same";
+  EXPECT_FALSE(nearest_name("cells", {}));
+}
+
+TEST(Suggest, TheBeginningOfANameIsEnough) {
+  EXPECT_EQ(nearest_name("young", {"poisson_ratio", "young_modulus_Pa"}), "young_modulus_Pa");
+  EXPECT_FALSE(nearest_name("you", {"poisson_ratio", "young_modulus_Pa"})) << "too short to say anything";
+}
+
+TEST(Suggest, AUnitIsWhatFollowsAName) {
+  for (const char* name : {"young_modulus_Pa", "young_modulus_kPa", "young_modulus", "Young_Modulus_nN_per_um2"})
+    EXPECT_EQ(without_unit(name), "young_modulus") << name;
+  EXPECT_EQ(without_unit("um"), "um");
+}
+
+TEST(Suggest, WhereNothingIsNearAllThatIsKnownIsNamed) {
+  EXPECT_EQ(did_you_mean("drosofila", {"xenopus", "drosophila"}), "use \"drosophila\" (nearest match)");
+  EXPECT_EQ(did_you_mean("mouse", {"xenopus", "drosophila"}), "use one of: xenopus, drosophila");
+  EXPECT_EQ(did_you_mean("mouse", {}), "none is defined");
+}
+
+TEST(Nesting, AKeyWithTooManyPartsIsFoundWhereverItStands) {
+  std::string deep = "a";
+  for (int part = 1; part <= most_key_parts; ++part) deep += part % 3 == 0 ? " . \"b.c\"" : ".'d'";
+  for (const std::string& text : {deep + " = 1", "[" + deep + "]", "[[" + deep + "]]", "x = {y = 1, " + deep + " = 1}",
+                                  "x = [{" + deep + " = 1}]", "# \"\nx = '''''\\'''''\n\"\\\"\" = 1\n" + deep + " = 1"})
+    EXPECT_EQ(line_of_too_deep_key("\n" + text), text.starts_with('#') ? 5 : 2) << text;
+}
+
+TEST(Nesting, DotsInTextsNumbersAndCommentsAreNone) {
+  const std::string dots(100, '.');
+  for (const std::string& text : {"x = \"" + dots + "\"", "x = '" + dots + "'", "x = \"\"\"\n\"" + dots + "\"\"\"\"\"",
+                                  "# " + dots, "x = \"\\\"" + dots + "\"",
+                                  std::string("x = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 1.0, 2.0, 3.0, 4.0, "
+                                              "5.0, 6.0, 7.0, 8.0, 9.0]"),
+                                  std::string("a.b.c.d = 1\ne.f.g.h = 2\n[a.b.c.d]\n[a.b.c.e]\n[i.b.c.e]\n")})
+    EXPECT_EQ(line_of_too_deep_key(text), 0) << text;
 }
 
 }  // namespace

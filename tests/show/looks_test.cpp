@@ -1,12 +1,16 @@
+// Looks of pictures and reports: colours, views, outlines, packed arrays.
 #include "show/looks.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/errors.hpp"
 #include "measure/cell_columns.hpp"
+#include "show/boundary_surface.hpp"
+#include "show/packing.hpp"
 #include "support/frames.hpp"
 #include "support/tissues.hpp"
 #include "tissue/shapes/embryo.hpp"
@@ -200,6 +204,103 @@ TEST(CrossSectionAt, CutsNextToThePlaceAndIsCalledByIt) {
 
 TEST(FieldValues, RefusesAFrameWithoutTheArray) {
   EXPECT_THROW(field_values(Frame{}, colour_fields().front()), FileError);
+}
+
+// `count` cubes of 10 um in a row along x, each of two elements one above the other where `layers` is 2.
+Frame row_of_cubes(int count, int layers) {
+  Frame frame;
+  const auto node = [&](int i, int j, int k) { return NodeId(i + (count + 1) * (j + 2 * k)); };
+  for (int k = 0; k <= layers; ++k)
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i <= count; ++i) frame.positions.emplace_back(10.0 * i, 10.0 * j, 10.0 * k / layers);
+  for (int k = 0; k < layers; ++k)
+    for (int i = 0; i < count; ++i) {
+      frame.elements.push_back({node(i, 0, k), node(i + 1, 0, k), node(i + 1, 1, k), node(i, 1, k), node(i, 0, k + 1),
+                                node(i + 1, 0, k + 1), node(i + 1, 1, k + 1), node(i, 1, k + 1)});
+      frame.element_scalars["cell_id"].push_back(i);
+    }
+  return frame;
+}
+
+TEST(BoundarySurface, OutlinesPartCellsAndNotTheElementsOfOne) {
+  const BoundarySurface coarse = boundary_surface_of(row_of_cubes(3, 1)),
+                        fine = boundary_surface_of(row_of_cubes(3, 2));
+  EXPECT_EQ(coarse.facets.size(), 14u);
+  EXPECT_EQ(coarse.outlines.size(), 28u);  // every edge of three cubes
+  EXPECT_EQ(fine.facets.size(), 6u + 2 * 8u);
+  // Upright edges are of two pieces now; edges between the layers lie within a cell's side and are not drawn.
+  EXPECT_EQ(fine.outlines.size(), 28u + 8u);
+  EXPECT_EQ(std::ranges::count(coarse.facets, 5, &BoundaryFacet::face), 3);
+  EXPECT_EQ(std::ranges::count(coarse.facets, 4, &BoundaryFacet::face), 3);
+}
+
+TEST(BoundarySurface, FacetsLookOutward) {
+  const Frame frame = row_of_cubes(2, 1);
+  Vec3 sum = Vec3::Zero();
+  double volume = 0;
+  for (const BoundaryFacet& facet : boundary_surface_of(frame).facets) {
+    const auto at = [&](int i) { return frame.positions[facet.nodes[i].index()]; };
+    const Vec3 area = (at(2) - at(0)).cross(at(3) - at(1)) / 2;
+    sum += area;
+    volume += area.dot(at(0) + at(2)) / 6;
+  }
+  EXPECT_NEAR(sum.norm(), 0, 1e-12);
+  EXPECT_NEAR(volume, 2000, 1e-9);
+}
+
+TEST(BoundarySurface, RefusesAFrameWithoutCells) {
+  Frame frame = row_of_cubes(1, 1);
+  frame.element_scalars.clear();
+  EXPECT_THROW(boundary_surface_of(frame), FileError);
+}
+
+TEST(CutByPlane, CutsASquareOutOfACube) {
+  const Frame frame = row_of_cubes(3, 1);
+  const auto polygons = cut_by_plane(frame, 0, 12.5);
+  ASSERT_EQ(polygons.size(), 1u);
+  EXPECT_EQ(polygons[0].element, 1u);
+  ASSERT_EQ(polygons[0].corners.size(), 4u);
+  double area = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto place = [&](const CutPolygon::Corner& corner) -> Vec3 {
+      return (1 - corner.part) * frame.positions[corner.first.index()] +
+             corner.part * frame.positions[corner.second.index()];
+    };
+    const Vec3 a = place(polygons[0].corners[i]), b = place(polygons[0].corners[(i + 1) % 4]);
+    EXPECT_DOUBLE_EQ(a.x(), 12.5);
+    area += a.cross(b).x() / 2;
+  }
+  EXPECT_NEAR(area, 100, 1e-9);
+  EXPECT_EQ(cut_by_plane(frame, 1, 5).size(), 3u);
+  EXPECT_TRUE(cut_by_plane(frame, 2, 50).empty());
+}
+
+TEST(PackedArrays, KeepsDifferencesBytePlaneByBytePlane) {
+  PackedArrays arrays;
+  const std::vector<std::uint16_t> small = {0x0102, 0x0304, 0x0103, 0x0300};
+  const std::vector<std::uint32_t> large = {0x01020304, 0x01020303};
+  arrays.add("small", std::span<const std::uint16_t>(small), 2);
+  arrays.add("large", std::span<const std::uint32_t>(large), 1);
+  // Differences: 0102 0304 0001 fffc, then 01020304 ffffffff; lowest bytes first.
+  EXPECT_EQ(arrays.bytes(), std::string("\x02\x04\x01\xfc\x01\x03\x00\xff\x04\xff\x03\xff\x02\xff\x01\xff", 16));
+  const auto index = arrays.index();
+  EXPECT_EQ(index[1]["name"], "large");
+  EXPECT_EQ(index[1]["bits"], 32);
+  EXPECT_EQ(index[1]["offset"], 8);
+  EXPECT_EQ(index[1]["count"], 2);
+}
+
+TEST(Quantiser, IsExactAtItsEndsAndWithinHalfAStepBetween) {
+  Quantiser range;
+  EXPECT_EQ(range.step_of(3), 0);  // nothing known yet
+  for (const double value : {-2.0, 5.0, 1.0}) range.include(value);
+  EXPECT_EQ(range.step_of(-2), 0);
+  EXPECT_EQ(range.step_of(5), 65535);
+  EXPECT_EQ(range.step_of(7), 65535);
+  for (const double value : {-1.9, 0.0, 3.3333}) {
+    const double back = -2 + 7.0 * range.step_of(value) / 65535;
+    EXPECT_NEAR(back, value, 0.5 * 7 / 65535 * (1 + 1e-9));
+  }
 }
 
 }  // namespace

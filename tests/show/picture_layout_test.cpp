@@ -42,7 +42,6 @@ bool contains(const std::vector<std::string>& texts, const std::string& text) {
 }
 
 TEST(PictureLayout, PanelsFillTheirGridWithoutTouchingAndHoldTheEmbryo) {
-  int cases = 0;
   for (const auto& rows : {std::vector<std::string>{"ventral"},
                            {"antero-ventral", "cross-section"},
                            {"ventral", "side", "cross-section", "sagittal-section"}})
@@ -78,9 +77,7 @@ TEST(PictureLayout, PanelsFillTheirGridWithoutTouchingAndHoldTheEmbryo) {
               << label.text;
           EXPECT_GE(label.size_px / layout.width_px * 160, 7 * 25.4 / 72) << label.text;  // 7 points at 16 cm
         }
-        ++cases;
       }
-  std::cout << cases << " layouts\n";
 }
 
 TEST(PictureLayout, SaysWhatIsShown) {
@@ -129,7 +126,6 @@ TEST(ScaleTicks, AreRoundAndWithinTheRange) {
   EXPECT_EQ(scale_ticks({0, 35}, 5), (std::vector<double>{0, 10, 20, 30}));
   EXPECT_EQ(scale_ticks({-250, 250}, 5), (std::vector<double>{-200, -100, 0, 100, 200}));
   EXPECT_EQ(scale_ticks({3, 3}, 5), (std::vector<double>{3}));
-  int cases = 0;
   for (const double low : {0.0, -1.0, 0.7, -2e-10, 1e6})
     for (const double span : {1e-9, 0.013, 1.0, 7.7, 123456.0})
       for (const int most : {2, 5, 8}) {
@@ -139,9 +135,7 @@ TEST(ScaleTicks, AreRoundAndWithinTheRange) {
         EXPECT_LE(ticks.size(), static_cast<std::size_t>(most));
         EXPECT_GE(ticks.front(), low - 1e-6 * span);
         EXPECT_LE(ticks.back(), low + span * (1 + 1e-6));
-        ++cases;
       }
-  std::cout << cases << " ranges\n";
 }
 
 TEST(RoundLength, IsOneTwoOrFiveTimesAPowerOfTen) {
@@ -190,7 +184,6 @@ TEST(Scene, OfASectionElsewhereIsCutThere) {
 
 // A box for each step that is there, its name beside it, all within the picture.
 TEST(PictureLayout, StepsAreNamedAndFit) {
-  int cases = 0;
   for (const auto [width, height] : {std::array{0, 0}, {1600, 900}, {1100, 300}})
     for (const int columns : {1, 3}) {
       Picture picture = picture_of(pill(), {"ventral"}, columns);
@@ -213,9 +206,7 @@ TEST(PictureLayout, StepsAreNamedAndFit) {
         EXPECT_GE(rectangle.box.bottom, 0);
         EXPECT_LE(rectangle.box.bottom + rectangle.box.height, layout.height_px);
       }
-      ++cases;
     }
-  std::cout << cases << " layouts\n";
 }
 
 TEST(Scene, HasTheRestOutlineOrTheShell) {

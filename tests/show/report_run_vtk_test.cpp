@@ -8,6 +8,7 @@
 #include "show/looks.hpp"
 #include "show/report.hpp"
 #include "show/report_run.hpp"
+#include "support/own_folder.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {
@@ -35,13 +36,9 @@ std::vector<std::uint32_t> unpacked(const ReportRun& run, const std::string& nam
   return {};
 }
 
-class ReportRunTest : public testing::Test {
+class ReportRunTest : public support::OwnFolder {
  protected:
-  ReportRunTest() : folder(fs::path(testing::TempDir()) / ("plica_report_" + std::to_string(::getpid()))) {
-    fs::create_directories(folder / "frames");
-  }
-  ~ReportRunTest() override { fs::remove_all(folder); }
-
+  ReportRunTest() { fs::create_directories(folder / "frames"); }
   // Frame i is the block moved by i um along x; from frame `divided_at` on it is another one, of more cells. As in a
   // run, the row of series.csv at the time of the division still counts those before it. From `given_at` on there is an
   // array that is not plica's.
@@ -67,7 +64,6 @@ class ReportRunTest : public testing::Test {
     write_collection(folder / "frames.pvd", entries);
   }
 
-  fs::path folder;
   const Tissue block = distorted_block({60, 40, 40, {3, 2, 1}, {1, 1, 1}}, 2, 9);
   const Tissue finer = distorted_block({60, 40, 40, {3, 3, 1}, {1, 1, 1}}, 2, 9);
 };
@@ -130,11 +126,6 @@ TEST_F(ReportRunTest, ThinsFramesByItsRuleAndSaysSo) {
   // However little there is room for, the ends and the division stay.
   EXPECT_EQ(read_report_run(folder, 1).json["topologies"][0]["times_s"], nlohmann::ordered_json({0, 100}));
   EXPECT_EQ(read_report_run(folder, 1).json["topologies"][1]["times_s"], nlohmann::ordered_json({110, 190}));
-}
-
-TEST_F(ReportRunTest, RefusesWhatIsNoRun) {
-  EXPECT_THROW(read_report_run(folder / "none", most_frame_bytes), FileError);
-  EXPECT_THROW(read_report_run(folder, most_frame_bytes), FileError);
 }
 
 // What a page of several runs says of them.

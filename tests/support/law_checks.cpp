@@ -127,4 +127,13 @@ Vec3 torque(const Vectors& forces, std::span<const Vec3> positions) {
   return sum;
 }
 
+void expect_no_resultant_and_no_torque(const Law& law, const Tissue& tissue, double size_um) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Motion motion = random_motion(tissue, size_um, seed);
+    const Vectors forces = forces_of(law, motion.step());
+    EXPECT_LE(resultant(forces).norm(), 1e-11 * largest(forces));
+    EXPECT_LE(torque(forces, motion.positions).norm(), 1e-9 * largest(forces));  // lever arms of up to 100 um
+  }
+}
+
 }  // namespace plica::support

@@ -39,4 +39,7 @@ void check_semidefinite_tangent(const Law& law, const Tissue& tissue, double siz
 Vec3 resultant(const Vectors& forces);
 Vec3 torque(const Vectors& forces, std::span<const Vec3> positions);
 
+/// Neither of both at five random motions, as of every law that only knows the body itself.
+void expect_no_resultant_and_no_torque(const Law& law, const Tissue& tissue, double size_um);
+
 }  // namespace plica::support

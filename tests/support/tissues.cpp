@@ -43,6 +43,12 @@ Motion at_rest(const Tissue& tissue) {
   return {tissue.rest_positions, tissue.rest_positions, Vectors(tissue.node_count(), Vec3::Zero())};
 }
 
+Motion deformed(const Tissue& tissue, const Mat3& F) {
+  Motion motion = at_rest(tissue);
+  for (Vec3& x : motion.positions) x = F * x;
+  return motion;
+}
+
 Motion random_motion(const Tissue& tissue, double size_um, unsigned seed) {
   Random random(seed);
   Motion motion = at_rest(tissue);

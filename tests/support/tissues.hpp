@@ -35,6 +35,9 @@ Tissue with_rest_positions(Tissue tissue, Vectors positions);
 /// A block whose nodes, inner and outer ones, are displaced at random by up to `size_um` in each direction.
 Tissue distorted_block(const BlockShape& shape, double size_um, unsigned seed);
 
+/// Two cells of one element, 20 um long and wide and 40 um high, in a row along x.
+inline const BlockShape two_cells{.length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}};
+
 /// A tissue of one-element cells from their corners in VTK's order.
 Tissue tissue_from_hexahedra(const std::vector<std::array<int, 8>>& hexahedra, Vectors positions);
 
@@ -82,6 +85,9 @@ struct Motion {
 
 /// At rest since ever.
 Motion at_rest(const Tissue& tissue);
+
+/// The body under a uniform deformation gradient F from rest, without history.
+Motion deformed(const Tissue& tissue, const Mat3& F);
 
 /// Every node displaced at random by up to `size_um` in each direction at the beginning and at the end of the step, and
 /// the whole turned by two different random rotations. Of second order with every other seed: then also at the

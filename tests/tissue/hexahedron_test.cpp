@@ -1,15 +1,21 @@
+// Hexahedra, quality of their meshes, and shapes around them.
 #include "tissue/hexahedron.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numbers>
 
 #include "support/tissues.hpp"
+#include "tissue/mesh_quality.hpp"
+#include "tissue/outer_shape.hpp"
+#include "tissue/shapes/egg_surface.hpp"
+#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {
 
-using support::Random;
+using namespace support;
 
 /// A brick of 20 x 20 x 40 um with every corner moved at random: hexahedra with warped faces.
 HexPoints warped(Random& random, double size_um = 6) {
@@ -64,14 +70,6 @@ TEST(Hexahedron, ShapeFunctionsInterpolateAndAddUpToOne) {
   }
 }
 
-TEST(Hexahedron, VolumeOfABrickIsTheProductOfItsSides) {
-  HexPoints brick;
-  for (int i = 0; i < 8; ++i) brick[i] = hex_reference_nodes[i].cwiseProduct(Vec3(10, 10, 20)) + Vec3(3, 500, -7);
-  EXPECT_NEAR(hex_volume(brick), 16000, 1e-9);
-  for (Vec3& x : brick) x.z() = -x.z();
-  EXPECT_NEAR(hex_volume(brick), -16000, 1e-9);
-}
-
 // Four-point Gauss integration of det J, two orders more than its degree needs.
 TEST(Hexahedron, VolumeIsTheIntegralOfTheJacobian) {
   const std::array<double, 4> points = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
@@ -79,8 +77,7 @@ TEST(Hexahedron, VolumeIsTheIntegralOfTheJacobian) {
   const std::array<double, 4> weights = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
                                          0.3478548451374538};
   Random random(2);
-  int cases = 0;
-  for (; cases < 50; ++cases) {
+  for (int round = 0; round < 50; ++round) {
     const HexPoints x = warped(random);
     double integral = 0;
     for (int i = 0; i < 4; ++i)
@@ -90,13 +87,11 @@ TEST(Hexahedron, VolumeIsTheIntegralOfTheJacobian) {
                       hex_jacobian(x, Vec3(points[i], points[j], points[k])).determinant();
     EXPECT_NEAR(hex_volume(x), integral, 1e-12 * 16000);
   }
-  RecordProperty("cases", cases);
 }
 
 TEST(Hexahedron, VolumeGradientAgreesWithFiniteDifferencesAndEulersIdentity) {
   Random random(3);
-  int cases = 0;
-  for (; cases < 20; ++cases) {
+  for (int k = 0; k < 20; ++k) {
     HexPoints x = warped(random);
     const auto gradient = hex_volume_gradient(x);
     double euler = 0;
@@ -118,13 +113,11 @@ TEST(Hexahedron, VolumeGradientAgreesWithFiniteDifferencesAndEulersIdentity) {
     EXPECT_NEAR(euler, 3 * hex_volume(x), 1e-9);
     EXPECT_LE(sum.norm(), 1e-10);
   }
-  RecordProperty("cases", cases);
 }
 
 TEST(Hexahedron, VolumeHessianAgreesWithDifferencesOfTheGradient) {
   Random random(4);
-  int cases = 0;
-  for (; cases < 20; ++cases) {
+  for (int k = 0; k < 20; ++k) {
     const HexPoints x = warped(random);
     std::array<Vec3, 8> direction;
     for (Vec3& d : direction) d = random.vector();
@@ -145,7 +138,6 @@ TEST(Hexahedron, VolumeHessianAgreesWithDifferencesOfTheGradient) {
       EXPECT_LE((product - (g_above[i] - g_below[i]) / 2).norm(), 1e-10);
     }
   }
-  RecordProperty("cases", cases);
 }
 
 TEST(Hexahedron, ScaledJacobianIsOneForBricksAndNotPositiveWhenACornerFolds) {
@@ -198,6 +190,96 @@ TEST(Hexahedron, IsUprightAsLongAsItsScaledJacobianIsPositive) {
   HexPoints broken{};
   broken[3].x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(hex_is_upright(broken));
+}
+
+void expect_all(const Spread& spread, double value) {
+  EXPECT_NEAR(spread.min, value, 1e-9);
+  EXPECT_NEAR(spread.mean, value, 1e-9);
+  EXPECT_NEAR(spread.max, value, 1e-9);
+}
+
+TEST(MeshQuality, ARegularBlockIsPerfect) {
+  for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 3, 2}}) {
+    const Tissue block = build_block(
+        {.length_um = 60, .width_um = 30, .cell_height_um = 40, .cells = {3, 2, 1}, .elements_per_cell = elements});
+    const MeshQuality quality = mesh_quality(block, block.rest_positions);
+    expect_all(quality.volume_um3, 20 * 15 * 40);
+    expect_all(quality.apical_area_um2, 20 * 15);
+    expect_all(quality.along_um, 20);
+    expect_all(quality.across_um, 15);
+    expect_all(quality.height_um, 40);
+    EXPECT_NEAR(quality.min_scaled_jacobian, 1, 1e-13);
+  }
+}
+
+TEST(MeshQuality, MeasuresThePositionsItIsGiven) {
+  const Tissue block = build_block({.length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}});
+  Vectors positions = block.rest_positions;
+  for (Vec3& x : positions)
+    if (x.x() == 0) x.x() = 5;  // cells of 25 and 15 um
+  const MeshQuality quality = mesh_quality(block, positions);
+  EXPECT_NEAR(quality.volume_um3.min, 15 * 800, 1e-9);
+  EXPECT_NEAR(quality.volume_um3.mean, 20 * 800, 1e-9);
+  EXPECT_NEAR(quality.volume_um3.max, 25 * 800, 1e-9);
+  EXPECT_NEAR(quality.along_um.min, 15, 1e-12);
+  EXPECT_NEAR(quality.along_um.max, 25, 1e-12);
+  positions[0] += Vec3(0, 0, 50);
+  EXPECT_LT(mesh_quality(block, positions).min_scaled_jacobian, 0);
+}
+
+TEST(MeshQuality, OnlySurfaceCellsHaveAnApicalArea) {
+  const Tissue block = build_block({.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 3}});
+  expect_all(mesh_quality(block, block.rest_positions).apical_area_um2, 400);
+}
+
+OuterShape egg(double length_um, double width_um) {
+  return OuterShape(std::make_shared<const StarSurface>(egg_surface({length_um, width_um, width_um, {}, {}})));
+}
+
+void expect_derivatives(const OuterShape& shape, const Vec3& point) {
+  const OuterShape::Gap gap = shape.gap(point);
+  EXPECT_NEAR(gap.inward.norm(), 1, 1e-9);
+  constexpr double step = 1e-3;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 way = step * Vec3::Unit(axis);
+    const OuterShape::Gap after = shape.gap(point + way), before = shape.gap(point - way);
+    EXPECT_NEAR((after.value - before.value) / (2 * step), gap.inward[axis], 1e-6);
+    EXPECT_LE(((after.inward - before.inward) / (2 * step) - gap.hessian.col(axis)).norm(), 1e-6);
+  }
+}
+
+TEST(OuterShape, GapsHaveTheirDerivatives) {
+  Random random(4);
+  const OuterShape capsule(Capsule{60, 90}), surface = egg(500, 180).moved_out(0.5);
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 way = random.vector().normalized();
+    expect_derivatives(capsule, 100 * way);
+    // On the egg, and some um to either side.
+    const Vec3 on(250 * way.x(), 90 * way.y(), 90 * way.z());
+    expect_derivatives(surface, (1 + random.number(0.01)) * on);
+  }
+}
+
+TEST(OuterShape, OfAnEggThatIsABallIsTheBall) {
+  const OuterShape ball(Capsule{0, 90}), surface = egg(180, 180);
+  Random random(5);
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 point = (85 + random.number(10)) * random.vector().normalized();
+    EXPECT_NEAR(surface.gap(point).value, ball.gap(point).value, 1e-6);
+    EXPECT_LE((surface.gap(point).hessian - ball.gap(point).hessian).norm(), 1e-6);
+    Vec3 outward(random.number(), 0, random.number()), inside = random.vector(40);
+    outward.normalize(), inside.y() = 0;
+    EXPECT_NEAR(surface.depth(inside, outward), ball.depth(inside, outward), 1e-6);
+  }
+  EXPECT_NEAR(surface.volume() / ball.volume(), 1, 1e-4);
+  EXPECT_NEAR(surface.moved_out(5).volume() / ball.moved_out(5).volume(), 1, 1e-4);
+  EXPECT_NEAR(surface.moved_out(5).gap({80, 0, 0}).value, 15, 1e-6);
+}
+
+// Deep inside a gap is a lower bound or near it: nothing is kept there.
+TEST(OuterShape, IsFarFromWhatLiesDeep) {
+  const OuterShape surface = egg(500, 180);
+  for (const Vec3& point : {Vec3(0, 0, 0), Vec3(10, 0, 20), Vec3(-150, 10, 30)}) EXPECT_GT(surface.gap(point).value, 5);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ std::array<Vec3, 8> mean_gradients(const HexPoints& rest);
 
 /// Jacobian for gradients of the incompatible modes: that of the element centre, or that of each point, minus the mean.
 /// They differ for elements that are not parallelepipeds: in sheets of polygons the first is 6 to 10 % too stiff in
-/// bending at a Poisson's ratio of 0.45, the second correct (polygons_test.cpp).
+/// bending at a Poisson's ratio of 0.45, the second correct (patch_test.cpp).
 enum class ModeGradients { by_centre, by_points };
 
 /// Return the stiffness of one rest shape: 24 x 24, node by node, nN/um; nine incompatible modes condensed, mean

@@ -1,15 +1,17 @@
+// Apical and basal contraction: springs, programs and tensions.
 #include "mechanics/active/contraction.hpp"
 
 #include <gtest/gtest.h>
 
+#include "mechanics/active/program.hpp"
 #include "support/law_checks.hpp"
+#include "support/tissues.hpp"
 
 namespace plica {
 namespace {
 
 using namespace support;
 
-const BlockShape two_cells{.length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}};
 const BlockShape refined{
     .length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}, .elements_per_cell = {2, 2, 1}};
 
@@ -55,17 +57,6 @@ TEST(Contraction, DerivativesAgreeWithFiniteDifferencesOnChains) {
   check_derivatives(Contraction(std::move(springs), {}), tissue, 2, 2);
 }
 
-TEST(Contraction, DerivativesAgreeWithFiniteDifferencesInRefinedCells) {
-  const Tissue tissue = distorted_block(refined, 1, 3);
-  check_derivatives(law_of(tissue, {.stiffness = 2, .rest_length_ratio = 0.5, .preload = 3, .damping = 1}), tissue, 2,
-                    2);
-}
-
-TEST(Contraction, DerivativesAgreeWithFiniteDifferencesOnLateralEdges) {
-  const Tissue tissue = distorted_block(two_cells, 1, 4);
-  check_derivatives(law_of(tissue, {.side = CellSide::lateral, .stiffness = 2, .damping = 1}), tissue, 3);
-}
-
 TEST(Contraction, SemidefiniteTangentLeavesOutTheTurningOfSpringsThatPush) {
   const Tissue tissue = distorted_block(two_cells, 1, 5);
   check_semidefinite_tangent(law_of(tissue, {.stiffness = 1, .preload = -60}), tissue, 3, true);
@@ -99,13 +90,10 @@ TEST(Contraction, DampingResistsTheRateOfLengtheningWhateverTheActivity) {
 TEST(Contraction, ActivityIsReadAtTheEndOfTheStep) {
   const Contraction law({Spring{{NodeId(0), NodeId(1)}, 3, 5, 0, 0}}, Program({1, 3}, {0.2, 1.0}));
   Motion motion = pair(20);
-  int cases = 0;
   for (const auto& [time, activity] : {std::pair{0.0, 0.2}, {1.0, 0.2}, {2.0, 0.6}, {3.0, 1.0}, {9.0, 1.0}}) {
     motion.end_time_s = time;
     EXPECT_NEAR(forces_of(law, motion.step())[0].x(), activity * 65, 1e-12);
-    ++cases;
   }
-  RecordProperty("cases", cases);
 }
 
 // A wave: the program of a spring starts when its delay is over, and the spring is slack before, whatever its first
@@ -114,7 +102,6 @@ TEST(Contraction, DelayedSpringStartsItsProgramLater) {
   const Contraction step_on({Spring{{NodeId(0), NodeId(1)}, 3, 5, 0, 0, 10}}, {});
   const Contraction ramp({Spring{{NodeId(0), NodeId(1)}, 3, 5, 0, 0, 10}}, Program({0, 4}, {0.5, 1.0}));
   Motion motion = pair(20);
-  int cases = 0;
   for (const auto& [time, on, ramped] : {std::tuple{0.0, 0.0, 0.0},
                                          {9.99, 0.0, 0.0},
                                          {10.0, 1.0, 0.5},
@@ -125,9 +112,7 @@ TEST(Contraction, DelayedSpringStartsItsProgramLater) {
     EXPECT_NEAR(forces_of(step_on, motion.step())[0].x(), on * 65, 1e-12) << time;
     EXPECT_NEAR(forces_of(ramp, motion.step())[0].x(), ramped * 65, 1e-12) << time;
     EXPECT_NEAR(ramp.activity(10, time), ramped, 1e-12);
-    ++cases;
   }
-  RecordProperty("cases", cases);
 }
 
 TEST(Contraction, DerivativesAgreeWithFiniteDifferencesInAWave) {
@@ -195,12 +180,6 @@ TEST(Contraction, NeighboursThatShareAnEdgeHaveASpringEach) {
   EXPECT_EQ(shared, 2);
 }
 
-TEST(Contraction, OnlyChosenCellsContract) {
-  const Tissue tissue = build_block(two_cells);
-  for (const Spring& spring : contraction_springs(tissue, CellSet{false, true}, {.stiffness = 1}))
-    for (const NodeId node : spring.nodes) EXPECT_GE(tissue.rest_positions[node.index()].x(), 0);
-}
-
 TEST(Contraction, RatiosScaleStiffnessAndPreloadByDirection) {
   const Tissue tissue = build_block(two_cells);
   const ContractionRule rule{.stiffness = 2,
@@ -229,7 +208,6 @@ TEST(Contraction, RatiosScaleStiffnessAndPreloadByDirection) {
 // rim with half a share, and the segments of a line are springs in series. What all cells do together costs the same.
 TEST(Contraction, RefinedElementsKeepTheEnergyOfTheCells) {
   BlockShape shape{.length_um = 60, .width_um = 30, .cell_height_um = 40, .cells = {3, 2, 1}};
-  int cases = 0;
   for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
     const ContractionRule rule{side, 2, 1.5, 0.4, false, 0.3, 1, 3};
     std::vector<double> energies;
@@ -241,10 +219,8 @@ TEST(Contraction, RefinedElementsKeepTheEnergyOfTheCells) {
       energies.push_back(law_of(tissue, rule).energy(motion.step()));
       EXPECT_GT(energies.front(), 0);
       EXPECT_NEAR(energies.back(), energies.front(), 1e-12 * energies.front());
-      ++cases;
     }
   }
-  RecordProperty("cases", cases);
 }
 
 // The tension at a point of the face follows the stretch there: an element edge that has shrunk alone pulls less than
@@ -269,7 +245,6 @@ TEST(Contraction, ResultantThroughACutDoesNotDependOnRefinement) {
   Motion motion;
   const double along = 2 * (20 - 0.3 * 20) + 1 + 3 * (20 - 22) / motion.rate_s;
   const double across = 0.4 * (2 * (15 - 0.3 * 15) + 1) + 3 * (15 - 13.5) / motion.rate_s;
-  int cases = 0;
   for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 2, 2}, {4, 4, 4}, {4, 2, 1}}) {
     shape.elements_per_cell = elements;
     const Tissue tissue = build_block(shape);
@@ -288,21 +263,79 @@ TEST(Contraction, ResultantThroughACutDoesNotDependOnRefinement) {
         if (tissue.rest_positions[n][axis] > place) behind += forces[n];
       expected[axis] = -pull;
       EXPECT_LE((behind - expected).norm(), 1e-12 * pull) << elements[0] << " elements, axis " << axis << ", " << place;
-      ++cases;
     }
   }
-  RecordProperty("cases", cases);
 }
 
 TEST(Contraction, SpringsHaveNoResultantAndNoTorque) {
   const Tissue tissue = distorted_block(refined, 1, 5);
-  const Contraction law = law_of(tissue, {.stiffness = 2, .diagonals = true, .preload = 1, .damping = 3});
-  for (unsigned seed = 1; seed <= 5; ++seed) {
-    const Motion motion = random_motion(tissue, 3, seed);
-    const Vectors forces = forces_of(law, motion.step());
-    EXPECT_LE(resultant(forces).norm(), 1e-11 * largest(forces));
-    EXPECT_LE(torque(forces, motion.positions).norm(), 1e-9 * largest(forces));
+  expect_no_resultant_and_no_torque(law_of(tissue, {.stiffness = 2, .diagonals = true, .preload = 1, .damping = 3}),
+                                    tissue, 3);
+}
+
+TEST(Program, IsAlwaysOneByDefault) {
+  for (const double time : {0.0, 1.0, 1e6}) EXPECT_EQ(Program().at(time), 1);
+  EXPECT_EQ(Program().end_s(), 0);
+}
+
+TEST(Program, IsLinearBetweenPointsAndHeldOutside) {
+  const Program program({10, 20, 40}, {0.5, 1.0, 0.0});
+  for (const auto& [time, activity] :
+       {std::pair{0.0, 0.5}, {10.0, 0.5}, {12.0, 0.6}, {20.0, 1.0}, {30.0, 0.5}, {39.0, 0.05}, {40.0, 0.0}, {1e6, 0.0}})
+    EXPECT_NEAR(program.at(time), activity, 1e-14) << "at " << time;
+  EXPECT_EQ(program.end_s(), 40);
+}
+
+// At a jump the activity is still that before it: a step that ends there is not yet of the new one.
+TEST(Program, JumpsBetweenTwoPointsOfOneTime) {
+  const Program program({0, 0, 10, 20, 20}, {0.2, 0.4, 1.0, 1.0, 0.1});
+  for (const auto& [time, activity] : {std::pair{0.0, 0.2},
+                                       {0.001, 0.40006},
+                                       {5.0, 0.7},
+                                       {10.0, 1.0},
+                                       {20.0, 1.0},
+                                       {20 + 1e-9, 1.0},  // rounding of the clock
+                                       {20 + 1e-5, 0.1},
+                                       {1e6, 0.1}})
+    EXPECT_NEAR(program.at(time), activity, 1e-14) << "at " << time;
+  EXPECT_EQ(program.jumps_s(), (std::vector<double>{0, 20}));
+  EXPECT_TRUE(Program({10, 20, 40}, {0.5, 1.0, 0.0}).jumps_s().empty());
+}
+
+TEST(Program, OnePointHoldsForEver) {
+  const Program program({5}, {0.3});
+  for (const double time : {0.0, 5.0, 6.0}) EXPECT_EQ(program.at(time), 0.3);
+}
+
+// The pull of all springs across the plane x = `at`, nN, and across y.
+double pull_across(const Tissue& tissue, const std::vector<Spring>& springs, int axis, double at) {
+  double pull = 0;
+  for (const Spring& spring : springs) {
+    const double from = tissue.rest_positions[spring.nodes.front().index()][axis],
+                 to = tissue.rest_positions[spring.nodes.back().index()][axis];
+    if ((from < at) != (to < at)) pull += spring.preload;
   }
+  return pull;
+}
+
+TEST(Tension, IsThatOfTheWidthWhateverTheCells) {
+  for (const std::array<int, 3> cells : {std::array{2, 3, 1}, {4, 3, 1}, {8, 5, 1}})
+    for (const std::array<int, 3> elements : {std::array{1, 1, 1}, {2, 2, 1}, {3, 1, 2}})
+      for (const CellSide side : {CellSide::apical, CellSide::basal}) {
+        const Tissue sheet = build_block({80, 60, 20, cells, elements});
+        const auto springs = contraction_springs(sheet, CellSet(sheet.cells.size(), true),
+                                                 {.side = side, .across_ratio = 0.5, .tension = 1.5});
+        EXPECT_NEAR(pull_across(sheet, springs, 0, 3.3), 1.5 * 60, 1e-9);
+        EXPECT_NEAR(pull_across(sheet, springs, 1, 3.3), 0.5 * 1.5 * 80, 1e-9);
+      }
+}
+
+// The walls of a cell have its perimeter for a width.
+TEST(Tension, OfLateralFacesIsThatOfThePerimeter) {
+  const Tissue sheet = build_block({80, 60, 20, {4, 3, 1}, {1, 1, 1}});
+  const auto springs =
+      contraction_springs(sheet, CellSet(sheet.cells.size(), true), {.side = CellSide::lateral, .tension = 2});
+  EXPECT_NEAR(pull_across(sheet, springs, 2, 1.1), 12 * 2 * (4 * 20), 1e-9);
 }
 
 }  // namespace

@@ -15,15 +15,7 @@ using namespace support;
 constexpr double young = 1.0;  // kPa: the paper's 1000 Pa
 constexpr double poisson = 0.3;
 
-const BlockShape two_cells{.length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}};
 const BlockShape one_cell{.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 1}};
-
-/// The body under a uniform deformation gradient F from rest, without history.
-Motion deformed(const Tissue& tissue, const Mat3& F) {
-  Motion motion = at_rest(tissue);
-  for (Vec3& x : motion.positions) x = F * x;
-  return motion;
-}
 
 /// Force of a set of nodes, chosen by a predicate of their rest positions, on what is outside.
 template <class Chosen>
@@ -53,9 +45,7 @@ TEST(Corotational, ElementsOfACellMayDiffer) {
     expected += factor * base.shear_modulus * hex_volume(tissue.element_rest_shape[e]) * deviator.squaredNorm();
   }
   const Corotational law(tissue, moduli, 0);
-  Motion motion = at_rest(tissue);
-  for (Vec3& x : motion.positions) x = stretch * x;
-  EXPECT_NEAR(law.energy(motion.step()), expected, 1e-9 * expected);
+  EXPECT_NEAR(law.energy(deformed(tissue, stretch).step()), expected, 1e-9 * expected);
   check_derivatives(law, tissue, 2);
   check_derivatives(Dilatation(tissue, bulk, false), tissue, 2);
   check_derivatives(NeoHookean(tissue, std::vector<NeoHookeanMaterial>{{1}, {2}, {3}, {4}, {5}, {6}}), tissue, 2);
@@ -231,13 +221,7 @@ TEST(Corotational, ViscosityDoesNotResistTurning) {
 
 TEST(Corotational, InternalForcesHaveNoResultantAndNoTorque) {
   const Tissue tissue = distorted_block(two_cells, 2, 9);
-  const Corotational law(tissue, ElasticModuli::from_young(young, poisson), 2);
-  for (unsigned seed = 1; seed <= 5; ++seed) {
-    const Motion motion = random_motion(tissue, 4, seed);
-    const Vectors forces = forces_of(law, motion.step());
-    EXPECT_LE(resultant(forces).norm(), 1e-11 * largest(forces));
-    EXPECT_LE(torque(forces, motion.positions).norm(), 1e-9 * largest(forces));  // lever arms of up to 100 um
-  }
+  expect_no_resultant_and_no_torque(Corotational(tissue, ElasticModuli::from_young(young, poisson), 2), tissue, 4);
 }
 
 TEST(Corotational, StiffnessIsPositiveButForRigidMotions) {

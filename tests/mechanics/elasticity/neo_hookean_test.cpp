@@ -16,19 +16,12 @@ namespace {
 
 using namespace support;
 
-const BlockShape two_cells{.length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}};
 const BlockShape one_cell{.length_um = 20, .width_um = 30, .cell_height_um = 40, .cells = {1, 1, 1}};
 
 NeoHookean law_of(const Tissue& tissue, double mu, double relaxation_s = 0, Kernels kernels = chosen_kernels()) {
   const std::size_t cells = tissue.cells.size();
   return {tissue, std::vector<double>(cells, mu),
           relaxation_s > 0 ? std::vector<double>(cells, relaxation_s) : std::vector<double>(), kernels};
-}
-
-Motion deformed(const Tissue& tissue, const Mat3& F) {
-  Motion motion = at_rest(tissue);
-  for (Vec3& x : motion.positions) x = F * x;
-  return motion;
 }
 
 /// First Piola-Kirchhoff stress of a brick of one cell: the forces on its faces over their areas at rest.

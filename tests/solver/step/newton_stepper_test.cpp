@@ -37,7 +37,6 @@ double worst_volume_error(const Model& model, const State& state) {
 }
 
 TEST(NewtonStepper, AStepBalancesForcesAndKeepsVolumes) {
-  int cases = 0;
   for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 1, 2}}) {
     const Model model = dimpling_sheet(elements);
     NewtonStepper solver(model);
@@ -52,10 +51,8 @@ TEST(NewtonStepper, AStepBalancesForcesAndKeepsVolumes) {
       EXPECT_EQ(after.time_s, duration);
       for (std::size_t n = 0; n < after.positions.size(); ++n)
         EXPECT_LE((after.velocities[n] - (after.positions[n] - before.positions[n]) / duration).norm(), 1e-12);
-      ++cases;
     }
   }
-  RecordProperty("cases", cases);
 }
 
 TEST(NewtonStepper, WithoutTheConstraintVolumesAreFree) {
@@ -273,7 +270,6 @@ TEST(NewtonStepper, AStepThatIsNotSolvedInTimeIsNotTaken) {
 TEST(NewtonStepper, AnInterruptedStepSaysSoAndLeavesTheStateAlone) {
   const Model model = dimpling_sheet();
   NewtonStepper solver(model);
-  int cases = 0;
   for (const int answers : {0, 1, 2}) {
     int asked = 0;
     solver.stop_when([&] { return asked++ >= answers; });
@@ -286,9 +282,7 @@ TEST(NewtonStepper, AnInterruptedStepSaysSoAndLeavesTheStateAlone) {
     EXPECT_LE(report.newton_iterations, answers);
     EXPECT_EQ(next.time_s, 77);
     EXPECT_TRUE(next.positions.empty() && next.velocities.empty() && next.multipliers.empty());
-    ++cases;
   }
-  RecordProperty("cases", cases);
   // Interruption leaves nothing behind: the step solved afterwards is that of a new solver.
   State after, expected;
   solver.stop_when([] { return false; });
@@ -300,7 +294,6 @@ TEST(NewtonStepper, AnInterruptedStepSaysSoAndLeavesTheStateAlone) {
 
 // The volume of a cell that cannot move needs no pressure: its constraint must not make the system singular.
 TEST(NewtonStepper, WholeCellsMayBeHeldWithTheirVolumes) {
-  int cases = 0;
   for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 1, 2}})
     for (const std::vector<int>& held : {std::vector<int>{0}, {4}, {0, 1, 8}, {0, 1, 2, 3, 4, 5, 6, 7, 8}}) {
       Model model = dimpling_sheet(elements);
@@ -321,9 +314,7 @@ TEST(NewtonStepper, WholeCellsMayBeHeldWithTheirVolumes) {
         EXPECT_LE(worst_volume_error(model, after), 1e-10);
         std::swap(before, after);
       }
-      ++cases;
     }
-  RecordProperty("cases", cases);
 }
 
 /// One cell, 20 um each way, that nothing but drag resists: 14 nN s/um on each node.
@@ -346,7 +337,6 @@ Vectors on_upper_nodes(const Model& model, const Vec3& vector) {
 // come to, and may be solved for only as long as it is upright.
 TEST(NewtonStepper, NoStepEndsInsideOut) {
   constexpr double duration_s = 10, drag_of_node = usual_drag * 20 * 20 / 4;
-  int cases = 0;
   for (const double down_um : {5.0, 15.0, 19.0, 21.0, 25.0, 30.0, 60.0}) {
     Model model = dragged_cell();
     model.laws.push_back(
@@ -363,9 +353,7 @@ TEST(NewtonStepper, NoStepEndsInsideOut) {
     } else {
       EXPECT_TRUE(report.cell) << "says where";
     }
-    ++cases;
   }
-  EXPECT_EQ(cases, 7);
 }
 
 /// Pulls nodes back to a height with a force that hardly grows where they are far from it: strength u/sqrt(1 + u^2).

@@ -11,6 +11,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "record/mesh_writer.hpp"
+#include "support/own_folder.hpp"
 #include "tissue/files/mesh_file.hpp"
 #include "tissue/shapes/embryo.hpp"
 
@@ -19,13 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MeshFileTest : public testing::Test {
+class MeshFileTest : public support::OwnFolder {
  protected:
-  MeshFileTest() : folder(fs::path(testing::TempDir()) / ("plica_mesh_file_" + std::to_string(::getpid()))) {
-    fs::create_directories(folder);
-  }
-  ~MeshFileTest() override { fs::remove_all(folder); }
-
   /// What reading complains of: one line that begins with the file's name, here left out. Nothing appears on stderr.
   template <class Error>
   [[nodiscard]] std::string error(const std::string& apical_array = "",
@@ -44,7 +40,6 @@ class MeshFileTest : public testing::Test {
     return text.substr(std::min(start.size(), text.size()));
   }
 
-  fs::path folder;
   fs::path file = folder / "mesh.vtu";
 };
 
@@ -125,7 +120,6 @@ TEST_F(MeshFileTest, APillComesBackAsItWas) {
 TEST_F(MeshFileTest, RefinedCellsShareTheirNodesAndKeepTheirVolume) {
   const Tissue pill = build_shell({460, 280, 40, {6, 3, 4}, {1, 1, 1}});
   write_mesh(file, pill, pill.rest_positions, {});
-  int cases = 0;
   for (const auto& [n, m] : {std::pair{2, 2}, std::pair{3, 1}, std::pair{1, 3}, std::pair{2, 3}}) {
     const Tissue read = read_mesh_file(file, "", {n, n, m});
     // A closed surface of F squares has F + 2 vertices; n^2 F squares when refined.
@@ -140,13 +134,10 @@ TEST_F(MeshFileTest, RefinedCellsShareTheirNodesAndKeepTheirVolume) {
       EXPECT_EQ(read.cells[c].edges[0].nodes.size(), n + 1U);
       EXPECT_EQ(read.cells[c].edges[8].nodes.size(), m + 1U);
     }
-    ++cases;
   }
-  std::cout << cases << " refinements\n";
 }
 
 TEST_F(MeshFileTest, ACellIsTurnedForEachOfItsFaces) {
-  int cases = 0;
   for (int face = 0; face < 6; ++face) {
     write_file(file, legacy(cube_points, {cube}, 12, apical_lines(std::to_string(face))));
     const Tissue read = read_mesh_file(file, "apical", {2, 2, 1});
@@ -158,10 +149,8 @@ TEST_F(MeshFileTest, ACellIsTurnedForEachOfItsFaces) {
     EXPECT_EQ(read.apical_facets.size(), 4U);
     EXPECT_EQ(read.basal_facets.size(), 4U);
     EXPECT_TRUE(read.cell_arrays.empty());
-    ++cases;
   }
   EXPECT_EQ(read_mesh_file(file, "apical", {1, 1, 1}).cells[0].corners[7], NodeId(7));
-  std::cout << cases << " faces\n";
 }
 
 TEST_F(MeshFileTest, StackedCellsHaveFacetsOnTheSurfaceOnly) {
@@ -397,7 +386,6 @@ TEST_F(MeshFileTest, FacesBesideHexahedraAreOmittedAndArraysKeepTheirCells) {
 }
 
 TEST_F(MeshFileTest, OfQuadraticHexahedraTheCornersAreKept) {
-  int cases = 0;
   for (const auto& [type, nodes] : {std::pair(25, 20), {29, 27}, {33, 24}}) {
     auto points = cube_points;
     std::vector<int> cell = cube;
@@ -411,9 +399,7 @@ TEST_F(MeshFileTest, OfQuadraticHexahedraTheCornersAreKept) {
     EXPECT_NEAR(total_volume(read), 1, 1e-12);
     EXPECT_EQ(read.remarks,
               (std::vector<std::string>{"1 hexahedra have nodes between corners: only their corners are used"}));
-    ++cases;
   }
-  std::cout << cases << " types\n";
 }
 
 }  // namespace

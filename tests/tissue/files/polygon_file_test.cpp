@@ -1,4 +1,4 @@
-// Readers of polygons: what each format may hold, and what is wrong with a file, by line.
+// Files of polygons, of points and of labelled faces.
 #include "tissue/files/polygon_file.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,10 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "support/mesh_error.hpp"
+#include "tissue/files/labelled_faces.hpp"
+#include "tissue/files/points_file.hpp"
 #include "tissue/files/vertex_model.hpp"
+#include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
 namespace {
@@ -221,6 +224,129 @@ TEST(PolygonFile, IsReadByItsEnding) {
     EXPECT_NE(std::string(error.what()).find("HDF5"), std::string::npos) << error.what();
   }
   std::filesystem::remove_all(folder);
+}
+
+TEST(PointsFile, HasItsColumnsByName) {
+  const PointTable table =
+      points_in_csv("\xef\xbb\xbf# measured\ncell,\"z_um\",x_um, y_um ,sna\r\n7,3,1,2,0.5\r\n\n8,-3,-1,-2e0,0");
+  ASSERT_EQ(table.points.size(), 2U);
+  EXPECT_EQ(table.points[0], Vec3(1, 2, 3));
+  EXPECT_EQ(table.points[1], Vec3(-1, -2, -3));
+  EXPECT_EQ(table.arrays, (std::map<std::string, std::vector<double>>{{"cell", {7, 8}}, {"sna", {0.5, 0}}}));
+}
+
+TEST(PointsFile, MissingValuesAndTextAreNoNumbers) {
+  const PointTable table = points_in_csv(
+      "x_um,y_um,z_um,gene,kind,is_in\n1,2,3,,apical,True\n1,2,3,0.5,basal,false\n1,2,3,NaN,,true\n1,2,3,N/A,-,0\n"
+      "1,2,3,-inf,null,1\n");
+  EXPECT_EQ(table.arrays.size(), 2U);
+  EXPECT_EQ(table.arrays.at("is_in"), (std::vector<double>{1, 0, 1, 0, 1}));
+  const std::vector<double>& gene = table.arrays.at("gene");
+  for (std::size_t i = 0; i < gene.size(); ++i) EXPECT_EQ(std::isnan(gene[i]), i != 1) << i;
+  EXPECT_EQ(table.remarks, (std::vector<std::string>{"column kind contains text and is not an array"}));
+}
+
+TEST(PointsFile, SaysInWhichLineWhatIsWrong) {
+  const auto expect = [](const char* text, const char* said) {
+    try {
+      points_in_csv(text);
+      FAIL() << text;
+    } catch (const MeshError& error) {
+      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+    }
+  };
+  expect("", "is empty; the first line must name the columns, including x_um, y_um and z_um");
+  expect("x,y,z\n1,2,3\n", "line 1: must name the columns, including x_um, y_um and z_um once each; it names x, y, z");
+  expect("x_um,y_um,z_um,z_um\n", "line 1: must name");
+  expect("x_um,y_um,z_um\n1,2,3\n1,2\n", "line 3: has 2 fields; the first line has 3");
+  expect("x_um,y_um,z_um\n1,2,three\n", "line 2: \"three\" of column z_um is not a number");
+  expect("x_um,y_um,z_um,a\n1,2,3,4\n1,2,3,4.5.6\n", "line 3: \"4.5.6\" of column a is not a number");
+  expect("\xff\xfex_um", "is UTF-16 text; save it as UTF-8");
+  expect("x_um,y_um,z_um\n1,nan,3\n", "line 2: \"nan\" of column y_um is not a number");
+  EXPECT_THROW(read_points_file("/nowhere/points.csv"), FileError);
+}
+
+TEST(CellTable, HasAnArrayPerColumn) {
+  const std::string file = testing::TempDir() + "plica_cell_table_" + std::to_string(::getpid()) + ".csv";
+  write_file(file, "myosin, calcium\n1,2\n0.5,-1e-3\n");
+  EXPECT_EQ(read_cell_table(file),
+            (std::map<std::string, std::vector<double>>{{"calcium", {2, -1e-3}}, {"myosin", {1, 0.5}}}));
+  write_file(file, "myosin,myosin\n1,2\n");
+  EXPECT_THROW((void)read_cell_table(file), MeshError);
+  std::filesystem::remove(file);
+}
+
+// A grid of squares of two triangles each, with labels row by row.
+PolygonFile triangles(const std::vector<std::vector<int>>& labels) {
+  PolygonFile file;
+  const std::size_t n = labels.size();
+  for (std::size_t r = 0; r <= n; ++r)
+    for (std::size_t c = 0; c <= n; ++c)
+      file.surface.vertices.emplace_back(static_cast<double>(c), static_cast<double>(r), 0);
+  for (std::size_t r = 0; r < n; ++r)
+    for (std::size_t c = 0; c < n; ++c) {
+      const std::size_t v = c + r * (n + 1);
+      file.surface.polygons.push_back({v, v + 1, v + n + 2});
+      file.surface.polygons.push_back({v, v + n + 2, v + n + 1});
+      for (int i = 0; i < 2; ++i) {
+        file.arrays["label"].push_back(labels[r][c]);
+        file.arrays["gene"].push_back(labels[r][c] + i);
+      }
+    }
+  return file;
+}
+
+TEST(LabelledFaces, FacesOfALabelAreACellWhoseCornersAreWhereThreeMeet) {
+  // Bricks: the middle one, 5, has six neighbours.
+  const PolygonFile file = triangles({{1, 1, 1, 2, 2, 2},
+                                      {1, 1, 1, 2, 2, 2},
+                                      {3, 5, 5, 5, 5, 4},
+                                      {3, 5, 5, 5, 5, 4},
+                                      {6, 6, 6, 7, 7, 7},
+                                      {6, 6, 6, 7, 7, 7}});
+  const PolygonFile cells = cells_of_labels(file, "label");
+  ASSERT_EQ(cells.arrays.at("label"), (CellArray{1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(cells.arrays.at("gene").at(4), 5.5);
+  const auto& middle = cells.surface.polygons[4];
+  ASSERT_EQ(middle.size(), 6U);
+  for (const std::size_t corner : middle) {
+    const Vec3& p = cells.surface.vertices[corner];
+    EXPECT_TRUE((p.y() == 2 || p.y() == 4) && (p.x() == 1 || p.x() == 3 || p.x() == 5)) << p.transpose();
+  }
+  EXPECT_GT(area_vector(cells.surface.vertices, middle).z(), 0);
+  EXPECT_EQ(cells.surface.polygons[0].size(), 4U);  // three within, one at the rim
+  EXPECT_EQ(label_advice(cells), "");
+  EXPECT_NE(label_advice(file).find("its 72 faces are triangles with 7 values of \"label\""), std::string::npos);
+}
+
+TEST(LabelledFaces, WhatIsNoCellIsRefusedOrLeftOut) {
+  expect_mesh_error(
+      [] {
+        cells_of_labels(triangles({{1, 2}, {2, 1}}), "label");
+      },
+      "the faces with label 1 are in pieces, or enclose others; correct the labels near (0, 0, 0) um");
+  expect_mesh_error(
+      [] {
+        cells_of_labels(triangles({{1, 1, 1}, {1, 2, 1}, {1, 1, 1}}), "label");
+      },
+      "the faces with label 1 are in pieces, or enclose others");
+  expect_mesh_error(
+      [] {
+        cells_of_labels(triangles({{1, 1}, {2, 2}}), "label");
+      },
+      "no label of \"label\" has faces with three corners where three cells meet");
+  PolygonFile holed = triangles({{0, 1, 1, 2, 2, 0},
+                                 {0, 1, 1, 2, 2, 0},
+                                 {0, 3, 3, 3, 3, 0},
+                                 {0, 3, 3, 3, 3, 0},
+                                 {0, 0, 0, 0, 0, 0},
+                                 {9, 0, 0, 0, 0, 0}});
+  for (double& label : holed.arrays["label"])
+    if (label == 0) label = std::nan("");
+  const PolygonFile cells = cells_of_labels(holed, "label");
+  EXPECT_EQ(cells.arrays.at("label"), (CellArray{1, 2, 3}));
+  ASSERT_EQ(cells.remarks.size(), 1U);
+  EXPECT_EQ(cells.remarks[0], "1 cells with fewer than three corners were omitted");
 }
 
 }  // namespace

@@ -1,16 +1,24 @@
-// Patches of polygons, flat and bent.
+// Sheets of polygons: rectangles, periods, extrusion.
 #include "tissue/shapes/polygon_sheet.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "support/mesh_error.hpp"
 #include "support/whole.hpp"
 #include "tissue/division.hpp"
 #include "tissue/mesh_quality.hpp"
+#include "tissue/shapes/egg_surface.hpp"
+#include "tissue/shapes/even_points.hpp"
+#include "tissue/shapes/extrusion.hpp"
+#include "tissue/shapes/rectangle_polygons.hpp"
+#include "tissue/shapes/surface_polygons.hpp"
 
 namespace plica {
 namespace {
@@ -162,6 +170,162 @@ TEST(PolygonSheet, OfOnePeriodMayBeATrough) {
     shape.curvature_per_um[axis] = 0.001;
     expect_mesh_error([&] { build_sheet(shape, 80, 1, cells); }, "cannot be periodic along a direction");
   }
+}
+
+double total_area(const PolygonSurface& surface) {
+  const std::vector<double> areas = polygon_areas(surface);
+  return std::accumulate(areas.begin(), areas.end(), 0.0);
+}
+
+std::size_t rim_edges(const PolygonSurface& surface) {
+  const std::vector<PolygonEdge> edges = polygon_edges(surface);
+  return static_cast<std::size_t>(
+      std::ranges::count_if(edges, [](const PolygonEdge& edge) { return edge.right == no_polygon; }));
+}
+
+TEST(RectanglePolygons, OfTwoPointsAreHalves) {
+  const PolygonSurface halves = rectangle_polygons({{-1, 0, 0}, {2, 0, 0}}, {{10, 4}});
+  EXPECT_EQ(halves.vertices.size(), 6U);
+  EXPECT_NEAR(polygon_areas(halves)[0], 5.5 * 4, 1e-12);
+  EXPECT_NEAR(polygon_areas(halves)[1], 4.5 * 4, 1e-12);
+  EXPECT_EQ(polygon_edges(halves).size(), 7U);
+  EXPECT_FALSE(halves.periods.is_used());
+}
+
+// Three edges meet at each vertex. On a torus V - E + F = 0 then says E = 3 F: six neighbours on average.
+TEST(RectanglePolygons, OfTwoPeriodsHaveSixNeighboursOnAverage) {
+  int cases = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5})
+    for (const std::size_t count : {24, 60, 200}) {
+      const Rectangle rectangle{{90, 70}, {true, true}};
+      const PolygonSurface surface = rectangle_polygons(even_points(rectangle, count, seed), rectangle);
+      EXPECT_EQ(polygon_edges(surface).size(), 3 * count);
+      EXPECT_EQ(rim_edges(surface), 0U);
+      EXPECT_NEAR(total_area(surface), 90 * 70, 1e-9);
+      std::size_t own = 0;
+      for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
+        const Vec3 way = surface.vertices[v] - surface.vertices[surface.periods.original(v)];
+        EXPECT_LT((way - surface.periods.whole(way)).norm(), 1e-9);
+        own += surface.periods.original(v) == v;
+      }
+      EXPECT_EQ(own, 2 * count);
+      ++cases;
+    }
+  std::printf("%d patterns\n", cases);
+}
+
+TEST(RectanglePolygons, OfOnePeriodHaveARimOnTheOtherSides) {
+  for (const int axis : {0, 1}) {
+    Rectangle rectangle{{90, 70}};
+    rectangle.is_periodic[axis] = true;
+    const PolygonSurface surface = rectangle_polygons(even_points(rectangle, 80, 1), rectangle);
+    EXPECT_NEAR(total_area(surface), 90 * 70, 1e-9);
+    double rim = 0;
+    for (const PolygonEdge& edge : polygon_edges(surface))
+      if (edge.right == no_polygon)
+        rim += (surface.vertices[edge.vertices[1]] - surface.vertices[edge.vertices[0]]).norm();
+    EXPECT_NEAR(rim, 2 * rectangle.size_um[axis], 1e-9);
+  }
+}
+
+// Where a period ends is nowhere: cells keep their outlines when all points are moved on.
+TEST(RectanglePolygons, DoNotDependOnWhereAPeriodEnds) {
+  const Rectangle rectangle{{90, 70}, {true, true}};
+  const Vectors points = even_points(rectangle, 60, 1);
+  Vectors moved = points;
+  for (Vec3& x : moved) x += Vec3(x.x() < 0 ? 45 : -45, x.y() < 0 ? 35 : -35, 0);
+  const PolygonSurface one = rectangle_polygons(points, rectangle), other = rectangle_polygons(moved, rectangle);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    EXPECT_EQ(one.polygons[p].size(), other.polygons[p].size());
+    EXPECT_NEAR(polygon_areas(one)[p], polygon_areas(other)[p], 1e-9);
+  }
+}
+
+TEST(RectanglePolygons, SayWhatIsWrong) {
+  expect_mesh_error([] { rectangle_polygons({{0, 0, 0}, {0, 0, 0}}, {{10, 10}}); }, "points 0 and 1 coincide");
+  const Rectangle narrow{{10, 100}, {true, false}};
+  expect_mesh_error(
+      [&] { rectangle_polygons(even_points(narrow, 20, 1), narrow); },
+      "would meet itself, or another cell twice, across the period; lengthen the period, or give more cells");
+}
+
+StarSurface ball_of(double radius) { return {Mat3::Identity(), Vec3::Constant(radius), {1.0}}; }
+
+ExtrudedSheet extrude_on(const PolygonSurface& polygons, const StarSurface& surface,
+                         std::span<const double> heights_um) {
+  return extrude(polygons, vertex_bends(polygons, surface), heights_um);
+}
+
+PolygonSurface cells_on(const StarSurface& surface, std::size_t count) {
+  return polygons_of_points(even_points(surface, count, 1), surface).surface;
+}
+
+TEST(PrismSheet, OnASphereHasTheVolumeOfTheShell) {
+  const StarSurface ball = ball_of(100);
+  const ExtrudedSheet sheet = extrude_on(cells_on(ball, 2000), ball, std::array{30.0});
+  EXPECT_EQ(sheet.lower_cells, 0);
+  EXPECT_NEAR(sheet.lowest_um, 30, 1e-9);
+  for (std::size_t v = 0; v < sheet.apical.size(); ++v) {
+    EXPECT_NEAR(sheet.basal[v].norm(), 70, 1e-9);
+    EXPECT_LT((sheet.basal[v] - 0.7 * sheet.apical[v]).norm(), 1e-9);
+  }
+  const std::vector<double> volumes = prism_volumes(sheet);
+  const double shell = 4 * std::numbers::pi / 3 * (1e6 - 343e3);
+  // Flat faces lie a little below the spheres.
+  EXPECT_NEAR(std::accumulate(volumes.begin(), volumes.end(), 0.0) / shell, 1 - 1.3e-3, 1e-3);
+  const std::vector<double> apical = polygon_areas({sheet.apical, sheet.cells}),
+                            basal = polygon_areas({sheet.basal, sheet.cells});
+  for (std::size_t i = 0; i < apical.size(); ++i) EXPECT_NEAR(basal[i] / apical[i], 0.49, 1e-9);
+}
+
+TEST(PrismSheet, OfACubeHasItsVolume) {
+  PrismSheet sheet;
+  sheet.apical = {{0, 0, 3}, {2, 0, 3}, {2, 2, 3}, {0, 2, 3}};
+  sheet.basal = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+  sheet.cells = {{0, 1, 2, 3}};
+  EXPECT_NEAR(prism_volumes(sheet)[0], 12, 1e-12);
+  EXPECT_NEAR(prism_heights(sheet)[0], 3, 1e-12);
+}
+
+TEST(PrismSheet, IsLowerWhereTheSurfaceBendsSharply) {
+  const StarSurface egg = egg_surface({500, 180, 180, {}, {}});  // least radius 32 um, at the poles
+  const PolygonSurface polygons = cells_on(egg, 1500);
+  const ExtrudedSheet sheet = extrude_on(polygons, egg, std::array{35.0});
+  EXPECT_GT(sheet.lower_cells, 10);
+  EXPECT_LT(sheet.lower_cells, polygons.polygons.size() / 4);
+  EXPECT_LT(sheet.lowest_um, 25);
+  EXPECT_GT(sheet.lowest_um, 15);
+  for (std::size_t v = 0; v < sheet.apical.size(); ++v) {
+    const double height = (sheet.apical[v] - sheet.basal[v]).norm(), radius = egg.bend(sheet.apical[v]).radii[0];
+    EXPECT_LT(height, largest_height_share * radius);
+    if (radius > 77) {
+      EXPECT_NEAR(height, 35, 1e-9);
+    }
+  }
+  // Nothing is turned inside out, however high.
+  for (const double volume : prism_volumes(extrude_on(polygons, egg, std::array{500.0}))) EXPECT_GT(volume, 0);
+}
+
+TEST(PrismSheet, TakesAHeightACell) {
+  const StarSurface ball = ball_of(100);
+  const PolygonSurface polygons = cells_on(ball, 200);
+  std::vector<double> heights(200, 20.0);
+  heights[50] = 26;
+  const ExtrudedSheet sheet = extrude_on(polygons, ball, heights);
+  for (std::size_t k = 0; k < polygons.polygons[50].size(); ++k) {
+    const std::size_t vertex = polygons.polygons[50][k];
+    EXPECT_NEAR((sheet.apical[vertex] - sheet.basal[vertex]).norm(), 22, 1e-9);  // (26 + 20 + 20) / 3
+  }
+  EXPECT_NEAR(prism_heights(sheet)[50], 22, 1e-9);
+}
+
+TEST(PrismSheet, RefusesHeightsThatDoNotFit) {
+  const StarSurface ball = ball_of(100);
+  const PolygonSurface polygons = cells_on(ball, 50);
+  expect_mesh_error([&] { extrude_on(polygons, ball, std::vector<double>(49, 20.0)); }, "49 heights for 50 cells");
+  std::vector<double> heights(50, 20.0);
+  heights[13] = 0;
+  expect_mesh_error([&] { extrude_on(polygons, ball, heights); }, "row 13");
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// Polygons of points on a surface: even points, cells, rims, bends at vertices.
 #include "tissue/shapes/surface_polygons.hpp"
 
 #include <gtest/gtest.h>
@@ -10,8 +11,12 @@
 #include <random>
 
 #include "support/mesh_error.hpp"
+#include "support/prisms.hpp"
 #include "tissue/shapes/egg_surface.hpp"
+#include "tissue/shapes/even_points.hpp"
 #include "tissue/shapes/polygon_mending.hpp"
+#include "tissue/shapes/polygon_surface.hpp"
+#include "tissue/shapes/vertex_bends.hpp"
 
 namespace plica {
 namespace {
@@ -241,6 +246,150 @@ TEST(PolygonsOfPoints, RefuseAPolygonThatCrossesItself) {
   const std::size_t vertex = surface.polygons[30][0];
   surface.vertices[vertex] = ball.along_ray(2.2 * points[30] - 1.2 * surface.vertices[vertex]);
   expect_mesh_error([&] { check_polygons(points, ball, surface); }, "row ");
+}
+
+TEST(EvenPoints, MakeCellsOfOneSizeThatAreNoCrystal) {
+  const StarSurface egg = egg_surface({500, 180, 180, 17, 7});
+  for (const std::size_t count : {200, 2000})
+    for (const std::uint64_t seed : {1, 2}) {
+      const Vectors points = even_points(egg, count, seed);
+      ASSERT_EQ(points.size(), count);
+      const CellPolygons cells = polygons_of_points(points, egg);
+      const std::vector<double> areas = polygon_areas(cells.surface);
+      const double mean = std::accumulate(areas.begin(), areas.end(), 0.0) / static_cast<double>(count);
+      double squares = 0;
+      for (const double area : areas) squares += (area - mean) * (area - mean);
+      EXPECT_LT(std::sqrt(squares / static_cast<double>(count)) / mean, 0.12);
+      EXPECT_NEAR(mean * static_cast<double>(count), egg.area(), (count == 200 ? 0.02 : 0.002) * egg.area());
+      const double hexagons = static_cast<double>(corner_counts(cells.surface)[6]) / static_cast<double>(count);
+      EXPECT_GT(hexagons, 0.6);
+      EXPECT_LT(hexagons, 0.8);
+      const std::vector<double> lengths = edge_lengths(cells.surface);
+      EXPECT_GT(*std::ranges::min_element(lengths) / std::accumulate(lengths.begin(), lengths.end(), 0.0) *
+                    static_cast<double>(lengths.size()),
+                0.149);
+    }
+}
+
+TEST(EvenPoints, FollowTheirSeed) {
+  const StarSurface ball(Mat3::Identity(), Vec3(100, 100, 100), {1.0});
+  EXPECT_EQ(even_points(ball, 100, 5), even_points(ball, 100, 5));
+  EXPECT_NE(even_points(ball, 100, 5), even_points(ball, 100, 6));
+}
+
+TEST(EvenPoints, CanBeFew) {
+  const StarSurface egg = egg_surface({500, 180, 180, {}, {}});
+  int cases = 0;
+  for (const std::size_t count : {12, 13, 20, 50})
+    for (std::uint64_t seed = 0; seed < 10; ++seed, ++cases)
+      EXPECT_EQ(polygons_of_points(even_points(egg, count, seed), egg).surface.polygons.size(), count);
+  EXPECT_EQ(cases, 40);
+  expect_mesh_error([&] { even_points(egg, 11, 1); }, "11 points");
+}
+
+// A cube of side 2 about the origin.
+PolygonSurface cube() {
+  PolygonSurface surface;
+  for (int k = 0; k < 8; ++k) surface.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+  surface.polygons = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  return surface;
+}
+
+TEST(PolygonSurface, KnowsACube) {
+  const PolygonSurface surface = cube();
+  for (const double area : polygon_areas(surface)) EXPECT_DOUBLE_EQ(area, 4);
+  const std::vector<double> lengths = edge_lengths(surface);
+  EXPECT_EQ(lengths.size(), 12);
+  for (const double length : lengths) EXPECT_DOUBLE_EQ(length, 2);
+  EXPECT_EQ(corner_counts(surface), (std::vector<std::size_t>{0, 0, 0, 0, 6}));
+  // Outward: the vector of a face is 4 along its middle.
+  for (const auto& polygon : surface.polygons) {
+    Vec3 middle = Vec3::Zero();
+    for (const std::size_t vertex : polygon) middle += surface.vertices[vertex] / 4;
+    EXPECT_LT((area_vector(surface.vertices, polygon) - 4 * middle).norm(), 1e-14);
+  }
+}
+
+TEST(PolygonSurface, NeighboursAreMutualAndShareTheEdge) {
+  const PolygonSurface surface = cube();
+  const auto neighbours = polygon_neighbours(surface);
+  EXPECT_EQ(neighbours[0], (std::vector<std::size_t>{4, 3, 5, 2}));
+  for (const PolygonEdge& edge : polygon_edges(surface)) EXPECT_NE(edge.right, no_polygon);
+}
+
+TEST(PolygonSurface, HasARimWhereAPolygonIsMissing) {
+  PolygonSurface surface = cube();
+  surface.polygons.pop_back();
+  const auto edges = polygon_edges(surface);
+  EXPECT_EQ(edges.size(), 12);
+  EXPECT_EQ(std::ranges::count(edges, no_polygon, &PolygonEdge::right), 4);
+}
+
+TEST(PolygonSurface, RefusesPolygonsThatDoNotFitTogether) {
+  PolygonSurface surface = cube();
+  std::ranges::reverse(surface.polygons[2]);
+  expect_mesh_error([&] { polygon_edges(surface); }, "runs the same way in two cells");
+  surface = cube();
+  surface.polygons.push_back({1, 0, 6});
+  expect_mesh_error([&] { polygon_edges(surface); }, "belongs to more than two cells");
+}
+
+TEST(PolygonSurface, AFanHasTheMiddleOfAnUnevenPolygon) {
+  // An L-like trapezium in the plane z = 0 with corners (0,0), (4,0), (2,2), (0,2): area 6, centroid by hand.
+  const Vectors vertices = {{0, 0, 0}, {4, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+  const PolygonFan fan = fan_about(vertices, {0, 1, 2, 3}, Vec3(1, 1, 0));
+  EXPECT_DOUBLE_EQ(fan.area, 6);
+  EXPECT_LT((fan.centroid - Vec3(14.0 / 9, 8.0 / 9, 0)).norm(), 1e-14);
+}
+
+TEST(VertexBends, OnASphere) {
+  const StarSurface ball{Mat3::Identity(), Vec3::Constant(100), {1.0}};
+  const PolygonSurface polygons = polygons_of_points(even_points(ball, 2000, 1), ball).surface;
+  const std::vector<VertexBend> alone = vertex_bends(polygons), smooth = vertex_bends(polygons, ball);
+  for (std::size_t v = 0; v < alone.size(); ++v) {
+    EXPECT_NEAR(smooth[v].least_radius_um, 100, 1e-9);
+    EXPECT_NEAR(alone[v].least_radius_um, 100, 3);
+    EXPECT_GT(alone[v].normal.dot(smooth[v].normal), 0.999);
+  }
+}
+
+// Outward and inward about a cylinder of 60 um.
+TEST(VertexBends, OnACylinderAndInAPipe) {
+  for (const bool outward : {true, false}) {
+    const double radius = outward ? 60 : -60;
+    const PrismSheet sheet = support::bent(support::honeycomb(8, 8, 4, 1), [&](const Vec3& x) {
+      return Vec3(x.x(), (radius + x.z()) * std::sin(x.y() / radius), (radius + x.z()) * std::cos(x.y() / radius));
+    });
+    const std::vector<VertexBend> bends = vertex_bends({sheet.apical, sheet.cells});
+    for (std::size_t v = 0; v < bends.size(); ++v) {
+      const Vec3 normal = Vec3(0, sheet.apical[v].y(), sheet.apical[v].z()) / radius;
+      EXPECT_GT(bends[v].normal.dot(normal), 0.98) << v;
+      if (bends[v].normal.dot(normal) < 0.9995) continue;  // at the rim
+      if (outward)
+        EXPECT_NEAR(bends[v].least_radius_um, 60, 6) << v;
+      else
+        EXPECT_GT(bends[v].least_radius_um, 600) << v;
+    }
+  }
+}
+
+// A corner of one hexagon has five others, all on one circle with it: they do not say how it bends, and a nanometre
+// there is no curvature.
+TEST(VertexBends, AtTheRimOfADome) {
+  PrismSheet sheet = support::bent(support::honeycomb(12, 12, 4.6, 1), [](const Vec3& x) {
+    return Vec3(x.x(), x.y(), -(x.x() * x.x() + x.y() * x.y()) / 600);
+  });
+  support::Random random(1);
+  for (Vec3& x : sheet.apical) x.z() += 1e-3 * random.number();
+  for (const VertexBend& bend : vertex_bends({sheet.apical, sheet.cells})) EXPECT_GT(bend.least_radius_um, 150);
+}
+
+TEST(VertexBends, OfAFlatPatch) {
+  const PrismSheet sheet = support::irregular_polygons(6, 5, 4, 1, 0.2, 1);
+  for (const VertexBend& bend : vertex_bends({sheet.apical, sheet.cells})) {
+    EXPECT_NEAR(bend.normal.z(), 1, 1e-12);
+    EXPECT_TRUE(std::isinf(bend.least_radius_um));
+  }
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Distances and crossings of random points, triangles and facets by the IPC Toolkit, for contact_truth_test.cpp.
+"""Distances and crossings of random points, triangles and facets by the IPC Toolkit, for contact_test.cpp.
 
     python3 -m venv venv
     venv/bin/pip install ipctk==1.6.1 numpy==2.4.6
