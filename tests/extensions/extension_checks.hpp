@@ -66,7 +66,8 @@ inline void expect_resumable_through_a_division(const Extension& extension,
     if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
     Simulation rest = fresh();
     rest.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
-    EXPECT_EQ(rest.run(), whole.status());
+    while (rest.step()) (void)rest.memory();  // which makes it forget its factor, as the whole run
+    EXPECT_EQ(rest.status(), whole.status());
     EXPECT_EQ(rest.steps(), whole.steps());
     EXPECT_EQ(rest.state().positions, whole.state().positions);
     EXPECT_EQ(rest.state().multipliers, whole.state().multipliers);

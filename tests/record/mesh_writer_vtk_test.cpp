@@ -33,7 +33,7 @@ TEST_F(MeshWriterTest, WritesEachElementWithTheValuesOfItsCell) {
   const std::string content = read_file(folder / "a.vtu");
   for (const char* name :
        {"Name=\"displacement_um\" NumberOfComponents=\"3\"", "Name=\"pressure_Pa\"", "Name=\"cell_id\"",
-        "Name=\"TimeValue\"", "NumberOfCells=\"12\"", "vtkZLibDataCompressor", "encoding=\"base64\"", "type=\"Int32\""})
+        "Name=\"TimeValue\"", "NumberOfCells=\"12\"", "vtkZLibDataCompressor", "format=\"binary\"", "type=\"Int32\""})
     EXPECT_NE(content.find(name), std::string::npos) << name;
 
   // Read back, each element is a cell; face 5 is the top one.

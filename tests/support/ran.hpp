@@ -13,13 +13,13 @@ using StepWatcher = std::function<void(const AcceptedStep&, const Model&)>;
 /// The model, run from rest to its end.
 inline Simulation ran(Model model, RunControls controls, const StepWatcher& watch = {}, Watch criteria = {}) {
   struct Listener final : SimulationListener {
-    void step_accepted(const AcceptedStep& step, const Observation& /*measures*/) override { watch(step, model); }
-    Listener(const StepWatcher& watcher, const Model& of) : watch(watcher), model(of) {}
+    void step_accepted(const AcceptedStep& step, const Observation& /*measures*/) override { watch(step, run.model()); }
+    Listener(const StepWatcher& watcher, const Simulation& of) : watch(watcher), run(of) {}
     const StepWatcher& watch;
-    const Model& model;
+    const Simulation& run;
   };
   Simulation simulation({std::make_unique<Model>(std::move(model)), std::move(controls), std::move(criteria)});
-  Listener listener(watch, simulation.model());
+  Listener listener(watch, simulation);
   if (watch) simulation.listen(listener);
   simulation.run();
   simulation.stop_listening(listener);
