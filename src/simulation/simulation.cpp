@@ -21,8 +21,8 @@
 namespace plica {
 namespace {
 
-// In a row, since a resumed run repeats them. Few factors last longer.
-constexpr int most_steps_with_factor = 20;
+// In a row, since a resumed run repeats them.
+constexpr int most_steps_with_factor = 5;
 
 double max_speed(const State& state) {
   double fastest = 0;

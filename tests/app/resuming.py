@@ -13,7 +13,7 @@ for setting in ("division.floor.at_min=0.2", "division.floor.growth_min=0.3", "d
                 "division.borders.growth_min=0.3", "time.end_min=1.5", "time.tolerance_um=0.02", "output.frame_every_s=5"):
     DIVIDING += ["--set", setting]
 
-LOST = range(22)  # rows that a kill may cost: 20 steps in a row with a factor, and one that is being recorded
+LOST = range(7)  # rows that a kill may cost: five steps in a row with a factor, and one that is being recorded
 
 
 def results(out):
