@@ -1,20 +1,13 @@
 // Base64, diagnostics, memory, files, threads that share work, jobs in the background, output of child processes.
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <iostream>
 #include <new>
-#include <stdexcept>
-#include <string>
-#include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include "core/background.hpp"
 #include "core/base64.hpp"

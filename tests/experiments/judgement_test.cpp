@@ -1,13 +1,7 @@
 // Files of experiments, their quantities as formulas, and what is judged of them.
 #include "experiments/judgement.hpp"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <stdexcept>
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -97,7 +91,7 @@ TEST(Formula, RefusesWhatItDoesNotUnderstand) {
       (void)Formula(text);
       ADD_FAILURE() << text;
     } catch (const std::invalid_argument& error) {
-      EXPECT_NE(std::string(error.what()).find(problem), std::string::npos) << text << ": " << error.what();
+      EXPECT_SAYS(std::string(error.what()), problem) << text << ": " << error.what();
     }
   }
 }
@@ -354,8 +348,7 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
       {"quantity = \"end.position_um\"\nhit",
        "quantity = \"end.positon_um\"\nhit",
        {"mine.toml:4: experiment.reference.outcome.end.quantity: \"end.positon_um\" is not a number of summary.json; "
-        "use "
-        "\"end.position_um\" (nearest match)"}},
+        "use \"end.position_um\" (nearest match)"}},
       {"quantity = \"end.position_um\"\nhit",
        "quantity = \"end.position_um@9 / end.position_um@\"\nhit",
        {"mine.toml:7: experiment.reference.outcome.end.quantity: is incomplete; write names of numbers"}},
@@ -387,24 +380,21 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
     ASSERT_NE(at, std::string::npos) << one.from;
     text.replace(at, one.from.size(), one.to);
     const std::string found = complaint(text);
-    for (const std::string& part : one.complaint)
-      EXPECT_NE(found.find(part), std::string::npos) << part << "\n" << found;
+    for (const std::string& part : one.complaint) EXPECT_SAYS(found, part) << part << "\n" << found;
     EXPECT_EQ(found.empty(), one.complaint.empty()) << one.to << "\n" << found;
     refused += one.complaint.empty() ? 0 : 1;
   }
   EXPECT_GE(refused, 25);
-  EXPECT_NE(complaint("[experiment.a.outcome.\"../b\"]\n").find("experiment.a.outcome.../b: is not a valid name"),
-            std::string::npos);
-  EXPECT_NE(complaint("[experiment.a.outcome.b]\n").find("experiment.a.scenario: is missing"), std::string::npos);
+  EXPECT_SAYS(complaint("[experiment.a.outcome.\"../b\"]\n"), "experiment.a.outcome.../b: is not a valid name");
+  EXPECT_SAYS(complaint("[experiment.a.outcome.b]\n"), "experiment.a.scenario: is missing");
   std::string slow = good;
   slow.erase(slow.find("slow = true\n"), 12);
   slow.insert(slow.find("[experiment.reference.outcome.end]"), "[experiment.reference]\nslow = true\n");
-  EXPECT_NE(complaint(slow).find("is compared with reference, which is slow"), std::string::npos);
-  EXPECT_NE(complaint("").find("mine.toml: no experiments; write [experiment.NAME]"), std::string::npos);
-  EXPECT_NE(complaint(support::pulled_block().text).find("no experiments"), std::string::npos);
-  EXPECT_NE(complaint("[experiment]\n").find("experiment: is empty"), std::string::npos);
-  EXPECT_NE(complaint("[experiment.a]\nscenario = \"block.toml\"\n").find("experiment.a.outcome: is missing"),
-            std::string::npos);
+  EXPECT_SAYS(complaint(slow), "is compared with reference, which is slow");
+  EXPECT_SAYS(complaint(""), "mine.toml: no experiments; write [experiment.NAME]");
+  EXPECT_SAYS(complaint(support::pulled_block().text), "no experiments");
+  EXPECT_SAYS(complaint("[experiment]\n"), "experiment: is empty");
+  EXPECT_SAYS(complaint("[experiment.a]\nscenario = \"block.toml\"\n"), "experiment.a.outcome: is missing");
 }
 
 TEST_F(ReadExperiments, RefuseDrawsWithFileLineAndColumn) {
@@ -423,7 +413,7 @@ TEST_F(ReadExperiments, RefuseDrawsWithFileLineAndColumn) {
   };
   for (const auto& [draws, expected] : cases) {
     write_file(folder / "draws.csv", draws);
-    EXPECT_NE(complaint(good).find(expected), std::string::npos) << expected << "\n" << complaint(good);
+    EXPECT_SAYS(complaint(good), expected) << expected << "\n" << complaint(good);
   }
 }
 
@@ -445,7 +435,7 @@ TEST_F(ReadExperiments, OfClaimsNeedNoPrediction) {
   text.replace(text.find("[experiment.reference"), 0,
                "[quantity]\nreach = \"end.position_um@rest\"\nrest = \"time_s\"\n");
   text.replace(text.find("minus ="), 0, "other_quantity = \"reach\"\n");
-  EXPECT_NE(complaint(text).find("\"rest\" is not a number of summary.json"), std::string::npos) << complaint(text);
+  EXPECT_SAYS(complaint(text), "\"rest\" is not a number of summary.json");
   text.replace(text.find("@rest"), 5, "@5");
   const Experiments experiments = parsed(text);
   EXPECT_TRUE(experiments.are_of_claims);

@@ -2,10 +2,6 @@
 // through a division, and go with the paper's algorithm or be refused by it.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <functional>
-
 #include "record/archive.hpp"
 #include "record/checkpoint.hpp"
 #include "scenario/load.hpp"

@@ -1,12 +1,9 @@
 // Replays fuzzer seeds (fuzz/corpus), also with changed bytes, and past findings (fuzz/found). Seeds must be of current
 // formats, and findings must stay fixed.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <random>
 
 #include "core/files.hpp"
 #include "record/archive.hpp"
+#include "support/testing.hpp"
 #include "targets.hpp"
 
 namespace plica {

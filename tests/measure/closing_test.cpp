@@ -1,13 +1,6 @@
 // A furrow that closes: sections, speeds, onset of fast invagination, fluid and contact.
 #include "measure/closing.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <set>
-#include <vector>
-
 #include "measure/cells.hpp"
 #include "measure/cross_section.hpp"
 #include "measure/speed_history.hpp"

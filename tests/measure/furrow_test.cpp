@@ -1,13 +1,6 @@
 // The furrow's depth and lips; columns of results, and the sets that a scenario measures.
 #include "measure/furrow.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <set>
-
 #include "core/errors.hpp"
 #include "measure/cell_columns.hpp"
 #include "measure/cells.hpp"
@@ -270,7 +263,7 @@ void expect_named_and_explained(const Columns& columns, std::size_t at_least) {
   for (const auto& column : columns) {
     EXPECT_TRUE(names.insert(column.name).second) << column.name << " twice";
     EXPECT_TRUE(column.meaning.ends_with('.')) << column.name;
-    EXPECT_NE(measures_markdown().find("| `" + std::string(column.name) + "` |"), std::string::npos) << column.name;
+    EXPECT_SAYS(measures_markdown(), "| `" + std::string(column.name) + "` |") << column.name;
   }
   EXPECT_GE(names.size(), at_least);
 }
@@ -347,12 +340,11 @@ TEST(Columns, ThoseOfTheContractStayInTheirOrder) {
 }
 
 const std::string sheet =
-    "[embryo]\nshape = \"sheet\"\nlength_um = 40\nwidth_um = 40\ncell_count = 30\ncell_height_um = 10\n"
-    "[region.middle]\ny_um = [-8, 8]\n[cortex.pull]\nregion = \"middle\"\ntension_mN_per_m = 0.3\n";
+    "[embryo]\nshape = \"sheet\"\nlength_um = 40\nwidth_um = 40\ncell_count = 30\ncell_height_um = "
+    "10\n[region.middle]\ny_um = [-8, 8]\n[cortex.pull]\nregion = \"middle\"\ntension_mN_per_m = 0.3\n";
 const std::string organoid =
     "[embryo]\nshape = \"sphere\"\ndiameter_um = 100\ncell_height_um = 15\ncells = [5, 5, 4]\naxes = [\"x\", \"y\", "
-    "\"z\"]\n"
-    "[vitelline]\nenabled = false\n[cortex.pull]\nregion = \"all\"\ntension_mN_per_m = 0.3\n";
+    "\"z\"]\n[vitelline]\nenabled = false\n[cortex.pull]\nregion = \"all\"\ntension_mN_per_m = 0.3\n";
 
 Scenario scenario_of(const std::string& text) { return load_scenario({"test", "test.toml", "format = 1\n" + text}); }
 
@@ -413,12 +405,10 @@ TEST(MeasureSets, OneThatDoesNotFitIsAnErrorWithARemedy) {
     }
     return "none";
   };
-  EXPECT_NE(refusal("[measure]\nsets = [\"lumen\"]\n").find("measure.sets: \"lumen\" has nothing to measure"),
-            std::string::npos);
-  EXPECT_NE(refusal("[measure]\nsets = [\"furow\"]\n").find("automatic | fold | furrow"), std::string::npos);
+  EXPECT_SAYS(refusal("[measure]\nsets = [\"lumen\"]\n"), "measure.sets: \"lumen\" has nothing to measure");
+  EXPECT_SAYS(refusal("[measure]\nsets = [\"furow\"]\n"), "automatic | fold | furrow");
   const std::string expectation = "[expect]\nlip_distance_um = { value = 3, within = 1 }\n";
-  EXPECT_NE(refusal(expectation).find("expect.lip_distance_um: is not measured; add \"furrow\" to measure.sets"),
-            std::string::npos);
+  EXPECT_SAYS(refusal(expectation), "expect.lip_distance_um: is not measured; add \"furrow\" to measure.sets");
   EXPECT_EQ(refusal(expectation + "[measure]\nsets = [\"automatic\", \"furrow\"]\n"), "none");
 }
 

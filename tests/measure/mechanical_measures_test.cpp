@@ -1,7 +1,4 @@
 // Measures of whole tissues: motion, energy norm, static forces, error of bending, self-intersections.
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "measure/bending_error.hpp"
 #include "measure/cells.hpp"

@@ -1,11 +1,6 @@
 // Monitors and the criteria that end a run by them.
 #include "measure/monitor.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <iostream>
-
 #include "measure/stop_rule.hpp"
 #include "support/divided.hpp"
 #include "support/loads.hpp"

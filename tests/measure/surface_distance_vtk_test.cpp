@@ -1,10 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <iostream>
-
 #include "measure/surface_distance.hpp"
 #include "support/tissues.hpp"
 

@@ -1,7 +1,5 @@
 #include "mechanics/coulomb.hpp"
 
-#include <gtest/gtest.h>
-
 #include "support/tissues.hpp"
 
 namespace plica {

@@ -1,8 +1,6 @@
 // Division and growth of a model: what is continuous through a cut, and what daughters become.
 #include "mechanics/division.hpp"
 
-#include <gtest/gtest.h>
-
 #include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"

@@ -2,12 +2,6 @@
 // order of what is missing.
 #include "mechanics/energy.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-#include <functional>
-
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/constraints/ties.hpp"

@@ -2,8 +2,6 @@
 // chunks of elements that they take at once.
 #include "mechanics/kernels/kernels.hpp"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
 #include <cstdlib>

@@ -1,9 +1,4 @@
 // Laws on cells that are polygons, and on tissues with periods.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <numeric>
 
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"

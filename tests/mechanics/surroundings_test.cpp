@@ -1,7 +1,5 @@
 #include "mechanics/surroundings.hpp"
 
-#include <gtest/gtest.h>
-
 #include "support/law_checks.hpp"
 
 namespace plica {

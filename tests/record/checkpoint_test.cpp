@@ -2,16 +2,9 @@
 #include "record/checkpoint.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
 #include <zlib.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <iostream>
-#include <limits>
 
 #include "core/errors.hpp"
 #include "record/archive.hpp"
@@ -217,7 +210,7 @@ TEST_F(CheckpointTest, AnotherFormatIsNamed) {
       (void)read_checkpoint_bytes(other);
       ADD_FAILURE() << format;
     } catch (const FileError& error) {
-      EXPECT_NE(std::string(error.what()).find("format"), std::string::npos) << error.what();
+      EXPECT_SAYS(std::string(error.what()), "format") << error.what();
     }
   }
 }
@@ -231,7 +224,7 @@ TEST_F(CheckpointTest, RowsOfOtherColumnsAreNamed) {
     (void)read_checkpoint_bytes(made_right(bytes));
     ADD_FAILURE();
   } catch (const FileError& error) {
-    EXPECT_NE(std::string(error.what()).find("other columns"), std::string::npos) << error.what();
+    EXPECT_SAYS(std::string(error.what()), "other columns") << error.what();
   }
 }
 
@@ -365,7 +358,7 @@ TEST_F(CheckpointFilesTest, TheOneBeforeIsTakenWhenTheNewestIsDamaged) {
   }
   write_file(newest, read_file(newest).substr(1));
   EXPECT_EQ(time_read(), steps[1].run.state.time_s);
-  EXPECT_NE(complaint.find(newest.string()), std::string::npos) << complaint;
+  EXPECT_SAYS(complaint, newest.string());
   fs::remove(newest);
   EXPECT_EQ(time_read(), steps[1].run.state.time_s) << "as after a kill between two renames";
   EXPECT_EQ(complaint, "");

@@ -2,23 +2,12 @@
 // trial.
 #include "record/results.hpp"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 #include <zlib.h>
 
-#include <array>
 #include <bit>
-#include <cmath>
 #include <csignal>
-#include <cstdio>
-#include <fstream>
-#include <iostream>
-#include <limits>
 #include <new>
-#include <random>
-#include <set>
-#include <sstream>
-#include <vector>
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -79,7 +68,7 @@ TEST_F(ResultsTest, WhatIsNoSeriesNamesItsLine) {
       (void)read_series(file);
       ADD_FAILURE() << text;
     } catch (const FileError& error) {
-      EXPECT_NE(std::string(error.what()).find(file.string() + part), std::string::npos) << error.what();
+      EXPECT_SAYS(std::string(error.what()), file.string() + part) << error.what();
     }
   }
 }

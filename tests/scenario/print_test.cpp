@@ -1,14 +1,6 @@
 // What a scenario says, printed; differences of two; words of its keys; names that are near.
 #include "scenario/print.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <iostream>
-#include <map>
-#include <set>
-#include <string>
-
 #include "scenario/builtin.hpp"
 #include "scenario/differences.hpp"
 #include "scenario/load.hpp"
@@ -16,6 +8,7 @@
 #include "scenario/suggest.hpp"
 #include "scenario/syntax.hpp"
 #include "scenario/words.hpp"
+#include "support/testing.hpp"
 
 namespace plica {
 namespace {
@@ -98,11 +91,11 @@ nodes = { value = 100, within_percent = 1 }
 
 TEST(ResolvedToml, FillsInDefaultsAndLeavesOutWhatHasNoValue) {
   const std::string text = resolved_toml(load_scenario({"test", "test.toml", "[region.a]\nface = \"left\"\n"}));
-  EXPECT_NE(text.find("\n[region.a]\nface = \"left\"\n\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("\nstep_s = \"adaptive\"\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("\nend_s = 3600\n"), std::string::npos) << text;
-  EXPECT_EQ(text.find("cells_csv"), std::string::npos) << text;
-  EXPECT_EQ(text.find("width_um"), std::string::npos) << text;
+  EXPECT_SAYS(text, "\n[region.a]\nface = \"left\"\n\n");
+  EXPECT_SAYS(text, "\nstep_s = \"adaptive\"\n");
+  EXPECT_SAYS(text, "\nend_s = 3600\n");
+  EXPECT_SAYS_NOT(text, "cells_csv");
+  EXPECT_SAYS_NOT(text, "width_um");
 }
 
 // The section below a heading, without the heading.
@@ -132,10 +125,10 @@ TEST(Reference, HasEveryRowOfTheTable) {
       const std::string& there = inner == nullptr ? section : section_of(page, std::string(inner->title));
       std::string key(row.key);
       if (key.starts_with("stiffness_program.")) key.erase(0, std::string_view("stiffness_").size());
-      EXPECT_NE(there.find("\n| `" + key + "` | " + row.type() + " | "), std::string::npos) << info.path << " " << key;
-      EXPECT_NE(there.find(row.meaning), std::string::npos) << info.path << " " << key;
+      EXPECT_SAYS(there, "\n| `" + key + "` | " + row.type() + " | ") << info.path << " " << key;
+      EXPECT_SAYS(there, row.meaning) << info.path << " " << key;
       if (inner != nullptr) {
-        EXPECT_NE(section.find("([" + std::string(inner->title) + "](#"), std::string::npos) << info.path << " " << key;
+        EXPECT_SAYS(section, "([" + std::string(inner->title) + "](#") << info.path << " " << key;
         ++inner_count;
       }
       ++count;
@@ -170,7 +163,7 @@ TEST(Reference, LinksToEverySection) {
                                       {"division.NAME", "divisionname"},
                                       {"Profile", "profile"},
                                       {"Activity time course", "activity-time-course"}})
-    EXPECT_NE(page.find("[" + std::string(label) + "](#" + anchor + ")"), std::string::npos) << label;
+    EXPECT_SAYS(page, "[" + std::string(label) + "](#" + anchor + ")") << label;
   std::size_t links = 0, headings = 0;
   for (std::size_t at = 0; (at = page.find("](#", at)) != std::string::npos && at < page.find("\n## "); ++at) ++links;
   for (std::size_t at = 0; (at = page.find("\n## ", at)) != std::string::npos; ++at) ++headings;
@@ -188,7 +181,7 @@ TEST(Reference, SaysTypeDefaultAndRange) {
            "| `end_min` | number | see `end_s` | > 0; not with `end_s` |",
            "| `region` | text | required | any |",
        }) {
-    EXPECT_NE(page.find(line), std::string::npos) << line;
+    EXPECT_SAYS(page, line) << line;
   }
 }
 
@@ -349,11 +342,11 @@ TEST(Nesting, AKeyWithTooManyPartsIsFoundWhereverItStands) {
 
 TEST(Nesting, DotsInTextsNumbersAndCommentsAreNone) {
   const std::string dots(100, '.');
-  for (const std::string& text : {"x = \"" + dots + "\"", "x = '" + dots + "'", "x = \"\"\"\n\"" + dots + "\"\"\"\"\"",
-                                  "# " + dots, "x = \"\\\"" + dots + "\"",
-                                  std::string("x = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 1.0, 2.0, 3.0, 4.0, "
-                                              "5.0, 6.0, 7.0, 8.0, 9.0]"),
-                                  std::string("a.b.c.d = 1\ne.f.g.h = 2\n[a.b.c.d]\n[a.b.c.e]\n[i.b.c.e]\n")})
+  for (const std::string& text :
+       {"x = \"" + dots + "\"", "x = '" + dots + "'", "x = \"\"\"\n\"" + dots + "\"\"\"\"\"", "# " + dots,
+        "x = \"\\\"" + dots + "\"",
+        std::string("x = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]"),
+        std::string("a.b.c.d = 1\ne.f.g.h = 2\n[a.b.c.d]\n[a.b.c.e]\n[i.b.c.e]\n")})
     EXPECT_EQ(line_of_too_deep_key(text), 0) << text;
 }
 

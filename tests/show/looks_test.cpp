@@ -1,10 +1,6 @@
 // Looks of pictures and reports: colours, views, outlines, packed arrays.
 #include "show/looks.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.hpp"
@@ -159,7 +155,7 @@ TEST(Views, AreNamedByTheAxes) {
   EXPECT_EQ(views[1].label, "from \u2212z, \u2212x to the left");
   for (const View& view : views)
     for (const char* word : {"ventral", "anterior", "front", "left side", "below"})
-      EXPECT_EQ((view.heading() + view.label).find(word), std::string::npos) << view.label;
+      EXPECT_SAYS_NOT((view.heading() + view.label), word) << view.label;
   EXPECT_EQ(cross_section_at(5, plain_axes()).label, "cut across at x = 5 µm, from \u2212x");
   EXPECT_EQ(picture_letters(plain_axes()), EmbryoAxes{});
   EXPECT_EQ(picture_letters(anatomical_axes())[2][1], "D");

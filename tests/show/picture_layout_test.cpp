@@ -1,12 +1,6 @@
 // Where things stand in a picture, and what a panel shows; nothing of it needs VTK.
 #include "show/picture_layout.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <iostream>
-
 #include "core/errors.hpp"
 #include "show/picture_scene.hpp"
 #include "support/frames.hpp"

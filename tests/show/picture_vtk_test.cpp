@@ -1,15 +1,10 @@
 // Pictures as files: drawn, read back, and looked at pixel by pixel.
-#include <gtest/gtest.h>
 #include <unistd.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <iostream>
 
 #include "core/errors.hpp"
 #include "show/boundary_surface.hpp"

@@ -1,7 +1,4 @@
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <fstream>
 
 #include "core/errors.hpp"
 #include "record/mesh_writer.hpp"
@@ -150,7 +147,7 @@ TEST_F(ReportRunTest, SeveralRunsAreToldApartByKeysAndNames) {
     if (!scenario.empty()) std::ofstream(runs.back() / "scenario.toml") << scenario;
   }
   const std::string page = report_page_of(runs);
-  EXPECT_NE(page.find("<title>Fold</title>"), std::string::npos);
+  EXPECT_SAYS(page, "<title>Fold</title>");
   const nlohmann::json data = data_of(page);
   EXPECT_EQ(data["varied"],
             nlohmann::json::parse(R"([{"key": "elasticity.young_modulus_Pa", "values": ["500", "1000", ""]}])"));
@@ -187,9 +184,9 @@ TEST_F(ReportRunTest, PageHoldsNoMarkupOfTheScenario) {
   std::ofstream(folder / "summary.json") << R"({"title": "</script><b>&\u2028"})";
   std::ofstream(folder / "scenario.toml") << "title = \"</script><!--plica:title-->\"\n";
   const std::string page = report_page_of({folder});
-  EXPECT_EQ(page.find("</script><b>"), std::string::npos);
-  EXPECT_EQ(page.find("<!--plica:"), std::string::npos);
-  EXPECT_NE(page.find("<title>&lt;/script&gt;&lt;b&gt;&amp;"), std::string::npos);
+  EXPECT_SAYS_NOT(page, "</script><b>");
+  EXPECT_SAYS_NOT(page, "<!--plica:");
+  EXPECT_SAYS(page, "<title>&lt;/script&gt;&lt;b&gt;&amp;");
 }
 
 }  // namespace

@@ -1,10 +1,4 @@
 // Activities, arrays, pulses and divisions in the loop: who acts or divides when, and what a run keeps at every step.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
 
 #include "core/errors.hpp"
 #include "measure/cells.hpp"
@@ -23,18 +17,17 @@ using namespace support;
 constexpr double as_programmed = GivenActivities::as_programmed;
 
 Scenario block_with(const std::string& tables, const std::vector<std::string>& overrides = {}) {
-  return load_scenario({"block", "block",
-                        "[embryo]\nshape = \"block\"\nlength_um = 100\nwidth_um = 60\ncells = [5, 3, 1]\n"
-                        "[vitelline]\nenabled = false\n[time]\nend_min = 2\n[stop]\nat_equilibrium = false\n"
-                        "[region.middle]\nx_um = [-30, 30]\n" +
-                            tables},
-                       overrides);
+  return load_scenario(
+      {"block", "block",
+       "[embryo]\nshape = \"block\"\nlength_um = 100\nwidth_um = 60\ncells = [5, 3, 1]\n[vitelline]\nenabled = "
+       "false\n[time]\nend_min = 2\n[stop]\nat_equilibrium = false\n[region.middle]\nx_um = [-30, 30]\n" +
+           tables},
+      overrides);
 }
 
 const std::string springs = "[contraction.apical]\nregion = \"middle\"\nstiffness_nN_per_um = 3\n";
 const std::string cortex =
-    "[cortex.apical]\nregion = \"middle\"\ntension_mN_per_m = 1\nstiffness_mN_per_m = 1\n"
-    "relaxation_s = 60\n";
+    "[cortex.apical]\nregion = \"middle\"\ntension_mN_per_m = 1\nstiffness_mN_per_m = 1\nrelaxation_s = 60\n";
 
 double farthest(const Simulation& a, const Simulation& b) {
   double most = 0;
@@ -148,8 +141,8 @@ TEST(GivenActivity, IsCheckedAndWakesWhatIsAtRest) {
 // Of several laws that act on a cell the first by name counts.
 TEST(Activities, AreThoseOfTheFirstLawOfACell) {
   const Simulation simulation(
-      block_with(springs + "program = { time_s = [0], activity = [0.5] }\n[contraction.basal]\nregion = \"all\"\n"
-                           "edges = \"basal\"\nstiffness_nN_per_um = 1\n"));
+      block_with(springs + "program = { time_s = [0], activity = [0.5] }\n[contraction.basal]\nregion = \"all\"\nedges "
+                           "= \"basal\"\nstiffness_nN_per_um = 1\n"));
   const std::vector<double> found = activities(simulation.model(), simulation.state());
   const CellSet& middle = simulation.model().tissue.regions.at("middle");
   for (std::size_t c = 0; c < found.size(); ++c) EXPECT_EQ(found[c], middle[c] ? 0.5 : 1) << c;
@@ -157,8 +150,8 @@ TEST(Activities, AreThoseOfTheFirstLawOfACell) {
 
 Scenario row_of_cells(const std::string& more = "") {
   return load_scenario({"row", "row",
-                        "[embryo]\nshape = \"block\"\nlength_um = 60\nwidth_um = 20\ncells = [3, 1, 1]\n"
-                        "[region.middle]\nids = [1]\n[vitelline]\nenabled = false\n[time]\nend_s = 4\n" +
+                        "[embryo]\nshape = \"block\"\nlength_um = 60\nwidth_um = 20\ncells = [3, 1, "
+                        "1]\n[region.middle]\nids = [1]\n[vitelline]\nenabled = false\n[time]\nend_s = 4\n" +
                             more});
 }
 
@@ -188,7 +181,7 @@ TEST(CellArray, ThatFitsNoCellIsRefused) {
       simulation.set_cell_array(name, values);
       ADD_FAILURE() << name;
     } catch (const UsageError& error) {
-      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+      EXPECT_SAYS(std::string(error.what()), said) << error.what();
     }
   };
   refused("signal", {1, 2}, "2 values for 3 cells");

@@ -1,10 +1,6 @@
 // A side of a symmetric tissue is the whole, and a period is the endless tissue.
 #include "simulation/full_model.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cstdio>
-
 #include "core/threads.hpp"
 #include "measure/self_intersections.hpp"
 #include "mechanics/active/cortex.hpp"

@@ -1,10 +1,5 @@
 #include "simulation/simulation.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-#include <limits>
 #include <thread>
 
 #include "scenario/load.hpp"
@@ -54,8 +49,7 @@ TEST(Simulation, RestDoesNotDependOnTheStep) {
     for (std::size_t n = 0; n < end.positions.size(); ++n)
       worst = std::max(worst, (end.positions[n] - ends[0].positions[n]).norm());
   std::printf(
-      "block at rest: positions differ by %.1e um between steps of 2, 5, 20 s and adaptive ones, "
-      "of both orders\n",
+      "block at rest: positions differ by %.1e um between steps of 2, 5, 20 s and adaptive ones, of both orders\n",
       worst);
   EXPECT_LE(worst, 1e-3);
 }

@@ -1,9 +1,6 @@
 #include "simulation/step_length.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
+#include "support/testing.hpp"
 
 namespace plica {
 namespace {

@@ -1,9 +1,6 @@
 // Warnings during a run (bending, energy, pace); runs that fail, and the remedies that their messages name: each is
 // tried.
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdio>
 #include <regex>
 
 #include "core/errors.hpp"
@@ -54,7 +51,7 @@ TEST(BendingWarning, ItsRemedyWorks) {
         {"shape = \"block\"\ncells = [4, 12, 1]", "compare with embryo.elements_per_cell = [1, 1, 2]",
          "embryo.elements_per_cell=[1,1,2]"}}) {
     const std::string warning = warning_of(shape, {});
-    EXPECT_NE(warning.find(named), std::string::npos) << warning;
+    EXPECT_SAYS(warning, named);
     EXPECT_EQ(warning_of(shape, {remedy}), "");
     EXPECT_EQ(warning_of(shape, {"contraction.apical.stiffness_nN_per_um=0.2"}), "");
     ++cases;
@@ -164,7 +161,7 @@ TEST(EnergyWarning, NamesARemedyThatWorks) {
         {{"dynamics.density_kg_per_m3=1000", "time.integrator=backward-euler", "time.tolerance_um=4", slowly},
          {"time.tolerance_um to "}}}) {
     const std::string text = energy_warning_of(given);
-    for (const std::string& key : named) EXPECT_NE(text.find(key), std::string::npos) << text;
+    for (const std::string& key : named) EXPECT_SAYS(text, key);
     const Texts remedy = remedy_in(text);
     EXPECT_EQ(remedy.size(), named.size()) << text;
     Texts changed = given;
@@ -385,9 +382,9 @@ TEST(Remedies, PolygonsNeedNoneByDefault) {
 
 // The volume inside the apical surface cannot be kept by a fold in a filled membrane.
 TEST(Remedies, AFoldNeedsRoom) {
-  const Scenario filled = load_scenario({"pill", "pill.toml",
-                                         "[embryo]\ncells = [4, 4, 2]\n[volume]\nmethod = \"projection\"\n"
-                                         "projection_surface = \"embryo\"\n"});
+  const Scenario filled = load_scenario(
+      {"pill", "pill.toml",
+       "[embryo]\ncells = [4, 4, 2]\n[volume]\nmethod = \"projection\"\nprojection_surface = \"embryo\"\n"});
   const auto remedies = remedies_of(filled, {StepReport::Status::not_projected});
   ASSERT_EQ(remedies.size(), 2U);
   EXPECT_EQ(remedies[0].settings[0].key, "volume.projection_surface");
@@ -397,8 +394,7 @@ TEST(Remedies, AFoldNeedsRoom) {
 TEST(Remedies, ACellHeldAtAllItsCornersCannotGrow) {
   const Simulation failed = ran(division);
   ASSERT_EQ(failed.status(), RunStatus::failed);
-  EXPECT_NE(failed.failure().find("fix fewer nodes, or exclude it from division and growth"), std::string::npos)
-      << failed.failure();
+  EXPECT_SAYS(failed.failure(), "fix fewer nodes, or exclude it from division and growth");
   for (const char* override : {"hold.firm.region=first", "hold.firm.directions=[\"x\"]"})
     EXPECT_NE(ran(division, {override}).status(), RunStatus::failed) << override;
 }
@@ -419,11 +415,11 @@ TEST(Remedies, NameKeysOfTheScenario) {
   for (const std::string shape : {"pill", "sphere", "slice", "block", "egg", "sheet"})
     for (const std::string more :
          {"",
-          "[time]\nscheme = \"linearly-implicit\"\n[volume]\nmethod = \"projection\"\n"
-          "projection_surface = \"tissue\"\n",
+          "[time]\nscheme = \"linearly-implicit\"\n[volume]\nmethod = \"projection\"\nprojection_surface = "
+          "\"tissue\"\n",
           "[contraction.c]\nregion = \"all\"\nstiffness_nN_per_um = 1\npreload_nN = -1\ntension_mN_per_m = 1\n",
-          "[cortex.c]\nregion = \"all\"\ntension_mN_per_m = 1\n[pressure.p]\nregion = \"all\"\npressure_Pa = 10\n"
-          "[elasticity]\ncorner_barrier_Pa = 0\n"}) {
+          "[cortex.c]\nregion = \"all\"\ntension_mN_per_m = 1\n[pressure.p]\nregion = \"all\"\npressure_Pa = "
+          "10\n[elasticity]\ncorner_barrier_Pa = 0\n"}) {
       const ScenarioSource source{"any", "any.toml", "[embryo]\nshape = \"" + shape + "\"\n" + more};
       const Scenario scenario = load_scenario(source);
       for (const Status status : {Status::inverted_element, Status::no_convergence, Status::no_linear_convergence,

@@ -1,13 +1,7 @@
 // Calibration, and its search for targets.
 #include "study/calibrate.hpp"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <iostream>
-#include <limits>
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -64,7 +58,7 @@ TEST(CalibrationProblem, RefusesWhatIsNone) {
     EXPECT_THROW((void)parse_target(text), UsageError) << text;
     ++cases;
   }
-  EXPECT_NE(refusal([] { (void)parse_varied_key("a=2:1"); }).find("write a=1:2"), std::string::npos);
+  EXPECT_SAYS(refusal([] { (void)parse_varied_key("a=2:1"); }), "write a=1:2");
   std::cout << cases << " texts refused\n";
 }
 
@@ -80,22 +74,18 @@ TEST(CalibrationProblem, IsCheckedBeforeTheFirstRun) {
   EXPECT_EQ(said({stiffness}, {"end.position_um=28"}), "");
   EXPECT_EQ(said({"contraction.all.stifness_nN_per_um=1:2"}, {"end.position_um=28"}),
             "--vary: contraction.all.stifness_nN_per_um: unknown key; use \"stiffness_nN_per_um\" (nearest match)");
-  EXPECT_NE(said({"contraction.all.stiffness_nN_per_um=-1:2"}, {"end.position_um=28"}).find("out of range"),
-            std::string::npos);
-  EXPECT_NE(said({"elasticity.poisson_ratio=0.3:0.7"}, {"end.position_um=28"}).find("out of range"), std::string::npos)
+  EXPECT_SAYS(said({"contraction.all.stiffness_nN_per_um=-1:2"}, {"end.position_um=28"}), "out of range");
+  EXPECT_SAYS(said({"elasticity.poisson_ratio=0.3:0.7"}, {"end.position_um=28"}), "out of range")
       << "the upper bound too";
-  EXPECT_NE(said({"region.x.cells_along=1:3"}, {"end.position_um=28"}).find("vary a real-valued key"),
-            std::string::npos);
-  EXPECT_NE(said({stiffness}, {"end.positon_um=28"}).find("use \"end.position_um\" (nearest match)"),
-            std::string::npos);
-  EXPECT_NE(said({stiffness}, {"wall_s=1"}).find("differs between runs"), std::string::npos);
-  EXPECT_NE(said({stiffness}, {"lip_distance_um=28"}).find("add \"furrow\" to measure.sets"), std::string::npos);
-  EXPECT_NE(said({stiffness}, {"status=1"}).find("not a number of summary.json"), std::string::npos);
-  EXPECT_NE(said({stiffness, stiffness}, {"end.position_um=28"}).find("twice"), std::string::npos);
-  EXPECT_NE(said({stiffness}, {"end.position_um=28", "end.position_um=27"}).find("twice"), std::string::npos);
-  EXPECT_NE(
-      said({stiffness}, {"end.position_um=28"}, {"contraction.all.stiffness_nN_per_um=3"}).find("conflicts with --set"),
-      std::string::npos);
+  EXPECT_SAYS(said({"region.x.cells_along=1:3"}, {"end.position_um=28"}), "vary a real-valued key");
+  EXPECT_SAYS(said({stiffness}, {"end.positon_um=28"}), "use \"end.position_um\" (nearest match)");
+  EXPECT_SAYS(said({stiffness}, {"wall_s=1"}), "differs between runs");
+  EXPECT_SAYS(said({stiffness}, {"lip_distance_um=28"}), "add \"furrow\" to measure.sets");
+  EXPECT_SAYS(said({stiffness}, {"status=1"}), "not a number of summary.json");
+  EXPECT_SAYS(said({stiffness, stiffness}, {"end.position_um=28"}), "twice");
+  EXPECT_SAYS(said({stiffness}, {"end.position_um=28", "end.position_um=27"}), "twice");
+  EXPECT_SAYS(said({stiffness}, {"end.position_um=28"}, {"contraction.all.stiffness_nN_per_um=3"}),
+              "conflicts with --set");
 }
 
 TEST(Calibrate, BeginsAtTheScenariosOwnValues) {
@@ -136,8 +126,8 @@ TEST(Calibrate, MeetsTwoTargetsWithTwoKeysAndWritesTheScenario) {
   write_file(of_file.source.file, of_file.source.text);
   const std::string file = (folder / "of mine" / "calibrated.toml").string();
   const std::string text = calibrated_toml(of_file, found, file);
-  EXPECT_NE(text.find("base = \"../block.toml\""), std::string::npos) << text;
-  EXPECT_NE(text.find("# Target: side.position_um = 19.5 within 0.01; result 19."), std::string::npos) << text;
+  EXPECT_SAYS(text, "base = \"../block.toml\"");
+  EXPECT_SAYS(text, "# Target: side.position_um = 19.5 within 0.01; result 19.");
   const Scenario written = load_scenario({"calibrated", file, text});
   const auto summary = quiet_run(written).summary;
   EXPECT_EQ(summary.at("end.position_um"), *found.best->found[0]);

@@ -1,10 +1,5 @@
 // Runs compared: surfaces of snapshots, energy norm.
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <cmath>
-#include <fstream>
-#include <numbers>
 
 #include "core/errors.hpp"
 #include "measure/energy_norm.hpp"

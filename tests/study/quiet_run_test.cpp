@@ -1,10 +1,8 @@
 #include "study/quiet_run.hpp"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
 
 #include "core/directory_lock.hpp"
 #include "core/files.hpp"

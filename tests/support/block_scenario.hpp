@@ -1,9 +1,8 @@
 // A small block that contracts, as a scenario: a run of some milliseconds for tests of whole runs.
 #pragma once
 
-#include <string>
-
 #include "scenario/load.hpp"
+#include "support/testing.hpp"
 
 namespace plica::support {
 

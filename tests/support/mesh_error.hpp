@@ -1,10 +1,7 @@
 // Expects a MeshError whose text says something.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <string>
-
+#include "support/testing.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
@@ -15,7 +12,7 @@ void expect_mesh_error(Call call, const std::string& text) {
     call();
     ADD_FAILURE() << "no error; expected one with: " << text;
   } catch (const MeshError& error) {
-    EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
+    EXPECT_SAYS(std::string(error.what()), text) << error.what();
   }
 }
 

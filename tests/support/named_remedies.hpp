@@ -1,9 +1,7 @@
 // Remedies that a message names, as overrides, so that tests can try them.
 #pragma once
 
-#include <string>
-#include <string_view>
-#include <vector>
+#include "support/testing.hpp"
 
 namespace plica::support {
 

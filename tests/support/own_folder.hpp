@@ -1,12 +1,9 @@
 // A folder of a test's own, removed at its end.
 #pragma once
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <string>
+#include "support/testing.hpp"
 
 namespace plica::support {
 

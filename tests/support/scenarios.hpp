@@ -1,16 +1,12 @@
 // Scenarios of a few lines, and what is wrong with them.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
+#include <regex>
 
 #include "core/errors.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
+#include "support/testing.hpp"
 
 namespace plica::support {
 
@@ -41,12 +37,13 @@ inline std::string side_errors(const std::string& text) {
   });
 }
 
-/// Scenarios and all that is wrong with each, as one of the functions above says.
+/// Scenarios and all that is wrong with each, as one of the functions above says, less the name of the file.
 using WrongScenarios = std::vector<std::pair<std::string, std::string>>;
 
 template <class ErrorsOf>
 void expect_errors(const WrongScenarios& cases, const ErrorsOf& errors_of) {
-  for (const auto& [text, errors] : cases) EXPECT_EQ(errors_of(text), errors) << text;
+  const std::regex file("(^|\n)test\\.toml:");
+  for (const auto& [text, errors] : cases) EXPECT_EQ(std::regex_replace(errors_of(text), file, "$1"), errors) << text;
 }
 
 /// A table of 200 points on a spheroid of half axes 120, 60 and 60 um, and an array that numbers them.

@@ -1,7 +1,7 @@
 // A small embryo whose belly is drawn in, as a scenario: seconds, with what a closing furrow has but the yolk.
 #pragma once
 
-#include <string>
+#include "support/testing.hpp"
 
 namespace plica::support {
 

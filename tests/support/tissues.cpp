@@ -1,7 +1,5 @@
 #include "support/tissues.hpp"
 
-#include <numbers>
-
 #include "tissue/lattice.hpp"
 
 namespace plica::support {

@@ -1,9 +1,8 @@
 // Tissues and motions that tests share.
 #pragma once
 
-#include <random>
-
 #include "mechanics/law.hpp"
+#include "support/testing.hpp"
 #include "tissue/shapes/embryo.hpp"
 
 namespace plica::support {

@@ -1,8 +1,6 @@
 // Division of hexahedra and of polygons.
 #include "tissue/division.hpp"
 
-#include <gtest/gtest.h>
-
 #include "simulation/division_rules.hpp"
 #include "support/divided.hpp"
 #include "support/prisms.hpp"

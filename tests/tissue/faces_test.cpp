@@ -1,14 +1,6 @@
 // Parts of a tissue: faces, lines of its lattice, rows of cells, one side of its mirror planes.
 #include "tissue/faces.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <numbers>
-#include <set>
-
 #include "support/divided.hpp"
 #include "support/prisms.hpp"
 #include "support/tissues.hpp"
@@ -355,9 +347,7 @@ TEST(Mirror, WhatIsNotSymmetricIsRefused) {
             "the plane y = 0 cuts cells in two, for example cell 36; give an even number of cells along y");
   Tissue bent = pill();
   bent.rest_positions[40].z() += 0.1;
-  EXPECT_NE(complaint(bent).find("the mesh is not symmetric about the plane y = 0: it has a node at"),
-            std::string::npos)
-      << complaint(bent);
+  EXPECT_SAYS(complaint(bent), "the mesh is not symmetric about the plane y = 0: it has a node at");
 }
 
 }  // namespace

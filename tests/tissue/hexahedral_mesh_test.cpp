@@ -1,16 +1,6 @@
 // Tissues from hexahedra, grouped elements and prisms.
 #include "tissue/hexahedral_mesh.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <iostream>
-#include <map>
-#include <numbers>
-#include <random>
-#include <set>
-
 #include "support/mesh_error.hpp"
 #include "support/prisms.hpp"
 #include "support/same_tissue.hpp"
@@ -135,7 +125,7 @@ TEST(TissueFromMesh, RefusesWhatDoesNotFit) {
   const auto expect_error = [&](const char* part, const auto& change) {
     HexahedralMesh mesh = good;
     change(mesh);
-    EXPECT_NE(mesh_error(mesh).find(part), std::string::npos) << mesh_error(mesh) << "; expected: " << part;
+    EXPECT_SAYS(mesh_error(mesh), part) << mesh_error(mesh) << "; expected: " << part;
     ++cases;
   };
   expect_error("coordinates must be finite", [](auto& m) { m.points[3].y() = std::nan(""); });

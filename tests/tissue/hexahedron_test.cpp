@@ -1,11 +1,6 @@
 // Hexahedra, quality of their meshes, and shapes around them.
 #include "tissue/hexahedron.hpp"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <numbers>
-
 #include "support/tissues.hpp"
 #include "tissue/mesh_quality.hpp"
 #include "tissue/outer_shape.hpp"

@@ -3,17 +3,10 @@
 // Flat on flat: a block that is pressed on another has the same pressure all over its face, wherever it stands on the
 // mesh of the other. Without Poisson's effect the stress is uniform: compression over height times Young's modulus.
 // Contact's distances and the crossing test against another program's, the IPC Toolkit's: what
-// contact_truth/make_truth.py wrote, some hundred cases of either, or 10 000 in a folder that PLICA_CONTACT_TRUTH names.
-#include <gtest/gtest.h>
+// contact_truth/make_truth.py wrote, some hundred cases of either, or 10 000 in a folder that PLICA_CONTACT_TRUTH
+// names.
 
-#include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <map>
-#include <numbers>
-#include <numeric>
-#include <sstream>
 
 #include "measure/self_intersections.hpp"
 #include "mechanics/contact/closest_point.hpp"

@@ -4,11 +4,6 @@
 // its original configuration" (the paper, section 2.3): the whole embryo, after its furrow has formed.
 // A strip that is stretched at once and held: how its pull decays where its rest shape flows (Maxwell), against the
 // flow's equation in one dimension. Cells keep their volumes, sides are free.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-#include <functional>
 
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/constraints/cell_volume.hpp"
@@ -342,8 +337,8 @@ Returned switch_off(const std::string& name) {
   EXPECT_GT(simulation.time_s(), 720);
   returned.left_um = distance_from_rest(rest, simulation.state().positions);
   std::printf(
-      "%s: nodes up to %.3g um from rest with the contraction on, %.1e um after it was switched off (%d steps, "
-      "at %.0f s)\n",
+      "%s: nodes up to %.3g um from rest with the contraction on, %.1e um after it was switched off (%d steps, at %.0f "
+      "s)\n",
       name.c_str(), returned.folded_um, returned.left_um, simulation.steps(), simulation.time_s());
   return returned;
 }

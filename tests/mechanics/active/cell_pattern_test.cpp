@@ -1,10 +1,5 @@
 #include "mechanics/active/cell_pattern.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "support/law_checks.hpp"

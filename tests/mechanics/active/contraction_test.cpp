@@ -1,8 +1,6 @@
 // Apical and basal contraction: springs, programs and tensions.
 #include "mechanics/active/contraction.hpp"
 
-#include <gtest/gtest.h>
-
 #include "mechanics/active/program.hpp"
 #include "support/law_checks.hpp"
 #include "support/tissues.hpp"

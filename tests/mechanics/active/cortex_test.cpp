@@ -1,9 +1,5 @@
 #include "mechanics/active/cortex.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"
 #include "support/divided.hpp"

@@ -1,7 +1,6 @@
 #include "mechanics/active/own_state.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/division.hpp"

@@ -1,7 +1,5 @@
 #include "mechanics/constraints/cell_volume.hpp"
 
-#include <gtest/gtest.h>
-
 #include "support/constraint_law.hpp"
 #include "support/law_checks.hpp"
 

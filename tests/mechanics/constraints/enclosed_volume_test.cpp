@@ -1,9 +1,5 @@
 #include "mechanics/constraints/enclosed_volume.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "measure/cells.hpp"
 #include "support/constraint_law.hpp"
 #include "support/divided.hpp"

@@ -1,7 +1,5 @@
 #include "mechanics/constraints/ties.hpp"
 
-#include <gtest/gtest.h>
-
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
 #include "support/law_checks.hpp"

@@ -1,12 +1,6 @@
 // Contact of edges, and the closest points of facets and edges.
 #include "mechanics/contact/edge_pairs.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-
 #include "measure/self_intersections.hpp"
 #include "mechanics/contact/closest_point.hpp"
 #include "solver/step/newton_stepper.hpp"

@@ -1,7 +1,4 @@
 // Friction between surfaces of one tissue: Coulomb's, by the pressure at the beginning of the step.
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "mechanics/contact/self_contact.hpp"
 #include "mechanics/coulomb.hpp"

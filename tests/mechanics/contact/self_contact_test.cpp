@@ -1,10 +1,5 @@
 #include "mechanics/contact/self_contact.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numeric>
-
 #include "support/bodies.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"

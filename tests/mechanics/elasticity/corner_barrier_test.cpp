@@ -1,9 +1,5 @@
 #include "mechanics/elasticity/corner_barrier.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "mechanics/elasticity/corotational.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"

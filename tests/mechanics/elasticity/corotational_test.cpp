@@ -1,7 +1,5 @@
 #include "mechanics/elasticity/corotational.hpp"
 
-#include <gtest/gtest.h>
-
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"

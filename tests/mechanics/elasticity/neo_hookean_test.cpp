@@ -1,9 +1,5 @@
 #include "mechanics/elasticity/neo_hookean.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/threads.hpp"
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/elasticity/hexahedron_stiffness.hpp"

@@ -1,7 +1,5 @@
 #include "mechanics/elasticity/shape_memory.hpp"
 
-#include <gtest/gtest.h>
-
 #include "mechanics/elasticity/corotational.hpp"
 #include "support/law_checks.hpp"
 

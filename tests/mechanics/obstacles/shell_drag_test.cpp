@@ -1,7 +1,5 @@
 #include "mechanics/obstacles/shell_drag.hpp"
 
-#include <gtest/gtest.h>
-
 #include "support/law_checks.hpp"
 
 namespace plica {

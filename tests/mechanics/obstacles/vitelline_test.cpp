@@ -1,7 +1,5 @@
 #include "mechanics/obstacles/vitelline.hpp"
 
-#include <gtest/gtest.h>
-
 #include "support/tissues.hpp"
 #include "tissue/shapes/embryo.hpp"
 

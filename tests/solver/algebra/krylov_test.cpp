@@ -1,10 +1,6 @@
 // Conjugate gradients and conjugate residuals.
 #include "solver/algebra/krylov.hpp"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "support/tissues.hpp"
 
 namespace plica {

@@ -1,14 +1,9 @@
 // Direct solver, factors of blocks, products of panels.
 #include "solver/algebra/linear_solver.hpp"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
-#include <limits>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include "core/threads.hpp"
 #include "solver/algebra/block_cholesky.hpp"

@@ -1,5 +1,4 @@
 // All ways of finding Newton's directions find the same.
-#include <gtest/gtest.h>
 
 #include "core/parallel.hpp"
 #include "mechanics/obstacles/vitelline.hpp"

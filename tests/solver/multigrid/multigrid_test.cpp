@@ -1,9 +1,4 @@
 // Multigrid, and the order of its nodes.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "core/threads.hpp"
 #include "mechanics/obstacles/vitelline.hpp"

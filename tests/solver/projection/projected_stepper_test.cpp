@@ -1,11 +1,6 @@
 // Linearly implicit steps, and those that project volumes afterwards.
 #include "solver/projection/projected_stepper.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-
 #include "core/threads.hpp"
 #include "solver/make_stepper.hpp"
 #include "solver/projection/linearly_implicit.hpp"

@@ -1,12 +1,7 @@
 // Projection onto held volumes: closed surfaces, roots of cubics, moves of nodes.
 #include "solver/projection/volume_projection.hpp"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <array>
-#include <cmath>
-#include <cstdio>
 
 #include "mechanics/constraints/cell_volume.hpp"
 #include "solver/projection/closed_surface.hpp"
@@ -148,7 +143,7 @@ TEST(VolumeProjection, ACellThatCannotMoveIsNamed) {
   ASSERT_TRUE(report.cell);
   EXPECT_EQ(report.cell->index(), 5u);
   EXPECT_EQ(report.projection_sweeps, 20);
-  EXPECT_NE(report.reason().find("cell 5"), std::string::npos) << report.reason();
+  EXPECT_SAYS(report.reason(), "cell 5");
 }
 
 // One volume around all: its cells may differ, their sum may not.

@@ -1,13 +1,6 @@
 // Differences in time of first and second order, and contacts that come and go within a step.
 #include "solver/step/backward_difference.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <vector>
-
 #include "solver/step/newton_stepper.hpp"
 #include "support/models.hpp"
 #include "tissue/division.hpp"

@@ -1,12 +1,5 @@
 #include "solver/step/newton_stepper.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <limits>
-
 #include "core/threads.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "support/loads.hpp"

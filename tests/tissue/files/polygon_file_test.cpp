@@ -1,13 +1,9 @@
 // Files of polygons, of points and of labelled faces.
 #include "tissue/files/polygon_file.hpp"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -44,14 +40,14 @@ TEST(PolygonFile, Off) {
 }
 
 const std::string ply_header =
-    "element vertex 5\nproperty float x\nproperty float y\nproperty uchar red\nproperty float z\nelement edge 1\n"
-    "property list uchar int two\nelement face 2\nproperty double height\nproperty list uchar int vertex_indices\n"
-    "end_header\n";
+    "element vertex 5\nproperty float x\nproperty float y\nproperty uchar red\nproperty float z\nelement edge "
+    "1\nproperty list uchar int two\nelement face 2\nproperty double height\nproperty list uchar int "
+    "vertex_indices\nend_header\n";
 
 TEST(PolygonFile, PlyAsText) {
-  const PolygonFile file = polygons_in_ply("ply\r\nformat ascii 1.0\ncomment by hand\n" + ply_header +
-                                           "0 0 9 0\n1 0 9 0\n1 1 9 0\n0 1 9 0\n.5 .5 9 2\n2 0 1\n"
-                                           "7.5 3 0 1 4\n8 4 3 2 1 0\n");
+  const PolygonFile file =
+      polygons_in_ply("ply\r\nformat ascii 1.0\ncomment by hand\n" + ply_header +
+                      "0 0 9 0\n1 0 9 0\n1 1 9 0\n0 1 9 0\n.5 .5 9 2\n2 0 1\n7.5 3 0 1 4\n8 4 3 2 1 0\n");
   expect_two_faces(file);
   EXPECT_EQ(file.arrays, (std::map<std::string, CellArray>{{"height", {7.5, 8}}}));
 }
@@ -210,9 +206,9 @@ TEST(PolygonFile, IsReadByItsEnding) {
   expect_mesh_error([&] { read_polygon_file(folder / "a.stl"); },
                     "a.stl: \".stl\" is not the extension of a polygon file");
   write_file(folder / "b.ply",
-             "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty int y\nproperty int z\nelement face 2\n"
-             "property list int int vertex_indices\nproperty float a\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 nan\n"
-             "3 0 1 2 -inf\n");
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty int y\nproperty int z\nelement face "
+             "2\nproperty list int int vertex_indices\nproperty float a\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 "
+             "nan\n3 0 1 2 -inf\n");
   const PolygonFile missing = read_polygon_file(folder / "b.ply");
   for (const double value : missing.arrays.at("a")) EXPECT_TRUE(std::isnan(value));
   EXPECT_THROW(read_polygon_file(folder / "nowhere.ply"), FileError);
@@ -221,7 +217,7 @@ TEST(PolygonFile, IsReadByItsEnding) {
     read_polygon_file(folder / "a.h5");
     ADD_FAILURE();
   } catch (const FileError& error) {
-    EXPECT_NE(std::string(error.what()).find("HDF5"), std::string::npos) << error.what();
+    EXPECT_SAYS(std::string(error.what()), "HDF5") << error.what();
   }
   std::filesystem::remove_all(folder);
 }
@@ -237,8 +233,8 @@ TEST(PointsFile, HasItsColumnsByName) {
 
 TEST(PointsFile, MissingValuesAndTextAreNoNumbers) {
   const PointTable table = points_in_csv(
-      "x_um,y_um,z_um,gene,kind,is_in\n1,2,3,,apical,True\n1,2,3,0.5,basal,false\n1,2,3,NaN,,true\n1,2,3,N/A,-,0\n"
-      "1,2,3,-inf,null,1\n");
+      "x_um,y_um,z_um,gene,kind,is_in\n1,2,3,,apical,True\n1,2,3,0.5,basal,false\n1,2,3,NaN,,true\n1,2,3,N/"
+      "A,-,0\n1,2,3,-inf,null,1\n");
   EXPECT_EQ(table.arrays.size(), 2U);
   EXPECT_EQ(table.arrays.at("is_in"), (std::vector<double>{1, 0, 1, 0, 1}));
   const std::vector<double>& gene = table.arrays.at("gene");
@@ -252,7 +248,7 @@ TEST(PointsFile, SaysInWhichLineWhatIsWrong) {
       points_in_csv(text);
       FAIL() << text;
     } catch (const MeshError& error) {
-      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+      EXPECT_SAYS(std::string(error.what()), said) << error.what();
     }
   };
   expect("", "is empty; the first line must name the columns, including x_um, y_um and z_um");
@@ -316,7 +312,7 @@ TEST(LabelledFaces, FacesOfALabelAreACellWhoseCornersAreWhereThreeMeet) {
   EXPECT_GT(area_vector(cells.surface.vertices, middle).z(), 0);
   EXPECT_EQ(cells.surface.polygons[0].size(), 4U);  // three within, one at the rim
   EXPECT_EQ(label_advice(cells), "");
-  EXPECT_NE(label_advice(file).find("its 72 faces are triangles with 7 values of \"label\""), std::string::npos);
+  EXPECT_SAYS(label_advice(file), "its 72 faces are triangles with 7 values of \"label\"");
 }
 
 TEST(LabelledFaces, WhatIsNoCellIsRefusedOrLeftOut) {

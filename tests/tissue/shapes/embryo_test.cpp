@@ -1,14 +1,7 @@
 // Embryos of the paper's grid, blocks and slices.
 #include "tissue/shapes/embryo.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <map>
-#include <numbers>
-#include <set>
-
+#include "support/testing.hpp"
 #include "tissue/mesh_quality.hpp"
 #include "tissue/shapes/surface_grid.hpp"
 

@@ -1,15 +1,6 @@
 // Sheets of polygons: rectangles, periods, extrusion.
 #include "tissue/shapes/polygon_sheet.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <numbers>
-#include <numeric>
-#include <span>
-
 #include "support/mesh_error.hpp"
 #include "support/whole.hpp"
 #include "tissue/division.hpp"
@@ -84,7 +75,7 @@ TEST(PolygonSheet, BendsToACylinderADomeAndASaddle) {
 TEST(PolygonSheet, IsLowerWhereItBendsSharply) {
   const Tissue tissue = build_sheet({100, 30, {0, 0.1}}, 300, 1, cells);
   ASSERT_FALSE(tissue.remarks.empty());
-  EXPECT_NE(tissue.remarks.back().find("cells are lower than 12 um"), std::string::npos) << tissue.remarks.back();
+  EXPECT_SAYS(tissue.remarks.back(), "cells are lower than 12 um");
 }
 
 TEST(PolygonSheet, SaysWhatIsWrong) {

@@ -1,14 +1,6 @@
 // Surfaces of solid harmonics around an origin, and fits of them.
 #include "tissue/shapes/star_surface.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <random>
-
 #include "support/mesh_error.hpp"
 #include "tissue/shapes/egg_surface.hpp"
 #include "tissue/shapes/solid_harmonics.hpp"

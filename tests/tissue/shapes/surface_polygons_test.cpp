@@ -1,15 +1,6 @@
 // Polygons of points on a surface: even points, cells, rims, bends at vertices.
 #include "tissue/shapes/surface_polygons.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <numeric>
-#include <random>
-
 #include "support/mesh_error.hpp"
 #include "support/prisms.hpp"
 #include "tissue/shapes/egg_surface.hpp"
