@@ -7,8 +7,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 const Extension yolk = [](Model& model) {
   model.constraints.push_back(std::make_unique<EnclosedVolume>(model.tissue));
 };

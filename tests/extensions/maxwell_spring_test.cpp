@@ -12,8 +12,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 class MaxwellSprings final : public Law {
  public:
   struct Spring {

@@ -15,8 +15,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 // 0.5 um/min up to 6 um at 12 min, then 4 um/min; rows as uneven as those of a run.
 TEST(Knee, IsWhereTwoStraightLinesMeet) {
   std::vector<double> times, depths;

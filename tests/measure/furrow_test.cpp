@@ -245,8 +245,7 @@ TEST(Furrow, WavinessIsWhatASmoothFloorLeaves) {
 // From the shell along any direction in y = 0: a sphere's chord, a pill's straight side and caps.
 TEST(Furrow, DepthInsideACapsuleIsTheWayOut) {
   const OuterShape sphere(Capsule{0, 10}), pill(Capsule{20, 10});
-  int cases = 0;
-  for (double angle = 0; angle < 6.28; angle += 0.1, ++cases) {
+  for (double angle = 0; angle < 6.28; angle += 0.1) {
     const Vec3 outward(std::sin(angle), 0, std::cos(angle)), across(outward.z(), 0, -outward.x());
     EXPECT_NEAR(sphere.depth(3 * outward + 6 * across, outward), 5, 1e-12);
     EXPECT_NEAR(sphere.depth(9 * outward + 6 * across, outward), -1, 1e-12);
@@ -254,7 +253,6 @@ TEST(Furrow, DepthInsideACapsuleIsTheWayOut) {
     const Vec3 from(7, 0, -4), out = from + pill.depth(from, outward) * outward;
     EXPECT_NEAR(Vec3(out.x() - std::clamp(out.x(), -20.0, 20.0), 0, out.z()).norm(), 10, 1e-9) << angle;
   }
-  EXPECT_EQ(cases, 63);
 }
 
 template <class Columns>

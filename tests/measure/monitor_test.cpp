@@ -9,8 +9,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 /// Three cells of 20 x 20 x 40 um along x; "left" is the first, nodes at x = -30 and -10.
 Model row_of_three() {
   Model model(build_block({.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}}));

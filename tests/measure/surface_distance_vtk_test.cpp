@@ -4,8 +4,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 /// Distance to a triangle the long way: to its plane where the foot lies inside, else to its edges.
 double to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a).normalized();

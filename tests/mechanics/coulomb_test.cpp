@@ -5,8 +5,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 TEST(Coulomb, IsTheLimitWhereItSlidesAndSmoothWhereItDoesNot) {
   const Coulomb friction{3};
   EXPECT_EQ(friction.force(Vec3::Zero()).norm(), 0);

@@ -11,8 +11,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 const BlockShape three_cells{.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}};
 const BlockShape sheet{.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 3, 1}};
 

@@ -21,8 +21,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 // The work of a law's forces on a straight way of length `size` that takes `size` seconds, by the forces midway, and
 // what the law says of it. Midway, what flows has flown for half of the time.
 struct Work {

@@ -19,8 +19,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 const ElasticModuli moduli = ElasticModuli::from_young(1, 0.45);
 
 // Corotational elasticity by the whole stiffness matrix.

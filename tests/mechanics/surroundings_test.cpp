@@ -5,8 +5,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 TEST(SurfaceDrag, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block(two_cells, 2, 1);
   check_derivatives(SurfaceDrag(tissue, 0.14), tissue, 4);

@@ -32,8 +32,6 @@ namespace plica {
 namespace {
 
 using support::scenario_of;
-using namespace support;
-
 namespace fs = std::filesystem;
 
 class ResultsTest : public support::OwnFolder {};

@@ -14,8 +14,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 class FileKeys : public OwnFolder {
  protected:
   /// Three squares of this size in a row, one apart from them if asked for, with a number each.

@@ -14,8 +14,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 const std::string cortex = "[cortex.a]\nregion = \"all\"\n";
 
 TEST(CortexKeys, SayWhatWouldBeRight) {

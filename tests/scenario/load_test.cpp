@@ -6,8 +6,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 TEST(LoadScenario, FillsDefaults) {
   const Scenario scenario = scenario_of("");
   EXPECT_EQ(scenario.name, "test");

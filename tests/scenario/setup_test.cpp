@@ -14,8 +14,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 // Strip of seven cells with contractions in three regions, of one, three and two cells.
 Scenario three_contractions(const std::string& more = "") {
   std::string text =

@@ -12,8 +12,6 @@ namespace plica {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace support;
-
 // The numbers of a packed array, read back as the page does it.
 std::vector<std::uint32_t> unpacked(const ReportRun& run, const std::string& name) {
   for (const auto& entry : run.json["arrays"]) {

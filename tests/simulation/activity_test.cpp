@@ -12,8 +12,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 constexpr double as_programmed = GivenActivities::as_programmed;
 
 Scenario block_with(const std::string& tables, const std::vector<std::string>& overrides = {}) {

@@ -19,8 +19,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 // A belly that is drawn in, with every law that a mirror goes with.
 const std::string furrow = small_furrow + R"([contraction.net]
 region = "belly"

@@ -10,8 +10,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 TEST(Simulation, GoesToEquilibriumWhereForcesBalanceWithoutDrag) {
   RunControls controls;
   controls.equilibrium_speed_um_per_s = 1e-5;

@@ -14,8 +14,6 @@
 namespace plica {
 namespace {
 
-using support::named_remedies;
-
 const std::string strip = R"(format = 1
 [region.stripe]
 y_um = [-12, 12]
@@ -45,7 +43,6 @@ std::string warning_of(const std::string& shape, const std::vector<std::string>&
 
 // The warning names a key of its scenario, which ends it.
 TEST(BendingWarning, ItsRemedyWorks) {
-  int cases = 0;
   for (const auto& [shape, named, remedy] :
        {std::tuple("shape = \"sheet\"\ncell_count = 48", "compare with embryo.layers = 2", "embryo.layers=2"),
         {"shape = \"block\"\ncells = [4, 12, 1]", "compare with embryo.elements_per_cell = [1, 1, 2]",
@@ -54,9 +51,7 @@ TEST(BendingWarning, ItsRemedyWorks) {
     EXPECT_SAYS(warning, named);
     EXPECT_EQ(warning_of(shape, {remedy}), "");
     EXPECT_EQ(warning_of(shape, {"contraction.apical.stiffness_nN_per_um=0.2"}), "");
-    ++cases;
   }
-  EXPECT_EQ(cases, 2);
 }
 
 double depth_of(const Simulation& simulation) { return simulation.measures()["furrow_depth_um"].value(); }
@@ -148,7 +143,6 @@ std::vector<std::string> remedy_in(const std::string& warning) {
 // Each remedy that a warning names is tried, and ends it.
 TEST(EnergyWarning, NamesARemedyThatWorks) {
   using Texts = std::vector<std::string>;
-  int cases = 0;
   for (const auto& [given, named] :
        {std::pair(Texts{"time.integrator=backward-euler"},
                   Texts{"time.first_step_s to ", "time.tolerance_um to ", "time.integrator to \"bdf2\""}),
@@ -167,9 +161,7 @@ TEST(EnergyWarning, NamesARemedyThatWorks) {
     Texts changed = given;
     changed.insert(changed.end(), remedy.begin(), remedy.end());
     EXPECT_EQ(energy_warning_of(changed), "") << text;
-    ++cases;
   }
-  EXPECT_EQ(cases, 6);
 }
 
 TEST(EnergyWarning, IsSilentWhereNothingIsWrong) {

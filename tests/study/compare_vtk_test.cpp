@@ -12,8 +12,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 namespace fs = std::filesystem;
 
 class CompareTest : public support::OwnFolder {

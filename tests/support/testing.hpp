@@ -27,8 +27,8 @@
 #include <vector>
 
 /// Whether a part is in a text; both are shown where it is not.
-#define EXPECT_SAYS(text, part) EXPECT_PRED_FORMAT2(testing::IsSubstring, part, text)
-#define EXPECT_SAYS_NOT(text, part) EXPECT_PRED_FORMAT2(testing::IsNotSubstring, part, text)
+#define EXPECT_SAYS(text, part) EXPECT_PRED_FORMAT2(testing::IsSubstring, std::string(part), text)
+#define EXPECT_SAYS_NOT(text, part) EXPECT_PRED_FORMAT2(testing::IsNotSubstring, std::string(part), text)
 
 namespace plica::support {
 
@@ -44,3 +44,7 @@ std::string error_of(const Call& call) {
 }
 
 }  // namespace plica::support
+
+namespace plica {
+using namespace support;  // in every test
+}  // namespace plica

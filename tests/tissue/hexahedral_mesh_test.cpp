@@ -14,8 +14,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 HexahedralMesh mesh_of(const Tissue& tissue) { return {tissue.rest_positions, tissue.elements, {}, {}}; }
 
 std::string mesh_error(const HexahedralMesh& mesh) {
@@ -121,12 +119,10 @@ TEST(TissueFromMesh, MergesCoincidentNodes) {
 TEST(TissueFromMesh, RefusesWhatDoesNotFit) {
   const HexahedralMesh good = mesh_of(small_shell());
   ASSERT_EQ(mesh_error(good), "");
-  int cases = 0;
   const auto expect_error = [&](const char* part, const auto& change) {
     HexahedralMesh mesh = good;
     change(mesh);
     EXPECT_SAYS(mesh_error(mesh), part) << mesh_error(mesh) << "; expected: " << part;
-    ++cases;
   };
   expect_error("coordinates must be finite", [](auto& m) { m.points[3].y() = std::nan(""); });
   expect_error("coordinates must be finite", [](auto& m) { m.points[3].y() = INFINITY; });
@@ -139,7 +135,6 @@ TEST(TissueFromMesh, RefusesWhatDoesNotFit) {
   expect_error("a single surface", [](auto& m) { m.cells.erase(m.cells.begin() + 5); });
   // Corners of one cell at one place.
   expect_error("is inverted", [](auto& m) { m.points[m.cells[5][0].index()] = m.points[m.cells[5][1].index()]; });
-  std::cout << cases << " cases\n";
 }
 
 TEST(MeshBytes, ComeBackAsTheMesh) {
@@ -171,7 +166,6 @@ Tissue polygons(PolygonSplit split, int layers = 1) {
 }
 
 TEST(GroupedMesh, ComesBackTheSame) {
-  int count = 0;
   for (const PolygonSplit split : {PolygonSplit::diagonals, PolygonSplit::kites})
     for (const int layers : {1, 3}) {
       const Tissue sheet = polygons(split, layers),
@@ -179,7 +173,6 @@ TEST(GroupedMesh, ComesBackTheSame) {
       for (const Tissue* tissue : {&sheet, &egg}) {
         support::expect_same_tissue(
             tissue_from_mesh(mesh_from_bytes(mesh_to_bytes(mesh_in_groups(*tissue))), {1, 1, 1}), *tissue);
-        ++count;
       }
     }
   for (const std::array<int, 3>& elements : {std::array{2, 2, 1}, {1, 2, 3}}) {
@@ -187,10 +180,8 @@ TEST(GroupedMesh, ComesBackTheSame) {
                  block = build_block({60, 40, 20, {3, 2, 1}, elements});
     for (const Tissue* tissue : {&pill, &block}) {
       support::expect_same_tissue(tissue_from_mesh(mesh_in_groups(*tissue), {1, 1, 1}), *tissue);
-      ++count;
     }
   }
-  EXPECT_EQ(count, 12);
   EXPECT_TRUE(groups_of(build_block({60, 40, 20, {3, 2, 1}, {1, 1, 1}})).is_empty());
 }
 

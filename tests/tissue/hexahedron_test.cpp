@@ -10,8 +10,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 /// A brick of 20 x 20 x 40 um with every corner moved at random: hexahedra with warped faces.
 HexPoints warped(Random& random, double size_um = 6) {
   HexPoints points;

@@ -10,8 +10,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 // Contraction keeps the sheet moving and bent, so that cuts meet deformed cells.
 Model contracting_pill() {
   Model model(build_shell({.length_um = 460, .cells = {18, 9, 8}}));

@@ -22,8 +22,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 constexpr double stiffness = 2, force = 4, length = 20;  // nN/um, nN, um
 // One facet of 20 x 20 um has the node at a corner: drag 0.1 nN s/um^3 times a quarter of it.
 constexpr double drag = 10;  // nN s/um
@@ -286,7 +284,6 @@ double depth_by(const std::string& load, const std::vector<std::string>& overrid
 // Springs on edges only let the middles of kites buckle, and their dimples were the depth: 13 % more by springs, 9 % by
 // a tension.
 TEST(Stripe, IsAsDeepByKitesAsByDiagonals) {
-  int cases = 0;
   for (const std::string load :
        {"[contraction.apical]\nstiffness_nN_per_um = 2", "[contraction.apical]\ntension_mN_per_m = 1.5",
         "[cortex.apical]\ntension_mN_per_m = 2\nsaturation_ratio = 0.3"}) {
@@ -294,9 +291,7 @@ TEST(Stripe, IsAsDeepByKitesAsByDiagonals) {
     std::printf("%s: %.3f um by diagonals, %.3f by kites\n", load.c_str(), diagonals, kites);
     EXPECT_GT(diagonals, 1.5) << load;
     EXPECT_NEAR(kites, diagonals, 0.03 * diagonals) << load;
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 /// Largest distance of a node from its place at rest, once the rigid motion that fits best has been taken back.

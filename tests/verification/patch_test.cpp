@@ -10,8 +10,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 const ElasticModuli moduli = ElasticModuli::from_young(1e6, 0.25);
 
 /// With inner nodes drawn by `calm` towards those of a regular inner cube (1: all the way).

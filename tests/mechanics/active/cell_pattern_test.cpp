@@ -9,7 +9,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
 using Shape = StrengthProfile::Shape;
 using From = StartDelay::From;
 
@@ -179,12 +178,11 @@ TEST(PatternRule, ChanceIsAFunctionOfSeedAndCell) {
 TEST(PatternRule, AnglesAreAboutTheBelly) {
   const Tissue ring = build_slice({.length_um = 7, .diameter_um = 180, .cell_height_um = 35, .cells = {1, 20, 20}});
   PatternRule pattern;
-  int checked = 0;
   for (const double centre : {0.0, 40.0, -170.0}) {
     pattern.profile = {
         .shape = Shape::plateau, .axis = PatternAxis::angle, .centre = centre, .half_width = 30, .fade = 25};
     const CellPattern found = cell_pattern(ring, CellSet(80, true), pattern);
-    for (int c = 0; c < 80; ++c, ++checked) {
+    for (int c = 0; c < 80; ++c) {
       const Vec3 x = cell_centre(ring.cells[c], ring.rest_positions);
       double d = std::abs(std::atan2(x.y(), -x.z()) * 180 / M_PI - centre);
       if (d > 180) d = 360 - d;
@@ -192,7 +190,6 @@ TEST(PatternRule, AnglesAreAboutTheBelly) {
       EXPECT_NEAR(found.strengths[c], expected, 1e-9) << c;
     }
   }
-  EXPECT_EQ(checked, 240);
 }
 
 TEST(PatternRule, TablesAreLinearBetweenTheirPoints) {

@@ -10,8 +10,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 CellSet all_cells(const Tissue& tissue) { return CellSet(tissue.cells.size(), true); }
 
 // All that a cortex can be, with numbers of the furrow's size.

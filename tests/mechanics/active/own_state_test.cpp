@@ -12,7 +12,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
 using Kind = OwnStateRule::Kind;
 
 // Three cells in a row, apices on top.

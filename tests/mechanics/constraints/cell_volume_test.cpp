@@ -6,8 +6,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 const BlockShape refined{
     .length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}, .elements_per_cell = {2, 1, 1}};
 

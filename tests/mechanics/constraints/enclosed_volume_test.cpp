@@ -9,8 +9,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 TEST(HeldVolume, IsTheLumen) {
   const Tissue tissue = build_shell({200, 100, 20, {6, 4, 4}, {1, 1, 1}});
   const EnclosedVolume volume(tissue);

@@ -8,8 +8,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 TEST(Ties, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = build_slice({14, 180, 35, {2, 4, 4}, {1, 1, 1}});
   const std::vector<Ties::Tie> ties = ties_along_x(tissue);

@@ -11,9 +11,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-using support::Random;
-
 // The upper one, with the pairs of where it was at rest.
 Motion moved_down(const Tissue& tissue, const SelfContact& law, std::size_t upper, double by) {
   Motion motion = at_rest(tissue);

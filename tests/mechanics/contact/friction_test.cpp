@@ -12,8 +12,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 constexpr double coefficient = 0.5;
 
 // A block of 3 x 3 cells on a larger, fixed one; what they have between them is pressed by 0.1 um.

@@ -8,8 +8,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 // A strip of cells, bent into a U whose inner, apical sides face each other across `gap_um`.
 Tissue folded(double gap_um, int cells = 12) {
   const double inner = gap_um / 2, height = 10, arm = 60;

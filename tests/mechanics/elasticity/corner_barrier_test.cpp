@@ -10,8 +10,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 // A threshold above all that these motions do, so that every corner is pushed; nothing is inside out yet.
 TEST(CornerBarrier, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block({.length_um = 40, .width_um = 40, .cells = {2, 2, 1}}, 2, 3);

@@ -8,8 +8,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 constexpr double young = 1.0;  // kPa: the paper's 1000 Pa
 constexpr double poisson = 0.3;
 

@@ -10,8 +10,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 const BlockShape one_cell{.length_um = 20, .width_um = 30, .cell_height_um = 40, .cells = {1, 1, 1}};
 
 NeoHookean law_of(const Tissue& tissue, double mu, double relaxation_s = 0, Kernels kernels = chosen_kernels()) {

@@ -5,8 +5,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 // The apical face of a block, 100 um from the axis, and a shell this far from it.
 Tissue block() {
   Tissue tissue = build_block({.length_um = 40, .width_um = 20, .cell_height_um = 10, .cells = {4, 2, 1}});

@@ -6,8 +6,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 const Capsule pill{90, 140};
 const Capsule ball{0, 140};
 

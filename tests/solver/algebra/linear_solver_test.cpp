@@ -14,8 +14,6 @@
 namespace plica {
 namespace {
 
-using support::Random;
-
 /// A random sparse quasi-definite matrix [A B^T; B -C], A and C positive definite, as pattern and values.
 struct System {
   Rows pattern;
@@ -192,7 +190,6 @@ struct BlockSystem {
 
 TEST(BlockCholesky, AgreesWithASolveInDoublePrecision) {
   const std::array<int, 3> sizes[] = {{2, 2, 2}, {9, 1, 1}, {4, 3, 2}, {12, 9, 2}, {7, 6, 8}, {20, 16, 2}, {60, 60, 2}};
-  int cases = 0;
   for (const auto& [nx, ny, nz] : sizes) {
     const BlockSystem system(nx, ny, nz);
     for (const Kernels kernels : available_kernels()) {
@@ -202,9 +199,7 @@ TEST(BlockCholesky, AgreesWithASolveInDoublePrecision) {
       cholesky.solve(x);
       EXPECT_LT(system.error(x), 2e-6) << nx << " x " << ny << " x " << nz << ", " << name(kernels);
     }
-    ++cases;
   }
-  EXPECT_EQ(cases, 7);
 }
 
 TEST(BlockCholesky, GivesTheSameBitsAgainAndAfterAnotherMatrix) {
@@ -319,7 +314,6 @@ struct Example {
 constexpr int shapes[][2] = {{3, 3}, {3, 40}, {6, 16}, {6, 17}, {9, 9}, {12, 100}, {15, 48}, {21, 31}, {33, 210}};
 
 TEST(PanelProducts, AreThoseOfTheDenseMatrixForAnyKernels) {
-  int cases = 0;
   for (const Kernels kernels : available_kernels())
     for (const auto& [width, rows] : shapes) {
       const Example example(width, rows);
@@ -339,9 +333,7 @@ TEST(PanelProducts, AreThoseOfTheDenseMatrixForAnyKernels) {
       Eigen::VectorXf back = Eigen::VectorXf::Constant(width, none);
       multiply_transposed(example.panel(), y.data(), back.data());
       EXPECT_LT((back - example.dense.transpose() * numbers.head(rows)).cwiseAbs().maxCoeff(), 1e-4F) << name(kernels);
-      ++cases;
     }
-  EXPECT_EQ(cases, 9 * available_kernels().size());
 }
 
 }  // namespace

@@ -11,8 +11,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 /// An iterate somewhat off balance, with some nodes on the shell, and its residual.
 struct Case {
   explicit Case(const Model& m, unsigned seed = 1) : model(m), random(seed) {

@@ -12,8 +12,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 std::vector<double> volume_rates(const StepMatrix& matrix, const Vectors& direction) {
   std::vector<double> rates(matrix.jacobian().sparse_rows());
   matrix.jacobian().rates(direction, rates);

@@ -11,8 +11,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 using Weights = ProjectionRule::Weights;
 using Forces = StepScheme::Forces;
 

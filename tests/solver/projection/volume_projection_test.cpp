@@ -12,8 +12,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 constexpr double duration_s = 2;
 
 /// At rest but for the nodes, which lie elsewhere.

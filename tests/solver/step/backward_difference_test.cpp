@@ -8,8 +8,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 using Motion = std::function<Vec3(double)>;
 
 /// States of one node on its way at the ends of steps of these lengths.

@@ -8,8 +8,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 /// Several steps; every one has to converge.
 State steps(NewtonStepper& solver, State state, double duration_s, int count, State* before_last = nullptr) {
   State next;
@@ -153,7 +151,6 @@ TEST(NewtonStepper, HeldNodesOnTheShellStayWhereTheyAre) {
   for (std::size_t c = 0; c < model.tissue.cells.size(); ++c)
     if (model.tissue.cells[c].grid_place->face == GridPlace::Face::anterior)
       for (int corner = 4; corner < 8; ++corner) held.push_back(model.tissue.cells[c].corners[corner].index());
-  int cases = 0;
   for (const std::array<bool, 3>& directions :
        {std::array<bool, 3>{true, true, true}, {true, false, false}, {false, true, true}}) {
     for (const std::size_t n : held) model.held[n] = directions;
@@ -168,9 +165,7 @@ TEST(NewtonStepper, HeldNodesOnTheShellStayWhereTheyAre) {
         if (directions[axis]) {
           EXPECT_NEAR(after.positions[n][axis], model.tissue.rest_positions[n][axis], 1e-12);
         }
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 TEST(NewtonStepper, OneAndTwoThreadsGiveTheSameBits) {

@@ -15,8 +15,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 namespace fs = std::filesystem;
 
 class FrameFileTest : public support::OwnFolder {
@@ -77,7 +75,6 @@ TEST_F(FrameFileTest, ReadsSurfacesInSeveralFormats) {
             "face 1\nproperty list uchar int vertex_indices\nend_header\n" +
                 off_plane + "4 0 1 2 3\n"),
   };
-  int cases = 0;
   for (const fs::path& file : files) {
     const TriangleSurface surface = read_surface(file);
     double area = 0;
@@ -85,13 +82,11 @@ TEST_F(FrameFileTest, ReadsSurfacesInSeveralFormats) {
       area += (surface.points[b] - surface.points[a]).cross(surface.points[c] - surface.points[a]).norm() / 2;
     EXPECT_EQ(surface.triangles.size(), 2U) << file;
     EXPECT_NEAR(area, 16, 1e-5) << file;
-    ++cases;
   }
   // Of a volume mesh, its boundary: 14 faces of three cells in a row.
   const Tissue block = build_block({60, 20, 40, {3, 1, 1}, {1, 1, 1}});
   write_mesh(folder / "block.vtu", block, block.rest_positions, {});
   EXPECT_EQ(read_surface(folder / "block.vtu").triangles.size(), 28U);
-  std::cout << cases + 1 << " files\n";
 }
 
 TEST_F(FrameFileTest, WhatCannotBeReadSaysWhy) {
@@ -104,22 +99,18 @@ TEST_F(FrameFileTest, WhatCannotBeReadSaysWhy) {
   write_mesh(folder / "whole.vtu", block, block.rest_positions, {});
   const std::string whole = read_file(folder / "whole.vtu");
   const fs::path torn = write("torn.vtu", whole.substr(0, whole.size() / 2));
-  int cases = 0;
   for (const fs::path& file : {missing, text, torn, folder}) {
     error<FileError>(read_frame, file);
     error<FileError>(read_surface, file);
-    cases += 2;
   }
   for (const fs::path& file : {folder / "missing.pvd", empty, cut, untimed}) {
     error<FileError>(read_collection, file);
-    ++cases;
   }
   EXPECT_SAYS(error<FileError>(read_surface, points), "no face");
   const fs::path triangle = write("triangle.vtk",
                                   "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 "
                                   "0 0 1 0 0 0 1 0\nCELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n");
   EXPECT_SAYS(error<MeshError>(read_frame, triangle), "vtkTriangle");
-  std::cout << cases + 2 << " cases\n";
 }
 
 class PolygonFileVtk : public support::OwnFolder {

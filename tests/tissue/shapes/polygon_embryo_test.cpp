@@ -17,8 +17,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 const EggShape small_egg{250, 120, 120, 11.0, 5.0};
 
 class PolygonEmbryo : public testing::TestWithParam<PolygonSplit> {};

@@ -14,8 +14,6 @@
 namespace plica {
 namespace {
 
-using namespace support;
-
 const PolygonCells cells{12, PolygonSplit::diagonals, 1};
 
 TEST(PolygonSheet, FillsItsRectangle) {
@@ -185,7 +183,6 @@ TEST(RectanglePolygons, OfTwoPointsAreHalves) {
 
 // Three edges meet at each vertex. On a torus V - E + F = 0 then says E = 3 F: six neighbours on average.
 TEST(RectanglePolygons, OfTwoPeriodsHaveSixNeighboursOnAverage) {
-  int cases = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5})
     for (const std::size_t count : {24, 60, 200}) {
       const Rectangle rectangle{{90, 70}, {true, true}};
@@ -200,9 +197,7 @@ TEST(RectanglePolygons, OfTwoPeriodsHaveSixNeighboursOnAverage) {
         own += surface.periods.original(v) == v;
       }
       EXPECT_EQ(own, 2 * count);
-      ++cases;
     }
-  std::printf("%d patterns\n", cases);
 }
 
 TEST(RectanglePolygons, OfOnePeriodHaveARimOnTheOtherSides) {
