@@ -3,6 +3,7 @@
 
 #include "extensions/extension_checks.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
+#include "support/ran.hpp"
 
 namespace plica {
 namespace {

@@ -27,9 +27,7 @@ TEST(WholeTissue, IsMeasuredByDisplacementHeightAndVolume) {
   for (Vec3& position : positions) position = Vec3(position.x(), position.y(), 1.5 * position.z());
   positions[0] += Vec3(3, 4, 0);
   EXPECT_NEAR(tissue_volume(model, positions) / (60 * 40 * 12), 1.5, 0.2);
-  double farthest = 0;
-  for (std::size_t n = 0; n < positions.size(); ++n)
-    farthest = std::max(farthest, (positions[n] - model.tissue.rest_positions[n]).norm());
+  const double farthest = largest_distance(positions, model.tissue.rest_positions);
   EXPECT_NEAR(max_displacement(model.tissue, positions), farthest, 1e-12);
 }
 

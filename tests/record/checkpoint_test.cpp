@@ -206,12 +206,7 @@ TEST_F(CheckpointTest, AnotherFormatIsNamed) {
   for (const char* format : {"1 ", "20", "0 "}) {
     std::string other = bytes;
     other.replace(bytes.size() - trailer_bytes + mark.size() - 2, 2, format);
-    try {
-      (void)read_checkpoint_bytes(other);
-      ADD_FAILURE() << format;
-    } catch (const FileError& error) {
-      EXPECT_SAYS(std::string(error.what()), "format") << error.what();
-    }
+    EXPECT_SAYS(error_of<FileError>([&] { return read_checkpoint_bytes(other); }), "format");
   }
 }
 
@@ -220,12 +215,7 @@ TEST_F(CheckpointTest, RowsOfOtherColumnsAreNamed) {
   const std::size_t at = bytes.find("furrow_depth_um\n");
   ASSERT_NE(at, std::string::npos);
   bytes.replace(at, 15, "furrow_width_um");
-  try {
-    (void)read_checkpoint_bytes(made_right(bytes));
-    ADD_FAILURE();
-  } catch (const FileError& error) {
-    EXPECT_SAYS(std::string(error.what()), "other columns") << error.what();
-  }
+  EXPECT_SAYS(error_of<FileError>([&] { return read_checkpoint_bytes(made_right(bytes)); }), "other columns");
 }
 
 // How long each list of internal states is stands beside all of their numbers.

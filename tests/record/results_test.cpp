@@ -62,12 +62,7 @@ TEST_F(ResultsTest, WhatIsNoSeriesNamesItsLine) {
            {"time_s,a\n,0\n", ":2: time missing"},
        }) {
     const fs::path file = write("series.csv", text);
-    try {
-      (void)read_series(file);
-      ADD_FAILURE() << text;
-    } catch (const FileError& error) {
-      EXPECT_SAYS(std::string(error.what()), file.string() + part) << error.what();
-    }
+    EXPECT_SAYS(error_of<FileError>([&] { return read_series(file); }), file.string() + part);
   }
 }
 
@@ -221,12 +216,7 @@ TEST(Outcome, TellsOfSelfIntersectionsWithTheirRemedy) {
 
 // What the FileError says that comes out; nothing when none does.
 std::string complaint(const std::function<void()>& read) {
-  try {
-    read_on_trial(read, 0);
-    return "";
-  } catch (const FileError& error) {
-    return error.what();
-  }
+  return error_of<FileError>([&] { read_on_trial(read, 0); });
 }
 
 TEST(ReadingTrial, LetsErrorsOut) {

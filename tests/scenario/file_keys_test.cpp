@@ -1,6 +1,4 @@
 // Keys of files (meshes, points, bases), of sheets and embryos of polygons, and of periods.
-#include <unistd.h>
-
 #include "core/files.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/load.hpp"
@@ -250,10 +248,7 @@ TEST(PolygonKeys, RegionsByAngleAndLength) {
   EXPECT_GT(inside, 20);
 }
 
-TEST(PolygonKeys, RegionsOfMeasuredArrays) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / ("plica_points_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+TEST_F(FileKeys, RegionsOfMeasuredArrays) {
   const std::string table = numbered_points("gene");
   write_file(folder / "points.csv", table);
   const std::string points = "format = 1\n[embryo]\nshape = \"points\"\nfile = \"points.csv\"\ncell_height_um = 15\n";
@@ -271,7 +266,6 @@ TEST(PolygonKeys, RegionsOfMeasuredArrays) {
   EXPECT_THROW(tissue_of("[region.r]\narray = \"other\"\n"), ScenarioError);
   write_file(folder / "points.csv", table + "0,0,61,1\n0,0,61,1\n");
   EXPECT_THROW(tissue_of(""), ScenarioError);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(PolygonKeys, AHeldRimIsHeldAndNothingElse) {

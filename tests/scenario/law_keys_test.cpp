@@ -1,13 +1,11 @@
 // Keys of [cortex.NAME], and of the interior of cells: moduli, flow.
 
 #include "measure/monitor.hpp"
-#include "record/archive.hpp"
-#include "record/checkpoint.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
-#include "simulation/simulation.hpp"
 #include "support/block_scenario.hpp"
+#include "support/resumed.hpp"
 #include "support/scenarios.hpp"
 #include "support/small_furrow.hpp"
 
@@ -164,15 +162,11 @@ TEST(CortexKeys, ARunGoesOnToTheSameBits) {
   while (whole.step())
     if (whole.steps() == 12) kept = whole.memory(), measures = whole.measures();
   ASSERT_TRUE(kept);
-  Checkpoint checkpoint{"", "", "", *kept, {}};
-  checkpoint.record.rows.push_back(measures);
-  if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
   Simulation rest(scenario);
-  rest.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  go_on_by_bytes(rest, *kept, measures);
   EXPECT_EQ(rest.run(), whole.status());
   EXPECT_EQ(rest.steps(), whole.steps());
-  EXPECT_EQ(rest.state().positions, whole.state().positions);
-  EXPECT_EQ(rest.state().internals, whole.state().internals);
+  expect_same(rest.state(), whole.state());
   std::size_t remembered = 0;
   for (const auto& internal : whole.state().internals) remembered += internal.size();
   EXPECT_GT(remembered, 0u);
@@ -335,13 +329,8 @@ TEST(InteriorKeys, ARegionOfAllCellsIsLikeNone) {
     const Vectors a = end("[elasticity]\nyoung_modulus_Pa = 300\n" + volume);
     const Vectors b = end("[elasticity.all]\nregion = \"all\"\nyoung_modulus_Pa = 300\n" + volume);
     const Vectors other = end(volume);
-    double apart = 0, without = 0;
-    for (std::size_t n = 0; n < a.size(); ++n) {
-      apart = std::max(apart, (a[n] - b[n]).norm());
-      without = std::max(without, (a[n] - other[n]).norm());
-    }
-    EXPECT_LE(apart, 1e-6);
-    EXPECT_GT(without, 0.1);
+    EXPECT_LE(largest_distance(a, b), 1e-6);
+    EXPECT_GT(largest_distance(a, other), 0.1);
   }
 }
 

@@ -360,13 +360,8 @@ TEST(LoadScenario, ReportsWrongOverrides) {
 }
 
 TEST(FindScenario, SaysWhichNameIsNear) {
-  try {
-    find_scenario("drosofila");
-    FAIL();
-  } catch (const UsageError& error) {
-    EXPECT_STREQ(error.what(),
-                 "\"drosofila\" is neither a built-in scenario nor a file; use \"drosophila\" (nearest match)");
-  }
+  EXPECT_EQ(error_of<UsageError>([] { return find_scenario("drosofila"); }),
+            "\"drosofila\" is neither a built-in scenario nor a file; use \"drosophila\" (nearest match)");
   EXPECT_THROW(find_scenario("/"), FileError);
 }
 

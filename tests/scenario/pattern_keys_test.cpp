@@ -1,6 +1,4 @@
 // Keys of patterns, of cell arrays and of [ablation.NAME].
-#include <unistd.h>
-
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "mechanics/active/contraction.hpp"
@@ -73,10 +71,9 @@ TEST(PatternKeys, ProfilesOfAScenario) {
   EXPECT_EQ(resolved_toml(load_scenario({"test", "test.toml", printed})), printed);
 }
 
-TEST(PatternKeys, ProfilesByAnArray) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / ("plica_arrays_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+using PatternFiles = OwnFolder;
+
+TEST_F(PatternFiles, ProfilesByAnArray) {
   write_file(folder / "points.csv", numbered_points("twi"));
   const std::string points = "format = 1\n[embryo]\nshape = \"points\"\nfile = \"points.csv\"\ncell_height_um = 15\n";
   const std::string act = "[contraction.a]\nregion = \"all\"\nstiffness_nN_per_um = 1\nprofile = ";
@@ -100,7 +97,6 @@ TEST(PatternKeys, ProfilesByAnArray) {
       errors_in([&] { return make_model(load("{ shape = \"array\", array = \"sna\", from = 0, to = 1 }")); });
   EXPECT_SAYS(errors,
               "test.toml:9: contraction.a.profile.array: the embryo has no array \"sna\"; set array to one of: twi");
-  std::filesystem::remove_all(folder);
 }
 
 // Messages contain line, key and remedy.

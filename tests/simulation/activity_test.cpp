@@ -8,6 +8,7 @@
 #include "simulation/simulation.hpp"
 #include "support/divided.hpp"
 #include "support/ran.hpp"
+#include "support/resumed.hpp"
 
 namespace plica {
 namespace {
@@ -28,10 +29,7 @@ const std::string cortex =
     "[cortex.apical]\nregion = \"middle\"\ntension_mN_per_m = 1\nstiffness_mN_per_m = 1\nrelaxation_s = 60\n";
 
 double farthest(const Simulation& a, const Simulation& b) {
-  double most = 0;
-  for (std::size_t n = 0; n < a.state().positions.size(); ++n)
-    most = std::max(most, (a.state().positions[n] - b.state().positions[n]).norm());
-  return most;
+  return largest_distance(a.state().positions, b.state().positions);
 }
 
 std::vector<double> all(const Simulation& simulation, double activity) {
@@ -175,12 +173,7 @@ TEST(CellArray, IsInheritedByDaughters) {
 TEST(CellArray, ThatFitsNoCellIsRefused) {
   Simulation simulation(row_of_cells());
   const auto refused = [&](const std::string& name, const CellArray& values, const std::string& said) {
-    try {
-      simulation.set_cell_array(name, values);
-      ADD_FAILURE() << name;
-    } catch (const UsageError& error) {
-      EXPECT_SAYS(std::string(error.what()), said) << error.what();
-    }
+    EXPECT_SAYS(error_of<UsageError>([&] { simulation.set_cell_array(name, values); }), said);
   };
   refused("signal", {1, 2}, "2 values for 3 cells");
   refused("signal", {1, 2, std::numeric_limits<double>::quiet_NaN()}, "the value of cell 2 is nan");
@@ -227,22 +220,16 @@ Vectors end_of(const std::vector<std::string>& overrides) {
   return simulation.state().positions;
 }
 
-double largest_difference(const Vectors& a, const Vectors& b) {
-  double largest = 0;
-  for (std::size_t n = 0; n < a.size(); ++n) largest = std::max(largest, (a[n] - b[n]).norm());
-  return largest;
-}
-
 // Backward Euler errs in proportion to its step: half the step, half the difference.
 TEST(Pulses, HalfTheStepHalvesTheError) {
   const std::string first_order = "time.integrator=backward-euler";
   const Vectors two = end_of({first_order, "time.step_s=2"}), one = end_of({first_order, "time.step_s=1"}),
                 half = end_of({first_order, "time.step_s=0.5"});
-  const double coarse = largest_difference(two, one), fine = largest_difference(one, half);
+  const double coarse = largest_distance(two, one), fine = largest_distance(one, half);
   EXPECT_GT(coarse, 0.01);
   EXPECT_NEAR(coarse / fine, 2, 0.3);
   // Adaptive steps agree within some times their tolerance.
-  EXPECT_LT(largest_difference(end_of({"time.tolerance_um=0.005"}), half), 2 * fine + 0.1);
+  EXPECT_LT(largest_distance(end_of({"time.tolerance_um=0.005"}), half), 2 * fine + 0.1);
 }
 
 TEST(Pulses, StepsSeeThemAndTheRunGoesOn) {
@@ -275,8 +262,7 @@ TEST(Pulses, ResumedRunsGoOnToTheSameBits) {
   Simulation rest(scenario_of({}));
   rest.go_on_from(memory, measures);
   rest.run();
-  EXPECT_EQ(rest.state().positions, whole.state().positions);
-  EXPECT_EQ(rest.state().internals, whole.state().internals);
+  expect_same(rest.state(), whole.state());
 }
 
 Model row_model(int cells) {

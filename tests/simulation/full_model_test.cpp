@@ -4,13 +4,11 @@
 #include "core/threads.hpp"
 #include "measure/self_intersections.hpp"
 #include "mechanics/active/cortex.hpp"
-#include "record/archive.hpp"
-#include "record/checkpoint.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
-#include "simulation/simulation.hpp"
 #include "support/models.hpp"
 #include "support/ran.hpp"
+#include "support/resumed.hpp"
 #include "support/small_furrow.hpp"
 #include "support/tissues.hpp"
 #include "tissue/shapes/polygon_sheet.hpp"
@@ -206,10 +204,7 @@ TEST(FullModel, AFurrowBetweenTwoPlanesIsThatOfTheWhole) {
     Simulation mirrored(scenario_of(furrow, with(fine, plane)));
     ASSERT_EQ(mirrored.run(), RunStatus::end_time) << mirrored.failure();
     expect_same_end(plain, mirrored, 0.02);
-    double apart = 0;
-    for (std::size_t n = 0; n < plain.state().positions.size(); ++n)
-      apart = std::max(apart, (plain.state().positions[n] - mirrored.state().positions[n]).norm());
-    EXPECT_LT(apart, 0.05);
+    EXPECT_LT(largest_distance(plain.state().positions, mirrored.state().positions), 0.05);
     const std::vector<double>&forces = mirrored.state().contact_forces, &plain_forces = plain.state().contact_forces;
     double sum = 0, plain_sum = 0;
     for (std::size_t k = 0; k < forces.size(); ++k) sum += forces[k], plain_sum += plain_forces[k];
@@ -246,17 +241,12 @@ TEST(FullModel, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_EQ(whole.state().internals, on_three.state().internals);
   ASSERT_TRUE(kept);
 
-  Checkpoint checkpoint{"", "", "", *kept, {}};
-  checkpoint.record.rows.push_back(measures);
-  if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
   Simulation resumed(scenario);
-  resumed.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  go_on_by_bytes(resumed, *kept, measures);
   for (Simulation* rest : {&resumed, &*fork}) {
     EXPECT_EQ(rest->run(), whole.status());
     EXPECT_EQ(rest->steps(), whole.steps());
-    EXPECT_EQ(rest->state().positions, whole.state().positions);
-    EXPECT_EQ(rest->state().velocities, whole.state().velocities);
-    EXPECT_EQ(rest->state().internals, whole.state().internals);
+    expect_same(rest->state(), whole.state());
     EXPECT_EQ(rest->measures().values, whole.measures().values);
   }
 
@@ -294,13 +284,6 @@ Vectors moves(const SheetShape& shape, const Vectors& points, LinearMethod metho
   return result;
 }
 
-double apart(std::span<const Vec3> one, std::span<const Vec3> other) {
-  EXPECT_EQ(one.size(), other.size());
-  double most = 0;
-  for (std::size_t i = 0; i < one.size(); ++i) most = std::max(most, (one[i] - other[i]).norm());
-  return most;
-}
-
 // The middle of a longer sheet is the same, when that is endless, too.
 TEST(PeriodicRun, TwoPeriodsDoWhatOneDoes) {
   const Vectors points = even_points(rectangle, 70, 1);
@@ -309,7 +292,7 @@ TEST(PeriodicRun, TwoPeriodsDoWhatOneDoes) {
     for (const Vec3& x : points) twice.push_back(x + shift * Vec3::UnitX());
   const Vectors one = moves(sheet, points), both = moves({2 * length, width, {0, 0}, {true, true}}, twice);
   for (const std::size_t first : {std::size_t{0}, points.size()}) {
-    const double difference = apart(one, std::span(both).subspan(first, points.size()));
+    const double difference = largest_distance(one, std::span(both).subspan(first, points.size()));
     std::printf("%.1e um apart\n", difference);
     EXPECT_LT(difference, 1e-9);
   }
@@ -318,7 +301,7 @@ TEST(PeriodicRun, TwoPeriodsDoWhatOneDoes) {
 TEST(PeriodicRun, IsTheSameWithEveryLinearSolver) {
   const Vectors points = even_points(rectangle, 70, 1), expected = moves(sheet, points, LinearMethod::direct);
   for (const LinearMethod method : {LinearMethod::cholesky, LinearMethod::multigrid})
-    EXPECT_LT(apart(expected, moves(sheet, points, method)), 1e-6);
+    EXPECT_LT(largest_distance(expected, moves(sheet, points, method)), 1e-6);
 }
 
 // With contact and second order in time; so many cells that threads share loops.
@@ -347,25 +330,18 @@ at_equilibrium = false
 )"});
   Simulation whole(scenario);
   for (int step = 0; step < 5; ++step) ASSERT_TRUE(whole.step()) << whole.failure();
-  Checkpoint checkpoint{"", "", "", whole.memory(), {}};
-  checkpoint.record.rows.push_back(whole.measures());
-  if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
   Simulation resumed(scenario), fork = whole;
-  resumed.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  go_on_by_bytes(resumed, whole.memory(), whole.measures());
   ASSERT_EQ(whole.run(), RunStatus::end_time) << whole.failure();
   ASSERT_EQ(resumed.run(), RunStatus::end_time) << resumed.failure();
   const ThreadCount two(2);
   ASSERT_EQ(fork.run(), RunStatus::end_time) << fork.failure();
-  for (const Simulation* other : {&resumed, &fork}) {
-    EXPECT_EQ(other->state().positions, whole.state().positions);
-    EXPECT_EQ(other->state().velocities, whole.state().velocities);
-    EXPECT_EQ(other->state().multipliers, whole.state().multipliers);
-  }
+  for (const Simulation* other : {&resumed, &fork}) expect_same(other->state(), whole.state());
   // Images have stayed where they belong, but for rounding.
   const Tissue& tissue = whole.model().tissue;
   Vectors placed = whole.state().positions;
   tissue.place_hanging_positions(placed);
-  EXPECT_LT(apart(placed, whole.state().positions), 1e-10);
+  EXPECT_LT(largest_distance(placed, whole.state().positions), 1e-10);
 }
 
 }  // namespace

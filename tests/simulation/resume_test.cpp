@@ -1,10 +1,10 @@
 // A run that goes on from a memory of itself ends in the same bits as one that was never interrupted.
 
 #include "core/threads.hpp"
-#include "record/checkpoint.hpp"
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
 #include "support/loads.hpp"
+#include "support/resumed.hpp"
 #include "support/roofs.hpp"
 
 namespace plica {
@@ -43,22 +43,6 @@ Trace trace(const std::string& name, const std::vector<std::string>& overrides, 
   return trace;
 }
 
-void expect_same(const State& a, const State& b) {
-  EXPECT_EQ(a.time_s, b.time_s);
-  EXPECT_EQ(a.positions, b.positions);
-  EXPECT_EQ(a.velocities, b.velocities);
-  EXPECT_EQ(a.multipliers, b.multipliers);
-  EXPECT_EQ(a.contact_forces, b.contact_forces);
-  EXPECT_EQ(a.in_contact, b.in_contact);
-  EXPECT_EQ(a.divided_until_s, b.divided_until_s);
-  EXPECT_EQ(a.trend.step_s, b.trend.step_s);
-  EXPECT_EQ(a.trend.earlier_s, b.trend.earlier_s);
-  EXPECT_EQ(a.trend.mean_velocities, b.trend.mean_velocities);
-  EXPECT_EQ(a.trend.accelerations, b.trend.accelerations);
-  EXPECT_EQ(a.trend.multiplier_rates, b.trend.multiplier_rates);
-  EXPECT_EQ(a.internals, b.internals);
-}
-
 // Goes on from every `every`th step of the run.
 void expect_resumable(const std::string& name, const std::vector<std::string>& overrides, std::size_t every) {
   const Trace whole = trace(name, overrides);
@@ -92,9 +76,7 @@ TEST(Resume, WithAnotherOrder) {
   for (const Trace& changed : {trace("drosophila", second, &of_first, half(of_first)),
                                trace("drosophila", first, &of_second, half(of_second))}) {
     EXPECT_EQ(changed.status, RunStatus::end_time) << changed.failure;
-    double apart = 0;
-    for (std::size_t n = 0; n < changed.end.state.positions.size(); ++n)
-      apart = std::max(apart, (changed.end.state.positions[n] - of_second.end.state.positions[n]).norm());
+    const double apart = largest_distance(changed.end.state.positions, of_second.end.state.positions);
     EXPECT_LT(apart, 0.3) << "backward Euler alone is off by as much";
     EXPECT_GT(apart, 1e-6) << "it went on with the order of before";
   }
@@ -149,12 +131,9 @@ TEST(Resume, WithEdgesThatPress) {
   };
   Simulation whole = fresh();
   while (!press(whole)) ASSERT_TRUE(whole.step()) << whole.failure();
-  Checkpoint checkpoint{"", "", "", whole.memory(), {}};
-  checkpoint.record.rows.push_back(whole.measures());
   Simulation fork = whole, resumed = fresh(), from_bytes = fresh();
   resumed.go_on_from(whole.memory(), whole.measures());
-  if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
-  from_bytes.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  go_on_by_bytes(from_bytes, whole.memory(), whole.measures());
   int steps = 0, pressed = 0;
   while (whole.step()) {
     ++steps, pressed += press(whole);

@@ -43,9 +43,7 @@ TEST(Simulation, RestDoesNotDependOnTheStep) {
       ends.push_back(result.state());
     }
   double worst = 0;
-  for (const State& end : ends)
-    for (std::size_t n = 0; n < end.positions.size(); ++n)
-      worst = std::max(worst, (end.positions[n] - ends[0].positions[n]).norm());
+  for (const State& end : ends) worst = std::max(worst, largest_distance(end.positions, ends[0].positions));
   std::printf(
       "block at rest: positions differ by %.1e um between steps of 2, 5, 20 s and adaptive ones, of both orders\n",
       worst);

@@ -1,14 +1,13 @@
 // Calibration, and its search for targets.
 #include "study/calibrate.hpp"
 
-#include <unistd.h>
-
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "scenario/print.hpp"
 #include "study/quiet_run.hpp"
 #include "study/target_search.hpp"
 #include "support/block_scenario.hpp"
+#include "support/own_folder.hpp"
 
 namespace plica {
 namespace {
@@ -26,14 +25,7 @@ const std::string stiffness = "contraction.all.stiffness_nN_per_um=0.1:20";
 const std::string across = "contraction.all.across_ratio=0.1:4";
 
 // The message of the UsageError or ScenarioError that it throws.
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
-}
+std::string refusal(const std::function<void()>& call) { return error_of<std::runtime_error>(call); }
 
 TEST(CalibrationProblem, ReadsKeysAndTargets) {
   const VariedKey key = parse_varied_key("a.b=-1e-3:2.5");
@@ -106,7 +98,9 @@ TEST(Calibrate, MeetsOneTargetWithOneKey) {
   EXPECT_NEAR(again, 28, 0.001);
 }
 
-TEST(Calibrate, MeetsTwoTargetsWithTwoKeysAndWritesTheScenario) {
+using CalibratedFile = OwnFolder;
+
+TEST_F(CalibratedFile, MeetsTwoTargetsWithTwoKeys) {
   const CalibrationProblem problem =
       block_problem({stiffness, across}, {"end.position_um=28~0.01", "side.position_um=19.5~0.01"});
   const Calibration found = calibrate(problem);
@@ -115,7 +109,6 @@ TEST(Calibrate, MeetsTwoTargetsWithTwoKeysAndWritesTheScenario) {
   EXPECT_LE(found.trials, 25);
   EXPECT_EQ(calibrate(problem).best->values, found.best->values) << "the search is the same each time";
 
-  const fs::path folder = fs::path(testing::TempDir()) / ("plica_calibrate_" + std::to_string(::getpid()));
   fs::create_directories(folder / "of mine");
   CalibrationProblem of_file = problem;
   of_file.source.file = (folder / "block.toml").string();
@@ -138,7 +131,6 @@ TEST(Calibrate, MeetsTwoTargetsWithTwoKeysAndWritesTheScenario) {
   of_file.overrides.erase(of_file.overrides.begin());
   const Scenario short_one = load_scenario({"calibrated", file, calibrated_toml(of_file, found, file)});
   EXPECT_EQ(short_one.elasticity.model, "shape-memory") << "bare words are quoted";
-  fs::remove_all(folder);
 }
 
 TEST(Calibrate, RunsThatFailHaveNoValue) {

@@ -157,12 +157,7 @@ TEST(CsvFields, ReadWhatTheyWrite) {
 
 // The messages of a study that is none.
 std::string refusal(const std::string& text) {
-  try {
-    const Study study(parse_study("test", "test.toml", text));
-  } catch (const ScenarioError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of<ScenarioError>([&] { const Study study(parse_study("test", "test.toml", text)); });
 }
 
 TEST(StudyInput, WhatMayNotBeMeantIsNoted) {

@@ -7,13 +7,8 @@
 namespace plica {
 
 template <class Call>
-void expect_mesh_error(Call call, const std::string& text) {
-  try {
-    call();
-    ADD_FAILURE() << "no error; expected one with: " << text;
-  } catch (const MeshError& error) {
-    EXPECT_SAYS(std::string(error.what()), text) << error.what();
-  }
+void expect_mesh_error(const Call& call, const std::string& text) {
+  EXPECT_SAYS(error_of<MeshError>(call), text);
 }
 
 }  // namespace plica

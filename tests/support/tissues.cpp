@@ -66,6 +66,13 @@ Motion random_motion(const Tissue& tissue, double size_um, unsigned seed) {
   return motion;
 }
 
+double largest_distance(std::span<const Vec3> one, std::span<const Vec3> other) {
+  EXPECT_EQ(one.size(), other.size());
+  double most = 0;
+  for (std::size_t n = 0; n < one.size(); ++n) most = std::max(most, (one[n] - other[n]).norm());
+  return most;
+}
+
 double largest(const Vectors& vectors) {
   double result = 0;
   for (const Vec3& v : vectors) result = std::max(result, v.norm());

@@ -96,6 +96,9 @@ Motion random_motion(const Tissue& tissue, double size_um, unsigned seed);
 /// Largest length among vectors.
 double largest(const Vectors& vectors);
 
+/// How far two places of a node are apart, at most.
+double largest_distance(std::span<const Vec3> one, std::span<const Vec3> other);
+
 Vectors forces_of(const Law& law, const Step& step);
 
 }  // namespace plica::support

@@ -141,9 +141,7 @@ TEST(Division, HangingNodesFollowAffineMotion) {
   for (Vec3& x : positions) x = turn * x + Vec3(1, 2, 3);
   Vectors placed = positions;
   tissue.place_hanging(placed);
-  double worst = 0;
-  for (std::size_t n = 0; n < positions.size(); ++n) worst = std::max(worst, (placed[n] - positions[n]).norm());
-  EXPECT_LE(worst, 1e-12);
+  EXPECT_LE(largest_distance(placed, positions), 1e-12);
   for (const NodeMean& mean : tissue.hanging) {
     double sum = 0;
     for (const auto& [node, weight] : mean) {

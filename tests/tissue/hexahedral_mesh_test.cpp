@@ -17,12 +17,7 @@ namespace {
 HexahedralMesh mesh_of(const Tissue& tissue) { return {tissue.rest_positions, tissue.elements, {}, {}}; }
 
 std::string mesh_error(const HexahedralMesh& mesh) {
-  try {
-    (void)tissue_from_mesh(mesh, {1, 1, 1});
-  } catch (const MeshError& error) {
-    return error.what();
-  }
-  return {};
+  return error_of<MeshError>([&] { return tissue_from_mesh(mesh, {1, 1, 1}); });
 }
 
 const Tissue& small_shell() {

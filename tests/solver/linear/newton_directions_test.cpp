@@ -46,12 +46,6 @@ struct Case {
   Vectors previous, velocities = Vectors(previous.size(), Vec3::Zero());
 };
 
-double largest_difference(const Vectors& a, const Vectors& b) {
-  double most = 0;
-  for (std::size_t n = 0; n < a.size(); ++n) most = std::max(most, (a[n] - b[n]).norm());
-  return most;
-}
-
 TEST(NewtonDirections, AreTheSameWhicheverWayTheyAreFound) {
   std::vector<Model> models;
   models.push_back(dimpling_sheet());
@@ -66,7 +60,7 @@ TEST(NewtonDirections, AreTheSameWhicheverWayTheyAreFound) {
     const Direction direct = given.direction(LinearMethod::direct);
     for (const LinearMethod method : {LinearMethod::cholesky, LinearMethod::multigrid, LinearMethod::automatic}) {
       const Direction found = given.direction(method);
-      EXPECT_LE(largest_difference(found.positions, direct.positions), 1e-3 * largest(direct.positions));
+      EXPECT_LE(largest_distance(found.positions, direct.positions), 1e-3 * largest(direct.positions));
       ASSERT_EQ(found.multipliers.size(), direct.multipliers.size());
       const Eigen::Map<const Eigen::VectorXd> p(found.multipliers.data(), found.multipliers.size()),
           q(direct.multipliers.data(), direct.multipliers.size());
@@ -95,7 +89,7 @@ TEST(NewtonDirections, AMultigridThatDragsASolveOutIsMadeAnewOnTheWay) {
   EXPECT_GT(cost.linear_solves, 15) << "it should have been tried";
   EXPECT_LT(cost.linear_solves, 60);
   const Direction expected = given.direction(LinearMethod::direct);
-  EXPECT_LE(largest_difference(found.positions, expected.positions), 1e-3 * largest(expected.positions));
+  EXPECT_LE(largest_distance(found.positions, expected.positions), 1e-3 * largest(expected.positions));
 }
 
 // A sheet that is pressed together in its plane so much that it would rather buckle.
@@ -144,7 +138,7 @@ TEST(NewtonDirections, EveryWayLeadsToTheSameState) {
       std::swap(state, next);
     }
     ends.push_back(state);
-    EXPECT_LE(largest_difference(state.positions, ends.front().positions), 1e-6);
+    EXPECT_LE(largest_distance(state.positions, ends.front().positions), 1e-6);
     EXPECT_EQ(state.in_contact, ends.front().in_contact);
   }
 }

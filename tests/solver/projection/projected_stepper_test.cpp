@@ -115,10 +115,7 @@ TEST(ProjectedStepper, ByMobilityComesToTheCoupledSolve) {
     State start = expected;  // from nearby: where it rests does not depend on the way
     std::fill(start.velocities.begin(), start.velocities.end(), Vec3::Zero());
     const State rest = come_to_rest(*make_stepper(split, of), start, h, 12000);
-    double off = 0;
-    for (std::size_t n = 0; n < rest.positions.size(); ++n)
-      off = std::max(off, (rest.positions[n] - expected.positions[n]).norm());
-    return off;
+    return largest_distance(rest.positions, expected.positions);
   };
   for (const Forces forces : {Forces::newton, Forces::linearly_implicit}) {
     double previous = 0, previous_order = 0.4;
@@ -228,11 +225,7 @@ State steps(Stepper& stepper, State state, double duration_s, int count) {
   return state;
 }
 
-double distance(const State& a, const State& b) {
-  double most = 0;
-  for (std::size_t n = 0; n < a.positions.size(); ++n) most = std::max(most, (a.positions[n] - b.positions[n]).norm());
-  return most;
-}
+double distance(const State& a, const State& b) { return largest_distance(a.positions, b.positions); }
 
 /// A sheet without volumes or shell, some of it held; and where it is after a while of contraction.
 Model held_sheet() {

@@ -182,9 +182,7 @@ TEST(VolumeProjection, ShellAndVolumesAreMetTogetherFromAnyStart) {
     StepReport report;
     VolumeProjection(model, ProjectionRule{}).apply(before, duration_s, {}, warm, report);
     ASSERT_TRUE(report.converged()) << report.reason();
-    double apart = 0;
-    for (std::size_t n = 0; n < moved.size(); ++n)
-      apart = std::max(apart, (warm.positions[n] - cold.positions[n]).norm());
+    const double apart = largest_distance(warm.positions, cold.positions);
     for (const State* state : {&cold, &warm}) {
       EXPECT_LE(worst_error(model, state->positions), 1e-9);
       for (std::size_t k = 0; k < state->contact_forces.size(); ++k) {

@@ -23,12 +23,7 @@ class FrameFileTest : public support::OwnFolder {
   template <class Error, class Read>
   static std::string error(const Read& read, const fs::path& file) {
     testing::internal::CaptureStderr();
-    std::string text;
-    try {
-      (void)read(file);
-    } catch (const Error& caught) {
-      text = caught.what();
-    }
+    const std::string text = error_of<Error>([&] { (void)read(file); });
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_TRUE(text.starts_with(file.string() + ": ")) << text;
     return text;

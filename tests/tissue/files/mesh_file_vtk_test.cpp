@@ -23,12 +23,7 @@ class MeshFileTest : public support::OwnFolder {
   [[nodiscard]] std::string error(const std::string& apical_array = "",
                                   const std::array<int, 3>& elements = {1, 1, 1}) const {
     testing::internal::CaptureStderr();
-    std::string text;
-    try {
-      (void)read_mesh_file(file, apical_array, {elements});
-    } catch (const Error& caught) {
-      text = caught.what();
-    }
+    const std::string text = error_of<Error>([&] { return read_mesh_file(file, apical_array, {elements}); });
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     const std::string start = file.string() + ": ";
     EXPECT_TRUE(text.starts_with(start)) << "no error, or without the file's name: " << text;

@@ -1,13 +1,12 @@
 // Files of polygons, of points and of labelled faces.
 #include "tissue/files/polygon_file.hpp"
 
-#include <unistd.h>
-
 #include <bit>
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "support/mesh_error.hpp"
+#include "support/own_folder.hpp"
 #include "tissue/files/labelled_faces.hpp"
 #include "tissue/files/points_file.hpp"
 #include "tissue/files/vertex_model.hpp"
@@ -197,9 +196,9 @@ TEST(VertexModel, SaysWhatIsWrong) {
   expect([](auto& t) { t.edges.columns["srce"][1] = 10; }, "the 3 edges of face 6 do not form one ring");
 }
 
-TEST(PolygonFile, IsReadByItsEnding) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / ("plica_polygons_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+using TissueFiles = OwnFolder;
+
+TEST_F(TissueFiles, AreReadByTheirEnding) {
   write_file(folder / "a.OBJ", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   EXPECT_EQ(read_polygon_file(folder / "a.OBJ").surface.polygons.size(), 1U);
   write_file(folder / "a.stl", "solid\n");
@@ -213,13 +212,7 @@ TEST(PolygonFile, IsReadByItsEnding) {
   for (const double value : missing.arrays.at("a")) EXPECT_TRUE(std::isnan(value));
   EXPECT_THROW(read_polygon_file(folder / "nowhere.ply"), FileError);
   write_file(folder / "a.h5", "no HDF5");
-  try {
-    read_polygon_file(folder / "a.h5");
-    ADD_FAILURE();
-  } catch (const FileError& error) {
-    EXPECT_SAYS(std::string(error.what()), "HDF5") << error.what();
-  }
-  std::filesystem::remove_all(folder);
+  EXPECT_SAYS(error_of<FileError>([&] { return read_polygon_file(folder / "a.h5"); }), "HDF5");
 }
 
 TEST(PointsFile, HasItsColumnsByName) {
@@ -243,14 +236,7 @@ TEST(PointsFile, MissingValuesAndTextAreNoNumbers) {
 }
 
 TEST(PointsFile, SaysInWhichLineWhatIsWrong) {
-  const auto expect = [](const char* text, const char* said) {
-    try {
-      points_in_csv(text);
-      FAIL() << text;
-    } catch (const MeshError& error) {
-      EXPECT_SAYS(std::string(error.what()), said) << error.what();
-    }
-  };
+  const auto expect = [](const char* text, const char* said) { expect_mesh_error([&] { points_in_csv(text); }, said); };
   expect("", "is empty; the first line must name the columns, including x_um, y_um and z_um");
   expect("x,y,z\n1,2,3\n", "line 1: must name the columns, including x_um, y_um and z_um once each; it names x, y, z");
   expect("x_um,y_um,z_um,z_um\n", "line 1: must name");
@@ -262,8 +248,8 @@ TEST(PointsFile, SaysInWhichLineWhatIsWrong) {
   EXPECT_THROW(read_points_file("/nowhere/points.csv"), FileError);
 }
 
-TEST(CellTable, HasAnArrayPerColumn) {
-  const std::string file = testing::TempDir() + "plica_cell_table_" + std::to_string(::getpid()) + ".csv";
+TEST_F(TissueFiles, OfCellsHaveAnArrayPerColumn) {
+  const std::string file = (folder / "cells.csv").string();
   write_file(file, "myosin, calcium\n1,2\n0.5,-1e-3\n");
   EXPECT_EQ(read_cell_table(file),
             (std::map<std::string, std::vector<double>>{{"calcium", {2, -1e-3}}, {"myosin", {1, 0.5}}}));
