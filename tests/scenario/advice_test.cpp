@@ -6,6 +6,7 @@
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
 #include "support/named_remedies.hpp"
+#include "support/scenarios.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {
@@ -133,13 +134,7 @@ TEST(Advice, BuiltInTensionsEndSoftly) {
 
 // A sheet has a fold, and no lips.
 TEST(Advice, WordsFitTheTissue) {
-  const Scenario scenario = load_scenario({"flat", "flat.toml", R"([embryo]
-shape = "sheet"
-length_um = 60
-width_um = 60
-cell_count = 60
-cell_height_um = 10
-[region.side]
+  const Scenario scenario = load_scenario({"flat", "flat.toml", sheet_table(60, 60, 10, 60) + R"([region.side]
 y_um = [10, 25]
 [contraction.apical]
 region = "side"

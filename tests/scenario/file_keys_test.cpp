@@ -339,13 +339,7 @@ TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
          "test.toml:9: time.scheme: the paper's algorithm supports four-sided cells only");
 }
 
-const std::string sheet = R"([embryo]
-shape = "sheet"
-length_um = 60
-width_um = 50
-cell_count = 60
-cell_height_um = 10
-)";
+const std::string sheet = sheet_table(60, 50, 10, 60);
 
 std::unique_ptr<Model> model_of(const std::string& text) { return make_model(scenario_of(text)); }
 

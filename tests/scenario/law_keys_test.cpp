@@ -275,14 +275,8 @@ TEST(InteriorKeys, BendingOfOneNeoHookeanElementIsWarnedOf) {
 
 // Column of two cells under pressure: each shortens by pressure / its own modulus.
 TEST(InteriorKeys, ASoftCellIsShortenedMore) {
-  const Scenario scenario = load_scenario({"column", "column.toml", R"(format = 1
-[embryo]
-shape = "block"
-length_um = 20
-width_um = 20
-cell_height_um = 20
-cells = [1, 1, 2]
-[region.low]
+  const Scenario scenario =
+      load_scenario({"column", "column.toml", "format = 1\n" + block_table(20, 20, 20, "1, 1, 2") + R"([region.low]
 ids = [0]
 [region.high]
 ids = [1]

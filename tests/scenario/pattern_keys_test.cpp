@@ -205,13 +205,7 @@ TEST_F(CellArrays, OfAnotherNumberOfCellsAreRefused) {
   EXPECT_SAYS(errors_of(load("myosin\nmuch\n")), "\"much\" of column myosin is not a number");
 }
 
-const std::string sheet = R"([embryo]
-shape = "block"
-length_um = 60
-width_um = 20
-cell_height_um = 20
-cells = [3, 1, 1]
-[vitelline]
+const std::string sheet = block_table(60, 20, 20, "3, 1, 1") + R"([vitelline]
 enabled = false
 [region.first]
 x_um = [-30, -10]

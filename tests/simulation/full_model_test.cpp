@@ -9,6 +9,7 @@
 #include "support/models.hpp"
 #include "support/ran.hpp"
 #include "support/resumed.hpp"
+#include "support/scenarios.hpp"
 #include "support/small_furrow.hpp"
 #include "support/tissues.hpp"
 #include "tissue/shapes/polygon_sheet.hpp"
@@ -306,14 +307,8 @@ TEST(PeriodicRun, IsTheSameWithEveryLinearSolver) {
 
 // With contact and second order in time; so many cells that threads share loops.
 TEST(PeriodicRun, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
-  const Scenario scenario = load_scenario({"test", "test.toml", R"(format = 1
-[embryo]
-shape = "sheet"
-length_um = 60
-width_um = 80
-cell_count = 240
-cell_height_um = 10
-periodic = ["x"]
+  const Scenario scenario =
+      load_scenario({"test", "test.toml", "format = 1\n" + sheet_table(60, 80, 10, 240) + R"(periodic = ["x"]
 rim = "held"
 [region.stripe]
 y_um = [-7, 7]

@@ -10,6 +10,7 @@
 #include "simulation/run_warnings.hpp"
 #include "simulation/simulation.hpp"
 #include "support/named_remedies.hpp"
+#include "support/scenarios.hpp"
 
 namespace plica {
 namespace {
@@ -58,14 +59,7 @@ double depth_of(const Simulation& simulation) { return simulation.measures()["fu
 
 // The depth of a small sheet with free ends errs four to five times as much as its bending.
 TEST(BendingWarning, SaysNoLessOfTheDepthThanFourLayersShow) {
-  const std::string sheet = R"(format = 1
-[embryo]
-shape = "block"
-length_um = 40
-width_um = 60
-cell_height_um = 15
-cells = [4, 6, 1]
-[region.stripe]
+  const std::string sheet = "format = 1\n" + block_table(40, 60, 15, "4, 6, 1") + R"([region.stripe]
 y_um = [-20, 20]
 [furrow]
 region = "stripe"
@@ -103,13 +97,7 @@ profile = { shape = "linear", half_width_um = 20 }
 }
 
 // A stripe that contracts at once.
-const std::string stripe = R"([embryo]
-shape = "block"
-cells = [2, 5, 1]
-length_um = 16
-width_um = 40
-cell_height_um = 12
-[region.stripe]
+const std::string stripe = block_table(16, 40, 12, "2, 5, 1") + R"([region.stripe]
 y_um = [-5, 5]
 [contraction.apical]
 region = "stripe"
@@ -173,13 +161,7 @@ TEST(EnergyWarning, IsSilentWhereNothingIsWrong) {
 }
 
 // Two layers of kites between fixed ends, whose lateral edges pull with a hundred times what the cells can carry.
-const std::string crushing = R"([embryo]
-shape = "sheet"
-length_um = 15.51
-width_um = 9.913
-cell_count = 12
-cell_height_um = 18.09
-seed = 664
+const std::string crushing = sheet_table(15.51, 9.913, 18.09, 12) + R"(seed = 664
 elements = "kites"
 layers = 2
 rim = "held"
@@ -258,13 +240,7 @@ Simulation ran(const std::string& text, const std::vector<std::string>& override
 }
 
 // A thin held_sheet of polygons whose stripe contracts.
-const std::string held_sheet = R"([embryo]
-shape = "sheet"
-length_um = 60
-width_um = 60
-cell_count = 100
-cell_height_um = 10
-rim = "held"
+const std::string held_sheet = sheet_table(60, 60, 10, 100) + R"(rim = "held"
 [region.stripe]
 y_um = [-10, 10]
 [time]
@@ -274,25 +250,13 @@ const std::string without_barrier = "[elasticity]\ncorner_barrier_Pa = 0\n";
 const std::string springs = "[contraction.apical]\nregion = \"stripe\"\nstiffness_nN_per_um = 12\n";
 
 // Cells of a grid; follow with the end of the run.
-const std::string grid = R"([embryo]
-shape = "block"
-length_um = 30
-width_um = 20
-cell_height_um = 15
-cells = [6, 4, 1]
-[time]
+const std::string grid = block_table(30, 20, 15, "6, 4, 1") + R"([time]
 )";
 const std::string block = grid + "end_s = 20\n";
 const std::string push = "[contraction.push]\nregion = \"all\"\npreload_nN = ";
 
 // A row of cells of which one divides.
-const std::string division = R"([embryo]
-shape = "block"
-length_um = 60
-width_um = 20
-cell_height_um = 40
-cells = [3, 1, 1]
-[region.middle]
+const std::string division = block_table(60, 20, 40, "3, 1, 1") + R"([region.middle]
 ids = [1]
 [region.first]
 ids = [0]

@@ -1,6 +1,8 @@
 // Scenarios of a few lines, and what is wrong with them.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <regex>
 
 #include "core/errors.hpp"
@@ -55,6 +57,17 @@ inline std::string numbered_points(const std::string& array) {
              std::to_string(60 * r * std::cos(turn)) + ',' + std::to_string(i) + '\n';
   }
   return table;
+}
+
+/// Tables [embryo] of a block of cells and of a sheet of polygons, in um; more of its keys may follow.
+inline std::string block_table(double length, double width, double height, const std::string& cells) {
+  return fmt::format("[embryo]\nshape = \"block\"\nlength_um = {}\nwidth_um = {}\ncell_height_um = {}\ncells = [{}]\n",
+                     length, width, height, cells);
+}
+inline std::string sheet_table(double length, double width, double height, int cells) {
+  return fmt::format(
+      "[embryo]\nshape = \"sheet\"\nlength_um = {}\nwidth_um = {}\ncell_height_um = {}\ncell_count = {}\n", length,
+      width, height, cells);
 }
 
 /// An egg of 300 cells.

@@ -17,6 +17,7 @@
 #include "support/law_checks.hpp"
 #include "support/loads.hpp"
 #include "support/models.hpp"
+#include "support/scenarios.hpp"
 #include "support/tissues.hpp"
 
 namespace plica {
@@ -248,14 +249,7 @@ TEST(Momentum, InternalForcesHaveNoResultantAndNoTorque) {
   EXPECT_LE(worst_torque, 1e-12);
 }
 
-const std::string sheet = R"(format = 1
-[embryo]
-shape = "sheet"
-periodic = ["x"]
-length_um = 30
-width_um = 70
-cell_count = 84
-cell_height_um = 15
+const std::string sheet = "format = 1\n" + sheet_table(30, 70, 15, 84) + R"(periodic = ["x"]
 [region.stripe]
 y_um = [-15, 15]
 [furrow]
