@@ -3,7 +3,6 @@
 
 #include <unistd.h>
 
-#include "core/errors.hpp"
 #include "core/files.hpp"
 #include "experiments/experiments.hpp"
 #include "experiments/formula.hpp"

@@ -6,8 +6,6 @@
 // The internal state: L at the step's beginning, then L at the beginning of the step before, for steps of second order.
 
 #include "extensions/extension_checks.hpp"
-#include "support/law_checks.hpp"
-#include "tissue/division.hpp"
 
 namespace plica {
 namespace {

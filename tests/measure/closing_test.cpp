@@ -10,7 +10,6 @@
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
 #include "support/models.hpp"
-#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

@@ -13,7 +13,6 @@
 #include "simulation/simulation.hpp"
 #include "support/prisms.hpp"
 #include "support/small_furrow.hpp"
-#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

@@ -6,14 +6,9 @@
 #include "measure/monitor.hpp"
 #include "measure/self_intersections.hpp"
 #include "mechanics/active/cortex.hpp"
-#include "mechanics/division.hpp"
-#include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "support/divided.hpp"
 #include "support/law_checks.hpp"
-#include "support/models.hpp"
-#include "support/tissues.hpp"
-#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

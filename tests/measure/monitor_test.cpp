@@ -4,7 +4,6 @@
 #include "measure/stop_rule.hpp"
 #include "support/divided.hpp"
 #include "support/loads.hpp"
-#include "support/models.hpp"
 
 namespace plica {
 namespace {

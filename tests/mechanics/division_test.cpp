@@ -4,7 +4,6 @@
 #include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
-#include "solver/linear/step_matrix.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/divided.hpp"
 

@@ -16,7 +16,6 @@
 #include "solver/step/newton_stepper.hpp"
 #include "support/block_scenario.hpp"
 #include "support/law_checks.hpp"
-#include "support/tissues.hpp"
 
 namespace plica {
 namespace {

@@ -15,7 +15,6 @@
 #include "support/law_checks.hpp"
 #include "support/prisms.hpp"
 #include "tissue/faces.hpp"
-#include "tissue/shapes/embryo.hpp"
 #include "tissue/shapes/polygon_sheet.hpp"
 
 namespace plica {

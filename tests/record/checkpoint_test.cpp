@@ -9,7 +9,6 @@
 #include "core/errors.hpp"
 #include "record/archive.hpp"
 #include "record/checkpoint_files.hpp"
-#include "scenario/load.hpp"
 #include "scenario/print.hpp"
 #include "scenario/setup.hpp"
 #include "simulation/simulation.hpp"

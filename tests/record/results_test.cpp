@@ -9,7 +9,6 @@
 #include <csignal>
 #include <new>
 
-#include "core/errors.hpp"
 #include "core/files.hpp"
 #include "measure/furrow.hpp"
 #include "record/checkpoint.hpp"
@@ -18,15 +17,12 @@
 #include "record/outcome.hpp"
 #include "record/polygon_surface.hpp"
 #include "record/run_scenario.hpp"
-#include "scenario/load.hpp"
 #include "simulation/division_rules.hpp"
 #include "simulation/run_warnings.hpp"
 #include "support/own_folder.hpp"
 #include "support/prisms.hpp"
 #include "support/scenarios.hpp"
-#include "support/tissues.hpp"
 #include "tissue/faces.hpp"
-#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

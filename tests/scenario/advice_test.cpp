@@ -1,10 +1,7 @@
 // Warnings and notes of `plica check` and `plica run`, and the remedies that they name: each is tried.
 #include "scenario/advice.hpp"
 
-#include "core/errors.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
-#include "scenario/load.hpp"
-#include "scenario/setup.hpp"
 #include "support/named_remedies.hpp"
 #include "support/scenarios.hpp"
 #include "support/tissues.hpp"

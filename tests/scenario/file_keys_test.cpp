@@ -1,8 +1,6 @@
 // Keys of files (meshes, points, bases), of sheets and embryos of polygons, and of periods.
 #include "core/files.hpp"
 #include "scenario/advice.hpp"
-#include "scenario/load.hpp"
-#include "scenario/setup.hpp"
 #include "support/own_folder.hpp"
 #include "support/scenarios.hpp"
 #include "tissue/faces.hpp"

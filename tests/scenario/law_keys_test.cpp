@@ -2,8 +2,6 @@
 
 #include "measure/monitor.hpp"
 #include "scenario/advice.hpp"
-#include "scenario/load.hpp"
-#include "scenario/setup.hpp"
 #include "support/block_scenario.hpp"
 #include "support/resumed.hpp"
 #include "support/scenarios.hpp"

@@ -1,13 +1,10 @@
 // Keys of patterns, of cell arrays and of [ablation.NAME].
-#include "core/errors.hpp"
 #include "core/files.hpp"
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "scenario/acting.hpp"
 #include "scenario/advice.hpp"
-#include "scenario/load.hpp"
 #include "scenario/print.hpp"
-#include "scenario/setup.hpp"
 #include "simulation/controls.hpp"
 #include "support/own_folder.hpp"
 #include "support/scenarios.hpp"

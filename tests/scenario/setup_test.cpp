@@ -2,9 +2,7 @@
 // criteria and times.
 #include "scenario/setup.hpp"
 
-#include "core/errors.hpp"
 #include "scenario/embryo_axes.hpp"
-#include "scenario/load.hpp"
 #include "scenario/print.hpp"
 #include "scenario/validate.hpp"
 #include "scenario/watch.hpp"

@@ -9,7 +9,6 @@
 #include "show/packing.hpp"
 #include "support/frames.hpp"
 #include "support/tissues.hpp"
-#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

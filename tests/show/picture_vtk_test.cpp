@@ -12,7 +12,6 @@
 #include "show/picture_scene.hpp"
 #include "support/frames.hpp"
 #include "support/tissues.hpp"
-#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

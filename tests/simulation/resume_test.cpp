@@ -2,7 +2,6 @@
 
 #include "core/threads.hpp"
 #include "scenario/load.hpp"
-#include "simulation/simulation.hpp"
 #include "support/loads.hpp"
 #include "support/resumed.hpp"
 #include "support/roofs.hpp"

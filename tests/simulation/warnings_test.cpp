@@ -3,8 +3,6 @@
 
 #include <regex>
 
-#include "core/errors.hpp"
-#include "scenario/load.hpp"
 #include "scenario/remedies.hpp"
 #include "simulation/pace.hpp"
 #include "simulation/run_warnings.hpp"

@@ -8,7 +8,6 @@
 #include "core/files.hpp"
 #include "record/archive.hpp"
 #include "record/results.hpp"
-#include "scenario/load.hpp"
 #include "support/block_scenario.hpp"
 
 namespace plica {

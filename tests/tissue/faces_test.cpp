@@ -1,14 +1,11 @@
 // Parts of a tissue: faces, lines of its lattice, rows of cells, one side of its mirror planes.
 #include "tissue/faces.hpp"
 
-#include "support/divided.hpp"
 #include "support/prisms.hpp"
-#include "support/tissues.hpp"
 #include "support/whole.hpp"
 #include "tissue/lattice.hpp"
 #include "tissue/mirror.hpp"
 #include "tissue/rows.hpp"
-#include "tissue/shapes/embryo.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 
 namespace plica {

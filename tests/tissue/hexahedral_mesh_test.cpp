@@ -7,8 +7,6 @@
 #include "support/whole.hpp"
 #include "tissue/files/child_reading.hpp"
 #include "tissue/mesh_quality.hpp"
-#include "tissue/prisms.hpp"
-#include "tissue/shapes/embryo.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 
 namespace plica {

@@ -5,7 +5,6 @@
 #include "tissue/mesh_quality.hpp"
 #include "tissue/outer_shape.hpp"
 #include "tissue/shapes/egg_surface.hpp"
-#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

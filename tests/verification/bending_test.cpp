@@ -2,7 +2,6 @@
 // the physics of a fold, and one cell is its whole thickness. Beams and a membrane with known answers: MacNeal and
 // Harder 1985 (straight and curved beam), the cantilever of the textbook, Cook's membrane, in the problems' own units.
 
-#include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/linear_statics.hpp"

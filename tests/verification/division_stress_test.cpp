@@ -5,7 +5,6 @@
 #include "solver/step/newton_stepper.hpp"
 #include "support/divided.hpp"
 #include "support/loads.hpp"
-#include "support/tissues.hpp"
 
 namespace plica {
 namespace {

@@ -5,20 +5,15 @@
 // A strip that is stretched at once and held: how its pull decays where its rest shape flows (Maxwell), against the
 // flow's equation in one dimension. Cells keep their volumes, sides are free.
 
-#include "mechanics/active/contraction.hpp"
 #include "mechanics/constraints/cell_volume.hpp"
-#include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/elasticity/turning_elements.hpp"
-#include "mechanics/surroundings.hpp"
-#include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"
 #include "support/loads.hpp"
 #include "support/models.hpp"
 #include "support/scenarios.hpp"
-#include "support/tissues.hpp"
 
 namespace plica {
 namespace {

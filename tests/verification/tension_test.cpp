@@ -9,15 +9,11 @@
 // order in the step, and at any step the backward Euler of it.
 
 #include "measure/cells.hpp"
-#include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
-#include "mechanics/elasticity/corotational.hpp"
-#include "mechanics/surroundings.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/loads.hpp"
 #include "support/models.hpp"
-#include "support/tissues.hpp"
 
 namespace plica {
 namespace {

@@ -4,7 +4,6 @@
 #include "mechanics/active/cortex.hpp"
 #include "support/law_checks.hpp"
 #include "support/prisms.hpp"
-#include "support/tissues.hpp"
 
 namespace plica {
 namespace {

@@ -3,7 +3,6 @@
 
 #include "mechanics/active/program.hpp"
 #include "support/law_checks.hpp"
-#include "support/tissues.hpp"
 
 namespace plica {
 namespace {

@@ -1,10 +1,8 @@
 #include "mechanics/active/cortex.hpp"
 
-#include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"
 #include "support/divided.hpp"
 #include "support/law_checks.hpp"
-#include "support/models.hpp"
 #include "support/ran.hpp"
 
 namespace plica {

@@ -6,7 +6,6 @@
 #include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"
 #include "support/roofs.hpp"
-#include "support/tissues.hpp"
 
 namespace plica {
 namespace {

@@ -1,6 +1,5 @@
 #include "mechanics/elasticity/corner_barrier.hpp"
 
-#include "mechanics/elasticity/corotational.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"
 #include "support/loads.hpp"

@@ -1,7 +1,6 @@
 #include "mechanics/obstacles/vitelline.hpp"
 
 #include "support/tissues.hpp"
-#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

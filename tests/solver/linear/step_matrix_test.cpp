@@ -7,7 +7,6 @@
 #include "solver/linear/directions.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
-#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

@@ -7,7 +7,6 @@
 #include "solver/multigrid/smoother.hpp"
 #include "support/cubes.hpp"
 #include "support/models.hpp"
-#include "support/tissues.hpp"
 
 namespace plica {
 namespace {

@@ -7,7 +7,6 @@
 #include "solver/projection/closed_surface.hpp"
 #include "solver/projection/cubic.hpp"
 #include "support/models.hpp"
-#include "support/tissues.hpp"
 
 namespace plica {
 namespace {

@@ -9,8 +9,6 @@
 #include "support/tissues.hpp"
 #include "tissue/files/frame_file.hpp"
 #include "tissue/files/polygon_file.hpp"
-#include "tissue/hexahedral_mesh.hpp"
-#include "tissue/shapes/embryo.hpp"
 
 namespace plica {
 namespace {

@@ -10,7 +10,6 @@
 #include "tissue/files/labelled_faces.hpp"
 #include "tissue/files/points_file.hpp"
 #include "tissue/files/vertex_model.hpp"
-#include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
 namespace {
