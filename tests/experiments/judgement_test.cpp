@@ -1,8 +1,6 @@
 // Files of experiments, their quantities as formulas, and what is judged of them.
 #include "experiments/judgement.hpp"
 
-#include <unistd.h>
-
 #include "core/files.hpp"
 #include "experiments/experiments.hpp"
 #include "experiments/formula.hpp"

@@ -1,6 +1,5 @@
 // Doors for new parts, tried: a constraint with a dense row, an obstacle, a law whose pattern changes, one that bounds
 // steps.
-
 #include "extensions/extension_checks.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "support/ran.hpp"

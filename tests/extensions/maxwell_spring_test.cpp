@@ -4,7 +4,6 @@
 // Tension k (l - L), dL/dt = (l - L)/tau, with the rate at the end of the step as in every law (law.hpp):
 //   L = (L_before + (rate_s/tau) l) / (1 + rate_s/tau),   tension = k (l - L_before) / (1 + rate_s/tau).
 // The internal state: L at the step's beginning, then L at the beginning of the step before, for steps of second order.
-
 #include "extensions/extension_checks.hpp"
 
 namespace plica {

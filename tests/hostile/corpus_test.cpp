@@ -1,6 +1,5 @@
 // Replays fuzzer seeds (fuzz/corpus), also with changed bytes, and past findings (fuzz/found). Seeds must be of current
 // formats, and findings must stay fixed.
-
 #include "core/files.hpp"
 #include "record/archive.hpp"
 #include "support/testing.hpp"

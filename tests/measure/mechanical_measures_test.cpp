@@ -1,5 +1,4 @@
 // Measures of whole tissues: motion, energy norm, static forces, error of bending, self-intersections.
-
 #include "measure/bending_error.hpp"
 #include "measure/cells.hpp"
 #include "measure/energy_norm.hpp"

@@ -1,5 +1,4 @@
 // Laws on cells that are polygons, and on tissues with periods.
-
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/active/own_state.hpp"

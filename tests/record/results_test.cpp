@@ -2,7 +2,6 @@
 // trial.
 #include "record/results.hpp"
 
-#include <unistd.h>
 #include <zlib.h>
 
 #include <bit>

@@ -1,5 +1,4 @@
 // Keys of [cortex.NAME], and of the interior of cells: moduli, flow.
-
 #include "measure/monitor.hpp"
 #include "scenario/advice.hpp"
 #include "support/block_scenario.hpp"

@@ -1,5 +1,4 @@
 // Activities, arrays, pulses and divisions in the loop: who acts or divides when, and what a run keeps at every step.
-
 #include "core/errors.hpp"
 #include "measure/cells.hpp"
 #include "mechanics/active/given_activities.hpp"

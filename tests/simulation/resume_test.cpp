@@ -1,5 +1,4 @@
 // A run that goes on from a memory of itself ends in the same bits as one that was never interrupted.
-
 #include "core/threads.hpp"
 #include "scenario/load.hpp"
 #include "support/loads.hpp"

@@ -1,6 +1,5 @@
 // Warnings during a run (bending, energy, pace); runs that fail, and the remedies that their messages name: each is
 // tried.
-
 #include <regex>
 
 #include "scenario/remedies.hpp"

@@ -1,7 +1,6 @@
 // Pure bending of a strip one cell thick under plane strain, against E/(1 - nu^2) I per width: bending of the sheet is
 // the physics of a fold, and one cell is its whole thickness. Beams and a membrane with known answers: MacNeal and
 // Harder 1985 (straight and curved beam), the cantilever of the textbook, Cook's membrane, in the problems' own units.
-
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/linear_statics.hpp"

@@ -5,7 +5,6 @@
 // Contact's distances and the crossing test against another program's, the IPC Toolkit's: what
 // contact_truth/make_truth.py wrote, some hundred cases of either, or 10 000 in a folder that PLICA_CONTACT_TRUTH
 // names.
-
 #include <cstdlib>
 
 #include "measure/self_intersections.hpp"

@@ -1,6 +1,5 @@
 // Random cells of the pill divide in random planes, five rounds, to over 10 000 cells; the tissue relaxes in between.
 // Volumes: the paper's scaling of an octahedron, the same for plica's hexahedra, and volumes that add up.
-
 #include "mechanics/constraints/cell_volume.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/divided.hpp"

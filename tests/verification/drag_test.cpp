@@ -4,7 +4,6 @@
 // its original configuration" (the paper, section 2.3): the whole embryo, after its furrow has formed.
 // A strip that is stretched at once and held: how its pull decays where its rest shape flows (Maxwell), against the
 // flow's equation in one dimension. Cells keep their volumes, sides are free.
-
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/elasticity/turning_elements.hpp"

@@ -1,6 +1,5 @@
 // The patch test of MacNeal and Harder (1985): seven distorted hexahedra in a unit cube, a linear displacement on the
 // boundary. Inner nodes, stresses and the supports' forces must be exact. The same of polygons, and a thick sphere.
-
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/surroundings.hpp"
 #include "support/law_checks.hpp"

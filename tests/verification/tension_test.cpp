@@ -7,7 +7,6 @@
 // pressure than what is outside by that of the apical cortex, the yolk than cells by that of the basal one.
 // Creep of a Kelvin-Voigt spring under a constant force: x(t) = (F/k)(1 - exp(-k t / c)), reached at first or second
 // order in the step, and at any step the backward Euler of it.
-
 #include "measure/cells.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"

@@ -1,5 +1,4 @@
 // Multigrid, and the order of its nodes.
-
 #include "core/threads.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "solver/algebra/block_cholesky.hpp"

@@ -1,6 +1,4 @@
 // Snapshots and polygons in VTK's formats.
-#include <unistd.h>
-
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "record/mesh_writer.hpp"
