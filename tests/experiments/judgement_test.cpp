@@ -4,7 +4,6 @@
 #include "core/files.hpp"
 #include "experiments/experiments.hpp"
 #include "experiments/formula.hpp"
-#include "support/block_scenario.hpp"
 #include "support/own_folder.hpp"
 #include "support/scenarios.hpp"
 

@@ -1,7 +1,6 @@
 // The furrow's depth and lips; columns of results, and the sets that a scenario measures.
 #include "measure/furrow.hpp"
 
-#include "core/errors.hpp"
 #include "measure/cell_columns.hpp"
 #include "measure/cells.hpp"
 #include "measure/columns.hpp"
@@ -9,10 +8,9 @@
 #include "measure/observation.hpp"
 #include "record/series_rows.hpp"
 #include "record/summary.hpp"
-#include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
 #include "support/prisms.hpp"
-#include "support/small_furrow.hpp"
+#include "support/scenarios.hpp"
 
 namespace plica {
 namespace {

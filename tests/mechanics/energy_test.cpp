@@ -14,8 +14,8 @@
 #include "mechanics/surroundings.hpp"
 #include "simulation/simulation.hpp"
 #include "solver/step/newton_stepper.hpp"
-#include "support/block_scenario.hpp"
 #include "support/law_checks.hpp"
+#include "support/scenarios.hpp"
 
 namespace plica {
 namespace {

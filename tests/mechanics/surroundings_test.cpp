@@ -4,7 +4,6 @@
 #include "mechanics/obstacles/shell_drag.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "support/law_checks.hpp"
-#include "support/tissues.hpp"
 
 namespace plica {
 namespace {

@@ -6,14 +6,12 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "core/errors.hpp"
 #include "record/archive.hpp"
 #include "record/checkpoint_files.hpp"
 #include "scenario/print.hpp"
-#include "scenario/setup.hpp"
 #include "simulation/simulation.hpp"
-#include "support/block_scenario.hpp"
 #include "support/checkpoint_fields.hpp"
+#include "support/scenarios.hpp"
 
 namespace plica {
 namespace {

@@ -2,7 +2,6 @@
 #include "scenario/advice.hpp"
 
 #include "mechanics/obstacles/vitelline.hpp"
-#include "support/named_remedies.hpp"
 #include "support/scenarios.hpp"
 #include "support/tissues.hpp"
 

@@ -1,10 +1,8 @@
 // Keys of [cortex.NAME], and of the interior of cells: moduli, flow.
 #include "measure/monitor.hpp"
 #include "scenario/advice.hpp"
-#include "support/block_scenario.hpp"
 #include "support/resumed.hpp"
 #include "support/scenarios.hpp"
-#include "support/small_furrow.hpp"
 
 namespace plica {
 namespace {

@@ -8,7 +8,6 @@
 #include "support/ran.hpp"
 #include "support/resumed.hpp"
 #include "support/scenarios.hpp"
-#include "support/small_furrow.hpp"
 #include "tissue/shapes/polygon_sheet.hpp"
 #include "tissue/shapes/rectangle_polygons.hpp"
 

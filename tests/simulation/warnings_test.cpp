@@ -6,7 +6,6 @@
 #include "simulation/pace.hpp"
 #include "simulation/run_warnings.hpp"
 #include "simulation/simulation.hpp"
-#include "support/named_remedies.hpp"
 #include "support/scenarios.hpp"
 
 namespace plica {

@@ -6,15 +6,14 @@
 #include <cstdlib>
 
 #include "core/directory_lock.hpp"
-#include "core/errors.hpp"
 #include "core/files.hpp"
 #include "record/archive.hpp"
 #include "record/results.hpp"
 #include "scenario/print.hpp"
 #include "study/quiet_run.hpp"
 #include "study/target_search.hpp"
-#include "support/block_scenario.hpp"
 #include "support/own_folder.hpp"
+#include "support/scenarios.hpp"
 
 namespace plica {
 namespace {

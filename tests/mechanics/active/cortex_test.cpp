@@ -4,13 +4,10 @@
 #include <fmt/format.h>
 
 #include "mechanics/active/own_state.hpp"
-#include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"
 #include "scenario/load.hpp"
-#include "simulation/simulation.hpp"
 #include "support/divided.hpp"
 #include "support/law_checks.hpp"
-#include "support/models.hpp"
 #include "support/ran.hpp"
 
 namespace plica {

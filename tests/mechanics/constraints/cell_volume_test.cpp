@@ -9,7 +9,6 @@
 #include "support/constraint_law.hpp"
 #include "support/divided.hpp"
 #include "support/law_checks.hpp"
-#include "support/models.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 
 namespace plica {

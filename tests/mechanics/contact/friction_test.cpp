@@ -7,7 +7,6 @@
 #include "support/law_checks.hpp"
 #include "support/loads.hpp"
 #include "support/models.hpp"
-#include "support/tissues.hpp"
 
 namespace plica {
 namespace {
