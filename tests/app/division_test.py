@@ -69,11 +69,6 @@ growth_s = 10
         self.assertEqual({rows[cell]["mother_id"] for cell in "5678"}, {"3", "4"})
         self.assertEqual({rows[cell]["generation"] for cell in "5678"}, {"2"})
 
-    def test_a_threshold_divides_until_the_last_generation(self):
-        self.run_scenario(ROW + '[division.big]\nregion = "all"\nwhen = "volume_above_um3"\nthreshold = 15000\n'
-                          "daughter_volume_ratio = 1\ngrowth_s = 5\nmax_generation = 2\n")
-        self.assertEqual(self.summary()["cells"], 12)
-
     def test_what_cannot_be_is_refused(self):
         cases = {
             "region": CUT.replace("middle", "midle"),

@@ -109,9 +109,7 @@ TEST(Plane, ANodeMayTouchSeveral) {
   for (const Vec3& x : model.tissue.rest_positions) low = low.cwiseMin(x);
   for (int axis = 0; axis < 3; ++axis)
     model.obstacles.push_back(std::make_unique<Plane>(model.tissue, Vec3::Unit(axis), low[axis] - 0.5));
-  RunControls controls;
-  controls.end_s = 1e5;
-  controls.equilibrium_speed_um_per_s = 1e-6;
+  RunControls controls{.end_s = 1e5, .equilibrium_speed_um_per_s = 1e-6};
   const Simulation simulation = ran(std::move(model), controls);
   ASSERT_EQ(simulation.status(), RunStatus::equilibrium) << simulation.failure();
   const Contacts contacts(simulation.model());

@@ -158,11 +158,8 @@ TEST(MaxwellSprings, TensionDecaysAtConstantLength) {
   Model model(build_block({.length_um = 20, .width_um = 20, .cell_height_um = 20, .cells = {1, 1, 1}}));
   model.laws.push_back(std::make_unique<MaxwellSprings>(model.tissue, 3, 10));
   for (auto& held : model.held) held = {true, true, true};
-  RunControls controls;
-  controls.fixed_step_s = 0.05;
-  controls.scheme.order = TimeOrder::second;
-  controls.end_s = 10;
-  controls.stop_at_equilibrium = false;
+  RunControls controls{
+      .scheme = {.order = TimeOrder::second}, .fixed_step_s = 0.05, .end_s = 10, .stop_at_equilibrium = false};
   Simulation simulation({std::make_unique<Model>(std::move(model)), controls});
   ASSERT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
   const std::vector<double>& rest_lengths = simulation.state().internals.at(0);

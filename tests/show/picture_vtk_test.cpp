@@ -364,14 +364,6 @@ TEST_F(ReportRunTest, SeveralRunsAreToldApartByKeysAndNames) {
   EXPECT_EQ(data["runs"][2]["name"], "none");
 }
 
-TEST_F(ReportRunTest, PageOfASheetBeginsAtItsApicalSide) {
-  write_frames(1);
-  const nlohmann::json views = data_of(report_page_of({folder}))["views"];
-  ASSERT_EQ(views.size(), plica::views().size());
-  EXPECT_EQ(views[0]["name"], "apical");
-  EXPECT_LT(views[0]["sight"][2], -0.9);
-}
-
 TEST_F(ReportRunTest, NamesFitTheTissue) {
   write_frames(1);
   const auto told = [&](const std::string& scenario) {
@@ -385,16 +377,6 @@ TEST_F(ReportRunTest, NamesFitTheTissue) {
   EXPECT_EQ(told(sheet + "axes = [\"proximal-distal\", \"left-right\", \"ventral-dorsal\"]\n"),
             nlohmann::json::parse(R"([["proximal", "distal"], ["P", "Di"], "furrow", "from ventral"])"));
   EXPECT_EQ(told(""), nlohmann::json::parse(R"([["anterior", "posterior"], ["A", "P"], "furrow", "ventral"])"));
-}
-
-TEST_F(ReportRunTest, PageHoldsNoMarkupOfTheScenario) {
-  write_frames(2);
-  std::ofstream(folder / "summary.json") << R"({"title": "</script><b>&\u2028"})";
-  std::ofstream(folder / "scenario.toml") << "title = \"</script><!--plica:title-->\"\n";
-  const std::string page = report_page_of({folder});
-  EXPECT_SAYS_NOT(page, "</script><b>");
-  EXPECT_SAYS_NOT(page, "<!--plica:");
-  EXPECT_SAYS(page, "<title>&lt;/script&gt;&lt;b&gt;&amp;");
 }
 
 }  // namespace

@@ -267,11 +267,8 @@ Vectors moves(const SheetShape& shape, const Vectors& points, LinearMethod metho
   model.laws.push_back(std::make_unique<Cortex>(tissue, CellSet(points.size(), true),
                                                 CortexRule{.side = CellSide::lateral, .tension = 0.3}));
   add_drag(model);
-  RunControls controls;
-  controls.scheme.linear_method = method;
-  controls.fixed_step_s = 2;
-  controls.end_s = 20;
-  controls.stop_at_equilibrium = false;
+  RunControls controls{
+      .scheme = {.linear_method = method}, .fixed_step_s = 2, .end_s = 20, .stop_at_equilibrium = false};
   const Simulation simulation = ran(std::move(model), controls);
   EXPECT_EQ(simulation.status(), RunStatus::end_time) << simulation.failure();
   Vectors result;

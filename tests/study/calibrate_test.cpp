@@ -89,21 +89,6 @@ TEST(Calibrate, BeginsAtTheScenariosOwnValues) {
   EXPECT_EQ(first_place(problem)[0], 0.75);
 }
 
-TEST(Calibrate, MeetsOneTargetWithOneKey) {
-  const CalibrationProblem problem = block_problem({stiffness}, {"end.position_um=28~0.001"});
-  std::vector<Trial> trials;
-  CalibrationHooks hooks;
-  hooks.on_trial = [&](const Trial& trial, bool) { trials.push_back(trial); };
-  const Calibration found = calibrate(problem, hooks);
-  ASSERT_EQ(found.end, CalibrationEnd::met);
-  EXPECT_LE(found.trials, 8);
-  EXPECT_EQ(static_cast<int>(trials.size()), found.trials);
-  EXPECT_EQ(trials.back().values, found.best->values);
-  const double again = quiet_run(load_trial(problem, found.best->values)).summary.at("end.position_um");
-  EXPECT_EQ(again, *found.best->found[0]) << "what is written is what was run";
-  EXPECT_NEAR(again, 28, 0.001);
-}
-
 using CalibratedFile = OwnFolder;
 
 TEST_F(CalibratedFile, MeetsTwoTargetsWithTwoKeys) {
