@@ -18,7 +18,6 @@
 #include "core/threads.hpp"
 #include "support/own_folder.hpp"
 
-namespace plica {
 namespace {
 
 // The vectors of RFC 4648, section 10, and bytes above 127.
@@ -371,4 +370,3 @@ TEST_F(FilesTest, ARowThatDoesNotFitIsAnErrorAndIsCutOff) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -7,7 +7,6 @@
 #include "support/own_folder.hpp"
 #include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 // The middle is in 7-10 um from 7 s to 10 s, the ends in 13-17 um from 6.5 s to 8.5 s; no row lies in both.
@@ -447,4 +446,3 @@ TEST_F(ReadExperiments, NotDrawnRunOnceAsTheirScenarioIs) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -4,7 +4,6 @@
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "support/ran.hpp"
 
-namespace plica {
 namespace {
 
 const Extension yolk = [](Model& model) {
@@ -221,4 +220,3 @@ TEST(MaxFraction, BoundsEveryDirectionBeforeItIsTried) {
 }
 
 }  // namespace
-}  // namespace plica

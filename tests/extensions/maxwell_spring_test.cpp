@@ -6,7 +6,6 @@
 // The internal state: L at the step's beginning, then L at the beginning of the step before, for steps of second order.
 #include "extensions/extension_checks.hpp"
 
-namespace plica {
 namespace {
 
 class MaxwellSprings final : public Law {
@@ -190,4 +189,3 @@ TEST(MaxwellSprings, ResumeToTheSameBitsThroughADivision) { expect_resumable_thr
 TEST(MaxwellSprings, WorkWithThePapersAlgorithm) { expect_runs_with_the_papers_algorithm(maxwell); }
 
 }  // namespace
-}  // namespace plica

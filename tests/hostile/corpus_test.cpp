@@ -5,7 +5,6 @@
 #include "support/testing.hpp"
 #include "targets.hpp"
 
-namespace plica {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,4 +67,3 @@ TEST(FuzzCorpus, Checkpoints) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -11,7 +11,6 @@
 #include "simulation/simulation.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
 
 // 0.5 um/min up to 6 um at 12 min, then 4 um/min; rows as uneven as those of a run.
@@ -316,4 +315,3 @@ TEST(SpeedHistory, WhatNeverHappensHasNoValue) {
 }
 
 }  // namespace
-}  // namespace plica

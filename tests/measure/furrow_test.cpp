@@ -12,7 +12,6 @@
 #include "support/prisms.hpp"
 #include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 /// The paper's Drosophila, its 14 x 5 contractile ventral cells, and what is measured of them.
@@ -411,4 +410,3 @@ TEST(MeasureSets, OthersChangeNothing) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -9,7 +9,6 @@
 #include "support/divided.hpp"
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
 
 TEST(WholeTissue, IsMeasuredByDisplacementHeightAndVolume) {
@@ -333,4 +332,3 @@ TEST(SelfIntersections, AreNoneAtRestAndAfterDivisions) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -5,7 +5,6 @@
 #include "support/divided.hpp"
 #include "support/loads.hpp"
 
-namespace plica {
 namespace {
 
 /// Three cells of 20 x 20 x 40 um along x; "left" is the first, nodes at x = -30 and -10.
@@ -312,4 +311,3 @@ TEST(StopRule, CombinesCriteriaAndRest) {
 }
 
 }  // namespace
-}  // namespace plica

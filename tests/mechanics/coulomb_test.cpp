@@ -2,7 +2,6 @@
 
 #include "support/tissues.hpp"
 
-namespace plica {
 namespace {
 
 TEST(Coulomb, IsTheLimitWhereItSlidesAndSmoothWhereItDoesNot) {
@@ -28,4 +27,3 @@ TEST(Coulomb, IsTheLimitWhereItSlidesAndSmoothWhereItDoesNot) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -7,7 +7,6 @@
 #include "solver/step/newton_stepper.hpp"
 #include "support/divided.hpp"
 
-namespace plica {
 namespace {
 
 const BlockShape three_cells{.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}};
@@ -329,4 +328,3 @@ TEST(DividedSheet, AssemblesTheTangentOfItsFreeNodes) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -17,7 +17,6 @@
 #include "support/law_checks.hpp"
 #include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 // The work of a law's forces on a straight way of length `size` that takes `size` seconds, by the forces midway, and
@@ -247,4 +246,3 @@ TEST(EnergyBalance, OfARunIsTheSumOfItsLaws) {
 }
 
 }  // namespace
-}  // namespace plica

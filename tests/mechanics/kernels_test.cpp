@@ -16,7 +16,6 @@
 #include "support/law_checks.hpp"
 #include "tissue/tissue.hpp"
 
-namespace plica {
 namespace {
 
 const ElasticModuli moduli = ElasticModuli::from_young(1, 0.45);
@@ -271,4 +270,3 @@ TEST(ElementChunks, ThoseThatHangOnTheSameNodeAreNotTakenAtOnce) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -16,7 +16,6 @@
 #include "tissue/faces.hpp"
 #include "tissue/shapes/polygon_sheet.hpp"
 
-namespace plica {
 namespace {
 
 class LawsOnPolygons : public testing::TestWithParam<PolygonSplit> {
@@ -295,4 +294,3 @@ TEST_P(PeriodicLaws, AnEvenTensionPullsAtNoNode) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -2,7 +2,6 @@
 
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
 
 TEST(SurfaceDrag, DerivativesAgreeWithFiniteDifferences) {
@@ -118,4 +117,3 @@ TEST(FacePressure, OnAClosedSurfaceHasNoResultantAndNoTorque) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -13,7 +13,6 @@
 #include "support/checkpoint_fields.hpp"
 #include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 namespace fs = std::filesystem;
@@ -385,4 +384,3 @@ TEST_F(CheckpointFilesTest, AfterADamagedOneTheGoodOneStays) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -5,7 +5,6 @@
 #include "tissue/files/mesh_file.hpp"
 #include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,4 +87,3 @@ TEST_F(MeshWriterTest, CollectionListsTimesAndFiles) {
 }
 
 }  // namespace
-}  // namespace plica

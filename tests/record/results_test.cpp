@@ -23,7 +23,6 @@
 #include "support/scenarios.hpp"
 #include "tissue/faces.hpp"
 
-namespace plica {
 namespace {
 
 using support::scenario_of;
@@ -368,4 +367,3 @@ TEST(SurfaceMesh, WhatIsDamagedIsRefused) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -5,7 +5,6 @@
 #include "support/scenarios.hpp"
 #include "support/tissues.hpp"
 
-namespace plica {
 namespace {
 
 // Returns the advice on a mesh file whose cells form a block of that size; no file is read.
@@ -261,4 +260,3 @@ TEST(AdviceRemedies, CellsThatCannotDivideNameKeysOfTheirShape) {
 }
 
 }  // namespace
-}  // namespace plica

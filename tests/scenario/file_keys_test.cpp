@@ -7,7 +7,6 @@
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
 
 class FileKeys : public OwnFolder {
@@ -407,4 +406,3 @@ TEST(PeriodicKeys, RegionsReachAcrossTheEnd) {
 }
 
 }  // namespace
-}  // namespace plica

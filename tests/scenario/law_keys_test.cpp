@@ -4,7 +4,6 @@
 #include "support/resumed.hpp"
 #include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 const std::string cortex = "[cortex.a]\nregion = \"all\"\n";
@@ -324,4 +323,3 @@ TEST(InteriorKeys, ARegionOfAllCellsIsLikeNone) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -3,7 +3,6 @@
 #include "scenario/builtin.hpp"
 #include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 TEST(LoadScenario, FillsDefaults) {
@@ -366,4 +365,3 @@ TEST(FindScenario, SaysWhichNameIsNear) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -10,7 +10,6 @@
 #include "support/scenarios.hpp"
 #include "tissue/rows.hpp"
 
-namespace plica {
 namespace {
 
 TEST(PatternKeys, RegionsByRowsAndNeighbours) {
@@ -287,4 +286,3 @@ TEST(AblationKeys, WhatTakesNothingIsTold) {
 }
 
 }  // namespace
-}  // namespace plica

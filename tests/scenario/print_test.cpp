@@ -10,7 +10,6 @@
 #include "scenario/words.hpp"
 #include "support/testing.hpp"
 
-namespace plica {
 namespace {
 
 /// Compares two scenarios field by field; returns the number of fields.
@@ -351,4 +350,3 @@ TEST(Nesting, DotsInTextsNumbersAndCommentsAreNone) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -9,7 +9,6 @@
 #include "support/scenarios.hpp"
 #include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
 
 // Strip of seven cells with contractions in three regions, of one, three and two cells.
@@ -340,4 +339,3 @@ TEST(TimeRules, ARunLastsLongerThanAnInstant) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -10,7 +10,6 @@
 #include "support/frames.hpp"
 #include "support/tissues.hpp"
 
-namespace plica {
 namespace {
 
 // CIE L*, a*, b* of an sRGB colour (white D65): the way back from what looks.cpp does, from CIE 15's formulas.
@@ -299,4 +298,3 @@ TEST(Quantiser, IsExactAtItsEndsAndWithinHalfAStepBetween) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -6,7 +6,6 @@
 #include "support/frames.hpp"
 #include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
 
 const ColourField& field(const std::string& name) {
@@ -224,4 +223,3 @@ TEST(Scene, HasTheRestOutlineOrTheShell) {
 }
 
 }  // namespace
-}  // namespace plica

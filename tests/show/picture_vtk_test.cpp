@@ -17,7 +17,6 @@
 #include "support/own_folder.hpp"
 #include "support/tissues.hpp"
 
-namespace plica {
 namespace {
 
 const ColourField& field(const std::string& name) {
@@ -380,4 +379,3 @@ TEST_F(ReportRunTest, NamesFitTheTissue) {
 }
 
 }  // namespace
-}  // namespace plica

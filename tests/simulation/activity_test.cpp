@@ -7,7 +7,6 @@
 #include "support/ran.hpp"
 #include "support/resumed.hpp"
 
-namespace plica {
 namespace {
 
 constexpr double as_programmed = GivenActivities::as_programmed;
@@ -420,4 +419,3 @@ TEST(DivisionRun, EquilibriumCountsAfterTheLastDivision) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -11,7 +11,6 @@
 #include "tissue/shapes/polygon_sheet.hpp"
 #include "tissue/shapes/rectangle_polygons.hpp"
 
-namespace plica {
 namespace {
 
 // A belly that is drawn in, with every law that a mirror goes with.
@@ -333,4 +332,3 @@ at_equilibrium = false
 }
 
 }  // namespace
-}  // namespace plica

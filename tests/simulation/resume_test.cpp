@@ -5,7 +5,6 @@
 #include "support/resumed.hpp"
 #include "support/roofs.hpp"
 
-namespace plica {
 namespace {
 
 // What a run leaves behind: everything that happened after each step.
@@ -181,4 +180,3 @@ TEST(Resume, AcrossDivisions) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -7,7 +7,6 @@
 #include "support/models.hpp"
 #include "support/ran.hpp"
 
-namespace plica {
 namespace {
 
 TEST(Simulation, GoesToEquilibriumWhereForcesBalanceWithoutDrag) {
@@ -299,4 +298,3 @@ TEST(Simulation, IsNotAtEquilibriumBeforeTheLastJump) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -2,7 +2,6 @@
 
 #include "support/testing.hpp"
 
-namespace plica {
 namespace {
 
 /// States of one node at the ends of steps along x.
@@ -164,4 +163,3 @@ TEST(StepLength, OfSecondOrderStepsGrowByNoMoreThanThatOrderAllows) {
 }
 
 }  // namespace
-}  // namespace plica

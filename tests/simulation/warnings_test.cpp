@@ -8,7 +8,6 @@
 #include "simulation/simulation.hpp"
 #include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 const std::string strip = R"(format = 1
@@ -390,4 +389,3 @@ TEST(Remedies, NameKeysOfTheScenario) {
 }
 
 }  // namespace
-}  // namespace plica

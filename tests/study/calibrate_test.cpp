@@ -15,7 +15,6 @@
 #include "support/own_folder.hpp"
 #include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 namespace fs = std::filesystem;
@@ -332,4 +331,3 @@ TEST_F(KeptQuietRun, IsNotKeptTwice) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -8,7 +8,6 @@
 #include "support/own_folder.hpp"
 #include "support/tissues.hpp"
 
-namespace plica {
 namespace {
 
 namespace fs = std::filesystem;
@@ -244,4 +243,3 @@ TEST(SurfaceDistance, StartsNoThreads) {
 }
 
 }  // namespace
-}  // namespace plica

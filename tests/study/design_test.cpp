@@ -6,7 +6,6 @@
 #include "study/study.hpp"
 #include "support/testing.hpp"
 
-namespace plica {
 namespace {
 
 const std::string young = "elasticity.young_modulus_Pa", ratio = "elasticity.poisson_ratio";
@@ -276,4 +275,3 @@ TEST(StudyInput, WhatIsNoStudySaysWhere) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -45,6 +45,6 @@ std::string error_of(const Call& call) {
 
 }  // namespace plica::support
 
-namespace plica {
-using namespace support;  // in every test
-}  // namespace plica
+// In every test.
+using namespace plica;
+using namespace plica::support;

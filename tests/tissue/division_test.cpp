@@ -6,7 +6,6 @@
 #include "support/prisms.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 
-namespace plica {
 namespace {
 
 const BlockShape three_cells{.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}};
@@ -363,4 +362,3 @@ TEST(PolygonDivision, IsRefusedOfKitesAndLayers) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -8,7 +8,6 @@
 #include "tissue/rows.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 
-namespace plica {
 namespace {
 
 TEST(Faces, OfABlockAreItsWalls) {
@@ -338,4 +337,3 @@ TEST(Mirror, WhatIsNotSymmetricIsRefused) {
 }
 
 }  // namespace
-}  // namespace plica

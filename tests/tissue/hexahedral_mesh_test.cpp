@@ -9,7 +9,6 @@
 #include "tissue/mesh_quality.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 
-namespace plica {
 namespace {
 
 HexahedralMesh mesh_of(const Tissue& tissue) { return {tissue.rest_positions, tissue.elements, {}, {}}; }
@@ -353,4 +352,3 @@ TEST(Prisms, OfFourCornersAreAsAGridMakesThem) {
 }
 
 }  // namespace
-}  // namespace plica

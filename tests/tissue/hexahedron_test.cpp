@@ -6,7 +6,6 @@
 #include "tissue/outer_shape.hpp"
 #include "tissue/shapes/egg_surface.hpp"
 
-namespace plica {
 namespace {
 
 /// A brick of 20 x 20 x 40 um with every corner moved at random: hexahedra with warped faces.
@@ -275,4 +274,3 @@ TEST(OuterShape, IsFarFromWhatLiesDeep) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -6,7 +6,6 @@
 #include "support/linear_statics.hpp"
 #include "support/loads.hpp"
 
-namespace plica {
 namespace {
 
 constexpr double young = 1, length = 160, width = 20, height = 40;
@@ -338,4 +337,3 @@ TEST(CooksMembrane, ConvergesToItsTipDeflection) {
 }
 
 }  // namespace
-}  // namespace plica

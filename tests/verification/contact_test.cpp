@@ -14,7 +14,6 @@
 #include "support/bodies.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
 
 constexpr double radius = 100, modulus = 1, poisson = 0.3;  // um, kPa
@@ -329,4 +328,3 @@ TEST(ContactTruth, Crossings) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -5,7 +5,6 @@
 #include "support/divided.hpp"
 #include "support/loads.hpp"
 
-namespace plica {
 namespace {
 
 // Contraction keeps the sheet moving and bent, so that cuts meet deformed cells.
@@ -238,4 +237,3 @@ TEST(Volume, CellsOfABlockFillItExactly) {
 TEST(Volume, CellsOfThePillFillItExactly) { expect_volumes_add_up(build_shell({}), 3, "perturbed pill"); }
 
 }  // namespace
-}  // namespace plica

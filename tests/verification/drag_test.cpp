@@ -14,7 +14,6 @@
 #include "support/models.hpp"
 #include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 constexpr double stiffness = 2, force = 4, length = 20;  // nN/um, nN, um
@@ -414,4 +413,3 @@ TEST(MaxwellStrip, PullDecays) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -6,7 +6,6 @@
 #include "support/linear_statics.hpp"
 #include "support/prisms.hpp"
 
-namespace plica {
 namespace {
 
 const ElasticModuli moduli = ElasticModuli::from_young(1e6, 0.25);
@@ -317,4 +316,3 @@ TEST(ThickSphere, OneElementThroughTheWallIsLimitedByItsThickness) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -14,7 +14,6 @@
 #include "support/loads.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
 
 constexpr double radius = 140, half_axis = 90, force_in_spring = 10;  // um, um, nN: a constant tension in every spring
@@ -257,4 +256,3 @@ TEST(Creep, ConvergesToTheExponentialAtFirstOrder) { expect_convergence(TimeOrde
 TEST(Creep, ConvergesToTheExponentialAtSecondOrder) { expect_convergence(TimeOrder::second); }
 
 }  // namespace
-}  // namespace plica

@@ -5,7 +5,6 @@
 #include "support/law_checks.hpp"
 #include "support/prisms.hpp"
 
-namespace plica {
 namespace {
 
 using Shape = StrengthProfile::Shape;
@@ -380,4 +379,3 @@ TEST(PatternRule, ScalesStiffnessAndPreloadOfACellsSprings) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -4,7 +4,6 @@
 #include "mechanics/active/program.hpp"
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
 
 const BlockShape refined{
@@ -334,4 +333,3 @@ TEST(Tension, OfLateralFacesIsThatOfThePerimeter) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -5,7 +5,6 @@
 #include "support/law_checks.hpp"
 #include "support/ran.hpp"
 
-namespace plica {
 namespace {
 
 CellSet all_cells(const Tissue& tissue) { return CellSet(tissue.cells.size(), true); }
@@ -262,4 +261,3 @@ TEST(Cortex, AWallBetweenDaughtersBeginsAtItsArea) {
 }
 
 }  // namespace
-}  // namespace plica

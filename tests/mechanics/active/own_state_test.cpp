@@ -9,7 +9,6 @@
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
 
 using Kind = OwnStateRule::Kind;
@@ -149,4 +148,3 @@ TEST(OwnState, ARunGoesOnToTheSameBits) {
 }
 
 }  // namespace
-}  // namespace plica

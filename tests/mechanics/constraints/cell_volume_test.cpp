@@ -3,7 +3,6 @@
 #include "support/constraint_law.hpp"
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
 
 const BlockShape refined{
@@ -133,4 +132,3 @@ TEST(Dilatation, ResistsOneElementGrowingAtAnothersCost) {
 }
 
 }  // namespace
-}  // namespace plica

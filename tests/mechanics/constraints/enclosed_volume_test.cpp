@@ -6,7 +6,6 @@
 #include "support/law_checks.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 
-namespace plica {
 namespace {
 
 TEST(HeldVolume, IsTheLumen) {
@@ -85,4 +84,3 @@ TEST(ElasticVolume, DerivativesAgreeWithFiniteDifferences) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -5,7 +5,6 @@
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
 
 TEST(Ties, DerivativesAgreeWithFiniteDifferences) {
@@ -44,4 +43,3 @@ TEST(Ties, KeepASliceAsIfItWereEndless) {
 }
 
 }  // namespace
-}  // namespace plica

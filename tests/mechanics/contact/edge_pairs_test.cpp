@@ -7,7 +7,6 @@
 #include "support/law_checks.hpp"
 #include "support/roofs.hpp"
 
-namespace plica {
 namespace {
 
 // The upper one, with the pairs of where it was at rest.
@@ -232,4 +231,3 @@ TEST(NearestInside, IsTheNearestOrAnEndIs) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -8,7 +8,6 @@
 #include "support/loads.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
 
 constexpr double coefficient = 0.5;
@@ -163,4 +162,3 @@ TEST(Friction, ABlockSticksBelowTheCoefficientAndSlidesAboveIt) {
 }
 
 }  // namespace
-}  // namespace plica

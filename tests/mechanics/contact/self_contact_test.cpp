@@ -5,7 +5,6 @@
 #include "support/models.hpp"
 #include "support/prisms.hpp"
 
-namespace plica {
 namespace {
 
 // A strip of cells, bent into a U whose inner, apical sides face each other across `gap_um`.
@@ -338,4 +337,3 @@ TEST(SelfContact, GapsHaveASign) {
 }
 
 }  // namespace
-}  // namespace plica

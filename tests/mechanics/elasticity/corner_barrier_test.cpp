@@ -6,7 +6,6 @@
 #include "support/models.hpp"
 #include "tissue/mesh_quality.hpp"
 
-namespace plica {
 namespace {
 
 // A threshold above all that these motions do, so that every corner is pushed; nothing is inside out yet.
@@ -59,4 +58,3 @@ TEST(CornerBarrier, HoldsACornerUpright) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -5,7 +5,6 @@
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
 
 constexpr double young = 1.0;  // kPa: the paper's 1000 Pa
@@ -248,4 +247,3 @@ TEST(Corotational, RefusesAnInvertedRestShape) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -7,7 +7,6 @@
 #include "support/divided.hpp"
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
 
 const BlockShape one_cell{.length_um = 20, .width_um = 30, .cell_height_um = 40, .cells = {1, 1, 1}};
@@ -272,4 +271,3 @@ TEST(NeoHookean, DaughtersHaveTheirMothersFlow) {
 }
 
 }  // namespace
-}  // namespace plica

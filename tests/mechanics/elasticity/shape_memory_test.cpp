@@ -3,7 +3,6 @@
 #include "mechanics/elasticity/corotational.hpp"
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
 
 const BlockShape one_cell{.length_um = 20, .width_um = 16, .cell_height_um = 40, .cells = {1, 1, 1}};
@@ -201,4 +200,3 @@ TEST(ShapeMemory, RefusesAnInvertedRestShape) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -2,7 +2,6 @@
 
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
 
 // The apical face of a block, 100 um from the axis, and a shell this far from it.
@@ -50,4 +49,3 @@ TEST(ShellDrag, SlowsWhatSlidesAlongTheShellAndTouchesIt) {
 }
 
 }  // namespace
-}  // namespace plica

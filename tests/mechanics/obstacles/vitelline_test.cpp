@@ -2,7 +2,6 @@
 
 #include "support/tissues.hpp"
 
-namespace plica {
 namespace {
 
 const Capsule pill{90, 140};
@@ -91,4 +90,3 @@ TEST(EnclosingCapsule, IsTheOneThatABuiltEmbryoLiesOn) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -3,7 +3,6 @@
 
 #include "support/tissues.hpp"
 
-namespace plica {
 namespace {
 
 constexpr int nodes = 12;
@@ -200,4 +199,3 @@ TEST(ConjugateResiduals, NothingToSolveIsSolved) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -11,7 +11,6 @@
 #include "support/cubes.hpp"
 #include "support/tissues.hpp"
 
-namespace plica {
 namespace {
 
 /// A random sparse quasi-definite matrix [A B^T; B -C], A and C positive definite, as pattern and values.
@@ -337,4 +336,3 @@ TEST(PanelProducts, AreThoseOfTheDenseMatrixForAnyKernels) {
 }
 
 }  // namespace
-}  // namespace plica

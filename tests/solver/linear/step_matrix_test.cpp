@@ -12,7 +12,6 @@
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
 
 std::vector<double> volume_rates(const StepMatrix& matrix, const Vectors& direction) {
@@ -481,4 +480,3 @@ TEST(ContactBorder, TakesUpOnlySoManyChanges) {
 }
 
 }  // namespace
-}  // namespace plica

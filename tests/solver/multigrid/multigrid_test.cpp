@@ -7,7 +7,6 @@
 #include "support/cubes.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
 
 using Doubles = Eigen::VectorXd;
@@ -410,4 +409,3 @@ TEST(MultigridOrder, SweepsGroupByGroupLeaveTheResidualOfWhatTheyFound) {
 }
 
 }  // namespace
-}  // namespace plica

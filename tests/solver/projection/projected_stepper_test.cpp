@@ -8,7 +8,6 @@
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
 
 using Weights = ProjectionRule::Weights;
@@ -349,4 +348,3 @@ TEST(LinearlyImplicit, FailuresAreReportedAndLeaveTheStateAlone) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -8,7 +8,6 @@
 #include "solver/projection/cubic.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
 
 constexpr double duration_s = 2;
@@ -409,4 +408,3 @@ TEST(Cubic, AgreesWithCompanionMatrix) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -5,7 +5,6 @@
 #include "support/models.hpp"
 #include "tissue/division.hpp"
 
-namespace plica {
 namespace {
 
 using Motion = std::function<Vec3(double)>;
@@ -203,4 +202,3 @@ TEST(ContactCycle, Ends) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -5,7 +5,6 @@
 #include "support/loads.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
 
 /// Several steps; every one has to converge.
@@ -398,4 +397,3 @@ TEST(NewtonStepper, GoesOnlyAsFarAsItHelps) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -8,7 +8,6 @@
 #include "tissue/files/frame_file.hpp"
 #include "tissue/files/polygon_file.hpp"
 
-namespace plica {
 namespace {
 
 namespace fs = std::filesystem;
@@ -155,4 +154,3 @@ TEST_F(PolygonFileVtk, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -10,7 +10,6 @@
 #include "tissue/files/mesh_file.hpp"
 #include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
 
 namespace fs = std::filesystem;
@@ -384,4 +383,3 @@ TEST_F(MeshFileTest, OfQuadraticHexahedraTheCornersAreKept) {
 }
 
 }  // namespace
-}  // namespace plica

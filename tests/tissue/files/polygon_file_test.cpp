@@ -11,7 +11,6 @@
 #include "tissue/files/points_file.hpp"
 #include "tissue/files/vertex_model.hpp"
 
-namespace plica {
 namespace {
 
 const std::string mark = "\xef\xbb\xbf";  // byte-order mark
@@ -331,4 +330,3 @@ TEST(LabelledFaces, WhatIsNoCellIsRefusedOrLeftOut) {
 }
 
 }  // namespace
-}  // namespace plica

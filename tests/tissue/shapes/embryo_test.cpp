@@ -5,7 +5,6 @@
 #include "tissue/mesh_quality.hpp"
 #include "tissue/shapes/surface_grid.hpp"
 
-namespace plica {
 namespace {
 
 const ShellShape pill{};  // the defaults are the paper's Drosophila
@@ -363,4 +362,3 @@ TEST(SurfaceGrid, FacesHaveTheirPlacesAndSides) {
 }
 
 }  // namespace
-}  // namespace plica

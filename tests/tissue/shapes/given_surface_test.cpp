@@ -3,7 +3,6 @@
 
 #include "support/mesh_error.hpp"
 
-namespace plica {
 namespace {
 
 using Face = std::vector<std::size_t>;
@@ -241,4 +240,3 @@ TEST(GivenSurface, SaysWhatIsWrongAndWhere) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -14,7 +14,6 @@
 #include "tissue/shapes/extrusion.hpp"
 #include "tissue/shapes/surface_polygons.hpp"
 
-namespace plica {
 namespace {
 
 const EggShape small_egg{250, 120, 120, 11.0, 5.0};
@@ -308,4 +307,3 @@ TEST_F(MeasuredEmbryo, LivesAsAnEggOfTheKnownSize) {
 }
 
 }  // namespace
-}  // namespace plica

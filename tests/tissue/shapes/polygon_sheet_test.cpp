@@ -11,7 +11,6 @@
 #include "tissue/shapes/rectangle_polygons.hpp"
 #include "tissue/shapes/surface_polygons.hpp"
 
-namespace plica {
 namespace {
 
 const PolygonCells cells{12, PolygonSplit::diagonals, 1};
@@ -315,4 +314,3 @@ TEST(PrismSheet, RefusesHeightsThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -5,7 +5,6 @@
 #include "tissue/shapes/egg_surface.hpp"
 #include "tissue/shapes/solid_harmonics.hpp"
 
-namespace plica {
 namespace {
 
 StarSurface ellipsoid(double a, double b, double c) { return {Mat3::Identity(), Vec3(a, b, c), {1.0}}; }
@@ -279,4 +278,3 @@ TEST(SolidHarmonics, DerivativesAgreeWithDifferences) {
 }
 
 }  // namespace
-}  // namespace plica

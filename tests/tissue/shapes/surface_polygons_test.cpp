@@ -9,7 +9,6 @@
 #include "tissue/shapes/polygon_surface.hpp"
 #include "tissue/shapes/vertex_bends.hpp"
 
-namespace plica {
 namespace {
 
 StarSurface ellipsoid(double a, double b, double c) { return {Mat3::Identity(), Vec3(a, b, c), {1.0}}; }
@@ -380,4 +379,3 @@ TEST(VertexBends, OfAFlatPatch) {
 }
 
 }  // namespace
-}  // namespace plica
