@@ -284,14 +284,6 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
       << "embryo.shape, elasticity.model, volume.method, monitor.*.quantity, enclosed.*.surface, measure.sets";
 }
 
-TEST(Words, MeanWhatTheySay) {
-  EXPECT_EQ(meaning_of(words::edges, "basal"), CellSide::basal);
-  EXPECT_EQ(meaning_of(words::integrators, "bdf2"), TimeOrder::second);
-  EXPECT_EQ(meaning_of(words::delay_starts, "ends"), StartDelay::From::ends);
-  EXPECT_EQ(meaning_of(words::division_planes, "longest-axis"), DivisionPlane::longest_axis);
-  EXPECT_EQ(meaning_of(words::overs, "rms"), Over::rms);
-}
-
 // The order of two near names does not matter.
 TEST(Suggest, TheNearestOfSeveralThatAreNear) {
   EXPECT_EQ(nearest_name("stifness", {"stiffness", "stillness"}), "stiffness");

@@ -183,13 +183,6 @@ TEST(Simulation, GivesUpWithTheLastGoodStateAndAReason) {
   EXPECT_EQ(result.state().positions, result.model().tissue.rest_positions);
 }
 
-TEST(Simulation, TheSameRunGivesTheSameBits) {
-  RunControls controls{.end_s = 30};
-  const Simulation a = ran(dimpling_sheet(), controls), b = ran(dimpling_sheet(), controls);
-  EXPECT_EQ(a.steps(), b.steps());
-  EXPECT_EQ(a.state().positions, b.state().positions);
-}
-
 TEST(Simulation, ACopyIsAForkInTime) {
   const Scenario scenario = load_scenario(find_scenario("drosophila"), {"time.end_s=6"});
   Simulation whole(scenario), first(scenario);

@@ -79,27 +79,6 @@ TEST(StepLength, StopsOfOneInstantAreOne) {
   EXPECT_EQ(ends, (std::vector<double>{10 + 3e-7, 10 + 1e-3, 60}));
 }
 
-TEST(StepLength, FixedStepsEndOnJumpsToo) {
-  RunControls controls{.fixed_step_s = 0.5, .program_jumps_s = {0.7}};
-  const StepLength length(controls);
-  EXPECT_EQ(length.propose_end_s(controls, 0.5), 0.7);
-  EXPECT_EQ(length.propose_end_s(controls, 0.7), 1);
-}
-
-TEST(StepLength, AdaptiveStepsLandOnFrames) {
-  RunControls controls{.first_step_s = 4, .frame_every_s = 15};
-  const StepLength length(controls);
-  double time = 0;
-  int steps = 0;
-  while (time < 15 - 1e-9) {
-    const double step = proposed(length, controls, time);
-    EXPECT_LE(step, 4 * (1 + 1e-9));
-    time += step;
-    ASSERT_LT(++steps, 10);
-  }
-  EXPECT_NEAR(time, 15, 1e-12);
-}
-
 // Half h^2 x'' with x'' from the change of velocity between the middles of two steps: for a constant acceleration a and
 // equal steps the error is h^2 a / 2.
 TEST(StepLength, RejectsAStepWhoseErrorIsFarTooLarge) {
