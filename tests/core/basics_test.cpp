@@ -233,7 +233,7 @@ TEST(OutputOfChild, ChangesNothingHere) {
 namespace fs = std::filesystem;
 
 /// A folder of the test's own, removed at its end.
-class FilesTest : public support::OwnFolder {
+class FilesTest : public OwnFolder {
  protected:
   [[nodiscard]] std::size_t file_count() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));

@@ -177,10 +177,10 @@ TEST(VerdictOfClaim, FollowsFromTheFirstReadingAndTheOthers) {
 }
 
 // A file of experiments, with a scenario and a table of draws beside it.
-class ReadExperiments : public support::OwnFolder {
+class ReadExperiments : public OwnFolder {
  protected:
   ReadExperiments() {
-    write("block.toml", support::pulled_block().text);
+    write("block.toml", pulled_block().text);
     write("draws.csv", "contraction.all.stiffness_nN_per_um,time.end_s\n1,5\n2,5\n3,4\n");
   }
   [[nodiscard]] Experiments parsed(const std::string& text) const {
@@ -188,7 +188,7 @@ class ReadExperiments : public support::OwnFolder {
   }
   // All that is wrong, without the folder.
   [[nodiscard]] std::string complaint(const std::string& text) const {
-    std::string what = support::errors_in([&] { check_experiments(parsed(text)); });
+    std::string what = errors_in([&] { check_experiments(parsed(text)); });
     for (std::size_t at = what.find(folder.string()); at != std::string::npos; at = what.find(folder.string()))
       what.erase(at, folder.string().size() + 1);
     return what;
@@ -370,7 +370,7 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
     ASSERT_NE(at, std::string::npos) << one.from;
     text.replace(at, one.from.size(), one.to);
     const std::string found = complaint(text);
-    for (const std::string& part : one.complaint) EXPECT_SAYS(found, part) << part << "\n" << found;
+    for (const std::string& part : one.complaint) EXPECT_SAYS(found, part);
     EXPECT_EQ(found.empty(), one.complaint.empty()) << one.to << "\n" << found;
     refused += one.complaint.empty() ? 0 : 1;
   }
@@ -382,7 +382,7 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
   slow.insert(slow.find("[experiment.reference.outcome.end]"), "[experiment.reference]\nslow = true\n");
   EXPECT_SAYS(complaint(slow), "is compared with reference, which is slow");
   EXPECT_SAYS(complaint(""), "mine.toml: no experiments; write [experiment.NAME]");
-  EXPECT_SAYS(complaint(support::pulled_block().text), "no experiments");
+  EXPECT_SAYS(complaint(pulled_block().text), "no experiments");
   EXPECT_SAYS(complaint("[experiment]\n"), "experiment: is empty");
   EXPECT_SAYS(complaint("[experiment.a]\nscenario = \"block.toml\"\n"), "experiment.a.outcome: is missing");
 }

@@ -137,7 +137,7 @@ TEST(Furrow, DepthIsTheShiftOfTheMiddle) {
 
 // A dimple of single faces is no furrow: the middles of polygons move and depth does not, but their corners count.
 TEST(Furrow, DepthIsWithoutDimples) {
-  const Tissue tissue = tissue_from_prisms(support::honeycomb(5, 5, 6, 12), PolygonSplit::kites, 1);
+  const Tissue tissue = tissue_from_prisms(honeycomb(5, 5, 6, 12), PolygonSplit::kites, 1);
   const CellSet all(tissue.cells.size(), true);
   const FurrowSites sites = choose_furrow_sites(tissue, all, 2);
   Vectors dimpled = tissue.rest_positions, lowered = tissue.rest_positions;
@@ -354,7 +354,7 @@ TEST(MeasureSets, ATissueMeasuresWhatFitsIt) {
   EXPECT_EQ(sets_of(Simulation(scenario_of(sheet))), (Names{"", "fold", "bending"}));
   EXPECT_EQ(sets_of(Simulation(scenario_of(organoid))), (Names{"", "lumen", "bending"}));
   EXPECT_EQ(
-      sets_of(Simulation(scenario_of(support::small_furrow.substr(std::size("format = 1"))))),
+      sets_of(Simulation(scenario_of(small_furrow.substr(std::size("format = 1"))))),
       (Names{"", "fold", "furrow", "contact", "closing", "lumen", "shell", "perivitelline", "flanks", "bending"}));
   EXPECT_EQ(sets_of(Simulation(scenario_of(sheet + "[self_contact]\nsurface = \"apical\"\n"))),
             (Names{"", "fold", "contact", "bending"}));

@@ -325,7 +325,7 @@ TEST(SelfIntersections, AreNoneAtRestAndAfterDivisions) {
     Random random(3);
     State state = rest_state(model);
     for (int round = 0; round < 4; ++round) {
-      divide_cells(model, state, support::random_divisions(model.tissue, 0.5, random));
+      divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
       EXPECT_EQ(self_intersections(model.tissue, state.positions), 0u) << "round " << round;
     }
   }

@@ -27,10 +27,9 @@ struct BlockRun {
   std::vector<Checkpoint> checkpoints;  // after each step
 
   BlockRun() {
-    const Scenario scenario =
-        load_scenario(support::pulled_block(
-                          "[division.all]\nregion = \"all\"\nat_s = 2\n[stop.never]\nmonitor = \"all\"\nbelow = 1\n"),
-                      {"time.integrator=bdf2"});
+    const Scenario scenario = load_scenario(
+        pulled_block("[division.all]\nregion = \"all\"\nat_s = 2\n[stop.never]\nmonitor = \"all\"\nbelow = 1\n"),
+        {"time.integrator=bdf2"});
     at_rest = make_model(scenario);
     struct Keeper final : SimulationListener {
       Keeper(const Simulation& of, BlockRun& into) : simulation(of), run(into) {}
@@ -109,10 +108,9 @@ TEST_F(CheckpointTest, ComesBackAsItWas) {
 
 // Every member, each with a value that it does not have by itself: one that is forgotten comes back as it is by itself.
 TEST_F(CheckpointTest, EveryMemberComesBack) {
-  const Checkpoint before = support::marked(block_run().last());
-  const auto written = support::fields_of(before),
-             read = support::fields_of(read_checkpoint_bytes(checkpoint_bytes(before)));
-  const auto unmarked = support::fields_of(Checkpoint{});
+  const Checkpoint before = marked(block_run().last());
+  const auto written = fields_of(before), read = fields_of(read_checkpoint_bytes(checkpoint_bytes(before)));
+  const auto unmarked = fields_of(Checkpoint{});
   for (const auto& [field, numbers] : written) {
     EXPECT_NE(numbers, unmarked.at(field)) << field << " has no value of its own here";
     EXPECT_EQ(numbers, read.at(field)) << field;
@@ -185,7 +183,7 @@ TEST_F(CheckpointTest, DamageUnderARightChecksumIsRefusedOrHarmless) {
       const std::optional<Checkpoint> checkpoint = unless_refused(made_right(bytes));
       (checkpoint ? read : refused) += 1;
       if (!checkpoint) continue;
-      for (const auto& [field, numbers] : support::fields_of(*checkpoint))
+      for (const auto& [field, numbers] : fields_of(*checkpoint))
         EXPECT_TRUE(std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); })) << field << at;
       EXPECT_FALSE(checkpoint->record.rows.empty());
       (void)why_unfit(checkpoint->run, *block_run().model);
@@ -216,7 +214,7 @@ TEST_F(CheckpointTest, RowsOfOtherColumnsAreNamed) {
 
 // How long each list of internal states is stands beside all of their numbers.
 TEST_F(CheckpointTest, ListsThatDoNotAddUpAreRefused) {
-  const std::string bytes = checkpoint_bytes(support::marked(block_run().last()));
+  const std::string bytes = checkpoint_bytes(marked(block_run().last()));
   const auto lengths = [](std::array<int, 3> of) {
     return std::string(reinterpret_cast<const char*>(of.data()), sizeof(of));
   };

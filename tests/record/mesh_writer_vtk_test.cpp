@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MeshWriterTest : public support::OwnFolder {
+class MeshWriterTest : public OwnFolder {
  protected:
   const Tissue block = build_block({60, 20, 40, {3, 1, 1}, {2, 2, 1}});
 };
@@ -24,7 +24,7 @@ TEST_F(MeshWriterTest, WritesEachElementWithTheValuesOfItsCell) {
   for (const char* name :
        {"Name=\"displacement_um\" NumberOfComponents=\"3\"", "Name=\"pressure_Pa\"", "Name=\"cell_id\"",
         "Name=\"TimeValue\"", "NumberOfCells=\"12\"", "vtkZLibDataCompressor", "encoding=\"base64\"", "type=\"Int32\""})
-    EXPECT_SAYS(content, name) << name;
+    EXPECT_SAYS(content, name);
 
   // Read back, each element is a cell; face 5 is the top one.
   write_mesh(folder / "b.vtu", block, block.rest_positions, {{}, {{"pressure_Pa", {0, 1.5, 0}}}, {{"top", {5, 5, 5}}}});

@@ -25,10 +25,9 @@
 
 namespace {
 
-using support::scenario_of;
 namespace fs = std::filesystem;
 
-class ResultsTest : public support::OwnFolder {};
+class ResultsTest : public OwnFolder {};
 
 TEST_F(ResultsTest, SeriesAtTimesOfRowsAndBetweenThem) {
   const Series series = read_series(write("series.csv", "time_s,a,b.c_um\n0,1,\n2,5,-1e-3\n4,,7\n"));
@@ -130,7 +129,7 @@ TEST(Deflater, WhatItCompressesZlibGivesBack) {
 }
 
 // A run of an earlier version continues as it began.
-class RunScenario : public support::OwnFolder {};
+class RunScenario : public OwnFolder {};
 
 TEST_F(RunScenario, StayAsARunBegan) {
   const std::string text = "[embryo]\nshape = \"sheet\"\n";
@@ -148,7 +147,7 @@ TEST_F(RunScenario, StayAsARunBegan) {
 using Json = nlohmann::ordered_json;
 
 const Tissue& sheet() {
-  static const Tissue tissue = support::distorted_block({60, 40, 10, {6, 4, 1}, {1, 1, 1}}, 1, 3);
+  static const Tissue tissue = distorted_block({60, 40, 10, {6, 4, 1}, {1, 1, 1}}, 1, 3);
   return tissue;
 }
 

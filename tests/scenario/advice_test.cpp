@@ -215,7 +215,7 @@ std::vector<std::string> advice_with(const AdviceCase& one, const Overrides& ove
   Overrides all;
   if (one.phrase.starts_with("time step is longer")) all.emplace_back("time.step_s=300");
   all.insert(all.end(), overrides.begin(), overrides.end());
-  const Scenario scenario = load_scenario({"test", "test.toml", one.text}, all);
+  const Scenario scenario = scenario_of(one.text, all);
   std::vector<std::string> lines = advice(scenario, *make_model(scenario));
   std::erase_if(lines, [&](const std::string& line) { return line.find(one.phrase) == std::string::npos; });
   return lines;
@@ -227,7 +227,7 @@ TEST(AdviceRemedies, EachEndsItsMessage) {
     SCOPED_TRACE(one.text);
     const std::vector<std::string> lines = advice_with(one, {});
     ASSERT_EQ(lines.size(), 1U);
-    const auto remedies = one.remedies.empty() ? support::named_remedies(lines[0]) : one.remedies;
+    const auto remedies = one.remedies.empty() ? named_remedies(lines[0]) : one.remedies;
     EXPECT_FALSE(remedies.empty()) << lines[0];
     for (const Overrides& remedy : remedies) {
       EXPECT_EQ(advice_with(one, remedy), std::vector<std::string>()) << remedy.front();

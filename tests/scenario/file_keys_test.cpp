@@ -38,10 +38,10 @@ class FileKeys : public OwnFolder {
            "\"\ncell_height_um = 10\n" + keys;
   }
 
-  static Tissue tissue(const std::string& text) { return make_tissue(load_scenario({"test", "test.toml", text})); }
+  static Tissue tissue(const std::string& text) { return make_tissue(scenario_of(text)); }
 
   static std::string advice_on(const std::string& text) {
-    const Scenario scenario = load_scenario({"test", "test.toml", text});
+    const Scenario scenario = scenario_of(text);
     std::string lines;
     for (const std::string& line : advice(scenario, *make_model(scenario))) lines += line + '\n';
     return lines;
@@ -226,9 +226,9 @@ TEST_F(LoadFiles, FindsMeshesBesideTheFileThatNamesThem) {
 }
 
 TEST(PolygonKeys, RegionsByAngleAndLength) {
-  const Scenario scenario = load_scenario({"test", "test.toml",
-                                           egg + "[region.belly]\nangle_deg = [-40, 60]\nlength_percent = [25, "
-                                                 "80]\n[region.rest]\nunion = [\"all\"]\nexcept = [\"belly\"]\n"});
+  const Scenario scenario = scenario_of(egg +
+                                        "[region.belly]\nangle_deg = [-40, 60]\nlength_percent = [25, "
+                                        "80]\n[region.rest]\nunion = [\"all\"]\nexcept = [\"belly\"]\n");
   const Tissue tissue = make_tissue(scenario);
   int inside = 0;
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {

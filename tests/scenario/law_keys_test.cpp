@@ -99,7 +99,7 @@ TEST(CortexKeys, FacesThatARegionDoesNotHave) {
 
 // A scenario with a fixed yolk volume may inherit the bulk modulus of its base.
 TEST(CortexKeys, AHeldYolkLeavesWhatItsBaseSaysOfACompliantOne) {
-  EXPECT_NO_THROW(load_scenario({"test", "test.toml", "base = \"furrow-slice\"\n[enclosed.yolk]\nvolume = \"held\""}));
+  EXPECT_NO_THROW(scenario_of("base = \"furrow-slice\"\n[enclosed.yolk]\nvolume = \"held\""));
 }
 
 // Invaginating ventral side, with all laws of a closing furrow.

@@ -64,7 +64,7 @@ TEST(PatternKeys, ProfilesOfAScenario) {
   EXPECT_GE(make_controls(scenario).program_points_s.back(), scenario.time.end_s);
   // The printed scenario reads back as the same.
   const std::string printed = resolved_toml(scenario);
-  EXPECT_EQ(resolved_toml(load_scenario({"test", "test.toml", printed})), printed);
+  EXPECT_EQ(resolved_toml(scenario_of(printed)), printed);
 }
 
 using PatternFiles = OwnFolder;

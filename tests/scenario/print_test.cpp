@@ -180,7 +180,7 @@ TEST(Reference, SaysTypeDefaultAndRange) {
            "| `end_min` | number | see `end_s` | > 0; not with `end_s` |",
            "| `region` | text | required | any |",
        }) {
-    EXPECT_SAYS(page, line) << line;
+    EXPECT_SAYS(page, line);
   }
 }
 

@@ -94,9 +94,7 @@ TEST(AutomaticValues, AreRecordedAsNumbers) {
   EXPECT_SAYS_NOT(text, "integrator = \"automatic\"");
 }
 
-EmbryoAxes axes_in(const std::string& keys) {
-  return axes_of(load_scenario({"test", "test.toml", "[embryo]\n" + keys}).embryo);
-}
+EmbryoAxes axes_in(const std::string& keys) { return axes_of(scenario_of("[embryo]\n" + keys).embryo); }
 
 TEST(EmbryoAxes, AreAnatomicalForEmbryosAndPlainForOtherTissues) {
   EXPECT_EQ(axes_in(""), anatomical_axes());
@@ -200,9 +198,9 @@ TEST(Symmetry, RegionsThatAreOnlyMeasuredMayLieOnOneSide) {
 }
 
 TEST(Symmetry, WithoutPlanesNothingIsHalved) {
-  const Scenario scenario = load_scenario({"test", "test.toml", "[embryo]\ncells = [7, 5, 3]"});
+  const Scenario scenario = scenario_of("[embryo]\ncells = [7, 5, 3]");
   EXPECT_FALSE(make_solved_side(scenario, *make_model(scenario)));
-  EXPECT_TRUE(load_scenario({"test", "test.toml", pill}, {"embryo.mirror=[]"}).embryo.mirror.empty());
+  EXPECT_TRUE(scenario_of(pill, {"embryo.mirror=[]"}).embryo.mirror.empty());
 }
 
 const std::string floor_monitor = "[monitor.floor]\nquantity = \"position\"\naxis = \"z\"\n";  // three lines

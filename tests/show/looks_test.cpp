@@ -116,7 +116,7 @@ TEST(ColourFields, ComeFromArraysThatFramesHave) {
 // However a sheet lies, the view `apical` looks at its apices, with x to the right where that can be; and it comes
 // first.
 TEST(Views, OfAnOpenSheetBeginAtItsApicalSide) {
-  Frame sheet = support::frame_of(support::distorted_block({60, 40, 10, {6, 4, 1}, {1, 1, 2}}, 1, 3));
+  Frame sheet = frame_of(distorted_block({60, 40, 10, {6, 4, 1}, {1, 1, 2}}, 1, 3));
   const Vectors flat = sheet.positions;
   int cases = 0;
   for (const Mat3& turn : {Mat3(Mat3::Identity()), Mat3(Eigen::AngleAxisd(2.5, Vec3::UnitX())),
@@ -133,7 +133,7 @@ TEST(Views, OfAnOpenSheetBeginAtItsApicalSide) {
 }
 
 TEST(Views, OfAClosedEmbryoBeginAtTheBelly) {
-  const std::vector<View> of_embryo = views_of(support::frame_of(build_shell({460, 280, 40, {6, 3, 4}, {1, 1, 1}})));
+  const std::vector<View> of_embryo = views_of(frame_of(build_shell({460, 280, 40, {6, 3, 4}, {1, 1, 1}})));
   ASSERT_EQ(of_embryo.size(), views().size());
   for (std::size_t i = 0; i < views().size(); ++i) EXPECT_EQ(of_embryo[i].name, views()[i].name);
   EXPECT_EQ(of_embryo.front().name, "antero-ventral");

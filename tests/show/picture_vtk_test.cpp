@@ -64,7 +64,7 @@ Picture pill_picture(const std::vector<std::string>& rows, const std::string& co
   Vectors displacements;
   for (const Vec3& place : tissue.rest_positions)
     displacements.emplace_back(0, 0, place.z() < 0 ? 30 * std::pow(place.z() / 140, 2) : 0);
-  Frame frame = support::frame_of(tissue, displacements);
+  Frame frame = frame_of(tissue, displacements);
   for (std::size_t n = 0; n < frame.positions.size(); ++n) frame.positions[n] += displacements[n];
   for (std::size_t e = 0; e < frame.elements.size(); ++e)
     frame.element_scalars["pressure_Pa"].push_back(200 * std::sin(static_cast<double>(37 * e)));
@@ -149,10 +149,9 @@ TEST(Picture, OfASymmetricEmbryoIsSymmetric) {
 
 // A sheet of 20 um whose lower side has walls that its upper side has not: nothing of them is seen from above.
 TEST(Picture, OfASmallSheetShowsNoEdgeBehindItsSurface) {
-  Tissue sheet =
-      support::mapped_lattice(4, 4, 1, [](int i, int j, int k) { return Vec3(5 * i - 10, 5 * j - 10, 0.5 * k); });
+  Tissue sheet = mapped_lattice(4, 4, 1, [](int i, int j, int k) { return Vec3(5 * i - 10, 5 * j - 10, 0.5 * k); });
   Picture picture;
-  picture.columns.push_back({"", support::frame_of(sheet)});
+  picture.columns.push_back({"", frame_of(sheet)});
   const View seen = {"tilted", "", {0.4, 0.3, -0.87}, {0, 1, 0}, {}};
   picture.rows.push_back({seen, half_size_um(sheet.rest_positions, seen)});
   picture.field = field("displacement");
@@ -240,7 +239,7 @@ std::vector<std::uint32_t> unpacked(const ReportRun& run, const std::string& nam
   return {};
 }
 
-class ReportRunTest : public support::OwnFolder {
+class ReportRunTest : public OwnFolder {
  protected:
   ReportRunTest() { fs::create_directories(folder / "frames"); }
   // Frame i is the block moved by i um along x; from frame `divided_at` on it is another one, of more cells. As in a

@@ -107,15 +107,15 @@ TEST(Resume, WithCellsThatFlowAcrossDivisions) {
 // Two roofs that only their edges keep apart: on three threads, from a memory, and by the bytes of a checkpoint.
 TEST(Resume, WithEdgesThatPress) {
   const auto fresh = [] {
-    support::Roofs roofs(0.5);
+    Roofs roofs(0.5);
     // So many elements beside them that threads share the loops.
     roofs.bodies.add({16, 16, 9}, [](int i, int j, int k) { return Vec3(100 + 10 * i, 10 * j, 10 * k); });
     Simulation::Parts parts;
-    parts.model = std::make_unique<Model>(support::model_of(roofs, {.stiffness = 2, .search = 6, .friction = 0.3}));
+    parts.model = std::make_unique<Model>(model_of(roofs, {.stiffness = 2, .search = 6, .friction = 0.3}));
     Vectors loads(parts.model->tissue.node_count(), Vec3::Zero());
     for (std::size_t n = roofs.upper; n < roofs.upper + 12; ++n)
-      if (parts.model->tissue.rest_positions[n].z() > support::Roofs::height) loads[n] = {0, 0.1, -0.5};
-    parts.model->laws.push_back(std::make_unique<support::NodalForces>(loads));
+      if (parts.model->tissue.rest_positions[n].z() > Roofs::height) loads[n] = {0, 0.1, -0.5};
+    parts.model->laws.push_back(std::make_unique<NodalForces>(loads));
     parts.controls.fixed_step_s = 4;
     parts.controls.end_s = 90;
     parts.controls.stop_at_equilibrium = false;
@@ -123,7 +123,7 @@ TEST(Resume, WithEdgesThatPress) {
   };
   const auto press = [](const Simulation& simulation) {
     const std::vector<ContactPair> edges =
-        support::edges_of(simulation.state().internals.at(simulation.state().internals.size() - 2));
+        edges_of(simulation.state().internals.at(simulation.state().internals.size() - 2));
     return std::ranges::any_of(edges, [](const ContactPair& pair) { return pair.first_gap < pair.distance; });
   };
   Simulation whole = fresh();

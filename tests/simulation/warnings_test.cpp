@@ -105,7 +105,7 @@ end_min = 10
 const std::string slowly = "contraction.apical.program={time_s=[0,10],activity=[0,1]}";
 
 std::string energy_warning_of(const std::vector<std::string>& overrides) {
-  Simulation simulation(load_scenario({"test", "test.toml", stripe}, overrides));
+  Simulation simulation(scenario_of(stripe, overrides));
   EXPECT_EQ(energy_warning(simulation), "");
   simulation.run();
   EXPECT_NE(simulation.status(), RunStatus::failed) << simulation.failure();

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 CalibrationProblem block_problem(const std::vector<std::string>& vary, const std::vector<std::string>& targets) {
-  CalibrationProblem problem{support::pulled_block(), {}, {}, {}};
+  CalibrationProblem problem{pulled_block(), {}, {}, {}};
   for (const std::string& text : vary) problem.keys.push_back(parse_varied_key(text));
   for (const std::string& text : targets) problem.targets.push_back(parse_target(text));
   return problem;
@@ -228,7 +228,7 @@ TEST(TargetSearch, GoesOnWhereThereIsNoValue) {
 
 TEST(QuietRun, ComesToWhatPlicaRunWrites) {
   namespace fs = std::filesystem;
-  const ScenarioSource source = support::pulled_block();
+  const ScenarioSource source = pulled_block();
   const RunSummary quiet = quiet_run(load_scenario(source));
   const fs::path folder = fs::path(testing::TempDir()) / ("plica_quiet_" + std::to_string(::getpid()));
   write_file(folder.string() + ".toml", source.text);
@@ -246,7 +246,7 @@ TEST(QuietRun, ComesToWhatPlicaRunWrites) {
 }
 
 TEST(QuietRun, AtRestHasTheSameKeys) {
-  const Scenario scenario = load_scenario(support::pulled_block());
+  const Scenario scenario = load_scenario(pulled_block());
   const RunSummary ran = quiet_run(scenario), rest = run_at_rest(scenario);
   std::vector<std::string> ran_keys, rest_keys;
   for (const auto& [key, value] : ran.summary.items()) ran_keys.push_back(key);
@@ -256,7 +256,7 @@ TEST(QuietRun, AtRestHasTheSameKeys) {
 }
 
 TEST(QuietRun, StopsWhenAsked) {
-  const Scenario scenario = load_scenario(support::pulled_block());
+  const Scenario scenario = load_scenario(pulled_block());
   int rows = 0;
   const RunSummary run = quiet_run(scenario, {[&] { return rows >= 2; }, [&](const Observation&) { ++rows; }});
   EXPECT_EQ(run.summary.at("status"), "interrupted");
@@ -283,7 +283,7 @@ class KeptQuietRun : public testing::Test {
   const std::filesystem::path folder_ =
       std::filesystem::path(testing::TempDir()) / ("plica_kept_" + std::to_string(::getpid()));
   const std::filesystem::path place_ = folder_ / "unfinished" / "1";
-  const Scenario scenario_ = load_scenario(support::pulled_block(), {"time.step_s=0.1"});
+  const Scenario scenario_ = load_scenario(pulled_block(), {"time.step_s=0.1"});
   int steps_ = 0;
 };
 
@@ -308,9 +308,8 @@ TEST_F(KeptQuietRun, BeginsAnewWhereNothingKeptFits) {
   EXPECT_EQ(results_of(run(1000)), results_of(whole));
   EXPECT_EQ(steps_, all_steps);
   run(25);
-  RunSummary other =
-      quiet_run(load_scenario(support::pulled_block(), {"time.step_s=0.1", "elasticity.young_modulus_Pa=900"}),
-                {{}, {}, {}, place_, 0});
+  RunSummary other = quiet_run(load_scenario(pulled_block(), {"time.step_s=0.1", "elasticity.young_modulus_Pa=900"}),
+                               {{}, {}, {}, place_, 0});
   EXPECT_NE(results_of(other), results_of(whole));
   EXPECT_FALSE(std::filesystem::exists(place_)) << "replaced, then removed";
 }

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class CompareTest : public support::OwnFolder {
+class CompareTest : public OwnFolder {
  protected:
   /// A run with one frame: the block displaced by `displacements` from rest.
   [[nodiscard]] ReferenceRun run_with(const std::string& name, const Vectors& displacements,

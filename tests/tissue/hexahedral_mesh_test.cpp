@@ -154,7 +154,7 @@ HexahedralMesh mesh_in_groups(const Tissue& tissue) {
 }
 
 Tissue polygons(PolygonSplit split, int layers = 1) {
-  return tissue_from_prisms(support::irregular_polygons(8, 7, 4, 10, 0.15, 1), split, layers);
+  return tissue_from_prisms(irregular_polygons(8, 7, 4, 10, 0.15, 1), split, layers);
 }
 
 TEST(GroupedMesh, ComesBackTheSame) {
@@ -163,15 +163,15 @@ TEST(GroupedMesh, ComesBackTheSame) {
       const Tissue sheet = polygons(split, layers),
                    egg = build_egg({250, 120, 120, {}, {}}, 150, 1, {20, split, layers});
       for (const Tissue* tissue : {&sheet, &egg}) {
-        support::expect_same_tissue(
-            tissue_from_mesh(mesh_from_bytes(mesh_to_bytes(mesh_in_groups(*tissue))), {1, 1, 1}), *tissue);
+        expect_same_tissue(tissue_from_mesh(mesh_from_bytes(mesh_to_bytes(mesh_in_groups(*tissue))), {1, 1, 1}),
+                           *tissue);
       }
     }
   for (const std::array<int, 3>& elements : {std::array{2, 2, 1}, {1, 2, 3}}) {
     const Tissue pill = build_shell({460, 280, 40, {6, 3, 4}, elements}),
                  block = build_block({60, 40, 20, {3, 2, 1}, elements});
     for (const Tissue* tissue : {&pill, &block}) {
-      support::expect_same_tissue(tissue_from_mesh(mesh_in_groups(*tissue), {1, 1, 1}), *tissue);
+      expect_same_tissue(tissue_from_mesh(mesh_in_groups(*tissue), {1, 1, 1}), *tissue);
     }
   }
   EXPECT_TRUE(groups_of(build_block({60, 40, 20, {3, 2, 1}, {1, 1, 1}})).is_empty());

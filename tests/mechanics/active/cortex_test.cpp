@@ -1,5 +1,7 @@
 #include "mechanics/active/cortex.hpp"
 
+#include <fmt/format.h>
+
 #include "mechanics/active/own_state.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"

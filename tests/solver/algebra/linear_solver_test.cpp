@@ -157,8 +157,8 @@ TEST(DirectSolver, TwoInTwoThreadsDoNotDisturbEachOther) {
 /// A box of nodes, each a neighbour of those of its cubes, with random blocks: symmetric, positive definite.
 struct BlockSystem {
   BlockSystem(int nx, int ny, int nz) {
-    pattern = pattern_of_groups(nx * ny * nz, support::cubes_of_box(nx, ny, nz), 8);
-    support::Random random(7);
+    pattern = pattern_of_groups(nx * ny * nz, cubes_of_box(nx, ny, nz), 8);
+    Random random(7);
     std::vector<Eigen::Triplet<double>> numbers;
     for (int row = 0; row < pattern.nodes(); ++row)
       for (int at = pattern.starts[row]; at < pattern.starts[row + 1]; ++at) {
@@ -294,7 +294,7 @@ TEST(BlockCholesky, PatternHasEachPairOfAGroupOnce) {
 // As a supernode keeps it: [lower triangle; any numbers], padded with zeros to whole chunks.
 struct Example {
   Example(int width, int rows) : dense(Eigen::MatrixXf::Zero(rows, width)), chunks(width * chunks_for(rows)) {
-    support::Random random(11);
+    Random random(11);
     for (int j = 0; j < width; ++j)
       for (int i = j; i < rows; ++i) {
         dense(i, j) = static_cast<float>(random.number());

@@ -376,7 +376,7 @@ TEST(Cubic, LowerDegreesAreSolvedToo) {
 
 // Against the eigenvalues of the companion matrix.
 TEST(Cubic, AgreesWithCompanionMatrix) {
-  support::Random random(1);
+  Random random(1);
   int three = 0, cases = 0;
   for (int k = 0; k < 2000; ++k) {
     const Cubic cubic{random.number(3), random.number(5), 0.01 + std::abs(random.number(4)), random.number(6)};

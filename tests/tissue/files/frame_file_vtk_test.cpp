@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class FrameFileTest : public support::OwnFolder {
+class FrameFileTest : public OwnFolder {
  protected:
   /// What reading complains of, without anything on stderr.
   template <class Error, class Read>
@@ -103,7 +103,7 @@ TEST_F(FrameFileTest, WhatCannotBeReadSaysWhy) {
   EXPECT_SAYS(error<MeshError>(read_frame, triangle), "vtkTriangle");
 }
 
-class PolygonFileVtk : public support::OwnFolder {
+class PolygonFileVtk : public OwnFolder {
  protected:
   PolygonFile read(const std::string& name, const std::string& text) { return read_polygon_file(write(name, text)); }
 };

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MeshFileTest : public support::OwnFolder {
+class MeshFileTest : public OwnFolder {
  protected:
   /// What reading complains of: one line that begins with the file's name, here left out. Nothing appears on stderr.
   template <class Error>

@@ -343,7 +343,7 @@ TEST(VertexBends, OnASphere) {
 TEST(VertexBends, OnACylinderAndInAPipe) {
   for (const bool outward : {true, false}) {
     const double radius = outward ? 60 : -60;
-    const PrismSheet sheet = support::bent(support::honeycomb(8, 8, 4, 1), [&](const Vec3& x) {
+    const PrismSheet sheet = bent(honeycomb(8, 8, 4, 1), [&](const Vec3& x) {
       return Vec3(x.x(), (radius + x.z()) * std::sin(x.y() / radius), (radius + x.z()) * std::cos(x.y() / radius));
     });
     const std::vector<VertexBend> bends = vertex_bends({sheet.apical, sheet.cells});
@@ -362,16 +362,15 @@ TEST(VertexBends, OnACylinderAndInAPipe) {
 // A corner of one hexagon has five others, all on one circle with it: they do not say how it bends, and a nanometre
 // there is no curvature.
 TEST(VertexBends, AtTheRimOfADome) {
-  PrismSheet sheet = support::bent(support::honeycomb(12, 12, 4.6, 1), [](const Vec3& x) {
-    return Vec3(x.x(), x.y(), -(x.x() * x.x() + x.y() * x.y()) / 600);
-  });
-  support::Random random(1);
+  PrismSheet sheet = bent(honeycomb(12, 12, 4.6, 1),
+                          [](const Vec3& x) { return Vec3(x.x(), x.y(), -(x.x() * x.x() + x.y() * x.y()) / 600); });
+  Random random(1);
   for (Vec3& x : sheet.apical) x.z() += 1e-3 * random.number();
   for (const VertexBend& bend : vertex_bends({sheet.apical, sheet.cells})) EXPECT_GT(bend.least_radius_um, 150);
 }
 
 TEST(VertexBends, OfAFlatPatch) {
-  const PrismSheet sheet = support::irregular_polygons(6, 5, 4, 1, 0.2, 1);
+  const PrismSheet sheet = irregular_polygons(6, 5, 4, 1, 0.2, 1);
   for (const VertexBend& bend : vertex_bends({sheet.apical, sheet.cells})) {
     EXPECT_NEAR(bend.normal.z(), 1, 1e-12);
     EXPECT_TRUE(std::isinf(bend.least_radius_um));
