@@ -1,10 +1,10 @@
 """`plica render`: what it writes, what it refuses, and what it leaves behind."""
 import math
 import os
-import re
 import shutil
 import signal
 import struct
+import subprocess
 import time
 
 from vtkmodules.vtkIOImage import vtkPNGReader
@@ -49,37 +49,20 @@ def shift(mesh, moved, distance_um):
 
 def servers(ancestor=None):
     """Process ids of the X servers that run: all, or those that a process has started, itself or through others."""
-    names, states, parents = {}, {}, {}
-    for process in filter(str.isdigit, os.listdir("/proc")):
-        try:
-            with open(f"/proc/{process}/stat", encoding="utf-8") as stat:
-                name, state, parent = re.match(r"\d+ \((.*)\) (\w) (\d+)", stat.read()).groups()
-        except OSError:
-            continue
-        names[int(process)], states[int(process)], parents[int(process)] = name, state, int(parent)
+    lines = subprocess.run(["ps", "-eo", "pid=,ppid=,stat=,comm="], capture_output=True, text=True, check=True).stdout.splitlines()
+    rows = [line.split(None, 3) for line in lines]
+    parents = {int(process): int(parent) for process, parent, _, _ in rows}
 
     def descends(process):
-        while process in parents:
-            if process == ancestor:
-                return True
-            process = parents[process]
-        return False
+        return process == ancestor or (process in parents and descends(parents[process]))
 
-    running = {process for process, name in names.items() if name == "Xvfb" and states[process] != "Z"}
+    running = {int(process) for process, _, state, name in rows if name == "Xvfb" and state[0] != "Z"}
     return running if ancestor is None else set(filter(descends, running))
 
 
 def processes_about(words):
     """Process ids of what has these words on its command line."""
-    found = []
-    for process in filter(str.isdigit, os.listdir("/proc")):
-        try:
-            with open(f"/proc/{process}/cmdline", "rb") as line:
-                if words.encode() in line.read() and int(process) != os.getpid():
-                    found.append(int(process))
-        except OSError:
-            continue
-    return found
+    return subprocess.run(["pgrep", "--full", words], capture_output=True, text=True, check=False).stdout.split()
 
 
 class Render(CommandLine):

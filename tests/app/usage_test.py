@@ -32,20 +32,10 @@ class Usage(CommandLine):
 
     def test_bad_usage_is_status_2(self):
         scenario = self.write(BLOCK, "small.toml")
-        for arguments in (
-            [],
-            ["rum", scenario],
-            ["run"],
-            ["run", scenario],
-            ["run", scenario, "--out"],
-            ["run", scenario, "--out", self.out, "--threads", "0"],
-            ["run", scenario, "--out", self.out, "--threads", "many"],
-            ["run", scenario, "--out", self.out, "--unknown"],
-            ["run", scenario, scenario, "--out", self.out],
-            ["run", scenario, "--out", ""],
-            ["mesh", scenario],
-            ["scenarios", "more"],
-        ):
+        run = ["run", scenario, "--out", self.out]
+        for arguments in ([], ["rum", scenario], ["run"], ["run", scenario], ["run", scenario, "--out"], ["run", scenario, "--out", ""],
+                          [*run, "--threads", "0"], [*run, "--threads", "many"], [*run, "--unknown"], [*run, scenario],
+                          ["mesh", scenario], ["scenarios", "more"]):
             with self.subTest(arguments):
                 result = self.call(*arguments, cwd=self.folder, status=2)
                 self.assertTrue(result.stderr.strip())

@@ -251,38 +251,6 @@ TEST(Furrow, DepthInsideACapsuleIsTheWayOut) {
   }
 }
 
-template <class Columns>
-void expect_named_and_explained(const Columns& columns, std::size_t at_least) {
-  std::set<std::string_view> names;
-  for (const auto& column : columns) {
-    EXPECT_TRUE(names.insert(column.name).second) << column.name << " twice";
-    EXPECT_TRUE(column.meaning.ends_with('.')) << column.name;
-    EXPECT_SAYS(measures_markdown(), "| `" + std::string(column.name) + "` |") << column.name;
-  }
-  EXPECT_GE(names.size(), at_least);
-}
-
-TEST(Columns, AreNamedOnceAndExplained) {
-  expect_named_and_explained(columns(), 29);
-  expect_named_and_explained(cell_columns(), 16);
-  expect_named_and_explained(node_columns(), 3);
-  expect_named_and_explained(midline_columns(), 5);
-  expect_named_and_explained(section_columns(), 11);
-  expect_named_and_explained(lineage_columns(), 4);
-}
-
-TEST(Columns, EachIsOfAStepOrOfTheRunAndGoesSomewhere) {
-  for (const Column& column : columns()) {
-    const bool of_run = column.in_summary == InSummary::whole_run;
-    EXPECT_EQ(static_cast<bool>(column.of_run), of_run) << column.name;
-    EXPECT_EQ(static_cast<bool>(column.of_step), !of_run) << column.name;
-    EXPECT_TRUE(column.in_series || column.in_summary != InSummary::nothing) << column.name;
-    EXPECT_FALSE(column.in_series && of_run) << column.name;
-  }
-  EXPECT_EQ(column_index("time_s"), 0U);
-  EXPECT_THROW((void)column_index("no such column"), std::logic_error);
-}
-
 // Three rows, of which the last lacks two values.
 std::vector<Observation> three_rows() {
   std::vector<Observation> rows(3);
@@ -317,20 +285,6 @@ TEST(Columns, TheSummaryHasWhatTheRowSays) {
   EXPECT_EQ(value("max_shell_penetration_um"), 0.25) << "what has no value does not count";
   EXPECT_FALSE(value("lip_distance_um")) << "the last has none";
   EXPECT_FALSE(value("peak_speed_ratio"));
-}
-
-// Programs read these files: a column may be added, but none moved.
-TEST(Columns, ThoseOfTheContractStayInTheirOrder) {
-  std::string summary;
-  for (const Column* column : summary_columns(all_columns())) summary += std::string(column->name) + ' ';
-  EXPECT_TRUE(summary.starts_with(
-      "furrow_depth_um furrow_depth_below_lips_um lip_distance_um highest_points_distance_um vml_apical_area_ratio "
-      "vce_apical_area_ratio vml_displacement_um vce_displacement_um peak_speed_ratio peak_speed_ratio_time_s "
-      "ends_lead_until_s vml_displacement_at_equal_speed_um vce_displacement_at_equal_speed_um max_node_speed_um_per_s "
-      "max_volume_error max_shell_penetration_um min_scaled_jacobian lumen_volume_ratio newton_iterations "
-      "linear_iterations "))
-      << summary;
-  EXPECT_EQ(names_of(lineage_columns()), (std::vector<std::string>{"cell_id", "mother_id", "generation", "birth_s"}));
 }
 
 const std::string sheet =
