@@ -1,16 +1,10 @@
 """A tissue that passes through itself says so: on the terminal, in summary, series, cells and pictures; the report's own
 notice is in viewer/tests."""
 import support
-from support import CommandLine, table
+from support import CommandLine, block, table
 
 # A strip that curls up until its ends pass through it.
-SHEET = """
-[embryo]
-shape = "block"
-length_um = 600
-width_um = 20
-cell_height_um = 10
-cells = [60, 2, 1]
+SHEET = block(600, 20, 10, [60, 2, 1]) + """\
 [dynamics]
 surface_drag_Pa_s_per_um = 20
 [contraction.apical]

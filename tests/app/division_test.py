@@ -2,16 +2,9 @@
 import math
 
 import support
-from support import BLOCK, CommandLine, table
+from support import BLOCK, CommandLine, block, table
 
-ROW = """\
-format = 1
-[embryo]
-shape = "block"
-length_um = 60
-width_um = 20
-cell_height_um = 40
-cells = [3, 1, 1]
+ROW = "format = 1\n" + block(60, 20, 40, [3, 1, 1]) + """\
 [region.middle]
 ids = [1]
 [time]

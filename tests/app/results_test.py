@@ -4,7 +4,7 @@ from pathlib import Path
 
 import support
 from support import BLOCK, CELL_DATA, CELLS, MIDLINE, POINT_DATA, RESULTS, SECTION, SERIES, SPHERE, SUMMARY
-from support import CommandLine, read_vtu, table
+from support import CommandLine, block, read_vtu, table
 
 
 class Outcomes(CommandLine):
@@ -109,8 +109,7 @@ class Outcomes(CommandLine):
         self.run_scenario(BLOCK + "[expect]\nequilibrium_time_s = { value = 1, within = 1e9 }\n", "--overwrite", status=1)
 
     def test_each_warning_of_a_run_is_in_its_summary(self):
-        text = ('[embryo]\nshape = "block"\nlength_um = 10\nwidth_um = 60\ncell_height_um = 12\ncells = [2, 12, 1]\n'
-                '[contraction.apical]\nregion = "all"\nstiffness_nN_per_um = 1.5\nacross_ratio = 1\n[time]\nend_min = 8\n')
+        text = (block(10, 60, 12, [2, 12, 1]) + '[contraction.apical]\nregion = "all"\nstiffness_nN_per_um = 1.5\nacross_ratio = 1\n[time]\nend_min = 8\n')
         for topic, *more in (("bending",), ("equilibrium", "--set", "stop.equilibrium_speed_um_per_min=1e9")):
             stderr = self.run_scenario(text, "--quiet", "--overwrite", *more).stderr
             lines = [line.removeprefix("warning: ") for line in stderr.splitlines() if line.startswith("warning: ")]

@@ -26,15 +26,14 @@ from pathlib import Path
 PROGRAM = ""
 CASES = 0  # programs started and judged; printed at the end
 
-BLOCK = """\
-format = 1
-title = "A small block"
-[embryo]
-shape = "block"
-length_um = 60
-width_um = 40
-cell_height_um = 40
-cells = [3, 2, 1]
+
+
+def block(length, width, height, cells):
+    """A table [embryo] of a block, in um."""
+    return f'[embryo]\nshape = "block"\nlength_um = {length}\nwidth_um = {width}\ncell_height_um = {height}\ncells = {cells}\n'
+
+
+BLOCK = 'format = 1\ntitle = "A small block"\n' + block(60, 40, 40, [3, 2, 1]) + """\
 [contraction.all]
 region = "all"
 stiffness_nN_per_um = 1

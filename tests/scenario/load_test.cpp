@@ -34,15 +34,9 @@ directions = ["x", "z"]
 [pressure.c]
 region = "all"
 pressure_Pa = -3
-[time]
-step_s = 0.5
-end_min = 2
 [output]
 frame_every_min = 0.5
 cells_csv = false
-[expect]
-cells = { value = 756, within = 0 }
-time_s = { value = 120.0, within_percent = 5 }
 )");
   EXPECT_EQ(scenario.title, "a \"b\"");
   EXPECT_EQ(scenario.regions.at("belly").x_um, (Range{-10, 20.5}));
@@ -52,12 +46,8 @@ time_s = { value = 120.0, within_percent = 5 }
   EXPECT_EQ(scenario.contractions.at("a").program.time_s, (std::vector<double>{0, 90}));
   EXPECT_EQ(scenario.holds.at("b").directions, (std::vector<std::string>{"x", "z"}));
   EXPECT_EQ(scenario.pressures.at("c").pressure_Pa, -3);
-  EXPECT_EQ(scenario.time.step_s, 0.5);
-  EXPECT_EQ(scenario.time.end_s, 120);
   EXPECT_EQ(scenario.output.frame_every_s, 30);
   EXPECT_EQ(scenario.output.cells_csv, false);
-  EXPECT_EQ(scenario.expect.at("cells").within, 0);
-  EXPECT_EQ(scenario.expect.at("time_s").within_percent, 5);
 }
 
 TEST(LoadScenario, LoadsEveryBuiltin) {
