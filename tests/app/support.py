@@ -27,7 +27,6 @@ PROGRAM = ""
 CASES = 0  # programs started and judged; printed at the end
 
 
-
 def block(length, width, height, cells):
     """A table [embryo] of a block, in um."""
     return f'[embryo]\nshape = "block"\nlength_um = {length}\nwidth_um = {width}\ncell_height_um = {height}\ncells = {cells}\n'

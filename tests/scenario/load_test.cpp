@@ -50,17 +50,6 @@ cells_csv = false
   EXPECT_EQ(scenario.output.cells_csv, false);
 }
 
-TEST(LoadScenario, LoadsEveryBuiltin) {
-  int count = 0;
-  for (const BuiltinScenario& builtin : builtin_scenarios()) {
-    const Scenario scenario = load_scenario(find_scenario(std::string(builtin.name)));
-    EXPECT_EQ(scenario.name, builtin.name);
-    ++count;
-  }
-  std::cout << count << " scenarios\n";
-  EXPECT_GT(count, 0);
-}
-
 TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
   const std::string program = "[contraction.a]\nregion = \"all\"\n";
   const std::string block = "[embryo]\nshape = \"block\"\n";

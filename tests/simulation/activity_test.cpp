@@ -269,13 +269,7 @@ Model row_model(int cells) {
 }
 
 DivisionRule at(double time_s, const std::string& region, double growth_s, DivisionPlane plane) {
-  DivisionRule rule;
-  rule.region = region;
-  rule.threshold = time_s;
-  rule.plane = plane;
-  rule.growth_s = growth_s;
-  rule.max_generation = 100;
-  return rule;
+  return {.region = region, .threshold = time_s, .plane = plane, .growth_s = growth_s, .max_generation = 100};
 }
 
 RunControls controls_of(std::vector<DivisionRule> rules) {
