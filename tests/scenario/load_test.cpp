@@ -1,6 +1,5 @@
 #include "scenario/load.hpp"
 
-#include "scenario/builtin.hpp"
 #include "support/scenarios.hpp"
 
 namespace {
