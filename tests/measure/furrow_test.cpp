@@ -288,13 +288,12 @@ TEST(Columns, TheSummaryHasWhatTheRowSays) {
 }
 
 const std::string sheet =
-    "[embryo]\nshape = \"sheet\"\nlength_um = 40\nwidth_um = 40\ncell_count = 30\ncell_height_um = "
+    "format = 1\n[embryo]\nshape = \"sheet\"\nlength_um = 40\nwidth_um = 40\ncell_count = 30\ncell_height_um = "
     "10\n[region.middle]\ny_um = [-8, 8]\n[cortex.pull]\nregion = \"middle\"\ntension_mN_per_m = 0.3\n";
 const std::string organoid =
-    "[embryo]\nshape = \"sphere\"\ndiameter_um = 100\ncell_height_um = 15\ncells = [5, 5, 4]\naxes = [\"x\", \"y\", "
+    "format = 1\n[embryo]\nshape = \"sphere\"\ndiameter_um = 100\ncell_height_um = 15\ncells = [5, 5, 4]\naxes = "
+    "[\"x\", \"y\", "
     "\"z\"]\n[vitelline]\nenabled = false\n[cortex.pull]\nregion = \"all\"\ntension_mN_per_m = 0.3\n";
-
-Scenario scenario_of(const std::string& text) { return load_scenario({"test", "test.toml", "format = 1\n" + text}); }
 
 std::vector<std::string> sets_of(const Simulation& simulation) {
   std::vector<std::string> names;
@@ -307,9 +306,8 @@ TEST(MeasureSets, ATissueMeasuresWhatFitsIt) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(sets_of(Simulation(scenario_of(sheet))), (Names{"", "fold", "bending"}));
   EXPECT_EQ(sets_of(Simulation(scenario_of(organoid))), (Names{"", "lumen", "bending"}));
-  EXPECT_EQ(
-      sets_of(Simulation(scenario_of(small_furrow.substr(std::size("format = 1"))))),
-      (Names{"", "fold", "furrow", "contact", "closing", "lumen", "shell", "perivitelline", "flanks", "bending"}));
+  EXPECT_EQ(sets_of(Simulation(scenario_of(small_furrow))), (Names{"", "fold", "furrow", "contact", "closing", "lumen",
+                                                                   "shell", "perivitelline", "flanks", "bending"}));
   EXPECT_EQ(sets_of(Simulation(scenario_of(sheet + "[self_contact]\nsurface = \"apical\"\n"))),
             (Names{"", "fold", "contact", "bending"}));
 }

@@ -103,14 +103,14 @@ TEST(CortexKeys, AHeldYolkLeavesWhatItsBaseSaysOfACompliantOne) {
 }
 
 // Invaginating ventral side, with all laws of a closing furrow.
-Scenario small_furrow() {
+Scenario furrow_of_cortices() {
   const std::string yolk = "[enclosed.yolk]\nvolume = \"compliant\"\nbulk_modulus_Pa = 50000\n";
-  return load_scenario({"furrow", "furrow.toml", support::small_furrow + yolk});
+  return load_scenario({"furrow", "furrow.toml", small_furrow + yolk});
 }
 
 // The region of the active apical cortex is where the furrow is measured.
 TEST(CortexKeys, ASmallFurrowOfCorticesFolds) {
-  const Scenario scenario = small_furrow();
+  const Scenario scenario = furrow_of_cortices();
   Simulation simulation(scenario);
   ASSERT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
   const Observation measures = simulation.measures();
@@ -129,7 +129,7 @@ TEST(CortexKeys, OneThatIsGivenAsNothingIsOff) {
 
 // Forces exerted by a part of the tissue exclude yolk pressure and contact.
 TEST(CortexKeys, ForcesOfAPartLeaveOutWhatIsNotOfCells) {
-  Scenario scenario = small_furrow();
+  Scenario scenario = furrow_of_cortices();
   scenario.cortices.clear();
   scenario.elasticity.corner_barrier_Pa = 0;
   const Simulation simulation(scenario);
@@ -147,7 +147,7 @@ TEST(CortexKeys, ForcesOfAPartLeaveOutWhatIsNotOfCells) {
 
 // Checkpoints include relaxing stress-free areas and contact pairs.
 TEST(CortexKeys, ARunGoesOnToTheSameBits) {
-  Scenario scenario = small_furrow();
+  Scenario scenario = furrow_of_cortices();
   scenario.self_contact.friction = 0.3;
   scenario.vitelline.drag_Pa_s_per_um = 50;
   Simulation whole(scenario);

@@ -314,7 +314,7 @@ TEST(Watch, MakesMonitorsAndCriteriaOfAScenario) {
   EXPECT_EQ(watch.stop.criteria[1].above, 60);
 }
 
-std::string error_of(const std::string& override_text) {
+std::string program_errors(const std::string& override_text) {
   return errors_in([&] {
     return load_scenario(find_scenario("drosophila"),
                          std::vector<std::string>{override_text, "contraction.apical.program.activity=[1, 1, 0]"});
@@ -322,10 +322,10 @@ std::string error_of(const std::string& override_text) {
 }
 
 TEST(TimeRules, AProgramMayJumpButNotTwiceAtOnce) {
-  EXPECT_EQ(error_of("contraction.apical.program.time_s=[0, 10, 10]"), "");
-  EXPECT_SAYS(error_of("contraction.apical.program.time_s=[10, 10, 10]"), "10 occurs three times");
-  EXPECT_SAYS(error_of("contraction.apical.program.time_s=[0, 10, 10.0000001]"), "closer than 1e-06 s");
-  EXPECT_SAYS(error_of("contraction.apical.program.time_s=[0, 10, 9]"), "do not increase");
+  EXPECT_EQ(program_errors("contraction.apical.program.time_s=[0, 10, 10]"), "");
+  EXPECT_SAYS(program_errors("contraction.apical.program.time_s=[10, 10, 10]"), "10 occurs three times");
+  EXPECT_SAYS(program_errors("contraction.apical.program.time_s=[0, 10, 10.0000001]"), "closer than 1e-06 s");
+  EXPECT_SAYS(program_errors("contraction.apical.program.time_s=[0, 10, 9]"), "do not increase");
 }
 
 TEST(TimeRules, ARunLastsLongerThanAnInstant) {

@@ -33,7 +33,7 @@ region = "belly"
 pressure_Pa = 3
 )";
 
-Scenario scenario_of(const std::string& text, std::vector<std::string> overrides) {
+Scenario second_order(const std::string& text, std::vector<std::string> overrides) {
   overrides.insert(overrides.begin(), "time.integrator=bdf2");
   return load_scenario({"furrow", "furrow.toml", text}, overrides);
 }
@@ -71,7 +71,7 @@ TEST(FullModel, EachLawOfASideIsThatOfAHalfOrAQuarter) {
             {planes[1], "embryo.elements_per_cell=[2,1,2]", "dynamics.density_kg_per_m3=1000",
              "time.integrator=backward-euler", "elasticity.model=shape-memory"}},
            {slice, {planes[0]}}}) {
-    const Scenario scenario = scenario_of(text, overrides);
+    const Scenario scenario = second_order(text, overrides);
     const auto whole = make_model(scenario);
     const auto solved = make_solved_side(scenario, *whole);
     ASSERT_TRUE(solved);
@@ -189,11 +189,11 @@ TEST(FullModel, AFurrowClosesAsItDoesWithoutPlanes) {
 
 TEST(FullModel, AFurrowBetweenTwoPlanesIsThatOfTheWhole) {
   const std::vector<std::string> fine = {"time.tolerance_um=0.01", "enclosed.yolk.volume=compliant", compliant};
-  Simulation plain(scenario_of(furrow, fine));
+  Simulation plain(second_order(furrow, fine));
   ASSERT_EQ(plain.run(), RunStatus::end_time) << plain.failure();
   for (const std::string& plane : planes) {
     SCOPED_TRACE(plane);
-    Simulation mirrored(scenario_of(furrow, with(fine, plane)));
+    Simulation mirrored(second_order(furrow, with(fine, plane)));
     ASSERT_EQ(mirrored.run(), RunStatus::end_time) << mirrored.failure();
     expect_same_end(plain, mirrored, 0.02);
     EXPECT_LT(largest_distance(plain.state().positions, mirrored.state().positions), 0.05);
@@ -213,7 +213,7 @@ TEST(FullModel, ACrossingOfThePlaneIsSeen) {
 }
 
 TEST(FullModel, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
-  const Scenario scenario = scenario_of(furrow, {planes[1], "enclosed.yolk.volume=compliant", compliant});
+  const Scenario scenario = second_order(furrow, {planes[1], "enclosed.yolk.volume=compliant", compliant});
   std::optional<RunMemory> kept;
   Observation measures;
   std::optional<Simulation> fork;

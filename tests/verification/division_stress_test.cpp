@@ -185,7 +185,7 @@ double cone(const std::array<Vec3, 4>& p) {
 }
 
 /// Volume inside the faces that belong to one element only.
-double volume_inside_boundary(const Tissue& tissue, const Vectors& positions) {
+double volume_inside_faces(const Tissue& tissue, const Vectors& positions) {
   std::map<std::array<int, 4>, std::pair<int, std::array<NodeId, 4>>> faces;
   for (const auto& element : tissue.elements)
     for (const auto& face : hex_faces) {
@@ -220,7 +220,7 @@ void expect_volumes_add_up(const Tissue& tissue, double size_um, const char* nam
     for (Vec3& x : positions) x += random.vector(size_um);
     double sum = 0;
     for (const double v : CellVolumes(tissue).volumes(positions)) sum += v;
-    worst = std::max(worst, std::abs(sum / volume_inside_boundary(tissue, positions) - 1));
+    worst = std::max(worst, std::abs(sum / volume_inside_faces(tissue, positions) - 1));
     ++cases;
   }
   std::printf("volumes of cells over volume inside the boundary, %s: off by %.1e in %d cases\n", name, worst, cases);

@@ -7,10 +7,10 @@
 
 namespace {
 
-using Motion = std::function<Vec3(double)>;
+using Way = std::function<Vec3(double)>;
 
 /// States of one node on its way at the ends of steps of these lengths.
-std::vector<State> states_of(const Motion& at, const std::vector<double>& steps_s, TimeOrder order) {
+std::vector<State> states_of(const Way& at, const std::vector<double>& steps_s, TimeOrder order) {
   State state;
   state.positions = {at(0)};
   state.velocities = {Vec3::Zero()};
@@ -74,7 +74,7 @@ TEST(BackwardDifference, LawsSeeTheVelocityAtTheEnd) {
 // constant (for first order the second).
 TEST(BackwardDifference, TheErrorOfAStepIsThatOfTheEquationItSolves) {
   const std::vector<double> steps_s = {0.3, 0.5, 0.4, 0.8};
-  const auto error_of_last = [&](const Motion& at, const Motion& rate, TimeOrder order) {
+  const auto error_of_last = [&](const Way& at, const Way& rate, TimeOrder order) {
     const auto states = states_of(at, steps_s, order);
     const State &before = states[states.size() - 2], &after = states.back();
     const BackwardDifference rates = order == TimeOrder::second
