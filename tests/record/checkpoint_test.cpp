@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t trailer_bytes = 64;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 // A block whose cells divided once, after some steps.
 struct BlockRun {
@@ -238,15 +238,15 @@ TEST_F(CheckpointTest, WhatIsNoNumberIsRefused) {
     EXPECT_TRUE(is_refused(checkpoint_bytes(bad))) << "case " << cases;
     ++cases;
   };
-  refused([](Checkpoint& c) { c.run.state.positions[5].y() = nan; });
+  refused([](Checkpoint& c) { c.run.state.positions[5].y() = no_number; });
   refused([](Checkpoint& c) { c.run.state.velocities[0].x() = std::numeric_limits<double>::infinity(); });
-  refused([](Checkpoint& c) { c.run.state.multipliers[2] = nan; });
-  refused([](Checkpoint& c) { c.run.state.time_s = nan; });
-  refused([](Checkpoint& c) { c.run.equilibrium_time_s = nan; });
+  refused([](Checkpoint& c) { c.run.state.multipliers[2] = no_number; });
+  refused([](Checkpoint& c) { c.run.state.time_s = no_number; });
+  refused([](Checkpoint& c) { c.run.equilibrium_time_s = no_number; });
   refused([](Checkpoint& c) { c.run.wanted_step_s = -std::numeric_limits<double>::infinity(); });
-  refused([](Checkpoint& c) { c.record.frame_times_s[1] = nan; });
-  refused([](Checkpoint& c) { c.record.rows[1].values[column_index("max_volume_error")] = nan; });
-  refused([](Checkpoint& c) { c.record.rows[1].monitors[0] = nan; });
+  refused([](Checkpoint& c) { c.record.frame_times_s[1] = no_number; });
+  refused([](Checkpoint& c) { c.record.rows[1].values[column_index("max_volume_error")] = no_number; });
+  refused([](Checkpoint& c) { c.record.rows[1].monitors[0] = no_number; });
   refused([](Checkpoint& c) { c.record.rows.clear(); });
   EXPECT_EQ(cases, 10);
 }
